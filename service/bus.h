@@ -1,0 +1,24 @@
+/* Opening the LCM bus, and saying what to do where it cannot be opened. */
+#ifndef BUS_H
+#define BUS_H
+
+#include <lcm/lcm.h>
+#include <stdbool.h>
+
+enum { BUS_CHANNEL_MAX = 64 }; /* LCM's limit, with the final 0 */
+
+/* Channel names: prefix then name. A prefix has at most BUS_PREFIX_MAX letters, digits, '_'
+ * or '-', so that it means itself in LCM's regular expressions. */
+enum { BUS_PREFIX_MAX = 32 };
+bool bus_prefix_ok(const char *prefix);
+void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name);
+
+/* On input: url, or NULL for LCM_DEFAULT_URL or, without that, the usual multicast group on
+ * this host alone (ttl=0) with as large a receive buffer as the system grants.
+ * On output: the bus, to be destroyed by the caller with lcm_destroy(); or NULL after lines on
+ * stderr that begin with program and say what is wrong and what to run. Where the multicast
+ * group has no route, these are two lines and LCM's own are not provoked.
+ * *receive_buffer (may be NULL): bytes that the system grants the socket; 0: not known. */
+lcm_t *bus_open(const char *program, const char *url, long *receive_buffer);
+
+#endif

@@ -1,0 +1,176 @@
+#include "cache.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Entries are linked by index: each into the chain of its bucket, and all that are used into
+ * a list from the most to the least recently used. */
+enum { NONE = -1 };
+
+struct entry {
+    int64_t id, key;
+    int32_t next;         /* in the bucket */
+    int32_t newer, older; /* in the order of use */
+    struct fmb_body body;
+};
+
+struct cache {
+    int64_t next_key;
+    uint32_t bucket_mask;
+    int32_t *bucket; /* first entry of each */
+    int32_t newest, oldest;
+    struct entry *entry;
+    struct cache_counts counts;
+};
+
+struct cache *cache_create(size_t capacity, int64_t first_key)
+{
+    assert(capacity >= 1 && capacity <= CACHE_BODIES_MAX);
+    uint32_t buckets = 1;
+    while (buckets < capacity)
+        buckets *= 2;
+    struct cache *cache = malloc(sizeof *cache);
+    struct entry *entry = malloc(capacity * sizeof *entry);
+    int32_t *bucket = malloc(buckets * sizeof *bucket);
+    if (!cache || !entry || !bucket) {
+        free(cache);
+        free(entry);
+        free(bucket);
+        return NULL;
+    }
+    for (uint32_t b = 0; b < buckets; b++)
+        bucket[b] = NONE;
+    *cache = (struct cache){.next_key = first_key,
+                            .bucket_mask = buckets - 1,
+                            .bucket = bucket,
+                            .newest = NONE,
+                            .oldest = NONE,
+                            .entry = entry,
+                            .counts = {.capacity = (int64_t) capacity}};
+    return cache;
+}
+
+void cache_destroy(struct cache *cache)
+{
+    if (!cache)
+        return;
+    free(cache->bucket);
+    free(cache->entry);
+    free(cache);
+}
+
+/* Multiplicative hashing: the high half of the product with 2^64 / golden ratio. */
+static int32_t *bucket_of(struct cache *cache, int64_t id)
+{
+    uint64_t hash = (uint64_t) id * UINT64_C(0x9e3779b97f4a7c15);
+    return &cache->bucket[(uint32_t) (hash >> 32) & cache->bucket_mask];
+}
+
+static int32_t find(struct cache *cache, int64_t id)
+{
+    int32_t e = *bucket_of(cache, id);
+    while (e != NONE && cache->entry[e].id != id)
+        e = cache->entry[e].next;
+    return e;
+}
+
+static void unlink_use(struct cache *cache, int32_t e)
+{
+    struct entry *entry = &cache->entry[e];
+    *(entry->newer == NONE ? &cache->newest : &cache->entry[entry->newer].older) = entry->older;
+    *(entry->older == NONE ? &cache->oldest : &cache->entry[entry->older].newer) = entry->newer;
+}
+
+static void link_newest(struct cache *cache, int32_t e)
+{
+    struct entry *entry = &cache->entry[e];
+    entry->newer = NONE;
+    entry->older = cache->newest;
+    *(cache->newest == NONE ? &cache->oldest : &cache->entry[cache->newest].newer) = e;
+    cache->newest = e;
+}
+
+static void touch(struct cache *cache, int32_t e)
+{
+    unlink_use(cache, e);
+    link_newest(cache, e);
+}
+
+static int32_t evict_oldest(struct cache *cache)
+{
+    int32_t e = cache->oldest;
+    int32_t *link = bucket_of(cache, cache->entry[e].id);
+    while (*link != e)
+        link = &cache->entry[*link].next;
+    *link = cache->entry[e].next;
+    unlink_use(cache, e);
+    cache->counts.evictions++;
+    cache->counts.bodies--;
+    return e;
+}
+
+/* A new entry for the id, linked everywhere. */
+static int32_t insert(struct cache *cache, int64_t id)
+{
+    int32_t e = cache->counts.bodies < cache->counts.capacity ? (int32_t) cache->counts.bodies
+                                                              : evict_oldest(cache);
+    int32_t *bucket = bucket_of(cache, id);
+    cache->entry[e].id = id;
+    cache->entry[e].next = *bucket;
+    *bucket = e;
+    link_newest(cache, e);
+    cache->counts.bodies++;
+    return e;
+}
+
+/* Number by number, since components are stored with gaps in 2D. -0 and 0 are different. */
+static bool same_body(const struct fmb_body *body, int dim, int shape, const double *components)
+{
+    if (body->dim != dim || body->shape != (enum fmb_shape) shape)
+        return false;
+    for (int i = 0; i < body->count; i++)
+        if (memcmp(body->component[i], components + i * dim, (size_t) dim * sizeof *components))
+            return false;
+    return true;
+}
+
+int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const double *components,
+                   struct fmb_body *out)
+{
+    int32_t e = find(cache, id);
+    if (e != NONE && same_body(&cache->entry[e].body, dim, shape, components)) {
+        cache->counts.hits++;
+    } else {
+        cache->counts.misses++;
+        if (e == NONE)
+            e = insert(cache, id);
+        else
+            cache->counts.replacements++;
+        struct entry *entry = &cache->entry[e];
+        size_t count = (size_t) (fmb_component_count(dim, shape) * dim);
+        enum fmb_status status = fmb_body_make(dim, shape, components, count, &entry->body);
+        assert(status == FMB_OK);
+        (void) status;
+        entry->key = cache->next_key++;
+    }
+    touch(cache, e);
+    *out = cache->entry[e].body;
+    return cache->entry[e].key;
+}
+
+bool cache_find(struct cache *cache, int64_t id, int64_t key, struct fmb_body *out)
+{
+    int32_t e = find(cache, id);
+    if (e == NONE || cache->entry[e].key != key)
+        return false;
+    cache->counts.hits++;
+    touch(cache, e);
+    *out = cache->entry[e].body;
+    return true;
+}
+
+struct cache_counts cache_counts(const struct cache *cache)
+{
+    return cache->counts;
+}

@@ -1,0 +1,44 @@
+/* The bodies that the service has met, by id: components, inverse and all that fmb_body holds.
+ *
+ * A fixed number of bodies; the least recently used goes first. All memory is taken at the
+ * start. Each set of components that is kept gets a key, a number that no other set gets in
+ * the life of the cache: a frame may name its components by id and key. A key dies when its
+ * body is replaced (same id, other components, shape or dimension) or evicted. */
+#ifndef CACHE_H
+#define CACHE_H
+
+#include "fmb/fmb.h"
+
+#include <stdint.h>
+
+enum { CACHE_BODIES_MAX = 10000000 };
+
+struct cache;
+
+struct cache_counts {
+    int64_t bodies, capacity;
+    int64_t hits;
+    int64_t misses;
+    int64_t replacements; /* of the misses: the id was held with other components */
+    int64_t evictions;
+};
+
+/* On input: capacity from 1 to CACHE_BODIES_MAX; first_key, from 1 to 2^52: where the keys
+ * start to count. With a random start, a key from another life of the service names nothing
+ * here: a wrong hit would need the same id at the same place in two sequences that start
+ * anywhere among 2^52 numbers.
+ * On output: a cache, to be freed with cache_destroy(); NULL: out of memory. */
+struct cache *cache_create(size_t capacity, int64_t first_key);
+void cache_destroy(struct cache *cache);
+
+/* Finds the body with these components (bitwise), or keeps it. On input: id > 0, the rest as
+ * fmb_body_make() accepts it. On output: *out, and its key is returned. */
+int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const double *components,
+                   struct fmb_body *out);
+
+/* Finds the body that the key was given for. False: it is not held (any more). */
+bool cache_find(struct cache *cache, int64_t id, int64_t key, struct fmb_body *out);
+
+struct cache_counts cache_counts(const struct cache *cache);
+
+#endif

@@ -1,0 +1,121 @@
+/* The exact step: what the engine decides with integers of any size.
+ *
+ * A pair becomes integers (exact_pair). Its verdict and interval come from one line against
+ * one polytope, and so does its box; the polytope is a set of slabs (exact_slabs.c), the
+ * line's part inside it a span (exact_span.c).
+ *
+ * Everything is three-dimensional here: a 2D frame lies in the plane z = 0, where it is a
+ * flat frame among flat frames, and those need no case of their own.
+ *
+ * Time is measured in windows: tau = t / T in [0,1], and motion as the displacement v T over
+ * the whole window, so that T = 0 is no special case either (nothing moves). */
+#ifndef FMB_EXACT_H
+#define FMB_EXACT_H
+
+#include "fmb.h"
+
+#include <gmp.h>
+
+enum {
+    EXACT_EDGES_MAX = 6,    /* directions of edges: 3 of a cuboid, 6 of a tetrahedron */
+    EXACT_VERTICES_MAX = 8, /* of a cuboid */
+    EXACT_SCRATCH = 4
+};
+
+/* A frame at tau = 0. Integers, times 2^unit of the pair; vectors are [axis]. */
+struct exact_frame {
+    int count;             /* components: 2 or 3, or 0 for a point */
+    bool simplex;          /* tetrahedron or face; else cuboid */
+    mpz_t component[3][3]; /* [component][axis] */
+    mpz_t origin[3];
+    mpz_t displacement[3]; /* v T */
+    /* The distinct directions of edges: the components; of a simplex also the differences
+     * c_j - c_i, i < j, which are held in difference. */
+    int edges;
+    mpz_t *edge[EXACT_EDGES_MAX]; /* each points to a vector of three */
+    mpz_t difference[3][3];
+};
+
+struct exact_pair {
+    long unit; /* every length is an integer times 2^unit */
+    bool moving;
+    struct exact_frame frame[2];
+    mpz_t offset[3]; /* origin of frame[1] - origin of frame[0] */
+    mpz_t drift[3];  /* displacement of frame[1] - displacement of frame[0]; 0 if not moving */
+    mpz_t scratch[EXACT_SCRATCH];
+};
+
+/* pair must be checked. exact_pair_clear() frees what exact_pair_init() took. */
+void exact_pair_init(struct exact_pair *out, const struct fmb_pair *pair);
+void exact_pair_clear(struct exact_pair *pair);
+
+/* The sign of the determinant of the components of a body of three (3D) or two (2D), exactly.
+ * The components are finite. */
+int exact_determinant_sign(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX]);
+
+/* One slab: { w : low <= normal . w <= high }. A slab that pins has low = high: it belongs to
+ * the affine hull of the polytope, every point of which lies on it. */
+struct slab {
+    mpz_t normal[3];
+    mpz_t low, high;
+    bool pins;
+};
+
+/* Called for each slab in turn; false ends the walk. The slab is the walker's. */
+typedef bool (*slab_visit)(void *context, struct slab *slab);
+
+/* Walks the slabs whose intersection is the Minkowski difference a - b of two frames, both
+ * with their origins at 0; false if the visitor ended the walk. So the frames have a point in
+ * common where the offset w = origin of b - origin of a lies in all slabs, and their relative
+ * interiors have one where w lies strictly between the bounds of all slabs that do not pin.
+ * b = NULL is the point 0: the slabs are those of a itself. scratch is overwritten. */
+bool slabs_walk(const struct exact_frame *a, const struct exact_frame *b, slab_visit visit,
+                void *context, mpz_t scratch[EXACT_SCRATCH]);
+
+/* num / den, den > 0. */
+struct ratio {
+    mpz_t num, den;
+};
+
+void ratio_init(struct ratio *r);
+void ratio_clear(struct ratio *r);
+void ratio_copy(struct ratio *out, const struct ratio *r);
+/* Sign of x - y. */
+int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2]);
+
+/* The part of the line segment s -> w(s), s in [0,1], that lies in the slabs applied so far. */
+struct span {
+    /* Within the slabs that pin, and [0,1]: closed. */
+    struct ratio window[2];
+    /* Strictly within the others: open; where not bounded, all of [0,1] is inside. */
+    struct ratio open[2];
+    bool bounded[2];
+    bool interior; /* false: all of the segment lies on a bound of a slab that does not pin */
+    struct ratio at;
+    mpz_t scratch[2];
+};
+
+void span_init(struct span *span);
+void span_clear(struct span *span);
+/* Back to all of [0,1]. */
+void span_reset(struct span *span);
+
+/* Applies a slab to a segment along which normal . w goes from f0 (s = 0) to f1 (s = 1).
+ * Returns false if nothing is left of the segment; the span must then not be asked. */
+bool span_apply(struct span *span, const mpz_t f0, const mpz_t f1, const mpz_t low,
+                const mpz_t high, bool pins);
+
+/* The closed part: within all slabs, bounds included. lower <= upper. Pointers into the span. */
+const struct ratio *span_lower(struct span *span);
+const struct ratio *span_upper(struct span *span);
+
+/* Whether some s of the window lies strictly within all slabs that do not pin. */
+bool span_has_interior(struct span *span);
+
+/* The box of the intersection of a pair in contact, over the window, ends rounded outward. */
+void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX]);
+
+/* The method. */
+enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);
+
+#endif

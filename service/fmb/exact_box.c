@@ -1,0 +1,386 @@
+/* The exact box of the intersection of two frames, over the window.
+ *
+ * In space and time (tau, p) the intersection is a convex polytope Q; its box is that of its
+ * vertices. At a vertex, a face of A of dimension i and a face of B of dimension j (0 a
+ * vertex, 1 an edge, ...) cross in that one point alone.
+ *
+ *   Inside the window the swept faces, of dimensions i + 1 and j + 1, meet in one point of
+ *   space and time, which is of dimension 4, so i + j <= 2: a vertex of one frame against
+ *   whatever part of the other (i = 0 or j = 0), or an edge against an edge.
+ *   At an end of the window (and in a static pair) the faces themselves cross in one point of
+ *   space, of dimension 3, so i + j <= 3: one of them is a vertex or an edge.
+ *
+ * So Q is the hull of
+ *   1. the ends of each edge of A clipped to B, and of B to A, at both ends of the window;
+ *   2. the ends of the path of each vertex of A clipped to B, and of B to A (relative motion);
+ *   3. the points and times where an edge of A crosses an edge of B.
+ * All of these lie in Q, and every vertex of Q is among them: in 1 and 2 since a vertex of Q is
+ * no inner point of a segment in Q. Where a frame is flat its edges are images of the edges
+ * of the cuboid or simplex of parameters, and the same holds for those. */
+#include "exact.h"
+#include "integer.h"
+
+#include <assert.h>
+
+enum {
+    /* Slabs of one frame: 4 faces of a tetrahedron; flat, the plane and 6 edges; 3 of a
+     * segment or point. */
+    FRAME_SLABS_MAX = 7
+};
+
+/* The slabs of one frame, and how far the vertices of the other lie along their normals. */
+struct clipper {
+    int slabs;
+    struct slab slab[FRAME_SLABS_MAX];
+    /* [end of the window][slab][vertex of the other frame]: normal . w, w the vertex relative
+     * to the origin of this frame. */
+    mpz_t at[2][FRAME_SLABS_MAX][EXACT_VERTICES_MAX];
+};
+
+struct boxing {
+    struct exact_pair *pair;
+    int ends; /* of the window: 2 if the pair is moving, else 1 */
+    int vertices[2];
+    mpz_t vertex[2][EXACT_VERTICES_MAX][3]; /* [frame][vertex][axis], origin of the frame at 0 */
+    struct clipper clipper[2];              /* [frame]: its slabs, the other's vertices */
+    struct span span;
+    struct ratio bound[2][3]; /* [0] lower and [1] upper ends so far */
+    bool bounded;
+    mpz_t point[3], path[3];
+    struct ratio coordinate;
+    mpz_t scratch[EXACT_SCRATCH];
+};
+
+/* Calls one of mpz_init and mpz_clear for every number. */
+static void boxing_each(struct boxing *boxing, void (*call)(mpz_ptr))
+{
+    for (int f = 0; f < 2; f++) {
+        for (int v = 0; v < EXACT_VERTICES_MAX; v++)
+            for (int axis = 0; axis < 3; axis++)
+                call(boxing->vertex[f][v][axis]);
+        for (int s = 0; s < FRAME_SLABS_MAX; s++) {
+            struct slab *slab = &boxing->clipper[f].slab[s];
+            call(slab->low);
+            call(slab->high);
+            for (int axis = 0; axis < 3; axis++)
+                call(slab->normal[axis]);
+            for (int v = 0; v < EXACT_VERTICES_MAX; v++) {
+                call(boxing->clipper[f].at[0][s][v]);
+                call(boxing->clipper[f].at[1][s][v]);
+            }
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        call(boxing->point[axis]);
+        call(boxing->path[axis]);
+        for (int side = 0; side < 2; side++) {
+            call(boxing->bound[side][axis].num);
+            call(boxing->bound[side][axis].den);
+        }
+    }
+    call(boxing->coordinate.num);
+    call(boxing->coordinate.den);
+    for (int i = 0; i < EXACT_SCRATCH; i++)
+        call(boxing->scratch[i]);
+}
+
+/* Vertex v of a cuboid: the sum of the components whose bits are set in v; of a simplex: the
+ * origin, then the end of each component. */
+static int set_vertices(const struct exact_frame *frame, mpz_t vertex[EXACT_VERTICES_MAX][3])
+{
+    int vertices = frame->simplex ? frame->count + 1 : 1 << frame->count;
+    for (int v = 1; v < vertices; v++)
+        for (int i = 0; i < frame->count; i++)
+            if (frame->simplex ? v == i + 1 : v >> i & 1)
+                for (int axis = 0; axis < 3; axis++)
+                    mpz_add(vertex[v][axis], vertex[v][axis], frame->component[i][axis]);
+    return vertices;
+}
+
+static bool is_edge(const struct exact_frame *frame, int v, int w)
+{
+    int bits = v ^ w;
+    return frame->simplex || (bits & (bits - 1)) == 0;
+}
+
+static bool keep_slab(void *context, struct slab *slab)
+{
+    struct clipper *clipper = context;
+    assert(clipper->slabs < FRAME_SLABS_MAX);
+    struct slab *kept = &clipper->slab[clipper->slabs++];
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set(kept->normal[axis], slab->normal[axis]);
+    mpz_set(kept->low, slab->low);
+    mpz_set(kept->high, slab->high);
+    kept->pins = slab->pins;
+    return true;
+}
+
+/* A vertex p of the other frame lies at w = p + offset + tau drift from the origin of frame 0,
+ * and at w = p - offset - tau drift from that of frame 1. */
+static void set_clipper(struct boxing *boxing, int f)
+{
+    struct exact_pair *pair = boxing->pair;
+    struct clipper *clipper = &boxing->clipper[f];
+    mpz_t *shift = boxing->scratch;
+    slabs_walk(&pair->frame[f], NULL, keep_slab, clipper, boxing->scratch);
+    for (int s = 0; s < clipper->slabs; s++) {
+        mpz_t *normal = clipper->slab[s].normal;
+        integer_dot(shift[0], normal, pair->offset);
+        integer_dot(shift[1], normal, pair->drift);
+        if (f == 1) {
+            mpz_neg(shift[0], shift[0]);
+            mpz_neg(shift[1], shift[1]);
+        }
+        mpz_add(shift[1], shift[1], shift[0]);
+        for (int v = 0; v < boxing->vertices[1 - f]; v++) {
+            integer_dot(shift[2], normal, boxing->vertex[1 - f][v]);
+            for (int end = 0; end < boxing->ends; end++)
+                mpz_add(clipper->at[end][s][v], shift[2], shift[end]);
+        }
+    }
+}
+
+/* Widens the box by boxing->coordinate along an axis. */
+static void include_coordinate(struct boxing *boxing, int axis)
+{
+    for (int side = 0; side < 2; side++) {
+        struct ratio *bound = &boxing->bound[side][axis];
+        int sign = boxing->bounded ? ratio_compare(&boxing->coordinate, bound, boxing->scratch) : 0;
+        if (!boxing->bounded || (side == 0 ? sign < 0 : sign > 0))
+            ratio_copy(bound, &boxing->coordinate);
+    }
+}
+
+/* Widens the box by point + s path. */
+static void include_point(struct boxing *boxing, const struct ratio *s)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_mul(boxing->coordinate.num, boxing->point[axis], s->den);
+        mpz_addmul(boxing->coordinate.num, boxing->path[axis], s->num);
+        mpz_set(boxing->coordinate.den, s->den);
+        include_coordinate(boxing, axis);
+    }
+    boxing->bounded = true;
+}
+
+/* Clips the segment point + s path of frame f, which goes from vertex v at one end of the
+ * window to vertex w at another, to the other frame, and widens the box by what is left. */
+static void include_segment(struct boxing *boxing, int f, int v, int end_v, int w, int end_w)
+{
+    struct clipper *clipper = &boxing->clipper[1 - f];
+    span_reset(&boxing->span);
+    for (int s = 0; s < clipper->slabs; s++) {
+        struct slab *slab = &clipper->slab[s];
+        if (!span_apply(&boxing->span, clipper->at[end_v][s][v], clipper->at[end_w][s][w],
+                        slab->low, slab->high, slab->pins))
+            return;
+    }
+    include_point(boxing, span_lower(&boxing->span));
+    include_point(boxing, span_upper(&boxing->span));
+}
+
+/* point := vertex v of frame f in the world, at an end of the window. */
+static void set_point(struct boxing *boxing, int f, int v, int end)
+{
+    const struct exact_frame *frame = &boxing->pair->frame[f];
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_add(boxing->point[axis], frame->origin[axis], boxing->vertex[f][v][axis]);
+        if (end)
+            mpz_add(boxing->point[axis], boxing->point[axis], frame->displacement[axis]);
+    }
+}
+
+/* Kind 1. */
+static void include_edges(struct boxing *boxing, int f, int end)
+{
+    for (int v = 0; v < boxing->vertices[f]; v++) {
+        set_point(boxing, f, v, end);
+        for (int w = v + 1; w < boxing->vertices[f]; w++) {
+            if (!is_edge(&boxing->pair->frame[f], v, w))
+                continue;
+            for (int axis = 0; axis < 3; axis++)
+                mpz_sub(boxing->path[axis], boxing->vertex[f][w][axis], boxing->vertex[f][v][axis]);
+            include_segment(boxing, f, v, end, w, end);
+        }
+    }
+}
+
+/* Kind 2. */
+static void include_paths(struct boxing *boxing, int f)
+{
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set(boxing->path[axis], boxing->pair->frame[f].displacement[axis]);
+    for (int v = 0; v < boxing->vertices[f]; v++) {
+        set_point(boxing, f, v, 0);
+        include_segment(boxing, f, v, 0, v, 1);
+    }
+}
+
+/* The crossing of an edge p + s e of A with an edge q + u f + offset + tau drift of B, with
+ * r = q + offset - p (all relative to the origin of A):
+ *
+ *     s e - u f - tau drift = r.
+ *
+ * Dot products with e x f, f x drift and e x drift leave one unknown each, and
+ * det = drift . (e x f) = e . (f x drift) = -f . (e x drift):
+ *
+ *     tau = -r . (e x f) / det,   s = r . (f x drift) / det,   u = r . (e x drift) / det.
+ *
+ * Where det is 0 the two swept edges are parallel or never cross in one point: no vertex. */
+struct crossing {
+    mpz_t ef[3], fd[3], ed[3]; /* e x f, f x drift, e x drift; signs turned so that det > 0 */
+    mpz_t det;
+    mpz_t r[3];
+    mpz_t s, u;
+    struct ratio tau;
+};
+
+static void crossing_each(struct crossing *crossing, void (*call)(mpz_ptr))
+{
+    for (int axis = 0; axis < 3; axis++) {
+        call(crossing->ef[axis]);
+        call(crossing->fd[axis]);
+        call(crossing->ed[axis]);
+        call(crossing->r[axis]);
+    }
+    call(crossing->det);
+    call(crossing->s);
+    call(crossing->u);
+    call(crossing->tau.num);
+    call(crossing->tau.den);
+}
+
+static bool in_unit(const mpz_t num, const mpz_t den)
+{
+    return mpz_sgn(num) >= 0 && mpz_cmp(num, den) <= 0;
+}
+
+/* Sets what depends on the directions alone; false if they never cross in one point. */
+static bool crossing_set(struct crossing *crossing, mpz_t e[3], mpz_t f[3], mpz_t drift[3],
+                         mpz_t scratch)
+{
+    integer_cross(crossing->ef, e, f, scratch);
+    integer_dot(crossing->det, crossing->ef, drift);
+    int sign = mpz_sgn(crossing->det);
+    if (sign == 0)
+        return false;
+    integer_cross(crossing->fd, f, drift, scratch);
+    integer_cross(crossing->ed, e, drift, scratch);
+    mpz_abs(crossing->det, crossing->det);
+    for (int axis = 0; axis < 3; axis++) {
+        if (sign > 0) {
+            mpz_neg(crossing->ef[axis], crossing->ef[axis]);
+        } else {
+            mpz_neg(crossing->fd[axis], crossing->fd[axis]);
+            mpz_neg(crossing->ed[axis], crossing->ed[axis]);
+        }
+    }
+    return true;
+}
+
+/* p and q: the vertices in which the edges start. True if they cross, at crossing->tau. */
+static bool crossing_at(struct crossing *crossing, mpz_t p[3], mpz_t q[3], mpz_t offset[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_add(crossing->r[axis], q[axis], offset[axis]);
+        mpz_sub(crossing->r[axis], crossing->r[axis], p[axis]);
+    }
+    integer_dot(crossing->tau.num, crossing->r, crossing->ef);
+    if (!in_unit(crossing->tau.num, crossing->det))
+        return false;
+    integer_dot(crossing->s, crossing->r, crossing->fd);
+    if (!in_unit(crossing->s, crossing->det))
+        return false;
+    integer_dot(crossing->u, crossing->r, crossing->ed);
+    return in_unit(crossing->u, crossing->det);
+}
+
+/* Widens the box by p + s e + tau displacement of A. All have the denominator det: with the
+ * path s e + tau displacement, taken times det, the parameter is 1 / det. */
+static void include_crossing(struct boxing *boxing, struct crossing *crossing, int v, mpz_t e[3])
+{
+    const struct exact_frame *a = &boxing->pair->frame[0];
+    set_point(boxing, 0, v, 0);
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_mul(boxing->path[axis], crossing->s, e[axis]);
+        mpz_addmul(boxing->path[axis], crossing->tau.num, a->displacement[axis]);
+    }
+    mpz_set_ui(crossing->tau.num, 1);
+    mpz_set(crossing->tau.den, crossing->det);
+    include_point(boxing, &crossing->tau);
+}
+
+/* Whether an edge in direction number e starts in vertex v: of a cuboid where the bit of the
+ * component is not set; of a simplex in the vertex from which the direction was taken. */
+static bool starts_in(const struct exact_frame *frame, int e, int v)
+{
+    if (!frame->simplex)
+        return (v >> e & 1) == 0;
+    static const int start_of_two[3] = {0, 0, 1};
+    static const int start_of_three[EXACT_EDGES_MAX] = {0, 0, 0, 1, 1, 2};
+    return v == (frame->count == 2 ? start_of_two[e] : start_of_three[e]);
+}
+
+/* Kind 3, for one direction of A and one of B. */
+static void include_parallel_crossings(struct boxing *boxing, struct crossing *crossing, int e,
+                                       int f)
+{
+    struct exact_pair *pair = boxing->pair;
+    for (int v = 0; v < boxing->vertices[0]; v++) {
+        if (!starts_in(&pair->frame[0], e, v))
+            continue;
+        for (int w = 0; w < boxing->vertices[1]; w++)
+            if (starts_in(&pair->frame[1], f, w) &&
+                crossing_at(crossing, boxing->vertex[0][v], boxing->vertex[1][w], pair->offset))
+                include_crossing(boxing, crossing, v, pair->frame[0].edge[e]);
+    }
+}
+
+static void include_crossings(struct boxing *boxing)
+{
+    struct exact_pair *pair = boxing->pair;
+    struct crossing crossing;
+    crossing_each(&crossing, mpz_init);
+    for (int e = 0; e < pair->frame[0].edges; e++)
+        for (int f = 0; f < pair->frame[1].edges; f++)
+            if (crossing_set(&crossing, pair->frame[0].edge[e], pair->frame[1].edge[f], pair->drift,
+                             boxing->scratch[0]))
+                include_parallel_crossings(boxing, &crossing, e, f);
+    crossing_each(&crossing, mpz_clear);
+}
+
+static void include_all(struct boxing *boxing)
+{
+    for (int f = 0; f < 2; f++) {
+        boxing->vertices[f] = set_vertices(&boxing->pair->frame[f], boxing->vertex[f]);
+        boxing->clipper[f].slabs = 0;
+    }
+    for (int f = 0; f < 2; f++)
+        set_clipper(boxing, f);
+    for (int f = 0; f < 2; f++) {
+        for (int end = 0; end < boxing->ends; end++)
+            include_edges(boxing, f, end);
+        if (boxing->pair->moving)
+            include_paths(boxing, f);
+    }
+    if (boxing->pair->moving)
+        include_crossings(boxing);
+}
+
+void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX])
+{
+    struct boxing boxing = {.pair = pair, .ends = pair->moving ? 2 : 1};
+    boxing_each(&boxing, mpz_init);
+    span_init(&boxing.span);
+    include_all(&boxing);
+    assert(boxing.bounded);
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            const struct ratio *bound = &boxing.bound[side][axis];
+            box[side][axis] = integer_ratio_round(bound->num, bound->den, pair->unit,
+                                                  side ? ROUND_UP : ROUND_DOWN, boxing.scratch);
+        }
+    span_clear(&boxing.span);
+    boxing_each(&boxing, mpz_clear);
+}

@@ -1,0 +1,176 @@
+/* libfmb: do two frames meet, when, and in which box?
+ *
+ * A frame is the set of points
+ *
+ *     o + t v + sum_i x_i c_i
+ *
+ * with an origin o, a velocity v and component vectors c_i (article, equations 1 and 2).
+ * The parameters x_i run over [0,1] for a cuboid; over x_i >= 0, sum x_i <= 1 for a
+ * tetrahedron and a face. The time t runs over the window [0, T] of the pair, T seconds.
+ * The set is meant exactly, over the reals, from the doubles given: nothing is rounded
+ * before it is compared, neither o + c nor v T.
+ *
+ * What touching means: two frames OVERLAP when at some time of the window (its ends
+ * included) their relative interiors have a point in common; they TOUCH when the closed
+ * sets have a point in common, but never so; else they are SEPARATED. So a plate through a
+ * box overlaps it, coplanar plates that share area overlap, faces that share an edge touch.
+ * The verdict does not depend on the order of the pair.
+ *
+ * Use:
+ *
+ *     struct fmb_body cube;
+ *     static const double edges[9] = {1,0,0, 0,1,0, 0,0,1};
+ *     fmb_body_make(3, FMB_CUBOID, edges, 9, &cube);
+ *     struct fmb_pair pair = {.a = {.body = &cube}, .b = {.body = &cube, .origin = {1, 0, 0}}};
+ *     struct fmb_answer answer;
+ *     fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &answer);
+ *     // answer.verdict is FMB_TOUCHING, the box is [1,1] x [0,1] x [0,1]
+ *
+ * All functions are reentrant and keep nothing between calls. No input is written to.
+ * Only the exact method allocates memory (through GMP), and frees it before it returns.
+ * The answers are the same bits on every machine: doubles are IEEE 754 binary64, rounded to
+ * nearest; the library is compiled without contraction. The caller must not change the
+ * rounding mode or flush subnormals. */
+#ifndef FMB_H
+#define FMB_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
+
+/* What can be said of a question; the numbers stand in messages and logs: a code is retired
+ * rather than used again. */
+#define FMB_STATUS_MAP(X)                                        \
+    X(OK, 0, "ok")                                               \
+    X(UNKNOWN_BODY, 1, "unknown body")                           \
+    X(BUSY, 2, "busy")                                           \
+    X(OVER_LIMIT, 3, "over the limit")                           \
+    X(UNKNOWN_SHAPE, 4, "unknown shape")                         \
+    X(WRONG_DIMENSION, 5, "wrong dimension")                     \
+    X(WRONG_COUNT, 6, "wrong count of numbers")                  \
+    X(NOT_FINITE, 7, "not a finite number")                      \
+    X(DIMENSIONS_DIFFER, 8, "a 2D frame against a 3D one")       \
+    X(BAD_DURATION, 9, "the duration is negative or not finite") \
+    X(BAD_ID, 10, "id out of range")                             \
+    X(UNKNOWN_METHOD, 11, "unknown method")                      \
+    X(UNKNOWN_WANT, 12, "wants what this version does not give") \
+    X(CANNOT_DECIDE, 13,                                         \
+      "this method cannot decide this pair (a flat frame, or numbers out of its range)")
+
+enum fmb_status {
+#define X(name, number, text) FMB_##name = number,
+    FMB_STATUS_MAP(X)
+#undef X
+        FMB_STATUS_COUNT
+};
+
+/* The text of a status, or "unknown status"; static, for people. */
+const char *fmb_status_text(int status);
+
+/* The numbers of shapes, verdicts and methods stand in messages and logs too. */
+enum fmb_shape { FMB_CUBOID = 1, FMB_TETRAHEDRON = 2, FMB_FACE = 3 };
+enum fmb_verdict { FMB_SEPARATED = 1, FMB_TOUCHING = 2, FMB_OVERLAPPING = 3 };
+
+/* "cuboid", "tetrahedron", "face"; "separated", "touching", "overlapping"; NULL for another
+ * number. Static. */
+const char *fmb_shape_name(int shape);
+const char *fmb_verdict_name(int verdict);
+
+/* How many components a frame of this shape and dimension (2 or 3) has: dim; 2 for a face.
+ * 0 where the two do not go together (a face in 2D) or one of them is unknown. */
+int fmb_component_count(int dim, int shape);
+
+/* What does not change while a rigid body moves without turning: worth keeping by id.
+ * Fill it with fmb_body_make() only. Axes beyond dim and components beyond the shape's count
+ * hold 0. */
+struct fmb_body {
+    int dim; /* 2 or 3 */
+    enum fmb_shape shape;
+    int count;     /* of components */
+    bool flat;     /* exactly zero volume (every face is): no inverse */
+    bool inverted; /* the inverse is there: not flat, and all its entries finite */
+    double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
+    /* [axis][component], rounded: x_i = sum_axis inverse[axis][i] p[axis] for p = sum x_i c_i.
+     * The article's invComp (Listing 1, PROJ). Zero where not inverted. */
+    double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
+};
+
+/* On input: dim; shape; count numbers, components one after the other, number
+ * [component * dim + axis], any finite doubles.
+ * On output: *out, or a status (WRONG_DIMENSION, UNKNOWN_SHAPE, WRONG_COUNT, NOT_FINITE) and
+ * *out unspecified. components may be NULL if count is 0. */
+enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
+                              struct fmb_body *out);
+
+/* A body at a place. Axes beyond the body's dim are not read. */
+struct fmb_frame {
+    const struct fmb_body *body; /* not owned; must outlive the call */
+    double origin[FMB_DIM_MAX];
+    double velocity[FMB_DIM_MAX]; /* per second; read only where moving */
+    bool moving;                  /* carries a velocity, zero included */
+};
+
+/* The question. The pair is moving when a or b is; else it is static, and the window only
+ * has to be legal. */
+struct fmb_pair {
+    struct fmb_frame a, b;
+    double duration; /* T, seconds, >= 0; the article's equations have T = 1 */
+};
+
+/* On output: OK, or DIMENSIONS_DIFFER, NOT_FINITE, BAD_DURATION. Every function that takes a
+ * pair from outside checks it so first. */
+enum fmb_status fmb_pair_check(const struct fmb_pair *pair);
+
+enum fmb_want { FMB_WANT_BOX = 1 };
+
+/* The answer. Intervals and boxes of the exact method are the smallest of doubles that
+ * contain the exact ones (which meets the design's limits: 1e-12 T, 1e-12 of the largest
+ * coordinate). An end of a box beyond the largest double is infinite, with its sign. No
+ * number is -0. Those of fmb and sat are rounded as they come. */
+struct fmb_answer {
+    enum fmb_verdict verdict;
+    bool has_contact;           /* moving pair, touching or overlapping */
+    bool has_box;               /* wanted, touching or overlapping, and the method gives boxes */
+    double contact[2];          /* first and last time of contact, seconds, within [0, T] */
+    double box[2][FMB_DIM_MAX]; /* [0] lower and [1] upper ends, world coordinates; axes beyond
+                                   dim hold 0 */
+};
+
+/* A way to decide. One table holds them all, in the order of fmb_method_at(). */
+struct fmb_method {
+    const char *name;
+    int number;          /* stands in messages; 0 is not used: it asks for the default */
+    const char *summary; /* one line, for people */
+    /* On input: a checked pair, *answer all 0. On output: OK and *answer, or CANNOT_DECIDE. Not to
+     * be called directly: fmb_decide() checks. */
+    enum fmb_status (*decide)(const struct fmb_pair *pair, unsigned want,
+                              struct fmb_answer *answer);
+};
+
+/*   exact  right for every finite input, flat frames included (GMP)
+ *   fmb    the article's elimination in doubles: verdict, interval, the article's loose box
+ *   sat    the separating axis theorem in doubles: verdict and interval, no box
+ * fmb and sat are inexact and cannot decide flat frames. */
+const struct fmb_method *fmb_method_default(void);
+const struct fmb_method *fmb_method_at(size_t index);          /* NULL past the last */
+const struct fmb_method *fmb_method_by_name(const char *name); /* NULL: none of that name */
+const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default; NULL: none */
+
+/* On input: want is a sum of FMB_WANT_ values.
+ * On output: OK and *answer; or a status and *answer unspecified: those of fmb_pair_check(),
+ * UNKNOWN_WANT, CANNOT_DECIDE. */
+enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pair *pair,
+                           unsigned want, struct fmb_answer *answer);
+
+/* "major.minor.patch" of the library. */
+const char *fmb_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,135 @@
+#include "fmb.h"
+
+#include "exact.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+int fmb_component_count(int dim, int shape)
+{
+    bool known_dim = dim == 2 || dim == 3;
+    switch (shape) {
+    case FMB_CUBOID:
+    case FMB_TETRAHEDRON: return known_dim ? dim : 0;
+    case FMB_FACE: return dim == 3 ? 2 : 0;
+    }
+    return 0;
+}
+
+static bool all_finite(const double *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(numbers[i]))
+            return false;
+    return true;
+}
+
+static void cross(const double u[3], const double v[3], double out[3])
+{
+    out[0] = u[1] * v[2] - u[2] * v[1];
+    out[1] = u[2] * v[0] - u[0] * v[2];
+    out[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+/* The components times 2^-*exponent, so that the largest number lies in [0.5, 1); a body in 2D
+ * gets the unit vector along z as third. */
+static void scale_components(const struct fmb_body *body, double scaled[3][3], int *exponent)
+{
+    double largest = 0;
+    for (int i = 0; i < body->count; i++)
+        for (int axis = 0; axis < body->dim; axis++)
+            largest = fmax(largest, fabs(body->component[i][axis]));
+    frexp(largest, exponent);
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 3; axis++)
+            scaled[i][axis] = ldexp(body->component[i][axis], -*exponent);
+    if (body->dim == 2)
+        scaled[2][2] = 1;
+}
+
+/* Filter, with u = 2^-53: the determinant is a sum of six products of three numbers of size at
+ * most 1. Each product passes through two multiplications and at most three additions or
+ * subtractions, so that rounding changes it by a factor within (1 +- u)^5, and the sum by at
+ * most 5.01 u times the sum of their magnitudes, the permanent; fused or reordered operations
+ * only take factors away. Underflow, in scaling and in products, adds less than 2^-1000 in
+ * all. A computed permanent is within the same factor of the exact one. So a determinant
+ * beyond 2^-48 permanent + 2^-1000 has the right sign; 2^-48 = 32 u leaves room for the
+ * rounding of this bound. Anything else is decided exactly. */
+static bool surely_solid(const double c[3][3], double determinant)
+{
+    double permanent = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        permanent +=
+            fabs(c[2][i]) * (fabs(c[0][j]) * fabs(c[1][k]) + fabs(c[0][k]) * fabs(c[1][j]));
+    }
+    return fabs(determinant) > 0x1p-48 * permanent + 0x1p-1000;
+}
+
+/* With the components scaled by 2^-e, k_0 = c_1 x c_2 and so on around:
+ * x_i = k_i . p / (c_0 . k_0) 2^-e. */
+static void invert(struct fmb_body *body)
+{
+    double c[3][3], k[3][3];
+    int exponent;
+    scale_components(body, c, &exponent);
+    for (int i = 0; i < 3; i++)
+        cross(c[(i + 1) % 3], c[(i + 2) % 3], k[i]);
+    double determinant = c[2][0] * k[2][0] + c[2][1] * k[2][1] + c[2][2] * k[2][2];
+
+    body->flat =
+        !surely_solid((const double(*)[3]) c, determinant) &&
+        exact_determinant_sign(body->dim, (const double(*)[FMB_DIM_MAX]) body->component) == 0;
+    body->inverted = !body->flat;
+    for (int axis = 0; axis < body->dim; axis++)
+        for (int i = 0; i < body->dim; i++) {
+            body->inverse[axis][i] = ldexp(k[i][axis] / determinant, -exponent);
+            body->inverted = body->inverted && isfinite(body->inverse[axis][i]);
+        }
+    if (!body->inverted)
+        memset(body->inverse, 0, sizeof body->inverse);
+}
+
+enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
+                              struct fmb_body *out)
+{
+    if (!fmb_shape_name(shape))
+        return FMB_UNKNOWN_SHAPE;
+    int vectors = fmb_component_count(dim, shape);
+    if (vectors == 0)
+        return FMB_WRONG_DIMENSION;
+    if (count != (size_t) (vectors * dim))
+        return FMB_WRONG_COUNT;
+    if (!all_finite(components, count))
+        return FMB_NOT_FINITE;
+
+    memset(out, 0, sizeof *out);
+    out->dim = dim;
+    out->shape = (enum fmb_shape) shape;
+    out->count = vectors;
+    for (int i = 0; i < vectors; i++)
+        memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
+    if (vectors == dim)
+        invert(out);
+    else
+        out->flat = true;
+    return FMB_OK;
+}
+
+static bool frame_is_finite(const struct fmb_frame *frame)
+{
+    size_t dim = (size_t) frame->body->dim;
+    return all_finite(frame->origin, dim) && (!frame->moving || all_finite(frame->velocity, dim));
+}
+
+enum fmb_status fmb_pair_check(const struct fmb_pair *pair)
+{
+    if (pair->a.body->dim != pair->b.body->dim)
+        return FMB_DIMENSIONS_DIFFER;
+    if (!frame_is_finite(&pair->a) || !frame_is_finite(&pair->b))
+        return FMB_NOT_FINITE;
+    if (!(pair->duration >= 0 && pair->duration <= DBL_MAX))
+        return FMB_BAD_DURATION;
+    return FMB_OK;
+}

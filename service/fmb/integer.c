@@ -1,0 +1,116 @@
+#include "integer.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+static_assert(FLT_RADIX == 2 && DBL_MANT_DIG == 53 && DBL_MAX_EXP == 1024, "IEEE 754 binary64");
+static_assert(sizeof(long) == 8, "GMP takes its numbers as longs: a mantissa must fit");
+
+/* Exponent of the lowest bit of the subnormals, and of the lowest bit of the largest double. */
+enum { LOWEST_UNIT = -1074, HIGHEST_UNIT = 971 };
+
+/* Bits of a double: sign 1, biased exponent e 11, fraction f 52. The value is
+ * (2^52 + f) 2^(e - 1075), or f 2^-1074 for e = 0. */
+struct dyadic dyadic_of(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
+    int biased = (int) (bits >> 52 & 0x7ff);
+    uint64_t mantissa = biased ? fraction | UINT64_C(1) << 52 : fraction;
+    if (mantissa == 0)
+        return (struct dyadic){0, INTEGER_NO_EXPONENT};
+    int trailing = __builtin_ctzll(mantissa);
+    long long odd = (long long) (mantissa >> trailing);
+    return (struct dyadic){bits >> 63 ? -odd : odd, (biased ? biased : 1) - 1075 + trailing};
+}
+
+void integer_set(mpz_t out, struct dyadic x, long unit)
+{
+    mpz_set_si(out, x.mantissa);
+    if (x.mantissa)
+        mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent - unit));
+}
+
+void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit)
+{
+    mpz_set_si(out, x.mantissa);
+    mpz_mul_si(out, out, y.mantissa);
+    if (mpz_sgn(out))
+        mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent + y.exponent - unit));
+}
+
+void integer_cross(mpz_t out[3], mpz_t u[3], mpz_t v[3], mpz_t scratch)
+{
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        mpz_mul(out[i], u[j], v[k]);
+        mpz_mul(scratch, u[k], v[j]);
+        mpz_sub(out[i], out[i], scratch);
+    }
+}
+
+void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3])
+{
+    mpz_mul(out, u[0], v[0]);
+    mpz_addmul(out, u[1], v[1]);
+    mpz_addmul(out, u[2], v[2]);
+}
+
+/* The largest q with q 2^step <= |num| / den * 2^unit, and whether it is the value itself. */
+static uint64_t floor_in_steps(const mpz_t num, const mpz_t den, long unit, long step,
+                               mpz_t scratch[2], bool *exact)
+{
+    long shift = unit - step;
+    mpz_abs(scratch[0], num);
+    if (shift >= 0) {
+        mpz_mul_2exp(scratch[0], scratch[0], (mp_bitcnt_t) shift);
+        mpz_tdiv_qr(scratch[0], scratch[1], scratch[0], den);
+    } else {
+        mpz_mul_2exp(scratch[1], den, (mp_bitcnt_t) -shift);
+        mpz_tdiv_qr(scratch[0], scratch[1], scratch[0], scratch[1]);
+    }
+    *exact = mpz_sgn(scratch[1]) == 0;
+    return mpz_get_ui(scratch[0]);
+}
+
+/* Method: with n and m the bit lengths of num and den, |num| / den lies in
+ * (2^(n-m-1), 2^(n-m+1)), so in steps of 2^(n-m-1-52+unit) it is an integer part of 53 or 54
+ * bits; with 54, steps twice as wide give 53. Steps never go below those of the subnormals.
+ * The quotient is exact or it is not, so rounding away from zero adds a step or none; 2^53
+ * steps are again a double. */
+double integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
+                           enum round_direction direction, mpz_t scratch[2])
+{
+    if (mpz_sgn(num) == 0)
+        return 0.0;
+    bool negative = mpz_sgn(num) < 0;
+    bool away = negative == (direction == ROUND_DOWN);
+    long step = (long) mpz_sizeinbase(num, 2) - (long) mpz_sizeinbase(den, 2) - 53 + unit;
+    if (step > HIGHEST_UNIT)
+        return negative ? -INFINITY : INFINITY;
+    if (step < LOWEST_UNIT)
+        step = LOWEST_UNIT;
+
+    bool exact;
+    uint64_t steps = floor_in_steps(num, den, unit, step, scratch, &exact);
+    if (steps >> 53) {
+        step++;
+        steps = floor_in_steps(num, den, unit, step, scratch, &exact);
+    }
+    bool beyond =
+        step > HIGHEST_UNIT || (step == HIGHEST_UNIT && !exact && steps == (UINT64_C(1) << 53) - 1);
+    if (beyond)
+        return negative ? -INFINITY : INFINITY;
+
+    if (!exact && away)
+        steps++;
+    double magnitude = ldexp((double) steps, (int) step);
+    if (magnitude == 0)
+        return 0.0;
+    return negative ? -magnitude : magnitude;
+}

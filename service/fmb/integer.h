@@ -1,0 +1,44 @@
+/* Doubles as exact integers, and exact ratios back to doubles.
+ *
+ * Every finite double is mantissa * 2^exponent. A set of them becomes a set of integers, all
+ * times the same power of two (the unit), without rounding; sums and products of integers
+ * are GMP's. */
+#ifndef FMB_INTEGER_H
+#define FMB_INTEGER_H
+
+#include <gmp.h>
+
+/* value = mantissa * 2^exponent; the mantissa is odd, or 0 with exponent INTEGER_NO_EXPONENT. */
+struct dyadic {
+    long long mantissa; /* |mantissa| < 2^53 */
+    long exponent;
+};
+
+/* Larger than every exponent: the exponent of 0, so that minima come out right. */
+#define INTEGER_NO_EXPONENT 1000000L
+
+/* x must be finite. */
+struct dyadic dyadic_of(double x);
+
+/* out := x / 2^unit. unit <= x.exponent. */
+void integer_set(mpz_t out, struct dyadic x, long unit);
+
+/* out := x y / 2^unit. unit <= x.exponent + y.exponent. */
+void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit);
+
+/* out := u x v, the cross product of vectors of three; out is none of the inputs; scratch is
+ * overwritten. */
+void integer_cross(mpz_t out[3], mpz_t u[3], mpz_t v[3], mpz_t scratch);
+
+/* out := u . v; out is none of the inputs. */
+void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3]);
+
+enum round_direction { ROUND_DOWN, ROUND_UP };
+
+/* The double next to num / den * 2^unit on the side that direction names, or the value itself
+ * where it is a double; den > 0. Infinite, with its sign, where the value lies beyond the
+ * largest double, whatever the direction. Zero is never -0. scratch is overwritten. */
+double integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
+                           enum round_direction direction, mpz_t scratch[2]);
+
+#endif

@@ -1,0 +1,37 @@
+#include "fmb.h"
+
+const char *fmb_status_text(int status)
+{
+    switch (status) {
+#define X(name, number, text) \
+    case number: return text;
+        FMB_STATUS_MAP(X)
+#undef X
+    }
+    return "unknown status";
+}
+
+const char *fmb_shape_name(int shape)
+{
+    switch (shape) {
+    case FMB_CUBOID: return "cuboid";
+    case FMB_TETRAHEDRON: return "tetrahedron";
+    case FMB_FACE: return "face";
+    }
+    return NULL;
+}
+
+const char *fmb_verdict_name(int verdict)
+{
+    switch (verdict) {
+    case FMB_SEPARATED: return "separated";
+    case FMB_TOUCHING: return "touching";
+    case FMB_OVERLAPPING: return "overlapping";
+    }
+    return NULL;
+}
+
+const char *fmb_version(void)
+{
+    return FMB_VERSION;
+}

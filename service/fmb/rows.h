@@ -1,0 +1,27 @@
+/* A pair as the article's system of linear inequalities M x <= y (section 3, equations 7 to
+ * 10): the one place where shape, dimension and motion differ. */
+#ifndef FMB_ROWS_H
+#define FMB_ROWS_H
+
+#include "fmb.h"
+
+enum {
+    ROWS_VARS_MAX = FMB_DIM_MAX + 1, /* x_0 .. x_(dim-1), then tau if moving */
+    ROWS_MAX = 14                    /* two cuboids in 3D, moving: 6 + 6 + 2 */
+};
+
+/* sum_i a[i] x_i <= y, or < y for the interiors where strict: all rows but those of the window
+ * are (tau runs over the closed interval [0,1]). */
+struct row {
+    double a[ROWS_VARS_MAX];
+    double y;
+    bool strict;
+};
+
+/* The unknowns x are the parameters of frame b; a's bounds are written in them, by projecting
+ * b into a's coordinates with a's inverse (Listing 1, PROJ). tau = t / T.
+ * On input: a solid pair, both inverted. On output: rows[0..*count), in the order of
+ * Listing 1; false if a number left the range of doubles. */
+bool rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count);
+
+#endif

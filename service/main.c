@@ -1,0 +1,204 @@
+/* fmbd: answers pairs of frames on an LCM bus. */
+#include "bus.h"
+#include "cache.h"
+#include "fmb/fmb.h"
+#include "server.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/signalfd.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+enum { EXIT_USAGE = 2 };
+enum { DEFAULT_BODIES = 65536 };
+
+struct options {
+    const char *lcm_url;
+    const char *prefix;
+    size_t bodies;
+};
+
+static const char usage[] =
+    "usage: fmbd [options]\n"
+    "\n"
+    "Answers pairs of frames (cuboids, tetrahedra, faces; 2D and 3D; at rest and moving) on an\n"
+    "LCM bus: separated, touching or overlapping, when, and in which box. Queries come on\n"
+    "FMB_PAIR_QUERY, results go to FMB_PAIR_RESULT, once a second a heartbeat to FMB_STATUS.\n"
+    "Ask with 'fmb query'; ends on SIGINT and SIGTERM.\n"
+    "\n"
+    "  -l, --lcm-url URL   the bus; else LCM_DEFAULT_URL; else this host alone\n"
+    "                      (udpm://239.255.76.67:7667?ttl=0)\n"
+    "  -p, --prefix P      put P in front of the channels' names: for a second service\n"
+    "  -b, --bodies N      keep the inverse matrices of N bodies (default 65536, 1 to 10000000)\n"
+    "  -h, --help          print this\n"
+    "  -V, --version       print the version\n"
+    "\n"
+    "Exit codes: 0 ended by a signal, 1 no bus or no memory, 2 wrong options.\n";
+
+static int wrong_option(const char *option, const char *value, const char *expected)
+{
+    fprintf(stderr, "fmbd: %s '%s': expected %s; see fmbd --help\n", option, value, expected);
+    return EXIT_USAGE;
+}
+
+static bool parse_bodies(const char *text, size_t *out)
+{
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    bool digits = text[0] >= '0' && text[0] <= '9';
+    *out = (size_t) value;
+    return digits && *end == '\0' && errno == 0 && value >= 1 && value <= CACHE_BODIES_MAX;
+}
+
+/* Returns -1 to go on, or the code to exit with. */
+static int parse_options(int argc, char **argv, struct options *out)
+{
+    static const struct option long_options[] = {
+        {"lcm-url", required_argument, NULL, 'l'}, {"prefix", required_argument, NULL, 'p'},
+        {"bodies", required_argument, NULL, 'b'},  {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, 'V'},       {0},
+    };
+    *out = (struct options){.prefix = "", .bodies = DEFAULT_BODIES};
+    int option;
+    while ((option = getopt_long(argc, argv, "l:p:b:hV", long_options, NULL)) != -1) {
+        switch (option) {
+        case 'l': out->lcm_url = optarg; break;
+        case 'p':
+            out->prefix = optarg;
+            if (!bus_prefix_ok(optarg))
+                return wrong_option("--prefix", optarg, "at most 32 letters, digits, _ or -");
+            break;
+        case 'b':
+            if (!parse_bodies(optarg, &out->bodies))
+                return wrong_option("--bodies", optarg, "a number from 1 to 10000000");
+            break;
+        case 'h': fputs(usage, stdout); return EXIT_SUCCESS;
+        case 'V': printf("fmbd %s\n", fmb_version()); return EXIT_SUCCESS;
+        default: fputs("fmbd: see fmbd --help\n", stderr); return EXIT_USAGE;
+        }
+    }
+    if (optind < argc)
+        return wrong_option("argument", argv[optind], "options only");
+    return -1;
+}
+
+/* A random number from 1 to 2^bits. */
+static int64_t random_id(int bits)
+{
+    uint64_t number;
+    if (getrandom(&number, sizeof number, 0) != sizeof number) {
+        perror("fmbd: getrandom");
+        exit(EXIT_FAILURE);
+    }
+    return (int64_t) (number >> (64 - bits)) + 1;
+}
+
+/* SIGINT and SIGTERM as something to read; blocked before LCM starts its thread. -1: errno. */
+static int open_signals(void)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    if (sigprocmask(SIG_BLOCK, &set, NULL) != 0)
+        return -1;
+    return signalfd(-1, &set, SFD_CLOEXEC);
+}
+
+/* Readable once a second. -1: errno. */
+static int open_heartbeat(void)
+{
+    struct itimerspec each_second = {.it_interval = {.tv_sec = 1}, .it_value = {.tv_sec = 1}};
+    int fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC);
+    if (fd >= 0 && timerfd_settime(fd, 0, &each_second, NULL) != 0) {
+        close(fd);
+        fd = -1;
+    }
+    return fd;
+}
+
+/* One message a turn, so that neither a signal nor the heartbeat waits behind a full queue.
+ * Until a signal comes: the code to exit with. */
+static int serve(lcm_t *lcm, struct server *server, int signals, int heartbeat)
+{
+    enum { BUS, SIGNALS, HEARTBEAT, SOURCES };
+    struct pollfd source[SOURCES] = {
+        [BUS] = {.fd = lcm_get_fileno(lcm), .events = POLLIN},
+        [SIGNALS] = {.fd = signals, .events = POLLIN},
+        [HEARTBEAT] = {.fd = heartbeat, .events = POLLIN},
+    };
+    for (;;) {
+        if (poll(source, SOURCES, -1) < 0) {
+            if (errno == EINTR)
+                continue;
+            perror("fmbd: poll");
+            return EXIT_FAILURE;
+        }
+        if (source[SIGNALS].revents)
+            return EXIT_SUCCESS;
+        uint64_t seconds;
+        if (source[HEARTBEAT].revents && read(heartbeat, &seconds, sizeof seconds) > 0)
+            server_publish_status(server);
+        if (source[BUS].revents && lcm_handle(lcm) != 0) {
+            fputs("fmbd: the bus failed\n", stderr);
+            return EXIT_FAILURE;
+        }
+    }
+}
+
+static void say_ready(const struct server *server, const struct server_options *options)
+{
+    fprintf(stderr,
+            "fmbd %s ready: answers %s on %s, heartbeat on %s; %zu bodies; receive buffer %ld "
+            "bytes; server %" PRId64 "\n",
+            fmb_version(), server_query_channel(server), server_result_channel(server),
+            server_status_channel(server), options->bodies, options->receive_buffer,
+            options->server_id);
+}
+
+static int run(const struct options *options, int signals, int heartbeat)
+{
+    struct server_options server_options = {.prefix = options->prefix,
+                                            .bodies = options->bodies,
+                                            .server_id = random_id(52),
+                                            .first_key = random_id(52)};
+    lcm_t *lcm = bus_open("fmbd", options->lcm_url, &server_options.receive_buffer);
+    if (!lcm)
+        return EXIT_FAILURE;
+    int code = EXIT_FAILURE;
+    struct server *server = server_create(lcm, &server_options);
+    if (server) {
+        say_ready(server, &server_options);
+        server_publish_status(server);
+        code = serve(lcm, server, signals, heartbeat);
+    } else {
+        fputs("fmbd: cannot start: no memory for the bodies, or the bus refused\n", stderr);
+    }
+    server_destroy(server);
+    lcm_destroy(lcm);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    struct options options;
+    int code = parse_options(argc, argv, &options);
+    if (code >= 0)
+        return code;
+    int signals = open_signals();
+    int heartbeat = open_heartbeat();
+    if (signals < 0 || heartbeat < 0) {
+        perror("fmbd: signals and timer");
+        return EXIT_FAILURE;
+    }
+    return run(&options, signals, heartbeat);
+}

@@ -1,0 +1,50 @@
+/* Bytes of the bus <-> plain structs, and every check on bytes that nobody vouches for.
+ *
+ * LCM's encoding is big-endian and has no padding: 8 bytes of fingerprint, then the fields in
+ * order; an array is its numbers, a string its length with the final 0 (int32_t), then its
+ * bytes. The readers here walk the bytes themselves, with 64-bit sizes, into memory of the
+ * caller: a count may say anything, they never read beyond the datagram and never allocate.
+ * They accept exactly what lcm-gen's encoders write: the fingerprint of the type, counts from
+ * 0, strings that end where they say, and not one byte more or less. */
+#ifndef WIRE_H
+#define WIRE_H
+
+#include "query.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Channels; a prefix may stand in front (bus.h). */
+#define WIRE_PAIR_QUERY "FMB_PAIR_QUERY"
+#define WIRE_PAIR_RESULT "FMB_PAIR_RESULT"
+#define WIRE_STATUS "FMB_STATUS"
+
+/* Every message written here fits into this many bytes, and so into one datagram. */
+enum { WIRE_BYTES_MAX = 1400 };
+
+/* The heartbeat (status_t.lcm). */
+struct wire_status {
+    int64_t utime, server_id;
+    char version[32];
+    int64_t uptime_us, restarts, receive_buffer;
+    int64_t received, answered, unsent;
+    int64_t results[FMB_STATUS_COUNT]; /* [status] */
+    int64_t malformed, sequence_gaps, repeated;
+    int64_t bodies, capacity, hits, misses, replacements, evictions;
+    int64_t compute_p50_ns, compute_p99_ns, compute_max_ns;
+};
+
+/* Readers. On input: size bytes as LCM gives them (size is unsigned there, and can be a
+ * negative number of ints: that is refused). On output: NULL and *out; or a static text of
+ * what is wrong, and *out unspecified. Texts longer than the struct holds are cut; statuses
+ * beyond FMB_STATUS_COUNT are left out. */
+const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out);
+const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out);
+const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
+
+/* Writers: return how many bytes of out were used. */
+size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[WIRE_BYTES_MAX]);
+size_t wire_write_pair_result(const struct pair_result *result, unsigned char out[WIRE_BYTES_MAX]);
+size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX]);
+
+#endif

@@ -1,0 +1,121 @@
+/* netns CMD [ARG...]: runs a command where LCM's multicast stays on this machine.
+ *
+ * In a network namespace of its own, with a loopback that carries multicast: so a bare
+ * machine, root and a plain user are one case, and runs side by side do not hear each other.
+ * Root needs no more; anybody else gets a user namespace with it.
+ *
+ * Where namespaces are forbidden: in place, if there is a route for multicast, on a random
+ * port and with ttl=0 (LCM_DEFAULT_URL): then no message leaves the machine, though the group
+ * memberships (IGMP) do, which is said. Without a route: exit code 77, nothing is run. */
+#define _GNU_SOURCE
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <net/if.h>
+#include <net/route.h>
+#include <sched.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#define GROUP "239.255.76.67"
+enum { SKIPPED = 77, CANNOT_RUN = 127 };
+
+static bool write_file(const char *path, const char *text)
+{
+    int fd = open(path, O_WRONLY);
+    bool ok = fd >= 0 && write(fd, text, strlen(text)) == (ssize_t) strlen(text);
+    if (fd >= 0)
+        close(fd);
+    return ok;
+}
+
+/* A user namespace in which the caller is root. */
+static bool enter_with_user_namespace(void)
+{
+    char uid_map[32], gid_map[32];
+    snprintf(uid_map, sizeof uid_map, "0 %d 1", (int) getuid());
+    snprintf(gid_map, sizeof gid_map, "0 %d 1", (int) getgid());
+    return unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0 &&
+           write_file("/proc/self/setgroups", "deny") &&
+           write_file("/proc/self/uid_map", uid_map) && write_file("/proc/self/gid_map", gid_map);
+}
+
+static bool enter_namespace(void)
+{
+    return (geteuid() == 0 && unshare(CLONE_NEWNET) == 0) || enter_with_user_namespace();
+}
+
+static struct sockaddr address(const char *text)
+{
+    struct sockaddr_in in = {.sin_family = AF_INET};
+    struct sockaddr out;
+    inet_pton(AF_INET, text, &in.sin_addr);
+    memcpy(&out, &in, sizeof out);
+    return out;
+}
+
+/* ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo */
+static bool set_up_loopback(void)
+{
+    char lo[] = "lo";
+    struct ifreq flags = {.ifr_flags = IFF_UP | IFF_RUNNING | IFF_MULTICAST};
+    struct rtentry route = {.rt_flags = RTF_UP, .rt_dev = lo};
+    strcpy(flags.ifr_name, lo);
+    route.rt_dst = address("224.0.0.0");
+    route.rt_genmask = address("240.0.0.0");
+    int fd = socket(AF_INET, SOCK_DGRAM, 0);
+    bool ok = fd >= 0 && ioctl(fd, SIOCSIFFLAGS, &flags) == 0 && ioctl(fd, SIOCADDRT, &route) == 0;
+    if (fd >= 0)
+        close(fd);
+    return ok;
+}
+
+static bool has_route(void)
+{
+    struct sockaddr_in group = {.sin_family = AF_INET, .sin_port = htons(7667)};
+    inet_pton(AF_INET, GROUP, &group.sin_addr);
+    int fd = socket(AF_INET, SOCK_DGRAM, 0);
+    bool ok = fd >= 0 && connect(fd, (const struct sockaddr *) &group, sizeof group) == 0;
+    if (fd >= 0)
+        close(fd);
+    return ok;
+}
+
+static void use_random_port(void)
+{
+    uint16_t number = 0;
+    char url[64];
+    getrandom(&number, sizeof number, 0);
+    snprintf(url, sizeof url, "udpm://" GROUP ":%d?ttl=0", 20000 + number % 40000);
+    setenv("LCM_DEFAULT_URL", url, 1);
+    fprintf(stderr, "netns: no namespace (%s); running in place on %s\n", strerror(errno), url);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        fputs("usage: netns CMD [ARG...]\n", stderr);
+        return 2;
+    }
+    if (enter_namespace()) {
+        if (!set_up_loopback()) {
+            perror("netns: loopback");
+            return SKIPPED;
+        }
+        unsetenv("LCM_DEFAULT_URL");
+    } else if (has_route()) {
+        use_random_port();
+    } else {
+        fprintf(stderr, "netns: no namespace (%s) and no route for multicast\n", strerror(errno));
+        return SKIPPED;
+    }
+    execvp(argv[1], argv + 1);
+    perror(argv[1]);
+    return CANNOT_RUN;
+}
