@@ -52,6 +52,7 @@ client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard 
 
 programs := $(B)/fmbd $(B)/fmb
 helpers := $(B)/netns $(B)/arm
+test_helpers := $(B)/poke
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(helpers)
@@ -90,7 +91,7 @@ $(O)/clients/%.o: clients/%.c $(O)/settings
 
 $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile)
+	$(compile) -Itests/hostile
 
 # lcm-gen's own code is not ours to warn about.
 $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
@@ -113,8 +114,13 @@ $(O)/settings: Makefile FORCE
 
 unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
 unit_tests := $(unit_names:%=$(B)/tests/%)
+hostile_objects := $(O)/tests/hostile/hostile.o
 oracle_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/oracle/*.c))
 engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(unit_names))
+
+$(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm
 
 # Tests of the engine link neither LCM nor the service.
 $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objects) $(B)/libfmb.a
@@ -122,7 +128,8 @@ $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objec
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
 $(filter-out $(engine_tests:%=$(B)/tests/%),$(unit_tests)): $(B)/tests/%: $(O)/tests/unit/%.o \
-		$(server_objects) $(client_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+		$(hostile_objects) $(server_objects) $(client_objects) $(bus_objects) $(message_objects) \
+		$(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
 
@@ -130,12 +137,17 @@ $(O)/tests/oracle/%.o: tests/oracle/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Iservice/fmb -Itests/oracle
 
+$(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) -I$(GEN)
+
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests)),-Itests/oracle,-Iservice -Iclients -I$(GEN))
+	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests)),-Itests/oracle,\
+		-Iservice -Iclients -Itests/hostile -I$(GEN))
 
 .PHONY: tests test test-fast check
-tests: all $(unit_tests)
+tests: all $(test_helpers) $(unit_tests)
 
 test check:
 	tests/run.sh
@@ -144,7 +156,7 @@ test-fast:
 	FMB_FAST=1 tests/run.sh
 
 # Every header compiles alone.
-headers := $(wildcard service/fmb/*.h service/*.h clients/*.h tests/oracle/*.h)
+headers := $(wildcard service/fmb/*.h service/*.h clients/*.h tests/oracle/*.h tests/hostile/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)

@@ -85,6 +85,7 @@ static void on_pair_query(const lcm_recv_buf_t *buffer, const char *channel, voi
         senders_note(&server->senders, query.client_id, query.sequence_number);
     histogram_add(&server->compute_ns, result.compute_ns);
     server->status.results[result.status]++;
+    server->status.pairs += result.status == FMB_OK;
     publish_result(server, &result);
 }
 

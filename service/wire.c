@@ -213,13 +213,14 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
     return end_reading(&cursor);
 }
 
-static void read_results(struct cursor *cursor, int64_t results[FMB_STATUS_COUNT])
+/* A counted list of numbers, of which the first max are kept. */
+static void read_int64s(struct cursor *cursor, int64_t *out, int max)
 {
     int32_t count = read_count(cursor, sizeof(int64_t));
-    for (int s = 0; s < count; s++) {
+    for (int i = 0; i < count; i++) {
         int64_t number = read_int64(cursor);
-        if (s < FMB_STATUS_COUNT)
-            results[s] = number;
+        if (i < max)
+            out[i] = number;
     }
 }
 
@@ -231,16 +232,18 @@ const char *wire_read_status(const void *bytes, uint32_t size, struct wire_statu
     out->server_id = read_int64(&cursor);
     read_string(&cursor, out->version, sizeof out->version);
     int64_t *const before[] = {&out->uptime_us, &out->restarts, &out->receive_buffer,
-                               &out->received,  &out->answered, &out->unsent};
+                               &out->received,  &out->answered, &out->unsent,
+                               &out->pairs};
     for (size_t i = 0; i < sizeof before / sizeof *before; i++)
         *before[i] = read_int64(&cursor);
-    read_results(&cursor, out->results);
+    read_int64s(&cursor, out->results, FMB_STATUS_COUNT);
     int64_t *const after[] = {&out->malformed,      &out->sequence_gaps,  &out->repeated,
                               &out->bodies,         &out->capacity,       &out->hits,
                               &out->misses,         &out->replacements,   &out->evictions,
                               &out->compute_p50_ns, &out->compute_p99_ns, &out->compute_max_ns};
     for (size_t i = 0; i < sizeof after / sizeof *after; i++)
         *after[i] = read_int64(&cursor);
+    read_int64s(&cursor, NULL, 0); /* more */
     return end_reading(&cursor);
 }
 
@@ -325,6 +328,7 @@ size_t wire_write_status(const struct wire_status *status, unsigned char out[WIR
         .received = status->received,
         .answered = status->answered,
         .unsent = status->unsent,
+        .pairs = status->pairs,
         .num_results = FMB_STATUS_COUNT,
         .results = (int64_t *) status->results,
         .malformed = status->malformed,

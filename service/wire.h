@@ -27,7 +27,7 @@ struct wire_status {
     int64_t utime, server_id;
     char version[32];
     int64_t uptime_us, restarts, receive_buffer;
-    int64_t received, answered, unsent;
+    int64_t received, answered, unsent, pairs;
     int64_t results[FMB_STATUS_COUNT]; /* [status] */
     int64_t malformed, sequence_gaps, repeated;
     int64_t bodies, capacity, hits, misses, replacements, evictions;

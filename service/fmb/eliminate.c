@@ -144,8 +144,9 @@ static void bound_variable(const struct elimination *system, int k, double range
     }
 }
 
-/* The box of { origin of b + tau displacement of b + sum x_i c_i } over the ranges. */
-static void answer_box(const struct fmb_pair *pair, const double range[][2],
+/* The box of { origin of b + tau displacement of b + sum x_i c_i } over the ranges. False if an
+ * end is no number: infinities met on the way. */
+static bool answer_box(const struct fmb_pair *pair, const double range[][2],
                        struct fmb_answer *answer)
 {
     const struct fmb_body *b = pair->b.body;
@@ -160,7 +161,10 @@ static void answer_box(const struct fmb_pair *pair, const double range[][2],
         }
         answer->box[0][axis] = low + 0.0; /* + 0.0: never -0 */
         answer->box[1][axis] = high + 0.0;
+        if (isnan(low) || isnan(high))
+            return false;
     }
+    return true;
 }
 
 enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
@@ -192,7 +196,8 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
         range[last][1] = fmin(times.strict[1], times.window[1]);
         for (int k = last - 1; k >= 0; k--)
             bound_variable(&system, k, range);
-        answer_box(pair, (const double(*)[2]) range, answer);
+        if (!answer_box(pair, (const double(*)[2]) range, answer))
+            return FMB_CANNOT_DECIDE;
     }
     return FMB_OK;
 }

@@ -1,0 +1,21 @@
+/* Messages that are wrong: each kind of damage that a decoder of LCM's format can fall for,
+ * made from a good message. Knows the layout of the messages from here alone. */
+#ifndef HOSTILE_H
+#define HOSTILE_H
+
+#include <stddef.h>
+
+enum { HOSTILE_BYTES_MAX = 2048 };
+
+/* Called for each damaged message; what names the damage. */
+typedef void (*hostile_visit)(void *context, const char *what, const unsigned char *bytes,
+                              size_t size);
+
+/* type: "pair_query", "pair_result" or "status". Every message visited differs from what any
+ * encoder of that type can write; returns how many there were. */
+size_t hostile_each(const char *type, hostile_visit visit, void *context);
+
+/* A good message of the type, the one that is damaged. Returns its size. */
+size_t hostile_good(const char *type, unsigned char out[HOSTILE_BYTES_MAX]);
+
+#endif

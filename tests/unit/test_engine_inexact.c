@@ -1,0 +1,259 @@
+/* The methods fmb and sat: right on ordinary pairs, honest about flat ones, harmless on any
+ * input. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+
+#include "draw.h"
+#include "question.h"
+#include "referee.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char *const inexact[] = {"fmb", "sat"};
+
+static enum fmb_status ask(const char *method, const struct fmb_pair *pair,
+                           struct fmb_answer *answer)
+{
+    memset(answer, 0xa5, sizeof *answer);
+    return fmb_decide(fmb_method_by_name(method), pair, FMB_WANT_BOX, answer);
+}
+
+/* ---- Ordinary pairs ---- */
+
+enum { SIZE = 100 }; /* numbers are drawn from [-SIZE, SIZE] */
+
+static double determinant(const struct solid *solid)
+{
+    const double(*c)[3] = solid->component;
+    if (solid->dim == 2)
+        return c[0][0] * c[1][1] - c[0][1] * c[1][0];
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        sum += c[0][i] * (c[1][j] * c[2][k] - c[1][k] * c[2][j]);
+    }
+    return sum;
+}
+
+static void draw_vector(struct draw *draw, int dim, double *vector)
+{
+    for (int axis = 0; axis < dim; axis++)
+        vector[axis] = draw_uniform(draw, -SIZE, SIZE);
+}
+
+static struct solid draw_ordinary(struct draw *draw, int dim, enum fmb_shape shape, bool moving)
+{
+    struct solid solid = {.dim = dim, .shape = shape, .moving = moving};
+    do {
+        for (int i = 0; i < dim; i++)
+            draw_vector(draw, dim, solid.component[i]);
+    } while (fabs(determinant(&solid)) < 0.1);
+    draw_vector(draw, dim, solid.origin);
+    draw_vector(draw, dim, solid.velocity);
+    return solid;
+}
+
+/* Kind 0 to 15: dimension, the two shapes, motion. */
+static struct question draw_ordinary_pair(struct draw *draw, int kind)
+{
+    const int dim = kind & 1 ? 3 : 2;
+    const enum fmb_shape a = kind & 2 ? FMB_CUBOID : FMB_TETRAHEDRON;
+    const enum fmb_shape b = kind & 4 ? FMB_CUBOID : FMB_TETRAHEDRON;
+    const bool moving = kind & 8;
+    struct question question = {draw_ordinary(draw, dim, a, moving && draw_coin(draw)),
+                                draw_ordinary(draw, dim, b, moving),
+                                draw_coin(draw) ? 1 : draw_uniform(draw, 0.1, 5)};
+    return question;
+}
+
+static void assert_contact_near(const struct question *question, const struct fmb_answer *exact,
+                                const struct fmb_answer *found)
+{
+    if (found->has_contact != exact->has_contact)
+        referee_fail(question, "an interval just where the exact method has one");
+    for (int end = 0; exact->has_contact && end < 2; end++)
+        if (!(fabs(found->contact[end] - exact->contact[end]) <= 1e-6 * question->duration))
+            referee_fail(question, "interval far from the exact one");
+}
+
+/* Loose on the outside, by design; but 1e-9 of the size of the pair is all it may miss inside. */
+static void assert_box_contains(const struct question *question, const struct fmb_answer *exact,
+                                const struct fmb_answer *found)
+{
+    const double slack = 1e-9 * SIZE;
+    if (found->has_box != exact->has_box)
+        referee_fail(question, "a box just where the exact method has one");
+    for (int axis = 0; exact->has_box && axis < question->a.dim; axis++)
+        if (!(found->box[0][axis] <= exact->box[0][axis] + slack &&
+              found->box[1][axis] >= exact->box[1][axis] - slack))
+            referee_fail(question, "the box misses some of the exact one");
+}
+
+static void agree_on_ordinary_pairs(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long count[4] = {0};
+    draw_begin(&draw, "agree_on_ordinary_pairs");
+    for (long n = draw_sample(16000); n > 0; n--) {
+        struct question question = draw_ordinary_pair(&draw, (int) (n % 16));
+        struct fmb_answer exact, found;
+        struct ready ready;
+        referee_ask(&question, &exact);
+        referee_ready(&question, &ready);
+        for (size_t i = 0; i < COUNT(inexact); i++) {
+            if (ask(inexact[i], &ready.pair, &found) != FMB_OK)
+                referee_fail(&question, "refused");
+            if (found.verdict != exact.verdict)
+                referee_fail(&question, "another verdict");
+            assert_contact_near(&question, &exact, &found);
+            if (strcmp(inexact[i], "fmb") == 0)
+                assert_box_contains(&question, &exact, &found);
+            if (strcmp(inexact[i], "sat") == 0 && found.has_box)
+                referee_fail(&question, "sat has no box");
+        }
+        count[exact.verdict]++;
+    }
+    printf("# ordinary pairs: %ld separated, %ld touching, %ld overlapping\n", count[FMB_SEPARATED],
+           count[FMB_TOUCHING], count[FMB_OVERLAPPING]);
+    assert_true(count[FMB_SEPARATED] && count[FMB_OVERLAPPING]);
+}
+
+/* ---- What the article gets wrong: 'no intersection' where bounds meet ---- */
+
+static void unit_cubes_that_share_a_face_touch(void **state)
+{
+    (void) state;
+    const struct solid cube = {3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}, {0}, false};
+    for (int axis = 0; axis < 3; axis++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            struct question question = {cube, cube, 1};
+            struct fmb_answer exact, found;
+            struct ready ready;
+            question.b.origin[axis] = sign;
+            referee_ask(&question, &exact);
+            referee_ready(&question, &ready);
+            assert_int_equal(exact.verdict, FMB_TOUCHING);
+            assert_int_equal(ask("fmb", &ready.pair, &found), FMB_OK);
+            assert_int_equal(found.verdict, FMB_TOUCHING);
+            assert_box_contains(&question, &exact, &found);
+        }
+}
+
+/* ---- Flat frames ---- */
+
+static void say_so_of_flat_frames(void **state)
+{
+    (void) state;
+    const struct solid solid[2] = {
+        {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {0}, false},
+        {3, FMB_TETRAHEDRON, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}, {0}, true},
+    };
+    const struct solid flat[] = {
+        {2, FMB_CUBOID, {{1, 2}, {2, 4}}, {0}, {0}, false},
+        {2, FMB_TETRAHEDRON, {{0}}, {0}, {0}, true},
+        {3, FMB_FACE, {{1, 0, 0}, {0, 1, 0}}, {0}, {0}, false},
+        {3, FMB_CUBOID, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, {0}, {0}, true},
+        {3, FMB_TETRAHEDRON, {{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}, {9, 9, 9}, {0}, false},
+    };
+    for (size_t i = 0; i < COUNT(flat); i++) {
+        const struct question question = {flat[i], solid[flat[i].dim - 2], 1};
+        const struct question swapped = question_swapped(&question);
+        const struct question both = {flat[i], flat[i], 1};
+        const struct question *questions[] = {&question, &swapped, &both};
+        for (size_t q = 0; q < COUNT(questions); q++) {
+            struct ready ready;
+            struct fmb_answer answer;
+            referee_ready(questions[q], &ready);
+            for (size_t m = 0; m < COUNT(inexact); m++)
+                assert_int_equal(ask(inexact[m], &ready.pair, &answer), FMB_CANNOT_DECIDE);
+        }
+    }
+}
+
+/* ---- Any input ---- */
+
+static double any_number(struct draw *draw)
+{
+    switch (draw_int(draw, 0, 5)) {
+    case 0: return draw_int(draw, -2, 2);
+    case 1: return draw_int(draw, -3, 3) * 0x1p-1074;
+    case 2: return draw_uniform(draw, -1, 1) * DBL_MAX;
+    case 3: return draw_log(draw, -600, 600);
+    default: return draw_finite(draw);
+    }
+}
+
+static struct solid draw_any_solid(struct draw *draw, int dim)
+{
+    struct solid solid = {.dim = dim, .moving = draw_coin(draw)};
+    solid.shape = (enum fmb_shape) draw_int(draw, FMB_CUBOID, FMB_TETRAHEDRON);
+    for (int axis = 0; axis < dim; axis++) {
+        solid.origin[axis] = any_number(draw);
+        solid.velocity[axis] = any_number(draw);
+        for (int i = 0; i < dim; i++)
+            solid.component[i][axis] = any_number(draw);
+    }
+    return solid;
+}
+
+/* Its numbers may be wrong, but they are numbers, and the interval is in the window. */
+static void assert_sane(const struct question *question, const struct fmb_answer *answer)
+{
+    if (!fmb_verdict_name(answer->verdict))
+        referee_fail(question, "no verdict");
+    const double *contact = answer->contact;
+    if (answer->has_contact &&
+        !(0 <= contact[0] && contact[0] <= contact[1] && contact[1] <= question->duration))
+        referee_fail(question, "interval out of the window");
+    for (int axis = 0; answer->has_box && axis < FMB_DIM_MAX; axis++)
+        if (isnan(answer->box[0][axis]) || isnan(answer->box[1][axis]))
+            referee_fail(question, "a box that is no box");
+}
+
+static void harmless_on_any_input(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "harmless_on_any_input");
+    long decided = 0;
+    for (long n = draw_sample(60000); n > 0; n--) {
+        const int dim = draw_int(&draw, 2, 3);
+        const struct question question = {draw_any_solid(&draw, dim), draw_any_solid(&draw, dim),
+                                          fabs(any_number(&draw))};
+        struct ready ready;
+        referee_ready(&question, &ready);
+        for (size_t i = 0; i < COUNT(inexact); i++) {
+            struct fmb_answer answer;
+            enum fmb_status status = ask(inexact[i], &ready.pair, &answer);
+            if (status == FMB_CANNOT_DECIDE)
+                continue;
+            if (status != FMB_OK)
+                referee_fail(&question, fmb_status_text(status));
+            assert_sane(&question, &answer);
+            decided++;
+        }
+    }
+    printf("# any input: %ld answers\n", decided);
+    assert_true(decided > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(agree_on_ordinary_pairs),
+        cmocka_unit_test(unit_cubes_that_share_a_face_touch),
+        cmocka_unit_test(say_so_of_flat_frames),
+        cmocka_unit_test(harmless_on_any_input),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,195 @@
+/* The exact method against the oracle in a small world, where nearly everything touches: all
+ * numbers are small integers, and every degenerate case there is comes up.
+ *
+ * In the plane all pairs are asked. In space there are too many (cuboids alone: 19,683 bodies
+ * at 64 places): a seeded sample, whose size is printed; FMB_SAMPLE=10 draws ten times as many,
+ * FMB_FAST=1 takes an eighth, and thins out the plane as well. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "draw.h"
+#include "oracle.h"
+#include "question.h"
+#include "referee.h"
+
+/* ---- The plane, all of it ---- */
+
+enum {
+    VECTORS = 9,                                    /* (x, y), each -1, 0 or 1 */
+    PAIRS_OF_VECTORS = VECTORS * (VECTORS + 1) / 2, /* unordered */
+    PLANE_BODIES = 2 * PAIRS_OF_VECTORS             /* cuboids, tetrahedra */
+};
+
+static void set_vector(int number, double vector[FMB_DIM_MAX])
+{
+    vector[0] = number % 3 - 1;
+    vector[1] = number / 3 - 1;
+    vector[2] = 0;
+}
+
+/* Body number 0 to PLANE_BODIES - 1: a shape and two vectors, the first not after the second. */
+static struct solid plane_body(int number)
+{
+    struct solid solid = {.dim = 2, .shape = number % 2 ? FMB_CUBOID : FMB_TETRAHEDRON};
+    int first = 0, rest = number / 2;
+    while (rest >= VECTORS - first)
+        rest -= VECTORS - first++;
+    set_vector(first, solid.component[0]);
+    set_vector(first + rest, solid.component[1]);
+    return solid;
+}
+
+static struct solid with_vectors_exchanged(const struct solid *solid)
+{
+    struct solid other = *solid;
+    memcpy(other.component[0], solid->component[1], sizeof other.component[0]);
+    memcpy(other.component[1], solid->component[0], sizeof other.component[1]);
+    return other;
+}
+
+/* The set of points of a frame is the same in whatever order its components come (its
+ * definition is symmetric in the terms x_i c_i), and the truth does not know the order of the
+ * pair: so the oracle is asked once for the eight questions that the engine gets: both orders of
+ * the vectors of A, of those of B, and of the pair. */
+static void assert_all_orders(const struct question *question, const struct oracle_answer *truth)
+{
+    for (int order = 0; order < 8; order++) {
+        struct question other = *question;
+        if (order & 1)
+            other.a = with_vectors_exchanged(&other.a);
+        if (order & 2)
+            other.b = with_vectors_exchanged(&other.b);
+        if (order & 4)
+            other = question_swapped(&other);
+        referee_assert_truth(&other, truth);
+    }
+}
+
+static void assert_bodies_everywhere(int number_a, int number_b, long count[4])
+{
+    struct question question = {plane_body(number_a), plane_body(number_b), 1};
+    struct oracle_answer truth;
+    oracle_init(&truth);
+    for (int place = 0; place < 16; place++) {
+        struct fmb_body body[2];
+        struct fmb_pair pair;
+        question.b.origin[0] = place % 4 - 1;
+        question.b.origin[1] = place / 4 - 1;
+        question_pair(&question, body, &pair);
+        oracle_decide(&pair, FMB_WANT_BOX, &truth);
+        assert_all_orders(&question, &truth);
+        count[truth.verdict]++;
+    }
+    oracle_clear(&truth);
+}
+
+static void print_count(const char *what, const long count[4])
+{
+    printf("# %s: %ld separated, %ld touching, %ld overlapping\n", what, count[FMB_SEPARATED],
+           count[FMB_TOUCHING], count[FMB_OVERLAPPING]);
+    fflush(stdout);
+}
+
+static void all_of_the_plane(void **state)
+{
+    (void) state;
+    const char *fast = getenv("FMB_FAST");
+    const int step = fast && strcmp(fast, "0") != 0 ? 11 : 1; /* prime to the number of bodies */
+    long count[4] = {0};
+    for (int pair = 0; pair < PLANE_BODIES * PLANE_BODIES; pair += step)
+        assert_bodies_everywhere(pair / PLANE_BODIES, pair % PLANE_BODIES, count);
+    print_count("plane, static, each in 8 orders", count);
+    assert_true(count[FMB_SEPARATED] && count[FMB_TOUCHING] && count[FMB_OVERLAPPING]);
+}
+
+/* ---- Samples ---- */
+
+static void draw_integers(struct draw *draw, int dim, int least, int most, double *vector)
+{
+    for (int axis = 0; axis < dim; axis++)
+        vector[axis] = draw_int(draw, least, most);
+}
+
+static struct solid draw_body(struct draw *draw, int dim)
+{
+    struct solid solid = {.dim = dim};
+    solid.shape =
+        (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
+    for (int i = 0; i < solid_count(&solid); i++)
+        draw_integers(draw, dim, -1, 1, solid.component[i]);
+    return solid;
+}
+
+/* The unit cuboid, or tetrahedron, of space. */
+static struct solid unit_body(struct draw *draw)
+{
+    return (struct solid){.dim = 3,
+                          .shape = draw_coin(draw) ? FMB_CUBOID : FMB_TETRAHEDRON,
+                          .component = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+}
+
+/* Velocities for both, or one of them, and a window. */
+static void draw_motion(struct draw *draw, struct question *question)
+{
+    static const double durations[] = {0, 0.5, 1, 3};
+    const int dim = question->a.dim, who = draw_int(draw, 1, 3);
+    question->a.moving = who & 1;
+    question->b.moving = who & 2;
+    if (question->a.moving)
+        draw_integers(draw, dim, -1, 2, question->a.velocity);
+    if (question->b.moving)
+        draw_integers(draw, dim, -1, 2, question->b.velocity);
+    question->duration = durations[draw_int(draw, 0, 3)];
+}
+
+static void assert_sample(const char *what, int dim, bool moving, long size)
+{
+    struct draw draw;
+    long count[4] = {0};
+    draw_begin(&draw, what);
+    for (long n = 0; n < size; n++) {
+        struct question question = {.duration = 1};
+        question.a = dim == 2 ? draw_body(&draw, 2) : unit_body(&draw);
+        question.b = draw_body(&draw, dim);
+        draw_integers(&draw, dim, -1, 2, question.b.origin);
+        if (moving)
+            draw_motion(&draw, &question);
+        count[referee_assert(&question)]++;
+    }
+    print_count(what, count);
+}
+
+static void plane_moving(void **state)
+{
+    (void) state;
+    assert_sample("plane, moving, a sample of pairs", 2, true, draw_sample(40000));
+}
+
+static void space_static(void **state)
+{
+    (void) state;
+    assert_sample("space, static, a sample of pairs", 3, false, draw_sample(64000));
+}
+
+static void space_moving(void **state)
+{
+    (void) state;
+    assert_sample("space, moving, a sample of pairs", 3, true, draw_sample(64000));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_of_the_plane),
+        cmocka_unit_test(plane_moving),
+        cmocka_unit_test(space_static),
+        cmocka_unit_test(space_moving),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

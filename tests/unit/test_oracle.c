@@ -1,0 +1,584 @@
+/* The oracle on cases worked out by hand, so that it can be believed elsewhere. It is asked
+ * about each case in both orders. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+
+#include "oracle.h"
+#include "question.h"
+
+/* clang-format off */
+#define UNIT2 {{1, 0}, {0, 1}}
+#define UNIT3 {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
+/* clang-format on */
+
+struct known {
+    const char *what;
+    struct question question;
+    enum fmb_verdict verdict;
+    double contact[2];
+    double box[2][FMB_DIM_MAX];
+};
+
+/* ---- Plane ---- */
+static const struct known plane[] = {
+    {"squares share an area",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {0.5, 0.25}, {0}, false}, 1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0.5, 0.25}, {1, 1}}},
+    {"squares share an edge",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {1, 0.5}, {0}, false}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{1, 0.5}, {1, 1}}},
+    {"squares share a corner",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {-1, -1}, {0}, false}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 0}, {0, 0}}},
+    {"squares a subnormal apart",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false},
+      {2, FMB_CUBOID, {{-1, 0}, {0, 1}}, {-0x1p-1074, 0}, {0}, false},
+      1},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"squares a subnormal into each other",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false},
+      {2, FMB_CUBOID, {{-1, 0}, {0, 1}}, {0x1p-1074, 0}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0, 0}, {0x1p-1074, 1}}},
+    {"triangles, hypotenuse on hypotenuse",
+     {{2, FMB_TETRAHEDRON, UNIT2, {0}, {0}, false},
+      {2, FMB_TETRAHEDRON, {{-1, 0}, {0, -1}}, {1, 1}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 0}, {1, 1}}},
+    {"triangle misses what a square would hit",
+     {{2, FMB_TETRAHEDRON, UNIT2, {0}, {0}, false},
+      {2, FMB_CUBOID, UNIT2, {0.75, 0.75}, {0}, false},
+      1},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"corner of a square inside a triangle",
+     {{2, FMB_TETRAHEDRON, UNIT2, {0}, {0}, false},
+      {2, FMB_CUBOID, UNIT2, {0.25, 0.25}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0.25, 0.25}, {0.75, 0.75}}},
+    {"square moves in from the right: at t = 1 of 4",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, true}, {2, FMB_CUBOID, UNIT2, {3, 0}, {-2, 0}, true}, 4},
+     FMB_OVERLAPPING,
+     {1, 2},
+     {{0, 0}, {1, 1}}},
+    {"square that never arrives, T = 0.5",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {3, 0}, {-2, 0}, true}, 0.5},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"square that arrives as the window ends, T = 1",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {3, 0}, {-2, 0}, true}, 1},
+     FMB_TOUCHING,
+     {1, 1},
+     {{1, 0}, {1, 1}}},
+    {"square slides along an edge",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {1, -3}, {0, 1}, true}, 8},
+     FMB_TOUCHING,
+     {2, 4},
+     {{1, 0}, {1, 1}}},
+    {"both move alike: the box is swept",
+     {{2, FMB_CUBOID, UNIT2, {0}, {2, 0}, true}, {2, FMB_CUBOID, UNIT2, {0.5, 0}, {2, 0}, true}, 3},
+     FMB_OVERLAPPING,
+     {0, 3},
+     {{0.5, 0}, {7, 1}}},
+    {"T = 0: the start is all there is",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, true}, {2, FMB_CUBOID, UNIT2, {1, 0}, {-1, 0}, true}, 0},
+     FMB_TOUCHING,
+     {0, 0},
+     {{1, 0}, {1, 1}}},
+    {"overlap at the start, then recede",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, UNIT2, {0.5, 0}, {1, 0}, true}, 2},
+     FMB_OVERLAPPING,
+     {0, 0.5},
+     {{0.5, 0}, {1, 1}}},
+    {"a velocity that is not carried is not read",
+     {{2, FMB_CUBOID, UNIT2, {0}, {9, 9}, false}, {2, FMB_CUBOID, UNIT2, {1, 0}, {0, 0}, true}, 2},
+     FMB_TOUCHING,
+     {0, 2},
+     {{1, 0}, {1, 1}}},
+};
+
+/* ---- Flat frames in the plane ---- */
+static const struct known flat_plane[] = {
+    {"segment through a square",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false},
+      {2, FMB_CUBOID, {{4, 0}, {0, 0}}, {-1, 0.5}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0, 0.5}, {1, 0.5}}},
+    {"segment along the edge of a square",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false},
+      {2, FMB_CUBOID, {{4, 0}, {-4, 0}}, {0.5, 1}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 1}, {1, 1}}},
+    {"collinear segments share a length",
+     {{2, FMB_CUBOID, {{1, 1}, {2, 2}}, {0}, {0}, false},
+      {2, FMB_TETRAHEDRON, {{1, 1}, {2, 2}}, {2, 2}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{2, 2}, {3, 3}}},
+    {"collinear segments share an end",
+     {{2, FMB_CUBOID, {{1, 1}, {2, 2}}, {0}, {0}, false},
+      {2, FMB_TETRAHEDRON, {{1, 1}, {2, 2}}, {3, 3}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{3, 3}, {3, 3}}},
+    {"parallel segments",
+     {{2, FMB_CUBOID, {{1, 1}, {2, 2}}, {0}, {0}, false},
+      {2, FMB_CUBOID, {{1, 1}, {2, 2}}, {0, 0x1p-1074}, {0}, false},
+      1},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"segments cross",
+     {{2, FMB_CUBOID, {{2, 2}, {0, 0}}, {0}, {0}, false},
+      {2, FMB_CUBOID, {{-2, 2}, {0, 0}}, {2, 0}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{1, 1}, {1, 1}}},
+    {"segments make a T",
+     {{2, FMB_CUBOID, {{2, 2}, {0, 0}}, {0}, {0}, false},
+      {2, FMB_CUBOID, {{-2, 2}, {0, 0}}, {1, 1}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{1, 1}, {1, 1}}},
+    {"equal points overlap",
+     {{2, FMB_CUBOID, {{0}}, {3, 4}, {0}, false},
+      {2, FMB_TETRAHEDRON, {{0}}, {3, 4}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{3, 4}, {3, 4}}},
+    {"points differ",
+     {{2, FMB_CUBOID, {{0}}, {3, 4}, {0}, false},
+      {2, FMB_TETRAHEDRON, {{0}}, {3, 5}, {0}, false},
+      1},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"a point passes through a point",
+     {{2, FMB_CUBOID, {{0}}, {3, 4}, {0}, false},
+      {2, FMB_CUBOID, {{0}}, {1, 4}, {0.5, 0}, true},
+      8},
+     FMB_OVERLAPPING,
+     {4, 4},
+     {{3, 4}, {3, 4}}},
+    {"a point on the corner of a square",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, {{0}}, {1, 1}, {0}, false}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{1, 1}, {1, 1}}},
+    {"a point in a square",
+     {{2, FMB_CUBOID, UNIT2, {0}, {0}, false},
+      {2, FMB_TETRAHEDRON, {{0}}, {0.5, 0x1p-1074}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0.5, 0x1p-1074}, {0.5, 0x1p-1074}}},
+};
+
+/* ---- Space ---- */
+static const struct known space[] = {
+    {"cubes share a face",
+     {{3, FMB_CUBOID, UNIT3, {0}, {0}, false}, {3, FMB_CUBOID, UNIT3, {0, 0, 1}, {0}, false}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 0, 1}, {1, 1, 1}}},
+    {"the scene of the design",
+     {{3, FMB_CUBOID, UNIT3, {0}, {0, 0, 0}, true},
+      {3, FMB_TETRAHEDRON, UNIT3, {0.5, 0, 0}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0, 1},
+     {{0.5, 0, 0}, {1, 1, 1}}},
+    {"a tetrahedron's slope on a cube's corner",
+     {{3, FMB_TETRAHEDRON, {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, {0}, {0}, false},
+      {3, FMB_CUBOID, UNIT3, {1, 1, 1}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{1, 1, 1}, {1, 1, 1}}},
+    {"cubes, edge across edge",
+     {{3, FMB_CUBOID, {{1, 1, 0}, {-1, 1, 0}, {0, 0, 1}}, {0}, {0}, false},
+      {3, FMB_CUBOID, {{1, 0, 1}, {1, 0, -1}, {0, 1, 0}}, {1, 0.5, 0.5}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{1, 1, 0.5}, {1, 1, 0.5}}},
+    {"a cube flies through a corner of another, T = 2",
+     {{3, FMB_CUBOID, UNIT3, {0}, {0}, false},
+      {3, FMB_CUBOID, UNIT3, {2, 1, 0.5}, {-1, -1, 0}, true},
+      2},
+     FMB_OVERLAPPING,
+     {1, 2},
+     {{0, 0, 0.5}, {1, 1, 1}}},
+    {"cubes graze each other's edges in an instant",
+     {{3, FMB_CUBOID, UNIT3, {0}, {0}, false},
+      {3, FMB_CUBOID, UNIT3, {2, 0, 0.25}, {-1, 1, 0}, true},
+      2},
+     FMB_TOUCHING,
+     {1, 1},
+     {{1, 1, 0.25}, {1, 1, 1}}},
+};
+
+/* ---- Flat frames in space ---- */
+static const struct known flat_space[] = {
+    {"a plate through a box",
+     {{3, FMB_CUBOID, UNIT3, {0}, {0}, false},
+      {3, FMB_FACE, {{4, 0, 0}, {0, 4, 0}}, {-1, -1, 0.5}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0, 0, 0.5}, {1, 1, 0.5}}},
+    {"a plate on a box",
+     {{3, FMB_CUBOID, UNIT3, {0}, {0}, false},
+      {3, FMB_CUBOID, {{4, 0, 0}, {0, 4, 0}, {4, 4, 0}}, {-1, -1, 1}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 0, 1}, {1, 1, 1}}},
+    {"coplanar faces share an area",
+     {{3, FMB_FACE, {{2, 0, 0}, {0, 2, 0}}, {0, 0, 7}, {0}, false},
+      {3, FMB_FACE, {{-2, 0, 0}, {0, -2, 0}}, {1.5, 1.5, 7}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0, 0, 7}, {1.5, 1.5, 7}}},
+    {"coplanar faces share an edge",
+     {{3, FMB_FACE, {{2, 0, 0}, {0, 2, 0}}, {0, 0, 7}, {0}, false},
+      {3, FMB_FACE, {{-2, 0, 0}, {0, -2, 0}}, {2, 2, 7}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 0, 7}, {2, 2, 7}}},
+    {"coplanar faces apart",
+     {{3, FMB_FACE, {{2, 0, 0}, {0, 2, 0}}, {0, 0, 7}, {0}, false},
+      {3, FMB_FACE, {{-2, 0, 0}, {0, -2, 0}}, {2, 2.5, 7}, {0}, false},
+      1},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"faces cross, as two cards",
+     {{3, FMB_FACE, {{4, 0, 0}, {0, 4, 0}}, {0, 0, 0}, {0}, false},
+      {3, FMB_FACE, {{4, 0, 0}, {0, 0, 4}}, {0, 1, -1}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0, 1, 0}, {3, 1, 0}}},
+    {"a card stands on a card",
+     {{3, FMB_FACE, {{4, 0, 0}, {0, 4, 0}}, {0, 0, 0}, {0}, false},
+      {3, FMB_FACE, {{4, 0, 0}, {0, 0, 4}}, {0, 1, 0}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{0, 1, 0}, {3, 1, 0}}},
+    {"a segment pierces a face",
+     {{3, FMB_FACE, {{4, 0, 0}, {0, 4, 0}}, {0, 0, 0}, {0}, false},
+      {3, FMB_CUBOID, {{0, 0, 2}, {0, 0, 1}, {0, 0, -1}}, {1, 1, -1}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{1, 1, 0}, {1, 1, 0}}},
+    {"a segment meets a face with its end",
+     {{3, FMB_FACE, {{4, 0, 0}, {0, 4, 0}}, {0, 0, 0}, {0}, false},
+      {3, FMB_TETRAHEDRON, {{0, 0, 2}, {0}, {0}}, {1, 1, 0}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{1, 1, 0}, {1, 1, 0}}},
+    {"skew segments",
+     {{3, FMB_CUBOID, {{4, 0, 0}, {0}, {0}}, {0, 0, 0}, {0}, false},
+      {3, FMB_CUBOID, {{0, 4, 0}, {0}, {0}}, {1, -1, 0x1p-1074}, {0}, false},
+      1},
+     FMB_SEPARATED,
+     {0},
+     {{0}}},
+    {"equal points",
+     {{3, FMB_CUBOID, {{0}}, {1, 2, 3}, {0}, false},
+      {3, FMB_FACE, {{0}}, {1, 2, 3}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{1, 2, 3}, {1, 2, 3}}},
+    {"a plate falls through a plate, T = 4",
+     {{3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0}}, {0}, {0}, false},
+      {3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0}}, {0.5, 0, 1}, {0, 0, -0.5}, true},
+      4},
+     FMB_OVERLAPPING,
+     {2, 2},
+     {{0.5, 0, 0}, {1, 1, 0}}},
+    {"a plate falls past a plate, edge along edge, T = 4",
+     {{3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0}}, {0}, {0}, false},
+      {3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0}}, {1, 0, 1}, {0, 0, -0.5}, true},
+      4},
+     FMB_TOUCHING,
+     {2, 2},
+     {{1, 0, 0}, {1, 1, 0}}},
+    {"huge and subnormal in one pair",
+     {{3, FMB_CUBOID, {{DBL_MAX, 0, 0}, {0, 0x1p-1074, 0}, {0, 0, 1}}, {0}, {0}, false},
+      {3, FMB_CUBOID, {{0x1p-1074, 0, 0}, {0, DBL_MAX, 0}, {0, 0, 1}}, {0}, {0}, false},
+      1},
+     FMB_OVERLAPPING,
+     {0},
+     {{0, 0, 0}, {0x1p-1074, 0x1p-1074, 1}}},
+};
+
+static void assert_equal(const char *what, const mpq_t found, double expected)
+{
+    mpq_t exact;
+    mpq_init(exact);
+    mpq_set_d(exact, expected);
+    if (mpq_cmp(found, exact) != 0)
+        fail_msg("%s: %.17g, expected %.17g", what, mpq_get_d(found), expected);
+    mpq_clear(exact);
+}
+
+static void assert_known(const struct known *known, const struct question *question)
+{
+    struct fmb_body body[2];
+    struct fmb_pair pair;
+    struct oracle_answer truth;
+    question_pair(question, body, &pair);
+    oracle_init(&truth);
+    oracle_decide(&pair, FMB_WANT_BOX, &truth);
+
+    const bool moving = question->a.moving || question->b.moving;
+    const bool in_contact = known->verdict != FMB_SEPARATED;
+    if (truth.verdict != known->verdict)
+        fail_msg("%s: verdict %d, expected %d", known->what, truth.verdict, known->verdict);
+    assert_int_equal(truth.has_box, in_contact);
+    assert_int_equal(truth.has_contact, in_contact && moving);
+    for (int end = 0; end < 2; end++) {
+        if (truth.has_contact)
+            assert_equal(known->what, truth.contact[end], known->contact[end]);
+        for (int axis = 0; truth.has_box && axis < question->a.dim; axis++)
+            assert_equal(known->what, truth.box[end][axis], known->box[end][axis]);
+    }
+    oracle_clear(&truth);
+}
+
+static void assert_all_known(const struct known *known, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const struct question swapped = question_swapped(&known[i].question);
+        assert_known(&known[i], &known[i].question);
+        assert_known(&known[i], &swapped);
+    }
+}
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static void plane_by_hand(void **state)
+{
+    (void) state;
+    assert_all_known(plane, COUNT(plane));
+}
+
+static void flat_plane_by_hand(void **state)
+{
+    (void) state;
+    assert_all_known(flat_plane, COUNT(flat_plane));
+}
+
+static void space_by_hand(void **state)
+{
+    (void) state;
+    assert_all_known(space, COUNT(space));
+}
+
+static void flat_space_by_hand(void **state)
+{
+    (void) state;
+    assert_all_known(flat_space, COUNT(flat_space));
+}
+
+/* Square [0,1]^2; a point starts at (0, 2) and moves by (1, -3) a second. It is at height 1 at
+ * t = 1/3, at height 0 at t = 2/3, between x = 1/3 and x = 2/3. */
+static const struct question thirds = {
+    {2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, {{0}}, {0, 2}, {1, -3}, true}, 4};
+
+static void decide(const struct question *question, struct fmb_body body[2], struct fmb_pair *pair,
+                   struct oracle_answer *truth)
+{
+    question_pair(question, body, pair);
+    oracle_init(truth);
+    oracle_decide(pair, FMB_WANT_BOX, truth);
+}
+
+static void numbers_that_are_no_doubles(void **state)
+{
+    (void) state;
+    struct fmb_body body[2];
+    struct fmb_pair pair;
+    struct oracle_answer truth;
+    decide(&thirds, body, &pair, &truth);
+    assert_int_equal(truth.verdict, FMB_OVERLAPPING);
+    assert_int_equal(mpq_cmp_ui(truth.contact[0], 1, 3), 0);
+    assert_int_equal(mpq_cmp_ui(truth.contact[1], 2, 3), 0);
+    assert_int_equal(mpq_cmp_ui(truth.box[0][0], 1, 3), 0);
+    assert_int_equal(mpq_cmp_ui(truth.box[1][0], 2, 3), 0);
+    assert_int_equal(mpq_cmp_ui(truth.box[0][1], 0, 1), 0);
+    assert_int_equal(mpq_cmp_ui(truth.box[1][1], 1, 1), 0);
+    oracle_clear(&truth);
+}
+
+/* ---- The checks see what is wrong ---- */
+
+/* The tightest answer to thirds. The double 1./3 is below 1/3, and so is 2./3 below 2/3. */
+static struct fmb_answer tight_thirds(void)
+{
+    const double third = 1. / 3, two_thirds = nextafter(2. / 3, 1);
+    return (struct fmb_answer){
+        FMB_OVERLAPPING, true, true, {third, two_thirds}, {{third, 0, 0}, {two_thirds, 1, 0}}};
+}
+
+static bool design(const struct fmb_answer *answer)
+{
+    char why[200];
+    struct fmb_body body[2];
+    struct fmb_pair pair;
+    question_pair(&thirds, body, &pair);
+    return oracle_check(&pair, FMB_WANT_BOX, answer, why, sizeof why);
+}
+
+static bool tightest(const struct fmb_answer *answer)
+{
+    char why[200];
+    struct fmb_body body[2];
+    struct fmb_pair pair;
+    question_pair(&thirds, body, &pair);
+    return oracle_check_tightest(&pair, FMB_WANT_BOX, answer, why, sizeof why);
+}
+
+static void checks_accept_what_is_right(void **state)
+{
+    (void) state;
+    struct fmb_answer answer = tight_thirds();
+    assert_true(design(&answer));
+    assert_true(tightest(&answer));
+
+    answer.contact[0] = nextafter(answer.contact[0], 0); /* loose, but within the limits */
+    assert_true(design(&answer));
+    assert_false(tightest(&answer));
+
+    answer = tight_thirds();
+    answer.box[1][1] = nextafter(1, 2);
+    assert_true(design(&answer));
+    assert_false(tightest(&answer));
+}
+
+#define ASSERT_REFUSED(change)                     \
+    do {                                           \
+        struct fmb_answer answer = tight_thirds(); \
+        change;                                    \
+        assert_false(design(&answer));             \
+        assert_false(tightest(&answer));           \
+    } while (0)
+
+static void checks_refuse_what_is_wrong(void **state)
+{
+    (void) state;
+    ASSERT_REFUSED(answer.verdict = FMB_TOUCHING);
+    ASSERT_REFUSED(answer.has_contact = false);
+    ASSERT_REFUSED(answer.has_box = false);
+    ASSERT_REFUSED(answer.contact[0] = nextafter(1. / 3, 1));
+    ASSERT_REFUSED(answer.contact[1] = 2. / 3);
+    ASSERT_REFUSED(answer.contact[0] = 1. / 3 - 4.1e-12);
+    ASSERT_REFUSED(answer.contact[1] = nextafter(4, 5));
+    ASSERT_REFUSED(answer.contact[0] = NAN);
+    ASSERT_REFUSED(answer.box[0][0] = nextafter(1. / 3, 1));
+    ASSERT_REFUSED(answer.box[1][0] = 2. / 3);
+    /* The farthest vertex is the point at the end: (0, 2) + 4 (1, -3) = (4, -10). */
+    ASSERT_REFUSED(answer.box[1][1] = 1 + 1.01e-11);
+    ASSERT_REFUSED(answer.box[0][1] = -0.0);
+    ASSERT_REFUSED(answer.box[0][1] = NAN);
+    ASSERT_REFUSED(answer.box[1][1] = HUGE_VAL);
+    ASSERT_REFUSED(answer.box[0][2] = -0.0);
+    ASSERT_REFUSED(answer.box[1][2] = 1);
+}
+
+/* Two equal squares with corners at DBL_MAX and 2 DBL_MAX: the box ends beyond the doubles. */
+static void an_end_beyond_the_doubles_is_infinite(void **state)
+{
+    (void) state;
+    char why[200];
+    const struct solid solid = {2, FMB_CUBOID, {{DBL_MAX, 0}, {0, 1}}, {DBL_MAX, 0}, {0}, false};
+    const struct question question = {solid, solid, 1};
+    struct fmb_body body[2];
+    struct fmb_pair pair;
+    question_pair(&question, body, &pair);
+    struct fmb_answer answer = {
+        FMB_OVERLAPPING, false, true, {0}, {{DBL_MAX, 0, 0}, {HUGE_VAL, 1, 0}}};
+    assert_true(oracle_check_tightest(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+    answer.box[1][0] = DBL_MAX;
+    assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+    answer.box[1][0] = -HUGE_VAL;
+    assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+    answer.box[1][0] = HUGE_VAL;
+    answer.box[0][0] = -HUGE_VAL;
+    assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+}
+
+/* A window so short that a step of doubles is more than 1e-12 of it: the next double will do. */
+static void doubles_too_coarse_for_the_limit(void **state)
+{
+    (void) state;
+    char why[200];
+    struct question question = thirds;
+    question.duration = 0x1p-1072; /* four steps of 2^-1074; x = 0 at 4/3, x = 2 steps at 4 */
+    question.b = (struct solid){2, FMB_CUBOID, {{0}}, {-0x1p-1074, 0.5}, {0.75, 0}, true};
+    struct fmb_body body[2];
+    struct fmb_pair pair;
+    question_pair(&question, body, &pair);
+    struct fmb_answer answer = {
+        FMB_OVERLAPPING, true, true, {0x1p-1074, 0x1p-1072}, {{0, 0.5, 0}, {0x1p-1073, 0.5, 0}}};
+    assert_true(oracle_check_tightest(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+    answer.contact[0] = 0;
+    assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plane_by_hand),
+        cmocka_unit_test(flat_plane_by_hand),
+        cmocka_unit_test(space_by_hand),
+        cmocka_unit_test(flat_space_by_hand),
+        cmocka_unit_test(numbers_that_are_no_doubles),
+        cmocka_unit_test(checks_accept_what_is_right),
+        cmocka_unit_test(checks_refuse_what_is_wrong),
+        cmocka_unit_test(an_end_beyond_the_doubles_is_infinite),
+        cmocka_unit_test(doubles_too_coarse_for_the_limit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,288 @@
+/* The service through memq://, and the client's asking code against it: one process, one
+ * thread, no network. */
+#include "ask.h"
+#include "hostile.h"
+#include "server.h"
+#include "wire.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* A bus with a service on it, and the last messages that the service sent. */
+static struct {
+    lcm_t *lcm;
+    struct server *server;
+    int results, statuses;
+    struct pair_result result;
+    struct wire_status status;
+} bus;
+
+static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    (void) channel;
+    (void) user;
+    assert_null(wire_read_pair_result(buffer->data, buffer->data_size, &bus.result));
+    bus.results++;
+}
+
+static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    (void) channel;
+    (void) user;
+    assert_null(wire_read_status(buffer->data, buffer->data_size, &bus.status));
+    bus.statuses++;
+}
+
+static int set_up(void **state)
+{
+    (void) state;
+    memset(&bus, 0, sizeof bus);
+    bus.lcm = lcm_create("memq://");
+    const struct server_options options = {
+        .prefix = "T_", .bodies = 100, .server_id = 11, .first_key = 1000};
+    bus.server = server_create(bus.lcm, &options);
+    lcm_subscribe(bus.lcm, "T_" WIRE_PAIR_RESULT, on_result, NULL);
+    lcm_subscribe(bus.lcm, "T_" WIRE_STATUS, on_status, NULL);
+    return bus.server ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void) state;
+    server_destroy(bus.server);
+    lcm_destroy(bus.lcm);
+    return 0;
+}
+
+static void settle(void)
+{
+    while (lcm_handle_timeout(bus.lcm, 0) > 0)
+        continue;
+}
+
+static void publish(const void *bytes, size_t size)
+{
+    lcm_publish(bus.lcm, "T_" WIRE_PAIR_QUERY, bytes, (unsigned) size);
+}
+
+static struct pair_query sample(int64_t sequence_number)
+{
+    struct pair_query query = {
+        .client_id = 21, .sequence_number = sequence_number, .duration = 1, .want = QUERY_WANT_BOX};
+    for (int f = 0; f < 2; f++) {
+        struct query_frame *frame = &query.frame[f];
+        *frame = (struct query_frame){.body_id = f + 1, .shape = FMB_TETRAHEDRON, .dim = 2};
+        frame->origin.count = 2;
+        frame->components = (struct query_numbers){.count = 4, .number = {1, 0, 0, 1}};
+    }
+    query.frame[1].origin.number[0] = 0.25;
+    return query;
+}
+
+static void publish_query(const struct pair_query *query)
+{
+    unsigned char bytes[WIRE_BYTES_MAX];
+    publish(bytes, wire_write_pair_query(query, bytes));
+}
+
+static struct wire_status status_now(void)
+{
+    server_publish_status(bus.server);
+    settle();
+    return bus.status;
+}
+
+static void test_a_query_gets_one_result(void **state)
+{
+    (void) state;
+    struct pair_query query = sample(1);
+    publish_query(&query);
+    settle();
+    assert_int_equal(bus.results, 1);
+    assert_int_equal(bus.result.sequence_number, 1);
+    assert_int_equal(bus.result.client_id, 21);
+    assert_int_equal(bus.result.server_id, 11);
+    assert_int_equal(bus.result.answer.verdict, FMB_OVERLAPPING);
+    assert_int_equal(bus.result.dim, 2);
+    assert_true(bus.result.answer.box[0][0] == 0.25);
+    assert_true(bus.result.compute_ns > 0);
+}
+
+static void test_status_counts(void **state)
+{
+    (void) state;
+    struct pair_query query = sample(1), bad = sample(5);
+    publish_query(&query);
+    publish_query(&query);
+    bad.frame[0].shape = 9;
+    publish_query(&bad);
+    settle();
+    struct wire_status status = status_now();
+    assert_int_equal(status.server_id, 11);
+    assert_string_equal(status.version, fmb_version());
+    assert_int_equal(status.received, 3);
+    assert_int_equal(status.answered, 3);
+    assert_int_equal(status.pairs, 2);
+    assert_int_equal(status.results[FMB_OK], 2);
+    assert_int_equal(status.results[FMB_UNKNOWN_SHAPE], 1);
+    assert_int_equal(status.repeated, 1);
+    assert_int_equal(status.sequence_gaps, 3);
+    assert_int_equal(status.hits, 2);
+    assert_int_equal(status.misses, 2);
+    assert_int_equal(status.bodies, 2);
+    assert_int_equal(status.capacity, 100);
+    assert_true(status.compute_p50_ns > 0);
+    assert_true(status.compute_p99_ns <= status.compute_max_ns);
+    assert_true(status.utime > 1600000000000000);
+}
+
+static void publish_damage(void *context, const char *what, const unsigned char *bytes, size_t size)
+{
+    (void) context;
+    (void) what;
+    publish(bytes, size);
+    settle();
+}
+
+/* Damaged messages of every type on the query channel: counted, not answered, not fatal. */
+static void test_damage_is_counted(void **state)
+{
+    (void) state;
+    size_t sent = hostile_each("pair_query", publish_damage, NULL);
+    sent += hostile_each("pair_result", publish_damage, NULL);
+    sent += hostile_each("status", publish_damage, NULL);
+    assert_int_equal(bus.results, 0);
+    assert_int_equal(status_now().malformed, sent);
+    assert_int_equal(status_now().received, 0);
+    struct pair_query query = sample(1);
+    publish_query(&query);
+    settle();
+    assert_int_equal(bus.results, 1);
+}
+
+/* ---- Asking ---------------------------------------------------------------------------- */
+
+enum { ASKED = 500 };
+
+struct asking {
+    int next, answered;
+    struct pair_query query[ASKED];
+};
+
+static bool next_query(void *user, struct pair_query *out)
+{
+    struct asking *asking = user;
+    if (asking->next == ASKED)
+        return false;
+    struct pair_query *query = &asking->query[asking->next++];
+    memcpy(out->frame, query->frame, sizeof out->frame);
+    out->duration = query->duration;
+    return true;
+}
+
+/* Each answer is that of the query in its turn, to the bit, as decided here. */
+static void check_answer(void *user, const struct pair_result *result)
+{
+    struct asking *asking = user;
+    const struct pair_query *query = &asking->query[asking->answered++];
+    struct fmb_body body[2];
+    struct fmb_frame frame[2];
+    struct fmb_answer answer;
+    assert_non_null(result);
+    for (int f = 0; f < 2; f++) {
+        const struct query_frame *of = &query->frame[f];
+        assert_int_equal(fmb_body_make(of->dim, of->shape, of->components.number,
+                                       (size_t) of->components.count, &body[f]),
+                         FMB_OK);
+        frame[f] = (struct fmb_frame){.body = &body[f], .moving = of->velocity.count > 0};
+        memcpy(frame[f].origin, of->origin.number, sizeof frame[f].origin);
+        memcpy(frame[f].velocity, of->velocity.number, sizeof frame[f].velocity);
+    }
+    struct fmb_pair pair = {.a = frame[0], .b = frame[1], .duration = query->duration};
+    assert_int_equal(fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &answer), FMB_OK);
+    assert_int_equal(result->status, FMB_OK);
+    assert_memory_equal(&answer, &result->answer, sizeof answer);
+}
+
+static void fill(struct asking *asking)
+{
+    srand(7);
+    for (int i = 0; i < ASKED; i++) {
+        struct pair_query *query = &asking->query[i];
+        int dim = rand() % 2 + 2;
+        query->duration = rand() % 3 / 2.0;
+        for (int f = 0; f < 2; f++) {
+            struct query_frame *frame = &query->frame[f];
+            frame->body_id = rand() % 150; /* more than the cache holds; 0 too */
+            frame->shape = rand() % dim + 1;
+            frame->dim = frame->origin.count = dim;
+            frame->components.count = dim * fmb_component_count(dim, frame->shape);
+            frame->velocity.count = rand() % 2 * dim;
+            for (int k = 0; k < frame->components.count; k++)
+                frame->components.number[k] = rand() % 5 - 2 + rand() % 2 * 0.1;
+            for (int k = 0; k < dim; k++)
+                frame->origin.number[k] = rand() % 3 - 1;
+            for (int k = 0; k < frame->velocity.count; k++)
+                frame->velocity.number[k] = rand() % 5 - 2;
+        }
+    }
+}
+
+static void test_asking_gets_the_library_s_answers(void **state)
+{
+    (void) state;
+    static struct asking asking;
+    const struct ask_options options = {
+        .prefix = "T_", .want = QUERY_WANT_BOX, .timeout = 5, .retries = 0};
+    fill(&asking);
+    struct ask *ask = ask_open(bus.lcm, &options);
+    assert_non_null(ask);
+    ask_all(ask, next_query, check_answer, &asking);
+    assert_int_equal(asking.answered, ASKED);
+    assert_int_equal(ask_counts(ask).answered, ASKED);
+    assert_int_equal(ask_counts(ask).repeated, 0);
+    ask_close(ask);
+    assert_int_equal(status_now().pairs, ASKED);
+    assert_true(status_now().evictions > 0);
+}
+
+static void count_silence(void *user, const struct pair_result *result)
+{
+    struct asking *asking = user;
+    assert_null(result);
+    asking->answered++;
+}
+
+static void test_asking_nobody_ends(void **state)
+{
+    (void) state;
+    static struct asking asking;
+    const struct ask_options options = {.prefix = "NOBODY_", .timeout = 0.01, .retries = 1};
+    fill(&asking);
+    asking.next = ASKED - 3;
+    struct ask *ask = ask_open(bus.lcm, &options);
+    ask_all(ask, next_query, count_silence, &asking);
+    assert_int_equal(asking.answered, 3);
+    assert_true(ask_is_silent(ask));
+    ask_close(ask);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(test_a_query_gets_one_result),
+        TEST(test_status_counts),
+        TEST(test_damage_is_counted),
+        TEST(test_asking_gets_the_library_s_answers),
+        TEST(test_asking_nobody_ends),
+    };
+    return cmocka_run_group_tests_name("server", tests, NULL, NULL);
+}
