@@ -46,7 +46,7 @@ lib_objects := $(patsubst %.c,$(O)/%.o,$(wildcard service/fmb/*.c))
 message_names := frame_t pair_query_t pair_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
-bus_objects := $(O)/service/wire.o $(O)/service/bus.o
+bus_objects := $(addprefix $(O)/service/,wire.o bus.o random_id.o)
 server_objects := $(addprefix $(O)/service/,server.o answer.o cache.o senders.o histogram.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))
 

@@ -2,6 +2,7 @@
 #include "bus.h"
 #include "cache.h"
 #include "fmb/fmb.h"
+#include "random_id.h"
 #include "server.h"
 
 #include <errno.h>
@@ -12,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <sys/signalfd.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
@@ -91,17 +91,6 @@ static int parse_options(int argc, char **argv, struct options *out)
     return -1;
 }
 
-/* A random number from 1 to 2^bits. */
-static int64_t random_id(int bits)
-{
-    uint64_t number;
-    if (getrandom(&number, sizeof number, 0) != sizeof number) {
-        perror("fmbd: getrandom");
-        exit(EXIT_FAILURE);
-    }
-    return (int64_t) (number >> (64 - bits)) + 1;
-}
-
 /* SIGINT and SIGTERM as something to read; blocked before LCM starts its thread. -1: errno. */
 static int open_signals(void)
 {
@@ -169,8 +158,8 @@ static int run(const struct options *options, int signals, int heartbeat)
 {
     struct server_options server_options = {.prefix = options->prefix,
                                             .bodies = options->bodies,
-                                            .server_id = random_id(52),
-                                            .first_key = random_id(52)};
+                                            .server_id = random_id(),
+                                            .first_key = (random_id() + 1) / 2};
     lcm_t *lcm = bus_open("fmbd", options->lcm_url, &server_options.receive_buffer);
     if (!lcm)
         return EXIT_FAILURE;

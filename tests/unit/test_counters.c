@@ -91,8 +91,8 @@ static void test_quantiles_at_the_edges(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gaps_and_repeats), cmocka_unit_test(test_gaps_do_not_overflow),
-        cmocka_unit_test(test_many_clients),     cmocka_unit_test(test_quantiles),
+        cmocka_unit_test(test_gaps_and_repeats),       cmocka_unit_test(test_gaps_do_not_overflow),
+        cmocka_unit_test(test_many_clients),           cmocka_unit_test(test_quantiles),
         cmocka_unit_test(test_quantiles_at_the_edges),
     };
     return cmocka_run_group_tests_name("counters", tests, NULL, NULL);

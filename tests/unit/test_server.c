@@ -278,10 +278,8 @@ static void test_asking_nobody_ends(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_a_query_gets_one_result),
-        TEST(test_status_counts),
-        TEST(test_damage_is_counted),
-        TEST(test_asking_gets_the_library_s_answers),
+        TEST(test_a_query_gets_one_result), TEST(test_status_counts),
+        TEST(test_damage_is_counted),       TEST(test_asking_gets_the_library_s_answers),
         TEST(test_asking_nobody_ends),
     };
     return cmocka_run_group_tests_name("server", tests, NULL, NULL);

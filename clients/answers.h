@@ -1,0 +1,31 @@
+/* The answers to all pairs of a scene, in the order asked: decided in this process, or by the
+ * service on the bus. */
+#ifndef ANSWERS_H
+#define ANSWERS_H
+
+#include "args.h"
+#include "report.h"
+
+typedef void answers_sink(void *user, const struct scene *scene, const struct outcome *outcome);
+
+struct answers_question {
+    const struct fmb_method *method; /* NULL: the default, of this process or of the service */
+    bool box;
+};
+
+void answers_local(const struct answers_question *question, const struct scene *scene,
+                   answers_sink *sink, void *user);
+
+struct answers_bus;
+
+/* Opens the bus. Never NULL: where it cannot be opened (which has then been said on stderr), or
+ * where nobody answers (which is said once, with advice), each pair gets an error. */
+struct answers_bus *answers_bus_open(const struct args_bus *bus,
+                                     const struct answers_question *question, double timeout,
+                                     int retries);
+void answers_bus_close(struct answers_bus *answers);
+
+void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
+                       void *user);
+
+#endif

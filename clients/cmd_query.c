@@ -1,0 +1,247 @@
+/* fmb query: scenes in, answers out. */
+#include "commands.h"
+
+#include "answers.h"
+#include "args.h"
+#include "json.h"
+#include "progress.h"
+#include "report.h"
+#include "svg.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char usage[] =
+    "usage: fmb query [OPTIONS] [FILE]\n"
+    "\n"
+    "Decides the pairs of the scenes in FILE, or of standard input where FILE is missing\n"
+    "or '-', and prints the answers in the order asked.\n"
+    "\n"
+    "  --local          decide in this process; without it, the service on the bus does\n"
+    "  --json           one line of JSON for each scene, exact; without it, tables for\n"
+    "                   people, rounded to six digits\n"
+    "  --box            give the box of the intersection too\n"
+    "  --svg FILE       draw the scenes, and the boxes, into FILE\n"
+    "  --method NAME    how to decide: exact (the default), or fmb or sat, which are\n"
+    "                   inexact and there to be compared\n"
+    "  -l, --lcm-url URL    the bus; else LCM_DEFAULT_URL, else this host\n"
+    "  -p, --prefix P       the service's channels begin with P\n"
+    "  --timeout SECONDS    wait so long before a query is sent again (0.5)\n"
+    "  --retries N          send it again so often before giving up (5)\n"
+    "  -h, --help\n"
+    "\n"
+    "A scene, with velocity, duration (1) and pairs (all) as one likes:\n"
+    "  {\"dim\": 3, \"duration\": 1.0,\n"
+    "   \"bodies\": [{\"id\": 1, \"shape\": \"cuboid\", \"origin\": [0,0,0],\n"
+    "               \"components\": [[1,0,0],[0,1,0],[0,0,1]], \"velocity\": [0,0,0]},\n"
+    "              {\"id\": 2, \"shape\": \"tetrahedron\", \"origin\": [0.5,0,0],\n"
+    "               \"components\": [[1,0,0],[0,1,0],[0,0,1]]}],\n"
+    "   \"pairs\": [[1,2]]}\n"
+    "\n"
+    "Exit codes: 0 answered, 1 a pair could not be decided or nobody answered, 2 wrong\n"
+    "usage or a bad scene.\n";
+
+struct options {
+    bool local, json, help;
+    struct answers_question question;
+    const char *svg;  /* NULL: no picture */
+    const char *file; /* NULL: standard input */
+    struct args_bus bus;
+    double timeout;
+    long retries;
+};
+
+/* --- Options --------------------------------------------------------------------------------- */
+
+enum { LOCAL = 1, JSON, BOX, METHOD, SVG, TIMEOUT, RETRIES };
+
+static const struct option long_options[] = {
+    {"local", no_argument, NULL, LOCAL},
+    {"json", no_argument, NULL, JSON},
+    {"box", no_argument, NULL, BOX},
+    {"method", required_argument, NULL, METHOD},
+    {"svg", required_argument, NULL, SVG},
+    {"lcm-url", required_argument, NULL, 'l'},
+    {"prefix", required_argument, NULL, 'p'},
+    {"timeout", required_argument, NULL, TIMEOUT},
+    {"retries", required_argument, NULL, RETRIES},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+static bool parse_method(const char *name, struct options *out)
+{
+    out->question.method = fmb_method_by_name(name);
+    return out->question.method ||
+           args_error("query", "--method: there are exact, fmb and sat, not '%s'", name);
+}
+
+static bool parse_option(int option, char **argv, struct options *out)
+{
+    switch (option) {
+    case LOCAL: out->local = true; return true;
+    case JSON: out->json = true; return true;
+    case BOX: out->question.box = true; return true;
+    case METHOD: return parse_method(optarg, out);
+    case SVG:
+        out->svg = optarg;
+        out->question.box = true;
+        return true;
+    case 'l': out->bus.url = optarg; return true;
+    case 'p': return args_prefix("query", optarg, &out->bus);
+    case TIMEOUT: return args_number("query", "--timeout", optarg, 0.001, 3600, &out->timeout);
+    case RETRIES: return args_integer("query", "--retries", optarg, 0, 1000, &out->retries);
+    case 'h': out->help = true; return true;
+    }
+    return args_refuse("query", option, argv);
+}
+
+static bool parse_options(int argc, char **argv, struct options *out)
+{
+    int option;
+    *out = (struct options){.bus = {.prefix = ""}, .timeout = 0.5, .retries = 5};
+    args_restart();
+    while ((option = getopt_long(argc, argv, ":l:p:h", long_options, NULL)) != -1)
+        if (!parse_option(option, argv, out))
+            return false;
+    if (argc - optind > 1)
+        return args_error("query", "expected one FILE, found '%s' too", argv[optind + 1]);
+    if (optind < argc && strcmp(argv[optind], "-") != 0)
+        out->file = argv[optind];
+    return true;
+}
+
+/* --- The run --------------------------------------------------------------------------------- */
+
+struct run {
+    const struct options *options;
+    const char *input_name;
+    struct report *report[2]; /* the printed one, and the picture or NULL */
+    struct answers_bus *bus;  /* NULL: not needed so far */
+    struct progress progress;
+    bool undecided; /* a pair got no verdict */
+};
+
+static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
+{
+    struct run *run = user;
+    for (int i = 0; i < 2; i++)
+        if (run->report[i])
+            run->report[i]->pair(run->report[i], scene, outcome);
+    run->undecided = run->undecided || outcome->error;
+    progress_step(&run->progress);
+}
+
+/* The bus is opened for the first pair that needs it: a bad scene is told without one. */
+static void answer_on_bus(struct run *run, const struct scene *scene)
+{
+    const struct options *options = run->options;
+    if (!run->bus)
+        run->bus = answers_bus_open(&options->bus, &options->question, options->timeout,
+                                    (int) options->retries);
+    answers_bus_scene(run->bus, scene, take_outcome, run);
+}
+
+static void answer_scene(struct run *run, const struct scene *scene)
+{
+    for (int i = 0; i < 2; i++)
+        if (run->report[i])
+            run->report[i]->begin(run->report[i], scene);
+    run->progress = progress_begin(scene_count_pairs(scene));
+    if (run->options->local)
+        answers_local(&run->options->question, scene, take_outcome, run);
+    else
+        answer_on_bus(run, scene);
+    progress_end(&run->progress);
+    for (int i = 0; i < 2; i++)
+        if (run->report[i])
+            run->report[i]->end(run->report[i], scene);
+}
+
+static int answer_scenes(struct run *run, int fd)
+{
+    struct json_reader *reader = json_open(fd);
+    struct scene scene;
+    enum json_outcome outcome;
+    while ((outcome = json_next(reader, &scene)) == JSON_SCENE) {
+        answer_scene(run, &scene);
+        scene_clear(&scene);
+    }
+    if (outcome != JSON_END)
+        fprintf(stderr, "fmb: %s: %s\n", run->input_name, json_error(reader));
+    json_close(reader);
+    if (outcome != JSON_END)
+        return ARGS_USAGE;
+    return run->undecided ? ARGS_FAILED : ARGS_ANSWERED;
+}
+
+/* --- Files ----------------------------------------------------------------------------------- */
+
+static int file_error(const char *name)
+{
+    fprintf(stderr, "fmb: %s: %s\n", name, strerror(errno));
+    return ARGS_FAILED;
+}
+
+static int worse(int code, int other)
+{
+    return code > other ? code : other;
+}
+
+static int write_picture(const struct svg *svg, const char *name)
+{
+    FILE *out = fopen(name, "w");
+    if (!out)
+        return file_error(name);
+    svg_write(svg, out);
+    bool good = !ferror(out);
+    if (fclose(out) != 0 || !good)
+        return file_error(name);
+    return ARGS_ANSWERED;
+}
+
+static int run_query(const struct options *options, int fd)
+{
+    struct report_json json = report_json(stdout);
+    struct report_text text = report_text(stdout, options->question.box);
+    struct svg *svg = options->svg ? svg_open() : NULL;
+    struct run run = {
+        .options = options,
+        .input_name = options->file ? options->file : "standard input",
+        .report = {options->json ? &json.report : &text.report, svg ? svg_report(svg) : NULL}};
+    int code = answer_scenes(&run, fd);
+    if (run.bus)
+        answers_bus_close(run.bus);
+    if (svg) {
+        code = worse(code, write_picture(svg, options->svg));
+        svg_close(svg);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout))
+        code = worse(code, file_error("standard output"));
+    return code;
+}
+
+int cmd_query(int argc, char **argv)
+{
+    struct options options;
+    if (!parse_options(argc, argv, &options))
+        return ARGS_USAGE;
+    if (options.help) {
+        fputs(usage, stdout);
+        return ARGS_ANSWERED;
+    }
+    int fd = options.file ? open(options.file, O_RDONLY) : STDIN_FILENO;
+    if (fd < 0) {
+        file_error(options.file);
+        return ARGS_USAGE;
+    }
+    int code = run_query(&options, fd);
+    if (options.file)
+        close(fd);
+    return code;
+}

@@ -1,0 +1,217 @@
+/* fmb status: the next heartbeat of the service. */
+#include "commands.h"
+
+#include "args.h"
+#include "listen.h"
+#include "number.h"
+#include "report.h"
+#include "wire.h"
+
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+
+static const char usage[] =
+    "usage: fmb status [OPTIONS]\n"
+    "\n"
+    "Waits for the next heartbeat of the service, which comes once a second, and prints it.\n"
+    "\n"
+    "  --json               as one line of JSON\n"
+    "  --timeout SECONDS    wait no longer than that (3)\n"
+    "  -l, --lcm-url URL    the bus; else LCM_DEFAULT_URL, else this host\n"
+    "  -p, --prefix P       the service's channels begin with P\n"
+    "  -h, --help\n";
+
+struct options {
+    bool json, help;
+    double timeout;
+    struct args_bus bus;
+};
+
+struct heartbeat {
+    struct wire_status status;
+    bool heard;
+    const char *malformed; /* what was wrong with the last one that could not be read */
+};
+
+enum { JSON = 1, TIMEOUT };
+
+static const struct option long_options[] = {
+    {"json", no_argument, NULL, JSON},         {"timeout", required_argument, NULL, TIMEOUT},
+    {"lcm-url", required_argument, NULL, 'l'}, {"prefix", required_argument, NULL, 'p'},
+    {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0},
+};
+
+static bool parse_option(int option, char **argv, struct options *out)
+{
+    switch (option) {
+    case JSON: out->json = true; return true;
+    case TIMEOUT: return args_number("status", "--timeout", optarg, 0.001, 3600, &out->timeout);
+    case 'l': out->bus.url = optarg; return true;
+    case 'p': return args_prefix("status", optarg, &out->bus);
+    case 'h': out->help = true; return true;
+    }
+    return args_refuse("status", option, argv);
+}
+
+static bool parse_options(int argc, char **argv, struct options *out)
+{
+    int option;
+    *out = (struct options){.bus = {.prefix = ""}, .timeout = 3};
+    args_restart();
+    while ((option = getopt_long(argc, argv, ":l:p:h", long_options, NULL)) != -1)
+        if (!parse_option(option, argv, out))
+            return false;
+    return optind == argc || args_error("status", "unknown argument '%s'", argv[optind]);
+}
+
+static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct heartbeat *heartbeat = user;
+    (void) channel;
+    heartbeat->malformed = wire_read_status(buffer->data, buffer->data_size, &heartbeat->status);
+    heartbeat->heard = heartbeat->malformed == NULL;
+}
+
+/* --- Printing -------------------------------------------------------------------------------- */
+
+/* The counters of a heartbeat, under the names of status_t.lcm. */
+#define COUNTERS(X)   \
+    X(utime)          \
+    X(server_id)      \
+    X(uptime_us)      \
+    X(restarts)       \
+    X(receive_buffer) \
+    X(received)       \
+    X(answered)       \
+    X(unsent)         \
+    X(pairs)          \
+    X(malformed)      \
+    X(sequence_gaps)  \
+    X(repeated)       \
+    X(bodies)         \
+    X(capacity)       \
+    X(hits)           \
+    X(misses)         \
+    X(replacements)   \
+    X(evictions)      \
+    X(compute_p50_ns) \
+    X(compute_p99_ns) \
+    X(compute_max_ns)
+
+static void print_json(const struct wire_status *status)
+{
+    fputs("{\"version\": ", stdout);
+    report_string_json(stdout, status->version);
+#define X(name) printf(", \"%s\": %" PRId64, #name, status->name);
+    COUNTERS(X)
+#undef X
+    fputs(", \"results\": {", stdout);
+#define X(name, number, text) \
+    printf("%s\"%s\": %" PRId64, number ? ", " : "", #name, status->results[number]);
+    FMB_STATUS_MAP(X)
+#undef X
+    puts("}}");
+}
+
+static void print_count(const char *name, int64_t count)
+{
+    char text[NUMBER_TEXT_MAX];
+    printf("  %-16s %15s\n", name, number_grouped(count, text));
+}
+
+static void print_duration(int64_t microseconds)
+{
+    int64_t seconds = microseconds / 1000000;
+    if (seconds >= 86400)
+        printf("%" PRId64 " d ", seconds / 86400);
+    if (seconds >= 3600)
+        printf("%" PRId64 " h ", seconds / 3600 % 24);
+    if (seconds >= 60)
+        printf("%" PRId64 " min ", seconds / 60 % 60);
+    printf("%" PRId64 " s", seconds % 60);
+}
+
+static void print_refusals(const struct wire_status *status)
+{
+    for (int i = 0; i < FMB_STATUS_COUNT; i++)
+        if (i != FMB_OK && status->results[i] > 0)
+            printf("  %-16s %15" PRId64 "  %s\n", "  refused", status->results[i],
+                   fmb_status_text(i));
+}
+
+static void print_text(const struct wire_status *status)
+{
+    printf("fmbd %s, server %" PRId64 ", up ", status->version, status->server_id);
+    print_duration(status->uptime_us);
+    if (status->restarts > 0)
+        printf(", restarted %" PRId64 " times", status->restarts);
+    puts("\nqueries");
+    print_count("received", status->received);
+    print_count("answered", status->answered);
+    print_count("pairs decided", status->pairs);
+    print_refusals(status);
+    print_count("not sent", status->unsent);
+    print_count("asked again", status->repeated);
+    print_count("lost on the way", status->sequence_gaps);
+    print_count("not readable", status->malformed);
+    puts("bodies");
+    print_count("held", status->bodies);
+    print_count("room for", status->capacity);
+    print_count("hits", status->hits);
+    print_count("misses", status->misses);
+    print_count("  replaced", status->replacements);
+    print_count("evicted", status->evictions);
+    puts("time to decide");
+    printf("  %-16s %15.1f us\n", "half within", 1e-3 * (double) status->compute_p50_ns);
+    printf("  %-16s %15.1f us\n", "99 % within", 1e-3 * (double) status->compute_p99_ns);
+    printf("  %-16s %15.1f us\n", "longest", 1e-3 * (double) status->compute_max_ns);
+    puts("bus");
+    print_count("receive buffer", status->receive_buffer);
+}
+
+static void advise(const struct options *options, const struct heartbeat *heartbeat)
+{
+    fprintf(stderr, "fmb: no heartbeat on channel %s%s of %s within %g s\n", options->bus.prefix,
+            WIRE_STATUS, args_bus_name(&options->bus), options->timeout);
+    if (heartbeat->malformed)
+        fprintf(stderr, "fmb: but one that could not be read (%s): another version of fmbd?\n",
+                heartbeat->malformed);
+    else
+        fprintf(stderr, "fmb: start one with 'fmbd%s%s &'\n",
+                *options->bus.prefix ? " --prefix " : "", options->bus.prefix);
+}
+
+static int print_heartbeat(const struct options *options, const struct wire_status *status)
+{
+    if (options->json)
+        print_json(status);
+    else
+        print_text(status);
+    if (fflush(stdout) == 0)
+        return ARGS_ANSWERED;
+    perror("fmb: standard output");
+    return ARGS_FAILED;
+}
+
+int cmd_status(int argc, char **argv)
+{
+    struct options options;
+    struct listener listener;
+    struct heartbeat heartbeat = {.heard = false};
+    if (!parse_options(argc, argv, &options))
+        return ARGS_USAGE;
+    if (options.help) {
+        fputs(usage, stdout);
+        return ARGS_ANSWERED;
+    }
+    if (!listen_open(&options.bus, WIRE_STATUS, on_status, &heartbeat, &listener))
+        return ARGS_FAILED;
+    enum listen_end end = listen_until(&listener, &heartbeat.heard, options.timeout);
+    listen_close(&listener);
+    if (end == LISTEN_ENOUGH)
+        return print_heartbeat(&options, &heartbeat.status);
+    if (end == LISTEN_TIMEOUT)
+        advise(&options, &heartbeat);
+    return ARGS_FAILED;
+}

@@ -1,0 +1,9 @@
+/* The commands, one file each. argv[0] is the command's name; the result is the exit code. */
+#ifndef COMMANDS_H
+#define COMMANDS_H
+
+int cmd_query(int argc, char **argv);
+int cmd_watch(int argc, char **argv);
+int cmd_status(int argc, char **argv);
+
+#endif

@@ -1,0 +1,92 @@
+/* fmb: the command. A table of commands, and what is said about them. */
+#include "args.h"
+#include "commands.h"
+#include "fmb/fmb.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+struct command {
+    const char *name;
+    const char *help;
+    int (*run)(int argc, char **argv);
+};
+
+static int cmd_help(int argc, char **argv);
+
+static const struct command commands[] = {
+    {"query", "decide the pairs of a scene, on the bus or here (--local)", cmd_query},
+    {"watch", "print the results that pass on the bus", cmd_watch},
+    {"status", "print how the service is doing", cmd_status},
+    {"help", "help on a command: fmb help query", cmd_help},
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static const struct command *find(const char *name)
+{
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(commands[i].name, name) == 0)
+            return &commands[i];
+    return NULL;
+}
+
+static void print_help(FILE *out)
+{
+    fputs(
+        "usage: fmb COMMAND [OPTIONS]\n"
+        "\n"
+        "Do two moving frames meet, when, and in which box? Verdicts are exact.\n"
+        "\n"
+        "Commands:\n",
+        out);
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        fprintf(out, "  %-8s  %s\n", commands[i].name, commands[i].help);
+    fputs(
+        "\n"
+        "'fmb COMMAND --help' says more. 'fmb --version' prints the version.\n"
+        "Exit codes: 0 answered, 1 failed, 2 wrong usage or a bad scene.\n",
+        out);
+}
+
+static int unknown_command(const char *name)
+{
+    fprintf(stderr, "fmb: unknown command '%s'\nTry 'fmb --help'.\n", name);
+    return ARGS_USAGE;
+}
+
+static int cmd_help(int argc, char **argv)
+{
+    if (argc < 2 || strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0) {
+        print_help(stdout);
+        return ARGS_ANSWERED;
+    }
+    const struct command *command = find(argv[1]);
+    if (!command)
+        return unknown_command(argv[1]);
+    char help[] = "--help";
+    char *arguments[] = {argv[1], help, NULL};
+    return command->run(2, arguments);
+}
+
+static bool is_one_of(const char *word, const char *first, const char *second)
+{
+    return strcmp(word, first) == 0 || strcmp(word, second) == 0;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_help(stderr);
+        return ARGS_USAGE;
+    }
+    if (is_one_of(argv[1], "--help", "-h"))
+        return cmd_help(1, argv);
+    if (is_one_of(argv[1], "--version", "-V")) {
+        printf("fmb %s\n", fmb_version());
+        return ARGS_ANSWERED;
+    }
+    const struct command *command = find(argv[1]);
+    return command ? command->run(argc - 1, argv + 1) : unknown_command(argv[1]);
+}

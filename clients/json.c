@@ -1,0 +1,442 @@
+/* text.c cuts the input into objects and lets nothing but JSON through; cJSON makes a tree of
+ * each; the tree is checked and copied into a scene, and freed before the scene is used.
+ *
+ * What is known of cJSON 1.7, and minded here: access to an array by index walks the list, so the
+ * list is walked once; the look-up of keys takes the first of several and ignores case, so keys
+ * are compared here; and 1e999 becomes infinite, so every number is checked. */
+#include "json.h"
+
+#include "allocate.h"
+#include "text.h"
+
+#include <cjson/cJSON.h>
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ERROR_MAX = 320, QUOTED_MAX = 32 };
+
+static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
+
+struct json_reader {
+    struct text text;
+    size_t scene_number; /* of the object that is being read, from 1 */
+    char error[ERROR_MAX];
+};
+
+/* --- Where in the tree: printed only if something is wrong there ------------------------- */
+
+/* A value's place in the one that holds it: a key, or an index where key is NULL. */
+struct place {
+    const struct place *parent; /* NULL: the scene itself */
+    const char *key;
+    size_t index;
+};
+
+struct writer {
+    char *text;
+    size_t used, room;
+};
+
+static void write_text(struct writer *writer, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void write_text(struct writer *writer, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    int length = vsnprintf(writer->text + writer->used, writer->room - writer->used, format, list);
+    va_end(list);
+    if (length > 0)
+        writer->used += (size_t) length;
+    if (writer->used >= writer->room)
+        writer->used = writer->room - 1;
+}
+
+static void write_place(struct writer *writer, const struct place *place)
+{
+    if (place->parent)
+        write_place(writer, place->parent);
+    if (!place->key)
+        write_text(writer, "[%zu]", place->index);
+    else
+        write_text(writer, "%s%s", place->parent ? "." : "", place->key);
+}
+
+static struct writer begin_error(struct json_reader *reader)
+{
+    struct writer writer = {reader->error, 0, sizeof reader->error};
+    if (reader->scene_number > 1)
+        write_text(&writer, "scene %zu: ", reader->scene_number);
+    return writer;
+}
+
+static bool refuse(struct json_reader *reader, const struct place *place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Always false. place: NULL for the scene itself. */
+static bool refuse(struct json_reader *reader, const struct place *place, const char *format, ...)
+{
+    struct writer writer = begin_error(reader);
+    if (place) {
+        write_place(&writer, place);
+        write_text(&writer, ": ");
+    }
+    va_list list;
+    va_start(list, format);
+    vsnprintf(writer.text + writer.used, writer.room - writer.used, format, list);
+    va_end(list);
+    return false;
+}
+
+/* Text of the input, fit for a line on a terminal: cut, and without its control characters. */
+static const char *quoted(const char *text, char out[QUOTED_MAX + 4])
+{
+    size_t i = 0;
+    for (; text[i] && i < QUOTED_MAX; i++)
+        out[i] = iscntrl((unsigned char) text[i]) ? '?' : text[i];
+    while (text[i] && i > 0 && (text[i] & 0xc0) == 0x80)
+        i--; /* not within a character of UTF-8 */
+    strcpy(out + i, text[i] ? "..." : "");
+    return out;
+}
+
+static const char *kind_name(const cJSON *item)
+{
+    if (cJSON_IsNumber(item))
+        return "a number";
+    if (cJSON_IsString(item))
+        return "a string";
+    if (cJSON_IsArray(item))
+        return "an array";
+    if (cJSON_IsObject(item))
+        return "an object";
+    return cJSON_IsNull(item) ? "null" : "a boolean";
+}
+
+static bool refuse_kind(struct json_reader *reader, const struct place *place, const cJSON *item,
+                        const char *expected)
+{
+    return refuse(reader, place, "expected %s, found %s", expected, kind_name(item));
+}
+
+/* --- Objects ------------------------------------------------------------------------------ */
+
+struct key {
+    const char *name;
+    bool optional;
+};
+
+static int key_index(const struct key *keys, int count, const char *name)
+{
+    for (int i = 0; i < count; i++)
+        if (strcmp(keys[i].name, name) == 0)
+            return i;
+    return -1;
+}
+
+/* On output: found[i] is the value of keys[i], NULL where an optional one is missing. */
+static bool read_object(struct json_reader *reader, const struct place *place, const cJSON *item,
+                        const struct key *keys, int count, const cJSON **found)
+{
+    char text[QUOTED_MAX + 4];
+    if (!cJSON_IsObject(item))
+        return refuse_kind(reader, place, item, "an object");
+    for (int i = 0; i < count; i++)
+        found[i] = NULL;
+    for (const cJSON *child = item->child; child; child = child->next) {
+        int i = key_index(keys, count, child->string);
+        if (i < 0)
+            return refuse(reader, place, "unknown key \"%s\"", quoted(child->string, text));
+        if (found[i])
+            return refuse(reader, place, "repeated key \"%s\"", keys[i].name);
+        found[i] = child;
+    }
+    for (int i = 0; i < count; i++)
+        if (!found[i] && !keys[i].optional)
+            return refuse(reader, place, "missing key \"%s\"", keys[i].name);
+    return true;
+}
+
+/* --- Arrays and numbers --------------------------------------------------------------------- */
+
+static bool check_array(struct json_reader *reader, const struct place *place, const cJSON *item,
+                        size_t count, const char *what)
+{
+    if (!cJSON_IsArray(item))
+        return refuse(reader, place, "expected %zu %s, found %s", count, what, kind_name(item));
+    size_t found = (size_t) cJSON_GetArraySize(item);
+    return found == count ||
+           refuse(reader, place, "expected %zu %s, found %zu", count, what, found);
+}
+
+static bool read_number(struct json_reader *reader, const struct place *place, const cJSON *item,
+                        double *out)
+{
+    if (!cJSON_IsNumber(item))
+        return refuse_kind(reader, place, item, "a number");
+    *out = item->valuedouble;
+    return isfinite(*out) || refuse(reader, place, "not a finite number in doubles");
+}
+
+static bool read_vector(struct json_reader *reader, const struct place *place, const cJSON *item,
+                        int dim, double *out)
+{
+    if (!check_array(reader, place, item, (size_t) dim, "numbers"))
+        return false;
+    struct place at = {place, NULL, 0};
+    for (const cJSON *child = item->child; child; child = child->next, at.index++)
+        if (!read_number(reader, &at, child, &out[at.index]))
+            return false;
+    return true;
+}
+
+static bool read_id(struct json_reader *reader, const struct place *place, const cJSON *item,
+                    int64_t *out)
+{
+    if (!cJSON_IsNumber(item))
+        return refuse_kind(reader, place, item, "an id");
+    double id = item->valuedouble;
+    if (!(id >= 1 && id <= id_max && id == floor(id)))
+        return refuse(reader, place, "an id is an integer from 1 to 2^53-1");
+    *out = (int64_t) id;
+    return true;
+}
+
+/* --- Bodies --------------------------------------------------------------------------------- */
+
+static bool read_shape(struct json_reader *reader, const struct place *place, const cJSON *item,
+                       int dim, int *out)
+{
+    char text[QUOTED_MAX + 4];
+    if (!cJSON_IsString(item))
+        return refuse_kind(reader, place, item, "a string");
+    for (int shape = FMB_CUBOID; fmb_shape_name(shape); shape++) {
+        if (strcmp(item->valuestring, fmb_shape_name(shape)) != 0)
+            continue;
+        *out = shape;
+        return fmb_component_count(dim, shape) > 0 ||
+               refuse(reader, place, "there is no %s in %dD", fmb_shape_name(shape), dim);
+    }
+    return refuse(reader, place, "unknown shape \"%s\" (there are cuboid, tetrahedron, face)",
+                  quoted(item->valuestring, text));
+}
+
+static bool read_components(struct json_reader *reader, const struct place *place,
+                            const cJSON *item, int dim, int shape, struct fmb_body *out)
+{
+    size_t count = (size_t) fmb_component_count(dim, shape);
+    double components[FMB_COMPONENTS_MAX];
+    if (!check_array(reader, place, item, count, "vectors"))
+        return false;
+    struct place at = {place, NULL, 0};
+    for (const cJSON *child = item->child; child; child = child->next, at.index++)
+        if (!read_vector(reader, &at, child, dim, components + at.index * (size_t) dim))
+            return false;
+    enum fmb_status status = fmb_body_make(dim, shape, components, count * (size_t) dim, out);
+    return status == FMB_OK || refuse(reader, place, "%s", fmb_status_text(status));
+}
+
+enum { ID, SHAPE, ORIGIN, COMPONENTS, VELOCITY, BODY_KEYS };
+
+static const struct key body_keys[BODY_KEYS] = {
+    [ID] = {"id", false},
+    [SHAPE] = {"shape", false},
+    [ORIGIN] = {"origin", false},
+    [COMPONENTS] = {"components", false},
+    [VELOCITY] = {"velocity", true},
+};
+
+static bool read_body(struct json_reader *reader, const struct place *place, const cJSON *item,
+                      int dim, struct scene_body *out)
+{
+    const cJSON *value[BODY_KEYS];
+    if (!read_object(reader, place, item, body_keys, BODY_KEYS, value))
+        return false;
+    struct place at[BODY_KEYS];
+    for (int i = 0; i < BODY_KEYS; i++)
+        at[i] = (struct place){place, body_keys[i].name, 0};
+    out->moving = value[VELOCITY] != NULL;
+    int shape = 0;
+    return read_id(reader, &at[ID], value[ID], &out->id) &&
+           read_shape(reader, &at[SHAPE], value[SHAPE], dim, &shape) &&
+           read_vector(reader, &at[ORIGIN], value[ORIGIN], dim, out->origin) &&
+           read_components(reader, &at[COMPONENTS], value[COMPONENTS], dim, shape, &out->body) &&
+           (!out->moving ||
+            read_vector(reader, &at[VELOCITY], value[VELOCITY], dim, out->velocity));
+}
+
+static bool read_bodies(struct json_reader *reader, const cJSON *item, struct scene *out)
+{
+    struct place place = {NULL, "bodies", 0};
+    if (!cJSON_IsArray(item))
+        return refuse_kind(reader, &place, item, "an array");
+    out->body = allocate((size_t) cJSON_GetArraySize(item), sizeof *out->body);
+    struct place at = {&place, NULL, 0};
+    for (const cJSON *child = item->child; child; child = child->next, at.index++) {
+        if (!read_body(reader, &at, child, out->dim, &out->body[at.index]))
+            return false;
+        out->body_count++;
+    }
+    return true;
+}
+
+/* --- Pairs ---------------------------------------------------------------------------------- */
+
+static bool read_pair(struct json_reader *reader, const struct place *place, const cJSON *item,
+                      const struct scene_ids *ids, struct scene_pair *out)
+{
+    if (!check_array(reader, place, item, 2, "ids"))
+        return false;
+    size_t index[2];
+    int64_t id = 0;
+    struct place at = {place, NULL, 0};
+    for (const cJSON *child = item->child; child; child = child->next, at.index++) {
+        if (!read_id(reader, &at, child, &id))
+            return false;
+        if (!scene_ids_find(ids, id, &index[at.index]))
+            return refuse(reader, &at, "no body has the id %lld", (long long) id);
+    }
+    *out = (struct scene_pair){index[0], index[1]};
+    return out->a != out->b ||
+           refuse(reader, place, "a body is no pair with itself (%lld)", (long long) id);
+}
+
+static bool read_pairs(struct json_reader *reader, const cJSON *item, const struct scene_ids *ids,
+                       struct scene *out)
+{
+    struct place place = {NULL, "pairs", 0};
+    out->all_pairs = !item;
+    if (!item)
+        return true;
+    if (!cJSON_IsArray(item))
+        return refuse_kind(reader, &place, item, "an array");
+    out->pair = allocate((size_t) cJSON_GetArraySize(item), sizeof *out->pair);
+    struct place at = {&place, NULL, 0};
+    for (const cJSON *child = item->child; child; child = child->next, at.index++) {
+        if (!read_pair(reader, &at, child, ids, &out->pair[at.index]))
+            return false;
+        out->pair_count++;
+    }
+    return true;
+}
+
+static bool refuse_repeated_id(struct json_reader *reader, const struct scene *scene, size_t first,
+                               size_t second)
+{
+    struct place bodies = {NULL, "bodies", 0};
+    struct place body = {&bodies, NULL, second};
+    struct place id = {&body, "id", 0};
+    return refuse(reader, &id, "%lld is the id of bodies[%zu] already",
+                  (long long) scene->body[second].id, first);
+}
+
+static bool link_pairs(struct json_reader *reader, const cJSON *item, struct scene *out)
+{
+    struct scene_ids ids;
+    size_t first, second;
+    scene_ids_make(out, &ids);
+    bool unique = !scene_ids_repeated(&ids, &first, &second);
+    bool good = unique ? read_pairs(reader, item, &ids, out)
+                       : refuse_repeated_id(reader, out, first, second);
+    scene_ids_clear(&ids);
+    return good;
+}
+
+/* --- The scene ------------------------------------------------------------------------------ */
+
+static bool read_dim(struct json_reader *reader, const cJSON *item, struct scene *out)
+{
+    struct place place = {NULL, "dim", 0};
+    if (!cJSON_IsNumber(item))
+        return refuse_kind(reader, &place, item, "2 or 3");
+    if (item->valuedouble != 2 && item->valuedouble != 3)
+        return refuse(reader, &place, "expected 2 or 3, found %g", item->valuedouble);
+    out->dim = (int) item->valuedouble;
+    return true;
+}
+
+static bool read_duration(struct json_reader *reader, const cJSON *item, struct scene *out)
+{
+    struct place place = {NULL, "duration", 0};
+    out->duration = 1;
+    if (!item)
+        return true;
+    if (!read_number(reader, &place, item, &out->duration))
+        return false;
+    return out->duration >= 0 || refuse(reader, &place, "a duration is not negative");
+}
+
+enum { DIM, DURATION, BODIES, PAIRS, SCENE_KEYS };
+
+static const struct key scene_keys[SCENE_KEYS] = {
+    [DIM] = {"dim", false},
+    [DURATION] = {"duration", true},
+    [BODIES] = {"bodies", false},
+    [PAIRS] = {"pairs", true},
+};
+
+static bool read_scene(struct json_reader *reader, const cJSON *item, struct scene *out)
+{
+    const cJSON *value[SCENE_KEYS];
+    return read_object(reader, NULL, item, scene_keys, SCENE_KEYS, value) &&
+           read_dim(reader, value[DIM], out) && read_duration(reader, value[DURATION], out) &&
+           read_bodies(reader, value[BODIES], out) && link_pairs(reader, value[PAIRS], out);
+}
+
+/* --- The input ------------------------------------------------------------------------------ */
+
+struct json_reader *json_open(int fd)
+{
+    struct json_reader *reader = allocate(1, sizeof *reader);
+    text_open(fd, &reader->text);
+    reader->scene_number = 1;
+    return reader;
+}
+
+void json_close(struct json_reader *reader)
+{
+    text_close(&reader->text);
+    free(reader);
+}
+
+const char *json_error(const struct json_reader *reader)
+{
+    return reader->error;
+}
+
+/* cJSON refuses well-formed text for one reason only: \u escapes of half a character. */
+static enum json_outcome read_object_text(struct json_reader *reader, const char *object,
+                                          size_t length, struct scene *out)
+{
+    cJSON *root = cJSON_ParseWithLength(object, length);
+    bool good = root ? read_scene(reader, root, out)
+                     : refuse(reader, NULL, "a \\u escape that is no character, or no memory");
+    cJSON_Delete(root);
+    if (!good) {
+        scene_clear(out);
+        return JSON_BAD;
+    }
+    reader->scene_number++;
+    return JSON_SCENE;
+}
+
+enum json_outcome json_next(struct json_reader *reader, struct scene *out)
+{
+    const char *object = NULL;
+    size_t length = 0;
+    memset(out, 0, sizeof *out);
+    switch (text_next(&reader->text, &object, &length)) {
+    case TEXT_OBJECT: return read_object_text(reader, object, length, out);
+    case TEXT_FAILED: refuse(reader, NULL, "%s", reader->text.error); return JSON_FAILED;
+    case TEXT_BAD: refuse(reader, NULL, "%s", reader->text.error); return JSON_BAD;
+    case TEXT_END: break;
+    }
+    if (reader->scene_number > 1)
+        return JSON_END;
+    refuse(reader, NULL, "the input is empty: expected a scene");
+    return JSON_BAD;
+}

@@ -1,0 +1,42 @@
+/* Scenes out of JSON text. The reading is strict: what is not understood in full is refused with
+ * one line that names the place. The form:
+ *
+ *     {"dim": 3, "duration": 1.0,
+ *      "bodies": [{"id": 1, "shape": "cuboid", "origin": [0,0,0],
+ *                  "components": [[1,0,0],[0,1,0],[0,0,1]], "velocity": [0,0,0]}],
+ *      "pairs": [[1,2]]}
+ *
+ * dim (2 or 3) and bodies must be there, and each body's id, shape, origin and components.
+ * Missing duration: 1. Missing pairs: all, in body order. Keys may come in any order, but once.
+ * An input holds one or more such objects, one after the other. */
+#ifndef JSON_H
+#define JSON_H
+
+#include "scene.h"
+
+struct json_reader;
+
+/* On input: an open file, read from where it stands in growing pieces; not owned. */
+struct json_reader *json_open(int fd);
+void json_close(struct json_reader *reader);
+
+enum json_outcome {
+    JSON_SCENE, /* *out, to be cleared by the caller */
+    JSON_END,   /* no more objects, after one at least */
+    JSON_BAD,   /* the text is not a scene; json_error() says why */
+    JSON_FAILED /* the file cannot be read; json_error() says why */
+};
+
+/* The next scene. Returns as soon as the object is complete, whatever follows it. After any other
+ * outcome than JSON_SCENE nothing more is read. */
+enum json_outcome json_next(struct json_reader *reader, struct scene *out);
+
+/* After JSON_BAD and JSON_FAILED, one line without its end, lives as long as the reader:
+ *
+ *     bodies[3].components[1]: expected 3 numbers, found 2
+ *     line 3, column 14: expected ',' or '}', found ']'
+ *
+ * From the second object of the input on it begins with "scene 2: ". */
+const char *json_error(const struct json_reader *reader);
+
+#endif

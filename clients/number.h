@@ -1,0 +1,20 @@
+/* Numbers as text. */
+#ifndef NUMBER_H
+#define NUMBER_H
+
+#include <stdint.h>
+
+enum { NUMBER_TEXT_MAX = 40 };
+
+/* The fewest of 15, 16 or 17 digits that read back as the same bits: "0.5", "1",
+ * "0.10000000000000001" only where "0.1" is another double. JSON has no infinite numbers and no
+ * NaN: these become "null". Returns text. */
+const char *number_exact(double value, char text[NUMBER_TEXT_MAX]);
+
+/* Six digits, for people: "0.333333". Returns text. */
+const char *number_short(double value, char text[NUMBER_TEXT_MAX]);
+
+/* With a comma between thousands, for people: "4,194,304". Returns text. */
+const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX]);
+
+#endif

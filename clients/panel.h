@@ -1,0 +1,39 @@
+/* One scene of a picture (svg.h): what is kept of it, and how it is drawn. */
+#ifndef PANEL_H
+#define PANEL_H
+
+#include "report.h"
+#include "view.h"
+
+struct panel_box {
+    struct scene_pair pair;
+    struct fmb_answer answer;
+};
+
+struct panel {
+    int dim;
+    double duration;
+    size_t body_count, bodies_left_out;
+    struct scene_body *body;   /* owned */
+    enum fmb_verdict *verdict; /* owned; [body], the worst of its pairs; 0: none */
+    size_t box_count, box_room, boxes_left_out;
+    struct panel_box *box;               /* owned */
+    uint64_t count[FMB_OVERLAPPING + 1]; /* of pairs, [verdict]; [0]: not decided */
+    struct view_bounds bounds;
+};
+
+void panel_take_scene(struct panel *panel, const struct scene *scene, size_t bodies_max);
+void panel_take_outcome(struct panel *panel, const struct outcome *outcome, size_t boxes_max);
+void panel_clear(struct panel *panel);
+
+/* Do both hold the same bodies, by id, so that they may be steps of time? */
+bool panel_is_step_of(const struct panel *panel, const struct panel *first);
+
+/* Draws into an SVG group. bounds: what is to be seen, the panel's own or more. */
+void panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
+                FILE *out);
+
+/* The fill of a face as "#rrggbb". light from 0 to 1. */
+const char *panel_colour(enum fmb_verdict verdict, double light, char out[8]);
+
+#endif

@@ -1,0 +1,25 @@
+/* How far a long work has come, on a terminal only. */
+#ifndef PROGRESS_H
+#define PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct progress {
+    bool shown; /* something stands on the line */
+    bool enabled;
+    uint64_t done, total;
+    double started_at, shown_at; /* seconds */
+};
+
+/* Shows nothing unless standard error is a terminal and standard output is not: there the answers
+ * themselves show how far it is. */
+struct progress progress_begin(uint64_t total);
+
+/* One more is done. Shows after the first second, then a few times a second. */
+void progress_step(struct progress *progress);
+
+/* Clears the line. */
+void progress_end(struct progress *progress);
+
+#endif

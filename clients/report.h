@@ -1,0 +1,65 @@
+/* Where the answers go: one of these for each way to show them. */
+#ifndef REPORT_H
+#define REPORT_H
+
+#include "scene.h"
+
+#include <stdio.h>
+
+struct outcome {
+    struct scene_pair pair;
+    const char *error;        /* why the pair could not be decided; NULL where it was */
+    struct fmb_answer answer; /* all 0 where it was not */
+};
+
+/* For each scene: begin, each pair in the order asked, end. */
+struct report {
+    void (*begin)(struct report *report, const struct scene *scene);
+    void (*pair)(struct report *report, const struct scene *scene, const struct outcome *outcome);
+    void (*end)(struct report *report, const struct scene *scene);
+};
+
+/* One line, one JSON object, for each scene; flushed at its end:
+ *
+ *     {"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1],
+ *                 "box": {"min": [0.5,0,0], "max": [1,1,1]}}]}
+ *
+ * Doubles read back bit for bit; an infinite end of a box is null; a pair that could not be
+ * decided has an "error" in place of the verdict. */
+struct report_json {
+    struct report report;
+    FILE *out;
+    bool first; /* no pair of the scene was written yet */
+};
+
+struct report_json report_json(FILE *out);
+
+/* A table for people, and counts at its end. Numbers have six digits. */
+struct report_text {
+    struct report report;
+    FILE *out;
+    bool box; /* boxes were asked for: a column more */
+    size_t scenes;
+    int id_width;
+    uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
+};
+
+struct report_text report_text(FILE *out, bool box);
+
+/* The members of one answer as report_json writes them, without braces: "verdict": ..., or
+ * "error": ... Used wherever answers are printed as JSON. */
+void report_answer_json(FILE *out, int dim, const char *error, const struct fmb_answer *answer);
+
+/* text as a JSON string with its quotes; bytes that are not printable ASCII as \u00XX. */
+void report_string_json(FILE *out, const char *text);
+
+/* Verdict, contact and box for people, in columns, without the end of the line:
+ *
+ *     overlapping  0.25 to 0.5 s         x        0 .. 1         y     -0.5 .. 0.5 */
+void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer);
+
+/* "0.25 to 0.5 s"; text is returned. */
+enum { REPORT_TEXT_MAX = 160 };
+const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
+
+#endif

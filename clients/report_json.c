@@ -1,0 +1,87 @@
+#include "report.h"
+
+#include "number.h"
+
+#include <inttypes.h>
+
+void report_string_json(FILE *out, const char *text)
+{
+    putc('"', out);
+    for (const unsigned char *at = (const unsigned char *) text; *at; at++) {
+        if (*at < 0x20 || *at >= 0x7f)
+            fprintf(out, "\\u%04x", *at);
+        else
+            fprintf(out, *at == '"' || *at == '\\' ? "\\%c" : "%c", *at);
+    }
+    putc('"', out);
+}
+
+static void write_vector(FILE *out, const double *numbers, int count)
+{
+    char text[NUMBER_TEXT_MAX];
+    for (int i = 0; i < count; i++)
+        fprintf(out, "%s%s", i ? "," : "[", number_exact(numbers[i], text));
+    putc(']', out);
+}
+
+static void write_contact(FILE *out, const double contact[2])
+{
+    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
+    fprintf(out, ", \"contact\": [%s, %s]", number_exact(contact[0], first),
+            number_exact(contact[1], last));
+}
+
+static void write_box(FILE *out, int dim, const struct fmb_answer *answer)
+{
+    fputs(", \"box\": {\"min\": ", out);
+    write_vector(out, answer->box[0], dim);
+    fputs(", \"max\": ", out);
+    write_vector(out, answer->box[1], dim);
+    putc('}', out);
+}
+
+void report_answer_json(FILE *out, int dim, const char *error, const struct fmb_answer *answer)
+{
+    if (error) {
+        fputs("\"error\": ", out);
+        report_string_json(out, error);
+        return;
+    }
+    fprintf(out, "\"verdict\": \"%s\"", fmb_verdict_name((int) answer->verdict));
+    if (answer->has_contact)
+        write_contact(out, answer->contact);
+    if (answer->has_box)
+        write_box(out, dim, answer);
+}
+
+static void json_begin(struct report *report, const struct scene *scene)
+{
+    struct report_json *json = (struct report_json *) report;
+    (void) scene;
+    json->first = true;
+    fputs("{\"pairs\": [", json->out);
+}
+
+static void json_pair(struct report *report, const struct scene *scene,
+                      const struct outcome *outcome)
+{
+    struct report_json *json = (struct report_json *) report;
+    fprintf(json->out, "%s{\"a\": %" PRId64 ", \"b\": %" PRId64 ", ", json->first ? "" : ", ",
+            scene->body[outcome->pair.a].id, scene->body[outcome->pair.b].id);
+    json->first = false;
+    report_answer_json(json->out, scene->dim, outcome->error, &outcome->answer);
+    putc('}', json->out);
+}
+
+static void json_end(struct report *report, const struct scene *scene)
+{
+    struct report_json *json = (struct report_json *) report;
+    (void) scene;
+    fputs("]}\n", json->out);
+    fflush(json->out);
+}
+
+struct report_json report_json(FILE *out)
+{
+    return (struct report_json){.report = {json_begin, json_pair, json_end}, .out = out};
+}

@@ -1,0 +1,173 @@
+#include "view.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Where the viewer stands: 58 degrees to the right of looking along y, 24 degrees above. */
+static const double azimuth = -1.012, elevation = 0.419;
+
+/* Where the light comes from; of length 1. */
+static const double light[FMB_DIM_MAX] = {0.36, -0.48, 0.8};
+
+struct view_bounds view_nothing(void)
+{
+    return (struct view_bounds){.low = {INFINITY, INFINITY, INFINITY},
+                                .high = {-INFINITY, -INFINITY, -INFINITY},
+                                .paper_low = {INFINITY, INFINITY},
+                                .paper_high = {-INFINITY, -INFINITY}};
+}
+
+/* NaN, as from sums of infinite numbers, becomes low. */
+static double clamp(double value, double low, double high)
+{
+    return value > high ? high : value >= low ? value : low;
+}
+
+/* Unit coordinates to the plane of the paper: x right, y up. */
+static struct point project(int dim, const double u[FMB_DIM_MAX])
+{
+    if (dim == 2)
+        return (struct point){u[0], u[1], 0};
+    double ca = cos(azimuth), sa = sin(azimuth), ce = cos(elevation), se = sin(elevation);
+    return (struct point){-sa * u[0] + ca * u[1], -se * (ca * u[0] + sa * u[1]) + ce * u[2],
+                          ce * (ca * u[0] + sa * u[1]) + se * u[2]};
+}
+
+static void add_to_paper(double low[2], double high[2], struct point point)
+{
+    low[0] = fmin(low[0], point.x);
+    low[1] = fmin(low[1], point.y);
+    high[0] = fmax(high[0], point.x);
+    high[1] = fmax(high[1], point.y);
+}
+
+void view_add(struct view_bounds *bounds, const struct outline *outline, int dim)
+{
+    for (int k = 0; k < outline->corner_count; k++) {
+        double quarter[FMB_DIM_MAX] = {0};
+        for (int axis = 0; axis < dim; axis++) {
+            double at = clamp(outline->corner[k][axis], -DBL_MAX, DBL_MAX);
+            bounds->low[axis] = fmin(bounds->low[axis], at);
+            bounds->high[axis] = fmax(bounds->high[axis], at);
+            quarter[axis] = at / 4;
+        }
+        add_to_paper(bounds->paper_low, bounds->paper_high, project(dim, quarter));
+    }
+}
+
+void view_join(struct view_bounds *bounds, const struct view_bounds *other)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        bounds->low[axis] = fmin(bounds->low[axis], other->low[axis]);
+        bounds->high[axis] = fmax(bounds->high[axis], other->high[axis]);
+    }
+    for (int axis = 0; axis < 2; axis++) {
+        bounds->paper_low[axis] = fmin(bounds->paper_low[axis], other->paper_low[axis]);
+        bounds->paper_high[axis] = fmax(bounds->paper_high[axis], other->paper_high[axis]);
+    }
+}
+
+/* Room around the bounds, as a part of the radius. */
+static const double margin = 0.04;
+
+static void set_units(const struct view_bounds *bounds, struct view *out)
+{
+    out->radius = 0;
+    for (int axis = 0; axis < out->dim; axis++) {
+        bool empty = bounds->low[axis] > bounds->high[axis];
+        double low = empty ? 0 : bounds->low[axis] / 2, high = empty ? 0 : bounds->high[axis] / 2;
+        out->centre[axis] = low + high;
+        out->radius = fmax(out->radius, high - low);
+    }
+    if (out->radius == 0)
+        out->radius = 1;
+    for (int axis = 0; axis < out->dim; axis++) {
+        double half = (bounds->high[axis] / 2 - bounds->low[axis] / 2) / out->radius;
+        half = half > 0 ? fmin(half, 1) : 0; /* also where the bounds are empty */
+        out->high[axis] = fmin(half + margin, 1);
+        out->low[axis] = -out->high[axis];
+    }
+}
+
+/* The corners of the floor, or of the whole plane. */
+static void add_floor(const struct view *view, double low[2], double high[2])
+{
+    for (int k = 0; k < 4; k++) {
+        double corner[FMB_DIM_MAX] = {k & 1 ? view->high[0] : view->low[0],
+                                      k & 2 ? view->high[1] : view->low[1], view->low[2]};
+        add_to_paper(low, high, project(view->dim, corner));
+    }
+}
+
+/* The part of the paper's plane, in unit coordinates, that is to be seen. */
+static struct paper projected_bounds(const struct view *view, const struct view_bounds *bounds)
+{
+    double quarter[FMB_DIM_MAX], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        quarter[axis] = view->centre[axis] / 4;
+    struct point centre = project(view->dim, quarter);
+    const double middle[2] = {centre.x, centre.y};
+    add_floor(view, low, high);
+    for (int axis = 0; axis < 2; axis++) {
+        double first = (bounds->paper_low[axis] - middle[axis]) / (view->radius / 4);
+        double last = (bounds->paper_high[axis] - middle[axis]) / (view->radius / 4);
+        low[axis] = fmin(low[axis], clamp(first, -2, 2) - margin);
+        high[axis] = fmax(high[axis], clamp(last, -2, 2) + margin);
+    }
+    return (struct paper){low[0], low[1], high[0] - low[0], high[1] - low[1]};
+}
+
+struct view view_make(int dim, const struct view_bounds *bounds, struct paper paper)
+{
+    struct view view = {.dim = dim, .paper = paper};
+    set_units(bounds, &view);
+    struct paper seen = projected_bounds(&view, bounds);
+    view.scale = fmin(paper.width / seen.width, paper.height / seen.height);
+    view.x = paper.x + paper.width / 2 - view.scale * (seen.x + seen.width / 2);
+    view.y = paper.y + paper.height / 2 + view.scale * (seen.y + seen.height / 2);
+    return view;
+}
+
+struct point view_unit_point(const struct view *view, const double unit[FMB_DIM_MAX])
+{
+    struct point point = project(view->dim, unit);
+    return (struct point){view->x + view->scale * point.x, view->y - view->scale * point.y,
+                          point.depth};
+}
+
+/* (p - centre) / radius, cut at the bounds. */
+static double unit_of(const struct view *view, double world, int axis)
+{
+    double p = clamp(world, -DBL_MAX, DBL_MAX);
+    double half = (p / 2 - view->centre[axis] / 2) / (view->radius / 2);
+    if (view->radius < DBL_MIN)
+        half = (p - view->centre[axis]) / view->radius;
+    return clamp(half, view->low[axis], view->high[axis]);
+}
+
+struct point view_point(const struct view *view, const double world[FMB_DIM_MAX])
+{
+    double unit[FMB_DIM_MAX] = {0};
+    for (int axis = 0; axis < view->dim; axis++)
+        unit[axis] = unit_of(view, world[axis], axis);
+    struct point point = view_unit_point(view, unit);
+    point.x = clamp(point.x, view->paper.x, view->paper.x + view->paper.width);
+    point.y = clamp(point.y, view->paper.y, view->paper.y + view->paper.height);
+    return point;
+}
+
+double view_light(const struct view *view, const double a[FMB_DIM_MAX], const double b[FMB_DIM_MAX],
+                  const double c[FMB_DIM_MAX])
+{
+    double u[3], v[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double at = unit_of(view, a[axis], axis);
+        u[axis] = unit_of(view, b[axis], axis) - at;
+        v[axis] = unit_of(view, c[axis], axis) - at;
+    }
+    double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (length == 0)
+        return 0.5;
+    return fabs(n[0] * light[0] + n[1] * light[1] + n[2] * light[2]) / length;
+}

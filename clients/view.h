@@ -1,0 +1,52 @@
+/* From the world to the paper.
+ *
+ * 2D: as it lies, y up. 3D: an axonometric projection, seen from the front, right and above, z up.
+ * Both keep the same scale along all axes. Numbers of any size: coordinates are first brought to
+ * [-1, 1] around the middle of what is to be seen, with halves rather than sums, which could be
+ * infinite; what lies further out, infinite ends of boxes too, is cut there. */
+#ifndef VIEW_H
+#define VIEW_H
+
+#include "outline.h"
+
+/* What is to be seen: in the world, and of its projection, right and up on the paper. */
+struct view_bounds {
+    double low[FMB_DIM_MAX], high[FMB_DIM_MAX];
+    double paper_low[2], paper_high[2]; /* a quarter of it, so that no sum is infinite */
+};
+
+struct view_bounds view_nothing(void);
+void view_add(struct view_bounds *bounds, const struct outline *outline, int dim);
+void view_join(struct view_bounds *bounds, const struct view_bounds *other);
+
+struct paper {
+    double x, y, width, height; /* pixels */
+};
+
+struct view {
+    int dim;
+    double centre[FMB_DIM_MAX], radius;         /* world; radius > 0 */
+    double low[FMB_DIM_MAX], high[FMB_DIM_MAX]; /* of the bounds, in [-1, 1] */
+    double scale, x, y; /* from the projection to the paper: pixels, y down */
+    struct paper paper;
+};
+
+/* A view of the bounds that fills the paper. */
+struct view view_make(int dim, const struct view_bounds *bounds, struct paper paper);
+
+/* Pixels, y down; depth grows towards the viewer, 0 in 2D. All finite. */
+struct point {
+    double x, y, depth;
+};
+
+/* A point of the paper. */
+struct point view_point(const struct view *view, const double world[FMB_DIM_MAX]);
+
+/* The same of numbers in [-1, 1]; without being cut. */
+struct point view_unit_point(const struct view *view, const double unit[FMB_DIM_MAX]);
+
+/* How much a face with corners a, b, c looks up to the light: 0 to 1. */
+double view_light(const struct view *view, const double a[FMB_DIM_MAX], const double b[FMB_DIM_MAX],
+                  const double c[FMB_DIM_MAX]);
+
+#endif

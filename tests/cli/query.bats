@@ -1,0 +1,383 @@
+# fmb query --local, and the command around it: what is typed, what is printed, exit codes.
+
+setup() {
+    FMB=${FMB_BUILD:-build}/fmb
+    CASES=$BATS_TEST_DIRNAME/../cases
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    cube='"shape": "cuboid", "components": [[1,0,0],[0,1,0],[0,0,1]]'
+    square='"shape": "cuboid", "components": [[1,0],[0,1]]'
+    two="{\"dim\": 3, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0,0]},
+          {\"id\": 2, $cube, \"origin\": [1,0,0]}]"
+    scene="$two}"
+}
+
+# query TEXT [OPTIONS]: answers of the text, as JSON. Standard error is kept apart.
+query() {
+    local text=$1
+    shift
+    run --separate-stderr "$FMB" query --local --json "$@" <<< "$text"
+}
+
+is() {
+    [ "$output" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $output"
+        return 1
+    }
+}
+
+said() {
+    [ "$stderr" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status"
+        return 1
+    }
+}
+
+bats_require_minimum_version 1.5.0
+
+# ---- Answers ---------------------------------------------------------------------------------
+
+@test "the example and its answer" {
+    query '{"dim": 3, "duration": 1.0,
+ "bodies": [{"id": 1, "shape": "cuboid", "origin": [0,0,0], "components": [[1,0,0],[0,1,0],[0,0,1]], "velocity": [0,0,0]},
+            {"id": 2, "shape": "tetrahedron", "origin": [0.5,0,0], "components": [[1,0,0],[0,1,0],[0,0,1]]}],
+ "pairs": [[1,2]]}' --box
+    ended 0
+    said ''
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1], "box": {"min": [0.5,0,0], "max": [1,1,1]}}]}'
+}
+
+@test "every case of tests/cases" {
+    for file in "$CASES"/*.json; do
+        query "$(jq -c .scene "$file")" --box
+        ended 0
+        jq -e --argjson found "$output" '.answer == $found' "$file" || {
+            echo "$file: found $output"
+            return 1
+        }
+    done
+}
+
+@test "without --box there is no box, and no contact where nothing moves" {
+    query "$scene"
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching"}]}'
+}
+
+@test "separated pairs have neither contact nor box" {
+    query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [0,0]},
+           {\"id\": 2, $square, \"origin\": [3,0], \"velocity\": [-1,0]}]}" --box
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "separated"}]}'
+}
+
+@test "pairs are answered as asked: both orientations, repeats" {
+    query "$two, \"pairs\": [[2,1],[1,2],[2,1]]}"
+    ended 0
+    is '{"pairs": [{"a": 2, "b": 1, "verdict": "touching"}, {"a": 1, "b": 2, "verdict": "touching"}, {"a": 2, "b": 1, "verdict": "touching"}]}'
+}
+
+@test "no pairs asked, no pairs answered" {
+    query "$two, \"pairs\": []}"
+    ended 0
+    is '{"pairs": []}'
+}
+
+@test "missing pairs: all, in body order" {
+    query "{\"dim\": 3, \"bodies\": [{\"id\": 9, $cube, \"origin\": [0,0,0]},
+           {\"id\": 5, $cube, \"origin\": [1,0,0]}, {\"id\": 7, $cube, \"origin\": [5,0,0]}]}"
+    ended 0
+    is '{"pairs": [{"a": 9, "b": 5, "verdict": "touching"}, {"a": 9, "b": 7, "verdict": "separated"}, {"a": 5, "b": 7, "verdict": "separated"}]}'
+}
+
+@test "one line for each scene of an input" {
+    query "$scene $scene
+$two, \"pairs\": []}"
+    ended 0
+    [ "${#lines[@]}" = 3 ]
+    [ "${lines[2]}" = '{"pairs": []}' ]
+}
+
+@test "a scene is answered before the next one has come" {
+    mkfifo "$BATS_TEST_TMPDIR/in"
+    "$FMB" query --local --json < "$BATS_TEST_TMPDIR/in" > "$BATS_TEST_TMPDIR/out" 3>&- &
+    exec 9> "$BATS_TEST_TMPDIR/in"
+    echo "$scene" >&9
+    for _ in $(seq 200); do
+        [ -s "$BATS_TEST_TMPDIR/out" ] && break
+        sleep 0.05
+    done
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/out")" = 1 ]
+    exec 9>&-
+    wait $!
+}
+
+@test "numbers read back bit for bit" {
+    query "{\"dim\": 2, \"bodies\": [
+        {\"id\": 1, $square, \"origin\": [0.1,5e-324]},
+        {\"id\": 9007199254740991, $square, \"origin\": [0.30000000000000004,-0.7000000000000001]}]}" --box
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 9007199254740991, "verdict": "overlapping", "box": {"min": [0.30000000000000004,4.94065645841247e-324], "max": [1.1,0.29999999999999993]}}]}'
+}
+
+@test "a file, a dash and nothing are read alike" {
+    echo "$scene" > "$BATS_TEST_TMPDIR/scene.json"
+    expected='{"pairs": [{"a": 1, "b": 2, "verdict": "touching"}]}'
+    run "$FMB" query --local --json "$BATS_TEST_TMPDIR/scene.json"
+    is "$expected"
+    query "$scene" -
+    is "$expected"
+    query "$scene"
+    is "$expected"
+}
+
+@test "a table for people" {
+    run "$FMB" query --local --box <<< "{\"dim\": 2, \"duration\": 3, \"bodies\": [
+        {\"id\": 1, $square, \"origin\": [0,0]},
+        {\"id\": 20, $square, \"origin\": [2,0], \"velocity\": [-3,0]},
+        {\"id\": 3, $square, \"origin\": [0,1]}]}"
+    ended 0
+    is "scene 1: 3 bodies in 2D, 3 pairs, 0 to 3 s
+   a   b  verdict      contact               box
+   1  20  overlapping  0.333333 to 1 s       x        0 .. 1         y        0 .. 1
+   1   3  touching                           x        0 .. 1         y        1 .. 1
+  20   3  touching     0.333333 to 1 s       x        0 .. 1         y        1 .. 1
+1 overlapping, 2 touching, 0 separated"
+}
+
+# ---- Methods ---------------------------------------------------------------------------------
+
+@test "the inexact methods can be asked" {
+    for method in exact fmb sat; do
+        query "$two, \"pairs\": [[1,2]]}" --method $method
+        ended 0
+        jq -e '.pairs[0] | .a == 1 and has("verdict")' <<< "$output"
+    done
+}
+
+@test "a pair that a method cannot decide has an error, and the exit code is 1" {
+    flat='{"dim": 3, "bodies": [
+        {"id": 1, "shape": "face", "origin": [0,0,0], "components": [[1,0,0],[0,1,0]]},
+        {"id": 2, "shape": "face", "origin": [0,0,0], "components": [[1,0,0],[0,1,0]]}]}'
+    query "$flat" --method sat
+    ended 1
+    jq -e '.pairs[0] | has("error") and (has("verdict") | not)' <<< "$output"
+    run "$FMB" query --local --method sat <<< "$flat"
+    ended 1
+    [[ $output == *"1  2  not decided: "* ]]
+    [[ $output == *", 1 not decided" ]]
+    query "$flat"
+    ended 0
+}
+
+# ---- What is refused -------------------------------------------------------------------------
+
+@test "a bad scene: one line that names the place, exit code 2" {
+    query "{\"dim\": 3, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0,0]},
+        {\"id\": 2, \"shape\": \"cuboid\", \"origin\": [0,0,0], \"components\": [[1,0,0],[0,1],[0,0,1]]}]}"
+    ended 2
+    is ''
+    said 'fmb: standard input: bodies[1].components[1]: expected 3 numbers, found 2'
+}
+
+@test "what came before a bad scene stands, what comes behind is not read" {
+    query "$scene {\"dim\": 3, \"bodies\": [], \"bodies\": []} $scene"
+    ended 2
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching"}]}'
+    said 'fmb: standard input: scene 2: repeated key "bodies"'
+}
+
+@test "a name of a file stands in its errors" {
+    printf '{"dim": 3,\n "bodies": [1,]}' > "$BATS_TEST_TMPDIR/bad.json"
+    run "$FMB" query --local "$BATS_TEST_TMPDIR/bad.json"
+    ended 2
+    is "fmb: $BATS_TEST_TMPDIR/bad.json: line 2, column 15: expected a value, found ']'"
+}
+
+@test "numbers that are not finite" {
+    query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [0,1e999]}]}"
+    ended 2
+    said 'fmb: standard input: bodies[0].origin[1]: not a finite number in doubles'
+}
+
+@test "pairs of no body, and of one" {
+    query "$two, \"pairs\": [[1,3]]}"
+    ended 2
+    said 'fmb: standard input: pairs[0][1]: no body has the id 3'
+    query "$two, \"pairs\": [[1,1]]}"
+    ended 2
+    said 'fmb: standard input: pairs[0]: a body is no pair with itself (1)'
+}
+
+@test "an empty input" {
+    run "$FMB" query --local < /dev/null
+    ended 2
+    is 'fmb: standard input: the input is empty: expected a scene'
+}
+
+@test "a file that is not there, a directory" {
+    run "$FMB" query --local /no/such/file
+    ended 2
+    is 'fmb: /no/such/file: No such file or directory'
+    run "$FMB" query --local .
+    ended 2
+    is 'fmb: .: Is a directory'
+}
+
+@test "a hundred million brackets" {
+    run bash -c "head -c 100000000 /dev/zero | tr '\\0' '[' | '$FMB' query --local"
+    ended 2
+    is "fmb: standard input: line 1, column 1: expected an object, '{', found '['"
+    run bash -c "{ echo -n '{\"dim\":'; head -c 100000000 /dev/zero | tr '\\0' '['; } | '$FMB' query --local"
+    ended 2
+    is 'fmb: standard input: line 1, column 39: nested more than 32 deep'
+}
+
+@test "standard output that is full" {
+    [ -w /dev/full ] || skip "no /dev/full"
+    run bash -c "'$FMB' query --local --json > /dev/full" <<< "$scene"
+    ended 1
+    [[ $output == "fmb: standard output: "* ]]
+}
+
+# ---- Much ------------------------------------------------------------------------------------
+
+# all_pairs N: a scene of N cubes in a row, each touching the next.
+all_pairs() {
+    awk -v n="$1" 'BEGIN {
+        printf "{\"dim\":3,\"bodies\":["
+        for (i = 1; i <= n; i++)
+            printf "%s{\"id\":%d,\"shape\":\"cuboid\",\"origin\":[%d,0,0],\"components\":[[1,0,0],[0,1,0],[0,0,1]]}",
+                i == 1 ? "" : ",", i, i
+        print "]}"
+    }'
+}
+
+@test "100,000 pairs, in memory that does not grow with them" {
+    case ${FMB_BUILD:-build} in *asan*) skip "address sanitizer takes memory of its own" ;; esac
+    all_pairs 448 > "$BATS_TEST_TMPDIR/many.json"
+    (
+        ulimit -v 65536
+        "$FMB" query --local --json "$BATS_TEST_TMPDIR/many.json" > "$BATS_TEST_TMPDIR/answers"
+    )
+    [ "$(jq -c '[.pairs | length, (map(select(.verdict == "touching")) | length)]' "$BATS_TEST_TMPDIR/answers")" = '[100128,447]' ]
+}
+
+@test "100,000 pairs that are listed" {
+    awk 'BEGIN {
+        printf "{\"dim\":2,\"bodies\":["
+        for (i = 1; i <= 1000; i++)
+            printf "%s{\"id\":%d,\"shape\":\"tetrahedron\",\"origin\":[%d,0],\"components\":[[1,0],[0,1]]}",
+                i == 1 ? "" : ",", 7 * i, i
+        printf "],\"pairs\":["
+        for (i = 0; i < 100000; i++)
+            printf "%s[%d,%d]", i == 0 ? "" : ",", 7 * (i % 1000 + 1), 7 * ((i + 1) % 1000 + 1)
+        print "]}"
+    }' > "$BATS_TEST_TMPDIR/listed.json"
+    "$FMB" query --local --json "$BATS_TEST_TMPDIR/listed.json" > "$BATS_TEST_TMPDIR/answers"
+    [ "$(jq -c '[.pairs | length, (map(select(.verdict == "touching")) | length)]' "$BATS_TEST_TMPDIR/answers")" = '[100000,99900]' ]
+}
+
+# ---- Pictures --------------------------------------------------------------------------------
+
+@test "--svg draws the scenes and asks for boxes" {
+    query "$scene $scene" --svg "$BATS_TEST_TMPDIR/scene.svg"
+    ended 0
+    [ "$(jq -s 'map(.pairs[0] | has("box")) | all' <<< "$output")" = true ]
+    [ "$(grep -c '>scene ' "$BATS_TEST_TMPDIR/scene.svg")" = 2 ]
+    [ "$(tail -n 1 "$BATS_TEST_TMPDIR/scene.svg")" = '</svg>' ]
+}
+
+@test "a picture that cannot be written: the answers stand, exit code 1" {
+    query "$scene" --svg /no/such/folder/scene.svg
+    ended 1
+    [ "$(jq '.pairs | length' <<< "$output")" = 1 ]
+    said 'fmb: /no/such/folder/scene.svg: No such file or directory'
+}
+
+# ---- The command -----------------------------------------------------------------------------
+
+@test "help, on standard output" {
+    run --separate-stderr "$FMB" --help
+    ended 0
+    said ''
+    [ "${lines[0]}" = 'usage: fmb COMMAND [OPTIONS]' ]
+    for command in query watch status help; do
+        grep -q "^  $command " <<< "$output"
+    done
+    run --separate-stderr "$FMB" help
+    ended 0
+    for command in query watch status; do
+        run --separate-stderr "$FMB" $command --help
+        ended 0
+        said ''
+        [[ ${lines[0]} == "usage: fmb $command [OPTIONS]"* ]]
+        help=$output
+        run --separate-stderr "$FMB" help $command
+        ended 0
+        is "$help"
+    done
+}
+
+@test "the example of the help is a scene" {
+    "$FMB" query --help | sed -n '/^A scene/,/^Exit/p' | sed '1d;$d' > "$BATS_TEST_TMPDIR/scene.json"
+    run "$FMB" query --local --json "$BATS_TEST_TMPDIR/scene.json"
+    ended 0
+    [ "$(jq '.pairs | length' <<< "$output")" = 1 ]
+}
+
+@test "the version" {
+    run "$FMB" --version
+    ended 0
+    [[ $output =~ ^fmb\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
+}
+
+@test "no command, an unknown one" {
+    run --separate-stderr "$FMB"
+    ended 2
+    is ''
+    [[ $stderr == "usage: fmb COMMAND"* ]]
+    run "$FMB" frobnicate
+    ended 2
+    is "fmb: unknown command 'frobnicate'
+Try 'fmb --help'."
+    run "$FMB" help frobnicate
+    ended 2
+}
+
+# wrong MESSAGE ARGUMENTS...: refused with that message, and a hint.
+wrong() {
+    local message=$1
+    shift
+    run --separate-stderr "$FMB" "$@" < /dev/null
+    ended 2
+    is ''
+    said "fmb $1: $message
+Try 'fmb $1 --help'."
+}
+
+@test "wrong options" {
+    wrong "unknown option '--frobnicate'" query --frobnicate
+    wrong "unknown option '-x'" query -x
+    wrong "option '--svg' needs a value" query --svg
+    wrong "option '-l' needs a value" watch -l
+    wrong "option '--json=1' takes no value" status --json=1
+    wrong "--method: there are exact, fmb and sat, not 'best'" query --method best
+    wrong "--timeout: expected a number from 0.001 to 3600, found '1s'" query --timeout 1s
+    wrong "--timeout: expected a number from 0.001 to 3600, found 'nan'" query --timeout nan
+    wrong "--timeout: expected a number from 0.001 to 3600, found ''" status --timeout ''
+    wrong "--retries: expected an integer from 0 to 1000, found '-1'" query --retries -1
+    wrong "--count: expected an integer from 1 to 2147483647, found '0'" watch --count 0
+    wrong "--prefix: expected at most 32 letters, digits, '_' or '-'" query --prefix 'a.*'
+    wrong "expected one FILE, found 'b' too" query --local a b
+    wrong "unknown argument 'a'" watch a
+    wrong "unknown argument 'a'" status a
+}

@@ -1,0 +1,113 @@
+#!/bin/sh
+# Builds and runs the tests, side by side on all cores, and ends with one line:
+#
+#   N passed, N failed[, N skipped]
+#
+# Exit code 0 only if none failed. With FMB_FAST set: the release build alone, and smaller
+# samples. Needs what 'make deps-test' installs. The output of each suite stays in
+# build/tests.log/.
+set -u
+cd "$(dirname "$0")/.." || exit
+
+log=build/tests.log
+
+# A suite writes TAP; 77 means that it cannot run here.
+#   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
+run_suite() {
+    kind=$1 build=$2 what=$3
+    export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
+    case $build in *asan*) export FMB_FAST=1 ;; esac
+    case $kind in
+    unit) "$build/tests/$what" ;;
+    bats) bats --tap "tests/$what" ;;
+    netns) "$build/netns" bats --tap "tests/$what" ;;
+    esac
+}
+
+# Counts of one suite's TAP: "passed failed skipped". A test that the plan promises and nothing
+# is heard of has failed; so has a suite that ends badly though all its tests passed.
+count_suite() {
+    awk -v code="$2" '
+        /^1\.\.[0-9]+/ { planned += substr($1, 4); plans++ }
+        /^ok .*# *(skip|SKIP)/ || /^not ok .*# *SKIP/ { skipped++; next }
+        /^ok [0-9]/ { passed++ }
+        /^not ok [0-9]/ { failed++ }
+        END {
+            seen = passed + failed + skipped
+            if (planned > seen) failed += planned - seen
+            if (!failed && (code != 0 || !plans)) failed++
+            print passed + 0, failed + 0, skipped + 0
+        }' "$1"
+}
+
+one() {
+    kind=$1 build=$2 what=$3
+    name=$(echo "$kind $build $what" | tr ' /' '._')
+    out=$log/$name
+    run_suite "$kind" "$build" "$what" > "$out.tap" 2> "$out.err" < /dev/null
+    code=$?
+    if [ "$kind" = netns ] && [ $code = 77 ]; then
+        counts="0 0 $(grep -c '^@test' "tests/$what")"
+    else
+        counts=$(count_suite "$out.tap" $code)
+    fi
+    echo "$counts" > "$out.count"
+    # shellcheck disable=SC2086
+    set -- $counts
+    printf '%-12s %-34s %4d passed' "$(basename "$build")" "$what" "$1"
+    [ "$2" = 0 ] || printf ', %d failed' "$2"
+    [ "$3" = 0 ] || printf ', %d skipped' "$3"
+    echo
+    [ "$2" = 0 ] || {
+        grep -A12 '^not ok' "$out.tap" | head -n 60
+        tail -n 20 "$out.err"
+    }
+}
+
+if [ "${1-}" = --suite ]; then
+    # shellcheck disable=SC2086
+    set -- $2
+    one "$@"
+    exit 0
+fi
+
+# build OPTIONS...: a build that fails is a failure to report, not a reason to be silent.
+build() {
+    make -s -j"$(nproc)" ${CI:+WERROR=1} "$@" > build/tests.build 2>&1 || {
+        cat build/tests.build
+        echo "make $*: the build failed"
+        echo "0 passed, 1 failed"
+        exit 1
+    }
+}
+
+list() {
+    for build in "$@"; do
+        for test in "$build"/tests/test_*; do
+            [ -x "$test" ] && echo "unit $build $(basename "$test")"
+        done
+        for file in tests/system/*.bats; do echo "netns $build system/$(basename "$file")"; done
+        for file in tests/cli/*.bats; do echo "bats $build cli/$(basename "$file")"; done
+    done
+}
+
+rm -rf "$log"
+mkdir -p "$log"
+rm -rf build/tests build/asan/tests build/asan-clang/tests
+build headers tests
+builds=build
+if [ -z "${FMB_FAST-}" ]; then
+    build MODE=asan tests
+    build MODE=asan CC=clang tests
+    builds="build build/asan build/asan-clang"
+fi
+# shellcheck disable=SC2086
+list $builds | xargs -d '\n' -n 1 -P "$(nproc)" "$0" --suite
+
+awk '{ p += $1; f += $2; s += $3 }
+    END {
+        printf "%d passed, %d failed", p, f
+        if (s) printf ", %d skipped", s
+        print ""
+        exit f || !p
+    }' "$log"/*.count

@@ -1,0 +1,206 @@
+# The daemon as its users meet it: on a bus, with the client.
+
+load service
+
+@test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
+    for signal in TERM INT; do
+        start_fmbd
+        grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, heartbeat on FMB_STATUS' "$fmbd_log"
+        stop_fmbd "$signal"
+    done
+}
+
+@test "the bus gives the answers of --local" {
+    start_fmbd
+    for dim in 2 3; do
+        random_scene $dim 40 > "$BATS_TEST_TMPDIR/scene.json"
+        "$FMB" query --box --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+        "$FMB" query --box --json --local "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local"
+        [ "$(jq '.pairs | length' "$BATS_TEST_TMPDIR/bus")" = 780 ]
+        [ "$(jq '[.pairs[] | select(.box)] | length' "$BATS_TEST_TMPDIR/bus")" -gt 10 ]
+        cmp "$BATS_TEST_TMPDIR/bus" "$BATS_TEST_TMPDIR/local"
+    done
+    stop_fmbd
+}
+
+@test "the cases give the answers of --local, by every method" {
+    start_fmbd
+    for case in tests/cases/*.json; do
+        scene=$BATS_TEST_TMPDIR/scene.json
+        jq -c .scene "$case" > "$scene"
+        for method in exact fmb sat; do
+            local_code=0 bus_code=0
+            "$FMB" query --box --json --local --method $method "$scene" > "$BATS_TEST_TMPDIR/local" || local_code=$?
+            "$FMB" query --box --json --method $method "$scene" > "$BATS_TEST_TMPDIR/bus" || bus_code=$?
+            [ $local_code = $bus_code ]
+            # Why a pair cannot be decided may be said in other words.
+            jq -c '(.pairs[]? | select(.error)).error = "error"' "$BATS_TEST_TMPDIR/local" > "$BATS_TEST_TMPDIR/local.json"
+            jq -c '(.pairs[]? | select(.error)).error = "error"' "$BATS_TEST_TMPDIR/bus" > "$BATS_TEST_TMPDIR/bus.json"
+            cmp "$BATS_TEST_TMPDIR/local.json" "$BATS_TEST_TMPDIR/bus.json"
+        done
+    done
+    stop_fmbd
+}
+
+@test "clients at the same time get each its own answers" {
+    start_fmbd
+    pids=
+    for client in 1 2 3 4; do
+        random_scene 3 30 $client > "$BATS_TEST_TMPDIR/scene.$client"
+        "$FMB" query --box --json "$BATS_TEST_TMPDIR/scene.$client" > "$BATS_TEST_TMPDIR/bus.$client" 3>&- &
+        pids="$pids $!"
+    done
+    for pid in $pids; do wait "$pid"; done
+    for client in 1 2 3 4; do
+        "$FMB" query --box --json --local "$BATS_TEST_TMPDIR/scene.$client" | cmp - "$BATS_TEST_TMPDIR/bus.$client"
+    done
+    stop_fmbd
+}
+
+@test "SIGTERM under load ends it well, and at once" {
+    start_fmbd
+    random_scene 3 300 > "$BATS_TEST_TMPDIR/scene.json"
+    for client in 1 2; do
+        "$FMB" query --box --json --timeout 0.2 --retries 0 "$BATS_TEST_TMPDIR/scene.json" > /dev/null 2>&1 3>&- &
+        started="$started $!"
+    done
+    sleep 0.5
+    [ "$(status_of received)" -gt 100 ]
+    kill -TERM "$fmbd"
+    wait_until_gone() { ! kill -0 "$fmbd" 2> /dev/null; }
+    wait_until wait_until_gone
+    wait "$fmbd"
+}
+
+@test "a client that asks before the service is there gets its answers" {
+    random_scene 2 20 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
+    client=$!
+    started="${started-} $client"
+    sleep 0.5
+    start_fmbd
+    wait $client
+    "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    stop_fmbd
+}
+
+@test "a service that dies and comes back costs no answer" {
+    random_scene 3 120 > "$BATS_TEST_TMPDIR/scene.json"
+    start_fmbd
+    "$FMB" query --json --box --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
+    client=$!
+    started="$started $client"
+    for _ in 1 2 3; do
+        sleep 0.1
+        kill -KILL "$fmbd"
+        start_fmbd
+    done
+    wait $client
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    stop_fmbd
+}
+
+@test "nobody there: exit code 1, and what to run" {
+    random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
+    run "$FMB" query --timeout 0.1 --retries 1 "$BATS_TEST_TMPDIR/scene.json"
+    [ "$status" = 1 ]
+    [[ "$output" == *fmbd* ]]
+    run "$FMB" status --timeout 0.1
+    [ "$status" = 1 ]
+    [[ "$output" == *fmbd* ]]
+}
+
+@test "damaged messages on every channel are counted, and harm neither service nor clients" {
+    start_fmbd
+    "$FMB" watch > "$BATS_TEST_TMPDIR/watch" 2> "$BATS_TEST_TMPDIR/watch.err" 3>&- &
+    watch=$!
+    started="$started $watch"
+    sent=0
+    for type in pair_query pair_result status; do
+        sent=$((sent + $("$FMB_BUILD/poke" FMB_PAIR_QUERY $type)))
+        "$FMB_BUILD/poke" FMB_PAIR_RESULT $type
+        "$FMB_BUILD/poke" FMB_STATUS $type
+    done
+    [ "$sent" -gt 600 ]
+    [ "$(status_of malformed)" = "$sent" ]
+    [ "$(grep -c malformed "$fmbd_log")" -lt 20 ]
+    random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
+    wait_until grep -q '[a-z]ed\|touching' "$BATS_TEST_TMPDIR/watch"
+    kill -INT $watch
+    wait $watch
+    stop_fmbd
+}
+
+@test "prefixes keep two services apart" {
+    start_fmbd --prefix ONE_
+    one=$fmbd
+    start_fmbd --prefix TWO_
+    random_scene 2 4 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --prefix TWO_ "$BATS_TEST_TMPDIR/scene.json"
+    [ "$("$FMB" status --prefix ONE_ --json | jq .received)" = 0 ]
+    [ "$("$FMB" status --prefix TWO_ --json | jq .received)" = 6 ]
+    run "$FMB" query --timeout 0.1 --retries 0 "$BATS_TEST_TMPDIR/scene.json"
+    [ "$status" = 1 ]
+    stop_fmbd
+    fmbd=$one
+    stop_fmbd
+}
+
+@test "room for one body: every answer is right all the same" {
+    start_fmbd --bodies 1
+    random_scene 3 20 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    [ "$(status_of bodies)" = 1 ]
+    [ "$(status_of evictions)" -gt 100 ]
+    stop_fmbd
+}
+
+@test "the heartbeat tells what was done" {
+    start_fmbd --bodies 500
+    random_scene 2 5 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
+    [ "$(status_of received)" = 20 ]
+    [ "$(status_of pairs)" = 20 ]
+    [ "$(status_of bodies)" = 5 ]
+    [ "$(status_of capacity)" = 500 ]
+    [ "$(status_of misses)" = 5 ]
+    [ "$(status_of hits)" = 35 ]
+    [ "$(status_of malformed)" = 0 ]
+    run "$FMB" status
+    [ "$status" = 0 ]
+    stop_fmbd
+}
+
+@test "no route for multicast: two lines that say what to run" {
+    run "$FMBD" --lcm-url udpm://10.9.8.7:7667
+    [ "$status" = 1 ]
+    [ "${#lines[@]}" = 2 ]
+    [[ "${lines[0]}" == "fmbd: no route to the multicast group 10.9.8.7"* ]]
+    [[ "${lines[1]}" == *"ip route add 224.0.0.0/4 dev lo"* ]]
+}
+
+@test "a bus that is none: exit code 1 and a line" {
+    for url in nonsense foo://bar tcpq://127.0.0.1:1; do
+        run timeout 10 "$FMBD" --lcm-url $url
+        [ "$status" = 1 ]
+        [[ "$output" == *"fmbd: "*"$url"* ]]
+    done
+}
+
+@test "wrong options: exit code 2 and a hint; help and version: 0" {
+    for options in --nonsense --bodies=0 --bodies=-1 --bodies=1x --bodies=99999999999999999999 \
+        '--prefix=a.*' extra; do
+        run "$FMBD" "$options"
+        [ "$status" = 2 ]
+        [[ "$output" == *"fmbd --help"* ]]
+    done
+    run "$FMBD" --help
+    [ "$status" = 0 ]
+    [[ "${lines[0]}" == "usage: fmbd"* ]]
+    run "$FMBD" --version
+    [ "$status" = 0 ]
+    [[ "$output" == "fmbd "[0-9]* ]]
+}

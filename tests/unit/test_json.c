@@ -1,0 +1,477 @@
+/* Reading scenes: what is understood, and what is refused with which words. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "json.h"
+#include "number.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A reader of the text, in a file that is gone with it. */
+struct input {
+    FILE *file;
+    struct json_reader *reader;
+};
+
+static struct input open_bytes(const char *bytes, size_t size)
+{
+    struct input input = {.file = tmpfile()};
+    assert_non_null(input.file);
+    assert_int_equal(fwrite(bytes, 1, size, input.file), size);
+    rewind(input.file);
+    input.reader = json_open(fileno(input.file));
+    return input;
+}
+
+static void close_input(struct input *input)
+{
+    json_close(input->reader);
+    fclose(input->file);
+}
+
+static void expect_error_in_bytes(const char *bytes, size_t size, const char *error)
+{
+    struct input input = open_bytes(bytes, size);
+    struct scene scene;
+    enum json_outcome outcome;
+    while ((outcome = json_next(input.reader, &scene)) == JSON_SCENE)
+        scene_clear(&scene);
+    assert_int_equal(outcome, JSON_BAD);
+    assert_string_equal(json_error(input.reader), error);
+    assert_int_equal(scene.body_count, 0);
+    close_input(&input);
+}
+
+static void expect_error(const char *text, const char *error)
+{
+    expect_error_in_bytes(text, strlen(text), error);
+}
+
+/* The one scene of the text; to be cleared. */
+static struct scene read_one(const char *text)
+{
+    struct input input = open_bytes(text, strlen(text));
+    struct scene scene, none;
+    enum json_outcome outcome = json_next(input.reader, &scene);
+    if (outcome != JSON_SCENE)
+        print_message("%s\n", json_error(input.reader));
+    assert_int_equal(outcome, JSON_SCENE);
+    assert_int_equal(json_next(input.reader, &none), JSON_END);
+    close_input(&input);
+    return scene;
+}
+
+/* --- What is understood ---------------------------------------------------------------------- */
+
+#define CUBE "\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],[0,0,1]]"
+#define BODY(id) "{\"id\":" #id "," CUBE "}"
+#define SCENE(bodies) "{\"dim\":3,\"bodies\":[" bodies "]}"
+#define SCENE_PAIRS(pairs) "{\"dim\":3,\"bodies\":[" BODY(1) "," BODY(2) "],\"pairs\":" pairs "}"
+
+static void reads_every_field(void **state)
+{
+    struct scene scene = read_one(
+        "{\"pairs\": [[7,1],[1,7],[7,1]], \"bodies\": ["
+        "{\"velocity\": [1,2,3], \"components\": [[1,2,3],[4,5,6],[7,8,-9.5e-1]],"
+        " \"origin\": [0.1,-0,1e308], \"shape\": \"tetrahedron\", \"id\": 1},"
+        "{\"id\": 7, \"shape\": \"face\", \"origin\": [0,0,0], \"components\": [[1,0,0],[0,1,0]]}],"
+        " \"duration\": 2.5, \"dim\": 3}");
+    (void) state;
+    assert_int_equal(scene.dim, 3);
+    assert_true(scene.duration == 2.5);
+    assert_int_equal(scene.body_count, 2);
+    assert_int_equal(scene.body[0].id, 1);
+    assert_int_equal(scene.body[0].body.shape, FMB_TETRAHEDRON);
+    assert_true(scene.body[0].moving);
+    assert_true(scene.body[0].velocity[2] == 3);
+    assert_true(scene.body[0].origin[0] == 0.1 && signbit(scene.body[0].origin[1]));
+    assert_true(scene.body[0].body.component[2][2] == -0.95);
+    assert_int_equal(scene.body[1].body.shape, FMB_FACE);
+    assert_false(scene.body[1].moving);
+    assert_false(scene.all_pairs);
+    assert_int_equal(scene.pair_count, 3);
+    assert_int_equal(scene.pair[0].a, 1);
+    assert_int_equal(scene.pair[1].a, 0);
+    scene_clear(&scene);
+}
+
+static void missing_fields_have_defaults(void **state)
+{
+    struct scene scene = read_one(SCENE(BODY(3) "," BODY(9007199254740991) "," BODY(5)));
+    struct scene_cursor cursor = {0};
+    struct scene_pair pair;
+    static const size_t order[][2] = {{0, 1}, {0, 2}, {1, 2}};
+    (void) state;
+    assert_true(scene.duration == 1);
+    assert_true(scene.all_pairs);
+    assert_int_equal(scene.body[1].id, INT64_C(9007199254740991));
+    assert_int_equal(scene_count_pairs(&scene), 3);
+    for (int i = 0; i < 3; i++) {
+        assert_true(scene_next_pair(&scene, &cursor, &pair));
+        assert_int_equal(pair.a, order[i][0]);
+        assert_int_equal(pair.b, order[i][1]);
+    }
+    assert_false(scene_next_pair(&scene, &cursor, &pair));
+    scene_clear(&scene);
+}
+
+static void empty_lists_are_scenes(void **state)
+{
+    static const char *const texts[] = {SCENE(""), SCENE(BODY(1)), SCENE_PAIRS("[]"),
+                                        "{\"dim\":2,\"bodies\":[],\"pairs\":[]}"};
+    (void) state;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct scene_cursor cursor = {0};
+        struct scene_pair pair;
+        struct scene scene = read_one(texts[i]);
+        assert_int_equal(scene_count_pairs(&scene), 0);
+        assert_false(scene_next_pair(&scene, &cursor, &pair));
+        scene_clear(&scene);
+    }
+}
+
+static void scenes_follow_each_other(void **state)
+{
+    struct input input = open_bytes(SCENE(BODY(1)) SCENE(BODY(2)) "\n\t " SCENE(BODY(3)) "\r\n",
+                                    strlen(SCENE(BODY(1))) * 3 + 5);
+    struct scene scene;
+    (void) state;
+    for (int64_t id = 1; id <= 3; id++) {
+        assert_int_equal(json_next(input.reader, &scene), JSON_SCENE);
+        assert_int_equal(scene.body[0].id, id);
+        scene_clear(&scene);
+    }
+    assert_int_equal(json_next(input.reader, &scene), JSON_END);
+    close_input(&input);
+}
+
+/* The first scene is given while the second one has only begun. */
+static void a_scene_is_given_when_it_is_complete(void **state)
+{
+    int end[2];
+    struct scene scene;
+    static const char text[] = SCENE(BODY(1)) "{\"di";
+    (void) state;
+    assert_int_equal(pipe(end), 0);
+    assert_int_equal(write(end[1], text, sizeof text - 1), sizeof text - 1);
+    struct json_reader *reader = json_open(end[0]);
+    assert_int_equal(json_next(reader, &scene), JSON_SCENE);
+    scene_clear(&scene);
+    close(end[1]);
+    assert_int_equal(json_next(reader, &scene), JSON_BAD);
+    assert_string_equal(json_error(reader),
+                        "scene 2: line 1, column 107: expected a character, "
+                        "found the end of the input");
+    json_close(reader);
+    close(end[0]);
+}
+
+/* --- Numbers --------------------------------------------------------------------------------- */
+
+static double read_number_back(const char *number)
+{
+    char text[1024];
+    snprintf(text, sizeof text,
+             "{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"cuboid\",\"origin\":[%s,0],"
+             "\"components\":[[1,0],[0,1]]}]}",
+             number);
+    struct scene scene = read_one(text);
+    double value = scene.body[0].origin[0];
+    scene_clear(&scene);
+    return value;
+}
+
+/* splitmix64 */
+static uint64_t next_random(uint64_t *state)
+{
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+static void doubles_come_back_bit_for_bit(void **state)
+{
+    uint64_t seed = 1;
+    char text[NUMBER_TEXT_MAX];
+    (void) state;
+    for (int i = 0; i < 20000; i++) {
+        uint64_t bits = next_random(&seed);
+        double value, back;
+        memcpy(&value, &bits, sizeof value);
+        if (!isfinite(value))
+            continue;
+        back = strtod(number_exact(value, text), NULL);
+        assert_memory_equal(&value, &back, sizeof value);
+        if (i % 100 != 0)
+            continue;
+        back = read_number_back(text);
+        assert_memory_equal(&value, &back, sizeof value);
+    }
+}
+
+static void numbers_are_written_short(void **state)
+{
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0, "0"},
+                 {1, "1"},
+                 {-0.5, "-0.5"},
+                 {0.1, "0.1"},
+                 {1e300, "1e+300"},
+                 {0.1 + 0.2, "0.30000000000000004"},
+                 {5e-324, "4.94065645841247e-324"},
+                 {INFINITY, "null"},
+                 {NAN, "null"}};
+    char text[NUMBER_TEXT_MAX];
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_string_equal(number_exact(cases[i].value, text), cases[i].text);
+    assert_string_equal(number_grouped(-1234567, text), "-1,234,567");
+    assert_string_equal(number_grouped(999, text), "999");
+}
+
+/* cJSON cuts numbers at 63 characters. */
+static void long_numbers_are_read_in_full(void **state)
+{
+    char text[512];
+    (void) state;
+    snprintf(text, sizeof text, "0.1%0200d", 1);
+    assert_true(read_number_back(text) == 0.1);
+    snprintf(text, sizeof text, "-0.%0100de100", 25);
+    assert_true(read_number_back(text) == -25);
+    /* Halfway between two doubles, but for the last digit. */
+    assert_true(read_number_back("1.00000000000000011102230246251565404236316680908203125000000000"
+                                 "000000000000000000000000000000001") == 1 + 0x1p-52);
+    snprintf(text, sizeof text, "{\"dim\":2,\"duration\":1%0150d%0170d,\"bodies\":[]}", 0, 0);
+    expect_error(text, "duration: not a finite number in doubles");
+}
+
+/* --- What is refused ------------------------------------------------------------------------- */
+
+static const struct {
+    const char *text, *error;
+} bad_scenes[] = {
+    {"{}", "missing key \"dim\""},
+    {"{\"dim\":3}", "missing key \"bodies\""},
+    {"{\"bodies\":[]}", "missing key \"dim\""},
+    {"{\"dim\":3,\"bodies\":[],\"Pairs\":[]}", "unknown key \"Pairs\""},
+    {"{\"dim\":3,\"bodies\":[],\"dim\":3}", "repeated key \"dim\""},
+    {"{\"dim\":3,\"bodies\":[],\"a\\u001bb\\nc\":[]}", "unknown key \"a?b?c\""},
+    {"{\"dim\":3,\"\xc3\xa4\":1}", "unknown key \"\xc3\xa4\""},
+    {"{\"dim\":3,\"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\":1}",
+     "unknown key \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...\""},
+    {"{\"dim\":4,\"bodies\":[]}", "dim: expected 2 or 3, found 4"},
+    {"{\"dim\":2.5,\"bodies\":[]}", "dim: expected 2 or 3, found 2.5"},
+    {"{\"dim\":\"3\",\"bodies\":[]}", "dim: expected 2 or 3, found a string"},
+    {"{\"dim\":null,\"bodies\":[]}", "dim: expected 2 or 3, found null"},
+    {"{\"dim\":3,\"duration\":-1,\"bodies\":[]}", "duration: a duration is not negative"},
+    {"{\"dim\":3,\"duration\":1e999,\"bodies\":[]}", "duration: not a finite number in doubles"},
+    {"{\"dim\":3,\"duration\":true,\"bodies\":[]}", "duration: expected a number, found a boolean"},
+    {"{\"dim\":3,\"bodies\":{}}", "bodies: expected an array, found an object"},
+    {SCENE("1"), "bodies[0]: expected an object, found a number"},
+    {SCENE("{}"), "bodies[0]: missing key \"id\""},
+    {SCENE(BODY(1) ",{\"id\":2,\"shape\":\"cuboid\",\"origin\":[0,0,0]}"),
+     "bodies[1]: missing key \"components\""},
+    {SCENE("{\"id\":2,\"mass\":1," CUBE "}"), "bodies[0]: unknown key \"mass\""},
+    {SCENE("{\"id\":2,\"id\":2," CUBE "}"), "bodies[0]: repeated key \"id\""},
+    {SCENE("{\"ID\":2," CUBE "}"), "bodies[0]: unknown key \"ID\""},
+    {SCENE(BODY(0)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
+    {SCENE(BODY(-1)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
+    {SCENE(BODY(1.5)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
+    {SCENE(BODY(9007199254740992)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
+    {SCENE(BODY(9007199254740993)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
+    {SCENE(BODY(1e999)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
+    {SCENE(BODY("1")), "bodies[0].id: expected an id, found a string"},
+    {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id: 1 is the id of bodies[0] already"},
+    {SCENE("{\"id\":1,\"shape\":\"sphere\",\"origin\":[0,0,0],\"components\":[]}"),
+     "bodies[0].shape: unknown shape \"sphere\" (there are cuboid, tetrahedron, face)"},
+    {SCENE("{\"id\":1,\"shape\":\"Cuboid\",\"origin\":[0,0,0],\"components\":[]}"),
+     "bodies[0].shape: unknown shape \"Cuboid\" (there are cuboid, tetrahedron, face)"},
+    {SCENE("{\"id\":1,\"shape\":1,\"origin\":[0,0,0],\"components\":[]}"),
+     "bodies[0].shape: expected a string, found a number"},
+    {"{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"face\",\"origin\":[0,0],"
+     "\"components\":[[1,0],[0,1]]}]}",
+     "bodies[0].shape: there is no face in 2D"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0],\"components\":[]}"),
+     "bodies[0].origin: expected 3 numbers, found 2"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":0,\"components\":[]}"),
+     "bodies[0].origin: expected 3 numbers, found a number"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,\"0\",0],\"components\":[]}"),
+     "bodies[0].origin[1]: expected a number, found a string"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,-1e999],\"components\":[]}"),
+     "bodies[0].origin[2]: not a finite number in doubles"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1]]}"),
+     "bodies[0].components: expected 3 vectors, found 2"},
+    {SCENE(BODY(1) "," BODY(2) "," BODY(3) ",{\"id\":4,\"shape\":\"cuboid\",\"origin\":[0,0,0],"
+                                           "\"components\":[[1,0,0],[0,1],[0,0,1]]}"),
+     "bodies[3].components[1]: expected 3 numbers, found 2"},
+    {SCENE("{\"id\":1,\"shape\":\"face\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],"
+           "[0,0,1]]}"),
+     "bodies[0].components: expected 2 vectors, found 3"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],"
+           "[0,0,{}]]}"),
+     "bodies[0].components[2][2]: expected a number, found an object"},
+    {SCENE("{\"id\":1,\"velocity\":[0,0]," CUBE "}"),
+     "bodies[0].velocity: expected 3 numbers, found 2"},
+    {SCENE("{\"id\":1,\"velocity\":null," CUBE "}"),
+     "bodies[0].velocity: expected 3 numbers, found null"},
+    {SCENE_PAIRS("{}"), "pairs: expected an array, found an object"},
+    {SCENE_PAIRS("[1,2]"), "pairs[0]: expected 2 ids, found a number"},
+    {SCENE_PAIRS("[[1,2],[1]]"), "pairs[1]: expected 2 ids, found 1"},
+    {SCENE_PAIRS("[[1,2,1]]"), "pairs[0]: expected 2 ids, found 3"},
+    {SCENE_PAIRS("[[1,2],[2,3]]"), "pairs[1][1]: no body has the id 3"},
+    {SCENE_PAIRS("[[1,2],[1,1]]"), "pairs[1]: a body is no pair with itself (1)"},
+    {SCENE_PAIRS("[[1,2.5]]"), "pairs[0][1]: an id is an integer from 1 to 2^53-1"},
+    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]: expected an id, found a string"},
+};
+
+static void bad_scenes_are_refused(void **state)
+{
+    (void) state;
+    for (size_t i = 0; i < sizeof bad_scenes / sizeof *bad_scenes; i++)
+        expect_error(bad_scenes[i].text, bad_scenes[i].error);
+}
+
+/* Among them what cJSON lets pass. */
+static const struct {
+    const char *text, *error;
+} bad_texts[] = {
+    {"", "the input is empty: expected a scene"},
+    {" \n\t\n", "the input is empty: expected a scene"},
+    {"[]", "line 1, column 1: expected an object, '{', found '['"},
+    {"null", "line 1, column 1: expected an object, '{', found 'n'"},
+    {"\xef\xbb\xbf{}", "line 1, column 1: expected an object, '{', found byte 0xef"},
+    {"{", "line 1, column 2: expected a key in quotes or '}', found the end of the input"},
+    {"{\"dim\": 3,\n \"bodies\": [}", "line 2, column 13: expected a value or ']', found '}'"},
+    {"{\"dim\": 3,\n \"bodies\": []",
+     "line 2, column 14: expected ',' or '}', found the end of the "
+     "input"},
+    {"{\"dim\" 3}", "line 1, column 8: expected ':', found '3'"},
+    {"{\"dim\": 3,}", "line 1, column 11: expected a key in quotes, found '}'"},
+    {"{\"\xc3\xa4\": [1,]}", "line 1, column 10: expected a value, found ']'"},
+    {"{\"dim\": [1 2]}", "line 1, column 12: expected ',' or ']', found '2'"},
+    {"{\"dim\": 01}", "line 1, column 10: expected ',' or '}', found '1'"},
+    {"{\"dim\": +1}", "line 1, column 9: expected a value, found '+'"},
+    {"{\"dim\": .5}", "line 1, column 9: expected a value, found '.'"},
+    {"{\"dim\": 1.}", "line 1, column 11: expected a digit, found '}'"},
+    {"{\"dim\": -}", "line 1, column 10: expected a digit, found '}'"},
+    {"{\"dim\": -.5}", "line 1, column 10: expected a digit, found '.'"},
+    {"{\"dim\": 1e}", "line 1, column 11: expected a digit or a sign, found '}'"},
+    {"{\"dim\": 1e+}", "line 1, column 12: expected a digit, found '}'"},
+    {"{\"dim\": 0x3}", "line 1, column 10: expected ',' or '}', found 'x'"},
+    {"{\"dim\": NaN}", "line 1, column 9: expected a value, found 'N'"},
+    {"{\"dim\": nul}", "line 1, column 12: expected true, false or null, found '}'"},
+    {"{\"dim\": 'a'}", "line 1, column 9: expected a value, found '''"},
+    {"{dim: 3}", "line 1, column 2: expected a key in quotes or '}', found 'd'"},
+    {"{\"d\tim\": 3}", "line 1, column 4: expected a character, found byte 0x09"},
+    {"{\"dim\\x\": 3}", "line 1, column 7: expected an escape of JSON, found 'x'"},
+    {"{\"\\u12g4\": 3}", "line 1, column 7: expected a hexadecimal digit, found 'g'"},
+    {"{\"dim\\u0000\": 3}", "line 1, column 11: \\u0000 in a string"},
+    {"{\"\\ud800\": 3}", "a \\u escape that is no character, or no memory"},
+    {"// no\n{}", "line 1, column 1: expected an object, '{', found '/'"},
+    {SCENE(BODY(1)) "\n]", "scene 2: line 2, column 1: expected an object, '{', found ']'"},
+    {SCENE(BODY(1)) "," SCENE(BODY(1)),
+     "scene 2: line 1, column 103: expected an object, '{', found ','"},
+    {SCENE(BODY(1)) SCENE("{}"), "scene 2: bodies[0]: missing key \"id\""},
+};
+
+static void bad_texts_are_refused(void **state)
+{
+    (void) state;
+    for (size_t i = 0; i < sizeof bad_texts / sizeof *bad_texts; i++)
+        expect_error(bad_texts[i].text, bad_texts[i].error);
+}
+
+static void a_byte_of_zero_is_no_space(void **state)
+{
+    (void) state;
+    expect_error_in_bytes("{\"dim\":\0 3}", 11,
+                          "line 1, column 8: expected a value, found byte 0x00");
+}
+
+static void deep_nesting_is_refused_early(void **state)
+{
+    enum { SIZE = 1 << 20 };
+    static char text[SIZE];
+    (void) state;
+    memset(text, '[', sizeof text);
+    memcpy(text, "{\"dim\":", 7);
+    expect_error_in_bytes(text, sizeof text, "line 1, column 39: nested more than 32 deep");
+}
+
+static void a_directory_is_no_input(void **state)
+{
+    struct scene scene;
+    FILE *file = fopen(".", "r");
+    (void) state;
+    assert_non_null(file);
+    struct json_reader *reader = json_open(fileno(file));
+    assert_int_equal(json_next(reader, &scene), JSON_FAILED);
+    assert_string_equal(json_error(reader), "Is a directory");
+    json_close(reader);
+    fclose(file);
+}
+
+/* Whatever is cut off, nothing is read beyond the end, and something is said. */
+static void every_beginning_of_a_scene_is_refused(void **state)
+{
+    static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
+    (void) state;
+    for (size_t size = 0; size < sizeof text - 1; size++) {
+        struct input input = open_bytes(text, size);
+        struct scene scene;
+        assert_int_equal(json_next(input.reader, &scene), JSON_BAD);
+        assert_true(json_error(input.reader)[0] != '\0');
+        close_input(&input);
+    }
+}
+
+/* Any byte changed: a scene, or a refusal. */
+static void changed_bytes_do_no_harm(void **state)
+{
+    static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
+    uint64_t seed = 2;
+    (void) state;
+    for (int i = 0; i < 5000; i++) {
+        char changed[sizeof text];
+        struct scene scene;
+        memcpy(changed, text, sizeof text);
+        for (uint64_t k = next_random(&seed) % 3; k < 3; k++)
+            changed[next_random(&seed) % (sizeof text - 1)] = (char) next_random(&seed);
+        struct input input = open_bytes(changed, sizeof text - 1);
+        if (json_next(input.reader, &scene) == JSON_SCENE)
+            scene_clear(&scene);
+        close_input(&input);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_every_field),
+        cmocka_unit_test(missing_fields_have_defaults),
+        cmocka_unit_test(empty_lists_are_scenes),
+        cmocka_unit_test(scenes_follow_each_other),
+        cmocka_unit_test(a_scene_is_given_when_it_is_complete),
+        cmocka_unit_test(doubles_come_back_bit_for_bit),
+        cmocka_unit_test(numbers_are_written_short),
+        cmocka_unit_test(long_numbers_are_read_in_full),
+        cmocka_unit_test(bad_scenes_are_refused),
+        cmocka_unit_test(bad_texts_are_refused),
+        cmocka_unit_test(a_byte_of_zero_is_no_space),
+        cmocka_unit_test(deep_nesting_is_refused_early),
+        cmocka_unit_test(a_directory_is_no_input),
+        cmocka_unit_test(every_beginning_of_a_scene_is_refused),
+        cmocka_unit_test(changed_bytes_do_no_harm),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

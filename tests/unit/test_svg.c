@@ -1,0 +1,288 @@
+/* The picture: whole, well-formed, and of ordinary numbers, whatever the scene. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "svg.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- Scenes ---------------------------------------------------------------------------------- */
+
+static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+static void make_body(struct scene_body *out, int64_t id, int dim, enum fmb_shape shape,
+                      double size, double at)
+{
+    double components[9];
+    size_t count = (size_t) (fmb_component_count(dim, (int) shape) * dim);
+    for (size_t i = 0; i < count; i++)
+        components[i] = size * (dim == 3 ? unit[i] : unit[i % 2 + i / 2 * 3]);
+    memset(out, 0, sizeof *out);
+    out->id = id;
+    assert_int_equal(fmb_body_make(dim, (int) shape, components, count, &out->body), FMB_OK);
+    for (int axis = 0; axis < dim; axis++)
+        out->origin[axis] = at;
+}
+
+/* Two bodies, one of which moves. */
+static void make_scene(struct scene *out, struct scene_body body[2], int dim, double size,
+                       double at, double velocity)
+{
+    make_body(&body[0], 31, dim, FMB_CUBOID, size, at);
+    make_body(&body[1], 47, dim, FMB_TETRAHEDRON, size, at / 2);
+    body[1].moving = true;
+    for (int axis = 0; axis < dim; axis++)
+        body[1].velocity[axis] = velocity;
+    *out =
+        (struct scene){.dim = dim, .duration = 1, .body_count = 2, .body = body, .all_pairs = true};
+}
+
+static void take(struct svg *svg, const struct scene *scene)
+{
+    struct report *report = svg_report(svg);
+    struct scene_cursor cursor = {0};
+    struct outcome outcome = {.error = NULL};
+    report->begin(report, scene);
+    while (scene_next_pair(scene, &cursor, &outcome.pair)) {
+        struct fmb_pair pair = scene_fmb_pair(scene, outcome.pair);
+        assert_int_equal(fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &outcome.answer),
+                         FMB_OK);
+        report->pair(report, scene, &outcome);
+    }
+    report->end(report, scene);
+}
+
+/* The file as a text; to be freed. */
+static char *draw(const struct svg *svg)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    svg_write(svg, out);
+    assert_int_equal(fclose(out), 0);
+    return text;
+}
+
+static char *draw_one(const struct scene *scene)
+{
+    struct svg *svg = svg_open();
+    take(svg, scene);
+    char *text = draw(svg);
+    svg_close(svg);
+    return text;
+}
+
+/* --- Checks ---------------------------------------------------------------------------------- */
+
+static int count(const char *text, const char *part)
+{
+    int found = 0;
+    for (const char *at = strstr(text, part); at; at = strstr(at + 1, part))
+        found++;
+    return found;
+}
+
+/* Each element that is opened is closed, in order. */
+static void expect_balanced(const char *text)
+{
+    enum { DEPTH_MAX = 16 };
+    const char *open[DEPTH_MAX];
+    int depth = 0;
+    for (const char *at = strchr(text, '<'); at; at = strchr(at + 1, '<')) {
+        const char *end = strchr(at, '>');
+        assert_non_null(end);
+        if (at[1] == '/') {
+            assert_true(depth > 0);
+            size_t length = (size_t) (end - at - 2);
+            assert_memory_equal(open[--depth], at + 2, length);
+            assert_true(strchr(" >", open[depth][length]) != NULL);
+        } else if (end[-1] != '/') {
+            assert_true(depth < DEPTH_MAX);
+            open[depth++] = at + 1;
+        }
+    }
+    assert_int_equal(depth, 0);
+}
+
+/* All coordinates of paths are numbers, and lie on the sheet. */
+static void expect_paths_on_sheet(const char *text)
+{
+    double width = strtod(strstr(text, " width=\"") + 8, NULL);
+    double height = strtod(strstr(text, " height=\"") + 9, NULL);
+    for (const char *at = strstr(text, " d=\"M"); at; at = strstr(at + 1, " d=\"M")) {
+        const char *number = at + 4;
+        while (*number == 'M' || *number == 'L') {
+            char *end;
+            double x = strtod(number + 1, &end), y = strtod(end, &end);
+            assert_true(x >= 0 && x <= width && y >= 0 && y <= height);
+            number = end;
+        }
+        assert_non_null(strchr("Zh\"", *number));
+    }
+}
+
+static void expect_good_picture(const char *text)
+{
+    assert_memory_equal(text, "<svg ", 5);
+    assert_null(strstr(text, "nan"));
+    assert_null(strstr(text, "inf"));
+    expect_balanced(text);
+    expect_paths_on_sheet(text);
+}
+
+/* --- Tests ----------------------------------------------------------------------------------- */
+
+static void shows_frames_ids_motion_and_boxes(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scene_body body[2];
+        struct scene scene;
+        make_scene(&scene, body, dim, 2, 1, 0.25);
+        char *text = draw_one(&scene);
+        expect_good_picture(text);
+        assert_int_equal(count(text, ">31</text>"), 1);
+        assert_int_equal(count(text, ">47</text>"), 1);
+        assert_int_equal(count(text, "<title>31 and 47: overlapping, 0 to 1 s</title>"), 1);
+        assert_int_equal(count(text, "<path class=\"arrow\"") + count(text, "class=\"arrow\" m"),
+                         2);
+        assert_true(count(text, "class=\"ghost\"") > 1);
+        assert_int_equal(count(text, "1 overlapping, 0 touching, 0 separated"), 1);
+        free(text);
+    }
+}
+
+static void any_numbers_can_be_drawn(void **state)
+{
+    static const double numbers[] = {0,     5e-324, 1e-310, 1e-300, 1,       1e6,   1e15,
+                                     1e150, 1e300,  1e308,  -1e308, DBL_MAX, -1e15, -DBL_MAX};
+    enum { COUNT = sizeof numbers / sizeof *numbers };
+    (void) state;
+    for (int i = 0; i < 2 * COUNT * COUNT * COUNT; i++) {
+        struct scene_body body[2];
+        struct scene scene;
+        make_scene(&scene, body, 2 + i % 2, numbers[i / 2 % COUNT], numbers[i / 2 / COUNT % COUNT],
+                   numbers[i / 2 / COUNT / COUNT]);
+        char *text = draw_one(&scene);
+        expect_good_picture(text);
+        free(text);
+    }
+}
+
+static void infinite_boxes_and_sums_can_be_drawn(void **state)
+{
+    struct scene_body body[2];
+    struct scene scene;
+    struct outcome outcome = {
+        .pair = {0, 1},
+        .answer = {.verdict = FMB_OVERLAPPING,
+                   .has_box = true,
+                   .box = {{-INFINITY, 0, -INFINITY}, {INFINITY, INFINITY, 0}}}};
+    (void) state;
+    make_scene(&scene, body, 3, DBL_MAX, DBL_MAX, -DBL_MAX);
+    body[0].body.component[0][0] = body[0].body.component[1][0] = -DBL_MAX;
+    scene.duration = 1e308;
+    struct svg *svg = svg_open();
+    struct report *report = svg_report(svg);
+    report->begin(report, &scene);
+    report->pair(report, &scene, &outcome);
+    report->end(report, &scene);
+    char *text = draw(svg);
+    expect_good_picture(text);
+    free(text);
+    svg_close(svg);
+}
+
+static void empty_scenes_and_no_scene_can_be_drawn(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scene scene = {.dim = dim, .duration = 1, .all_pairs = true};
+        char *text = draw_one(&scene);
+        expect_good_picture(text);
+        free(text);
+    }
+    struct svg *svg = svg_open();
+    char *text = draw(svg);
+    expect_good_picture(text);
+    free(text);
+    svg_close(svg);
+}
+
+static void many_scenes_and_bodies_are_cut(void **state)
+{
+    enum { SCENES = SVG_PANELS_MAX + 3, BODIES = SVG_BODIES_MAX + 5 };
+    static struct scene_body body[BODIES];
+    struct scene scene = {.dim = 2, .duration = 1, .body = body, .body_count = 1};
+    struct svg *svg = svg_open();
+    (void) state;
+    for (int i = 0; i < BODIES; i++)
+        make_body(&body[i], i + 1, 2, FMB_CUBOID, 1, i);
+    for (int i = 0; i < SCENES; i++)
+        take(svg, &scene);
+    char *text = draw(svg);
+    expect_good_picture(text);
+    assert_int_equal(count(text, ">scene "), SVG_PANELS_MAX);
+    assert_non_null(strstr(text, "3 more scenes not drawn"));
+    free(text);
+    svg_close(svg);
+
+    scene.body_count = BODIES;
+    text = draw_one(&scene);
+    expect_good_picture(text);
+    assert_non_null(strstr(text, "5 more bodies"));
+    free(text);
+}
+
+/* Steps of time are seen from one place: what rests is drawn at the same place on its panel. */
+static void steps_share_a_view(void **state)
+{
+    struct scene_body body[2];
+    struct scene scene;
+    char card[64], still[200];
+    struct svg *svg = svg_open();
+    (void) state;
+    make_scene(&scene, body, 2, 1, 0, 0);
+    take(svg, &scene);
+    body[1].origin[0] = 8;
+    take(svg, &scene);
+    char *text = draw(svg);
+    double x[2], y[2];
+    const char *at = text;
+    for (int i = 0; i < 2; i++) {
+        at = strstr(at, "<rect class=\"card\"");
+        assert_non_null(at);
+        assert_int_equal(sscanf(at, "<rect class=\"card\" x=\"%63[0-9.]", card), 1);
+        const char *path = strstr(at, "class=\"flat\"");
+        assert_non_null(path);
+        while (strncmp(path, "<path d=\"", 9) != 0)
+            path--;
+        assert_int_equal(sscanf(path, "<path d=\"M%lf %lf%199[^Z]", &x[i], &y[i], still), 3);
+        x[i] -= strtod(card, NULL);
+        at++;
+    }
+    assert_true(fabs(x[0] - x[1]) < 0.11 && fabs(y[0] - y[1]) < 0.11);
+    free(text);
+    svg_close(svg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shows_frames_ids_motion_and_boxes),
+        cmocka_unit_test(any_numbers_can_be_drawn),
+        cmocka_unit_test(infinite_boxes_and_sums_can_be_drawn),
+        cmocka_unit_test(empty_scenes_and_no_scene_can_be_drawn),
+        cmocka_unit_test(many_scenes_and_bodies_are_cut),
+        cmocka_unit_test(steps_share_a_view),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
