@@ -30,19 +30,6 @@ void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name
     snprintf(out, BUS_CHANNEL_MAX, "%s%s", prefix, name);
 }
 
-/* The largest receive buffer that the system grants, up to what is wanted: asking for more
- * makes LCM warn. */
-static long receive_buffer_limit(void)
-{
-    long limit = 0;
-    FILE *file = fopen("/proc/sys/net/core/rmem_max", "r");
-    if (!file || fscanf(file, "%ld", &limit) != 1 || limit <= 0)
-        limit = 212992; /* the usual one */
-    if (file)
-        fclose(file);
-    return limit < RECEIVE_BUFFER_WANTED ? limit : RECEIVE_BUFFER_WANTED;
-}
-
 /* What SO_RCVBUF reads back as after this was asked for: what LCM's own socket gets. */
 static long receive_buffer_granted(long wanted)
 {
@@ -55,6 +42,13 @@ static long receive_buffer_granted(long wanted)
               getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size) == 0;
     close(fd);
     return ok ? granted : 0;
+}
+
+/* The largest receive buffer to ask for, up to what is wanted: asking for more than the system
+ * grants makes LCM warn. Linux grants twice what is asked, within its limit. */
+static long receive_buffer_to_ask(void)
+{
+    return receive_buffer_granted(RECEIVE_BUFFER_WANTED) / 2;
 }
 
 /* udpm://[GROUP[:PORT]][?options]. False: another provider, or a group that is no address,
@@ -119,7 +113,7 @@ lcm_t *bus_open(const char *program, const char *url, long *receive_buffer)
         url = getenv("LCM_DEFAULT_URL");
     if (!url || !*url) {
         snprintf(usual, sizeof usual, "udpm://%s:%d?ttl=0&recv_buf_size=%ld", DEFAULT_GROUP,
-                 DEFAULT_PORT, receive_buffer_limit());
+                 DEFAULT_PORT, receive_buffer_to_ask());
         url = usual;
     }
     if (receive_buffer)

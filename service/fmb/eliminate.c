@@ -11,7 +11,8 @@
  *
  * Where it differs from Listing 1, whose slips these are: the row of a tetrahedron counts in
  * all its variables; bounds that meet mean touching, not 'no intersection'; and rows know
- * whether they are strict, which tells touching from overlapping. All comparisons are with 0
+ * whether they are strict, which tells touching from overlapping. Inequality 11 is asked of
+ * all rows that are given, not of a's alone. All comparisons are with 0
  * or with each other: there is no epsilon.
  *
  * Accuracy: none is promised. Rounding decides near contact. */
@@ -22,7 +23,7 @@
 #include <math.h>
 
 /* Bounds of the number of rows, for any signs of the coefficients. Of n rows with p positive,
- * q negative and z zero coefficients p q + z are left; for p + q + z = n >= 3 this is largest
+ * q negative and z zero coefficients p q + z are left; for p + q + z = n >= 4 this is largest
  * where z is as small as it can be, and p and q differ by at most one. Two cuboids in 3D have
  * the most rows of all pairs of shapes at each step:
  *
@@ -41,19 +42,23 @@ struct elimination {
     int begin[ROWS_VARS_MAX + 1]; /* rows [begin[k], begin[k + 1]): variables before k are gone */
     struct row rows[TOTAL_ROWS_MAX];
     bool no_interior; /* some strict row holds only as an equation */
+    bool overflow;    /* some row is no longer finite */
 };
 
 /* Inequality 11: all variables lie in [0,1], so a row's left side is at least the sum of its
- * negative coefficients. False if the row cannot hold. */
+ * negative coefficients. False if the row cannot hold, or has overflowed. */
 static bool check_row(struct elimination *system, const struct row *row, int first)
 {
-    double least = 0;
-    for (int i = first; i < system->vars; i++)
+    double least = 0, sum = row->y;
+    for (int i = first; i < system->vars; i++) {
+        sum += row->a[i];
         if (row->a[i] < 0)
             least += row->a[i];
+    }
+    system->overflow = !isfinite(sum);
     if (row->strict && row->y == least)
         system->no_interior = true;
-    return !(row->y < least);
+    return !system->overflow && !(row->y < least);
 }
 
 static struct row *next_row(struct elimination *system, int step)
@@ -110,21 +115,21 @@ static bool eliminate_all(struct elimination *system)
 }
 
 /* Bounds of the last variable, from the rows that are left. */
-static struct contact_times bound_last(const struct elimination *system)
+static struct bounds bound_last(const struct elimination *system)
 {
-    struct contact_times times = {.strict = {-INFINITY, INFINITY},
-                                  .window = {-INFINITY, INFINITY},
-                                  .no_interior = system->no_interior};
+    struct bounds bounds = {.strict = {-INFINITY, INFINITY},
+                            .closed = {-INFINITY, INFINITY},
+                            .no_interior = system->no_interior};
     int last = system->vars - 1;
     for (int r = system->begin[last]; r < system->begin[last + 1]; r++) {
         const struct row *row = &system->rows[r];
-        double *bound = row->strict ? times.strict : times.window;
+        double *bound = row->strict ? bounds.strict : bounds.closed;
         if (row->a[last] > 0)
             bound[1] = fmin(bound[1], row->y / row->a[last]);
         else if (row->a[last] < 0)
             bound[0] = fmax(bound[0], row->y / row->a[last]);
     }
-    return times;
+    return bounds;
 }
 
 /* range[k] := bounds of variable k, from those of the later ones. */
@@ -144,8 +149,9 @@ static void bound_variable(const struct elimination *system, int k, double range
     }
 }
 
-/* The box of { origin of b + tau displacement of b + sum x_i c_i } over the ranges. False if an
- * end is no number: infinities met on the way. */
+/* The box of { origin of b + tau displacement of b + sum x_i c_i } over the ranges. Rounding may
+ * have turned a box of no width inside out: the ends are put in order. False if one is no
+ * number: infinities met on the way. */
 static bool answer_box(const struct fmb_pair *pair, const double range[][2],
                        struct fmb_answer *answer)
 {
@@ -159,8 +165,8 @@ static bool answer_box(const struct fmb_pair *pair, const double range[][2],
             low += c * range[i][c < 0];
             high += c * range[i][c >= 0];
         }
-        answer->box[0][axis] = low + 0.0; /* + 0.0: never -0 */
-        answer->box[1][axis] = high + 0.0;
+        answer->box[0][axis] = fmin(low, high) + 0.0; /* + 0.0: never -0 */
+        answer->box[1][axis] = fmax(low, high) + 0.0;
         if (isnan(low) || isnan(high))
             return false;
     }
@@ -170,30 +176,30 @@ static bool answer_box(const struct fmb_pair *pair, const double range[][2],
 enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
-    if (!pair->a.body->inverted || !pair->b.body->inverted)
+    if (!pair->a.body->inverted || pair->b.body->flat)
         return FMB_CANNOT_DECIDE;
     bool moving = pair->a.moving || pair->b.moving;
     struct elimination system;
     system.vars = pair->a.body->dim + moving;
     system.begin[0] = 0;
-    system.no_interior = false;
+    system.no_interior = system.overflow = false;
     if (!rows_of_pair(pair, system.rows, &system.begin[1]))
         return FMB_CANNOT_DECIDE;
 
     answer->verdict = FMB_SEPARATED;
     if (!eliminate_all(&system))
-        return FMB_OK;
-    struct contact_times times = bound_last(&system);
-    answer->verdict = contact_times_verdict(&times);
+        return system.overflow ? FMB_CANNOT_DECIDE : FMB_OK;
+    struct bounds bounds = bound_last(&system);
+    answer->verdict = bounds_verdict(&bounds);
     if (answer->verdict == FMB_SEPARATED)
         return FMB_OK;
     if (moving)
-        contact_times_answer(&times, pair->duration, answer);
+        bounds_answer_contact(&bounds, pair->duration, answer);
     if (want & FMB_WANT_BOX) {
         double range[ROWS_VARS_MAX][2];
         int last = system.vars - 1;
-        range[last][0] = fmax(times.strict[0], times.window[0]);
-        range[last][1] = fmin(times.strict[1], times.window[1]);
+        range[last][0] = fmax(bounds.strict[0], bounds.closed[0]);
+        range[last][1] = fmin(bounds.strict[1], bounds.closed[1]);
         for (int k = last - 1; k >= 0; k--)
             bound_variable(&system, k, range);
         if (!answer_box(pair, (const double(*)[2]) range, answer))

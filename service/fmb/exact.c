@@ -1,18 +1,6 @@
 #include "exact.h"
 #include "integer.h"
 
-static long lower(long unit, long exponent)
-{
-    return exponent < unit ? exponent : unit;
-}
-
-static long vector_unit(long unit, const double *v, int dim)
-{
-    for (int axis = 0; axis < dim; axis++)
-        unit = lower(unit, dyadic_of(v[axis]).exponent);
-    return unit;
-}
-
 /* The largest power of two of which every length of the pair is a multiple. */
 static long pair_unit(const struct fmb_pair *pair)
 {
@@ -21,13 +9,13 @@ static long pair_unit(const struct fmb_pair *pair)
     for (int f = 0; f < 2; f++) {
         const struct fmb_frame *frame = frames[f];
         int dim = frame->body->dim;
-        unit = vector_unit(unit, frame->origin, dim);
+        unit = integer_vector_unit(unit, frame->origin, dim);
         for (int i = 0; i < frame->body->count; i++)
-            unit = vector_unit(unit, frame->body->component[i], dim);
-        long speed = frame->moving ? vector_unit(INTEGER_NO_EXPONENT, frame->velocity, dim)
+            unit = integer_vector_unit(unit, frame->body->component[i], dim);
+        long speed = frame->moving ? integer_vector_unit(INTEGER_NO_EXPONENT, frame->velocity, dim)
                                    : INTEGER_NO_EXPONENT;
         if (speed < INTEGER_NO_EXPONENT)
-            unit = lower(unit, speed + dyadic_of(pair->duration).exponent);
+            unit = integer_lower_unit(unit, speed + dyadic_of(pair->duration).exponent);
     }
     return unit;
 }
@@ -111,37 +99,6 @@ void exact_pair_clear(struct exact_pair *pair)
     pair_each(pair, mpz_clear);
 }
 
-int exact_determinant_sign(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX])
-{
-    long unit = INTEGER_NO_EXPONENT;
-    for (int i = 0; i < dim; i++)
-        unit = vector_unit(unit, component[i], dim);
-
-    mpz_t c[3][3], normal[3], scratch;
-    mpz_init(scratch);
-    for (int i = 0; i < 3; i++) {
-        mpz_init(normal[i]);
-        for (int axis = 0; axis < 3; axis++) {
-            mpz_init(c[i][axis]);
-            if (i < dim && axis < dim)
-                integer_set(c[i][axis], dyadic_of(component[i][axis]), unit);
-        }
-    }
-    if (dim == 2)
-        mpz_set_ui(c[2][2], 1);
-    integer_cross(normal, c[0], c[1], scratch);
-    integer_dot(scratch, normal, c[2]);
-    int sign = mpz_sgn(scratch);
-
-    mpz_clear(scratch);
-    for (int i = 0; i < 3; i++) {
-        mpz_clear(normal[i]);
-        for (int axis = 0; axis < 3; axis++)
-            mpz_clear(c[i][axis]);
-    }
-    return sign;
-}
-
 struct offset_walk {
     struct exact_pair *pair;
     struct span span;
@@ -180,10 +137,12 @@ static void answer_contact(struct offset_walk *walk, double duration, struct fmb
     answer->contact[1] = seconds(span_upper(&walk->span), duration, ROUND_UP, scratch);
 }
 
-/* Bound on the work, for any input: at most 44 slabs of degree 3 in the input's numbers, each
- * compared with a few ratios of that degree; the box takes less than 1,000 points of the same
- * degree (exact_box.c). A number of the pair has less than 2,100 bits, a displacement less
- * than 4,250 (v T may lie anywhere from 2^-2148 to 2^2048). */
+/* Bound on the work, for any input: at most 44 slabs, whose normals are of degree 2 and bounds
+ * of degree 3 in the numbers of the pair, and less than 1,000 points for the box
+ * (exact_box.c), each compared with a few others by products of degree 7. All numbers of a
+ * pair share a unit of at least 2^-2148, the lowest of v T; a coordinate lies below 2^1024 and
+ * so has at most 3,172 bits, and a displacement, whose factor T is common to all, no more than
+ * a few beside it. */
 enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
 {
     struct exact_pair exact;

@@ -24,7 +24,7 @@ enum {
 
 /* A frame at tau = 0. Integers, times 2^unit of the pair; vectors are [axis]. */
 struct exact_frame {
-    int count;             /* components: 2 or 3, or 0 for a point */
+    int count;             /* components: 2 or 3 */
     bool simplex;          /* tetrahedron or face; else cuboid */
     mpz_t component[3][3]; /* [component][axis] */
     mpz_t origin[3];
@@ -49,9 +49,11 @@ struct exact_pair {
 void exact_pair_init(struct exact_pair *out, const struct fmb_pair *pair);
 void exact_pair_clear(struct exact_pair *pair);
 
-/* The sign of the determinant of the components of a body of three (3D) or two (2D), exactly.
- * The components are finite. */
-int exact_determinant_sign(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX]);
+/* The inverse of the components of a body that has dim of them, [axis][component] as in
+ * fmb_body; every entry is the largest double that is not above the exact one, infinite beyond
+ * the doubles. False if there is none: the body is exactly flat. The components are finite. */
+bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
+                   double inverse[FMB_DIM_MAX][FMB_DIM_MAX]);
 
 /* One slab: { w : low <= normal . w <= high }. A slab that pins has low = high: it belongs to
  * the affine hull of the polytope, every point of which lies on it. */

@@ -1,22 +1,26 @@
 /* The exact box of the intersection of two frames, over the window.
  *
  * In space and time (tau, p) the intersection is a convex polytope Q; its box is that of its
- * vertices. At a vertex, a face of A of dimension i and a face of B of dimension j (0 a
- * vertex, 1 an edge, ...) cross in that one point alone.
+ * vertices. Q is the image of the polytope P of all (tau, x, y), parameters x of A and y of B
+ * that at tau give the same point, and each vertex of Q is the image of a vertex of P. At a
+ * vertex of P let x lie inside a face of A's cube or simplex of dimension i, and y inside one
+ * of B's of dimension j (0 a vertex, 1 an edge, ...). No direction leads both ways out of a
+ * vertex, so the map (dx, dy, dtau) -> sum dx c_A - sum dy c_B - dtau drift into space is one to
+ * one on these faces, with dtau = 0 at an end of the window. Hence
  *
- *   Inside the window the swept faces, of dimensions i + 1 and j + 1, meet in one point of
- *   space and time, which is of dimension 4, so i + j <= 2: a vertex of one frame against
- *   whatever part of the other (i = 0 or j = 0), or an edge against an edge.
- *   At an end of the window (and in a static pair) the faces themselves cross in one point of
- *   space, of dimension 3, so i + j <= 3: one of them is a vertex or an edge.
+ *   inside the window i + j + 1 <= 3: a vertex of one frame against whatever part of the other
+ *   (i = 0 or j = 0), or an edge against an edge, whose directions and the drift are
+ *   independent;
+ *   at an end of the window (and in a static pair) i + j <= 3: one of the two is a vertex or an
+ *   edge.
  *
- * So Q is the hull of
+ * This holds for flat frames too, whose vertices and edges are meant as the images of those of
+ * the parameters. So Q is the hull of
  *   1. the ends of each edge of A clipped to B, and of B to A, at both ends of the window;
  *   2. the ends of the path of each vertex of A clipped to B, and of B to A (relative motion);
  *   3. the points and times where an edge of A crosses an edge of B.
  * All of these lie in Q, and every vertex of Q is among them: in 1 and 2 since a vertex of Q is
- * no inner point of a segment in Q. Where a frame is flat its edges are images of the edges
- * of the cuboid or simplex of parameters, and the same holds for those. */
+ * no inner point of a segment in Q. */
 #include "exact.h"
 #include "integer.h"
 
@@ -227,7 +231,8 @@ static void include_paths(struct boxing *boxing, int f)
  *
  *     tau = -r . (e x f) / det,   s = r . (f x drift) / det,   u = r . (e x drift) / det.
  *
- * Where det is 0 the two swept edges are parallel or never cross in one point: no vertex. */
+ * Where det is 0 the directions and the drift are dependent: no vertex that is not of kind 1 or 2.
+ */
 struct crossing {
     mpz_t ef[3], fd[3], ed[3]; /* e x f, f x drift, e x drift; signs turned so that det > 0 */
     mpz_t det;
@@ -352,10 +357,8 @@ static void include_crossings(struct boxing *boxing)
 
 static void include_all(struct boxing *boxing)
 {
-    for (int f = 0; f < 2; f++) {
+    for (int f = 0; f < 2; f++)
         boxing->vertices[f] = set_vertices(&boxing->pair->frame[f], boxing->vertex[f]);
-        boxing->clipper[f].slabs = 0;
-    }
     for (int f = 0; f < 2; f++)
         set_clipper(boxing, f);
     for (int f = 0; f < 2; f++) {

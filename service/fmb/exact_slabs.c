@@ -3,9 +3,20 @@
  * This is the article's elimination done on paper. Fourier-Motzkin eliminates all parameters
  * x from the rows of the pair; what is left are inequalities in the offset of the frames
  * alone, and those that are not redundant are the facets of the Minkowski difference
- * D = A - B. A facet is the sum of a face of A and a face of -B that span a plane between
- * them, and such a plane contains two directions of edges: two of one face of A, two of one
- * face of B, or one of A and one of B. So, where D is solid, its facets are among the planes
+ * D = A - B.
+ *
+ * D is the image of the parameters of both frames, a product of cubes and simplices, under a
+ * linear map. A linear map takes relative interiors to relative interiors (Rockafellar,
+ * Convex Analysis, theorem 6.6): the frames overlap just if the offset lies in the relative
+ * interior of D, flat or not.
+ *
+ * A facet of D is the sum of a face of A and a face of -B that span a plane between them. A
+ * face of a frame, flat or not, is the image of a face of its cube or simplex, and so is
+ * spanned by images of that face's edges, which are directions of edges of the frame; where it
+ * spans a plane, that plane is spanned by two components (cuboid) or by a triangle (simplex).
+ * The plane of the facet contains two independent directions
+ * of edges: two of one face of A, two of one face of B, or one of A and one of B. So, where D
+ * is solid, its facets are among the planes
  *
  *     of the faces of A, of the faces of B, of each edge of A with each edge of B:
  *     3 + 3 + 9 (cuboids), 3 + 4 + 18 (mixed), 4 + 4 + 36 (tetrahedra)
@@ -15,12 +26,11 @@
  * normal n gives both bounds at once: n . D = [min n.A - max n.B, max n.A - min n.B].
  *
  * Where D is flat it has a rank r < 3: it pins the offset to its affine hull, and within that
- *   r = 2: its facets are its edges. The projection along an axis that is not parallel to the
- *          plane of D is one to one, and there the normal of the edge (e0, e1) is (-e1, e0);
- *   r = 1: it is a segment, with its ends along any axis in which it has length;
- *   r = 0: it is a point.
- * A normal of these kinds is not constant on D, and so a point is in the relative interior of
- * D just if it lies strictly between the bounds of all slabs that do not pin. */
+ *   r = 2: its facets are its edges, each along an edge of A or B. The projection along an axis
+ * that is not parallel to the plane of D is one to one, and there the normal of the edge (e0, e1)
+ * is (-e1, e0); r = 1: it is a segment, with its ends along any axis in which it has length; r = 0:
+ * it is a point. A normal of these kinds is not constant on D, and so a point is in the relative
+ * interior of D just if it lies strictly between the bounds of all slabs that do not pin. */
 #include "exact.h"
 #include "integer.h"
 
@@ -57,6 +67,7 @@ static void extent(const struct exact_frame *frame, mpz_t normal[3], mpz_t low, 
     mpz_set_ui(low, 0);
     mpz_set_ui(high, 0);
     for (int i = 0; i < frame->count; i++) {
+        /* C17 knows no way from mpz_t * to const mpz_t *; nothing is written. */
         integer_dot(scratch, normal, (mpz_t *) frame->component[i]);
         add_component(frame, low, high, scratch);
     }
@@ -87,8 +98,6 @@ static bool visit_plane(struct walk *walk, mpz_t u[3], mpz_t v[3])
 /* Edges of a simplex of three components: c0, c1, c2, c1 - c0, c2 - c0, c2 - c1. */
 static bool visit_faces(struct walk *walk, const struct exact_frame *frame)
 {
-    if (frame->count < 2)
-        return true;
     if (!visit_plane(walk, frame->edge[0], frame->edge[1]))
         return false;
     if (frame->count == 2)

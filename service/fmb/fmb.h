@@ -14,7 +14,7 @@
  * included) their relative interiors have a point in common; they TOUCH when the closed
  * sets have a point in common, but never so; else they are SEPARATED. So a plate through a
  * box overlaps it, coplanar plates that share area overlap, faces that share an edge touch.
- * The verdict does not depend on the order of the pair.
+ * The verdict does not depend on the order of the pair (that of the inexact method fmb may).
  *
  * Use:
  *
@@ -26,11 +26,16 @@
  *     fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &answer);
  *     // answer.verdict is FMB_TOUCHING, the box is [1,1] x [0,1] x [0,1]
  *
+ * Link with -lfmb -lgmp -lm (pkg-config fmb).
+ *
  * All functions are reentrant and keep nothing between calls. No input is written to.
- * Only the exact method allocates memory (through GMP), and frees it before it returns.
- * The answers are the same bits on every machine: doubles are IEEE 754 binary64, rounded to
- * nearest; the library is compiled without contraction. The caller must not change the
- * rounding mode or flush subnormals. */
+ * Memory is allocated by the exact method, and by fmb_body_make() for a body that is nearly
+ * flat: through GMP, which ends the process if there is none; it is freed before they return.
+ * The stack holds up to 100 kB at a time.
+ *
+ * The answers are the same bits on every machine with 64-bit longs whose doubles are IEEE 754
+ * binary64, rounded to nearest; the library is compiled without contraction. The caller must
+ * not change the rounding mode or flush subnormals. */
 #ifndef FMB_H
 #define FMB_H
 
@@ -95,8 +100,9 @@ struct fmb_body {
     bool flat;     /* exactly zero volume (every face is): no inverse */
     bool inverted; /* the inverse is there: not flat, and all its entries finite */
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
-    /* [axis][component], rounded: x_i = sum_axis inverse[axis][i] p[axis] for p = sum x_i c_i.
-     * The article's invComp (Listing 1, PROJ). Zero where not inverted. */
+    /* [axis][component], rounded, of a nearly flat body too: x_i = sum_axis inverse[axis][i]
+     * p[axis] for p = sum x_i c_i. The article's invComp (Listing 1, PROJ). Zero where not
+     * inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
 };
 
@@ -119,7 +125,7 @@ struct fmb_frame {
  * has to be legal. */
 struct fmb_pair {
     struct fmb_frame a, b;
-    double duration; /* T, seconds, >= 0; the article's equations have T = 1 */
+    double duration; /* T, seconds, >= 0; 0 is a window too. The article's equations have T = 1 */
 };
 
 /* On output: OK, or DIMENSIONS_DIFFER, NOT_FINITE, BAD_DURATION. Every function that takes a
@@ -128,10 +134,12 @@ enum fmb_status fmb_pair_check(const struct fmb_pair *pair);
 
 enum fmb_want { FMB_WANT_BOX = 1 };
 
-/* The answer. Intervals and boxes of the exact method are the smallest of doubles that
- * contain the exact ones (which meets the design's limits: 1e-12 T, 1e-12 of the largest
- * coordinate). An end of a box beyond the largest double is infinite, with its sign. No
- * number is -0. Those of fmb and sat are rounded as they come. */
+/* The answer. The box is that of the intersection, in world coordinates; of a moving pair, of the
+ * union of its intersections over the window.
+ *
+ * Intervals and boxes of the exact method are the smallest of doubles that contain the exact
+ * ones: no end is farther off than the next double. An end of a box beyond the largest double is
+ * infinite, with its sign. No number is -0. Those of fmb and sat are rounded as they come. */
 struct fmb_answer {
     enum fmb_verdict verdict;
     bool has_contact;           /* moving pair, touching or overlapping */
@@ -155,13 +163,16 @@ struct fmb_method {
 /*   exact  right for every finite input, flat frames included (GMP)
  *   fmb    the article's elimination in doubles: verdict, interval, the article's loose box
  *   sat    the separating axis theorem in doubles: verdict and interval, no box
- * fmb and sat are inexact and cannot decide flat frames. */
+ * fmb and sat are inexact and cannot decide flat frames.
+ *
+ * exact takes microseconds for numbers of like size, and a bounded time for any (exact.c says
+ * which): milliseconds where the exponents go from one end of the doubles to the other. */
 const struct fmb_method *fmb_method_default(void);
 const struct fmb_method *fmb_method_at(size_t index);          /* NULL past the last */
 const struct fmb_method *fmb_method_by_name(const char *name); /* NULL: none of that name */
 const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default; NULL: none */
 
-/* On input: want is a sum of FMB_WANT_ values.
+/* On input: method is not NULL; want is a sum of FMB_WANT_ values.
  * On output: OK and *answer; or a status and *answer unspecified: those of fmb_pair_check(),
  * UNKNOWN_WANT, CANNOT_DECIDE. */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pair *pair,

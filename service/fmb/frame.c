@@ -55,7 +55,7 @@ static void scale_components(const struct fmb_body *body, double scaled[3][3], i
  * only take factors away. Underflow, in scaling and in products, adds less than 2^-1000 in
  * all. A computed permanent is within the same factor of the exact one. So a determinant
  * beyond 2^-48 permanent + 2^-1000 has the right sign; 2^-48 = 32 u leaves room for the
- * rounding of this bound. Anything else is decided exactly. */
+ * rounding of this bound. Anything else is inverted exactly. */
 static bool surely_solid(const double c[3][3], double determinant)
 {
     double permanent = 0;
@@ -68,8 +68,9 @@ static bool surely_solid(const double c[3][3], double determinant)
 }
 
 /* With the components scaled by 2^-e, k_0 = c_1 x c_2 and so on around:
- * x_i = k_i . p / (c_0 . k_0) 2^-e. */
-static void invert(struct fmb_body *body)
+ * x_i = k_i . p / (c_2 . k_2) 2^-e. False, and nothing done, unless the body is surely solid: a
+ * determinant that rounding may have eaten is not to be divided by. */
+static bool invert_in_doubles(struct fmb_body *body)
 {
     double c[3][3], k[3][3];
     int exponent;
@@ -77,16 +78,21 @@ static void invert(struct fmb_body *body)
     for (int i = 0; i < 3; i++)
         cross(c[(i + 1) % 3], c[(i + 2) % 3], k[i]);
     double determinant = c[2][0] * k[2][0] + c[2][1] * k[2][1] + c[2][2] * k[2][2];
-
-    body->flat =
-        !surely_solid((const double(*)[3]) c, determinant) &&
-        exact_determinant_sign(body->dim, (const double(*)[FMB_DIM_MAX]) body->component) == 0;
-    body->inverted = !body->flat;
+    if (!surely_solid((const double(*)[3]) c, determinant))
+        return false;
     for (int axis = 0; axis < body->dim; axis++)
-        for (int i = 0; i < body->dim; i++) {
+        for (int i = 0; i < body->dim; i++)
             body->inverse[axis][i] = ldexp(k[i][axis] / determinant, -exponent);
-            body->inverted = body->inverted && isfinite(body->inverse[axis][i]);
-        }
+    return true;
+}
+
+static void invert(struct fmb_body *body)
+{
+    body->flat =
+        body->count < body->dim ||
+        (!invert_in_doubles(body) &&
+         !exact_inverse(body->dim, (const double(*)[FMB_DIM_MAX]) body->component, body->inverse));
+    body->inverted = !body->flat && all_finite(body->inverse[0], FMB_COMPONENTS_MAX);
     if (!body->inverted)
         memset(body->inverse, 0, sizeof body->inverse);
 }
@@ -110,10 +116,7 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
     out->count = vectors;
     for (int i = 0; i < vectors; i++)
         memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
-    if (vectors == dim)
-        invert(out);
-    else
-        out->flat = true;
+    invert(out);
     return FMB_OK;
 }
 

@@ -1,5 +1,5 @@
 /* The two methods in plain doubles, there to be compared with: never wrong is not their aim.
- * Both say CANNOT_DECIDE of flat frames, and where a number leaves the range of doubles. */
+ * Both say CANNOT_DECIDE of flat frames, and where numbers overflow. */
 #ifndef FMB_INEXACT_H
 #define FMB_INEXACT_H
 
@@ -12,20 +12,30 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
 /* The article's comparator, the separating axis theorem (sat.c). No box. */
 enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);
 
-/* Times in windows (tau = t / T) at which two moving frames are in contact, as inequalities
- * come in one by one. Strict: of the interiors; such bounds are open. */
-struct contact_times {
-    double strict[2]; /* first and last, from strict inequalities */
-    double window[2]; /* from the others */
-    bool no_interior; /* a strict inequality holds only as an equation */
+/* Frame b as a sees it. Axes beyond the dimension hold 0. */
+struct relative_motion {
+    bool moving;
+    double offset[FMB_DIM_MAX]; /* of b's origin from a's, at t = 0 */
+    double drift[FMB_DIM_MAX];  /* of b against a, over the whole window */
 };
 
-/* The verdict that the bounds mean: SEPARATED where they leave no time; OVERLAPPING where
- * they leave one strictly within all strict bounds. */
-enum fmb_verdict contact_times_verdict(const struct contact_times *times);
+/* False if a number overflowed. */
+bool relative_motion_of(const struct fmb_pair *pair, struct relative_motion *out);
 
-/* For a moving pair in contact: answer->contact, in seconds. */
-void contact_times_answer(const struct contact_times *times, double duration,
-                          struct fmb_answer *answer);
+/* Bounds of one variable, from inequalities that come in one by one: of the time of a moving
+ * pair in windows (tau = t / T), or of the last parameter of a static one. [0] lower, [1]
+ * upper. */
+struct bounds {
+    double strict[2]; /* from strict inequalities, which the interiors obey: open */
+    double closed[2]; /* from the others: those of the window */
+    bool no_interior; /* some strict inequality holds only as an equation */
+};
+
+/* SEPARATED where the bounds leave nothing; OVERLAPPING where they leave something strictly
+ * within all that are strict. */
+enum fmb_verdict bounds_verdict(const struct bounds *bounds);
+
+/* For a moving pair in contact: answer->contact, in seconds, from bounds of tau. */
+void bounds_answer_contact(const struct bounds *bounds, double duration, struct fmb_answer *answer);
 
 #endif

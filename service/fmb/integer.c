@@ -29,6 +29,18 @@ struct dyadic dyadic_of(double x)
     return (struct dyadic){bits >> 63 ? -odd : odd, (biased ? biased : 1) - 1075 + trailing};
 }
 
+long integer_lower_unit(long unit, long exponent)
+{
+    return exponent < unit ? exponent : unit;
+}
+
+long integer_vector_unit(long unit, const double *v, int dim)
+{
+    for (int axis = 0; axis < dim; axis++)
+        unit = integer_lower_unit(unit, dyadic_of(v[axis]).exponent);
+    return unit;
+}
+
 void integer_set(mpz_t out, struct dyadic x, long unit)
 {
     mpz_set_si(out, x.mantissa);

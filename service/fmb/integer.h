@@ -20,6 +20,12 @@ struct dyadic {
 /* x must be finite. */
 struct dyadic dyadic_of(double x);
 
+/* The smaller of two units, or exponents. */
+long integer_lower_unit(long unit, long exponent);
+
+/* The largest unit, at most the given one, of which all dim numbers are multiples. */
+long integer_vector_unit(long unit, const double *v, int dim);
+
 /* out := x / 2^unit. unit <= x.exponent. */
 void integer_set(mpz_t out, struct dyadic x, long unit);
 

@@ -1,5 +1,7 @@
 #include "rows.h"
 
+#include "inexact.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -24,23 +26,14 @@ static void project_vector(const struct fmb_body *onto, const double *v, double 
     }
 }
 
-static double velocity_of(const struct fmb_frame *frame, int axis)
-{
-    return frame->moving ? frame->velocity[axis] : 0;
-}
-
-static void project(const struct fmb_pair *pair, struct projection *out)
+static void project(const struct fmb_pair *pair, const struct relative_motion *motion,
+                    struct projection *out)
 {
     const struct fmb_body *a = pair->a.body;
-    double offset[FMB_DIM_MAX] = {0}, drift[FMB_DIM_MAX] = {0};
     out->dim = a->dim;
-    out->moving = pair->a.moving || pair->b.moving;
-    for (int axis = 0; axis < a->dim; axis++) {
-        offset[axis] = pair->b.origin[axis] - pair->a.origin[axis];
-        drift[axis] = (velocity_of(&pair->b, axis) - velocity_of(&pair->a, axis)) * pair->duration;
-    }
-    project_vector(a, offset, out->origin);
-    project_vector(a, drift, out->displacement);
+    out->moving = motion->moving;
+    project_vector(a, motion->offset, out->origin);
+    project_vector(a, motion->drift, out->displacement);
     for (int i = 0; i < a->dim; i++)
         project_vector(a, pair->b.body->component[i], out->component[i]);
 }
@@ -104,8 +97,11 @@ static bool rows_are_finite(const struct builder *builder)
 
 bool rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count)
 {
+    struct relative_motion motion;
     struct projection b;
-    project(pair, &b);
+    if (!relative_motion_of(pair, &motion))
+        return false;
+    project(pair, &motion, &b);
     struct builder builder = {.rows = rows};
     add_rows_of_a(&builder, &b, pair->a.body->shape == FMB_CUBOID);
     add_rows_of_b(&builder, b.dim, pair->b.body->shape == FMB_CUBOID);

@@ -20,8 +20,8 @@ struct row {
 
 /* The unknowns x are the parameters of frame b; a's bounds are written in them, by projecting
  * b into a's coordinates with a's inverse (Listing 1, PROJ). tau = t / T.
- * On input: a solid pair, both inverted. On output: rows[0..*count), in the order of
- * Listing 1; false if a number left the range of doubles. */
+ * On input: neither frame is flat, a is inverted. On output: rows[0..*count), in the order
+ * of Listing 1; false if a number overflowed. */
 bool rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count);
 
 #endif

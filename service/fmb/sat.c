@@ -22,10 +22,8 @@ struct edges {
 
 struct sat {
     const struct fmb_body *a, *b;
-    bool moving;
-    double offset[3]; /* of b's origin from a's, at tau = 0 */
-    double drift[3];  /* of b against a, over the window */
-    struct contact_times times;
+    struct relative_motion motion;
+    struct bounds bounds; /* of the time */
 };
 
 static void edges_of(const struct fmb_body *body, struct edges *out)
@@ -71,18 +69,18 @@ static bool meet_along(struct sat *sat, const double normal[3])
     extent(sat->a, normal, of_a);
     extent(sat->b, normal, of_b);
     double low = of_a[0] - of_b[1], high = of_a[1] - of_b[0];
-    double start = dot(normal, sat->offset);
-    double slope = sat->moving ? dot(normal, sat->drift) : 0;
+    double start = dot(normal, sat->motion.offset);
+    double slope = sat->motion.moving ? dot(normal, sat->motion.drift) : 0;
     if (slope == 0) {
         if (start == low || start == high)
-            sat->times.no_interior = true;
+            sat->bounds.no_interior = true;
         return !(start < low || start > high);
     }
     double enter = ((slope > 0 ? low : high) - start) / slope;
     double leave = ((slope > 0 ? high : low) - start) / slope;
-    sat->times.strict[0] = fmax(sat->times.strict[0], enter);
-    sat->times.strict[1] = fmin(sat->times.strict[1], leave);
-    return contact_times_verdict(&sat->times) != FMB_SEPARATED;
+    sat->bounds.strict[0] = fmax(sat->bounds.strict[0], enter);
+    sat->bounds.strict[1] = fmin(sat->bounds.strict[1], leave);
+    return bounds_verdict(&sat->bounds) != FMB_SEPARATED;
 }
 
 static bool meet_across(struct sat *sat, const double u[3], const double v[3])
@@ -127,32 +125,31 @@ static bool meet(struct sat *sat)
     return true;
 }
 
-static double velocity_of(const struct fmb_frame *frame, int axis)
+static double largest_of(double largest, const double v[3])
 {
-    return frame->moving ? frame->velocity[axis] : 0;
+    return fmax(largest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
+}
+
+/* Products of three lengths, differences and sums of a few of them, must neither overflow nor all
+ * vanish: the largest length of the pair has to be within 2^-300 and 2^300. */
+static bool in_range(const struct sat *sat)
+{
+    double largest = largest_of(largest_of(0, sat->motion.offset), sat->motion.drift);
+    for (int i = 0; i < 3; i++)
+        largest = largest_of(largest_of(largest, sat->a->component[i]), sat->b->component[i]);
+    return largest >= 0x1p-300 && largest <= 0x1p300;
 }
 
 enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
 {
     (void) want;
-    if (pair->a.body->flat || pair->b.body->flat)
-        return FMB_CANNOT_DECIDE;
     struct sat sat = {.a = pair->a.body,
                       .b = pair->b.body,
-                      .moving = pair->a.moving || pair->b.moving,
-                      .times = {.strict = {-INFINITY, INFINITY}, .window = {0, 1}}};
-    bool finite = true;
-    for (int axis = 0; axis < sat.a->dim; axis++) {
-        sat.offset[axis] = pair->b.origin[axis] - pair->a.origin[axis];
-        sat.drift[axis] =
-            (velocity_of(&pair->b, axis) - velocity_of(&pair->a, axis)) * pair->duration;
-        finite = finite && isfinite(sat.offset[axis]) && isfinite(sat.drift[axis]);
-    }
-    if (!finite)
+                      .bounds = {.strict = {-INFINITY, INFINITY}, .closed = {0, 1}}};
+    if (sat.a->flat || sat.b->flat || !relative_motion_of(pair, &sat.motion) || !in_range(&sat))
         return FMB_CANNOT_DECIDE;
-
-    answer->verdict = meet(&sat) ? contact_times_verdict(&sat.times) : FMB_SEPARATED;
-    if (answer->verdict != FMB_SEPARATED && sat.moving)
-        contact_times_answer(&sat.times, pair->duration, answer);
+    answer->verdict = meet(&sat) ? bounds_verdict(&sat.bounds) : FMB_SEPARATED;
+    if (answer->verdict != FMB_SEPARATED && sat.motion.moving)
+        bounds_answer_contact(&sat.bounds, pair->duration, answer);
     return FMB_OK;
 }

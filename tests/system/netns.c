@@ -6,7 +6,9 @@
  *
  * Where namespaces are forbidden: in place, if there is a route for multicast, on a random
  * port and with ttl=0 (LCM_DEFAULT_URL): then no message leaves the machine, though the group
- * memberships (IGMP) do, which is said. Without a route: exit code 77, nothing is run. */
+ * memberships (IGMP) do, which is said. Without a route: exit code 77, nothing is run.
+ *
+ * FMB_NETNS tells the command which it is: "own" or "in place". */
 #define _GNU_SOURCE
 #include <arpa/inet.h>
 #include <errno.h>
@@ -94,7 +96,11 @@ static void use_random_port(void)
     getrandom(&number, sizeof number, 0);
     snprintf(url, sizeof url, "udpm://" GROUP ":%d?ttl=0", 20000 + number % 40000);
     setenv("LCM_DEFAULT_URL", url, 1);
-    fprintf(stderr, "netns: no namespace (%s); running in place on %s\n", strerror(errno), url);
+    setenv("FMB_NETNS", "in place", 1);
+    fprintf(stderr,
+            "netns: no network namespace to be had; running in place on %s: messages stay on this "
+            "machine, group memberships (IGMP) do not\n",
+            url);
 }
 
 int main(int argc, char **argv)
@@ -109,10 +115,11 @@ int main(int argc, char **argv)
             return SKIPPED;
         }
         unsetenv("LCM_DEFAULT_URL");
+        setenv("FMB_NETNS", "own", 1);
     } else if (has_route()) {
         use_random_port();
     } else {
-        fprintf(stderr, "netns: no namespace (%s) and no route for multicast\n", strerror(errno));
+        fputs("netns: no network namespace to be had, and no route for multicast\n", stderr);
         return SKIPPED;
     }
     execvp(argv[1], argv + 1);

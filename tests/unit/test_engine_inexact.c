@@ -216,8 +216,33 @@ static void assert_sane(const struct question *question, const struct fmb_answer
         !(0 <= contact[0] && contact[0] <= contact[1] && contact[1] <= question->duration))
         referee_fail(question, "interval out of the window");
     for (int axis = 0; answer->has_box && axis < FMB_DIM_MAX; axis++)
-        if (isnan(answer->box[0][axis]) || isnan(answer->box[1][axis]))
+        if (!(answer->box[0][axis] <= answer->box[1][axis]))
             referee_fail(question, "a box that is no box");
+}
+
+/* Numbers that over- or underflow on the way are not to be taken for an answer: bodies ten sizes
+ * apart are separated at any size, or it is said that the method cannot tell. */
+static void say_so_of_numbers_out_of_range(void **state)
+{
+    (void) state;
+    const double sizes[] = {1, 1e50, 1e-50, 1e110, 1e-110, 1e200, 1e-200, 1e306, 1e-300, 5e-324};
+    for (size_t s = 0; s < COUNT(sizes); s++)
+        for (int shape = FMB_CUBOID; shape <= FMB_TETRAHEDRON; shape++)
+            for (size_t i = 0; i < COUNT(inexact); i++) {
+                struct question question = {{.dim = 3, .shape = (enum fmb_shape) shape}};
+                for (int k = 0; k < 3; k++)
+                    question.a.component[k][k] = sizes[s];
+                question.b = question.a;
+                question.b.origin[0] = 10 * sizes[s];
+                struct ready ready;
+                struct fmb_answer answer;
+                referee_ready(&question, &ready);
+                enum fmb_status status = ask(inexact[i], &ready.pair, &answer);
+                if (fabs(log10(sizes[s])) < 60)
+                    assert_int_equal(status, FMB_OK);
+                if (status != FMB_CANNOT_DECIDE)
+                    assert_int_equal(answer.verdict, FMB_SEPARATED);
+            }
 }
 
 static void harmless_on_any_input(void **state)
@@ -253,6 +278,7 @@ int main(void)
         cmocka_unit_test(agree_on_ordinary_pairs),
         cmocka_unit_test(unit_cubes_that_share_a_face_touch),
         cmocka_unit_test(say_so_of_flat_frames),
+        cmocka_unit_test(say_so_of_numbers_out_of_range),
         cmocka_unit_test(harmless_on_any_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -114,10 +114,9 @@ static void add_product(mpq_t sum, int sign, const double *factor, int count)
 }
 
 /* Leibniz: the sum over the permutations of the axes. */
-static bool is_flat(int dim, const double *number)
+static void determinant(int dim, const double *number, mpq_t sum)
 {
-    mpq_t sum;
-    mpq_init(sum);
+    mpq_set_ui(sum, 0, 1);
     if (dim == 2) {
         add_product(sum, +1, (double[]){number[0], number[3]}, 2);
         add_product(sum, -1, (double[]){number[1], number[2]}, 2);
@@ -127,6 +126,13 @@ static bool is_flat(int dim, const double *number)
         add_product(sum, +1, (double[]){number[i], number[3 + j], number[6 + k]}, 3);
         add_product(sum, -1, (double[]){number[i], number[3 + k], number[6 + j]}, 3);
     }
+}
+
+static bool is_flat(int dim, const double *number)
+{
+    mpq_t sum;
+    mpq_init(sum);
+    determinant(dim, number, sum);
     bool flat = mpq_sgn(sum) == 0;
     mpq_clear(sum);
     return flat;
@@ -281,6 +287,58 @@ static void inverse_is_accurate(void **state)
                 if (i >= dim || j >= dim)
                     assert_true(body.inverse[i][j] == 0);
     }
+}
+
+/* The cofactor of number [component][axis], over the determinant: an entry of the inverse. */
+static double exact_entry(int dim, const double *number, int component, int axis)
+{
+    mpq_t cofactor, whole;
+    mpq_inits(cofactor, whole, NULL);
+    determinant(dim, number, whole);
+    if (dim == 2) {
+        double other = number[2 * (1 - component) + 1 - axis];
+        add_product(cofactor, component == axis ? 1 : -1, &other, 1);
+    } else {
+        int p = (component + 1) % 3, q = (component + 2) % 3;
+        int j = (axis + 1) % 3, k = (axis + 2) % 3;
+        add_product(cofactor, +1, (double[]){number[3 * p + j], number[3 * q + k]}, 2);
+        add_product(cofactor, -1, (double[]){number[3 * p + k], number[3 * q + j]}, 2);
+    }
+    mpq_div(cofactor, cofactor, whole);
+    double entry = mpq_get_d(cofactor);
+    mpq_clears(cofactor, whole, NULL);
+    return entry;
+}
+
+/* Whatever the rounding of the determinant does: the inverse keeps its sign and its size. */
+static void inverse_of_nearly_flat_bodies(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long checked = 0;
+    draw_begin(&draw, "inverse_of_nearly_flat_bodies");
+    for (long n = draw_sample(40000); n > 0; n--) {
+        double number[9], largest = 0, worst = 0;
+        const int dim = draw_int(&draw, 2, 3);
+        const double p = draw_uniform(&draw, -2, 2), q = draw_uniform(&draw, -2, 2);
+        for (int i = 0; i < (dim - 1) * dim; i++)
+            number[i] = draw_uniform(&draw, -1, 1);
+        for (int axis = 0; axis < dim; axis++)
+            number[(dim - 1) * dim + axis] =
+                p * number[axis] + (dim == 3 ? q * number[3 + axis] : 0);
+        struct fmb_body body = make(dim, FMB_CUBOID, number);
+        if (!body.inverted)
+            continue;
+        for (int i = 0; i < dim; i++)
+            for (int axis = 0; axis < dim; axis++) {
+                double exact = exact_entry(dim, number, i, axis);
+                largest = fmax(largest, fabs(exact));
+                worst = fmax(worst, fabs(body.inverse[axis][i] - exact));
+            }
+        assert_true(worst < 0.25 * largest);
+        checked++;
+    }
+    assert_true(checked > 100);
 }
 
 static void inverse_of_the_unit_is_exact(void **state)
@@ -487,6 +545,7 @@ int main(void)
         cmocka_unit_test(faces_are_flat),
         cmocka_unit_test(flatness_is_exact),
         cmocka_unit_test(inverse_is_accurate),
+        cmocka_unit_test(inverse_of_nearly_flat_bodies),
         cmocka_unit_test(inverse_of_the_unit_is_exact),
         cmocka_unit_test(bodies_without_inverse),
         cmocka_unit_test(pairs_that_are_refused),
