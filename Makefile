@@ -4,7 +4,7 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Others: all, test-fast, install, headers, format, clean. MODE=release|debug|asan.
-# CC, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
+# CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
 VERSION := 0.1.0
 MODE ?= release
@@ -12,10 +12,12 @@ ifeq ($(origin CC),default)
 CC := gcc
 endif
 CFLAGS ?=
+CPPFLAGS ?=
 LDFLAGS ?=
 PREFIX ?= /usr/local
 DESTDIR ?=
 INSTALL ?= install
+OBJCOPY ?= objcopy
 
 # What the default mode builds lies in build/, what another mode or compiler does beside it.
 compiler := $(notdir $(firstword $(CC)))
@@ -36,8 +38,8 @@ mode_link_asan := -fsanitize=address,undefined
 # -ffp-contract=off: the same bits on every machine.
 flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -g \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
-	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(CFLAGS)
-link_flags := $(mode_link_$(MODE)) $(LDFLAGS)
+	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(CPPFLAGS) $(CFLAGS)
+link_flags := $(mode_link_$(MODE)) $(CFLAGS) $(LDFLAGS)
 compile = $(CC) $(flags) -MMD -MP -c $< -o $@
 
 # ---- The parts, and who may see whom: an arrow in the wrong direction fails to build ----
@@ -57,10 +59,13 @@ test_helpers := $(B)/poke
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(helpers)
 
+# One object that shows the names of fmb.h alone, so that no program's own names meet ours.
 $(B)/libfmb.a: $(lib_objects)
 	@mkdir -p $(@D)
+	$(CC) -r -nostdlib -o $(O)/libfmb.o $^
+	$(OBJCOPY) --wildcard --keep-global-symbol='fmb_*' $(O)/libfmb.o
 	rm -f $@
-	$(AR) rcs $@ $^
+	$(AR) rcs $@ $(O)/libfmb.o
 
 $(B)/fmbd: $(O)/service/main.o $(server_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
@@ -103,11 +108,12 @@ $(foreach m,$(message_names),$(GEN)/fmb_msgs_$(m).c $(GEN)/fmb_msgs_$(m).h) &: \
 	@mkdir -p $(GEN)
 	lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
 
-# Changes when the flags do, and then everything is built again.
-settings := $(CC) $(flags) $(link_flags)
+# Changes when the flags or the lists of files do, and then everything is built again.
+settings := $(CC) $(flags) $(link_flags) $(lib_objects) $(client_objects)
 $(O)/settings: Makefile FORCE
 	@mkdir -p $(@D)
-	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ || echo '$(subst ','\'',$(settings))' > $@
+	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ && [ $@ -nt Makefile ] || \
+		echo '$(subst ','\'',$(settings))' > $@
 .PHONY: FORCE
 
 # ---- Tests ----------------------------------------------------------------------------------
@@ -149,6 +155,13 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 .PHONY: tests test test-fast check
 tests: all $(test_helpers) $(unit_tests)
 
+# The script builds what it tests: release, and asan with gcc and with clang.
+ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
+ifneq ($(variant),release)
+$(error 'make test' chooses modes and compilers itself: leave out MODE and CC)
+endif
+endif
+
 test check:
 	tests/run.sh
 
@@ -176,14 +189,14 @@ demo: all
 
 .PHONY: install
 install: all
-	$(INSTALL) -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig \
-		$(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/share/fmb/lcmtypes
-	$(INSTALL) $(programs) $(DESTDIR)$(PREFIX)/bin
-	$(INSTALL) -m 644 $(B)/libfmb.a $(DESTDIR)$(PREFIX)/lib
-	$(INSTALL) -m 644 service/fmb/fmb.h $(DESTDIR)$(PREFIX)/include
-	$(INSTALL) -m 644 $(message_names:%=msgs/%.lcm) $(DESTDIR)$(PREFIX)/share/fmb/lcmtypes
+	$(INSTALL) -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/lib/pkgconfig" \
+		"$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
+	$(INSTALL) $(programs) "$(DESTDIR)$(PREFIX)/bin"
+	$(INSTALL) -m 644 $(B)/libfmb.a "$(DESTDIR)$(PREFIX)/lib"
+	$(INSTALL) -m 644 service/fmb/fmb.h "$(DESTDIR)$(PREFIX)/include"
+	$(INSTALL) -m 644 $(message_names:%=msgs/%.lcm) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' service/fmb/fmb.pc.in \
-		> $(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb.pc
+		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb.pc"
 
 .PHONY: clean
 clean:

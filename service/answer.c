@@ -13,24 +13,20 @@ struct checking {
     const char *side; /* "a", "b", or NULL for the query itself */
 };
 
-/* Says what is wrong and where; always false. */
-static bool refuse(struct checking *checking, enum fmb_status status, const char *field, int index,
+/* Says what is wrong and where; always false. reason NULL: the text of the status. */
+static bool refuse(struct checking *checking, enum fmb_status status, const char *field,
                    const char *reason)
 {
-    char place[48] = "";
-    if (index >= 0)
-        snprintf(place, sizeof place, "[%d]", index);
     checking->result->status = status;
-    snprintf(checking->result->detail, sizeof checking->result->detail, "%s%s%s%s: %s",
-             checking->side ? checking->side : "", checking->side ? "." : "", field, place,
+    snprintf(checking->result->detail, sizeof checking->result->detail, "%s%s%s: %s",
+             checking->side ? checking->side : "", checking->side ? "." : "", field,
              reason ? reason : fmb_status_text(status));
     return false;
 }
 
 static bool check_id(struct checking *checking, const char *field, int64_t id)
 {
-    return (id >= 0 && id <= QUERY_ID_MAX) ||
-           refuse(checking, FMB_BAD_ID, field, -1, "not from 0 to 2^53 - 1");
+    return query_id_ok(id) || refuse(checking, FMB_BAD_ID, field, "not from 0 to 2^53 - 1");
 }
 
 static bool check_count(struct checking *checking, const char *field, int expected,
@@ -41,15 +37,18 @@ static bool check_count(struct checking *checking, const char *field, int expect
     char reason[64];
     snprintf(reason, sizeof reason, "expected %d numbers, found %d", expected,
              (int) numbers->count);
-    return refuse(checking, FMB_WRONG_COUNT, field, -1, reason);
+    return refuse(checking, FMB_WRONG_COUNT, field, reason);
 }
 
 static bool check_finite(struct checking *checking, const char *field,
                          const struct query_numbers *numbers)
 {
     for (int i = 0; i < numbers->count; i++)
-        if (!isfinite(numbers->number[i]))
-            return refuse(checking, FMB_NOT_FINITE, field, i, NULL);
+        if (!isfinite(numbers->number[i])) {
+            char place[32];
+            snprintf(place, sizeof place, "%s[%d]", field, i);
+            return refuse(checking, FMB_NOT_FINITE, place, NULL);
+        }
     return true;
 }
 
@@ -63,10 +62,10 @@ static bool check_frame(struct checking *checking, const struct query_frame *fra
     if (!check_id(checking, "body_id", frame->body_id) || !check_id(checking, "key", frame->key))
         return false;
     if (!fmb_shape_name(frame->shape))
-        return refuse(checking, FMB_UNKNOWN_SHAPE, "shape", -1, NULL);
+        return refuse(checking, FMB_UNKNOWN_SHAPE, "shape", NULL);
     int vectors = fmb_component_count(frame->dim, frame->shape);
     if (vectors == 0)
-        return refuse(checking, FMB_WRONG_DIMENSION, "dim", -1,
+        return refuse(checking, FMB_WRONG_DIMENSION, "dim",
                       frame->dim == 2 ? "a face is in 3D" : "neither 2 nor 3");
     return check_count(checking, "origin", frame->dim, &frame->origin) &&
            (by_key(frame) ||
@@ -84,11 +83,11 @@ static bool check_query(struct checking *checking, const struct pair_query *quer
         !check_id(checking, "sequence_number", query->sequence_number))
         return false;
     if (!(query->duration >= 0 && isfinite(query->duration)))
-        return refuse(checking, FMB_BAD_DURATION, "duration", -1, "negative or not finite");
+        return refuse(checking, FMB_BAD_DURATION, "duration", "negative or not finite");
     if (!fmb_method_by_number(query->method))
-        return refuse(checking, FMB_UNKNOWN_METHOD, "method", -1, NULL);
+        return refuse(checking, FMB_UNKNOWN_METHOD, "method", NULL);
     if (query->want & ~QUERY_WANT_BOX)
-        return refuse(checking, FMB_UNKNOWN_WANT, "want", -1, NULL);
+        return refuse(checking, FMB_UNKNOWN_WANT, "want", NULL);
     for (int f = 0; f < 2; f++) {
         checking->side = side_name[f];
         if (!check_frame(checking, &query->frame[f]))
@@ -96,30 +95,43 @@ static bool check_query(struct checking *checking, const struct pair_query *quer
     }
     checking->side = NULL;
     if (query->frame[0].dim != query->frame[1].dim)
-        return refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", -1, NULL);
+        return refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
     return true;
 }
 
-/* Puts the components of a checked frame into *body: from its key, from the cache, or as they
- * came. */
-static bool find_body(struct answerer *answerer, const struct query_frame *frame,
-                      struct fmb_body *body, int64_t *key)
+/* Puts the components of a checked frame that has them into *body, and keeps them by id.
+ * Returns the key; 0 for an anonymous body. */
+static int64_t keep_body(struct answerer *answerer, const struct query_frame *frame,
+                         struct fmb_body *body)
 {
-    if (by_key(frame)) {
-        *key = frame->key;
-        return cache_find(answerer->cache, frame->body_id, frame->key, body) &&
-               body->dim == frame->dim && (int) body->shape == frame->shape;
-    }
-    if (frame->body_id) {
-        *key = cache_keep(answerer->cache, frame->body_id, frame->dim, frame->shape,
-                          frame->components.number, body);
-        return true;
-    }
-    enum fmb_status status = fmb_body_make(frame->dim, frame->shape, frame->components.number,
-                                           (size_t) frame->components.count, body);
+    const double *components = frame->components.number;
+    if (frame->body_id)
+        return cache_keep(answerer->cache, frame->body_id, frame->dim, frame->shape, components,
+                          body);
+    enum fmb_status status =
+        fmb_body_make(frame->dim, frame->shape, components, (size_t) frame->components.count, body);
     assert(status == FMB_OK);
     (void) status;
-    *key = 0;
+    return 0;
+}
+
+/* The bodies of a checked query. Copies, not pointers into the cache: the second body may evict
+ * the first. Keys come first: one that is not held leaves the cache as it was. */
+static bool find_bodies(struct answerer *answerer, struct checking *checking,
+                        const struct pair_query *query, struct fmb_body body[2])
+{
+    int64_t *key = checking->result->key;
+    for (int f = 0; f < 2; f++) {
+        const struct query_frame *frame = &query->frame[f];
+        checking->side = side_name[f];
+        if (by_key(frame) && !cache_find(answerer->cache, frame->body_id, frame->key, frame->dim,
+                                         frame->shape, &body[f]))
+            return refuse(checking, FMB_UNKNOWN_BODY, "key", "not held; send the components");
+    }
+    for (int f = 0; f < 2; f++) {
+        const struct query_frame *frame = &query->frame[f];
+        key[f] = by_key(frame) ? frame->key : keep_body(answerer, frame, &body[f]);
+    }
     return true;
 }
 
@@ -142,6 +154,7 @@ static void decide(struct pair_result *result, const struct pair_query *query,
     result->status = (int32_t) fmb_decide(method, &pair, want, &result->answer);
     if (result->status != FMB_OK) {
         memset(&result->answer, 0, sizeof result->answer);
+        memset(result->key, 0, sizeof result->key);
         snprintf(result->detail, sizeof result->detail, "method %s: %s", method->name,
                  fmb_status_text(result->status));
         return;
@@ -164,15 +177,7 @@ void answer_pair(struct answerer *answerer, const struct pair_query *query,
     struct checking checking = {.result = result};
     if (!check_query(&checking, query))
         return;
-    /* Copies, not pointers into the cache: the second body may evict the first. */
     struct fmb_body body[2];
-    for (int f = 0; f < 2; f++) {
-        checking.side = side_name[f];
-        if (!find_body(answerer, &query->frame[f], &body[f], &result->key[f])) {
-            memset(result->key, 0, sizeof result->key);
-            refuse(&checking, FMB_UNKNOWN_BODY, "key", -1, "not held; send the components");
-            return;
-        }
-    }
-    decide(result, query, body);
+    if (find_bodies(answerer, &checking, query, body))
+        decide(result, query, body);
 }

@@ -14,7 +14,7 @@ struct answerer {
 
 /* On output: the result, complete but for compute_ns (0). A query that cannot be decided gets
  * its status, and detail names the place: "b.components[4]: not a finite number". A query
- * with a wrong field leaves the cache as it was. */
+ * with a wrong field or a dead key leaves the cache as it was. */
 void answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result);
 

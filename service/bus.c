@@ -11,7 +11,12 @@
 
 /* LCM's usual group and port. */
 #define DEFAULT_GROUP "239.255.76.67"
+#define USUAL_URL "udpm://" DEFAULT_GROUP ":7667?ttl=0"
 enum { DEFAULT_PORT = 7667 };
+
+static const char scheme[] = "udpm://";
+
+enum { URL_MAX = 512 };
 
 /* Asked for where the URL names no receive buffer: holds some 60 of the largest datagrams, or
  * thousands of pair queries. */
@@ -38,7 +43,7 @@ static long receive_buffer_granted(long wanted)
     int fd = socket(AF_INET, SOCK_DGRAM, 0);
     if (fd < 0)
         return 0;
-    bool ok = (wanted == 0 || setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &ask, sizeof ask) == 0) &&
+    bool ok = setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &ask, sizeof ask) == 0 &&
               getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size) == 0;
     close(fd);
     return ok ? granted : 0;
@@ -51,25 +56,28 @@ static long receive_buffer_to_ask(void)
     return receive_buffer_granted(RECEIVE_BUFFER_WANTED) / 2;
 }
 
-/* udpm://[GROUP[:PORT]][?options]. False: another provider, or a group that is no address,
- * which is left to LCM. */
-static bool parse_group(const char *url, struct sockaddr_in *group)
+enum group_kind { GROUP_GOOD, GROUP_WITHOUT_PORT, GROUP_OF_OTHERS };
+
+/* udpm://[GROUP:PORT][?options]. OF_OTHERS: another provider, or what is no address; that is left
+ * to LCM. WITHOUT_PORT: LCM would take a port of its own choice, and hear nobody. */
+static enum group_kind parse_group(const char *url, struct sockaddr_in *group)
 {
-    static const char scheme[] = "udpm://";
     char text[64];
     unsigned port = DEFAULT_PORT;
     if (strncmp(url, scheme, sizeof scheme - 1) != 0)
-        return false;
+        return GROUP_OF_OTHERS;
     url += sizeof scheme - 1;
     size_t length = strcspn(url, ":?");
     if (length >= sizeof text)
-        return false;
+        return GROUP_OF_OTHERS;
     memcpy(text, url, length);
     text[length] = '\0';
-    if (url[length] == ':' && sscanf(url + length, ":%5u", &port) != 1)
-        return false;
+    if (length && sscanf(url + length, ":%5u", &port) != 1)
+        return GROUP_WITHOUT_PORT;
     *group = (struct sockaddr_in){.sin_family = AF_INET, .sin_port = htons((uint16_t) port)};
-    return inet_pton(AF_INET, length ? text : DEFAULT_GROUP, &group->sin_addr) == 1;
+    return inet_pton(AF_INET, length ? text : DEFAULT_GROUP, &group->sin_addr) == 1
+               ? GROUP_GOOD
+               : GROUP_OF_OTHERS;
 }
 
 static long parse_receive_buffer(const char *url)
@@ -92,8 +100,14 @@ static int route_error(const struct sockaddr_in *group)
 static bool check_route(const char *program, const char *url)
 {
     struct sockaddr_in group;
-    if (!parse_group(url, &group))
-        return true;
+    switch (parse_group(url, &group)) {
+    case GROUP_OF_OTHERS: return true;
+    case GROUP_WITHOUT_PORT:
+        fprintf(stderr, "%s: the LCM bus %s has no port: write udpm://GROUP:%d\n", program, url,
+                DEFAULT_PORT);
+        return false;
+    case GROUP_GOOD: break;
+    }
     int error = route_error(&group);
     if (!error)
         return true;
@@ -106,30 +120,39 @@ static bool check_route(const char *program, const char *url)
     return false;
 }
 
-lcm_t *bus_open(const char *program, const char *url, long *receive_buffer)
+/* The URL to open: as given, or the usual one; where it is udpm and names no receive buffer, with
+ * as much as the system grants. */
+static void complete_url(const char *url, char out[URL_MAX])
 {
-    char usual[96];
     if (!url)
         url = getenv("LCM_DEFAULT_URL");
-    if (!url || !*url) {
-        snprintf(usual, sizeof usual, "udpm://%s:%d?ttl=0&recv_buf_size=%ld", DEFAULT_GROUP,
-                 DEFAULT_PORT, receive_buffer_to_ask());
-        url = usual;
-    }
+    if (!url || !*url)
+        url = USUAL_URL;
+    if (strncmp(url, scheme, sizeof scheme - 1) == 0 && !strstr(url, "recv_buf_size="))
+        snprintf(out, URL_MAX, "%s%crecv_buf_size=%ld", url, strchr(url, '?') ? '&' : '?',
+                 receive_buffer_to_ask());
+    else
+        snprintf(out, URL_MAX, "%s", url);
+}
+
+lcm_t *bus_open(const char *program, const char *url, long *receive_buffer)
+{
+    char full[URL_MAX];
+    complete_url(url, full);
+    long asked = parse_receive_buffer(full);
     if (receive_buffer)
-        *receive_buffer =
-            strncmp(url, "udpm:", 5) == 0 ? receive_buffer_granted(parse_receive_buffer(url)) : 0;
-    if (!check_route(program, url))
+        *receive_buffer = asked > 0 ? receive_buffer_granted(asked) : 0;
+    if (!check_route(program, full))
         return NULL;
 
-    lcm_t *lcm = lcm_create(url);
+    lcm_t *lcm = lcm_create(full);
     if (!lcm) {
-        fprintf(stderr, "%s: cannot open the LCM bus %s\n", program, url);
+        fprintf(stderr, "%s: cannot open the LCM bus %s\n", program, full);
         return NULL;
     }
-    if (lcm_get_fileno(lcm) < 0) { /* tcpq without a server behind it */
-        fprintf(stderr, "%s: the LCM bus %s is there in name only: is its server running?\n",
-                program, url);
+    if (lcm_get_fileno(lcm) < 0) { /* tcpq without a server; udpm that does not hear itself */
+        fprintf(stderr, "%s: nothing comes through the LCM bus %s: no server, or a firewall?\n",
+                program, full);
         lcm_destroy(lcm);
         return NULL;
     }

@@ -1,11 +1,14 @@
 #include "cache.h"
 
+#include "query.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries are linked by index: each into the chain of its bucket, and all that are used into
- * a list from the most to the least recently used. */
+/* Entries are linked by index: each into the chain of its bucket, and all that are used into a
+ * ring in the order of use. One entry more than the capacity holds no body: it closes the
+ * ring, with the newest beyond it on one side and the oldest on the other. */
 enum { NONE = -1 };
 
 struct entry {
@@ -19,7 +22,7 @@ struct cache {
     int64_t next_key;
     uint32_t bucket_mask;
     int32_t *bucket; /* first entry of each */
-    int32_t newest, oldest;
+    int32_t ends;    /* the entry that closes the ring */
     struct entry *entry;
     struct cache_counts counts;
 };
@@ -31,7 +34,7 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
     while (buckets < capacity)
         buckets *= 2;
     struct cache *cache = malloc(sizeof *cache);
-    struct entry *entry = malloc(capacity * sizeof *entry);
+    struct entry *entry = malloc((capacity + 1) * sizeof *entry);
     int32_t *bucket = malloc(buckets * sizeof *bucket);
     if (!cache || !entry || !bucket) {
         free(cache);
@@ -44,10 +47,10 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
     *cache = (struct cache){.next_key = first_key,
                             .bucket_mask = buckets - 1,
                             .bucket = bucket,
-                            .newest = NONE,
-                            .oldest = NONE,
+                            .ends = (int32_t) capacity,
                             .entry = entry,
                             .counts = {.capacity = (int64_t) capacity}};
+    entry[capacity].newer = entry[capacity].older = cache->ends;
     return cache;
 }
 
@@ -60,11 +63,9 @@ void cache_destroy(struct cache *cache)
     free(cache);
 }
 
-/* Multiplicative hashing: the high half of the product with 2^64 / golden ratio. */
 static int32_t *bucket_of(struct cache *cache, int64_t id)
 {
-    uint64_t hash = (uint64_t) id * UINT64_C(0x9e3779b97f4a7c15);
-    return &cache->bucket[(uint32_t) (hash >> 32) & cache->bucket_mask];
+    return &cache->bucket[query_id_hash(id) & cache->bucket_mask];
 }
 
 static int32_t find(struct cache *cache, int64_t id)
@@ -77,18 +78,18 @@ static int32_t find(struct cache *cache, int64_t id)
 
 static void unlink_use(struct cache *cache, int32_t e)
 {
-    struct entry *entry = &cache->entry[e];
-    *(entry->newer == NONE ? &cache->newest : &cache->entry[entry->newer].older) = entry->older;
-    *(entry->older == NONE ? &cache->oldest : &cache->entry[entry->older].newer) = entry->newer;
+    int32_t newer = cache->entry[e].newer, older = cache->entry[e].older;
+    cache->entry[newer].older = older;
+    cache->entry[older].newer = newer;
 }
 
 static void link_newest(struct cache *cache, int32_t e)
 {
-    struct entry *entry = &cache->entry[e];
-    entry->newer = NONE;
-    entry->older = cache->newest;
-    *(cache->newest == NONE ? &cache->oldest : &cache->entry[cache->newest].newer) = e;
-    cache->newest = e;
+    int32_t newest = cache->entry[cache->ends].older;
+    cache->entry[e].newer = cache->ends;
+    cache->entry[e].older = newest;
+    cache->entry[newest].newer = e;
+    cache->entry[cache->ends].older = e;
 }
 
 static void touch(struct cache *cache, int32_t e)
@@ -99,7 +100,7 @@ static void touch(struct cache *cache, int32_t e)
 
 static int32_t evict_oldest(struct cache *cache)
 {
-    int32_t e = cache->oldest;
+    int32_t e = cache->entry[cache->ends].newer;
     int32_t *link = bucket_of(cache, cache->entry[e].id);
     while (*link != e)
         link = &cache->entry[*link].next;
@@ -159,10 +160,12 @@ int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const do
     return cache->entry[e].key;
 }
 
-bool cache_find(struct cache *cache, int64_t id, int64_t key, struct fmb_body *out)
+bool cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape,
+                struct fmb_body *out)
 {
     int32_t e = find(cache, id);
-    if (e == NONE || cache->entry[e].key != key)
+    if (e == NONE || cache->entry[e].key != key || cache->entry[e].body.dim != dim ||
+        (int) cache->entry[e].body.shape != shape)
         return false;
     cache->counts.hits++;
     touch(cache, e);

@@ -36,8 +36,10 @@ void cache_destroy(struct cache *cache);
 int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const double *components,
                    struct fmb_body *out);
 
-/* Finds the body that the key was given for. False: it is not held (any more). */
-bool cache_find(struct cache *cache, int64_t id, int64_t key, struct fmb_body *out);
+/* Finds the body that the key was given for, if it has this dimension and shape. False: it is
+ * not held (any more); that counts neither as hit nor as miss. */
+bool cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape,
+                struct fmb_body *out);
 
 struct cache_counts cache_counts(const struct cache *cache);
 

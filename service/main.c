@@ -37,7 +37,7 @@ static const char usage[] =
     "  -l, --lcm-url URL   the bus; else LCM_DEFAULT_URL; else this host alone\n"
     "                      (udpm://239.255.76.67:7667?ttl=0)\n"
     "  -p, --prefix P      put P in front of the channels' names: for a second service\n"
-    "  -b, --bodies N      keep the inverse matrices of N bodies (default 65536, 1 to 10000000)\n"
+    "  -b, --bodies N      keep the inverse matrices of N bodies (default %d, 1 to %d)\n"
     "  -h, --help          print this\n"
     "  -V, --version       print the version\n"
     "\n"
@@ -47,6 +47,13 @@ static int wrong_option(const char *option, const char *value, const char *expec
 {
     fprintf(stderr, "fmbd: %s '%s': expected %s; see fmbd --help\n", option, value, expected);
     return EXIT_USAGE;
+}
+
+static int wrong_bodies(const char *value)
+{
+    char expected[48];
+    snprintf(expected, sizeof expected, "a number from 1 to %d", CACHE_BODIES_MAX);
+    return wrong_option("--bodies", value, expected);
 }
 
 static bool parse_bodies(const char *text, size_t *out)
@@ -79,9 +86,9 @@ static int parse_options(int argc, char **argv, struct options *out)
             break;
         case 'b':
             if (!parse_bodies(optarg, &out->bodies))
-                return wrong_option("--bodies", optarg, "a number from 1 to 10000000");
+                return wrong_bodies(optarg);
             break;
-        case 'h': fputs(usage, stdout); return EXIT_SUCCESS;
+        case 'h': printf(usage, DEFAULT_BODIES, CACHE_BODIES_MAX); return EXIT_SUCCESS;
         case 'V': printf("fmbd %s\n", fmb_version()); return EXIT_SUCCESS;
         default: fputs("fmbd: see fmbd --help\n", stderr); return EXIT_USAGE;
         }
@@ -91,7 +98,8 @@ static int parse_options(int argc, char **argv, struct options *out)
     return -1;
 }
 
-/* SIGINT and SIGTERM as something to read; blocked before LCM starts its thread. -1: errno. */
+/* SIGINT and SIGTERM as something to read. Only once the bus is open, which can take seconds:
+ * until then they simply end the process. LCM's thread blocks all signals itself. -1: errno. */
 static int open_signals(void)
 {
     sigset_t set;
@@ -115,8 +123,8 @@ static int open_heartbeat(void)
     return fd;
 }
 
-/* One message a turn, so that neither a signal nor the heartbeat waits behind a full queue.
- * Until a signal comes: the code to exit with. */
+/* Serves until a signal comes; returns the exit code. One message a turn, so that neither a
+ * signal nor the heartbeat waits behind a full queue. */
 static int serve(lcm_t *lcm, struct server *server, int signals, int heartbeat)
 {
     enum { BUS, SIGNALS, HEARTBEAT, SOURCES };
@@ -154,7 +162,21 @@ static void say_ready(const struct server *server, const struct server_options *
             options->server_id);
 }
 
-static int run(const struct options *options, int signals, int heartbeat)
+static int serve_until_signal(lcm_t *lcm, struct server *server,
+                              const struct server_options *options)
+{
+    int signals = open_signals();
+    int heartbeat = open_heartbeat();
+    if (signals < 0 || heartbeat < 0) {
+        perror("fmbd: signals and timer");
+        return EXIT_FAILURE;
+    }
+    say_ready(server, options);
+    server_publish_status(server);
+    return serve(lcm, server, signals, heartbeat);
+}
+
+static int run(const struct options *options)
 {
     struct server_options server_options = {.prefix = options->prefix,
                                             .bodies = options->bodies,
@@ -165,13 +187,11 @@ static int run(const struct options *options, int signals, int heartbeat)
         return EXIT_FAILURE;
     int code = EXIT_FAILURE;
     struct server *server = server_create(lcm, &server_options);
-    if (server) {
-        say_ready(server, &server_options);
-        server_publish_status(server);
-        code = serve(lcm, server, signals, heartbeat);
-    } else {
-        fputs("fmbd: cannot start: no memory for the bodies, or the bus refused\n", stderr);
-    }
+    if (server)
+        code = serve_until_signal(lcm, server, &server_options);
+    else
+        fprintf(stderr, "fmbd: cannot start: no memory for %zu bodies, or the bus refused\n",
+                options->bodies);
     server_destroy(server);
     lcm_destroy(lcm);
     return code;
@@ -180,14 +200,7 @@ static int run(const struct options *options, int signals, int heartbeat)
 int main(int argc, char **argv)
 {
     struct options options;
+    signal(SIGPIPE, SIG_IGN); /* a reader of stderr that goes away must not end the service */
     int code = parse_options(argc, argv, &options);
-    if (code >= 0)
-        return code;
-    int signals = open_signals();
-    int heartbeat = open_heartbeat();
-    if (signals < 0 || heartbeat < 0) {
-        perror("fmbd: signals and timer");
-        return EXIT_FAILURE;
-    }
-    return run(&options, signals, heartbeat);
+    return code >= 0 ? code : run(&options);
 }

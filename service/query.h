@@ -6,11 +6,24 @@
 
 #include "fmb/fmb.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Ids, keys and sequence numbers: doubles hold integers exactly up to here, and some of LCM's
  * languages know no other numbers. */
 #define QUERY_ID_MAX ((INT64_C(1) << 53) - 1)
+
+/* Inline: each file that keeps things by id asks these for every message. */
+static inline bool query_id_ok(int64_t id)
+{
+    return id >= 0 && id <= QUERY_ID_MAX;
+}
+
+/* Multiplicative hashing: the high half of the product with 2^64 / golden ratio. */
+static inline uint32_t query_id_hash(int64_t id)
+{
+    return (uint32_t) ((uint64_t) id * UINT64_C(0x9e3779b97f4a7c15) >> 32);
+}
 
 enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2 };
 

@@ -1,10 +1,12 @@
 #include "senders.h"
 
-/* A client may stand in one set of places; the least recently used of them makes room. */
-static struct sender *find(struct senders *senders, int64_t client_id)
+#include "query.h"
+
+/* A client may stand in one set of places. Where it does not, the least recently used of them
+ * is freed for it. */
+static struct sender *find_or_free(struct senders *senders, int64_t client_id)
 {
-    uint64_t hash = (uint64_t) client_id * UINT64_C(0x9e3779b97f4a7c15);
-    struct sender *set = senders->sender[(hash >> 32) % SENDERS_SETS];
+    struct sender *set = senders->sender[query_id_hash(client_id) % SENDERS_SETS];
     struct sender *oldest = set;
     for (int way = 0; way < SENDERS_WAYS; way++) {
         if (set[way].used_at && set[way].client_id == client_id)
@@ -18,7 +20,7 @@ static struct sender *find(struct senders *senders, int64_t client_id)
 
 void senders_note(struct senders *senders, int64_t client_id, int64_t sequence_number)
 {
-    struct sender *sender = find(senders, client_id);
+    struct sender *sender = find_or_free(senders, client_id);
     if (!sender->used_at) {
         sender->client_id = client_id;
         sender->last = sequence_number;

@@ -7,14 +7,16 @@
 #include "wire.h"
 
 #include <inttypes.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 struct server {
     lcm_t *lcm;
-    lcm_subscription_t *subscription;
+    lcm_subscription_t *queries, *statuses;
     char query_channel[BUS_CHANNEL_MAX];
     char result_channel[BUS_CHANNEL_MAX];
     char status_channel[BUS_CHANNEL_MAX];
@@ -23,8 +25,12 @@ struct server {
     struct histogram compute_ns;
     struct wire_status status; /* counts so far; the rest is filled in when it is published */
     int64_t ready_ns;
-    int64_t complained_ns; /* 0: never */
-    int64_t unsaid;        /* malformed datagrams since the last complaint */
+    /* Malformed datagrams: when one was last said, how many came since, and the last one. */
+    int64_t said_ns; /* 0: never */
+    int64_t unsaid;
+    uint32_t malformed_size;
+    const char *malformed_reason;
+    int64_t other_id; /* the other service last heard on the same channels; 0: none */
 };
 
 static int64_t clock_ns(clockid_t clock)
@@ -34,35 +40,49 @@ static int64_t clock_ns(clockid_t clock)
     return (int64_t) time.tv_sec * 1000000000 + time.tv_nsec;
 }
 
-/* Counts a datagram that cannot be read; says so at most once a second. */
-static void complain(struct server *server, const char *channel, uint32_t size, const char *reason)
+/* Whether standard error takes a line now: a pipe that nobody reads must not stop the service. */
+static bool can_say(void)
+{
+    struct pollfd wait = {.fd = STDERR_FILENO, .events = POLLOUT};
+    return poll(&wait, 1, 0) == 1 && wait.revents & POLLOUT;
+}
+
+/* Says what could not be read, at most once a second. */
+static void say_malformed(struct server *server)
 {
     int64_t now = clock_ns(CLOCK_MONOTONIC);
-    server->status.malformed++;
-    server->unsaid++;
-    if (server->complained_ns && now - server->complained_ns < 1000000000)
+    bool recently = server->said_ns && now - server->said_ns < 1000000000;
+    if (server->unsaid == 0 || recently || !can_say())
         return;
     fprintf(stderr,
             "fmbd: malformed message on %s (%" PRIu32 " bytes): %s; %" PRId64
             " of them so far, %" PRId64 " since this was last said\n",
-            channel, size, reason, server->status.malformed, server->unsaid);
-    server->complained_ns = now;
+            server->query_channel, server->malformed_size, server->malformed_reason,
+            server->status.malformed, server->unsaid);
+    server->said_ns = now;
     server->unsaid = 0;
+}
+
+static void note_malformed(struct server *server, uint32_t size, const char *reason)
+{
+    server->status.malformed++;
+    server->unsaid++;
+    server->malformed_size = size;
+    server->malformed_reason = reason;
+    say_malformed(server);
 }
 
 static void publish_result(struct server *server, const struct pair_result *result)
 {
     unsigned char bytes[WIRE_BYTES_MAX];
     size_t size = wire_write_pair_result(result, bytes);
-    if (lcm_publish(server->lcm, server->result_channel, bytes, (unsigned) size) == 0)
-        server->status.answered++;
-    else
+    if (lcm_publish(server->lcm, server->result_channel, bytes, (unsigned) size) != 0) {
         server->status.unsent++;
-}
-
-static bool in_range(int64_t id)
-{
-    return id >= 0 && id <= QUERY_ID_MAX;
+        return;
+    }
+    server->status.answered++;
+    server->status.results[result->status]++;
+    server->status.pairs += result->status == FMB_OK;
 }
 
 static void on_pair_query(const lcm_recv_buf_t *buffer, const char *channel, void *user)
@@ -70,30 +90,48 @@ static void on_pair_query(const lcm_recv_buf_t *buffer, const char *channel, voi
     struct server *server = user;
     struct pair_query query;
     struct pair_result result;
+    (void) channel;
     const char *error = wire_read_pair_query(buffer->data, buffer->data_size, &query);
     if (error) {
-        complain(server, channel, buffer->data_size, error);
+        note_malformed(server, buffer->data_size, error);
         return;
     }
     server->status.received++;
+    if (query_id_ok(query.client_id) && query_id_ok(query.sequence_number))
+        senders_note(&server->senders, query.client_id, query.sequence_number);
 
     int64_t begin = clock_ns(CLOCK_MONOTONIC);
     answer_pair(&server->answerer, &query, &result);
     result.compute_ns = clock_ns(CLOCK_MONOTONIC) - begin;
-
-    if (in_range(query.client_id) && in_range(query.sequence_number))
-        senders_note(&server->senders, query.client_id, query.sequence_number);
-    histogram_add(&server->compute_ns, result.compute_ns);
-    server->status.results[result.status]++;
-    server->status.pairs += result.status == FMB_OK;
+    if (result.status == FMB_OK)
+        histogram_add(&server->compute_ns, result.compute_ns);
     publish_result(server, &result);
 }
 
-static bool subscribe(struct server *server)
+/* The heartbeat of another service on the same channels: both answer every query, and neither
+ * knows the other's keys. Said once for each. */
+static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
 {
-    server->subscription = lcm_subscribe(server->lcm, server->query_channel, on_pair_query, server);
-    return server->subscription &&
-           lcm_subscription_set_queue_capacity(server->subscription, SERVER_QUEUE) == 0;
+    struct server *server = user;
+    struct wire_status other;
+    if (wire_read_status(buffer->data, buffer->data_size, &other) ||
+        other.server_id == server->status.server_id || other.server_id == server->other_id ||
+        !can_say())
+        return;
+    server->other_id = other.server_id;
+    fprintf(stderr,
+            "fmbd: another service (server %" PRId64
+            ") is on %s: start one of them with --prefix\n",
+            other.server_id, channel);
+}
+
+static lcm_subscription_t *subscribe(struct server *server, const char *channel,
+                                     lcm_msg_handler_t handler, int queue)
+{
+    lcm_subscription_t *subscription = lcm_subscribe(server->lcm, channel, handler, server);
+    if (subscription)
+        lcm_subscription_set_queue_capacity(subscription, queue);
+    return subscription;
 }
 
 struct server *server_create(lcm_t *lcm, const struct server_options *options)
@@ -111,7 +149,9 @@ struct server *server_create(lcm_t *lcm, const struct server_options *options)
     server->status.receive_buffer = options->receive_buffer;
     snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
     server->ready_ns = clock_ns(CLOCK_MONOTONIC);
-    if (!server->answerer.cache || !subscribe(server)) {
+    server->queries = subscribe(server, server->query_channel, on_pair_query, SERVER_QUEUE);
+    server->statuses = subscribe(server, server->status_channel, on_status, 4);
+    if (!server->answerer.cache || !server->queries || !server->statuses) {
         server_destroy(server);
         return NULL;
     }
@@ -122,8 +162,10 @@ void server_destroy(struct server *server)
 {
     if (!server)
         return;
-    if (server->subscription)
-        lcm_unsubscribe(server->lcm, server->subscription);
+    if (server->queries)
+        lcm_unsubscribe(server->lcm, server->queries);
+    if (server->statuses)
+        lcm_unsubscribe(server->lcm, server->statuses);
     cache_destroy(server->answerer.cache);
     free(server);
 }
@@ -153,8 +195,8 @@ void server_publish_status(struct server *server)
     unsigned char bytes[WIRE_BYTES_MAX];
     complete_status(server, &status);
     size_t size = wire_write_status(&status, bytes);
-    if (lcm_publish(server->lcm, server->status_channel, bytes, (unsigned) size) != 0)
-        server->status.unsent++;
+    lcm_publish(server->lcm, server->status_channel, bytes, (unsigned) size); /* or the next one */
+    say_malformed(server);
 }
 
 const char *server_query_channel(const struct server *server)

@@ -27,7 +27,7 @@ struct server_options {
 struct server *server_create(lcm_t *lcm, const struct server_options *options);
 void server_destroy(struct server *server);
 
-/* Publishes the heartbeat. */
+/* Publishes the heartbeat, and says on stderr what is left to say of malformed messages. */
 void server_publish_status(struct server *server);
 
 /* Names of the channels, for people; valid while the server lives. */

@@ -5,6 +5,7 @@
 #include "fmb_msgs_status_t.h"
 
 #include <assert.h>
+#include <float.h>
 #include <string.h>
 
 /* The numbers of the messages are those of the engine. */
@@ -102,7 +103,8 @@ static void read_numbers(struct cursor *cursor, struct query_numbers *out)
     read_doubles(cursor, out->count, out->number, FMB_COMPONENTS_MAX);
 }
 
-/* A string; what does not fit into size bytes is cut. */
+/* A string; what does not fit into size bytes is cut, and control characters, which could do
+ * things to a terminal, become '?'. */
 static void read_string(struct cursor *cursor, char *out, size_t size)
 {
     int32_t length = read_count(cursor, 1);
@@ -115,7 +117,8 @@ static void read_string(struct cursor *cursor, char *out, size_t size)
         return;
     }
     size_t kept = (size_t) length <= size ? (size_t) length - 1 : size - 1;
-    memcpy(out, bytes, kept);
+    for (size_t i = 0; i < kept; i++)
+        out[i] = bytes[i] < ' ' || bytes[i] == 0x7f ? '?' : (char) bytes[i];
     out[kept] = '\0';
 }
 
@@ -175,6 +178,9 @@ static void read_box(struct cursor *cursor, struct pair_result *out)
     for (int side = 0; side < 2 && !cursor->error; side++)
         for (int axis = 0; axis < out->dim; axis++)
             out->answer.box[side][axis] = ends[side * out->dim + axis];
+    for (int axis = 0; axis < FMB_DIM_MAX && !cursor->error; axis++)
+        if (!(out->answer.box[0][axis] <= out->answer.box[1][axis]))
+            cursor->error = "a box that is no box";
 }
 
 static void read_contact(struct cursor *cursor, struct fmb_answer *out)
@@ -183,6 +189,9 @@ static void read_contact(struct cursor *cursor, struct fmb_answer *out)
     read_doubles(cursor, count, out->contact, 2);
     if (!cursor->error && count != 0 && count != 2)
         cursor->error = "a contact interval of neither 0 nor 2 numbers";
+    if (!cursor->error &&
+        !(0 <= out->contact[0] && out->contact[0] <= out->contact[1] && out->contact[1] <= DBL_MAX))
+        cursor->error = "a contact interval that is no interval";
     out->has_contact = count > 0;
 }
 

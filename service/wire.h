@@ -5,7 +5,8 @@
  * bytes. The readers here walk the bytes themselves, with 64-bit sizes, into memory of the
  * caller: a count may say anything, they never read beyond the datagram and never allocate.
  * They accept exactly what lcm-gen's encoders write: the fingerprint of the type, counts from
- * 0, strings that end where they say, and not one byte more or less. */
+ * 0, strings that end where they say, and not one byte more or less; of results only those with
+ * a verdict just where the status is OK, and with intervals and boxes that are such. */
 #ifndef WIRE_H
 #define WIRE_H
 

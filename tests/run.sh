@@ -9,7 +9,9 @@
 set -u
 cd "$(dirname "$0")/.." || exit
 
+self=tests/run.sh
 log=build/tests.log
+limit=600 # seconds a suite may take before it has failed
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
@@ -18,9 +20,9 @@ run_suite() {
     export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
     case $build in *asan*) export FMB_FAST=1 ;; esac
     case $kind in
-    unit) "$build/tests/$what" ;;
-    bats) bats --tap "tests/$what" ;;
-    netns) "$build/netns" bats --tap "tests/$what" ;;
+    unit) timeout "$limit" "$build/tests/$what" ;;
+    bats) timeout "$limit" bats --tap "tests/$what" ;;
+    netns) timeout "$limit" "$build/netns" bats --tap "tests/$what" ;;
     esac
 }
 
@@ -40,10 +42,13 @@ count_suite() {
         }' "$1"
 }
 
+name_of() {
+    echo "$1 $2 $3" | tr ' /' '._'
+}
+
 one() {
     kind=$1 build=$2 what=$3
-    name=$(echo "$kind $build $what" | tr ' /' '._')
-    out=$log/$name
+    out=$log/$(name_of "$kind" "$build" "$what")
     run_suite "$kind" "$build" "$what" > "$out.tap" 2> "$out.err" < /dev/null
     code=$?
     if [ "$kind" = netns ] && [ $code = 77 ]; then
@@ -101,8 +106,13 @@ if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan CC=clang tests
     builds="build build/asan build/asan-clang"
 fi
+# Until it has ended, a suite has failed.
 # shellcheck disable=SC2086
-list $builds | xargs -d '\n' -n 1 -P "$(nproc)" "$0" --suite
+list $builds | while read -r kind build what; do
+    echo "0 1 0" > "$log/$(name_of "$kind" "$build" "$what").count"
+done
+# shellcheck disable=SC2086
+list $builds | xargs -d '\n' -n 1 -P "$(nproc)" "$self" --suite
 
 awk '{ p += $1; f += $2; s += $3 }
     END {

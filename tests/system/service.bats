@@ -169,6 +169,7 @@ load service
     [ "$(status_of misses)" = 5 ]
     [ "$(status_of hits)" = 35 ]
     [ "$(status_of malformed)" = 0 ]
+    "$FMB" status --json | jq -e '.received == .answered + .unsent and .answered == ([.results[]] | add)'
     run "$FMB" status
     [ "$status" = 0 ]
     stop_fmbd
@@ -189,6 +190,45 @@ load service
         [ "$status" = 1 ]
         [[ "$output" == *"fmbd: "*"$url"* ]]
     done
+}
+
+@test "a reader of stderr that went away, or does not read, does not stop it" {
+    mkfifo "$BATS_TEST_TMPDIR/pipe"
+    for reader in gone asleep; do
+        # The reader opens the pipe, so that the daemon can; then it leaves, or sleeps.
+        if [ $reader = gone ]; then
+            head -n 1 < "$BATS_TEST_TMPDIR/pipe" > /dev/null 3>&- &
+        else
+            sleep 60 < "$BATS_TEST_TMPDIR/pipe" 3>&- &
+            started="${started-} $!"
+        fi
+        "$FMBD" 2> "$BATS_TEST_TMPDIR/pipe" 3>&- &
+        fmbd=$!
+        started="$started $fmbd"
+        wait_until "$FMB" status --timeout 0.2
+        # Fill the pipe to the brim where nobody reads.
+        [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
+        "$FMB_BUILD/poke" FMB_PAIR_QUERY status
+        [ "$(status_of malformed)" -gt 100 ]
+        stop_fmbd
+    done
+}
+
+@test "a second service on the same channels is told of" {
+    start_fmbd
+    one=$fmbd one_log=$fmbd_log
+    start_fmbd
+    wait_until grep -q 'another service' "$one_log"
+    wait_until grep -q 'another service' "$fmbd_log"
+    stop_fmbd
+    fmbd=$one
+    stop_fmbd
+}
+
+@test "a bus without a port: refused at once" {
+    run timeout 5 "$FMBD" --lcm-url udpm://239.255.76.67
+    [ "$status" = 1 ]
+    [[ "$output" == *"udpm://GROUP:7667"* ]]
 }
 
 @test "wrong options: exit code 2 and a hint; help and version: 0" {

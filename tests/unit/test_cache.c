@@ -33,7 +33,7 @@ static int64_t keep(struct cache *cache, int64_t id, double edge)
 static double find(struct cache *cache, int64_t id, int64_t key)
 {
     struct fmb_body body;
-    return cache_find(cache, id, key, &body) ? body.component[0][0] : 0;
+    return cache_find(cache, id, key, 3, FMB_CUBOID, &body) ? body.component[0][0] : 0;
 }
 
 static void test_hit_and_miss(void **state)

@@ -229,7 +229,7 @@ static void say_so_of_numbers_out_of_range(void **state)
     for (size_t s = 0; s < COUNT(sizes); s++)
         for (int shape = FMB_CUBOID; shape <= FMB_TETRAHEDRON; shape++)
             for (size_t i = 0; i < COUNT(inexact); i++) {
-                struct question question = {{.dim = 3, .shape = (enum fmb_shape) shape}};
+                struct question question = {.a = {.dim = 3, .shape = (enum fmb_shape) shape}};
                 for (int k = 0; k < 3; k++)
                     question.a.component[k][k] = sizes[s];
                 question.b = question.a;
