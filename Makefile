@@ -3,7 +3,8 @@
 #   make deps demo          installs what building needs, then lets the service answer a scene
 #   make deps-test test     installs what the tests need, then runs them
 #
-# Others: all, test-fast, install, headers, format, clean. MODE=release|debug|asan.
+# Others: all, tests (builds them), test-fast, headers, format, format-check, install, clean.
+# MODE=release|debug|asan.
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
 VERSION := 0.1.0
@@ -48,16 +49,16 @@ lib_objects := $(patsubst %.c,$(O)/%.o,$(wildcard service/fmb/*.c))
 message_names := frame_t pair_query_t pair_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
-bus_objects := $(addprefix $(O)/service/,wire.o bus.o random_id.o)
+bus_objects := $(addprefix $(O)/service/,wire.o bus.o clock.o random_id.o signals.o)
 server_objects := $(addprefix $(O)/service/,server.o answer.o cache.o senders.o histogram.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))
 
 programs := $(B)/fmbd $(B)/fmb
-helpers := $(B)/netns $(B)/arm
-test_helpers := $(B)/poke
+demo_programs := $(B)/netns $(B)/arm
+test_programs := $(B)/poke
 
 .PHONY: all
-all: $(programs) $(B)/libfmb.a $(helpers)
+all: $(programs) $(B)/libfmb.a $(demo_programs)
 
 # One object that shows the names of fmb.h alone, so that no program's own names meet ours.
 $(B)/libfmb.a: $(lib_objects)
@@ -77,7 +78,7 @@ $(B)/arm: $(O)/clients/demo/arm.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lm
 
-$(B)/netns: $(O)/tests/system/netns.o
+$(B)/netns: $(O)/clients/demo/netns.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^
 
@@ -153,7 +154,7 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 		-Iservice -Iclients -Itests/hostile -I$(GEN))
 
 .PHONY: tests test test-fast check
-tests: all $(test_helpers) $(unit_tests)
+tests: all $(test_programs) $(unit_tests)
 
 # The script builds what it tests: release, and asan with gcc and with clang.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
@@ -169,6 +170,7 @@ test-fast:
 	FMB_FAST=1 tests/run.sh
 
 # Every header compiles alone.
+sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h tests/oracle/*.h tests/hostile/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
@@ -177,9 +179,11 @@ $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	$(CC) $(flags) -Iservice -Iservice/fmb -Iclients -I$(GEN) -fsyntax-only -x c $<
 	@touch $@
 
-.PHONY: format
+.PHONY: format format-check
 format:
-	clang-format -i $(shell git ls-files '*.c' '*.h')
+	clang-format -i $(sources)
+format-check:
+	clang-format --dry-run -Werror $(sources)
 
 # ---- Demo, installation ------------------------------------------------------------------
 
@@ -205,7 +209,7 @@ clean:
 # ---- Packages ----------------------------------------------------------------------------
 
 build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev
-test_packages := $(build_packages) libcmocka-dev bats jq clang libclang-rt-14-dev pkg-config
+test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev pkg-config
 
 as_root = $$([ $$(id -u) = 0 ] || echo sudo)
 define install_packages
@@ -226,8 +230,9 @@ deps:
 deps-test:
 	$(call install_packages,$(test_packages))
 
-# In 'make deps demo' the packages come first, whatever -j says.
-ifneq ($(filter deps deps-test,$(MAKECMDGOALS)),)
+# In 'make deps demo' the packages come first, and in 'make clean all' the cleaning, whatever
+# -j says.
+ifneq ($(filter deps deps-test clean,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 

@@ -6,12 +6,17 @@
 
 enum { ROOM_MIN = 16 };
 
-static void *or_exit(void *memory)
+_Noreturn void allocate_failed(void)
 {
-    if (memory)
-        return memory;
     fprintf(stderr, "fmb: out of memory\n");
     exit(1);
+}
+
+static void *or_exit(void *memory)
+{
+    if (!memory)
+        allocate_failed();
+    return memory;
 }
 
 void *allocate(size_t count, size_t size)
@@ -29,7 +34,7 @@ void *allocate_room(void *memory, size_t *room, size_t needed, size_t size)
     if (wanted < ROOM_MIN)
         wanted = ROOM_MIN;
     if (wanted > SIZE_MAX / size)
-        return or_exit(NULL);
+        allocate_failed();
     *room = wanted;
     return or_exit(realloc(memory, wanted * size));
 }

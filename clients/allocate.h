@@ -14,4 +14,7 @@ void *allocate(size_t count, size_t size);
  * is filled one by one is copied a few times only. */
 void *allocate_room(void *memory, size_t *room, size_t needed, size_t size);
 
+/* Where a library has found no memory. */
+_Noreturn void allocate_failed(void);
+
 #endif

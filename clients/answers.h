@@ -19,7 +19,8 @@ void answers_local(const struct answers_question *question, const struct scene *
 struct answers_bus;
 
 /* Opens the bus. Never NULL: where it cannot be opened (which has then been said on stderr), or
- * where nobody answers (which is said once, with advice), each pair gets an error. */
+ * where nobody answers (which is said once in each outage, with advice), each pair gets an
+ * error. */
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      const struct answers_question *question, double timeout,
                                      int retries);

@@ -11,10 +11,10 @@
 
 struct answers_bus {
     struct args_bus bus;
-    lcm_t *lcm;      /* NULL: could not be opened */
-    struct ask *ask; /* NULL: could not be opened */
-    double patience; /* seconds until a query is given up */
-    bool advised;
+    lcm_t *lcm;       /* NULL: could not be opened */
+    struct ask *ask;  /* NULL: could not be opened */
+    double patience;  /* seconds until a query is given up */
+    uint64_t advised; /* outages of which the user was told */
 };
 
 /* One scene being asked: the questions run ahead of the answers. */
@@ -95,9 +95,7 @@ static const char *error_of(const struct asking *asking, const struct pair_resul
         return "no bus";
     if (!result)
         return ask_is_silent(asking->ask) ? "no fmbd answered" : "fmbd gave no answer";
-    if (result->status == FMB_OK)
-        return NULL;
-    return result->detail[0] ? result->detail : fmb_status_text(result->status);
+    return report_refusal(result);
 }
 
 static void take_answer(void *user, const struct pair_result *result)
@@ -112,13 +110,14 @@ static void take_answer(void *user, const struct pair_result *result)
     asking->sink(asking->user, asking->scene, &outcome);
 }
 
+/* Once for each outage. */
 static void advise(struct answers_bus *answers)
 {
     const char *prefix = answers->bus.prefix;
     struct ask_counts counts = ask_counts(answers->ask);
-    if (answers->advised || !ask_is_silent(answers->ask))
+    if (answers->advised == counts.outages)
         return;
-    answers->advised = true;
+    answers->advised = counts.outages;
     fprintf(stderr, "fmb: no fmbd answered on channel %s%s of %s within %g s\n", prefix,
             WIRE_PAIR_RESULT, args_bus_name(&answers->bus), answers->patience);
     if (counts.malformed > 0)

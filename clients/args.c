@@ -3,74 +3,133 @@
 #include "bus.h"
 
 #include <errno.h>
-#include <getopt.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-void args_restart(void)
-{
-    optind = 1;
-    opterr = 0;
-}
-
-bool args_error(const char *command, const char *format, ...)
+bool args_error(const struct args *args, const char *format, ...)
 {
     va_list list;
-    fprintf(stderr, "fmb %s: ", command);
+    fprintf(stderr, "fmb %s: ", args->command);
     va_start(list, format);
     vfprintf(stderr, format, list);
     va_end(list);
-    fprintf(stderr, "\nTry 'fmb %s --help'.\n", command);
+    fprintf(stderr, "\nTry 'fmb %s --help'.\n", args->command);
     return false;
 }
 
-/* A long option stands in argv[optind - 1]; of short ones, which may share a word, getopt keeps
- * the letter. */
-bool args_refuse(const char *command, int option, char **argv)
+bool args_number(const struct args *args, double low, double high, double *out)
+{
+    char *end;
+    *out = strtod(optarg, &end);
+    if (end != optarg && !*end && *out >= low && *out <= high)
+        return true;
+    return args_error(args, "--%s: expected a number from %g to %g, found '%s'", args->option, low,
+                      high, optarg);
+}
+
+bool args_integer(const struct args *args, long low, long high, long *out)
+{
+    char *end;
+    errno = 0;
+    *out = strtol(optarg, &end, 10);
+    if (end != optarg && !*end && errno == 0 && *out >= low && *out <= high)
+        return true;
+    return args_error(args, "--%s: expected an integer from %ld to %ld, found '%s'", args->option,
+                      low, high, optarg);
+}
+
+/* ---- Options, one after the other ------------------------------------------------------------ */
+
+static const struct option common_options[] = {
+    {"lcm-url", required_argument, NULL, 'l'},
+    {"prefix", required_argument, NULL, 'p'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+enum { COMMON_OPTIONS = sizeof common_options / sizeof *common_options };
+
+/* The command's own options, then the common ones with the zeros that end them. */
+static void join_options(const struct option *own,
+                         struct option out[ARGS_OPTIONS_MAX + COMMON_OPTIONS])
+{
+    int count = 0;
+    while (own[count].name && count < ARGS_OPTIONS_MAX)
+        count++;
+    memcpy(out, own, (size_t) count * sizeof *own);
+    memcpy(out + count, common_options, sizeof common_options);
+}
+
+/* After an option of '?' or ':' from getopt_long(). A long option stands in argv[optind - 1]; of
+ * short ones, which may share a word, getopt keeps the letter. */
+static bool refuse(const struct args *args, int option, char **argv)
 {
     const char letter[] = {'-', (char) optopt, '\0'};
     bool is_long = strncmp(argv[optind - 1], "--", 2) == 0;
     const char *name = is_long ? argv[optind - 1] : letter;
     if (option == ':')
-        return args_error(command, "option '%s' needs a value", name);
+        return args_error(args, "option '%s' needs a value", name);
     if (is_long && optopt != 0)
-        return args_error(command, "option '%s' takes no value", name);
-    return args_error(command, "unknown option '%s'", name);
+        return args_error(args, "option '%s' takes no value", name);
+    return args_error(args, "unknown option '%s'", name);
 }
 
-bool args_number(const char *command, const char *option, const char *text, double low, double high,
-                 double *out)
+static bool take_prefix(struct args *args)
 {
-    char *end;
-    *out = strtod(text, &end);
-    if (end != text && !*end && *out >= low && *out <= high)
-        return true;
-    return args_error(command, "%s: expected a number from %g to %g, found '%s'", option, low, high,
-                      text);
-}
-
-bool args_integer(const char *command, const char *option, const char *text, long low, long high,
-                  long *out)
-{
-    char *end;
-    errno = 0;
-    *out = strtol(text, &end, 10);
-    if (end != text && !*end && errno == 0 && *out >= low && *out <= high)
-        return true;
-    return args_error(command, "%s: expected an integer from %ld to %ld, found '%s'", option, low,
-                      high, text);
-}
-
-bool args_prefix(const char *command, const char *text, struct args_bus *out)
-{
-    if (!bus_prefix_ok(text))
-        return args_error(command, "--prefix: expected at most %d letters, digits, '_' or '-'",
+    if (!bus_prefix_ok(optarg))
+        return args_error(args, "--prefix: expected at most %d letters, digits, '_' or '-'",
                           BUS_PREFIX_MAX);
-    out->prefix = text;
+    args->bus.prefix = optarg;
     return true;
+}
+
+static bool take_option(struct args *args, int option, char **argv, void *out, bool *help)
+{
+    switch (option) {
+    case 'l': args->bus.url = optarg; return true;
+    case 'p': return take_prefix(args);
+    case 'h': *help = true; return true;
+    case '?':
+    case ':': return refuse(args, option, argv);
+    default: return args->take(args, option, out);
+    }
+}
+
+/* What stands behind the options. */
+static bool take_operands(struct args *args, int count, char **operand)
+{
+    if (!args->takes_file && count > 0)
+        return args_error(args, "unknown argument '%s'", operand[0]);
+    if (count > 1)
+        return args_error(args, "expected one FILE, found '%s' too", operand[1]);
+    if (count > 0 && strcmp(operand[0], "-") != 0)
+        args->file = operand[0];
+    return true;
+}
+
+int args_parse(struct args *args, int argc, char **argv, void *out)
+{
+    struct option options[ARGS_OPTIONS_MAX + COMMON_OPTIONS];
+    bool help = false;
+    int option, index = 0;
+    join_options(args->options, options);
+    args->bus = (struct args_bus){.prefix = ""};
+    args->file = NULL;
+    optind = 1;
+    opterr = 0;
+    while ((option = getopt_long(argc, argv, ":l:p:h", options, &index)) != -1) {
+        args->option = options[index].name;
+        if (!take_option(args, option, argv, out, &help))
+            return ARGS_USAGE;
+    }
+    if (!take_operands(args, argc - optind, argv + optind))
+        return ARGS_USAGE;
+    if (!help)
+        return ARGS_RUN;
+    fputs(args->usage, stdout);
+    return ARGS_ANSWERED;
 }
 
 const char *args_bus_name(const struct args_bus *bus)

@@ -1,8 +1,9 @@
-/* Options of the commands: what is the same for several of them. Errors are one line on stderr
- * and a hint; the caller then exits with ARGS_USAGE. */
+/* Options of the commands: reading them, and what is the same for all of them. Errors are one line
+ * on stderr and a hint. */
 #ifndef ARGS_H
 #define ARGS_H
 
+#include <getopt.h>
 #include <stdbool.h>
 
 /* Exit codes of every command. */
@@ -14,24 +15,45 @@ struct args_bus {
     const char *prefix; /* "" for none */
 };
 
-/* How to begin a getopt_long() that reports nothing itself: its option string begins with ':'. */
-void args_restart(void);
+/* The options that every command has, for its --help. */
+#define ARGS_COMMON_USAGE                                                    \
+    "  -l, --lcm-url URL    the bus; else LCM_DEFAULT_URL, else this host\n" \
+    "  -p, --prefix P       the service's channels begin with P\n"           \
+    "  -h, --help\n"
 
-/* After an option of '?' or ':' from getopt_long(): says which one is not understood or lacks its
- * value. Always false. */
-bool args_refuse(const char *command, int option, char **argv);
+struct args;
+
+/* Takes one of the command's own options, whose value is optarg. False: after an error. */
+typedef bool args_take(const struct args *args, int option, void *out);
+
+enum { ARGS_OPTIONS_MAX = 12 };
+
+struct args {
+    const char *command;          /* its name */
+    const char *usage;            /* what --help prints */
+    const struct option *options; /* its own, all long, at most ARGS_OPTIONS_MAX; ends with 0s */
+    args_take *take;
+    bool takes_file;
+
+    /* Filled in by args_parse(). */
+    struct args_bus bus;
+    const char *file;   /* NULL: none was given, or "-" */
+    const char *option; /* for take: the name of the long option */
+};
+
+/* On output: ARGS_RUN, or the exit code where nothing is to be run: after --help, and after an
+ * error. out is for take. */
+enum { ARGS_RUN = -1 };
+int args_parse(struct args *args, int argc, char **argv, void *out);
 
 /* An error in words, and the hint. Always false. */
-bool args_error(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool args_error(const struct args *args, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-/* On output: true and *out, a finite number from low to high; or false after an error that names
- * the option. The whole text must be the number. */
-bool args_number(const char *command, const char *option, const char *text, double low, double high,
-                 double *out);
-bool args_integer(const char *command, const char *option, const char *text, long low, long high,
-                  long *out);
-
-bool args_prefix(const char *command, const char *text, struct args_bus *out);
+/* For take. On output: true and *out, a finite number from low to high; or false after an error.
+ * The whole value must be the number. */
+bool args_number(const struct args *args, double low, double high, double *out);
+bool args_integer(const struct args *args, long low, long high, long *out);
 
 /* The URL of a bus as people should see it. */
 const char *args_bus_name(const struct args_bus *bus);

@@ -2,14 +2,12 @@
 
 #include "allocate.h"
 #include "bus.h"
+#include "clock.h"
 #include "random_id.h"
 #include "wire.h"
 
-#include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum {
     WINDOW = 64,
@@ -22,15 +20,17 @@ enum {
     BUSY_MAX = 200
 };
 
+static const int64_t ns_per_ms = 1000000, ns_per_s = 1000000000;
+
 /* A query under way. */
 struct slot {
     size_t size;
     unsigned char query[WIRE_BYTES_MAX];
-    double sent_at;  /* the first time; seconds of now() */
-    double deadline; /* when to send it again, or to give it up */
-    int tries;       /* left */
-    int refusals;    /* the service was busy */
-    bool pausing;    /* the deadline ends a pause after a refusal */
+    int64_t sent_at;  /* the first time; clock_ns() */
+    int64_t deadline; /* when to send it again, or to give it up; clock_ns() */
+    int tries;        /* left */
+    int refusals;     /* the service was busy */
+    bool pausing;     /* the deadline ends a pause after a refusal */
     bool done;
     bool answered; /* done with result; else done without one */
     struct pair_result result;
@@ -44,49 +44,47 @@ struct ask {
     int64_t client_id;
     int64_t oldest, next;     /* sequence numbers: not delivered yet; not asked yet */
     struct slot slot[WINDOW]; /* [sequence number % WINDOW] */
-    double heard_at;          /* the last answer */
+    int64_t timeout_ns;
+    int64_t heard_at; /* the last answer; clock_ns() */
     bool silent;
+    int64_t probe_at; /* while silent: not before this is a query sent; clock_ns() */
+    bool probing;     /* one was, and may still be answered */
     struct ask_counts counts;
 };
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double) time.tv_sec + 1e-9 * (double) time.tv_nsec;
-}
-
-static int64_t utime_now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_REALTIME, &time);
-    return (int64_t) time.tv_sec * 1000000 + time.tv_nsec / 1000;
-}
 
 static struct slot *slot_of(struct ask *ask, int64_t sequence_number)
 {
     return &ask->slot[sequence_number % WINDOW];
 }
 
-/* --- Answers coming in ----------------------------------------------------------------------- */
+/* ---- Answers coming in ----------------------------------------------------------------------- */
 
 static void pause_slot(struct slot *slot)
 {
     int doublings = slot->refusals < BUSY_DOUBLINGS ? slot->refusals : BUSY_DOUBLINGS;
     slot->refusals++;
     slot->pausing = true;
-    slot->deadline = now() + 1e-3 * (BUSY_PAUSE_MS << doublings);
+    slot->deadline = clock_ns() + ns_per_ms * (BUSY_PAUSE_MS << doublings);
+}
+
+/* There is a service, even if the answer comes too late for its query. */
+static void hear(struct ask *ask)
+{
+    ask->heard_at = clock_ns();
+    ask->silent = ask->probing = false;
 }
 
 static void take_result(struct ask *ask, const struct pair_result *result)
 {
     int64_t number = result->sequence_number;
-    if (result->client_id != ask->client_id || number < ask->oldest || number >= ask->next)
+    if (result->client_id != ask->client_id)
+        return;
+    hear(ask);
+    if (number < ask->oldest || number >= ask->next)
         return;
     struct slot *slot = slot_of(ask, number);
     if (slot->done)
         return;
-    ask->heard_at = now();
     if (result->status == FMB_BUSY && slot->refusals < BUSY_MAX) {
         pause_slot(slot);
         return;
@@ -107,20 +105,33 @@ static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *u
         take_result(ask, &result);
 }
 
-/* --- Queries going out ----------------------------------------------------------------------- */
+/* ---- Queries going out ----------------------------------------------------------------------- */
 
 static void send_slot(struct ask *ask, struct slot *slot)
 {
     if (lcm_publish(ask->lcm, ask->query_channel, slot->query, (unsigned) slot->size) < 0)
         ask->counts.unsent++;
     slot->pausing = false;
-    slot->deadline = now() + ask->options.timeout;
+    slot->deadline = clock_ns() + ask->timeout_ns;
+}
+
+/* While nobody answers, a query goes out once in a second, one try, to find out whether somebody
+ * does again; the others cost no time. */
+static void ask_in_silence(struct ask *ask, struct slot *slot)
+{
+    if (slot->sent_at < ask->probe_at) {
+        slot->done = true;
+        return;
+    }
+    ask->probing = true;
+    slot->tries = 0;
+    send_slot(ask, slot);
 }
 
 static void ask_one(struct ask *ask, struct pair_query *query)
 {
     struct slot *slot = slot_of(ask, ask->next);
-    query->utime = utime_now();
+    query->utime = clock_utime();
     query->client_id = ask->client_id;
     query->sequence_number = ask->next++;
     query->method = ask->options.method;
@@ -129,18 +140,19 @@ static void ask_one(struct ask *ask, struct pair_query *query)
     slot->tries = ask->options.retries;
     slot->refusals = 0;
     slot->done = slot->answered = false;
-    slot->sent_at = now();
+    slot->sent_at = clock_ns();
     ask->counts.asked++;
     if (ask->silent)
-        slot->done = true;
+        ask_in_silence(ask, slot);
     else
         send_slot(ask, slot);
 }
 
-/* On output: false once the source has no more. */
+/* Nothing is asked behind a probe: its answer says whether the others are sent or given up.
+ * On output: false once the source has no more. */
 static bool fill_window(struct ask *ask, ask_source *source, void *user)
 {
-    while (ask->next - ask->oldest < WINDOW) {
+    while (ask->next - ask->oldest < WINDOW && !ask->probing) {
         struct pair_query query;
         memset(&query, 0, sizeof query);
         if (!source(user, &query))
@@ -150,18 +162,30 @@ static bool fill_window(struct ask *ask, ask_source *source, void *user)
     return true;
 }
 
+/* Gives up all that is under way. */
+static void fall_silent(struct ask *ask)
+{
+    for (int64_t number = ask->oldest; number < ask->next; number++)
+        slot_of(ask, number)->done = true;
+    if (!ask->silent)
+        ask->counts.outages++;
+    ask->silent = true;
+    ask->probing = false;
+    ask->probe_at = clock_ns() + ns_per_s;
+}
+
 static void give_up(struct ask *ask, struct slot *slot)
 {
     slot->done = true;
     if (ask->heard_at < slot->sent_at)
-        ask->silent = true;
+        fall_silent(ask);
 }
 
-static void look_after(struct ask *ask, struct slot *slot, double time)
+static void look_after(struct ask *ask, struct slot *slot, int64_t time)
 {
-    if (slot->done || (time < slot->deadline && !ask->silent))
+    if (slot->done || time < slot->deadline)
         return;
-    if (ask->silent || (!slot->pausing && slot->tries == 0)) {
+    if (!slot->pausing && slot->tries == 0) {
         give_up(ask, slot);
         return;
     }
@@ -173,7 +197,7 @@ static void look_after(struct ask *ask, struct slot *slot, double time)
 
 static void look_after_window(struct ask *ask)
 {
-    double time = now();
+    int64_t time = clock_ns();
     for (int64_t number = ask->oldest; number < ask->next; number++)
         look_after(ask, slot_of(ask, number), time);
 }
@@ -182,13 +206,13 @@ static void look_after_window(struct ask *ask)
  * wait for ever. */
 static int time_to_wait_ms(struct ask *ask)
 {
-    double earliest = now() + 1, start = earliest - 1;
+    int64_t start = clock_ns(), earliest = start + ns_per_s;
     for (int64_t number = ask->oldest; number < ask->next; number++) {
         const struct slot *slot = slot_of(ask, number);
         if (!slot->done && slot->deadline < earliest)
             earliest = slot->deadline;
     }
-    return earliest > start ? (int) ceil(1e3 * (earliest - start)) : 0;
+    return earliest > start ? (int) ((earliest - start + ns_per_ms - 1) / ns_per_ms) : 0;
 }
 
 /* Waits for one message, then takes those that are there already, but no more than a window or
@@ -231,7 +255,7 @@ void ask_all(struct ask *ask, ask_source *source, ask_sink *sink, void *user)
     }
 }
 
-/* --- Opening and closing --------------------------------------------------------------------- */
+/* ---- Opening and closing --------------------------------------------------------------------- */
 
 static bool subscribe(struct ask *ask)
 {
@@ -251,7 +275,8 @@ struct ask *ask_open(lcm_t *lcm, const struct ask_options *options)
     ask->lcm = lcm;
     ask->options = *options;
     ask->client_id = random_id();
-    ask->heard_at = -1;
+    ask->timeout_ns = (int64_t) (options->timeout * (double) ns_per_s);
+    ask->heard_at = INT64_MIN;
     if (subscribe(ask))
         return ask;
     ask_close(ask);

@@ -43,7 +43,9 @@ typedef void ask_sink(void *user, const struct pair_result *result);
 void ask_all(struct ask *ask, ask_source *source, ask_sink *sink, void *user);
 
 /* True once a query was left without answer in all its tries while nothing else was answered
- * either. From then on nothing is asked any more: sink gets NULL at once. */
+ * either, until any answer comes. Meanwhile sink gets NULL at once, and so a crowd of questions
+ * that nobody answers takes no longer than one; but about once a second a query is sent once all
+ * the same, and waited for, to find out whether the service is back. */
 bool ask_is_silent(const struct ask *ask);
 
 /* What a user needs to know to find out why. */
@@ -52,6 +54,7 @@ struct ask_counts {
     uint64_t repeated;  /* queries sent again */
     uint64_t malformed; /* results that could not be read */
     uint64_t unsent;    /* queries that the bus did not take */
+    uint64_t outages;   /* how often it fell silent */
 };
 
 struct ask_counts ask_counts(const struct ask *ask);

@@ -10,7 +10,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,16 +23,14 @@ static const char usage[] =
     "\n"
     "  --local          decide in this process; without it, the service on the bus does\n"
     "  --json           one line of JSON for each scene, exact; without it, tables for\n"
-    "                   people, rounded to six digits\n"
+    "                   people, rounded\n"
     "  --box            give the box of the intersection too\n"
-    "  --svg FILE       draw the scenes, and the boxes, into FILE\n"
+    "  --svg FILE       draw the scenes into FILE, with the boxes, which the answers then have\n"
+    "                   too\n"
     "  --method NAME    how to decide: exact (the default), or fmb or sat, which are\n"
     "                   inexact and there to be compared\n"
-    "  -l, --lcm-url URL    the bus; else LCM_DEFAULT_URL, else this host\n"
-    "  -p, --prefix P       the service's channels begin with P\n"
     "  --timeout SECONDS    wait so long before a query is sent again (0.5)\n"
-    "  --retries N          send it again so often before giving up (5)\n"
-    "  -h, --help\n"
+    "  --retries N          send it again so often before giving up (5)\n" ARGS_COMMON_USAGE
     "\n"
     "A scene, with velocity, duration (1) and pairs (all) as one likes:\n"
     "  {\"dim\": 3, \"duration\": 1.0,\n"
@@ -44,82 +41,61 @@ static const char usage[] =
     "   \"pairs\": [[1,2]]}\n"
     "\n"
     "Exit codes: 0 answered, 1 a pair could not be decided or nobody answered, 2 wrong\n"
-    "usage or a bad scene.\n";
+    "usage, or input that cannot be read or is no scene.\n";
 
 struct options {
-    bool local, json, help;
+    bool local, json;
     struct answers_question question;
-    const char *svg;  /* NULL: no picture */
-    const char *file; /* NULL: standard input */
-    struct args_bus bus;
+    const char *svg; /* NULL: no picture */
     double timeout;
     long retries;
 };
 
-/* --- Options --------------------------------------------------------------------------------- */
+/* ---- Options --------------------------------------------------------------------------------- */
 
 enum { LOCAL = 1, JSON, BOX, METHOD, SVG, TIMEOUT, RETRIES };
 
-static const struct option long_options[] = {
+static const struct option own_options[] = {
     {"local", no_argument, NULL, LOCAL},
     {"json", no_argument, NULL, JSON},
     {"box", no_argument, NULL, BOX},
     {"method", required_argument, NULL, METHOD},
     {"svg", required_argument, NULL, SVG},
-    {"lcm-url", required_argument, NULL, 'l'},
-    {"prefix", required_argument, NULL, 'p'},
     {"timeout", required_argument, NULL, TIMEOUT},
     {"retries", required_argument, NULL, RETRIES},
-    {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
 };
 
-static bool parse_method(const char *name, struct options *out)
+static bool take_method(const struct args *args, struct options *out)
 {
-    out->question.method = fmb_method_by_name(name);
+    out->question.method = fmb_method_by_name(optarg);
     return out->question.method ||
-           args_error("query", "--method: there are exact, fmb and sat, not '%s'", name);
+           args_error(args, "--method: there are exact, fmb and sat, not '%s'", optarg);
 }
 
-static bool parse_option(int option, char **argv, struct options *out)
+static bool take_option(const struct args *args, int option, void *out)
 {
+    struct options *options = out;
     switch (option) {
-    case LOCAL: out->local = true; return true;
-    case JSON: out->json = true; return true;
-    case BOX: out->question.box = true; return true;
-    case METHOD: return parse_method(optarg, out);
+    case LOCAL: options->local = true; break;
+    case JSON: options->json = true; break;
+    case BOX: options->question.box = true; break;
     case SVG:
-        out->svg = optarg;
-        out->question.box = true;
-        return true;
-    case 'l': out->bus.url = optarg; return true;
-    case 'p': return args_prefix("query", optarg, &out->bus);
-    case TIMEOUT: return args_number("query", "--timeout", optarg, 0.001, 3600, &out->timeout);
-    case RETRIES: return args_integer("query", "--retries", optarg, 0, 1000, &out->retries);
-    case 'h': out->help = true; return true;
+        options->svg = optarg;
+        options->question.box = true;
+        break;
+    case METHOD: return take_method(args, options);
+    case TIMEOUT: return args_number(args, 0.001, 3600, &options->timeout);
+    case RETRIES: return args_integer(args, 0, 1000, &options->retries);
     }
-    return args_refuse("query", option, argv);
-}
-
-static bool parse_options(int argc, char **argv, struct options *out)
-{
-    int option;
-    *out = (struct options){.bus = {.prefix = ""}, .timeout = 0.5, .retries = 5};
-    args_restart();
-    while ((option = getopt_long(argc, argv, ":l:p:h", long_options, NULL)) != -1)
-        if (!parse_option(option, argv, out))
-            return false;
-    if (argc - optind > 1)
-        return args_error("query", "expected one FILE, found '%s' too", argv[optind + 1]);
-    if (optind < argc && strcmp(argv[optind], "-") != 0)
-        out->file = argv[optind];
     return true;
 }
 
-/* --- The run --------------------------------------------------------------------------------- */
+/* ---- The run --------------------------------------------------------------------------------- */
 
 struct run {
     const struct options *options;
+    const struct args_bus *bus_options;
     const char *input_name;
     struct report *report[2]; /* the printed one, and the picture or NULL */
     struct answers_bus *bus;  /* NULL: not needed so far */
@@ -142,7 +118,7 @@ static void answer_on_bus(struct run *run, const struct scene *scene)
 {
     const struct options *options = run->options;
     if (!run->bus)
-        run->bus = answers_bus_open(&options->bus, &options->question, options->timeout,
+        run->bus = answers_bus_open(run->bus_options, &options->question, options->timeout,
                                     (int) options->retries);
     answers_bus_scene(run->bus, scene, take_outcome, run);
 }
@@ -180,7 +156,7 @@ static int answer_scenes(struct run *run, int fd)
     return run->undecided ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
-/* --- Files ----------------------------------------------------------------------------------- */
+/* ---- Files ----------------------------------------------------------------------------------- */
 
 static int file_error(const char *name)
 {
@@ -205,14 +181,15 @@ static int write_picture(const struct svg *svg, const char *name)
     return ARGS_ANSWERED;
 }
 
-static int run_query(const struct options *options, int fd)
+static int run_query(const struct options *options, const struct args *args, int fd)
 {
     struct report_json json = report_json(stdout);
     struct report_text text = report_text(stdout, options->question.box);
     struct svg *svg = options->svg ? svg_open() : NULL;
     struct run run = {
         .options = options,
-        .input_name = options->file ? options->file : "standard input",
+        .bus_options = &args->bus,
+        .input_name = args->file ? args->file : "standard input",
         .report = {options->json ? &json.report : &text.report, svg ? svg_report(svg) : NULL}};
     int code = answer_scenes(&run, fd);
     if (run.bus)
@@ -228,20 +205,18 @@ static int run_query(const struct options *options, int fd)
 
 int cmd_query(int argc, char **argv)
 {
-    struct options options;
-    if (!parse_options(argc, argv, &options))
-        return ARGS_USAGE;
-    if (options.help) {
-        fputs(usage, stdout);
-        return ARGS_ANSWERED;
-    }
-    int fd = options.file ? open(options.file, O_RDONLY) : STDIN_FILENO;
+    struct args args = {"query", usage, own_options, take_option, .takes_file = true};
+    struct options options = {.timeout = 0.5, .retries = 5};
+    int code = args_parse(&args, argc, argv, &options);
+    if (code != ARGS_RUN)
+        return code;
+    int fd = args.file ? open(args.file, O_RDONLY) : STDIN_FILENO;
     if (fd < 0) {
-        file_error(options.file);
+        file_error(args.file);
         return ARGS_USAGE;
     }
-    int code = run_query(&options, fd);
-    if (options.file)
+    code = run_query(&options, &args, fd);
+    if (args.file)
         close(fd);
     return code;
 }

@@ -7,7 +7,6 @@
 #include "report.h"
 #include "wire.h"
 
-#include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -17,15 +16,11 @@ static const char usage[] =
     "Waits for the next heartbeat of the service, which comes once a second, and prints it.\n"
     "\n"
     "  --json               as one line of JSON\n"
-    "  --timeout SECONDS    wait no longer than that (3)\n"
-    "  -l, --lcm-url URL    the bus; else LCM_DEFAULT_URL, else this host\n"
-    "  -p, --prefix P       the service's channels begin with P\n"
-    "  -h, --help\n";
+    "  --timeout SECONDS    wait no longer than that (3)\n" ARGS_COMMON_USAGE;
 
 struct options {
-    bool json, help;
+    bool json;
     double timeout;
-    struct args_bus bus;
 };
 
 struct heartbeat {
@@ -36,33 +31,20 @@ struct heartbeat {
 
 enum { JSON = 1, TIMEOUT };
 
-static const struct option long_options[] = {
-    {"json", no_argument, NULL, JSON},         {"timeout", required_argument, NULL, TIMEOUT},
-    {"lcm-url", required_argument, NULL, 'l'}, {"prefix", required_argument, NULL, 'p'},
-    {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0},
+static const struct option own_options[] = {
+    {"json", no_argument, NULL, JSON},
+    {"timeout", required_argument, NULL, TIMEOUT},
+    {NULL, 0, NULL, 0},
 };
 
-static bool parse_option(int option, char **argv, struct options *out)
+static bool take_option(const struct args *args, int option, void *out)
 {
+    struct options *options = out;
     switch (option) {
-    case JSON: out->json = true; return true;
-    case TIMEOUT: return args_number("status", "--timeout", optarg, 0.001, 3600, &out->timeout);
-    case 'l': out->bus.url = optarg; return true;
-    case 'p': return args_prefix("status", optarg, &out->bus);
-    case 'h': out->help = true; return true;
+    case JSON: options->json = true; break;
+    case TIMEOUT: return args_number(args, 0.001, 3600, &options->timeout);
     }
-    return args_refuse("status", option, argv);
-}
-
-static bool parse_options(int argc, char **argv, struct options *out)
-{
-    int option;
-    *out = (struct options){.bus = {.prefix = ""}, .timeout = 3};
-    args_restart();
-    while ((option = getopt_long(argc, argv, ":l:p:h", long_options, NULL)) != -1)
-        if (!parse_option(option, argv, out))
-            return false;
-    return optind == argc || args_error("status", "unknown argument '%s'", argv[optind]);
+    return true;
 }
 
 static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
@@ -73,38 +55,15 @@ static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *u
     heartbeat->heard = heartbeat->malformed == NULL;
 }
 
-/* --- Printing -------------------------------------------------------------------------------- */
-
-/* The counters of a heartbeat, under the names of status_t.lcm. */
-#define COUNTERS(X)   \
-    X(utime)          \
-    X(server_id)      \
-    X(uptime_us)      \
-    X(restarts)       \
-    X(receive_buffer) \
-    X(received)       \
-    X(answered)       \
-    X(unsent)         \
-    X(pairs)          \
-    X(malformed)      \
-    X(sequence_gaps)  \
-    X(repeated)       \
-    X(bodies)         \
-    X(capacity)       \
-    X(hits)           \
-    X(misses)         \
-    X(replacements)   \
-    X(evictions)      \
-    X(compute_p50_ns) \
-    X(compute_p99_ns) \
-    X(compute_max_ns)
+/* ---- Printing -------------------------------------------------------------------------------- */
 
 static void print_json(const struct wire_status *status)
 {
     fputs("{\"version\": ", stdout);
     report_string_json(stdout, status->version);
 #define X(name) printf(", \"%s\": %" PRId64, #name, status->name);
-    COUNTERS(X)
+    WIRE_COUNTERS_BEFORE(X)
+    WIRE_COUNTERS_AFTER(X)
 #undef X
     fputs(", \"results\": {", stdout);
 #define X(name, number, text) \
@@ -170,16 +129,17 @@ static void print_text(const struct wire_status *status)
     print_count("receive buffer", status->receive_buffer);
 }
 
-static void advise(const struct options *options, const struct heartbeat *heartbeat)
+static void advise(const struct options *options, const struct args_bus *bus,
+                   const struct heartbeat *heartbeat)
 {
-    fprintf(stderr, "fmb: no heartbeat on channel %s%s of %s within %g s\n", options->bus.prefix,
-            WIRE_STATUS, args_bus_name(&options->bus), options->timeout);
+    fprintf(stderr, "fmb: no heartbeat on channel %s%s of %s within %g s\n", bus->prefix,
+            WIRE_STATUS, args_bus_name(bus), options->timeout);
     if (heartbeat->malformed)
         fprintf(stderr, "fmb: but one that could not be read (%s): another version of fmbd?\n",
                 heartbeat->malformed);
     else
-        fprintf(stderr, "fmb: start one with 'fmbd%s%s &'\n",
-                *options->bus.prefix ? " --prefix " : "", options->bus.prefix);
+        fprintf(stderr, "fmb: start one with 'fmbd%s%s &'\n", *bus->prefix ? " --prefix " : "",
+                bus->prefix);
 }
 
 static int print_heartbeat(const struct options *options, const struct wire_status *status)
@@ -196,22 +156,20 @@ static int print_heartbeat(const struct options *options, const struct wire_stat
 
 int cmd_status(int argc, char **argv)
 {
-    struct options options;
+    struct args args = {"status", usage, own_options, take_option, .takes_file = false};
+    struct options options = {.timeout = 3};
     struct listener listener;
     struct heartbeat heartbeat = {.heard = false};
-    if (!parse_options(argc, argv, &options))
-        return ARGS_USAGE;
-    if (options.help) {
-        fputs(usage, stdout);
-        return ARGS_ANSWERED;
-    }
-    if (!listen_open(&options.bus, WIRE_STATUS, on_status, &heartbeat, &listener))
+    int code = args_parse(&args, argc, argv, &options);
+    if (code != ARGS_RUN)
+        return code;
+    if (!listen_open(&args.bus, WIRE_STATUS, on_status, &heartbeat, &listener))
         return ARGS_FAILED;
     enum listen_end end = listen_until(&listener, &heartbeat.heard, options.timeout);
     listen_close(&listener);
     if (end == LISTEN_ENOUGH)
         return print_heartbeat(&options, &heartbeat.status);
     if (end == LISTEN_TIMEOUT)
-        advise(&options, &heartbeat);
+        advise(&options, &args.bus, &heartbeat);
     return ARGS_FAILED;
 }

@@ -6,7 +6,6 @@
 #include "report.h"
 #include "wire.h"
 
-#include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -17,19 +16,16 @@ static const char usage[] =
     "SIGTERM. Body 0 is one without an id.\n"
     "\n"
     "  --json               one line of JSON for each result, exact\n"
-    "  --count N            end after N results\n"
-    "  -l, --lcm-url URL    the bus; else LCM_DEFAULT_URL, else this host\n"
-    "  -p, --prefix P       the service's channels begin with P\n"
-    "  -h, --help\n";
+    "  --count N            end after N results\n" ARGS_COMMON_USAGE;
 
 struct options {
-    bool json, help;
+    bool json;
     long count; /* 0: no end */
-    struct args_bus bus;
 };
 
 struct watch {
     const struct options *options;
+    struct report_columns columns;
     long seen;
     uint64_t malformed;
     bool enough;
@@ -37,40 +33,20 @@ struct watch {
 
 enum { JSON = 1, COUNT };
 
-static const struct option long_options[] = {
-    {"json", no_argument, NULL, JSON},         {"count", required_argument, NULL, COUNT},
-    {"lcm-url", required_argument, NULL, 'l'}, {"prefix", required_argument, NULL, 'p'},
-    {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0},
+static const struct option own_options[] = {
+    {"json", no_argument, NULL, JSON},
+    {"count", required_argument, NULL, COUNT},
+    {NULL, 0, NULL, 0},
 };
 
-static bool parse_option(int option, char **argv, struct options *out)
+static bool take_option(const struct args *args, int option, void *out)
 {
+    struct options *options = out;
     switch (option) {
-    case JSON: out->json = true; return true;
-    case COUNT: return args_integer("watch", "--count", optarg, 1, INT32_MAX, &out->count);
-    case 'l': out->bus.url = optarg; return true;
-    case 'p': return args_prefix("watch", optarg, &out->bus);
-    case 'h': out->help = true; return true;
+    case JSON: options->json = true; break;
+    case COUNT: return args_integer(args, 1, INT32_MAX, &options->count);
     }
-    return args_refuse("watch", option, argv);
-}
-
-static bool parse_options(int argc, char **argv, struct options *out)
-{
-    int option;
-    *out = (struct options){.bus = {.prefix = ""}};
-    args_restart();
-    while ((option = getopt_long(argc, argv, ":l:p:h", long_options, NULL)) != -1)
-        if (!parse_option(option, argv, out))
-            return false;
-    return optind == argc || args_error("watch", "unknown argument '%s'", argv[optind]);
-}
-
-static const char *error_of(const struct pair_result *result)
-{
-    if (result->status == FMB_OK)
-        return NULL;
-    return result->detail[0] ? result->detail : fmb_status_text(result->status);
+    return true;
 }
 
 static void print_json(const struct pair_result *result)
@@ -80,19 +56,19 @@ static void print_json(const struct pair_result *result)
            ", \"b\": %" PRId64 ", ",
            result->utime, result->client_id, result->sequence_number, result->server_id,
            result->compute_ns, result->body_id[0], result->body_id[1]);
-    report_answer_json(stdout, result->dim, error_of(result), &result->answer);
+    report_answer_json(stdout, result->dim, report_refusal(result), &result->answer);
     puts("}");
 }
 
-static void print_text(const struct pair_result *result)
+static void print_text(const struct pair_result *result, struct report_columns *columns)
 {
     printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  %4" PRId64 " %4" PRId64 "  ", result->client_id,
            result->sequence_number, 1e-3 * (double) result->compute_ns, result->body_id[0],
            result->body_id[1]);
     if (result->status == FMB_OK)
-        report_answer_text(stdout, result->dim, &result->answer);
+        report_answer_text(stdout, result->dim, &result->answer, columns);
     else
-        printf("not decided: %s", error_of(result));
+        printf("not decided: %s", report_refusal(result));
     putchar('\n');
 }
 
@@ -108,7 +84,7 @@ static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *u
     if (watch->options->json)
         print_json(&result);
     else
-        print_text(&result);
+        print_text(&result, &watch->columns);
     watch->seen++;
     if (fflush(stdout) != 0 || watch->seen == watch->options->count)
         watch->enough = true;
@@ -125,16 +101,14 @@ static int end_of_watch(const struct watch *watch, enum listen_end end)
 
 int cmd_watch(int argc, char **argv)
 {
-    struct options options;
+    struct args args = {"watch", usage, own_options, take_option, .takes_file = false};
+    struct options options = {.count = 0};
+    struct watch watch = {.options = &options, .columns = report_columns()};
     struct listener listener;
-    struct watch watch = {.options = &options};
-    if (!parse_options(argc, argv, &options))
-        return ARGS_USAGE;
-    if (options.help) {
-        fputs(usage, stdout);
-        return ARGS_ANSWERED;
-    }
-    if (!listen_open(&options.bus, WIRE_PAIR_RESULT, on_result, &watch, &listener))
+    int code = args_parse(&args, argc, argv, &options);
+    if (code != ARGS_RUN)
+        return code;
+    if (!listen_open(&args.bus, WIRE_PAIR_RESULT, on_result, &watch, &listener))
         return ARGS_FAILED;
     enum listen_end end = listen_until(&listener, &watch.enough, -1);
     listen_close(&listener);

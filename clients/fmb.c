@@ -46,7 +46,8 @@ static void print_help(FILE *out)
     fputs(
         "\n"
         "'fmb COMMAND --help' says more. 'fmb --version' prints the version.\n"
-        "Exit codes: 0 answered, 1 failed, 2 wrong usage or a bad scene.\n",
+        "Exit codes: 0 answered, 1 failed, 2 wrong usage, or input that cannot be\n"
+        "read or is no scene.\n",
         out);
 }
 
@@ -56,8 +57,17 @@ static int unknown_command(const char *name)
     return ARGS_USAGE;
 }
 
+/* For options and commands that take nothing behind the first arguments. */
+static int too_many(const char *word)
+{
+    fprintf(stderr, "fmb: unknown argument '%s'\nTry 'fmb --help'.\n", word);
+    return ARGS_USAGE;
+}
+
 static int cmd_help(int argc, char **argv)
 {
+    if (argc > 2)
+        return too_many(argv[2]);
     if (argc < 2 || strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0) {
         print_help(stdout);
         return ARGS_ANSWERED;
@@ -81,9 +91,13 @@ int main(int argc, char **argv)
         print_help(stderr);
         return ARGS_USAGE;
     }
-    if (is_one_of(argv[1], "--help", "-h"))
+    bool help = is_one_of(argv[1], "--help", "-h");
+    bool version = is_one_of(argv[1], "--version", "-V");
+    if ((help || version) && argc > 2)
+        return too_many(argv[2]);
+    if (help)
         return cmd_help(1, argv);
-    if (is_one_of(argv[1], "--version", "-V")) {
+    if (version) {
         printf("fmb %s\n", fmb_version());
         return ARGS_ANSWERED;
     }

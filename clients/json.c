@@ -7,10 +7,10 @@
 #include "json.h"
 
 #include "allocate.h"
+#include "number.h"
 #include "text.h"
 
 #include <cjson/cJSON.h>
-#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -20,6 +20,7 @@
 enum { ERROR_MAX = 320, QUOTED_MAX = 32 };
 
 static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
+#define EXPECTED_ID "an integer from 1 to 9007199254740991"
 
 struct json_reader {
     struct text text;
@@ -27,7 +28,7 @@ struct json_reader {
     char error[ERROR_MAX];
 };
 
-/* --- Where in the tree: printed only if something is wrong there ------------------------- */
+/* ---- Where in the tree: printed only if something is wrong there ----------------------------- */
 
 /* A value's place in the one that holds it: a key, or an index where key is NULL. */
 struct place {
@@ -92,14 +93,12 @@ static bool refuse(struct json_reader *reader, const struct place *place, const 
     return false;
 }
 
-/* Text of the input, fit for a line on a terminal: cut, and without its control characters. */
+/* Text of the input, fit for a line on any terminal: cut, and in printable ASCII. */
 static const char *quoted(const char *text, char out[QUOTED_MAX + 4])
 {
     size_t i = 0;
     for (; text[i] && i < QUOTED_MAX; i++)
-        out[i] = iscntrl((unsigned char) text[i]) ? '?' : text[i];
-    while (text[i] && i > 0 && (text[i] & 0xc0) == 0x80)
-        i--; /* not within a character of UTF-8 */
+        out[i] = text[i] >= 0x20 && text[i] < 0x7f ? text[i] : '?';
     strcpy(out + i, text[i] ? "..." : "");
     return out;
 }
@@ -123,7 +122,7 @@ static bool refuse_kind(struct json_reader *reader, const struct place *place, c
     return refuse(reader, place, "expected %s, found %s", expected, kind_name(item));
 }
 
-/* --- Objects ------------------------------------------------------------------------------ */
+/* ---- Objects --------------------------------------------------------------------------------- */
 
 struct key {
     const char *name;
@@ -161,7 +160,7 @@ static bool read_object(struct json_reader *reader, const struct place *place, c
     return true;
 }
 
-/* --- Arrays and numbers --------------------------------------------------------------------- */
+/* ---- Arrays and numbers ---------------------------------------------------------------------- */
 
 static bool check_array(struct json_reader *reader, const struct place *place, const cJSON *item,
                         size_t count, const char *what)
@@ -173,13 +172,24 @@ static bool check_array(struct json_reader *reader, const struct place *place, c
            refuse(reader, place, "expected %zu %s, found %zu", count, what, found);
 }
 
+/* Always false. */
+static bool refuse_value(struct json_reader *reader, const struct place *place, double value,
+                         const char *expected)
+{
+    char text[NUMBER_TEXT_MAX];
+    if (isfinite(value))
+        return refuse(reader, place, "expected %s, found %s", expected, number_exact(value, text));
+    return refuse(reader, place, "expected %s, found %sinfinity (doubles end at 1.8e308)", expected,
+                  value < 0 ? "-" : "");
+}
+
 static bool read_number(struct json_reader *reader, const struct place *place, const cJSON *item,
                         double *out)
 {
     if (!cJSON_IsNumber(item))
         return refuse_kind(reader, place, item, "a number");
     *out = item->valuedouble;
-    return isfinite(*out) || refuse(reader, place, "not a finite number in doubles");
+    return isfinite(*out) || refuse_value(reader, place, *out, "a finite number");
 }
 
 static bool read_vector(struct json_reader *reader, const struct place *place, const cJSON *item,
@@ -198,15 +208,15 @@ static bool read_id(struct json_reader *reader, const struct place *place, const
                     int64_t *out)
 {
     if (!cJSON_IsNumber(item))
-        return refuse_kind(reader, place, item, "an id");
+        return refuse_kind(reader, place, item, EXPECTED_ID);
     double id = item->valuedouble;
     if (!(id >= 1 && id <= id_max && id == floor(id)))
-        return refuse(reader, place, "an id is an integer from 1 to 2^53-1");
+        return refuse_value(reader, place, id, EXPECTED_ID);
     *out = (int64_t) id;
     return true;
 }
 
-/* --- Bodies --------------------------------------------------------------------------------- */
+/* ---- Bodies ---------------------------------------------------------------------------------- */
 
 static bool read_shape(struct json_reader *reader, const struct place *place, const cJSON *item,
                        int dim, int *out)
@@ -284,7 +294,7 @@ static bool read_bodies(struct json_reader *reader, const cJSON *item, struct sc
     return true;
 }
 
-/* --- Pairs ---------------------------------------------------------------------------------- */
+/* ---- Pairs ----------------------------------------------------------------------------------- */
 
 static bool read_pair(struct json_reader *reader, const struct place *place, const cJSON *item,
                       const struct scene_ids *ids, struct scene_pair *out)
@@ -346,7 +356,7 @@ static bool link_pairs(struct json_reader *reader, const cJSON *item, struct sce
     return good;
 }
 
-/* --- The scene ------------------------------------------------------------------------------ */
+/* ---- The scene ------------------------------------------------------------------------------- */
 
 static bool read_dim(struct json_reader *reader, const cJSON *item, struct scene *out)
 {
@@ -354,7 +364,7 @@ static bool read_dim(struct json_reader *reader, const cJSON *item, struct scene
     if (!cJSON_IsNumber(item))
         return refuse_kind(reader, &place, item, "2 or 3");
     if (item->valuedouble != 2 && item->valuedouble != 3)
-        return refuse(reader, &place, "expected 2 or 3, found %g", item->valuedouble);
+        return refuse_value(reader, &place, item->valuedouble, "2 or 3");
     out->dim = (int) item->valuedouble;
     return true;
 }
@@ -367,7 +377,8 @@ static bool read_duration(struct json_reader *reader, const cJSON *item, struct 
         return true;
     if (!read_number(reader, &place, item, &out->duration))
         return false;
-    return out->duration >= 0 || refuse(reader, &place, "a duration is not negative");
+    return out->duration >= 0 ||
+           refuse_value(reader, &place, out->duration, "a number of at least 0");
 }
 
 enum { DIM, DURATION, BODIES, PAIRS, SCENE_KEYS };
@@ -387,7 +398,7 @@ static bool read_scene(struct json_reader *reader, const cJSON *item, struct sce
            read_bodies(reader, value[BODIES], out) && link_pairs(reader, value[PAIRS], out);
 }
 
-/* --- The input ------------------------------------------------------------------------------ */
+/* ---- The input ------------------------------------------------------------------------------- */
 
 struct json_reader *json_open(int fd)
 {
@@ -408,13 +419,14 @@ const char *json_error(const struct json_reader *reader)
     return reader->error;
 }
 
-/* cJSON refuses well-formed text for one reason only: \u escapes of half a character. */
+/* What text.c lets through cJSON refuses for want of memory only. */
 static enum json_outcome read_object_text(struct json_reader *reader, const char *object,
                                           size_t length, struct scene *out)
 {
     cJSON *root = cJSON_ParseWithLength(object, length);
-    bool good = root ? read_scene(reader, root, out)
-                     : refuse(reader, NULL, "a \\u escape that is no character, or no memory");
+    if (!root)
+        allocate_failed();
+    bool good = read_scene(reader, root, out);
     cJSON_Delete(root);
     if (!good) {
         scene_clear(out);

@@ -7,8 +7,10 @@
  *      "pairs": [[1,2]]}
  *
  * dim (2 or 3) and bodies must be there, and each body's id, shape, origin and components.
- * Missing duration: 1. Missing pairs: all, in body order. Keys may come in any order, but once.
- * An input holds one or more such objects, one after the other. */
+ * Numbers are taken as the doubles they read as, ids too: 1e0 is the id 1, and of integers beyond
+ * 2^53 - 1, which two texts may share, none is an id. Missing duration: 1. Missing pairs: all, in
+ * body order. Keys may come in any order, but once. An input holds one or more such objects, one
+ * after the other. */
 #ifndef JSON_H
 #define JSON_H
 

@@ -1,30 +1,17 @@
 #include "listen.h"
 
 #include "bus.h"
+#include "clock.h"
+#include "signals.h"
 
 #include <errno.h>
-#include <math.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/signalfd.h>
-#include <time.h>
 #include <unistd.h>
 
 /* Results may come in bursts faster than they are printed. */
 enum { QUEUE_CAPACITY = 10000 };
-
-static int open_signals(void)
-{
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    if (sigprocmask(SIG_BLOCK, &set, NULL) != 0)
-        return -1;
-    return signalfd(-1, &set, SFD_CLOEXEC);
-}
 
 static bool subscribe(const struct args_bus *bus, const char *name, lcm_msg_handler_t handler,
                       void *user, lcm_t *lcm)
@@ -38,17 +25,18 @@ static bool subscribe(const struct args_bus *bus, const char *name, lcm_msg_hand
     return false;
 }
 
+/* The signals come last: until the bus is open they simply end the process. */
 bool listen_open(const struct args_bus *bus, const char *name, lcm_msg_handler_t handler,
                  void *user, struct listener *out)
 {
-    out->lcm = NULL;
-    out->signals = open_signals();
-    if (out->signals < 0)
+    out->signals = -1;
+    out->lcm = bus_open("fmb", bus->url, NULL);
+    if (out->lcm && subscribe(bus, name, handler, user, out->lcm)) {
+        out->signals = signals_open();
+        if (out->signals >= 0)
+            return true;
         perror("fmb: signals");
-    else
-        out->lcm = bus_open("fmb", bus->url, NULL);
-    if (out->lcm && subscribe(bus, name, handler, user, out->lcm))
-        return true;
+    }
     listen_close(out);
     return false;
 }
@@ -61,29 +49,20 @@ void listen_close(struct listener *listener)
         close(listener->signals);
 }
 
-static double now(void)
+/* For poll(): milliseconds until end, rounded up. */
+static int time_left_ms(int64_t end)
 {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double) time.tv_sec + 1e-9 * (double) time.tv_nsec;
-}
-
-/* For poll(): milliseconds until end, rounded up; -1 where there is none. */
-static int time_left_ms(double end)
-{
-    if (!isfinite(end))
-        return -1;
-    double left = ceil(1e3 * (end - now()));
-    return left > 0 ? (int) left : 0;
+    int64_t left = end - clock_ns();
+    return left > 0 ? (int) ((left + 999999) / 1000000) : 0;
 }
 
 enum listen_end listen_until(struct listener *listener, const bool *enough, double timeout)
 {
-    double end = timeout < 0 ? (double) INFINITY : now() + timeout;
+    int64_t end = timeout < 0 ? 0 : clock_ns() + (int64_t) (1e9 * timeout);
     struct pollfd source[2] = {{.fd = lcm_get_fileno(listener->lcm), .events = POLLIN},
                                {.fd = listener->signals, .events = POLLIN}};
     while (!*enough) {
-        int ready = poll(source, 2, time_left_ms(end));
+        int ready = poll(source, 2, timeout < 0 ? -1 : time_left_ms(end));
         if (ready < 0 && errno == EINTR)
             continue;
         if (ready == 0)

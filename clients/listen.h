@@ -12,7 +12,7 @@ struct listener {
 };
 
 /* name: the channel without its prefix. handler gets user. On output: false after lines on stderr.
- * SIGINT and SIGTERM are blocked from then on: listen_until() sees them. */
+ * From true on SIGINT and SIGTERM are blocked: listen_until() sees them. */
 bool listen_open(const struct args_bus *bus, const char *name, lcm_msg_handler_t handler,
                  void *user, struct listener *out);
 void listen_close(struct listener *listener);

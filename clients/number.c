@@ -22,8 +22,39 @@ const char *number_exact(double value, char text[NUMBER_TEXT_MAX])
 
 const char *number_short(double value, char text[NUMBER_TEXT_MAX])
 {
-    snprintf(text, NUMBER_TEXT_MAX, "%.6g", value);
+    snprintf(text, NUMBER_TEXT_MAX, "%.*g", NUMBER_SHORT_DIGITS, value);
     return text;
+}
+
+static int clamp(int value, int least, int most)
+{
+    return value < least ? least : value > most ? most : value;
+}
+
+/* The decimal place of the first digit: 0 for 1 to 9, 1 for 10 to 99, -1 for 0.1. */
+static int first_place(double value)
+{
+    return (int) floor(log10(value));
+}
+
+/* Three digits of what the ends differ in; of ends that are the same, three behind the point. */
+static int digits_for(double low, double high)
+{
+    double difference = high - low, largest = fmax(fabs(low), fabs(high));
+    if (!isfinite(difference) || largest == 0)
+        return NUMBER_SHORT_DIGITS;
+    if (difference > 0)
+        return clamp(first_place(largest) - first_place(difference) + 3, NUMBER_SHORT_DIGITS, 17);
+    return clamp(first_place(largest) + 4, NUMBER_SHORT_DIGITS, 12);
+}
+
+int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
+                char high_text[NUMBER_TEXT_MAX])
+{
+    int digits = digits_for(low, high);
+    snprintf(low_text, NUMBER_TEXT_MAX, "%.*g", digits, low);
+    snprintf(high_text, NUMBER_TEXT_MAX, "%.*g", digits, high);
+    return digits;
 }
 
 const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX])

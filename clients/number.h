@@ -14,6 +14,13 @@ const char *number_exact(double value, char text[NUMBER_TEXT_MAX]);
 /* Six digits, for people: "0.333333". Returns text. */
 const char *number_short(double value, char text[NUMBER_TEXT_MAX]);
 
+/* The ends of an interval, low <= high, for people: with six digits, or as many more, up to 17, as
+ * it takes to show three digits of their difference, or behind the point where there is none.
+ * Returns how many. */
+enum { NUMBER_SHORT_DIGITS = 6 };
+int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
+                char high_text[NUMBER_TEXT_MAX]);
+
 /* With a comma between thousands, for people: "4,194,304". Returns text. */
 const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX]);
 

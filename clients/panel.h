@@ -1,4 +1,4 @@
-/* One scene of a picture (svg.h): what is kept of it, and how it is drawn. */
+/* One scene of a picture (svg.h): what is kept of it until it is drawn (draw.h). */
 #ifndef PANEL_H
 #define PANEL_H
 
@@ -28,12 +28,5 @@ void panel_clear(struct panel *panel);
 
 /* Do both hold the same bodies, by id, so that they may be steps of time? */
 bool panel_is_step_of(const struct panel *panel, const struct panel *first);
-
-/* Draws into an SVG group. bounds: what is to be seen, the panel's own or more. */
-void panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
-                FILE *out);
-
-/* The fill of a face as "#rrggbb". light from 0 to 1. */
-const char *panel_colour(enum fmb_verdict verdict, double light, char out[8]);
 
 #endif

@@ -1,27 +1,20 @@
 #include "progress.h"
 
+#include "clock.h"
 #include "number.h"
 
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-static const double first_after_s = 1, every_s = 0.2;
+static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 
 /* The clock is looked at once in so many steps. */
 enum { STEPS = 64 };
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double) time.tv_sec + 1e-9 * (double) time.tv_nsec;
-}
-
 struct progress progress_begin(uint64_t total)
 {
     bool enabled = isatty(STDERR_FILENO) && !isatty(STDOUT_FILENO);
-    return (struct progress){.enabled = enabled, .total = total, .started_at = now()};
+    return (struct progress){.enabled = enabled, .total = total, .started_at = clock_ns()};
 }
 
 static void show(struct progress *progress)
@@ -38,8 +31,8 @@ void progress_step(struct progress *progress)
     progress->done++;
     if (!progress->enabled || progress->done % STEPS != 0)
         return;
-    double time = now();
-    if (time - progress->started_at < first_after_s || time - progress->shown_at < every_s)
+    int64_t time = clock_ns();
+    if (time - progress->started_at < first_after_ns || time - progress->shown_at < every_ns)
         return;
     progress->shown_at = time;
     show(progress);

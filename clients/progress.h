@@ -9,7 +9,7 @@ struct progress {
     bool shown; /* something stands on the line */
     bool enabled;
     uint64_t done, total;
-    double started_at, shown_at; /* seconds */
+    int64_t started_at, shown_at; /* clock_ns() */
 };
 
 /* Shows nothing unless standard error is a terminal and standard output is not: there the answers

@@ -2,6 +2,7 @@
 #ifndef REPORT_H
 #define REPORT_H
 
+#include "number.h"
 #include "scene.h"
 
 #include <stdio.h>
@@ -34,13 +35,25 @@ struct report_json {
 
 struct report_json report_json(FILE *out);
 
-/* A table for people, and counts at its end. Numbers have six digits. */
+/* How wide the columns of a table have become: a row with numbers of more digits than usual makes
+ * them wider for the rows below it. */
+struct report_columns {
+    int contact;
+    int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
+};
+
+/* For numbers of up to six digits. */
+struct report_columns report_columns(void);
+
+/* A table for people, and counts at its end. Numbers have six digits, or more where the ends of an
+ * interval would look alike. */
 struct report_text {
     struct report report;
     FILE *out;
     bool box; /* boxes were asked for: a column more */
     size_t scenes;
     int id_width;
+    struct report_columns columns;       /* of the scene */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
 };
 
@@ -50,16 +63,21 @@ struct report_text report_text(FILE *out, bool box);
  * "error": ... Used wherever answers are printed as JSON. */
 void report_answer_json(FILE *out, int dim, const char *error, const struct fmb_answer *answer);
 
+/* Why the service gave no answer in this result; NULL where it gave one. */
+struct pair_result;
+const char *report_refusal(const struct pair_result *result);
+
 /* text as a JSON string with its quotes; bytes that are not printable ASCII as \u00XX. */
 void report_string_json(FILE *out, const char *text);
 
 /* Verdict, contact and box for people, in columns, without the end of the line:
  *
  *     overlapping  0.25 to 0.5 s         x        0 .. 1         y     -0.5 .. 0.5 */
-void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer);
+void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
+                        struct report_columns *columns);
 
 /* "0.25 to 0.5 s"; text is returned. */
-enum { REPORT_TEXT_MAX = 160 };
+enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
 const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
 
 #endif

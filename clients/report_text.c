@@ -1,47 +1,86 @@
 #include "report.h"
 
-#include "number.h"
-
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 enum { VERDICT_WIDTH = 11, CONTACT_WIDTH = 20 };
 
-const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+/* Of one end of a box: for small numbers, and for those that %g would write with an exponent. */
+enum { END_WIDTH = 8, LARGE_END_WIDTH = 12 };
+static const double large_end = 1e5;
+
+struct report_columns report_columns(void)
+{
+    struct report_columns columns = {.contact = CONTACT_WIDTH};
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        columns.box[axis][0] = columns.box[axis][1] = END_WIDTH;
+    return columns;
+}
+
+/* A table in large coordinates, as those of maps, has room for them from its first row on. */
+static struct report_columns columns_for(const struct scene *scene)
+{
+    struct report_columns columns = report_columns();
+    for (size_t i = 0; i < scene->body_count; i++)
+        for (int axis = 0; axis < scene->dim; axis++)
+            if (fabs(scene->body[i].origin[axis]) >= large_end)
+                columns.box[axis][0] = columns.box[axis][1] = LARGE_END_WIDTH;
+    return columns;
+}
+
+/* The width to print text with. Where it has more digits than usual, so have the rows that follow,
+ * as a rule, and they get the room at once; any other number that is too long just sticks out. */
+static int widen(int *width, int digits, const char *text)
+{
+    int length = (int) strlen(text);
+    if (digits > NUMBER_SHORT_DIGITS && length > *width)
+        *width = length;
+    return *width;
+}
+
+static int write_contact(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
 {
     char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
-    snprintf(text, REPORT_TEXT_MAX, "%s to %s s", number_short(answer->contact[0], first),
-             number_short(answer->contact[1], last));
+    int digits = number_ends(answer->contact[0], answer->contact[1], first, last);
+    snprintf(text, REPORT_TEXT_MAX, "%s to %s s", first, last);
+    return digits;
+}
+
+const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+{
+    write_contact(answer, text);
     return text;
 }
 
-/* The ends stand in columns, so that boxes below each other can be compared. */
-static const char *box_text(int dim, const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+/* The ends stand in columns, so that boxes below each other can be compared. No blanks at the end
+ * of a line. */
+static void write_box(FILE *out, int dim, const struct fmb_answer *answer,
+                      struct report_columns *columns)
 {
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
-    int used = 0;
-    for (int axis = 0; axis < dim; axis++)
-        used += snprintf(text + used, REPORT_TEXT_MAX - (size_t) used,
-                         axis < dim - 1 ? "%c %8s .. %-8s  " : "%c %8s .. %s", "xyz"[axis],
-                         number_short(answer->box[0][axis], low),
-                         number_short(answer->box[1][axis], high));
-    return text;
+    for (int axis = 0; axis < dim; axis++) {
+        bool last = axis == dim - 1;
+        int digits = number_ends(answer->box[0][axis], answer->box[1][axis], low, high);
+        fprintf(out, "  %c %*s .. %-*s", "xyz"[axis], widen(&columns->box[axis][0], digits, low),
+                low, last ? 0 : widen(&columns->box[axis][1], digits, high), high);
+    }
 }
 
-/* No blanks at the end of a line. */
-void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer)
+void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
+                        struct report_columns *columns)
 {
-    char contact[REPORT_TEXT_MAX] = "", box[REPORT_TEXT_MAX];
+    char contact[REPORT_TEXT_MAX] = "";
+    int digits = answer->has_contact ? write_contact(answer, contact) : 0;
     const char *verdict = fmb_verdict_name((int) answer->verdict);
-    if (answer->has_contact)
-        report_contact_text(answer, contact);
-    if (answer->has_box)
-        fprintf(out, "%-*s  %-*s  %s", VERDICT_WIDTH, verdict, CONTACT_WIDTH, contact,
-                box_text(dim, answer, box));
-    else if (answer->has_contact)
-        fprintf(out, "%-*s  %s", VERDICT_WIDTH, verdict, contact);
-    else
+    if (!answer->has_contact && !answer->has_box) {
         fputs(verdict, out);
+        return;
+    }
+    fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
+            answer->has_box ? widen(&columns->contact, digits, contact) : 0, contact);
+    if (answer->has_box)
+        write_box(out, dim, answer, columns);
 }
 
 static int width_of(int64_t id)
@@ -59,6 +98,7 @@ static void text_begin(struct report *report, const struct scene *scene)
     struct report_text *text = (struct report_text *) report;
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
     memset(text->count, 0, sizeof text->count);
+    text->columns = columns_for(scene);
     text->id_width = 1;
     for (size_t i = 0; i < scene->body_count; i++)
         if (width_of(scene->body[i].id) > text->id_width)
@@ -72,7 +112,7 @@ static void text_begin(struct report *report, const struct scene *scene)
     text->scenes++;
     if (count > 0)
         fprintf(text->out, "  %*s  %*s  %-*s  %-*s%s\n", text->id_width, "a", text->id_width, "b",
-                VERDICT_WIDTH, "verdict", text->box ? CONTACT_WIDTH : 0, "contact",
+                VERDICT_WIDTH, "verdict", text->box ? text->columns.contact : 0, "contact",
                 text->box ? "  box" : "");
 }
 
@@ -85,7 +125,7 @@ static void text_pair(struct report *report, const struct scene *scene,
     if (outcome->error)
         fprintf(text->out, "not decided: %s", outcome->error);
     else
-        report_answer_text(text->out, scene->dim, &outcome->answer);
+        report_answer_text(text->out, scene->dim, &outcome->answer, &text->columns);
     putc('\n', text->out);
     text->count[outcome->answer.verdict]++;
 }

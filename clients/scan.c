@@ -3,43 +3,24 @@
 #include <stdio.h>
 #include <string.h>
 
-enum state {
-    BETWEEN, /* white space before the object */
-    VALUE,
-    VALUE_OR_CLOSE, /* behind [ */
-    KEY,            /* behind , in an object */
-    KEY_OR_CLOSE,   /* behind { */
-    COLON,
-    NEXT, /* behind a value: , or the closing bracket */
-    STRING,
-    ESCAPE,   /* behind \ */
-    HEX,      /* behind \u */
-    MINUS,    /* - */
-    ZERO,     /* 0 */
-    INTEGER,  /* 12 */
-    POINT,    /* 12. */
-    FRACTION, /* 12.3 */
-    EXPONENT, /* 12e */
-    SIGN,     /* 12e- */
-    POWER,    /* 12e-3 */
-    LITERAL,
-};
-
-/* What each state waits for, for people. */
+/* What each state waits for, for people; NULL: what may follow a value. */
 static const char *const expected[] = {
-    [BETWEEN] = "an object, '{'",
-    [VALUE] = "a value",
-    [VALUE_OR_CLOSE] = "a value or ']'",
-    [KEY] = "a key in quotes",
-    [KEY_OR_CLOSE] = "a key in quotes or '}'",
-    [COLON] = "':'",
-    [STRING] = "a character",
-    [ESCAPE] = "an escape of JSON",
-    [HEX] = "a hexadecimal digit",
-    [MINUS] = "a digit",
-    [POINT] = "a digit",
-    [EXPONENT] = "a digit or a sign",
-    [SIGN] = "a digit",
+    [AT_OBJECT] = "an object, '{'",
+    [AT_VALUE] = "a value",
+    [AT_VALUE_OR_CLOSE] = "a value or ']'",
+    [AT_KEY] = "a key in quotes",
+    [AT_KEY_OR_CLOSE] = "a key in quotes or '}'",
+    [AT_COLON] = "':'",
+    [AT_CHARACTER] = "a character",
+    [AT_ESCAPE] = "an escape of JSON",
+    [AT_HEX] = "a hexadecimal digit",
+    [AT_OTHER_HALF] = "the other half of the character, \\udc00 to \\udfff",
+    [AT_OTHER_HALF_U] = "the other half of the character, \\udc00 to \\udfff",
+    [AT_MINUS] = "a digit",
+    [AT_POINT] = "a digit",
+    [AT_EXPONENT] = "a digit or a sign",
+    [AT_SIGN] = "a digit",
+    [AT_LITERAL] = "true, false or null",
 };
 
 void scan_begin(struct scan *scan)
@@ -50,12 +31,12 @@ void scan_begin(struct scan *scan)
 
 void scan_next(struct scan *scan)
 {
-    scan->state = BETWEEN;
+    scan->state = AT_OBJECT;
 }
 
 bool scan_is_between(const struct scan *scan)
 {
-    return scan->state == BETWEEN;
+    return scan->state == AT_OBJECT;
 }
 
 static bool in_object(const struct scan *scan)
@@ -65,11 +46,19 @@ static bool in_object(const struct scan *scan)
 
 static const char *expected_now(const struct scan *scan)
 {
-    if (scan->state == LITERAL)
-        return "true, false or null";
     if (expected[scan->state])
         return expected[scan->state];
     return in_object(scan) ? "',' or '}'" : "',' or ']'";
+}
+
+void scan_refuse(struct scan *scan, const char *found)
+{
+    snprintf(scan->error, sizeof scan->error, "expected %s, found %s", expected_now(scan), found);
+}
+
+void scan_end(struct scan *scan)
+{
+    scan_refuse(scan, "the end of the input");
 }
 
 static enum scan_result bad(struct scan *scan, unsigned char byte)
@@ -79,15 +68,11 @@ static enum scan_result bad(struct scan *scan, unsigned char byte)
         snprintf(found, sizeof found, "'%c'", byte);
     else
         snprintf(found, sizeof found, "byte 0x%02x", byte);
-    snprintf(scan->error, sizeof scan->error, "expected %s, found %s", expected_now(scan), found);
+    scan_refuse(scan, found);
     return SCAN_BAD;
 }
 
-void scan_end(struct scan *scan)
-{
-    snprintf(scan->error, sizeof scan->error, "expected %s, found the end of the input",
-             expected_now(scan));
-}
+/* ---- Between tokens -------------------------------------------------------------------------- */
 
 static bool is_space(unsigned char byte)
 {
@@ -99,9 +84,9 @@ static bool is_digit(unsigned char byte)
     return byte >= '0' && byte <= '9';
 }
 
-static enum scan_result to(struct scan *scan, enum state state)
+static enum scan_result to(struct scan *scan, enum scan_state state)
 {
-    scan->state = (int) state;
+    scan->state = state;
     return SCAN_MORE;
 }
 
@@ -114,26 +99,26 @@ static enum scan_result open_level(struct scan *scan, bool object)
     scan->depth++;
     uint64_t bit = UINT64_C(1) << scan->depth;
     scan->objects = object ? scan->objects | bit : scan->objects & ~bit;
-    return to(scan, object ? KEY_OR_CLOSE : VALUE_OR_CLOSE);
+    return to(scan, object ? AT_KEY_OR_CLOSE : AT_VALUE_OR_CLOSE);
 }
 
 static enum scan_result close_level(struct scan *scan)
 {
     scan->depth--;
-    to(scan, NEXT);
+    to(scan, AT_COMMA_OR_CLOSE);
     return scan->depth == 0 ? SCAN_DONE : SCAN_MORE;
 }
 
 static enum scan_result string(struct scan *scan, bool key)
 {
     scan->key = key;
-    return to(scan, STRING);
+    return to(scan, AT_CHARACTER);
 }
 
 static enum scan_result literal(struct scan *scan, const char *rest)
 {
     scan->literal = rest;
-    return to(scan, LITERAL);
+    return to(scan, AT_LITERAL);
 }
 
 static enum scan_result value(struct scan *scan, unsigned char byte)
@@ -142,42 +127,56 @@ static enum scan_result value(struct scan *scan, unsigned char byte)
     case '{': return open_level(scan, true);
     case '[': return open_level(scan, false);
     case '"': return string(scan, false);
-    case '-': return to(scan, MINUS);
-    case '0': return to(scan, ZERO);
+    case '-': return to(scan, AT_MINUS);
+    case '0': return to(scan, AT_ZERO);
     case 't': return literal(scan, "rue");
     case 'f': return literal(scan, "alse");
     case 'n': return literal(scan, "ull");
     }
-    return is_digit(byte) ? to(scan, INTEGER) : bad(scan, byte);
+    return is_digit(byte) ? to(scan, AT_INTEGER) : bad(scan, byte);
+}
+
+static enum scan_result key(struct scan *scan, unsigned char byte)
+{
+    return byte == '"' ? string(scan, true) : bad(scan, byte);
 }
 
 static enum scan_result next(struct scan *scan, unsigned char byte)
 {
     if (byte == ',')
-        return to(scan, in_object(scan) ? KEY : VALUE);
+        return to(scan, in_object(scan) ? AT_KEY : AT_VALUE);
     if (byte == (in_object(scan) ? '}' : ']'))
         return close_level(scan);
     return bad(scan, byte);
 }
 
-/* Between tokens. */
 static enum scan_result structure(struct scan *scan, unsigned char byte)
 {
     if (is_space(byte))
         return SCAN_MORE;
     switch (scan->state) {
-    case BETWEEN: return byte == '{' ? open_level(scan, true) : bad(scan, byte);
-    case VALUE_OR_CLOSE: return byte == ']' ? close_level(scan) : value(scan, byte);
-    case KEY_OR_CLOSE:
+    case AT_OBJECT:
+        if (byte == '{')
+            return open_level(scan, true);
+        break;
+    case AT_VALUE: return value(scan, byte);
+    case AT_VALUE_OR_CLOSE: return byte == ']' ? close_level(scan) : value(scan, byte);
+    case AT_KEY_OR_CLOSE:
         if (byte == '}')
             return close_level(scan);
-        return byte == '"' ? string(scan, true) : bad(scan, byte);
-    case KEY: return byte == '"' ? string(scan, true) : bad(scan, byte);
-    case COLON: return byte == ':' ? to(scan, VALUE) : bad(scan, byte);
-    case NEXT: return next(scan, byte);
-    default: return value(scan, byte);
+        return key(scan, byte);
+    case AT_KEY: return key(scan, byte);
+    case AT_COLON:
+        if (byte == ':')
+            return to(scan, AT_VALUE);
+        break;
+    case AT_COMMA_OR_CLOSE: return next(scan, byte);
+    default: break;
     }
+    return bad(scan, byte);
 }
+
+/* ---- Strings --------------------------------------------------------------------------------- */
 
 static int hex_value(unsigned char byte)
 {
@@ -188,89 +187,161 @@ static int hex_value(unsigned char byte)
     return byte >= 'A' && byte <= 'F' ? byte - 'A' + 10 : -1;
 }
 
+/* UTF-16 has characters of two halves, and each is an escape of its own. */
+static bool is_first_half(unsigned unit)
+{
+    return unit >= 0xd800 && unit < 0xdc00;
+}
+
+static bool is_second_half(unsigned unit)
+{
+    return unit >= 0xdc00 && unit < 0xe000;
+}
+
+/* Behind the fourth digit. */
+static enum scan_result unit(struct scan *scan)
+{
+    if (scan->hex == 0) {
+        snprintf(scan->error, sizeof scan->error, "\\u0000 in a string");
+        return SCAN_BAD;
+    }
+    if (scan->other_half != is_second_half(scan->hex)) {
+        snprintf(scan->error, sizeof scan->error, "expected %s, found \\u%04x",
+                 scan->other_half ? expected[AT_OTHER_HALF] : "a character", scan->hex);
+        return SCAN_BAD;
+    }
+    return to(scan, is_first_half(scan->hex) ? AT_OTHER_HALF : AT_CHARACTER);
+}
+
 static enum scan_result hex(struct scan *scan, unsigned char byte)
 {
     int digit = hex_value(byte);
     if (digit < 0)
         return bad(scan, byte);
     scan->hex = scan->hex << 4 | (unsigned) digit;
-    if (--scan->hex_digits > 0)
-        return SCAN_MORE;
-    if (scan->hex == 0) {
-        snprintf(scan->error, sizeof scan->error, "\\u0000 in a string");
-        return SCAN_BAD;
-    }
-    return to(scan, STRING);
+    return --scan->hex_digits > 0 ? SCAN_MORE : unit(scan);
+}
+
+static enum scan_result begin_hex(struct scan *scan, bool other_half)
+{
+    scan->hex_digits = 4;
+    scan->hex = 0;
+    scan->other_half = other_half;
+    return to(scan, AT_HEX);
+}
+
+static enum scan_result escape(struct scan *scan, unsigned char byte)
+{
+    if (byte == 'u')
+        return begin_hex(scan, false);
+    return byte && strchr("\"\\/bfnrt", byte) ? to(scan, AT_CHARACTER) : bad(scan, byte);
+}
+
+static enum scan_result character(struct scan *scan, unsigned char byte)
+{
+    if (byte == '"')
+        return to(scan, scan->key ? AT_COLON : AT_COMMA_OR_CLOSE);
+    if (byte == '\\')
+        return to(scan, AT_ESCAPE);
+    return byte < 0x20 ? bad(scan, byte) : SCAN_MORE;
 }
 
 static enum scan_result in_string(struct scan *scan, unsigned char byte)
 {
     switch (scan->state) {
-    case HEX: return hex(scan, byte);
-    case ESCAPE:
-        if (byte == 'u') {
-            scan->hex_digits = 4;
-            scan->hex = 0;
-            return to(scan, HEX);
-        }
-        return byte && strchr("\"\\/bfnrt", byte) ? to(scan, STRING) : bad(scan, byte);
+    case AT_ESCAPE: return escape(scan, byte);
+    case AT_HEX: return hex(scan, byte);
+    case AT_OTHER_HALF: return byte == '\\' ? to(scan, AT_OTHER_HALF_U) : bad(scan, byte);
+    case AT_OTHER_HALF_U: return byte == 'u' ? begin_hex(scan, true) : bad(scan, byte);
+    default: return character(scan, byte);
     }
-    if (byte == '"')
-        return to(scan, scan->key ? COLON : NEXT);
-    if (byte == '\\')
-        return to(scan, ESCAPE);
-    return byte < 0x20 ? bad(scan, byte) : SCAN_MORE;
 }
+
+/* ---- Literals and numbers -------------------------------------------------------------------- */
 
 static enum scan_result in_literal(struct scan *scan, unsigned char byte)
 {
     if (byte != (unsigned char) *scan->literal)
         return bad(scan, byte);
     scan->literal++;
-    return *scan->literal ? SCAN_MORE : to(scan, NEXT);
+    return *scan->literal ? SCAN_MORE : to(scan, AT_COMMA_OR_CLOSE);
 }
 
-/* The state that a number is in with one more byte; NEXT: it has ended before the byte; KEY,
- * which no number is in: the byte is wrong. */
-static enum state number_state(enum state state, unsigned char byte)
+/* What one more byte does to a number: it goes on, in another state perhaps; it has ended before
+ * the byte; or the byte is wrong, because the number cannot end yet. */
+enum step { STAYS, ENDED, WRONG };
+
+static enum step stay(struct scan *scan, enum scan_state state)
+{
+    scan->state = state;
+    return STAYS;
+}
+
+/* Behind digits, where an exponent may follow. */
+static enum step exponent_or_end(struct scan *scan, unsigned char byte)
+{
+    return byte == 'e' || byte == 'E' ? stay(scan, AT_EXPONENT) : ENDED;
+}
+
+/* Behind digits before the point. */
+static enum step point_or_end(struct scan *scan, unsigned char byte)
+{
+    return byte == '.' ? stay(scan, AT_POINT) : exponent_or_end(scan, byte);
+}
+
+static enum step number_step(struct scan *scan, unsigned char byte)
 {
     bool digit = is_digit(byte);
-    bool exponent = byte == 'e' || byte == 'E';
-    switch (state) {
-    case MINUS: return byte == '0' ? ZERO : digit ? INTEGER : KEY;
-    case ZERO: return digit ? KEY : byte == '.' ? POINT : exponent ? EXPONENT : NEXT;
-    case INTEGER: return digit ? INTEGER : byte == '.' ? POINT : exponent ? EXPONENT : NEXT;
-    case POINT: return digit ? FRACTION : KEY;
-    case FRACTION: return digit ? FRACTION : exponent ? EXPONENT : NEXT;
-    case EXPONENT: return digit ? POWER : byte == '+' || byte == '-' ? SIGN : KEY;
-    case SIGN: return digit ? POWER : KEY;
-    default: return digit ? POWER : NEXT;
+    switch (scan->state) {
+    case AT_MINUS:
+        if (!digit)
+            return WRONG;
+        return stay(scan, byte == '0' ? AT_ZERO : AT_INTEGER);
+    case AT_ZERO: return point_or_end(scan, byte);
+    case AT_INTEGER: return digit ? STAYS : point_or_end(scan, byte);
+    case AT_POINT: return digit ? stay(scan, AT_FRACTION) : WRONG;
+    case AT_FRACTION: return digit ? STAYS : exponent_or_end(scan, byte);
+    case AT_EXPONENT:
+        if (byte == '+' || byte == '-')
+            return stay(scan, AT_SIGN);
+        return digit ? stay(scan, AT_POWER) : WRONG;
+    case AT_SIGN: return digit ? stay(scan, AT_POWER) : WRONG;
+    case AT_POWER: return digit ? STAYS : ENDED;
+    default: return WRONG;
     }
 }
 
 static enum scan_result in_number(struct scan *scan, unsigned char byte)
 {
-    enum state state = number_state((enum state) scan->state, byte);
-    if (state == KEY)
-        return bad(scan, byte);
-    to(scan, state);
-    return state == NEXT ? structure(scan, byte) : SCAN_MORE;
+    switch (number_step(scan, byte)) {
+    case STAYS: return SCAN_MORE;
+    case ENDED: to(scan, AT_COMMA_OR_CLOSE); return structure(scan, byte);
+    case WRONG: break;
+    }
+    return bad(scan, byte);
 }
 
-static bool is_number(int state)
+/* ---- Any byte -------------------------------------------------------------------------------- */
+
+static bool is_string(enum scan_state state)
 {
-    return state >= MINUS && state <= POWER;
+    return state >= AT_CHARACTER && state <= AT_OTHER_HALF_U;
+}
+
+static bool is_number(enum scan_state state)
+{
+    return state >= AT_MINUS && state <= AT_POWER;
 }
 
 static enum scan_result token(struct scan *scan, unsigned char byte)
 {
-    switch (scan->state) {
-    case STRING:
-    case ESCAPE:
-    case HEX: return in_string(scan, byte);
-    case LITERAL: return in_literal(scan, byte);
-    }
-    return is_number(scan->state) ? in_number(scan, byte) : structure(scan, byte);
+    if (is_string(scan->state))
+        return in_string(scan, byte);
+    if (is_number(scan->state))
+        return in_number(scan, byte);
+    if (scan->state == AT_LITERAL)
+        return in_literal(scan, byte);
+    return structure(scan, byte);
 }
 
 static void advance(struct scan *scan, unsigned char byte)

@@ -1,8 +1,8 @@
 #include "svg.h"
 
 #include "allocate.h"
+#include "draw.h"
 #include "number.h"
-#include "panel.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ struct svg {
     struct panel panel[SVG_PANELS_MAX];
 };
 
-/* --- Taking scenes in ------------------------------------------------------------------------ */
+/* ---- Taking scenes in ------------------------------------------------------------------------ */
 
 static void svg_begin(struct report *report, const struct scene *scene)
 {
@@ -59,7 +59,7 @@ struct report *svg_report(struct svg *svg)
     return &svg->report;
 }
 
-/* --- The sheet ------------------------------------------------------------------------------- */
+/* ---- The sheet ------------------------------------------------------------------------------- */
 
 /* Pixels. */
 enum { GAP = 14, PANEL_WIDTH = 440, PANEL_HEIGHT = 380, LEGEND_HEIGHT = 34 };
@@ -130,7 +130,7 @@ static void begin_sheet(const struct sheet *sheet, FILE *out)
     fputs("<rect class=\"sheet\" width=\"100%\" height=\"100%\"/>\n", out);
 }
 
-/* --- Captions -------------------------------------------------------------------------------- */
+/* ---- Captions -------------------------------------------------------------------------------- */
 
 static void draw_counts(const struct panel *panel, FILE *out)
 {
@@ -162,7 +162,7 @@ static void draw_caption(const struct panel *panel, size_t number, struct paper 
     fputs("</text>\n", out);
 }
 
-/* --- The legend ------------------------------------------------------------------------------ */
+/* ---- The legend ------------------------------------------------------------------------------ */
 
 static double legend_text(double x, double y, const char *text, FILE *out)
 {
@@ -176,7 +176,7 @@ static double legend_frame(double x, double y, enum fmb_verdict verdict, FILE *o
     fprintf(out,
             "<rect class=\"front\" x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"12\" fill=\"%s\" "
             "stroke=\"%s\"/>\n",
-            x, y - 6, panel_colour(verdict, 0.8, fill), panel_colour(verdict, 0, stroke));
+            x, y - 6, draw_colour(verdict, 0.8, fill), draw_colour(verdict, 0, stroke));
     return legend_text(x + 20, y, verdict ? fmb_verdict_name((int) verdict) : "not asked", out);
 }
 
@@ -197,7 +197,7 @@ static void draw_legend(const struct sheet *sheet, FILE *out)
     legend_text(x + 20, y, "end of the window", out);
 }
 
-/* --- The picture ----------------------------------------------------------------------------- */
+/* ---- The picture ----------------------------------------------------------------------------- */
 
 /* What the panel shows: its own bounds, or those of all its steps of time. */
 static struct view_bounds bounds_of(const struct svg *svg, size_t index)
@@ -217,7 +217,7 @@ void svg_write(const struct svg *svg, FILE *out)
         struct view_bounds bounds = bounds_of(svg, i);
         struct paper paper = panel_paper(&sheet, i);
         draw_caption(&svg->panel[i], i + 1, paper, out);
-        panel_draw(&svg->panel[i], &bounds, paper, out);
+        draw_panel(&svg->panel[i], &bounds, paper, out);
     }
     if (svg->panels_left_out > 0)
         fprintf(out,

@@ -79,8 +79,18 @@ static enum scan_result scan_on(struct text *text)
     return result;
 }
 
+/* Editors put one at the beginning of a file; JSON has none. The byte that was refused is the first
+ * of three. */
+static bool is_byte_order_mark(const struct text *text)
+{
+    const char *refused = text->bytes + text->scanned - 1;
+    return text->used - text->scanned >= 2 && memcmp(refused, "\xef\xbb\xbf", 3) == 0;
+}
+
 static enum text_outcome bad(struct text *text)
 {
+    if (scan_is_between(&text->scan) && is_byte_order_mark(text))
+        scan_refuse(&text->scan, "a UTF-8 byte order mark");
     snprintf(text->error, sizeof text->error, "line %zu, column %zu: %s", text->scan.line,
              text->scan.column, text->scan.error);
     return TEXT_BAD;

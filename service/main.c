@@ -4,6 +4,7 @@
 #include "fmb/fmb.h"
 #include "random_id.h"
 #include "server.h"
+#include "signals.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -13,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/signalfd.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
@@ -76,7 +76,7 @@ static int parse_options(int argc, char **argv, struct options *out)
     };
     *out = (struct options){.prefix = "", .bodies = DEFAULT_BODIES};
     int option;
-    while ((option = getopt_long(argc, argv, "l:p:b:hV", long_options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, ":l:p:b:hV", long_options, NULL)) != -1) {
         switch (option) {
         case 'l': out->lcm_url = optarg; break;
         case 'p':
@@ -90,25 +90,13 @@ static int parse_options(int argc, char **argv, struct options *out)
             break;
         case 'h': printf(usage, DEFAULT_BODIES, CACHE_BODIES_MAX); return EXIT_SUCCESS;
         case 'V': printf("fmbd %s\n", fmb_version()); return EXIT_SUCCESS;
-        default: fputs("fmbd: see fmbd --help\n", stderr); return EXIT_USAGE;
+        case ':': return wrong_option("option", argv[optind - 1], "a value after it");
+        default: return wrong_option("option", argv[optind - 1], "one that there is");
         }
     }
     if (optind < argc)
         return wrong_option("argument", argv[optind], "options only");
     return -1;
-}
-
-/* SIGINT and SIGTERM as something to read. Only once the bus is open, which can take seconds:
- * until then they simply end the process. LCM's thread blocks all signals itself. -1: errno. */
-static int open_signals(void)
-{
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    if (sigprocmask(SIG_BLOCK, &set, NULL) != 0)
-        return -1;
-    return signalfd(-1, &set, SFD_CLOEXEC);
 }
 
 /* Readable once a second. -1: errno. */
@@ -165,7 +153,7 @@ static void say_ready(const struct server *server, const struct server_options *
 static int serve_until_signal(lcm_t *lcm, struct server *server,
                               const struct server_options *options)
 {
-    int signals = open_signals();
+    int signals = signals_open();
     int heartbeat = open_heartbeat();
     if (signals < 0 || heartbeat < 0) {
         perror("fmbd: signals and timer");

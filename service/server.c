@@ -2,6 +2,7 @@
 
 #include "answer.h"
 #include "bus.h"
+#include "clock.h"
 #include "histogram.h"
 #include "senders.h"
 #include "wire.h"
@@ -11,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 struct server {
@@ -33,13 +33,6 @@ struct server {
     int64_t other_id; /* the other service last heard on the same channels; 0: none */
 };
 
-static int64_t clock_ns(clockid_t clock)
-{
-    struct timespec time;
-    clock_gettime(clock, &time);
-    return (int64_t) time.tv_sec * 1000000000 + time.tv_nsec;
-}
-
 /* Whether standard error takes a line now: a pipe that nobody reads must not stop the service. */
 static bool can_say(void)
 {
@@ -50,7 +43,7 @@ static bool can_say(void)
 /* Says what could not be read, at most once a second. */
 static void say_malformed(struct server *server)
 {
-    int64_t now = clock_ns(CLOCK_MONOTONIC);
+    int64_t now = clock_ns();
     bool recently = server->said_ns && now - server->said_ns < 1000000000;
     if (server->unsaid == 0 || recently || !can_say())
         return;
@@ -100,9 +93,9 @@ static void on_pair_query(const lcm_recv_buf_t *buffer, const char *channel, voi
     if (query_id_ok(query.client_id) && query_id_ok(query.sequence_number))
         senders_note(&server->senders, query.client_id, query.sequence_number);
 
-    int64_t begin = clock_ns(CLOCK_MONOTONIC);
+    int64_t begin = clock_ns();
     answer_pair(&server->answerer, &query, &result);
-    result.compute_ns = clock_ns(CLOCK_MONOTONIC) - begin;
+    result.compute_ns = clock_ns() - begin;
     if (result.status == FMB_OK)
         histogram_add(&server->compute_ns, result.compute_ns);
     publish_result(server, &result);
@@ -148,7 +141,7 @@ struct server *server_create(lcm_t *lcm, const struct server_options *options)
     server->status.server_id = options->server_id;
     server->status.receive_buffer = options->receive_buffer;
     snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
-    server->ready_ns = clock_ns(CLOCK_MONOTONIC);
+    server->ready_ns = clock_ns();
     server->queries = subscribe(server, server->query_channel, on_pair_query, SERVER_QUEUE);
     server->statuses = subscribe(server, server->status_channel, on_status, 4);
     if (!server->answerer.cache || !server->queries || !server->statuses) {
@@ -174,8 +167,8 @@ static void complete_status(struct server *server, struct wire_status *status)
 {
     struct cache_counts cache = cache_counts(server->answerer.cache);
     *status = server->status;
-    status->utime = clock_ns(CLOCK_REALTIME) / 1000;
-    status->uptime_us = (clock_ns(CLOCK_MONOTONIC) - server->ready_ns) / 1000;
+    status->utime = clock_utime();
+    status->uptime_us = (clock_ns() - server->ready_ns) / 1000;
     status->sequence_gaps = server->senders.gaps;
     status->repeated = server->senders.repeated;
     status->bodies = cache.bodies;

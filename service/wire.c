@@ -103,8 +103,8 @@ static void read_numbers(struct cursor *cursor, struct query_numbers *out)
     read_doubles(cursor, out->count, out->number, FMB_COMPONENTS_MAX);
 }
 
-/* A string; what does not fit into size bytes is cut, and control characters, which could do
- * things to a terminal, become '?'. */
+/* A string; what does not fit into size bytes is cut, and what is not printable ASCII,
+ * which could do things to a terminal, becomes '?'. */
 static void read_string(struct cursor *cursor, char *out, size_t size)
 {
     int32_t length = read_count(cursor, 1);
@@ -118,7 +118,7 @@ static void read_string(struct cursor *cursor, char *out, size_t size)
     }
     size_t kept = (size_t) length <= size ? (size_t) length - 1 : size - 1;
     for (size_t i = 0; i < kept; i++)
-        out[i] = bytes[i] < ' ' || bytes[i] == 0x7f ? '?' : (char) bytes[i];
+        out[i] = bytes[i] < ' ' || bytes[i] >= 0x7f ? '?' : (char) bytes[i];
     out[kept] = '\0';
 }
 
@@ -240,18 +240,11 @@ const char *wire_read_status(const void *bytes, uint32_t size, struct wire_statu
     out->utime = read_int64(&cursor);
     out->server_id = read_int64(&cursor);
     read_string(&cursor, out->version, sizeof out->version);
-    int64_t *const before[] = {&out->uptime_us, &out->restarts, &out->receive_buffer,
-                               &out->received,  &out->answered, &out->unsent,
-                               &out->pairs};
-    for (size_t i = 0; i < sizeof before / sizeof *before; i++)
-        *before[i] = read_int64(&cursor);
+#define X(name) out->name = read_int64(&cursor);
+    WIRE_COUNTERS_BEFORE(X)
     read_int64s(&cursor, out->results, FMB_STATUS_COUNT);
-    int64_t *const after[] = {&out->malformed,      &out->sequence_gaps,  &out->repeated,
-                              &out->bodies,         &out->capacity,       &out->hits,
-                              &out->misses,         &out->replacements,   &out->evictions,
-                              &out->compute_p50_ns, &out->compute_p99_ns, &out->compute_max_ns};
-    for (size_t i = 0; i < sizeof after / sizeof *after; i++)
-        *after[i] = read_int64(&cursor);
+    WIRE_COUNTERS_AFTER(X)
+#undef X
     read_int64s(&cursor, NULL, 0); /* more */
     return end_reading(&cursor);
 }
@@ -327,31 +320,14 @@ size_t wire_write_pair_result(const struct pair_result *result, unsigned char ou
 
 size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX])
 {
-    fmb_msgs_status_t message = {
-        .utime = status->utime,
-        .server_id = status->server_id,
-        .version = (char *) status->version,
-        .uptime_us = status->uptime_us,
-        .restarts = status->restarts,
-        .receive_buffer = status->receive_buffer,
-        .received = status->received,
-        .answered = status->answered,
-        .unsent = status->unsent,
-        .pairs = status->pairs,
-        .num_results = FMB_STATUS_COUNT,
-        .results = (int64_t *) status->results,
-        .malformed = status->malformed,
-        .sequence_gaps = status->sequence_gaps,
-        .repeated = status->repeated,
-        .bodies = status->bodies,
-        .capacity = status->capacity,
-        .hits = status->hits,
-        .misses = status->misses,
-        .replacements = status->replacements,
-        .evictions = status->evictions,
-        .compute_p50_ns = status->compute_p50_ns,
-        .compute_p99_ns = status->compute_p99_ns,
-        .compute_max_ns = status->compute_max_ns,
+    fmb_msgs_status_t message = {.utime = status->utime,
+                                 .server_id = status->server_id,
+                                 .version = (char *) status->version,
+                                 .num_results = FMB_STATUS_COUNT,
+                                 .results = (int64_t *) status->results,
+#define X(name) .name = status->name,
+                                 WIRE_COUNTERS_BEFORE(X) WIRE_COUNTERS_AFTER(X)
+#undef X
     };
     return written(fmb_msgs_status_t_encode(out, 0, WIRE_BYTES_MAX, &message));
 }

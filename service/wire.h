@@ -23,16 +23,39 @@
 /* Every message written here fits into this many bytes, and so into one datagram. */
 enum { WIRE_BYTES_MAX = 1400 };
 
+/* The counters of the heartbeat, all int64_t, in the order of status_t.lcm: those before its list
+ * of results, and those after it. */
+#define WIRE_COUNTERS_BEFORE(X) \
+    X(uptime_us)                \
+    X(restarts)                 \
+    X(receive_buffer)           \
+    X(received)                 \
+    X(answered)                 \
+    X(unsent)                   \
+    X(pairs)
+#define WIRE_COUNTERS_AFTER(X) \
+    X(malformed)               \
+    X(sequence_gaps)           \
+    X(repeated)                \
+    X(bodies)                  \
+    X(capacity)                \
+    X(hits)                    \
+    X(misses)                  \
+    X(replacements)            \
+    X(evictions)               \
+    X(compute_p50_ns)          \
+    X(compute_p99_ns)          \
+    X(compute_max_ns)
+
 /* The heartbeat (status_t.lcm). */
 struct wire_status {
     int64_t utime, server_id;
     char version[32];
-    int64_t uptime_us, restarts, receive_buffer;
-    int64_t received, answered, unsent, pairs;
+#define X(name) int64_t name;
+    WIRE_COUNTERS_BEFORE(X)
     int64_t results[FMB_STATUS_COUNT]; /* [status] */
-    int64_t malformed, sequence_gaps, repeated;
-    int64_t bodies, capacity, hits, misses, replacements, evictions;
-    int64_t compute_p50_ns, compute_p99_ns, compute_max_ns;
+    WIRE_COUNTERS_AFTER(X)
+#undef X
 };
 
 /* Readers. On input: size bytes as LCM gives them (size is unsigned there, and can be a

@@ -99,7 +99,7 @@ list() {
 rm -rf "$log"
 mkdir -p "$log"
 rm -rf build/tests build/asan/tests build/asan-clang/tests
-build headers tests
+build format-check headers tests
 builds=build
 if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan tests

@@ -153,6 +153,20 @@ $two, \"pairs\": []}"
 1 overlapping, 2 touching, 0 separated"
 }
 
+@test "a table in large coordinates tells the ends of a box apart, in columns" {
+    run "$FMB" query --local --box <<< "{\"dim\": 2, \"bodies\": [
+        {\"id\": 1, $square, \"origin\": [500000,5400000]},
+        {\"id\": 2, \"shape\": \"cuboid\", \"origin\": [500000.125,5400000.25], \"components\": [[1,0],[0,0.0625]]},
+        {\"id\": 3, $square, \"origin\": [500000,5400000.5], \"velocity\": [0,0.000000001]}]}"
+    ended 0
+    is "scene 1: 3 bodies in 2D, 3 pairs, 0 to 1 s
+  a  b  verdict      contact               box
+  1  2  overlapping                        x   500000.125 .. 500001        y   5400000.25 .. 5400000.3125
+  1  3  overlapping  0 to 1 s              x       500000 .. 500001        y    5400000.5 .. 5400001
+  2  3  separated
+2 overlapping, 0 touching, 1 separated"
+}
+
 # ---- Methods ---------------------------------------------------------------------------------
 
 @test "the inexact methods can be asked" {
@@ -205,7 +219,7 @@ $two, \"pairs\": []}"
 @test "numbers that are not finite" {
     query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [0,1e999]}]}"
     ended 2
-    said 'fmb: standard input: bodies[0].origin[1]: not a finite number in doubles'
+    said 'fmb: standard input: bodies[0].origin[1]: expected a finite number, found infinity (doubles end at 1.8e308)'
 }
 
 @test "pairs of no body, and of one" {
@@ -338,6 +352,26 @@ all_pairs() {
     run "$FMB" --version
     ended 0
     [[ $output =~ ^fmb\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
+}
+
+@test "nothing may stand behind --help and --version" {
+    for arguments in '--help x' '-h x' '--version x' '-V x' 'help query x'; do
+        run --separate-stderr "$FMB" $arguments
+        ended 2
+        is ''
+        said "fmb: unknown argument 'x'
+Try 'fmb --help'."
+    done
+}
+
+@test "the options that all commands have" {
+    for command in query watch status; do
+        wrong "--prefix: expected at most 32 letters, digits, '_' or '-'" $command -p 'a.*'
+        wrong "option '--lcm-url' needs a value" $command --lcm-url
+        run "$FMB" $command -p a -l memq:// -h
+        ended 0
+        [[ ${lines[0]} == "usage: fmb $command"* ]]
+    done
 }
 
 @test "no command, an unknown one" {

@@ -115,10 +115,10 @@ load service
     "$FMB" watch > "$BATS_TEST_TMPDIR/watch" 2> "$BATS_TEST_TMPDIR/watch.err" 3>&- &
     watch=$!
     started="$started $watch"
-    sent=0
+    sent=0 to_watch=0
     for type in pair_query pair_result status; do
         sent=$((sent + $("$FMB_BUILD/poke" FMB_PAIR_QUERY $type)))
-        "$FMB_BUILD/poke" FMB_PAIR_RESULT $type
+        to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_PAIR_RESULT $type)))
         "$FMB_BUILD/poke" FMB_STATUS $type
     done
     [ "$sent" -gt 600 ]
@@ -129,6 +129,7 @@ load service
     wait_until grep -q '[a-z]ed\|touching' "$BATS_TEST_TMPDIR/watch"
     kill -INT $watch
     wait $watch
+    grep -qx "fmb: $to_watch messages could not be read" "$BATS_TEST_TMPDIR/watch.err"
     stop_fmbd
 }
 

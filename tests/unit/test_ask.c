@@ -6,9 +6,11 @@
 #include <cmocka.h>
 
 #include "ask.h"
+#include "clock.h"
 #include "wire.h"
 
 #include <string.h>
+#include <time.h>
 
 /* A service in the same thread: answers dim = the duration, in nonsense order of moods. */
 struct service {
@@ -80,21 +82,37 @@ static void sink(void *user, const struct pair_result *result)
     work->answered++;
 }
 
-static struct work run(struct service *service, int total, double timeout, int retries,
-                       bool *silent)
+static struct ask *open_both(struct service *service, double timeout, int retries)
 {
-    struct work work = {.total = total};
     struct ask_options options = {.prefix = "", .timeout = timeout, .retries = retries};
     service->lcm = lcm_create("memq://");
     lcm_subscription_t *subscription =
         lcm_subscribe(service->lcm, "FMB_PAIR_QUERY", on_query, service);
     lcm_subscription_set_queue_capacity(subscription, 1000);
-    struct ask *ask = ask_open(service->lcm, &options);
-    ask_all(ask, source, sink, &work);
-    *silent = ask_is_silent(ask);
+    return ask_open(service->lcm, &options);
+}
+
+static void close_both(struct service *service, struct ask *ask)
+{
     ask_close(ask);
     lcm_destroy(service->lcm);
+}
+
+static struct work ask_for(struct ask *ask, int total)
+{
+    struct work work = {.total = total};
+    ask_all(ask, source, sink, &work);
     assert_int_equal(work.answered, total);
+    return work;
+}
+
+static struct work run(struct service *service, int total, double timeout, int retries,
+                       bool *silent)
+{
+    struct ask *ask = open_both(service, timeout, retries);
+    struct work work = ask_for(ask, total);
+    *silent = ask_is_silent(ask);
+    close_both(service, ask);
     return work;
 }
 
@@ -118,8 +136,57 @@ static void all(void **state)
     run(&none, 0, 0.02, 0, &silent);
 }
 
+/* A little more than the second between two probes. */
+static void wait_for_probe(void)
+{
+    nanosleep(&(struct timespec){1, 50000000}, NULL);
+}
+
+/* A client may run for hours, and the service be started behind it. */
+static void asks_again_when_the_service_is_back(void **state)
+{
+    struct service service = {.deaf_every = 1};
+    struct ask *ask = open_both(&service, 0.02, 2);
+    (void) state;
+    assert_int_equal(ask_for(ask, 10).missing, 10);
+    assert_true(ask_is_silent(ask));
+    assert_int_equal(service.heard, 30);
+    assert_int_equal(ask_for(ask, 10).missing, 10);
+    assert_int_equal(service.heard, 30); /* too soon for a probe */
+    wait_for_probe();
+    assert_int_equal(ask_for(ask, 10).missing, 10);
+    assert_int_equal(service.heard, 31);
+    assert_int_equal(ask_counts(ask).outages, 1);
+    wait_for_probe();
+    service.deaf_every = 0;
+    assert_int_equal(ask_for(ask, 1000).missing, 0);
+    assert_false(ask_is_silent(ask));
+    service.deaf_every = 1;
+    assert_int_equal(ask_for(ask, 1).missing, 1);
+    assert_int_equal(ask_counts(ask).outages, 2);
+    close_both(&service, ask);
+}
+
+/* The first window waits for all its tries; what comes behind it waits for nothing, but for a
+ * probe in each second that the rest takes. */
+static void nobody_there_costs_one_query_time(void **state)
+{
+    enum { TOTAL = 100000 };
+    struct service service = {.deaf_every = 1};
+    struct ask *ask = open_both(&service, 0.1, 1);
+    (void) state;
+    int64_t start = clock_ns();
+    assert_int_equal(ask_for(ask, TOTAL).missing, TOTAL);
+    assert_true(clock_ns() - start < INT64_C(2000000000));
+    close_both(&service, ask);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all),
+        cmocka_unit_test(asks_again_when_the_service_is_back),
+        cmocka_unit_test(nobody_there_costs_one_query_time),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

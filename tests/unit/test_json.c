@@ -68,7 +68,7 @@ static struct scene read_one(const char *text)
     return scene;
 }
 
-/* --- What is understood ---------------------------------------------------------------------- */
+/* ---- What is understood ---------------------------------------------------------------------- */
 
 #define CUBE "\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],[0,0,1]]"
 #define BODY(id) "{\"id\":" #id "," CUBE "}"
@@ -173,7 +173,7 @@ static void a_scene_is_given_when_it_is_complete(void **state)
     close(end[0]);
 }
 
-/* --- Numbers --------------------------------------------------------------------------------- */
+/* ---- Numbers --------------------------------------------------------------------------------- */
 
 static double read_number_back(const char *number)
 {
@@ -239,6 +239,28 @@ static void numbers_are_written_short(void **state)
     assert_string_equal(number_grouped(999, text), "999");
 }
 
+static void ends_that_differ_look_different(void **state)
+{
+    static const struct {
+        double low, high;
+        const char *low_text, *high_text;
+    } cases[] = {
+        {0.25, 1.0 / 3, "0.25", "0.333333"},
+        {5400000.25, 5400000.25, "5400000.25", "5400000.25"},
+        {5400000.25, 5400000.75, "5400000.25", "5400000.75"},
+        {5400000.25, 5400000.375, "5400000.25", "5400000.375"},
+        {1, 1 + 0x1p-52, "1", "1.0000000000000002"},
+        {-INFINITY, INFINITY, "-inf", "inf"},
+    };
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        number_ends(cases[i].low, cases[i].high, low, high);
+        assert_string_equal(low, cases[i].low_text);
+        assert_string_equal(high, cases[i].high_text);
+    }
+}
+
 /* cJSON cuts numbers at 63 characters. */
 static void long_numbers_are_read_in_full(void **state)
 {
@@ -252,10 +274,13 @@ static void long_numbers_are_read_in_full(void **state)
     assert_true(read_number_back("1.00000000000000011102230246251565404236316680908203125000000000"
                                  "000000000000000000000000000000001") == 1 + 0x1p-52);
     snprintf(text, sizeof text, "{\"dim\":2,\"duration\":1%0150d%0170d,\"bodies\":[]}", 0, 0);
-    expect_error(text, "duration: not a finite number in doubles");
+    expect_error(text,
+                 "duration: expected a finite number, found infinity (doubles end at 1.8e308)");
 }
 
-/* --- What is refused ------------------------------------------------------------------------- */
+/* ---- What is refused ------------------------------------------------------------------------- */
+
+#define ID_EXPECTED "expected an integer from 1 to 9007199254740991, found "
 
 static const struct {
     const char *text, *error;
@@ -266,15 +291,20 @@ static const struct {
     {"{\"dim\":3,\"bodies\":[],\"Pairs\":[]}", "unknown key \"Pairs\""},
     {"{\"dim\":3,\"bodies\":[],\"dim\":3}", "repeated key \"dim\""},
     {"{\"dim\":3,\"bodies\":[],\"a\\u001bb\\nc\":[]}", "unknown key \"a?b?c\""},
-    {"{\"dim\":3,\"\xc3\xa4\":1}", "unknown key \"\xc3\xa4\""},
+    {"{\"dim\":3,\"\xc3\xa4\":1}", "unknown key \"??\""},
+    {"{\"dim\":3,\"a\xc2\x9b"
+     "1m\xff\":1}",
+     "unknown key \"a??1m?\""},
     {"{\"dim\":3,\"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\":1}",
      "unknown key \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...\""},
     {"{\"dim\":4,\"bodies\":[]}", "dim: expected 2 or 3, found 4"},
     {"{\"dim\":2.5,\"bodies\":[]}", "dim: expected 2 or 3, found 2.5"},
     {"{\"dim\":\"3\",\"bodies\":[]}", "dim: expected 2 or 3, found a string"},
     {"{\"dim\":null,\"bodies\":[]}", "dim: expected 2 or 3, found null"},
-    {"{\"dim\":3,\"duration\":-1,\"bodies\":[]}", "duration: a duration is not negative"},
-    {"{\"dim\":3,\"duration\":1e999,\"bodies\":[]}", "duration: not a finite number in doubles"},
+    {"{\"dim\":3,\"duration\":-1,\"bodies\":[]}",
+     "duration: expected a number of at least 0, found -1"},
+    {"{\"dim\":3,\"duration\":1e999,\"bodies\":[]}",
+     "duration: expected a finite number, found infinity (doubles end at 1.8e308)"},
     {"{\"dim\":3,\"duration\":true,\"bodies\":[]}", "duration: expected a number, found a boolean"},
     {"{\"dim\":3,\"bodies\":{}}", "bodies: expected an array, found an object"},
     {SCENE("1"), "bodies[0]: expected an object, found a number"},
@@ -284,13 +314,13 @@ static const struct {
     {SCENE("{\"id\":2,\"mass\":1," CUBE "}"), "bodies[0]: unknown key \"mass\""},
     {SCENE("{\"id\":2,\"id\":2," CUBE "}"), "bodies[0]: repeated key \"id\""},
     {SCENE("{\"ID\":2," CUBE "}"), "bodies[0]: unknown key \"ID\""},
-    {SCENE(BODY(0)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
-    {SCENE(BODY(-1)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
-    {SCENE(BODY(1.5)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
-    {SCENE(BODY(9007199254740992)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
-    {SCENE(BODY(9007199254740993)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
-    {SCENE(BODY(1e999)), "bodies[0].id: an id is an integer from 1 to 2^53-1"},
-    {SCENE(BODY("1")), "bodies[0].id: expected an id, found a string"},
+    {SCENE(BODY(0)), "bodies[0].id: " ID_EXPECTED "0"},
+    {SCENE(BODY(-1)), "bodies[0].id: " ID_EXPECTED "-1"},
+    {SCENE(BODY(1.5)), "bodies[0].id: " ID_EXPECTED "1.5"},
+    {SCENE(BODY(9007199254740992)), "bodies[0].id: " ID_EXPECTED "9007199254740992"},
+    {SCENE(BODY(9007199254740993)), "bodies[0].id: " ID_EXPECTED "9007199254740992"},
+    {SCENE(BODY(1e999)), "bodies[0].id: " ID_EXPECTED "infinity (doubles end at 1.8e308)"},
+    {SCENE(BODY("1")), "bodies[0].id: " ID_EXPECTED "a string"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id: 1 is the id of bodies[0] already"},
     {SCENE("{\"id\":1,\"shape\":\"sphere\",\"origin\":[0,0,0],\"components\":[]}"),
      "bodies[0].shape: unknown shape \"sphere\" (there are cuboid, tetrahedron, face)"},
@@ -308,7 +338,7 @@ static const struct {
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,\"0\",0],\"components\":[]}"),
      "bodies[0].origin[1]: expected a number, found a string"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,-1e999],\"components\":[]}"),
-     "bodies[0].origin[2]: not a finite number in doubles"},
+     "bodies[0].origin[2]: expected a finite number, found -infinity (doubles end at 1.8e308)"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1]]}"),
      "bodies[0].components: expected 3 vectors, found 2"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(3) ",{\"id\":4,\"shape\":\"cuboid\",\"origin\":[0,0,0],"
@@ -330,8 +360,8 @@ static const struct {
     {SCENE_PAIRS("[[1,2,1]]"), "pairs[0]: expected 2 ids, found 3"},
     {SCENE_PAIRS("[[1,2],[2,3]]"), "pairs[1][1]: no body has the id 3"},
     {SCENE_PAIRS("[[1,2],[1,1]]"), "pairs[1]: a body is no pair with itself (1)"},
-    {SCENE_PAIRS("[[1,2.5]]"), "pairs[0][1]: an id is an integer from 1 to 2^53-1"},
-    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]: expected an id, found a string"},
+    {SCENE_PAIRS("[[1,2.5]]"), "pairs[0][1]: " ID_EXPECTED "2.5"},
+    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]: " ID_EXPECTED "a string"},
 };
 
 static void bad_scenes_are_refused(void **state)
@@ -349,7 +379,7 @@ static const struct {
     {" \n\t\n", "the input is empty: expected a scene"},
     {"[]", "line 1, column 1: expected an object, '{', found '['"},
     {"null", "line 1, column 1: expected an object, '{', found 'n'"},
-    {"\xef\xbb\xbf{}", "line 1, column 1: expected an object, '{', found byte 0xef"},
+    {"\xef\xbb\xbf{}", "line 1, column 1: expected an object, '{', found a UTF-8 byte order mark"},
     {"{", "line 1, column 2: expected a key in quotes or '}', found the end of the input"},
     {"{\"dim\": 3,\n \"bodies\": [}", "line 2, column 13: expected a value or ']', found '}'"},
     {"{\"dim\": 3,\n \"bodies\": []",
@@ -376,7 +406,16 @@ static const struct {
     {"{\"dim\\x\": 3}", "line 1, column 7: expected an escape of JSON, found 'x'"},
     {"{\"\\u12g4\": 3}", "line 1, column 7: expected a hexadecimal digit, found 'g'"},
     {"{\"dim\\u0000\": 3}", "line 1, column 11: \\u0000 in a string"},
-    {"{\"\\ud800\": 3}", "a \\u escape that is no character, or no memory"},
+    {"{\"\\ud800\": 3}",
+     "line 1, column 9: expected the other half of the character, \\udc00 to \\udfff, found '\"'"},
+    {"{\"\\ud800\\n\": 3}",
+     "line 1, column 10: expected the other half of the character, \\udc00 to \\udfff, found 'n'"},
+    {"{\"\\ud800\\u0041\": 3}",
+     "line 1, column 14: expected the other half of the character, \\udc00 to \\udfff, found "
+     "\\u0041"},
+    {"{\"\\uDC00\": 3}", "line 1, column 8: expected a character, found \\udc00"},
+    {"{\"\\ud83d\\uDE00\": 3}", "unknown key \"????\""},
+    {"\xef\xbc{}", "line 1, column 1: expected an object, '{', found byte 0xef"},
     {"// no\n{}", "line 1, column 1: expected an object, '{', found '/'"},
     {SCENE(BODY(1)) "\n]", "scene 2: line 2, column 1: expected an object, '{', found ']'"},
     {SCENE(BODY(1)) "," SCENE(BODY(1)),
@@ -464,6 +503,7 @@ int main(void)
         cmocka_unit_test(a_scene_is_given_when_it_is_complete),
         cmocka_unit_test(doubles_come_back_bit_for_bit),
         cmocka_unit_test(numbers_are_written_short),
+        cmocka_unit_test(ends_that_differ_look_different),
         cmocka_unit_test(long_numbers_are_read_in_full),
         cmocka_unit_test(bad_scenes_are_refused),
         cmocka_unit_test(bad_texts_are_refused),
