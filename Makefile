@@ -181,9 +181,9 @@ $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 
 .PHONY: format format-check
 format:
-	clang-format -i $(sources)
+	@clang-format -i $(sources)
 format-check:
-	clang-format --dry-run -Werror $(sources)
+	@clang-format --dry-run -Werror $(sources)
 
 # ---- Demo, installation ------------------------------------------------------------------
 
