@@ -30,29 +30,31 @@ struct server {
     int64_t unsaid;
     uint32_t malformed_size;
     const char *malformed_reason;
-    int64_t other_id; /* the other service last heard on the same channels; 0: none */
+    /* The other service last heard on the same channels (0: none), and when that was said. */
+    int64_t other_id, other_said_ns;
 };
 
-/* Whether standard error takes a line now: a pipe that nobody reads must not stop the service. */
-static bool can_say(void)
+/* Whether something that was last said at a time (0: never) may be said again: once a second at
+ * most, and only if standard error takes a line now, since a pipe that nobody reads must not
+ * stop the service. */
+static bool may_say(int64_t last_ns)
 {
     struct pollfd wait = {.fd = STDERR_FILENO, .events = POLLOUT};
-    return poll(&wait, 1, 0) == 1 && wait.revents & POLLOUT;
+    return (last_ns == 0 || clock_ns() - last_ns >= 1000000000) && poll(&wait, 1, 0) == 1 &&
+           wait.revents & POLLOUT;
 }
 
-/* Says what could not be read, at most once a second. */
+/* Says what could not be read. */
 static void say_malformed(struct server *server)
 {
-    int64_t now = clock_ns();
-    bool recently = server->said_ns && now - server->said_ns < 1000000000;
-    if (server->unsaid == 0 || recently || !can_say())
+    if (server->unsaid == 0 || !may_say(server->said_ns))
         return;
     fprintf(stderr,
             "fmbd: malformed message on %s (%" PRIu32 " bytes): %s; %" PRId64
             " of them so far, %" PRId64 " since this was last said\n",
             server->query_channel, server->malformed_size, server->malformed_reason,
             server->status.malformed, server->unsaid);
-    server->said_ns = now;
+    server->said_ns = clock_ns();
     server->unsaid = 0;
 }
 
@@ -102,16 +104,17 @@ static void on_pair_query(const lcm_recv_buf_t *buffer, const char *channel, voi
 }
 
 /* The heartbeat of another service on the same channels: both answer every query, and neither
- * knows the other's keys. Said once for each. */
+ * knows the other's keys. Said of each that is new, once a second at most. */
 static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
 {
     struct server *server = user;
     struct wire_status other;
     if (wire_read_status(buffer->data, buffer->data_size, &other) ||
         other.server_id == server->status.server_id || other.server_id == server->other_id ||
-        !can_say())
+        !may_say(server->other_said_ns))
         return;
     server->other_id = other.server_id;
+    server->other_said_ns = clock_ns();
     fprintf(stderr,
             "fmbd: another service (server %" PRId64
             ") is on %s: start one of them with --prefix\n",
