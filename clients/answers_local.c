@@ -1,7 +1,5 @@
 #include "answers.h"
 
-#include <string.h>
-
 void answers_local(const struct answers_question *question, const struct scene *scene,
                    answers_sink *sink, void *user)
 {
@@ -13,8 +11,6 @@ void answers_local(const struct answers_question *question, const struct scene *
         struct fmb_pair pair = scene_fmb_pair(scene, outcome.pair);
         enum fmb_status status = fmb_decide(method, &pair, want, &outcome.answer);
         outcome.error = status == FMB_OK ? NULL : fmb_status_text(status);
-        if (outcome.error)
-            memset(&outcome.answer, 0, sizeof outcome.answer);
         sink(user, scene, &outcome);
     }
 }

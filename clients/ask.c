@@ -264,9 +264,8 @@ static bool subscribe(struct ask *ask)
     bus_channel(channel, ask->options.prefix, WIRE_PAIR_RESULT);
     if (lcm_get_fileno(ask->lcm) < 0)
         return false;
-    ask->subscription = lcm_subscribe(ask->lcm, channel, on_result, ask);
-    return ask->subscription &&
-           lcm_subscription_set_queue_capacity(ask->subscription, QUEUE_CAPACITY) == 0;
+    ask->subscription = bus_subscribe(ask->lcm, channel, on_result, ask, QUEUE_CAPACITY);
+    return ask->subscription != NULL;
 }
 
 struct ask *ask_open(lcm_t *lcm, const struct ask_options *options)

@@ -53,6 +53,8 @@ struct options {
 
 /* ---- Options --------------------------------------------------------------------------------- */
 
+enum { METHOD_NAMES_MAX = 80 };
+
 enum { LOCAL = 1, JSON, BOX, METHOD, SVG, TIMEOUT, RETRIES };
 
 static const struct option own_options[] = {
@@ -66,11 +68,24 @@ static const struct option own_options[] = {
     {NULL, 0, NULL, 0},
 };
 
+/* "exact, fmb and sat": the table's names. */
+static const char *method_names(char out[METHOD_NAMES_MAX])
+{
+    size_t used = 0;
+    for (size_t i = 0; fmb_method_at(i) && used < METHOD_NAMES_MAX; i++) {
+        const char *between = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
+        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", between,
+                                  fmb_method_at(i)->name);
+    }
+    return out;
+}
+
 static bool take_method(const struct args *args, struct options *out)
 {
+    char names[METHOD_NAMES_MAX];
     out->question.method = fmb_method_by_name(optarg);
     return out->question.method ||
-           args_error(args, "--method: there are exact, fmb and sat, not '%s'", optarg);
+           args_error(args, "--method: there are %s, not '%s'", method_names(names), optarg);
 }
 
 static bool take_option(const struct args *args, int option, void *out)

@@ -18,8 +18,7 @@ static bool subscribe(const struct args_bus *bus, const char *name, lcm_msg_hand
 {
     char channel[BUS_CHANNEL_MAX];
     bus_channel(channel, bus->prefix, name);
-    lcm_subscription_t *subscription = lcm_subscribe(lcm, channel, handler, user);
-    if (subscription && lcm_subscription_set_queue_capacity(subscription, QUEUE_CAPACITY) == 0)
+    if (bus_subscribe(lcm, channel, handler, user, QUEUE_CAPACITY))
         return true;
     fprintf(stderr, "fmb: cannot listen to %s on %s\n", channel, args_bus_name(bus));
     return false;

@@ -153,7 +153,6 @@ static void decide(struct pair_result *result, const struct pair_query *query,
     unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     result->status = (int32_t) fmb_decide(method, &pair, want, &result->answer);
     if (result->status != FMB_OK) {
-        memset(&result->answer, 0, sizeof result->answer);
         memset(result->key, 0, sizeof result->key);
         snprintf(result->detail, sizeof result->detail, "method %s: %s", method->name,
                  fmb_status_text(result->status));

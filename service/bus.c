@@ -158,3 +158,13 @@ lcm_t *bus_open(const char *program, const char *url, long *receive_buffer)
     }
     return lcm;
 }
+
+lcm_subscription_t *bus_subscribe(lcm_t *lcm, const char *channel, lcm_msg_handler_t handler,
+                                  void *user, int queue)
+{
+    lcm_subscription_t *subscription = lcm_subscribe(lcm, channel, handler, user);
+    if (!subscription || lcm_subscription_set_queue_capacity(subscription, queue) == 0)
+        return subscription;
+    lcm_unsubscribe(lcm, subscription);
+    return NULL;
+}

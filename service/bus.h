@@ -21,4 +21,9 @@ void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name
  * *receive_buffer (may be NULL): bytes that the system grants the socket; 0: not known. */
 lcm_t *bus_open(const char *program, const char *url, long *receive_buffer);
 
+/* Subscribes, with room for this many messages to wait; beyond it LCM drops the newest without a
+ * word. On output: the subscription, or NULL where LCM refuses. */
+lcm_subscription_t *bus_subscribe(lcm_t *lcm, const char *channel, lcm_msg_handler_t handler,
+                                  void *user, int queue);
+
 #endif

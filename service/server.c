@@ -121,15 +121,6 @@ static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *u
             other.server_id, channel);
 }
 
-static lcm_subscription_t *subscribe(struct server *server, const char *channel,
-                                     lcm_msg_handler_t handler, int queue)
-{
-    lcm_subscription_t *subscription = lcm_subscribe(server->lcm, channel, handler, server);
-    if (subscription)
-        lcm_subscription_set_queue_capacity(subscription, queue);
-    return subscription;
-}
-
 struct server *server_create(lcm_t *lcm, const struct server_options *options)
 {
     struct server *server = calloc(1, sizeof *server);
@@ -145,8 +136,9 @@ struct server *server_create(lcm_t *lcm, const struct server_options *options)
     server->status.receive_buffer = options->receive_buffer;
     snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
     server->ready_ns = clock_ns();
-    server->queries = subscribe(server, server->query_channel, on_pair_query, SERVER_QUEUE);
-    server->statuses = subscribe(server, server->status_channel, on_status, 4);
+    server->queries =
+        bus_subscribe(lcm, server->query_channel, on_pair_query, server, SERVER_QUEUE);
+    server->statuses = bus_subscribe(lcm, server->status_channel, on_status, server, 4);
     if (!server->answerer.cache || !server->queries || !server->statuses) {
         server_destroy(server);
         return NULL;

@@ -45,11 +45,14 @@ const struct fmb_method *fmb_method_by_number(int number)
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pair *pair,
                            unsigned want, struct fmb_answer *answer)
 {
+    memset(answer, 0, sizeof *answer);
     enum fmb_status status = fmb_pair_check(pair);
     if (status != FMB_OK)
         return status;
     if (want & ~(unsigned) FMB_WANT_BOX)
         return FMB_UNKNOWN_WANT;
-    memset(answer, 0, sizeof *answer);
-    return method->decide(pair, want, answer);
+    status = method->decide(pair, want, answer);
+    if (status != FMB_OK) /* a method may have gone some way before it knew */
+        memset(answer, 0, sizeof *answer);
+    return status;
 }

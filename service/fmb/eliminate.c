@@ -198,8 +198,7 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
     if (want & FMB_WANT_BOX) {
         double range[ROWS_VARS_MAX][2];
         int last = system.vars - 1;
-        range[last][0] = fmax(bounds.strict[0], bounds.closed[0]);
-        range[last][1] = fmin(bounds.strict[1], bounds.closed[1]);
+        bounds_range(&bounds, range[last]);
         for (int k = last - 1; k >= 0; k--)
             bound_variable(&system, k, range);
         if (!answer_box(pair, (const double(*)[2]) range, answer))

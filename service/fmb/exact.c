@@ -140,9 +140,9 @@ static void answer_contact(struct offset_walk *walk, double duration, struct fmb
 /* Bound on the work, for any input: at most 44 slabs, whose normals are of degree 2 and bounds
  * of degree 3 in the numbers of the pair, and less than 1,000 points for the box
  * (exact_box.c), each compared with a few others by products of degree 7. All numbers of a
- * pair share a unit of at least 2^-2148, the lowest of v T; a coordinate lies below 2^1024 and
- * so has at most 3,172 bits, and a displacement, whose factor T is common to all, no more than
- * a few beside it. */
+ * pair share a unit of at least 2^-2148, the lowest of v T, and a coordinate lies below 2^1024:
+ * at most 3,172 bits. A displacement has fewer: T is common to all, and where it is large the
+ * unit is no lower than 2^-1074. */
 enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
 {
     struct exact_pair exact;

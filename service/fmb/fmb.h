@@ -173,7 +173,7 @@ const struct fmb_method *fmb_method_by_name(const char *name); /* NULL: none of 
 const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default; NULL: none */
 
 /* On input: method is not NULL; want is a sum of FMB_WANT_ values.
- * On output: OK and *answer; or a status and *answer unspecified: those of fmb_pair_check(),
+ * On output: OK and *answer; or a status and *answer all 0: those of fmb_pair_check(),
  * UNKNOWN_WANT, CANNOT_DECIDE. */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pair *pair,
                            unsigned want, struct fmb_answer *answer);

@@ -35,6 +35,9 @@ struct bounds {
  * within all that are strict. */
 enum fmb_verdict bounds_verdict(const struct bounds *bounds);
 
+/* What the bounds leave, ends included; range[0] > range[1] where that is nothing. */
+void bounds_range(const struct bounds *bounds, double range[2]);
+
 /* For a moving pair in contact: answer->contact, in seconds, from bounds of tau. */
 void bounds_answer_contact(const struct bounds *bounds, double duration, struct fmb_answer *answer);
 
