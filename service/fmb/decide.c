@@ -1,11 +1,14 @@
 #include "fmb.h"
 
+#include "certified.h"
 #include "exact.h"
 #include "inexact.h"
 
 #include <string.h>
 
 static const struct fmb_method methods[] = {
+    {"certified", 4, "never wrong: doubles with bounds, exact arithmetic where these are unsure",
+     certified_decide},
     {"exact", 1, "right for every input, flat frames included (GMP)", exact_decide},
     {"fmb", 2, "the article's elimination in doubles, with its loose box; inexact",
      eliminate_decide},

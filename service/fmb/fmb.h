@@ -104,6 +104,15 @@ struct fmb_body {
      * p[axis] for p = sum x_i c_i. The article's invComp (Listing 1, PROJ). Zero where not
      * inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
+    /* What the certified method keeps: the largest magnitude in each component; the ends of the
+     * body along each axis with its origin at 0, rounded ([0] lower, [1] upper); and whether
+     * doubles can say anything of it: not flat, and no size so large or so small that a product
+     * of a few of them might overflow or vanish. All components are multiples of
+     * 2^bits[0] below 2^bits[1]. */
+    double size[FMB_DIM_MAX];
+    double extent[2][FMB_DIM_MAX];
+    bool in_range;
+    int bits[2];
 };
 
 /* On input: dim; shape; count numbers, components one after the other, number
@@ -177,6 +186,55 @@ const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default
  * UNKNOWN_WANT, CANNOT_DECIDE. */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pair *pair,
                            unsigned want, struct fmb_answer *answer);
+
+/* ---- Certificates ----
+ *
+ * What proves the verdict of a pair to one who does not believe the engine: a line of ASCII, in
+ * one of the forms
+ *
+ *     separated NORMAL
+ *     touching NORMAL at TIME (X Y Z)
+ *     overlapping at TIME (X Y Z)
+ *
+ * TIME (seconds, in [0, T]; 0 for a static pair) and the world coordinates X Y Z (X Y in 2D) are
+ * exact, in lowest terms: 3, -3, 0, 22/7. NORMAL is a sign and a direction: "+ " or "- ", then U,
+ * U x V or (U x V) x W, cross products of vectors with these names:
+ *
+ *     a0..a5, b0..b5   edges of the first frame and of the second: a0, a1, a2 the components c_0,
+ *                      c_1, c_2; of a tetrahedron in 3D a3, a4, a5 = c_1 - c_0, c_2 - c_0,
+ *                      c_2 - c_1; of a tetrahedron in 2D and of a face a2 = c_1 - c_0
+ *     v                velocity of the second minus that of the first, a missing one being 0
+ *     d                origin of the second minus that of the first
+ *     z                (0, 0, 1), in 2D only: such pairs lie in the plane z = 0
+ *
+ * With N the direction times the sign:
+ *   separated    N . (b - a) > 0 for all points a of the first frame and b of the second, at all
+ *                times of the window;
+ *   touching     N . (b - a) >= 0 for them, and N is not constant on at least one of the frames,
+ *                so that no point is ever in both relative interiors; and at TIME the point is in
+ *                both frames;
+ *   overlapping  at TIME the point is in the relative interiors of both frames. */
+
+/* On input: text has room for size bytes; it may be NULL if size is 0.
+ * On output: OK, the certificate of the verdict of the exact method, ended by a 0, in text, and
+ * its length without the 0 in *length. FMB_OVER_LIMIT if there is no room for it; *length then
+ * tells its length. Or a status of fmb_pair_check(), and *length is 0. Where it is not OK, the
+ * text is empty if size > 0.
+ *
+ * Most are shorter than 200 bytes. Coordinates of flat frames, and of frames that touch, can need
+ * many digits where the numbers of the pair do. Memory is allocated as by the exact method. */
+enum fmb_status fmb_certificate(const struct fmb_pair *pair, char *text, size_t size,
+                                size_t *length);
+
+/* On input: any pair of bodies made by fmb_body_make(), any number for a verdict, any text ended
+ * by a 0.
+ * On output: whether the text proves that this is the verdict of this pair. It is checked in
+ * rational numbers, by code that shares nothing with fmb_certificate(), nor with any method. If
+ * not, why says in one line what is wrong; it has room for size bytes, and may be NULL if that
+ * is 0. The certificate need not be the one that fmb_certificate() gives. Memory is allocated
+ * through GMP; the time is bounded by a power of the length of the text. */
+bool fmb_certificate_holds(const struct fmb_pair *pair, enum fmb_verdict verdict, const char *text,
+                           char *why, size_t size);
 
 /* "major.minor.patch" of the library. */
 const char *fmb_version(void);

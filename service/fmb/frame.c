@@ -1,6 +1,7 @@
 #include "fmb.h"
 
 #include "exact.h"
+#include "integer.h"
 
 #include <float.h>
 #include <math.h>
@@ -97,6 +98,31 @@ static void invert(struct fmb_body *body)
         memset(body->inverse, 0, sizeof body->inverse);
 }
 
+/* Sizes whose products of four, sums of a few dozen of them and 2^-53 of those neither overflow
+ * nor lose bits to underflow. */
+static const double least_size = 0x1p-200, largest_size = 0x1p200;
+
+static void measure(struct fmb_body *body)
+{
+    struct dyadic_span span = dyadic_span_begin();
+    body->in_range = !body->flat;
+    for (int i = 0; i < body->count; i++) {
+        for (int axis = 0; axis < body->dim; axis++) {
+            double c = body->component[i][axis];
+            bool cuboid = body->shape == FMB_CUBOID;
+            double *low = &body->extent[0][axis], *high = &body->extent[1][axis];
+            *low = cuboid ? *low + fmin(0, c) : fmin(*low, c);
+            *high = cuboid ? *high + fmax(0, c) : fmax(*high, c);
+            body->size[i] = fmax(body->size[i], fabs(c));
+            dyadic_span_add(&span, dyadic_of(c));
+        }
+        body->in_range =
+            body->in_range && body->size[i] >= least_size && body->size[i] <= largest_size;
+    }
+    body->bits[0] = (int) span.unit;
+    body->bits[1] = (int) span.top;
+}
+
 enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
                               struct fmb_body *out)
 {
@@ -117,6 +143,7 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
     for (int i = 0; i < vectors; i++)
         memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
     invert(out);
+    measure(out);
     return FMB_OK;
 }
 

@@ -3,7 +3,7 @@
 #ifndef FMB_INEXACT_H
 #define FMB_INEXACT_H
 
-#include "fmb.h"
+#include "relative.h"
 
 /* The article's algorithm, Listing 1 (eliminate.c). */
 enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
@@ -11,16 +11,6 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
 
 /* The article's comparator, the separating axis theorem (sat.c). No box. */
 enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);
-
-/* Frame b as a sees it. Axes beyond the dimension hold 0. */
-struct relative_motion {
-    bool moving;
-    double offset[FMB_DIM_MAX]; /* of b's origin from a's, at t = 0 */
-    double drift[FMB_DIM_MAX];  /* of b against a, over the whole window */
-};
-
-/* False if a number overflowed. */
-bool relative_motion_of(const struct fmb_pair *pair, struct relative_motion *out);
 
 /* Bounds of one variable, from inequalities that come in one by one: of the time of a moving
  * pair in windows (tau = t / T), or of the last parameter of a static one. [0] lower, [1]

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 static_assert(FLT_RADIX == 2 && DBL_MANT_DIG == 53 && DBL_MAX_EXP == 1024, "IEEE 754 binary64");
@@ -27,6 +28,21 @@ struct dyadic dyadic_of(double x)
     int trailing = __builtin_ctzll(mantissa);
     long long odd = (long long) (mantissa >> trailing);
     return (struct dyadic){bits >> 63 ? -odd : odd, (biased ? biased : 1) - 1075 + trailing};
+}
+
+struct dyadic_span dyadic_span_begin(void)
+{
+    return (struct dyadic_span){INTEGER_NO_EXPONENT, -INTEGER_NO_EXPONENT};
+}
+
+void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
+{
+    if (x.mantissa == 0)
+        return;
+    uint64_t magnitude = (uint64_t) llabs(x.mantissa);
+    long top = x.exponent + 64 - __builtin_clzll(magnitude);
+    span->unit = integer_lower_unit(span->unit, x.exponent);
+    span->top = top > span->top ? top : span->top;
 }
 
 long integer_lower_unit(long unit, long exponent)

@@ -20,6 +20,14 @@ struct dyadic {
 /* x must be finite. */
 struct dyadic dyadic_of(double x);
 
+/* All numbers of a set are multiples of 2^unit and below 2^top in magnitude. */
+struct dyadic_span {
+    long unit, top;
+};
+
+struct dyadic_span dyadic_span_begin(void); /* of no number: unit INTEGER_NO_EXPONENT, top less */
+void dyadic_span_add(struct dyadic_span *span, struct dyadic x);
+
 /* The smaller of two units, or exponents. */
 long integer_lower_unit(long unit, long exponent);
 

@@ -1,4 +1,4 @@
-#include "inexact.h"
+#include "relative.h"
 
 #include <math.h>
 
@@ -13,8 +13,9 @@ bool relative_motion_of(const struct fmb_pair *pair, struct relative_motion *out
     bool finite = true;
     for (int axis = 0; axis < pair->a.body->dim; axis++) {
         out->offset[axis] = pair->b.origin[axis] - pair->a.origin[axis];
-        out->drift[axis] =
-            (velocity_of(&pair->b, axis) - velocity_of(&pair->a, axis)) * pair->duration;
+        double speed = velocity_of(&pair->b, axis) - velocity_of(&pair->a, axis);
+        out->drift[axis] = speed * pair->duration;
+        out->drifts = out->drifts || (speed != 0 && pair->duration > 0);
         finite = finite && isfinite(out->offset[axis]) && isfinite(out->drift[axis]);
     }
     return finite;

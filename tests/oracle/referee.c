@@ -39,20 +39,37 @@ void referee_ready(const struct question *question, struct ready *ready)
         referee_fail(question, fmb_status_text(status));
 }
 
-static void ask(const struct question *question, const struct fmb_pair *pair, unsigned want,
-                struct fmb_answer *answer)
+/* The methods that are never wrong, and how tight their intervals and boxes are to be. */
+struct never_wrong {
+    const char *name;
+    enum oracle_limit limit;
+};
+
+static const struct never_wrong exact = {"exact", ORACLE_TIGHTEST};
+static const struct never_wrong certified = {"certified", ORACLE_DESIGN};
+
+static void ask(const struct never_wrong *method, const struct question *question,
+                const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
 {
     memset(answer, 0xa5, sizeof *answer); /* what is not written shows */
-    enum fmb_status status = fmb_decide(fmb_method_by_name("exact"), pair, want, answer);
+    enum fmb_status status = fmb_decide(fmb_method_by_name(method->name), pair, want, answer);
     if (status != FMB_OK)
         referee_fail(question, fmb_status_text(status));
+}
+
+static void fail_of(const struct never_wrong *method, const struct question *question,
+                    const char *why)
+{
+    char what[300];
+    snprintf(what, sizeof what, "%s: %s", method->name, why);
+    referee_fail(question, what);
 }
 
 void referee_ask(const struct question *question, struct fmb_answer *answer)
 {
     struct ready ready;
     referee_ready(question, &ready);
-    ask(question, &ready.pair, FMB_WANT_BOX, answer);
+    ask(&exact, question, &ready.pair, FMB_WANT_BOX, answer);
 }
 
 bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other)
@@ -63,38 +80,56 @@ bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other)
            (!one->has_box || memcmp(one->box, other->box, sizeof one->box) == 0);
 }
 
-void referee_assert_truth(const struct question *question, const struct oracle_answer *truth)
+/* On output: *answer, with the box, held against the truth. */
+static void assert_truth(const struct never_wrong *method, const struct question *question,
+                         const struct fmb_pair *pair, const struct oracle_answer *truth,
+                         struct fmb_answer *answer)
 {
     char why[200];
+    ask(method, question, pair, FMB_WANT_BOX, answer);
+    if (!oracle_agrees(truth, pair, answer, method->limit, why, sizeof why))
+        fail_of(method, question, why);
+}
+
+static void assert_consistent(const struct never_wrong *method, const struct question *question,
+                              const struct fmb_pair *pair, const struct fmb_answer *answer)
+{
+    const struct fmb_pair reversed = {pair->b, pair->a, pair->duration};
+    struct fmb_answer boxless, swapped;
+    ask(method, question, &reversed, FMB_WANT_BOX, &swapped);
+    if (!referee_same(answer, &swapped))
+        fail_of(method, question, "differs the other way round");
+
+    ask(method, question, pair, 0, &boxless);
+    if (boxless.has_box)
+        fail_of(method, question, "a box that nobody wanted");
+    boxless.has_box = answer->has_box;
+    memcpy(boxless.box, answer->box, sizeof boxless.box);
+    if (!referee_same(answer, &boxless))
+        fail_of(method, question, "differs without the box");
+}
+
+void referee_assert_truth(const struct question *question, const struct oracle_answer *truth)
+{
     struct ready ready;
     struct fmb_answer answer;
     referee_ready(question, &ready);
-    ask(question, &ready.pair, FMB_WANT_BOX, &answer);
-    if (!oracle_agrees(truth, &ready.pair, &answer, ORACLE_TIGHTEST, why, sizeof why))
-        referee_fail(question, why);
+    assert_truth(&exact, question, &ready.pair, truth, &answer);
+    assert_truth(&certified, question, &ready.pair, truth, &answer);
 }
 
 enum fmb_verdict referee_assert(const struct question *question)
 {
-    char why[200];
     struct ready ready;
-    struct fmb_answer answer, boxless, swapped;
+    struct fmb_answer answer;
+    struct oracle_answer truth;
     referee_ready(question, &ready);
-    ask(question, &ready.pair, FMB_WANT_BOX, &answer);
-    if (!oracle_check_tightest(&ready.pair, FMB_WANT_BOX, &answer, why, sizeof why))
-        referee_fail(question, why);
-
-    const struct fmb_pair reversed = {ready.pair.b, ready.pair.a, ready.pair.duration};
-    ask(question, &reversed, FMB_WANT_BOX, &swapped);
-    if (!referee_same(&answer, &swapped))
-        referee_fail(question, "differs the other way round");
-
-    ask(question, &ready.pair, 0, &boxless);
-    if (boxless.has_box)
-        referee_fail(question, "a box that nobody wanted");
-    boxless.has_box = answer.has_box;
-    memcpy(boxless.box, answer.box, sizeof boxless.box);
-    if (!referee_same(&answer, &boxless))
-        referee_fail(question, "differs without the box");
+    oracle_init(&truth);
+    oracle_decide(&ready.pair, FMB_WANT_BOX, &truth);
+    assert_truth(&exact, question, &ready.pair, &truth, &answer);
+    assert_consistent(&exact, question, &ready.pair, &answer);
+    assert_truth(&certified, question, &ready.pair, &truth, &answer);
+    assert_consistent(&certified, question, &ready.pair, &answer);
+    oracle_clear(&truth);
     return answer.verdict;
 }

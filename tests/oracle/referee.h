@@ -22,8 +22,9 @@ void referee_ask(const struct question *question, struct fmb_answer *answer);
 /* Same verdict, and the same bits of the interval and of the box where there are any. */
 bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other);
 
-/* The exact method, asked in both orders, with the box and without it, agrees with the oracle
- * (ORACLE_TIGHTEST) and with itself. Returns the verdict. */
+/* The methods that are never wrong, asked in both orders, with the box and without it, agree with
+ * the oracle (exact: ORACLE_TIGHTEST; certified: ORACLE_DESIGN) and each with itself, to the bit.
+ * Returns the verdict. */
 enum fmb_verdict referee_assert(const struct question *question);
 
 /* The same against a truth that is known already, box included, in this order only. */

@@ -1,0 +1,171 @@
+#include "certified.h"
+
+#include "exact.h"
+#include "limbs.h"
+
+#include <string.h>
+
+/* What is known of a pair, found when it is needed. */
+struct certified {
+    const struct fmb_pair *pair;
+    struct slabs_pair slabs;
+    bool span_known, rounds; /* rounds: operations on these numbers may round */
+    struct dyadic_span span;
+    enum certified_path path;
+};
+
+static void find_span(struct certified *certified)
+{
+    if (certified->span_known)
+        return;
+    certified->span_known = true;
+    certified->span = limbs_span_of(certified->pair);
+    certified->rounds = !limbs_never_round(&certified->slabs, certified->span);
+}
+
+static enum fmb_verdict verdict_of_sign(int sign)
+{
+    return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
+}
+
+/* The slabs of numbers that do not round have no error. A normal is zero just where the extent
+ * of the pair along it is: both frames are solid. */
+static enum fmb_verdict verdict_unrounded(const struct slabs_pair *pair)
+{
+    struct slab_value slab[SLABS_MAX];
+    const int count = slabs_list(pair, false, slab);
+    int sign = -1;
+    for (int i = 0; i < count && sign <= 0; i++) {
+        const double gap = slab_gap(&slab[i]);
+        if (gap >= 0 && slab[i].low < slab[i].high)
+            sign = gap > 0;
+    }
+    return verdict_of_sign(sign);
+}
+
+/* The slabs that doubles leave open, each looked at again alone; returns how many. *separated: one
+ * of them separates, and the rest was not looked at. */
+static int open_slabs(const struct slabs_pair *pair, struct slab_normal out[SLABS_MAX],
+                      bool *separated)
+{
+    struct slab_value slab[SLABS_MAX];
+    const int count = slabs_list(pair, true, slab);
+    int open = 0;
+    *separated = false;
+    for (int i = 0; i < count && !*separated; i++) {
+        if (slab_gap(&slab[i]) < -slab[i].error)
+            continue;
+        slabs_refine(pair, &slab[i]);
+        const double gap = slab_gap(&slab[i]);
+        *separated = gap > slab[i].error;
+        if (gap >= -slab[i].error)
+            out[open++] = slab[i].normal;
+    }
+    return open;
+}
+
+static enum fmb_verdict verdict_in_limbs(const struct limbs_pair *limbs,
+                                         const struct slab_normal *open, int count)
+{
+    int sign = -1;
+    for (int i = 0; i < count && sign <= 0; i++) {
+        const int one = limbs_gap_sign(limbs, open[i]);
+        sign = one > sign ? one : sign;
+    }
+    return verdict_of_sign(sign);
+}
+
+static enum fmb_verdict verdict_of_unsure(struct certified *certified)
+{
+    find_span(certified);
+    if (!certified->rounds) {
+        certified->path = CERTIFIED_UNROUNDED;
+        return verdict_unrounded(&certified->slabs);
+    }
+    struct slab_normal open[SLABS_MAX];
+    struct limbs_pair limbs;
+    bool separated;
+    const int count = open_slabs(&certified->slabs, open, &separated);
+    certified->path = CERTIFIED_REFINED;
+    if (separated || count == 0)
+        return separated ? FMB_SEPARATED : FMB_OVERLAPPING;
+    if (limbs_prepare(certified->pair, certified->span, &limbs)) {
+        certified->path = CERTIFIED_LIMBS;
+        return verdict_in_limbs(&limbs, open, count);
+    }
+    struct fmb_answer answer = {0};
+    certified->path = CERTIFIED_EXACT;
+    exact_decide(certified->pair, 0, &answer);
+    return answer.verdict;
+}
+
+/* On input: a pair that is prepared. */
+static enum fmb_verdict verdict_of(struct certified *certified)
+{
+    certified->path = CERTIFIED_FILTER;
+    switch (slabs_filter(&certified->slabs)) {
+    case SLABS_SEPARATED: return FMB_SEPARATED;
+    case SLABS_OVERLAPPING: return FMB_OVERLAPPING;
+    case SLABS_UNSURE: break;
+    }
+    return verdict_of_unsure(certified);
+}
+
+/* A pair that does not drift is in contact over the whole window. False: ask the exact method. */
+static bool answer_contact(struct certified *certified, struct fmb_answer *answer)
+{
+    answer->has_contact = true;
+    answer->contact[0] = 0;
+    answer->contact[1] = certified->pair->duration + 0.0; /* never -0 */
+    if (!certified->slabs.motion.drifts)
+        return true;
+    find_span(certified);
+    return contact_of(certified->pair, &certified->slabs, certified->rounds, certified->span,
+                      answer->contact);
+}
+
+static bool answer_box(struct certified *certified, struct fmb_answer *answer)
+{
+    answer->has_box = true;
+    find_span(certified);
+    return box_of(certified->pair, &certified->slabs, certified->rounds, answer->box);
+}
+
+/* The exact method gives what the doubles did not, and that alone: which of them gives what is
+ * decided by the numbers of the pair, so that the answer is the same wherever it is asked. */
+static void complete(const struct fmb_pair *pair, unsigned want, bool good_contact, bool good_box,
+                     struct fmb_answer *answer)
+{
+    struct fmb_answer exact = {0};
+    exact_decide(pair, good_box ? 0 : want, &exact);
+    if (!good_contact)
+        memcpy(answer->contact, exact.contact, sizeof exact.contact);
+    if (!good_box)
+        memcpy(answer->box, exact.box, sizeof exact.box);
+}
+
+enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
+                                 struct fmb_answer *answer)
+{
+    struct certified certified = {.pair = pair};
+    if (!slabs_prepare(pair, &certified.slabs))
+        return exact_decide(pair, want, answer);
+    answer->verdict = verdict_of(&certified);
+    if (answer->verdict == FMB_SEPARATED)
+        return FMB_OK;
+    const bool good_contact =
+        !certified.slabs.motion.moving || answer_contact(&certified, answer);
+    const bool good_box = !(want & FMB_WANT_BOX) || answer_box(&certified, answer);
+    if (!good_contact || !good_box)
+        complete(pair, want, good_contact, good_box, answer);
+    return FMB_OK;
+}
+
+enum certified_path certified_verdict_path(const struct fmb_pair *pair)
+{
+    struct certified certified = {.pair = pair};
+    if (!slabs_prepare(pair, &certified.slabs))
+        return CERTIFIED_EXACT;
+    verdict_of(&certified);
+    return certified.path;
+}

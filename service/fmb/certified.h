@@ -1,0 +1,44 @@
+/* The certified method: doubles with bounds on their errors; exact arithmetic where these leave
+ * something open.
+ *
+ *     verdict   extents and slabs in doubles (slabs.c); where unsure, the open slabs in integers
+ *               (limbs.c), or the whole question by the exact method
+ *     contact   the same slabs as bounds of the time (contact.c)
+ *     box       edges of each frame clipped to the other (box.c)
+ *
+ * Contact and box are two-sided: the outer value surely contains the true one, the inner one is
+ * surely contained in it. The answer is the outer one, given only where both are so close that it
+ * is within the limits of fmb.h; else integers decide, or the exact method. */
+#ifndef FMB_CERTIFIED_H
+#define FMB_CERTIFIED_H
+
+#include "integer.h"
+#include "slabs.h"
+
+/* The method. */
+enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
+                                 struct fmb_answer *answer);
+
+/* Which step decides the verdict of a pair: the filter; the same slabs in doubles that are known
+ * not to round; those left open, in doubles with bounds of their own; integers of fixed width;
+ * GMP. For tests and reports. */
+enum certified_path {
+    CERTIFIED_FILTER,
+    CERTIFIED_UNROUNDED,
+    CERTIFIED_REFINED,
+    CERTIFIED_LIMBS,
+    CERTIFIED_EXACT
+};
+
+enum certified_path certified_verdict_path(const struct fmb_pair *pair);
+
+/* For a pair in contact that drifts: answer->contact. rounds: whether operations on these numbers
+ * may round; span: of the pair. False if neither doubles nor limbs give it within its limit. */
+bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
+                struct dyadic_span span, double contact[2]);
+
+/* For a pair in contact: the box. False if doubles do not give it within its limit. */
+bool box_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
+            double box[2][FMB_DIM_MAX]);
+
+#endif

@@ -1,0 +1,152 @@
+/* The first and last time of contact of a pair that is known to be in contact.
+ *
+ * Method. Each slab of the pair (those of the faces, and of an edge of each) holds the offset from
+ * some time on until some other: start + tau slope <= high and >= low, two inequalities of tau,
+ * which is a segment to cut (clip.h). The first time is the largest of the lower ends, the last
+ * the smallest of the upper ones: the pair is in contact, so all of them are obeyed at one time.
+ * Each end so lies between the outer and the inner value. Slabs of the drift do not depend on
+ * time: their slope is 0, and they cut nothing.
+ *
+ * Where outer and inner are too far apart, the slabs whose inner end is beyond the outer one of
+ * all are asked for their exact end, in limbs: the tightest doubles, whichever of them it is,
+ * since rounding keeps order. */
+#include "certified.h"
+
+#include "clip.h"
+#include "limbs.h"
+
+/* Of the window; leaves a tenth of the limit of 1e-12 to the product with its duration. */
+static const double limit = 0.9e-12;
+
+struct times {
+    struct clip outer, inner; /* of tau */
+};
+
+/* c is start - low (high - start), with the error of a gap. */
+static void cut_outer(struct clip *clip, const struct slab_value *slab, bool rounds)
+{
+    clip_cut(clip, slab->start - slab->low + slab->error, slab->slope + slab->error, true, rounds);
+    clip_cut(clip, slab->high - slab->start + slab->error, -slab->slope + slab->error, true,
+             rounds);
+}
+
+static void cut_inner(struct clip *clip, const struct slab_value *slab, bool rounds)
+{
+    clip_cut(clip, slab->start - slab->low - slab->error, slab->slope - slab->error, false, rounds);
+    clip_cut(clip, slab->high - slab->start - slab->error, -slab->slope - slab->error, false,
+             rounds);
+}
+
+/* Seconds of a tau in [0,1]: at most one double beyond tau T. */
+static double seconds_below(double tau, double duration, bool rounds)
+{
+    const double time = tau * duration;
+    const bool exact = tau == 0 || tau == 1 || (!rounds && fma(tau, duration, -time) == 0);
+    return exact ? time + 0.0 : nextafter(time, 0) + 0.0;
+}
+
+static double seconds_above(double tau, double duration, bool rounds)
+{
+    const double time = tau * duration;
+    const bool exact = tau == 0 || tau == 1 || (!rounds && fma(tau, duration, -time) == 0);
+    return fmin(exact ? time : nextafter(time, INFINITY), duration) + 0.0;
+}
+
+/* ---- Exact ends ---- */
+
+struct exact_end {
+    mpz_t low, high, start, slope, scratch[2];
+};
+
+static void exact_end_each(struct exact_end *end, void (*call)(mpz_ptr))
+{
+    call(end->low);
+    call(end->high);
+    call(end->start);
+    call(end->slope);
+    call(end->scratch[0]);
+    call(end->scratch[1]);
+}
+
+/* The time at which the offset enters the slab (side 0) or leaves it, in seconds, rounded outward;
+ * 0 or the duration where it does so before or after the window, or never. */
+static double exact_time(struct exact_end *end, int side, double duration)
+{
+    int slope = mpz_sgn(end->slope);
+    if (slope == 0)
+        return side ? duration : 0;
+    mpz_ptr bound = (slope > 0) == (side == 1) ? end->high : end->low;
+    mpz_sub(bound, bound, end->start);
+    if (slope < 0) {
+        mpz_neg(bound, bound);
+        mpz_neg(end->slope, end->slope);
+    }
+    if (mpz_sgn(bound) < 0)
+        return side ? duration : 0; /* sides are chosen so that only 'before' comes here */
+    if (mpz_cmp(bound, end->slope) > 0)
+        return duration;
+    const struct dyadic window = dyadic_of(duration);
+    mpz_mul_si(bound, bound, window.mantissa);
+    return integer_ratio_round(bound, end->slope, window.exponent, side ? ROUND_UP : ROUND_DOWN,
+                               end->scratch);
+}
+
+/* Slabs whose ends are too loose, again with bounds of their own; then all ends. */
+static void cut_all(const struct slabs_pair *slabs, struct slab_value *slab, int count, bool rounds,
+                    bool refine, struct times *times)
+{
+    *times = (struct times){{0, 1}, {0, 1}};
+    for (int i = 0; i < count; i++) {
+        if (refine)
+            slabs_refine(slabs, &slab[i]);
+        cut_outer(&times->outer, &slab[i], rounds);
+        cut_inner(&times->inner, &slab[i], rounds);
+    }
+}
+
+static bool good_end(const struct times *times, int side)
+{
+    return side ? times->outer.high - times->inner.high <= limit
+                : times->inner.low - times->outer.low <= limit;
+}
+
+/* Moves an end to the exact time of each slab that might be beyond it. */
+static void settle(const struct slab_value *slab, int count, const struct limbs_pair *limbs,
+                   const struct times *times, int side, double duration, double *time)
+{
+    struct exact_end end;
+    exact_end_each(&end, mpz_init);
+    for (int i = 0; i < count; i++) {
+        struct clip inner = {0, 1};
+        cut_inner(&inner, &slab[i], true);
+        if (side ? inner.high >= times->outer.high : inner.low <= times->outer.low)
+            continue;
+        limbs_slab(limbs, slab[i].normal, end.low, end.high, end.start, end.slope);
+        const double exact = exact_time(&end, side, duration);
+        if (side ? exact < *time : exact > *time)
+            *time = exact;
+    }
+    exact_end_each(&end, mpz_clear);
+}
+
+bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
+                struct dyadic_span span, double contact[2])
+{
+    struct slab_value slab[SLABS_MAX];
+    const int count = slabs_list(slabs, rounds, slab);
+    struct times times;
+    struct limbs_pair limbs;
+    cut_all(slabs, slab, count, rounds, false, &times);
+    if (!good_end(&times, 0) || !good_end(&times, 1))
+        cut_all(slabs, slab, count, rounds, rounds, &times);
+    contact[0] = seconds_below(times.outer.low, pair->duration, rounds);
+    contact[1] = seconds_above(times.outer.high, pair->duration, rounds);
+    if (good_end(&times, 0) && good_end(&times, 1))
+        return true;
+    if (!limbs_prepare(pair, span, &limbs))
+        return false;
+    for (int side = 0; side < 2; side++)
+        if (!good_end(&times, side))
+            settle(slab, count, &limbs, &times, side, pair->duration, &contact[side]);
+    return true;
+}

@@ -1,0 +1,88 @@
+/* The certified filter: the slabs of a pair in doubles, each with a bound on its error.
+ *
+ * Two solid frames meet just if the offset of their origins lies in the Minkowski difference
+ * D = A - B, and a moving pair does at some time of its window just if the offset at the start
+ * lies in D swept back along the drift (over the whole window): S = D - [0,1] drift. D and S are
+ * polytopes, the intersections of a fixed list of slabs: this is what is left of the article's
+ * elimination when it is done on paper (exact_slabs.c derives the list; the drift is one more
+ * edge, and adds the planes of each edge with the drift). The relative interior of S is the
+ * interior of D swept in the same way, the ends of the window included: a union of open sets.
+ * So a pair is
+ *
+ *     SEPARATED    where the offset is beyond a bound of some slab,
+ *     OVERLAPPING  where it is strictly between the bounds of all,
+ *     TOUCHING     else.
+ *
+ * A slab whose normal is zero (parallel edges) says nothing and does not count.
+ *
+ * How far beyond a bound the offset is, times the length of the normal, is the gap of the slab.
+ * Doubles give it with an error that slabs.c bounds; where that leaves its sign open the
+ * filter is unsure. */
+#ifndef FMB_SLABS_H
+#define FMB_SLABS_H
+
+#include "fmb.h"
+#include "relative.h"
+
+/* Bound on the error of everything that slabs.c computes of a slab in 3D, relative to its scale
+ * (below). Derived in slabs.c; a smaller one gives wrong answers, a larger one more that are
+ * unsure. */
+#ifndef SLABS_ROUNDING
+#define SLABS_ROUNDING 0x1p-46
+#endif
+
+/* In 2D, where the same is of lower degree. */
+#define SLABS_ROUNDING_2D (SLABS_ROUNDING / 4)
+
+/* A pair that doubles can say something of. */
+struct slabs_pair {
+    const struct fmb_body *a, *b;
+    struct relative_motion motion; /* a pair that does not drift is decided as a static one */
+    double reach; /* sum of the largest magnitudes of the offset, the drift and all components */
+    double drift_size; /* the largest magnitude of the drift */
+};
+
+/* False if doubles can say nothing of the pair: a frame is flat, or numbers are out of range. */
+bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out);
+
+/* The edges of a pair by number: of A; of B; the drift. A frame's edges are its components, then,
+ * of a tetrahedron, c2 - c1, c0 - c2, c1 - c0 (a triangle: c1 - c0). */
+enum { SLABS_EDGES = 6, SLABS_EDGE_OF_B = SLABS_EDGES, SLABS_DRIFT = 2 * SLABS_EDGES };
+
+/* In 3D the normal is u x v, in 2D it is u turned by a right angle, (-u_y, u_x). */
+struct slab_normal {
+    int u, v; /* edges; v is not used in 2D */
+};
+
+/* normal . w in [low, high] for w in D; along the way of the offset it goes from start to
+ * start + slope. Each of the four is within error of what it stands for, and so is the gap. */
+struct slab_value {
+    struct slab_normal normal;
+    double low, high, start, slope;
+    double error;
+};
+
+/* How far the offset stays beyond a bound over the window; < 0: it comes inside. */
+static inline double slab_gap(const struct slab_value *slab)
+{
+    double least = slab->start + (slab->slope < 0 ? slab->slope : 0);
+    double most = slab->start + (slab->slope > 0 ? slab->slope : 0);
+    double above = least - slab->high, below = slab->low - most;
+    return above > below ? above : below;
+}
+
+enum slabs_outcome { SLABS_SEPARATED, SLABS_OVERLAPPING, SLABS_UNSURE };
+
+/* The filter. */
+enum slabs_outcome slabs_filter(const struct slabs_pair *pair);
+
+enum { SLABS_MAX = 56 }; /* two tetrahedra, moving: 4 + 4 + 36 + 12 */
+
+/* All slabs of the pair; returns how many. rounds: whether an operation on these numbers may
+ * round; else every error is 0. */
+int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
+
+/* The same slab again, with a bound on its error made for it alone, if that is smaller. */
+void slabs_refine(const struct slabs_pair *pair, struct slab_value *slab);
+
+#endif
