@@ -114,6 +114,23 @@ const struct ratio *span_upper(struct span *span);
 /* Whether some s of the window lies strictly within all slabs that do not pin. */
 bool span_has_interior(struct span *span);
 
+/* The vertices of a frame with its origin at 0, [vertex][axis], and how many there are. */
+int frame_vertices(const struct exact_frame *frame, mpz_t vertex[EXACT_VERTICES_MAX][3]);
+
+/* A place in the world and a time of the window, as fractions. */
+struct exact_point {
+    mpz_t at[3], tau; /* numerators; the place in the unit of the pair, tau in windows */
+    mpz_t den;        /* > 0 */
+};
+
+/* Called for each point in turn. The point is the walker's. */
+typedef void (*point_visit)(void *context, const struct exact_point *point);
+
+/* Walks points whose convex hull, in space and time, is the closed intersection of the frames
+ * over the window: all its vertices, and others, some more than once. Not one if they never
+ * meet. The tau of a static pair is 0. */
+void points_walk(struct exact_pair *pair, point_visit visit, void *context);
+
 /* The box of the intersection of a pair in contact, over the window, ends rounded outward. */
 void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX]);
 

@@ -1,4 +1,4 @@
-/* The exact box of the intersection of two frames, over the window.
+/* The points that span the intersection of two frames over the window, and its exact box.
  *
  * In space and time (tau, p) the intersection is a convex polytope Q; its box is that of its
  * vertices. Q is the image of the polytope P of all (tau, x, y), parameters x of A and y of B
@@ -41,58 +41,58 @@ struct clipper {
     mpz_t at[2][FRAME_SLABS_MAX][EXACT_VERTICES_MAX];
 };
 
-struct boxing {
+struct walk {
     struct exact_pair *pair;
+    point_visit visit;
+    void *context;
     int ends; /* of the window: 2 if the pair is moving, else 1 */
     int vertices[2];
     mpz_t vertex[2][EXACT_VERTICES_MAX][3]; /* [frame][vertex][axis], origin of the frame at 0 */
     struct clipper clipper[2];              /* [frame]: its slabs, the other's vertices */
     struct span span;
-    struct ratio bound[2][3]; /* [0] lower and [1] upper ends so far */
-    bool bounded;
     mpz_t point[3], path[3];
-    struct ratio coordinate;
+    struct exact_point found;
     mpz_t scratch[EXACT_SCRATCH];
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */
-static void boxing_each(struct boxing *boxing, void (*call)(mpz_ptr))
+static void walk_each(struct walk *walk, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
         for (int v = 0; v < EXACT_VERTICES_MAX; v++)
             for (int axis = 0; axis < 3; axis++)
-                call(boxing->vertex[f][v][axis]);
+                call(walk->vertex[f][v][axis]);
         for (int s = 0; s < FRAME_SLABS_MAX; s++) {
-            struct slab *slab = &boxing->clipper[f].slab[s];
+            struct slab *slab = &walk->clipper[f].slab[s];
             call(slab->low);
             call(slab->high);
             for (int axis = 0; axis < 3; axis++)
                 call(slab->normal[axis]);
             for (int v = 0; v < EXACT_VERTICES_MAX; v++) {
-                call(boxing->clipper[f].at[0][s][v]);
-                call(boxing->clipper[f].at[1][s][v]);
+                call(walk->clipper[f].at[0][s][v]);
+                call(walk->clipper[f].at[1][s][v]);
             }
         }
     }
     for (int axis = 0; axis < 3; axis++) {
-        call(boxing->point[axis]);
-        call(boxing->path[axis]);
-        for (int side = 0; side < 2; side++) {
-            call(boxing->bound[side][axis].num);
-            call(boxing->bound[side][axis].den);
-        }
+        call(walk->point[axis]);
+        call(walk->path[axis]);
+        call(walk->found.at[axis]);
     }
-    call(boxing->coordinate.num);
-    call(boxing->coordinate.den);
+    call(walk->found.tau);
+    call(walk->found.den);
     for (int i = 0; i < EXACT_SCRATCH; i++)
-        call(boxing->scratch[i]);
+        call(walk->scratch[i]);
 }
 
 /* Vertex v of a cuboid: the sum of the components whose bits are set in v; of a simplex: the
  * origin, then the end of each component. */
-static int set_vertices(const struct exact_frame *frame, mpz_t vertex[EXACT_VERTICES_MAX][3])
+int frame_vertices(const struct exact_frame *frame, mpz_t vertex[EXACT_VERTICES_MAX][3])
 {
     int vertices = frame->simplex ? frame->count + 1 : 1 << frame->count;
+    for (int v = 0; v < vertices; v++)
+        for (int axis = 0; axis < 3; axis++)
+            mpz_set_ui(vertex[v][axis], 0);
     for (int v = 1; v < vertices; v++)
         for (int i = 0; i < frame->count; i++)
             if (frame->simplex ? v == i + 1 : v >> i & 1)
@@ -122,12 +122,12 @@ static bool keep_slab(void *context, struct slab *slab)
 
 /* A vertex p of the other frame lies at w = p + offset + tau drift from the origin of frame 0,
  * and at w = p - offset - tau drift from that of frame 1. */
-static void set_clipper(struct boxing *boxing, int f)
+static void set_clipper(struct walk *walk, int f)
 {
-    struct exact_pair *pair = boxing->pair;
-    struct clipper *clipper = &boxing->clipper[f];
-    mpz_t *shift = boxing->scratch;
-    slabs_walk(&pair->frame[f], NULL, keep_slab, clipper, boxing->scratch);
+    struct exact_pair *pair = walk->pair;
+    struct clipper *clipper = &walk->clipper[f];
+    mpz_t *shift = walk->scratch;
+    slabs_walk(&pair->frame[f], NULL, keep_slab, clipper, walk->scratch);
     for (int s = 0; s < clipper->slabs; s++) {
         mpz_t *normal = clipper->slab[s].normal;
         integer_dot(shift[0], normal, pair->offset);
@@ -137,87 +137,87 @@ static void set_clipper(struct boxing *boxing, int f)
             mpz_neg(shift[1], shift[1]);
         }
         mpz_add(shift[1], shift[1], shift[0]);
-        for (int v = 0; v < boxing->vertices[1 - f]; v++) {
-            integer_dot(shift[2], normal, boxing->vertex[1 - f][v]);
-            for (int end = 0; end < boxing->ends; end++)
+        for (int v = 0; v < walk->vertices[1 - f]; v++) {
+            integer_dot(shift[2], normal, walk->vertex[1 - f][v]);
+            for (int end = 0; end < walk->ends; end++)
                 mpz_add(clipper->at[end][s][v], shift[2], shift[end]);
         }
     }
 }
 
-/* Widens the box by boxing->coordinate along an axis. */
-static void include_coordinate(struct boxing *boxing, int axis)
+/* Visits point + s path, at the time that found holds as tau: its numerator, over that of s. */
+static void visit_point(struct walk *walk, const struct ratio *s)
 {
-    for (int side = 0; side < 2; side++) {
-        struct ratio *bound = &boxing->bound[side][axis];
-        int sign = boxing->bounded ? ratio_compare(&boxing->coordinate, bound, boxing->scratch) : 0;
-        if (!boxing->bounded || (side == 0 ? sign < 0 : sign > 0))
-            ratio_copy(bound, &boxing->coordinate);
+    struct exact_point *found = &walk->found;
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_mul(found->at[axis], walk->point[axis], s->den);
+        mpz_addmul(found->at[axis], walk->path[axis], s->num);
     }
+    mpz_set(found->den, s->den);
+    walk->visit(walk->context, found);
 }
 
-/* Widens the box by point + s path. */
-static void include_point(struct boxing *boxing, const struct ratio *s)
+/* Visits point + s path of a segment between two ends of the window. */
+static void visit_end(struct walk *walk, const struct ratio *s, int end_v, int end_w)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_mul(boxing->coordinate.num, boxing->point[axis], s->den);
-        mpz_addmul(boxing->coordinate.num, boxing->path[axis], s->num);
-        mpz_set(boxing->coordinate.den, s->den);
-        include_coordinate(boxing, axis);
-    }
-    boxing->bounded = true;
+    if (end_v != end_w) /* 0 and 1 */
+        mpz_set(walk->found.tau, s->num);
+    else
+        mpz_mul_si(walk->found.tau, s->den, end_v);
+    visit_point(walk, s);
 }
 
 /* Clips the segment point + s path of frame f, which goes from vertex v at one end of the
- * window to vertex w at another, to the other frame, and widens the box by what is left. */
-static void include_segment(struct boxing *boxing, int f, int v, int end_v, int w, int end_w)
+ * window to vertex w at the same or the other end, to the other frame, and visits the ends of what
+ * is left. */
+static void visit_segment(struct walk *walk, int f, int v, int end_v, int w, int end_w)
 {
-    struct clipper *clipper = &boxing->clipper[1 - f];
-    span_reset(&boxing->span);
+    struct clipper *clipper = &walk->clipper[1 - f];
+    span_reset(&walk->span);
     for (int s = 0; s < clipper->slabs; s++) {
         struct slab *slab = &clipper->slab[s];
-        if (!span_apply(&boxing->span, clipper->at[end_v][s][v], clipper->at[end_w][s][w],
-                        slab->low, slab->high, slab->pins))
+        if (!span_apply(&walk->span, clipper->at[end_v][s][v], clipper->at[end_w][s][w], slab->low,
+                        slab->high, slab->pins))
             return;
     }
-    include_point(boxing, span_lower(&boxing->span));
-    include_point(boxing, span_upper(&boxing->span));
+    visit_end(walk, span_lower(&walk->span), end_v, end_w);
+    visit_end(walk, span_upper(&walk->span), end_v, end_w);
 }
 
 /* point := vertex v of frame f in the world, at an end of the window. */
-static void set_point(struct boxing *boxing, int f, int v, int end)
+static void set_point(struct walk *walk, int f, int v, int end)
 {
-    const struct exact_frame *frame = &boxing->pair->frame[f];
+    const struct exact_frame *frame = &walk->pair->frame[f];
     for (int axis = 0; axis < 3; axis++) {
-        mpz_add(boxing->point[axis], frame->origin[axis], boxing->vertex[f][v][axis]);
+        mpz_add(walk->point[axis], frame->origin[axis], walk->vertex[f][v][axis]);
         if (end)
-            mpz_add(boxing->point[axis], boxing->point[axis], frame->displacement[axis]);
+            mpz_add(walk->point[axis], walk->point[axis], frame->displacement[axis]);
     }
 }
 
 /* Kind 1. */
-static void include_edges(struct boxing *boxing, int f, int end)
+static void visit_edges(struct walk *walk, int f, int end)
 {
-    for (int v = 0; v < boxing->vertices[f]; v++) {
-        set_point(boxing, f, v, end);
-        for (int w = v + 1; w < boxing->vertices[f]; w++) {
-            if (!is_edge(&boxing->pair->frame[f], v, w))
+    for (int v = 0; v < walk->vertices[f]; v++) {
+        set_point(walk, f, v, end);
+        for (int w = v + 1; w < walk->vertices[f]; w++) {
+            if (!is_edge(&walk->pair->frame[f], v, w))
                 continue;
             for (int axis = 0; axis < 3; axis++)
-                mpz_sub(boxing->path[axis], boxing->vertex[f][w][axis], boxing->vertex[f][v][axis]);
-            include_segment(boxing, f, v, end, w, end);
+                mpz_sub(walk->path[axis], walk->vertex[f][w][axis], walk->vertex[f][v][axis]);
+            visit_segment(walk, f, v, end, w, end);
         }
     }
 }
 
 /* Kind 2. */
-static void include_paths(struct boxing *boxing, int f)
+static void visit_paths(struct walk *walk, int f)
 {
     for (int axis = 0; axis < 3; axis++)
-        mpz_set(boxing->path[axis], boxing->pair->frame[f].displacement[axis]);
-    for (int v = 0; v < boxing->vertices[f]; v++) {
-        set_point(boxing, f, v, 0);
-        include_segment(boxing, f, v, 0, v, 1);
+        mpz_set(walk->path[axis], walk->pair->frame[f].displacement[axis]);
+    for (int v = 0; v < walk->vertices[f]; v++) {
+        set_point(walk, f, v, 0);
+        visit_segment(walk, f, v, 0, v, 1);
     }
 }
 
@@ -301,19 +301,20 @@ static bool crossing_at(struct crossing *crossing, mpz_t p[3], mpz_t q[3], mpz_t
     return in_unit(crossing->u, crossing->det);
 }
 
-/* Widens the box by p + s e + tau displacement of A. All have the denominator det: with the
+/* Visits p + s e + tau displacement of A. All have the denominator det: with the
  * path s e + tau displacement, taken times det, the parameter is 1 / det. */
-static void include_crossing(struct boxing *boxing, struct crossing *crossing, int v, mpz_t e[3])
+static void visit_crossing(struct walk *walk, struct crossing *crossing, int v, mpz_t e[3])
 {
-    const struct exact_frame *a = &boxing->pair->frame[0];
-    set_point(boxing, 0, v, 0);
+    const struct exact_frame *a = &walk->pair->frame[0];
+    set_point(walk, 0, v, 0);
     for (int axis = 0; axis < 3; axis++) {
-        mpz_mul(boxing->path[axis], crossing->s, e[axis]);
-        mpz_addmul(boxing->path[axis], crossing->tau.num, a->displacement[axis]);
+        mpz_mul(walk->path[axis], crossing->s, e[axis]);
+        mpz_addmul(walk->path[axis], crossing->tau.num, a->displacement[axis]);
     }
+    mpz_set(walk->found.tau, crossing->tau.num);
     mpz_set_ui(crossing->tau.num, 1);
     mpz_set(crossing->tau.den, crossing->det);
-    include_point(boxing, &crossing->tau);
+    visit_point(walk, &crossing->tau);
 }
 
 /* Whether an edge in direction number e starts in vertex v: of a cuboid where the bit of the
@@ -328,55 +329,106 @@ static bool starts_in(const struct exact_frame *frame, int e, int v)
 }
 
 /* Kind 3, for one direction of A and one of B. */
-static void include_parallel_crossings(struct boxing *boxing, struct crossing *crossing, int e,
-                                       int f)
+static void visit_parallel_crossings(struct walk *walk, struct crossing *crossing, int e, int f)
 {
-    struct exact_pair *pair = boxing->pair;
-    for (int v = 0; v < boxing->vertices[0]; v++) {
+    struct exact_pair *pair = walk->pair;
+    for (int v = 0; v < walk->vertices[0]; v++) {
         if (!starts_in(&pair->frame[0], e, v))
             continue;
-        for (int w = 0; w < boxing->vertices[1]; w++)
+        for (int w = 0; w < walk->vertices[1]; w++)
             if (starts_in(&pair->frame[1], f, w) &&
-                crossing_at(crossing, boxing->vertex[0][v], boxing->vertex[1][w], pair->offset))
-                include_crossing(boxing, crossing, v, pair->frame[0].edge[e]);
+                crossing_at(crossing, walk->vertex[0][v], walk->vertex[1][w], pair->offset))
+                visit_crossing(walk, crossing, v, pair->frame[0].edge[e]);
     }
 }
 
-static void include_crossings(struct boxing *boxing)
+static void visit_crossings(struct walk *walk)
 {
-    struct exact_pair *pair = boxing->pair;
+    struct exact_pair *pair = walk->pair;
     struct crossing crossing;
     crossing_each(&crossing, mpz_init);
     for (int e = 0; e < pair->frame[0].edges; e++)
         for (int f = 0; f < pair->frame[1].edges; f++)
             if (crossing_set(&crossing, pair->frame[0].edge[e], pair->frame[1].edge[f], pair->drift,
-                             boxing->scratch[0]))
-                include_parallel_crossings(boxing, &crossing, e, f);
+                             walk->scratch[0]))
+                visit_parallel_crossings(walk, &crossing, e, f);
     crossing_each(&crossing, mpz_clear);
 }
 
-static void include_all(struct boxing *boxing)
+static void visit_all(struct walk *walk)
 {
     for (int f = 0; f < 2; f++)
-        boxing->vertices[f] = set_vertices(&boxing->pair->frame[f], boxing->vertex[f]);
+        walk->vertices[f] = frame_vertices(&walk->pair->frame[f], walk->vertex[f]);
     for (int f = 0; f < 2; f++)
-        set_clipper(boxing, f);
+        set_clipper(walk, f);
     for (int f = 0; f < 2; f++) {
-        for (int end = 0; end < boxing->ends; end++)
-            include_edges(boxing, f, end);
-        if (boxing->pair->moving)
-            include_paths(boxing, f);
+        for (int end = 0; end < walk->ends; end++)
+            visit_edges(walk, f, end);
+        if (walk->pair->moving)
+            visit_paths(walk, f);
     }
-    if (boxing->pair->moving)
-        include_crossings(boxing);
+    if (walk->pair->moving)
+        visit_crossings(walk);
+}
+
+void points_walk(struct exact_pair *pair, point_visit visit, void *context)
+{
+    struct walk walk = {
+        .pair = pair, .visit = visit, .context = context, .ends = pair->moving ? 2 : 1};
+    walk_each(&walk, mpz_init);
+    span_init(&walk.span);
+    visit_all(&walk);
+    span_clear(&walk.span);
+    walk_each(&walk, mpz_clear);
+}
+
+struct boxing {
+    struct ratio bound[2][3]; /* [0] lower and [1] upper ends so far */
+    bool bounded;
+    struct ratio coordinate;
+    mpz_t scratch[2];
+};
+
+static void boxing_each(struct boxing *boxing, void (*call)(mpz_ptr))
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            call(boxing->bound[side][axis].num);
+            call(boxing->bound[side][axis].den);
+        }
+    call(boxing->coordinate.num);
+    call(boxing->coordinate.den);
+    call(boxing->scratch[0]);
+    call(boxing->scratch[1]);
+}
+
+/* Widens the box by boxing->coordinate along an axis. */
+static void include_coordinate(struct boxing *boxing, int axis)
+{
+    for (int side = 0; side < 2; side++) {
+        struct ratio *bound = &boxing->bound[side][axis];
+        int sign = boxing->bounded ? ratio_compare(&boxing->coordinate, bound, boxing->scratch) : 0;
+        if (!boxing->bounded || (side == 0 ? sign < 0 : sign > 0))
+            ratio_copy(bound, &boxing->coordinate);
+    }
+}
+
+static void include_point(void *context, const struct exact_point *point)
+{
+    struct boxing *boxing = context;
+    mpz_set(boxing->coordinate.den, point->den);
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_set(boxing->coordinate.num, point->at[axis]);
+        include_coordinate(boxing, axis);
+    }
+    boxing->bounded = true;
 }
 
 void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX])
 {
-    struct boxing boxing = {.pair = pair, .ends = pair->moving ? 2 : 1};
+    struct boxing boxing = {.bounded = false};
     boxing_each(&boxing, mpz_init);
-    span_init(&boxing.span);
-    include_all(&boxing);
+    points_walk(pair, include_point, &boxing);
     assert(boxing.bounded);
     for (int axis = 0; axis < 3; axis++)
         for (int side = 0; side < 2; side++) {
@@ -384,6 +436,5 @@ void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX])
             box[side][axis] = integer_ratio_round(bound->num, bound->den, pair->unit,
                                                   side ? ROUND_UP : ROUND_DOWN, boxing.scratch);
         }
-    span_clear(&boxing.span);
     boxing_each(&boxing, mpz_clear);
 }

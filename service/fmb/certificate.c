@@ -1,0 +1,332 @@
+/* The maker of certificates: what shows a verdict to one who does not believe the engine. The
+ * point is found in certificate_point.c, the normal here.
+ *
+ * As in exact_slabs.c, let D = A - B be the Minkowski difference, both frames with their
+ * origins at 0, and W the segment along which the offset w of the frames goes, offset + tau
+ * drift, tau in [0,1]. The frames meet where W meets D, and overlap where W meets ri D, the
+ * relative interior. Let S = W - D: all b - a of all points and times. So a normal N proves
+ *
+ *   SEPARATED: N . s > 0 for all s of S;
+ *   TOUCHING:  N . s >= 0 for all s of S, and N not constant on D: a point d of ri D then has
+ *              N . d < max N . D <= min N . W, so no w of W, end of the window or not, is one.
+ *
+ * S is a polytope whose edges are edges of A, of B, and the drift. Apart, 0 lies outside of S:
+ * outside of its affine hull, or beyond a facet.
+ *
+ * Touching, 0 lies on a facet of S whose normal is not constant on D. For 0 is not in ri S =
+ * ri W - ri D (Rockafellar, Convex Analysis, corollary 6.6.2), and so it is in the relative
+ * interior of a proper face F of S. Add up the normals of all facets that contain F: the sum N
+ * is least on F alone. If each of these normals were constant on D, N were too; then F = W' - D
+ * with a face W' of W, and from 0 in ri F = ri W' - ri D it would follow that W meets ri D.
+ *
+ * So it is enough to try, for a rank r of all edges together
+ *   r = 3: u x v of two edges, which span a facet;
+ *   r = 2: u x v, the normal of the plane of S; and within that plane (u x v) x w, the normals of
+ *          the edges w. In 2D these are w x z;
+ *   r = 1: u itself, and across it (u x d) x u = (u . u) d - (u . d) u where the line of S, which
+ *          goes through d along u, does not go through 0. In 2D that is u x z;
+ *   r = 0: d, for S is the point d;
+ * with both signs. The rank need not be known: the first that proves the verdict is taken. */
+#include "certificate_point.h"
+#include "exact.h"
+#include "integer.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include <gmp.h>
+
+/* ---- The normal ---- */
+
+enum {
+    DIRECTIONS_MAX = 2 * EXACT_EDGES_MAX + 3, /* v, z, d */
+    NORMAL_TEXT_SIZE = 20                     /* "+ (a0 x a1) x b2" */
+};
+
+/* A direction that certificates can name. */
+struct named {
+    char name[3];
+    int owner;     /* 0, 1: an edge of that frame; 2: of neither */
+    mpz_t *vector; /* not 0 */
+};
+
+struct range {
+    mpz_t low, high;
+};
+
+struct search {
+    struct exact_pair *pair;
+    enum fmb_verdict verdict;
+    int directions; /* those of edges first; the last is d, if that is not 0 */
+    struct named direction[DIRECTIONS_MAX];
+    int vertices[2];
+    mpz_t vertex[2][EXACT_VERTICES_MAX][3]; /* [frame][vertex][axis] */
+    mpz_t z[3];
+    mpz_t plane[3], normal[3];
+    struct range range[2], way; /* of the normal over the frames, and over W */
+    mpz_t scratch[2];
+    char text[NORMAL_TEXT_SIZE];
+};
+
+static void range_each(struct range *range, void (*call)(mpz_ptr))
+{
+    call(range->low);
+    call(range->high);
+}
+
+static void search_each(struct search *search, void (*call)(mpz_ptr))
+{
+    for (int f = 0; f < 2; f++) {
+        for (int v = 0; v < EXACT_VERTICES_MAX; v++)
+            for (int axis = 0; axis < 3; axis++)
+                call(search->vertex[f][v][axis]);
+        range_each(&search->range[f], call);
+        call(search->scratch[f]);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        call(search->z[axis]);
+        call(search->plane[axis]);
+        call(search->normal[axis]);
+    }
+    range_each(&search->way, call);
+}
+
+static bool is_zero(mpz_t v[3])
+{
+    return mpz_sgn(v[0]) == 0 && mpz_sgn(v[1]) == 0 && mpz_sgn(v[2]) == 0;
+}
+
+static void add_direction(struct search *search, char letter, int number, int owner,
+                          mpz_t vector[3])
+{
+    if (is_zero(vector))
+        return;
+    struct named *named = &search->direction[search->directions++];
+    named->name[0] = letter;
+    named->name[1] = number < 0 ? '\0' : (char) ('0' + number);
+    named->name[2] = '\0';
+    named->owner = owner;
+    named->vector = vector;
+}
+
+static void set_directions(struct search *search, int dim)
+{
+    struct exact_pair *pair = search->pair;
+    for (int f = 0; f < 2; f++)
+        for (int e = 0; e < pair->frame[f].edges; e++)
+            add_direction(search, "ab"[f], e, f, pair -> frame[f].edge[e]);
+    add_direction(search, 'v', -1, 2, pair->drift);
+    mpz_set_ui(search->z[2], dim == 2);
+    add_direction(search, 'z', -1, 2, search->z);
+    add_direction(search, 'd', -1, 2, pair->offset);
+}
+
+static void widen(struct range *range, const mpz_t value, bool first)
+{
+    if (first || mpz_cmp(value, range->low) < 0)
+        mpz_set(range->low, value);
+    if (first || mpz_cmp(value, range->high) > 0)
+        mpz_set(range->high, value);
+}
+
+static void set_ranges(struct search *search)
+{
+    mpz_t *value = search->scratch;
+    for (int f = 0; f < 2; f++)
+        for (int v = 0; v < search->vertices[f]; v++) {
+            integer_dot(value[0], search->normal, search->vertex[f][v]);
+            widen(&search->range[f], value[0], v == 0);
+        }
+    integer_dot(value[0], search->normal, search->pair->offset);
+    integer_dot(value[1], search->normal, search->pair->drift);
+    mpz_add(value[1], value[1], value[0]);
+    widen(&search->way, value[0], true);
+    widen(&search->way, value[1], false);
+}
+
+static bool varies(const struct range *range)
+{
+    return mpz_cmp(range->low, range->high) != 0;
+}
+
+/* 1 if the normal proves the verdict, -1 if its opposite does, else 0. */
+static int proving_sign(struct search *search)
+{
+    set_ranges(search);
+    const struct range *a = &search->range[0], *b = &search->range[1];
+    mpz_t *least = &search->scratch[0], *most = &search->scratch[1]; /* over S */
+    mpz_add(*least, search->way.low, b->low);
+    mpz_sub(*least, *least, a->high);
+    mpz_add(*most, search->way.high, b->high);
+    mpz_sub(*most, *most, a->low);
+    if (search->verdict == FMB_SEPARATED)
+        return mpz_sgn(*least) > 0 ? 1 : mpz_sgn(*most) < 0 ? -1 : 0;
+    if (!varies(a) && !varies(b))
+        return 0;
+    return mpz_sgn(*least) >= 0 ? 1 : mpz_sgn(*most) <= 0 ? -1 : 0;
+}
+
+/* Whether search->normal, or its opposite, proves the verdict; if so, search->text says which. */
+static bool try_normal(struct search *search, const char *format, ...)
+{
+    int sign = proving_sign(search);
+    if (sign == 0)
+        return false;
+    va_list names;
+    va_start(names, format);
+    search->text[0] = sign > 0 ? '+' : '-';
+    search->text[1] = ' ';
+    vsnprintf(search->text + 2, sizeof search->text - 2, format, names);
+    va_end(names);
+    return true;
+}
+
+/* u x v: first the faces of each frame; then an edge of one with one of the other, with v, or
+ * with z. */
+static bool try_products(struct search *search)
+{
+    for (int mixed = 0; mixed < 2; mixed++)
+        for (int i = 0; i < search->directions; i++)
+            for (int j = i + 1; j < search->directions; j++) {
+                const struct named *u = &search->direction[i], *v = &search->direction[j];
+                if ((u->owner != v->owner) != mixed || v->vector == search->pair->offset)
+                    continue;
+                integer_cross(search->normal, u->vector, v->vector, search->scratch[0]);
+                if (try_normal(search, "%s x %s", u->name, v->name))
+                    return true;
+            }
+    return false;
+}
+
+static bool try_directions(struct search *search)
+{
+    for (int i = 0; i < search->directions; i++) {
+        const struct named *u = &search->direction[i];
+        for (int axis = 0; axis < 3; axis++)
+            mpz_set(search->normal[axis], u->vector[axis]);
+        if (try_normal(search, "%s", u->name))
+            return true;
+    }
+    return false;
+}
+
+/* (u x v) x w, with u x v the first that is not 0: of two edges or, where all edges are parallel,
+ * of one of them and d. */
+static bool try_within_plane(struct search *search)
+{
+    const struct named *u = &search->direction[0], *v = u;
+    do {
+        v++;
+        assert(v < u + search->directions);
+        integer_cross(search->plane, u->vector, v->vector, search->scratch[0]);
+    } while (is_zero(search->plane));
+    for (int i = 0; i < search->directions; i++) {
+        const struct named *w = &search->direction[i];
+        integer_cross(search->normal, search->plane, w->vector, search->scratch[0]);
+        if (try_normal(search, "(%s x %s) x %s", u->name, v->name, w->name))
+            return true;
+    }
+    return false;
+}
+
+/* On output: the sign and direction of a normal that proves the verdict. */
+static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdict,
+                        char text[NORMAL_TEXT_SIZE])
+{
+    struct search search = {.pair = pair, .verdict = verdict};
+    search_each(&search, mpz_init);
+    for (int f = 0; f < 2; f++)
+        search.vertices[f] = frame_vertices(&pair->frame[f], search.vertex[f]);
+    set_directions(&search, dim);
+    bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);
+    assert(found);
+    (void) found;
+    snprintf(text, NORMAL_TEXT_SIZE, "%s", search.text);
+    search_each(&search, mpz_clear);
+}
+
+/* ---- The text ---- */
+
+struct writer {
+    char *text;
+    size_t size;
+    size_t length; /* of all that was written, whether there was room or not */
+    char nowhere[1];
+};
+
+/* Where snprintf is to write next, and how much. */
+static char *room(struct writer *writer)
+{
+    return writer->length < writer->size ? writer->text + writer->length : writer->nowhere;
+}
+
+static size_t room_size(const struct writer *writer)
+{
+    return writer->length < writer->size ? writer->size - writer->length : 0;
+}
+
+static void write_text(struct writer *writer, const char *text)
+{
+    writer->length += (size_t) snprintf(room(writer), room_size(writer), "%s", text);
+}
+
+static void write_number(struct writer *writer, const mpq_t number)
+{
+    writer->length += (size_t) gmp_snprintf(room(writer), room_size(writer), "%Qd", number);
+}
+
+static void write_normal(struct writer *writer, struct exact_pair *exact, int dim,
+                         enum fmb_verdict verdict)
+{
+    char normal[NORMAL_TEXT_SIZE];
+    find_normal(exact, dim, verdict, normal);
+    write_text(writer, " ");
+    write_text(writer, normal);
+}
+
+static void write_point(struct writer *writer, struct exact_pair *exact,
+                        const struct fmb_pair *pair)
+{
+    struct certificate_point point;
+    certificate_point_init(&point);
+    certificate_point_find(&point, exact, pair);
+    write_text(writer, " at ");
+    write_number(writer, point.time);
+    for (int axis = 0; axis < pair->a.body->dim; axis++) {
+        write_text(writer, axis == 0 ? " (" : " ");
+        write_number(writer, point.place[axis]);
+    }
+    write_text(writer, ")");
+    certificate_point_clear(&point);
+}
+
+static void write_certificate(struct writer *writer, const struct fmb_pair *pair)
+{
+    struct fmb_answer answer = {0};
+    exact_decide(pair, 0, &answer);
+    struct exact_pair exact;
+    exact_pair_init(&exact, pair);
+    write_text(writer, fmb_verdict_name(answer.verdict));
+    if (answer.verdict != FMB_OVERLAPPING)
+        write_normal(writer, &exact, pair->a.body->dim, answer.verdict);
+    if (answer.verdict != FMB_SEPARATED)
+        write_point(writer, &exact, pair);
+    exact_pair_clear(&exact);
+}
+
+enum fmb_status fmb_certificate(const struct fmb_pair *pair, char *text, size_t size,
+                                size_t *length)
+{
+    struct writer writer = {.text = text, .size = size};
+    enum fmb_status status = fmb_pair_check(pair);
+    if (status == FMB_OK) {
+        write_certificate(&writer, pair);
+        if (writer.length >= size)
+            status = FMB_OVER_LIMIT;
+    }
+    if (status != FMB_OK && size > 0)
+        text[0] = '\0';
+    *length = writer.length;
+    return status;
+}

@@ -1,0 +1,353 @@
+/* A point for the certificate of two frames that meet: exact, and short to write.
+ *
+ * In space and time (t, p) the intersection over the window is a polytope Q (exact_box.c). Where
+ * the frames touch, any of its points will do. Where they overlap, any point of its relative
+ * interior will: by Rockafellar, Convex Analysis, section 6,
+ *
+ *   if the relative interiors meet at some time inside the window, then ri Q is where they meet
+ *   at times inside it (theorem 6.5, of what the frames fill in space and time, and of the
+ *   window);
+ *   else they meet at an end of the window alone, and then all of Q lies there: a segment from
+ *   where they meet to a point of Q at another time would lead through relative interiors
+ *   inside the window (theorem 6.1). So ri Q is where they meet, by theorem 6.5 at that time.
+ *
+ * Method: points of Q that are affinely independent, and as many as there are, span a simplex in
+ * Q that is open in the affine hull of Q; so its mean is in ri Q. From there the point is moved
+ * inside ri Q, along one line after the other, each time to where one coordinate is the simplest
+ * number: one coordinate for each dimension of Q, the time first. Where Q is flat, the other
+ * coordinates follow from these. */
+#include "certificate_point.h"
+
+#include <assert.h>
+
+/* [0] the time in seconds, [1] to [3] the place in the world. */
+enum { COORDINATES = 4 };
+
+/* ---- The simplest number ---- */
+
+/* out := the simplest number strictly between a / b >= 0 and c / d > a / b, which is infinite for
+ * d = 0: the one of least denominator, and of these the least. The limits are overwritten.
+ *
+ * Method: with q = floor(a / b), it is q + 1 if that is below c / d. Else both limits are
+ * q + 1 / y for y from d / (c - q d) to b / (a - q b), and it is q + 1 / y for the simplest y
+ * between these. So it comes as a continued fraction, of which num / den is the value so far and
+ * last_num / last_den the one before. */
+static void simplest_of_positive(mpq_t out, mpz_t a, mpz_t b, mpz_t c, mpz_t d)
+{
+    mpz_t term, last_num, last_den;
+    mpz_inits(term, last_num, last_den, NULL);
+    mpq_set_ui(out, 1, 0);
+    mpz_set_ui(last_den, 1);
+    for (bool whole = false; !whole;) {
+        mpz_fdiv_q(term, a, b);
+        mpz_submul(a, term, b);
+        mpz_submul(c, term, d);
+        whole = mpz_cmp(d, c) < 0; /* term + 1 < c / d */
+        mpz_add_ui(term, term, whole);
+        mpz_addmul(last_num, term, mpq_numref(out));
+        mpz_addmul(last_den, term, mpq_denref(out));
+        mpz_swap(last_num, mpq_numref(out));
+        mpz_swap(last_den, mpq_denref(out));
+        mpz_swap(a, d);
+        mpz_swap(b, c);
+    }
+    mpz_clears(term, last_num, last_den, NULL);
+}
+
+/* out := the simplest number strictly between low and high > low: 0 if that is, else the one of
+ * least denominator, and of these the one next to 0. low and high are overwritten. */
+static void simplest_between(mpq_t out, mpq_t low, mpq_t high)
+{
+    bool negative = mpq_sgn(high) <= 0;
+    if (mpq_sgn(low) < 0 && mpq_sgn(high) > 0) {
+        mpq_set_ui(out, 0, 1);
+        return;
+    }
+    if (negative) {
+        mpq_swap(low, high);
+        mpq_neg(low, low);
+        mpq_neg(high, high);
+    }
+    simplest_of_positive(out, mpq_numref(low), mpq_denref(low), mpq_numref(high), mpq_denref(high));
+    if (negative)
+        mpq_neg(out, out);
+}
+
+/* ---- A point inside of Q, and the directions of Q ---- */
+
+/* The affine hull of Q, as far as the points seen span it. */
+struct hull {
+    long unit; /* of the exact pair */
+    mpq_t duration;
+    int points; /* seen, and affinely independent */
+    mpq_t first[COORDINATES], sum[COORDINATES];
+    /* A basis of the directions in reduced echelon form: direction[k], where there is one, is 1 in
+     * coordinate k and 0 in those before it; all others are 0 in coordinate k. */
+    bool has[COORDINATES];
+    mpq_t direction[COORDINATES][COORDINATES]; /* [k][coordinate] */
+    mpq_t seen[COORDINATES], rest[COORDINATES];
+    mpq_t factor, product;
+};
+
+static void hull_each(struct hull *hull, void (*call)(mpq_ptr))
+{
+    for (int k = 0; k < COORDINATES; k++) {
+        for (int i = 0; i < COORDINATES; i++)
+            call(hull->direction[k][i]);
+        call(hull->first[k]);
+        call(hull->sum[k]);
+        call(hull->seen[k]);
+        call(hull->rest[k]);
+    }
+    call(hull->duration);
+    call(hull->factor);
+    call(hull->product);
+}
+
+/* x := x 2^exponent. */
+static void scale(mpq_t x, long exponent)
+{
+    if (exponent < 0)
+        mpq_div_2exp(x, x, (mp_bitcnt_t) -exponent);
+    else
+        mpq_mul_2exp(x, x, (mp_bitcnt_t) exponent);
+}
+
+static void set_fraction(mpq_t out, const mpz_t num, const mpz_t den)
+{
+    mpq_set_num(out, num);
+    mpq_set_den(out, den);
+    mpq_canonicalize(out);
+}
+
+static void set_seen(struct hull *hull, const struct exact_point *point)
+{
+    set_fraction(hull->seen[0], point->tau, point->den);
+    mpq_mul(hull->seen[0], hull->seen[0], hull->duration);
+    for (int axis = 0; axis < 3; axis++) {
+        set_fraction(hull->seen[1 + axis], point->at[axis], point->den);
+        scale(hull->seen[1 + axis], hull->unit);
+    }
+}
+
+/* v := v - v[k] direction[k], whose coordinate k is 0. */
+static void clear_coordinate(struct hull *hull, mpq_t v[COORDINATES], int k)
+{
+    if (mpq_sgn(v[k]) == 0)
+        return;
+    mpq_set(hull->factor, v[k]);
+    for (int i = 0; i < COORDINATES; i++) {
+        mpq_mul(hull->product, hull->factor, hull->direction[k][i]);
+        mpq_sub(v[i], v[i], hull->product);
+    }
+}
+
+/* Adds a direction, or nothing if it depends on those that there are; true if it did. It is
+ * overwritten. */
+static bool add_direction(struct hull *hull, mpq_t v[COORDINATES])
+{
+    int pivot = COORDINATES;
+    for (int k = COORDINATES - 1; k >= 0; k--)
+        if (hull->has[k])
+            clear_coordinate(hull, v, k);
+    for (int k = COORDINATES - 1; k >= 0; k--)
+        if (mpq_sgn(v[k]) != 0)
+            pivot = k;
+    if (pivot == COORDINATES)
+        return false;
+
+    hull->has[pivot] = true;
+    for (int k = 0; k < COORDINATES; k++)
+        mpq_div(hull->direction[pivot][k], v[k], v[pivot]);
+    for (int k = 0; k < COORDINATES; k++)
+        if (hull->has[k] && k != pivot)
+            clear_coordinate(hull, hull->direction[k], pivot);
+    return true;
+}
+
+static void add_point(void *context, const struct exact_point *point)
+{
+    struct hull *hull = context;
+    if (hull->points == COORDINATES + 1)
+        return;
+    set_seen(hull, point);
+    if (hull->points == 0)
+        for (int k = 0; k < COORDINATES; k++)
+            mpq_set(hull->first[k], hull->seen[k]);
+    for (int k = 0; k < COORDINATES; k++)
+        mpq_sub(hull->rest[k], hull->seen[k], hull->first[k]);
+    if (hull->points > 0 && !add_direction(hull, hull->rest))
+        return;
+    for (int k = 0; k < COORDINATES; k++)
+        mpq_add(hull->sum[k], hull->sum[k], hull->seen[k]);
+    hull->points++;
+}
+
+/* ---- Along a line ---- */
+
+/* A line at + s direction through a point of ri Q, along a direction of Q. */
+struct chord {
+    struct exact_pair *exact;
+    mpq_t *at, *direction; /* [coordinate] */
+    bool bounded;
+    mpq_t low, high; /* where the line leaves Q: s from low to high */
+    /* [axis]: the point of the line from the origin of one frame, in the unit of the exact pair,
+     * is place + s way. */
+    mpq_t place[3], way[3];
+    mpq_t value, slope; /* of what is bounded: value + s slope */
+    mpq_t bound[2], number;
+};
+
+static void chord_each(struct chord *chord, void (*call)(mpq_ptr))
+{
+    for (int axis = 0; axis < 3; axis++) {
+        call(chord->place[axis]);
+        call(chord->way[axis]);
+    }
+    call(chord->low);
+    call(chord->high);
+    call(chord->value);
+    call(chord->slope);
+    call(chord->bound[0]);
+    call(chord->bound[1]);
+    call(chord->number);
+}
+
+/* Shortens the chord to bound[0] <= value + s slope <= bound[1], which are overwritten. Where the
+ * slope is 0 this holds along the whole line, as it does at its point of ri Q. */
+static void shorten(struct chord *chord)
+{
+    int sign = mpq_sgn(chord->slope);
+    if (sign == 0)
+        return;
+    for (int side = 0; side < 2; side++) {
+        mpq_sub(chord->bound[side], chord->bound[side], chord->value);
+        mpq_div(chord->bound[side], chord->bound[side], chord->slope);
+    }
+    if (sign < 0)
+        mpq_swap(chord->bound[0], chord->bound[1]);
+    if (!chord->bounded || mpq_cmp(chord->bound[0], chord->low) > 0)
+        mpq_set(chord->low, chord->bound[0]);
+    if (!chord->bounded || mpq_cmp(chord->bound[1], chord->high) < 0)
+        mpq_set(chord->high, chord->bound[1]);
+    chord->bounded = true;
+}
+
+static void shorten_to_window(struct chord *chord, double duration)
+{
+    mpq_set(chord->value, chord->at[0]);
+    mpq_set(chord->slope, chord->direction[0]);
+    mpq_set_ui(chord->bound[0], 0, 1);
+    mpq_set_d(chord->bound[1], duration);
+    shorten(chord);
+}
+
+/* out := normal . v. */
+static void dot(mpq_t out, mpz_t normal[3], mpq_t v[3], mpq_t scratch)
+{
+    mpq_set_ui(out, 0, 1);
+    for (int axis = 0; axis < 3; axis++) {
+        mpq_set_z(scratch, normal[axis]);
+        mpq_mul(scratch, scratch, v[axis]);
+        mpq_add(out, out, scratch);
+    }
+}
+
+static bool shorten_to_slab(void *context, struct slab *slab)
+{
+    struct chord *chord = context;
+    dot(chord->value, slab->normal, chord->place, chord->number);
+    dot(chord->slope, slab->normal, chord->way, chord->number);
+    mpq_set_z(chord->bound[0], slab->low);
+    mpq_set_z(chord->bound[1], slab->high);
+    shorten(chord);
+    return true;
+}
+
+/* At the time t the point p lies at p - t v - o from the origin of the frame. */
+static void shorten_to_frame(struct chord *chord, const struct fmb_frame *frame,
+                             const struct exact_frame *exact)
+{
+    for (int axis = 0; axis < frame->body->dim; axis++) {
+        mpq_set_d(chord->number, frame->moving ? frame->velocity[axis] : 0);
+        mpq_mul(chord->place[axis], chord->number, chord->at[0]);
+        mpq_sub(chord->place[axis], chord->at[1 + axis], chord->place[axis]);
+        mpq_mul(chord->way[axis], chord->number, chord->direction[0]);
+        mpq_sub(chord->way[axis], chord->direction[1 + axis], chord->way[axis]);
+        mpq_set_d(chord->number, frame->origin[axis]);
+        mpq_sub(chord->place[axis], chord->place[axis], chord->number);
+        scale(chord->place[axis], -chord->exact->unit);
+        scale(chord->way[axis], -chord->exact->unit);
+    }
+    slabs_walk(exact, NULL, shorten_to_slab, chord, chord->exact->scratch);
+}
+
+/* Moves the point along its line to where coordinate k, which is 1 in the direction, is the
+ * simplest number inside of Q. */
+static void simplify(struct chord *chord, int k)
+{
+    mpq_add(chord->low, chord->low, chord->at[k]);
+    mpq_add(chord->high, chord->high, chord->at[k]);
+    simplest_between(chord->number, chord->low, chord->high);
+    mpq_sub(chord->value, chord->number, chord->at[k]);
+    for (int i = 0; i < COORDINATES; i++) {
+        mpq_mul(chord->number, chord->value, chord->direction[i]);
+        mpq_add(chord->at[i], chord->at[i], chord->number);
+    }
+}
+
+static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pair *exact,
+                       const struct fmb_pair *pair)
+{
+    struct chord chord = {.exact = exact, .at = at};
+    chord_each(&chord, mpq_init);
+    for (int k = 0; k < COORDINATES; k++) {
+        if (!hull->has[k])
+            continue;
+        chord.direction = hull->direction[k];
+        chord.bounded = false;
+        shorten_to_window(&chord, pair->duration);
+        shorten_to_frame(&chord, &pair->a, &exact->frame[0]);
+        shorten_to_frame(&chord, &pair->b, &exact->frame[1]);
+        assert(chord.bounded && mpq_cmp(chord.low, chord.high) < 0);
+        simplify(&chord, k);
+    }
+    chord_each(&chord, mpq_clear);
+}
+
+/* ---- The point ---- */
+
+void certificate_point_init(struct certificate_point *point)
+{
+    mpq_init(point->time);
+    for (int axis = 0; axis < 3; axis++)
+        mpq_init(point->place[axis]);
+}
+
+void certificate_point_clear(struct certificate_point *point)
+{
+    mpq_clear(point->time);
+    for (int axis = 0; axis < 3; axis++)
+        mpq_clear(point->place[axis]);
+}
+
+void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
+                            const struct fmb_pair *pair)
+{
+    struct hull hull = {.unit = exact->unit};
+    hull_each(&hull, mpq_init);
+    mpq_set_d(hull.duration, pair->duration);
+    points_walk(exact, add_point, &hull);
+    assert(hull.points > 0);
+
+    mpq_t *mean = hull.sum;
+    mpq_set_si(hull.factor, 1, (unsigned long) hull.points);
+    for (int k = 0; k < COORDINATES; k++)
+        mpq_mul(mean[k], mean[k], hull.factor);
+    move_point(&hull, mean, exact, pair);
+
+    mpq_swap(point->time, mean[0]);
+    for (int axis = 0; axis < 3; axis++)
+        mpq_swap(point->place[axis], mean[1 + axis]);
+    hull_each(&hull, mpq_clear);
+}

@@ -1,0 +1,23 @@
+/* The point of a certificate: where and when two frames meet. */
+#ifndef FMB_CERTIFICATE_POINT_H
+#define FMB_CERTIFICATE_POINT_H
+
+#include "exact.h"
+
+#include <gmp.h>
+
+struct certificate_point {
+    mpq_t time;     /* seconds, in [0, T]; 0 if the pair is static */
+    mpq_t place[3]; /* world coordinates */
+};
+
+void certificate_point_init(struct certificate_point *point);
+void certificate_point_clear(struct certificate_point *point);
+
+/* On input: a pair that touches or overlaps, and the same as integers.
+ * On output: a point of both frames at a time of the window; if they overlap, of the relative
+ * interiors of both. */
+void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
+                            const struct fmb_pair *pair);
+
+#endif

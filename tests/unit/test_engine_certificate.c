@@ -1,0 +1,585 @@
+/* Certificates that the maker gives: they hold by the checker, for pairs of all kinds, and prove
+ * nothing else, whatever is done to them. The checker has tests of its own
+ * (test_engine_certificate_check.c). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+
+#include "draw.h"
+#include "question.h"
+#include "referee.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+enum { TEXT_SIZE = 1 << 18, WHY_SIZE = 200 };
+
+static const enum fmb_verdict verdicts[] = {FMB_SEPARATED, FMB_TOUCHING, FMB_OVERLAPPING};
+
+/* ---- Questions ---- */
+
+static enum fmb_shape draw_shape(struct draw *draw, int dim)
+{
+    return (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
+}
+
+static void draw_integers(struct draw *draw, int dim, int most, double *vector)
+{
+    for (int axis = 0; axis < dim; axis++)
+        vector[axis] = draw_int(draw, -most, most);
+}
+
+static struct solid draw_integer_solid(struct draw *draw, int dim, int most)
+{
+    struct solid solid = {.dim = dim, .shape = draw_shape(draw, dim)};
+    for (int i = 0; i < solid_count(&solid); i++)
+        draw_integers(draw, dim, most, solid.component[i]);
+    draw_integers(draw, dim, most, solid.origin);
+    return solid;
+}
+
+/* Who carries a velocity: A, B or both; or, one time in four, none. */
+static void draw_who_moves(struct draw *draw, struct question *question)
+{
+    const int who = draw_int(draw, 0, 3);
+    question->a.moving = who & 1;
+    question->b.moving = who & 2;
+}
+
+/* Small whole numbers throughout, the window included. */
+static void small_world(struct draw *draw, struct question *question)
+{
+    const int dim = draw_int(draw, 2, 3), most = draw_int(draw, 1, 3);
+    *question = (struct question){draw_integer_solid(draw, dim, most),
+                                  draw_integer_solid(draw, dim, most), draw_int(draw, 0, 2)};
+    draw_who_moves(draw, question);
+    draw_integers(draw, dim, most, question->a.velocity);
+    draw_integers(draw, dim, most, question->b.velocity);
+}
+
+/* A vector of the space that the first rank vectors of the basis span. */
+static void draw_within(struct draw *draw, int dim, double basis[][FMB_DIM_MAX], int rank,
+                        double *vector)
+{
+    memset(vector, 0, FMB_DIM_MAX * sizeof *vector);
+    for (int r = 0; r < rank; r++) {
+        const int times = draw_int(draw, -2, 2);
+        for (int axis = 0; axis < dim; axis++)
+            vector[axis] += times * basis[r][axis];
+    }
+}
+
+/* Each of a rank of its own. */
+static void flat(struct draw *draw, struct question *question)
+{
+    small_world(draw, question);
+    for (int side = 0; side < 2; side++) {
+        struct solid *solid = side == 0 ? &question->a : &question->b;
+        double basis[FMB_DIM_MAX][FMB_DIM_MAX];
+        for (int r = 0; r < FMB_DIM_MAX; r++)
+            draw_integers(draw, solid->dim, 2, basis[r]);
+        const int rank = draw_int(draw, 0, solid->dim - side);
+        for (int i = 0; i < solid_count(solid); i++)
+            draw_within(draw, solid->dim, basis, rank, solid->component[i]);
+    }
+}
+
+/* Both in one plane, on one line, or points; offset and velocity as a rule there too. */
+static void flat_in_one_space(struct draw *draw, struct question *question)
+{
+    small_world(draw, question);
+    const int dim = question->a.dim, rank = draw_int(draw, 0, dim - 1);
+    double basis[FMB_DIM_MAX][FMB_DIM_MAX];
+    for (int r = 0; r < FMB_DIM_MAX; r++)
+        draw_integers(draw, dim, 2, basis[r]);
+    for (int side = 0; side < 2; side++) {
+        struct solid *solid = side == 0 ? &question->a : &question->b;
+        for (int i = 0; i < solid_count(solid); i++)
+            draw_within(draw, dim, basis, rank, solid->component[i]);
+        if (draw_int(draw, 0, 4) > 0)
+            draw_within(draw, dim, basis, rank, solid->origin);
+        if (draw_int(draw, 0, 4) > 0)
+            draw_within(draw, dim, basis, rank, solid->velocity);
+    }
+}
+
+static void small_world_far_out(struct draw *draw, struct question *question)
+{
+    small_world(draw, question);
+    for (int axis = 0; axis < question->a.dim; axis++) {
+        const double far = draw_int(draw, -3, 3) * 0x1p40;
+        question->a.origin[axis] += far;
+        question->b.origin[axis] += far;
+    }
+    if (draw_coin(draw)) {
+        double *number = &question->b.origin[draw_int(draw, 0, question->a.dim - 1)];
+        *number = nextafter(*number, draw_coin(draw) ? HUGE_VAL : -HUGE_VAL);
+    }
+}
+
+/* Moves B so that at t = 0 a point of it lies in one of A, or as near as rounding lets it. */
+static void bring_into_contact(struct draw *draw, struct question *question)
+{
+    static const double eighths[] = {0, 0, 1, 0.5, 0.25, 0.125};
+    memcpy(question->b.origin, question->a.origin, sizeof question->b.origin);
+    for (int side = 0; side < 2; side++) {
+        const struct solid *solid = side == 0 ? &question->a : &question->b;
+        double left = 1; /* what a tetrahedron may still take */
+        for (int i = 0; i < solid_count(solid); i++) {
+            double x = eighths[draw_int(draw, 0, (int) COUNT(eighths) - 1)];
+            if (solid->shape != FMB_CUBOID)
+                left -= x = fmin(x, left);
+            for (int axis = 0; axis < solid->dim; axis++)
+                question->b.origin[axis] += (side == 0 ? x : -x) * solid->component[i][axis];
+        }
+    }
+}
+
+static double ordinary(struct draw *draw)
+{
+    return draw_uniform(draw, -100, 100);
+}
+
+static double any_exponent(struct draw *draw)
+{
+    return draw_log(draw, -1000, 1000);
+}
+
+static double subnormal(struct draw *draw)
+{
+    return draw_int(draw, -9, 9) * 0x1p-1074;
+}
+
+static double of_every_kind(struct draw *draw)
+{
+    switch (draw_int(draw, 0, 6)) {
+    case 0: return draw_coin(draw) ? 0 : -0.0;
+    case 1: return draw_int(draw, -2, 2);
+    case 2: return subnormal(draw);
+    case 3: return draw_uniform(draw, -1, 1) * DBL_MAX;
+    case 4: return draw_coin(draw) ? DBL_MAX : -DBL_MAX;
+    case 5: return any_exponent(draw);
+    default: return draw_finite(draw);
+    }
+}
+
+static void draw_numbers(struct draw *draw, int dim, double (*number)(struct draw *),
+                         double *vector)
+{
+    for (int axis = 0; axis < dim; axis++)
+        vector[axis] = number(draw);
+}
+
+static struct solid draw_solid(struct draw *draw, int dim, double (*number)(struct draw *))
+{
+    struct solid solid = {.dim = dim, .shape = draw_shape(draw, dim)};
+    for (int i = 0; i < solid_count(&solid); i++)
+        draw_numbers(draw, dim, number, solid.component[i]);
+    draw_numbers(draw, dim, number, solid.origin);
+    draw_numbers(draw, dim, number, solid.velocity);
+    return solid;
+}
+
+/* A contact may be beyond the doubles: the origin is then pulled back to the last one. */
+static void draw_pair(struct draw *draw, struct question *question, double (*number)(struct draw *))
+{
+    static const double durations[] = {0, -0.0, 0x1p-1074, 1e-300, 0.1, 1, 3, 1e300, DBL_MAX};
+    const int dim = draw_int(draw, 2, 3);
+    *question = (struct question){draw_solid(draw, dim, number), draw_solid(draw, dim, number),
+                                  durations[draw_int(draw, 0, (int) COUNT(durations) - 1)]};
+    draw_who_moves(draw, question);
+    if (draw_coin(draw))
+        bring_into_contact(draw, question);
+    for (int axis = 0; axis < dim; axis++)
+        question->b.origin[axis] = fmax(-DBL_MAX, fmin(DBL_MAX, question->b.origin[axis]));
+}
+
+static void ordinary_numbers(struct draw *draw, struct question *question)
+{
+    draw_pair(draw, question, ordinary);
+    question->duration = draw_uniform(draw, 0, 2);
+}
+
+static void slivers(struct draw *draw, struct question *question)
+{
+    draw_pair(draw, question, ordinary);
+    for (int side = 0; side < 2; side++) {
+        struct solid *solid = side == 0 ? &question->a : &question->b;
+        memcpy(solid->component[1], solid->component[0], sizeof solid->component[1]);
+        double *number = &solid->component[1][draw_int(draw, 0, solid->dim - 1)];
+        for (int steps = draw_int(draw, 0, 2); steps > 0; steps--)
+            *number = nextafter(*number, HUGE_VAL);
+    }
+    bring_into_contact(draw, question);
+}
+
+static void sizes_mixed(struct draw *draw, struct question *question)
+{
+    draw_pair(draw, question, any_exponent);
+}
+
+static void subnormals(struct draw *draw, struct question *question)
+{
+    draw_pair(draw, question, subnormal);
+}
+
+static void numbers_of_every_kind(struct draw *draw, struct question *question)
+{
+    draw_pair(draw, question, of_every_kind);
+}
+
+struct family {
+    const char *name;
+    void (*draw_question)(struct draw *draw, struct question *question);
+    bool all_verdicts; /* come up in a large sample */
+    long usual;        /* count */
+};
+
+static const struct family families[] = {
+    {"small_world", small_world, true, 6000},
+    {"flat", flat, true, 6000},
+    {"flat_in_one_space", flat_in_one_space, true, 6000},
+    {"small_world_far_out", small_world_far_out, true, 4000},
+    {"ordinary_numbers", ordinary_numbers, false, 3000},
+    {"slivers", slivers, true, 3000},
+    {"sizes_mixed", sizes_mixed, false, 400},
+    {"subnormals", subnormals, true, 3000},
+    {"numbers_of_every_kind", numbers_of_every_kind, true, 400},
+};
+
+/* ---- What must be so of each pair ---- */
+
+static enum fmb_verdict verdict_of(const struct fmb_pair *pair)
+{
+    struct fmb_answer answer;
+    assert_int_equal(FMB_OK, fmb_decide(fmb_method_by_name("exact"), pair, 0, &answer));
+    return answer.verdict;
+}
+
+static bool holds(const struct fmb_pair *pair, enum fmb_verdict verdict, const char *text)
+{
+    char why[WHY_SIZE] = "?";
+    bool does = fmb_certificate_holds(pair, verdict, text, why, sizeof why);
+    assert_true(does == (why[0] == '\0'));
+    assert_null(strchr(why, '\n'));
+    return does;
+}
+
+/* The text says what is not so, if it names another verdict. */
+static void refute_other_verdicts(const struct question *question, const struct fmb_pair *pair,
+                                  enum fmb_verdict verdict, const char *text)
+{
+    for (size_t i = 0; i < COUNT(verdicts); i++)
+        if (verdicts[i] != verdict && holds(pair, verdicts[i], text))
+            referee_fail(question, "a wrong verdict was proved");
+}
+
+/* On output: a certificate, in a buffer of TEXT_SIZE. Returns the verdict. */
+static enum fmb_verdict make(const struct question *question, const struct fmb_pair *pair,
+                             char *text, size_t *length)
+{
+    memset(text, 'x', 200);
+    if (fmb_certificate(pair, text, TEXT_SIZE, length) != FMB_OK)
+        referee_fail(question, "no certificate");
+    if (strlen(text) != *length)
+        referee_fail(question, "another length than it has");
+    return verdict_of(pair);
+}
+
+static void assert_certificate_holds(const struct question *question, const struct fmb_pair *pair,
+                                     enum fmb_verdict verdict, const char *text)
+{
+    char why[WHY_SIZE];
+    if (fmb_certificate_holds(pair, verdict, text, why, sizeof why))
+        return;
+    printf("# %.1000s\n# %s\n", text, why);
+    referee_fail(question, "the certificate does not hold");
+}
+
+static void certificates_of_family_hold(void **state)
+{
+    const struct family *family = *state;
+    const long size = draw_sample(family->usual);
+    long count[4] = {0};
+    size_t length, longest[4] = {0}, total[4] = {0};
+    char *text = malloc(TEXT_SIZE);
+    struct draw draw;
+    draw_begin(&draw, family->name);
+    for (long n = 0; n < size; n++) {
+        struct question question;
+        struct ready ready;
+        family->draw_question(&draw, &question);
+        referee_ready(&question, &ready);
+        const struct fmb_pair orders[] = {ready.pair,
+                                          {ready.pair.b, ready.pair.a, ready.pair.duration}};
+        for (size_t i = 0; i < COUNT(orders); i++) {
+            enum fmb_verdict verdict = make(&question, &orders[i], text, &length);
+            assert_certificate_holds(&question, &orders[i], verdict, text);
+            refute_other_verdicts(&question, &orders[i], verdict, text);
+            count[verdict]++;
+            total[verdict] += length;
+            longest[verdict] = length > longest[verdict] ? length : longest[verdict];
+        }
+    }
+    for (size_t i = 0; i < COUNT(verdicts); i++) {
+        const enum fmb_verdict v = verdicts[i];
+        printf("# %s: %ld %s, %zu characters on average, at most %zu\n", family->name, count[v],
+               fmb_verdict_name(v), count[v] ? total[v] / (size_t) count[v] : 0, longest[v]);
+        if (family->all_verdicts && size >= 200) /* fewer may miss one by chance */
+            assert_true(count[v] > 0);
+    }
+    free(text);
+}
+
+/* ---- Texts that something happened to ---- */
+
+static void put_verdict(const char *text, enum fmb_verdict verdict, char *out, size_t size)
+{
+    snprintf(out, size, "%s%s", fmb_verdict_name(verdict), text + strcspn(text, " "));
+}
+
+/* What is left of a text ends nowhere but where a normal might: never after " at ". */
+static void cut_everywhere(const struct question *question, const struct fmb_pair *pair,
+                           enum fmb_verdict verdict, const char *text)
+{
+    char cut[1000];
+    const size_t length = strlen(text);
+    for (size_t left = 0; left < length && length < sizeof cut; left++) {
+        snprintf(cut, left + 1, "%s", text);
+        refute_other_verdicts(question, pair, verdict, cut);
+        if (verdict != FMB_SEPARATED && holds(pair, verdict, cut))
+            referee_fail(question, "a certificate that was cut holds");
+    }
+}
+
+/* A few bytes changed, taken out or put in; it may still be right, but then of this verdict. */
+static void garble(struct draw *draw, char *text, size_t size)
+{
+    static const char bytes[] = "0123456789- /()+xabvdz\n\x01\x7f\xff";
+    for (int times = draw_int(draw, 1, 3); times > 0; times--) {
+        const size_t length = strlen(text);
+        char *at = text + draw_int(draw, 0, (int) length - 1);
+        const char byte = bytes[draw_int(draw, 0, (int) sizeof bytes - 2)];
+        switch (draw_int(draw, 0, 2)) {
+        case 0: *at = byte; break;
+        case 1: memmove(at, at + 1, strlen(at)); break;
+        case 2:
+            if (length + 1 < size) {
+                memmove(at + 1, at, strlen(at) + 1);
+                *at = byte;
+            }
+        }
+    }
+}
+
+static void tampered_texts_prove_no_wrong_verdict(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "tampered_texts_prove_no_wrong_verdict");
+    char *text = malloc(TEXT_SIZE), other[1000];
+    for (long n = draw_sample(800); n > 0; n--) {
+        struct question question;
+        struct ready ready;
+        size_t length;
+        families[draw_int(&draw, 0, 4)].draw_question(&draw, &question);
+        referee_ready(&question, &ready);
+        const enum fmb_verdict verdict = make(&question, &ready.pair, text, &length);
+        cut_everywhere(&question, &ready.pair, verdict, text);
+        for (size_t i = 0; i < COUNT(verdicts); i++) {
+            put_verdict(text, verdicts[i], other, sizeof other);
+            refute_other_verdicts(&question, &ready.pair, verdict, other);
+        }
+        for (int times = 0; times < 20; times++) {
+            put_verdict(text, verdicts[times % COUNT(verdicts)], other, sizeof other);
+            garble(&draw, other, sizeof other);
+            refute_other_verdicts(&question, &ready.pair, verdict, other);
+            holds(&ready.pair, verdict, other);
+        }
+    }
+    free(text);
+}
+
+static void certificates_of_other_pairs_prove_no_wrong_verdict(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "certificates_of_other_pairs_prove_no_wrong_verdict");
+    char *text[2] = {malloc(TEXT_SIZE), malloc(TEXT_SIZE)};
+    for (long n = draw_sample(6000); n > 0; n--) {
+        struct question question[2];
+        struct ready ready[2];
+        enum fmb_verdict verdict[2];
+        size_t length;
+        small_world(&draw, &question[0]);
+        question[1] = question[0];
+        draw_integers(&draw, question[1].b.dim, 3, question[1].b.origin);
+        for (int i = 0; i < 2; i++) {
+            referee_ready(&question[i], &ready[i]);
+            verdict[i] = make(&question[i], &ready[i].pair, text[i], &length);
+        }
+        for (int i = 0; i < 2; i++)
+            refute_other_verdicts(&question[i], &ready[i].pair, verdict[i], text[1 - i]);
+    }
+    free(text[0]);
+    free(text[1]);
+}
+
+/* ---- By hand ---- */
+
+static void assert_made(const struct question *question, const char *expected)
+{
+    struct ready ready;
+    char text[200];
+    size_t length;
+    referee_ready(question, &ready);
+    assert_int_equal(FMB_OK, fmb_certificate(&ready.pair, text, sizeof text, &length));
+    assert_string_equal(expected, text);
+    assert_int_equal(strlen(expected), length);
+}
+
+/* Unit cubes. B begins at x and, if moving, goes on by 1 along x. */
+static struct question cubes(double x, bool moving)
+{
+    return (struct question){
+        .a = {3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}, {0}, false},
+        .b = {3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {x, 0, 0}, {0.5, 0, 0}, moving},
+        .duration = 2};
+}
+
+static void what_is_made_of_cubes(void **state)
+{
+    (void) state;
+    const struct question apart = cubes(3, false), touching = cubes(1, false);
+    const struct question overlapping = cubes(0.75, false), arriving = cubes(-2, true);
+    const struct question passing = cubes(-1.5, true);
+    assert_made(&apart, "separated + a1 x a2");
+    assert_made(&touching, "touching + a1 x a2 at 0 (1 1/2 1/2)");
+    assert_made(&overlapping, "overlapping at 0 (4/5 1/2 1/2)");
+    assert_made(&arriving, "touching - a1 x a2 at 2 (0 1/2 1/2)");
+    assert_made(&passing, "overlapping at 3/2 (1/5 1/2 1/2)");
+}
+
+/* Flat frames along the first axes; B is at place. */
+static struct question flat_frames(int rank, const double place[3])
+{
+    struct question question = {.a = {.dim = 3, .shape = FMB_CUBOID}, .duration = 1};
+    for (int i = 0; i < rank; i++)
+        question.a.component[i][i] = 1;
+    question.b = question.a;
+    memcpy(question.b.origin, place, sizeof question.b.origin);
+    return question;
+}
+
+static void what_is_made_of_flat_frames(void **state)
+{
+    (void) state;
+    static const struct {
+        int rank;
+        double place[3];
+        const char *text;
+    } cases[] = {
+        {2, {0, 0, 1}, "separated + a0 x a1"},
+        {2, {3, 0, 0}, "separated + a0"},
+        {2, {1, 1, 0}, "touching + a0 at 0 (1 1 0)"},
+        {2, {0, 0, 0}, "overlapping at 0 (1/2 1/2 0)"},
+        {1, {3, 0, 0}, "separated + a0"},
+        {1, {0, 3, 0}, "separated + d"},
+        {1, {1, 0, 0}, "touching + a0 at 0 (1 0 0)"},
+        {0, {0, 0, 3}, "separated + d"},
+        {0, {0, 0, 0}, "overlapping at 0 (0 0 0)"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const struct question question = flat_frames(cases[i].rank, cases[i].place);
+        assert_made(&question, cases[i].text);
+    }
+    /* Lozenges side by side, lines side by side, neither parted along an edge or the offset. */
+    struct question lozenges = flat_frames(2, (const double[3]){0.5, 0, 0});
+    lozenges.a.component[0][1] = lozenges.b.component[0][1] = 4;
+    assert_made(&lozenges, "separated - (a0 x a1) x a0");
+    struct question lines = flat_frames(1, (const double[3]){1, 1, 0});
+    lines.a.component[0][0] = lines.b.component[0][0] = 9;
+    assert_made(&lines, "separated + (a0 x d) x a0");
+}
+
+/* ---- Sizes and refusals ---- */
+
+static void too_small_a_size_is_told(void **state)
+{
+    (void) state;
+    const struct question question = cubes(1, false);
+    struct ready ready;
+    char text[64];
+    size_t length, needed;
+    referee_ready(&question, &ready);
+    assert_int_equal(FMB_OVER_LIMIT, fmb_certificate(&ready.pair, NULL, 0, &needed));
+    for (size_t size = 0; size < sizeof text; size++) {
+        memset(text, '#', sizeof text);
+        enum fmb_status status = fmb_certificate(&ready.pair, text, size, &length);
+        assert_int_equal(needed, length);
+        assert_int_equal(size > needed ? FMB_OK : FMB_OVER_LIMIT, status);
+        if (size > 0)
+            assert_int_equal(size > needed ? needed : 0, strlen(text));
+        for (size_t i = size; i < sizeof text; i++)
+            assert_int_equal('#', text[i]);
+    }
+}
+
+static void assert_refused(const struct fmb_pair *pair, enum fmb_status status)
+{
+    char text[64] = "#", why[WHY_SIZE];
+    size_t length = 1;
+    assert_int_equal(status, fmb_certificate(pair, text, sizeof text, &length));
+    assert_int_equal(0, length);
+    assert_string_equal("", text);
+    assert_false(fmb_certificate_holds(pair, FMB_SEPARATED, "separated + d", why, sizeof why));
+    assert_string_equal(fmb_status_text(status), why);
+}
+
+static void bad_pairs_are_refused(void **state)
+{
+    (void) state;
+    const struct question question = cubes(3, true);
+    struct question flat_one = cubes(3, true);
+    struct ready ready, plane;
+    referee_ready(&question, &ready);
+    flat_one.a.dim = flat_one.b.dim = 2;
+    referee_ready(&flat_one, &plane);
+
+    struct fmb_pair pair = ready.pair;
+    pair.a = plane.pair.a;
+    assert_refused(&pair, FMB_DIMENSIONS_DIFFER);
+    pair = ready.pair;
+    pair.b.velocity[1] = NAN;
+    assert_refused(&pair, FMB_NOT_FINITE);
+    pair = ready.pair;
+    pair.duration = -1;
+    assert_refused(&pair, FMB_BAD_DURATION);
+}
+
+int main(void)
+{
+    const struct CMUnitTest others[] = {
+        cmocka_unit_test(what_is_made_of_cubes),
+        cmocka_unit_test(what_is_made_of_flat_frames),
+        cmocka_unit_test(too_small_a_size_is_told),
+        cmocka_unit_test(bad_pairs_are_refused),
+        cmocka_unit_test(tampered_texts_prove_no_wrong_verdict),
+        cmocka_unit_test(certificates_of_other_pairs_prove_no_wrong_verdict),
+    };
+    struct CMUnitTest tests[COUNT(families) + COUNT(others)];
+    for (size_t i = 0; i < COUNT(families); i++)
+        tests[i] = (struct CMUnitTest){.name = families[i].name,
+                                       .test_func = certificates_of_family_hold,
+                                       .initial_state = (void *) (uintptr_t) &families[i]};
+    memcpy(&tests[COUNT(families)], others, sizeof others);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
