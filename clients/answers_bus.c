@@ -11,6 +11,7 @@
 
 struct answers_bus {
     struct args_bus bus;
+    bool certificate; /* wanted */
     lcm_t *lcm;       /* NULL: could not be opened */
     struct ask *ask;  /* NULL: could not be opened */
     double patience;  /* seconds until a query is given up */
@@ -21,10 +22,16 @@ struct answers_bus {
 struct asking {
     const struct scene *scene;
     struct scene_cursor asked, answered;
-    const struct ask *ask;
+    const struct answers_bus *answers;
     answers_sink *sink;
     void *user;
 };
+
+static int32_t want_of(const struct answers_question *question)
+{
+    return (question->box ? QUERY_WANT_BOX : 0) |
+           (question->certificate ? QUERY_WANT_CERTIFICATE : 0);
+}
 
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      const struct answers_question *question, double timeout,
@@ -33,10 +40,11 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
     struct answers_bus *answers = allocate(1, sizeof *answers);
     struct ask_options options = {.prefix = bus->prefix,
                                   .method = question->method ? question->method->number : 0,
-                                  .want = question->box ? QUERY_WANT_BOX : 0,
+                                  .want = want_of(question),
                                   .timeout = timeout,
                                   .retries = retries};
     answers->bus = *bus;
+    answers->certificate = question->certificate;
     answers->patience = timeout * (retries + 1);
     answers->lcm = bus_open("fmb", bus->url, NULL);
     if (answers->lcm)
@@ -91,10 +99,13 @@ static bool next_question(void *user, struct pair_query *out)
 
 static const char *error_of(const struct asking *asking, const struct pair_result *result)
 {
-    if (!asking->ask)
+    const struct answers_bus *answers = asking->answers;
+    if (!answers->ask)
         return "no bus";
     if (!result)
-        return ask_is_silent(asking->ask) ? "no fmbd answered" : "fmbd gave no answer";
+        return ask_is_silent(answers->ask) ? "no fmbd answered" : "fmbd gave no answer";
+    if (answers->certificate && result->status == FMB_OK && !result->certificate)
+        return "the certificate is too long for a message: ask with --local";
     return report_refusal(result);
 }
 
@@ -105,8 +116,10 @@ static void take_answer(void *user, const struct pair_result *result)
     memset(&outcome, 0, sizeof outcome);
     scene_next_pair(asking->scene, &asking->answered, &outcome.pair);
     outcome.error = error_of(asking, result);
-    if (!outcome.error)
+    if (!outcome.error) {
         outcome.answer = result->answer;
+        outcome.certificate = asking->answers->certificate ? result->certificate : NULL;
+    }
     asking->sink(asking->user, asking->scene, &outcome);
 }
 
@@ -130,7 +143,7 @@ static void advise(struct answers_bus *answers)
 void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user)
 {
-    struct asking asking = {.scene = scene, .ask = answers->ask, .sink = sink, .user = user};
+    struct asking asking = {.scene = scene, .answers = answers, .sink = sink, .user = user};
     struct pair_query query;
     if (answers->ask) {
         ask_all(answers->ask, next_question, take_answer, &asking);

@@ -34,6 +34,7 @@ struct slot {
     bool done;
     bool answered; /* done with result; else done without one */
     struct pair_result result;
+    char certificate[QUERY_CERTIFICATE_MAX]; /* of the result, if it has one */
 };
 
 struct ask {
@@ -90,6 +91,8 @@ static void take_result(struct ask *ask, const struct pair_result *result)
         return;
     }
     slot->result = *result;
+    if (result->certificate)
+        slot->result.certificate = strcpy(slot->certificate, result->certificate);
     slot->done = slot->answered = true;
     ask->counts.answered++;
 }

@@ -7,6 +7,7 @@
 #include "progress.h"
 #include "report.h"
 #include "svg.h"
+#include "verify.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -25,6 +26,8 @@ static const char usage[] =
     "  --json           one line of JSON for each scene, exact; without it, tables for\n"
     "                   people, rounded\n"
     "  --box            give the box of the intersection too\n"
+    "  --certificate    give a proof of each verdict too, checked here with the numbers of the\n"
+    "                   scene alone; a verdict that it does not show counts as not decided\n"
     "  --svg FILE       draw the scenes into FILE, with the boxes, which the answers then have\n"
     "                   too\n"
     "  --method NAME    how to decide: exact (the default), or fmb or sat, which are\n"
@@ -55,12 +58,13 @@ struct options {
 
 enum { METHOD_NAMES_MAX = 80 };
 
-enum { LOCAL = 1, JSON, BOX, METHOD, SVG, TIMEOUT, RETRIES };
+enum { LOCAL = 1, JSON, BOX, CERTIFICATE, METHOD, SVG, TIMEOUT, RETRIES };
 
 static const struct option own_options[] = {
     {"local", no_argument, NULL, LOCAL},
     {"json", no_argument, NULL, JSON},
     {"box", no_argument, NULL, BOX},
+    {"certificate", no_argument, NULL, CERTIFICATE},
     {"method", required_argument, NULL, METHOD},
     {"svg", required_argument, NULL, SVG},
     {"timeout", required_argument, NULL, TIMEOUT},
@@ -95,6 +99,7 @@ static bool take_option(const struct args *args, int option, void *out)
     case LOCAL: options->local = true; break;
     case JSON: options->json = true; break;
     case BOX: options->question.box = true; break;
+    case CERTIFICATE: options->question.certificate = true; break;
     case SVG:
         options->svg = optarg;
         options->question.box = true;
@@ -121,10 +126,14 @@ struct run {
 static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
 {
     struct run *run = user;
+    struct outcome checked = *outcome;
+    char refutation[VERIFY_TEXT_MAX];
+    if (run->options->question.certificate && !outcome->error)
+        verify_outcome(scene, run->options->local ? "the" : "the service's", &checked, refutation);
     for (int i = 0; i < 2; i++)
         if (run->report[i])
-            run->report[i]->pair(run->report[i], scene, outcome);
-    run->undecided = run->undecided || outcome->error;
+            run->report[i]->pair(run->report[i], scene, &checked);
+    run->undecided = run->undecided || checked.error;
     progress_step(&run->progress);
 }
 

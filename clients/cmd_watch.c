@@ -15,7 +15,8 @@ static const char usage[] =
     "Prints the results that pass on the bus, whoever asked, one line each, until SIGINT or\n"
     "SIGTERM. Body 0 is one without an id.\n"
     "\n"
-    "  --json               one line of JSON for each result, exact\n"
+    "  --json               one line of JSON for each result, exact, with its certificate\n"
+    "                       where it has one\n"
     "  --count N            end after N results\n" ARGS_COMMON_USAGE;
 
 struct options {
@@ -51,12 +52,15 @@ static bool take_option(const struct args *args, int option, void *out)
 
 static void print_json(const struct pair_result *result)
 {
+    const struct outcome outcome = {.error = report_refusal(result),
+                                    .answer = result->answer,
+                                    .certificate = result->certificate};
     printf("{\"utime\": %" PRId64 ", \"client_id\": %" PRId64 ", \"sequence_number\": %" PRId64
            ", \"server_id\": %" PRId64 ", \"compute_ns\": %" PRId64 ", \"a\": %" PRId64
            ", \"b\": %" PRId64 ", ",
            result->utime, result->client_id, result->sequence_number, result->server_id,
            result->compute_ns, result->body_id[0], result->body_id[1]);
-    report_answer_json(stdout, result->dim, report_refusal(result), &result->answer);
+    report_answer_json(stdout, result->dim, &outcome);
     puts("}");
 }
 

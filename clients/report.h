@@ -11,6 +11,7 @@ struct outcome {
     struct scene_pair pair;
     const char *error;        /* why the pair could not be decided; NULL where it was */
     struct fmb_answer answer; /* all 0 where it was not */
+    const char *certificate;  /* of the verdict; NULL where there is none, or none was wanted */
 };
 
 /* For each scene: begin, each pair in the order asked, end. */
@@ -25,8 +26,8 @@ struct report {
  *     {"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1],
  *                 "box": {"min": [0.5,0,0], "max": [1,1,1]}}]}
  *
- * Doubles read back bit for bit; an infinite end of a box is null; a pair that could not be
- * decided has an "error" in place of the verdict. */
+ * Doubles read back bit for bit; an infinite end of a box is null; a "certificate" comes last; a
+ * pair that could not be decided has an "error" in place of the verdict. */
 struct report_json {
     struct report report;
     FILE *out;
@@ -46,7 +47,7 @@ struct report_columns {
 struct report_columns report_columns(void);
 
 /* A table for people, and counts at its end. Numbers have six digits, or more where the ends of an
- * interval would look alike. */
+ * interval would look alike. Certificates stand below their rows, long ones cut. */
 struct report_text {
     struct report report;
     FILE *out;
@@ -60,8 +61,8 @@ struct report_text {
 struct report_text report_text(FILE *out, bool box);
 
 /* The members of one answer as report_json writes them, without braces: "verdict": ..., or
- * "error": ... Used wherever answers are printed as JSON. */
-void report_answer_json(FILE *out, int dim, const char *error, const struct fmb_answer *answer);
+ * "error": ... Used wherever answers are printed as JSON; the pair is not looked at. */
+void report_answer_json(FILE *out, int dim, const struct outcome *outcome);
 
 /* Why the service gave no answer in this result; NULL where it gave one. */
 struct pair_result;

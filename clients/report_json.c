@@ -40,11 +40,17 @@ static void write_box(FILE *out, int dim, const struct fmb_answer *answer)
     putc('}', out);
 }
 
-void report_answer_json(FILE *out, int dim, const char *error, const struct fmb_answer *answer)
+static void write_string(FILE *out, const char *name, const char *text)
 {
-    if (error) {
-        fputs("\"error\": ", out);
-        report_string_json(out, error);
+    fprintf(out, "\"%s\": ", name);
+    report_string_json(out, text);
+}
+
+void report_answer_json(FILE *out, int dim, const struct outcome *outcome)
+{
+    const struct fmb_answer *answer = &outcome->answer;
+    if (outcome->error) {
+        write_string(out, "error", outcome->error);
         return;
     }
     fprintf(out, "\"verdict\": \"%s\"", fmb_verdict_name((int) answer->verdict));
@@ -52,6 +58,10 @@ void report_answer_json(FILE *out, int dim, const char *error, const struct fmb_
         write_contact(out, answer->contact);
     if (answer->has_box)
         write_box(out, dim, answer);
+    if (outcome->certificate) {
+        fputs(", ", out);
+        write_string(out, "certificate", outcome->certificate);
+    }
 }
 
 static void json_begin(struct report *report, const struct scene *scene)
@@ -69,7 +79,7 @@ static void json_pair(struct report *report, const struct scene *scene,
     fprintf(json->out, "%s{\"a\": %" PRId64 ", \"b\": %" PRId64 ", ", json->first ? "" : ", ",
             scene->body[outcome->pair.a].id, scene->body[outcome->pair.b].id);
     json->first = false;
-    report_answer_json(json->out, scene->dim, outcome->error, &outcome->answer);
+    report_answer_json(json->out, scene->dim, outcome);
     putc('}', json->out);
 }
 

@@ -6,6 +6,9 @@
 
 enum { VERDICT_WIDTH = 11, CONTACT_WIDTH = 20 };
 
+/* How much is shown of a certificate: all of most, but some have thousands of digits. */
+enum { CERTIFICATE_WIDTH = 200 };
+
 /* Of one end of a box: for small numbers, and for those that %g would write with an exponent. */
 enum { END_WIDTH = 8, LARGE_END_WIDTH = 12 };
 static const double large_end = 1e5;
@@ -83,6 +86,17 @@ void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
         write_box(out, dim, answer, columns);
 }
 
+/* Below the verdict that it is of. */
+static void write_certificate(FILE *out, int column, const char *certificate)
+{
+    char length[NUMBER_TEXT_MAX];
+    size_t characters = strlen(certificate);
+    fprintf(out, "%*s%.*s", column, "", CERTIFICATE_WIDTH, certificate);
+    if (characters > CERTIFICATE_WIDTH)
+        fprintf(out, "... (%s characters)", number_grouped((int64_t) characters, length));
+    putc('\n', out);
+}
+
 static int width_of(int64_t id)
 {
     return snprintf(NULL, 0, "%" PRId64, id);
@@ -127,6 +141,8 @@ static void text_pair(struct report *report, const struct scene *scene,
     else
         report_answer_text(text->out, scene->dim, &outcome->answer, &text->columns);
     putc('\n', text->out);
+    if (outcome->certificate)
+        write_certificate(text->out, 2 * text->id_width + 6, outcome->certificate);
     text->count[outcome->answer.verdict]++;
 }
 

@@ -86,7 +86,7 @@ static bool check_query(struct checking *checking, const struct pair_query *quer
         return refuse(checking, FMB_BAD_DURATION, "duration", "negative or not finite");
     if (!fmb_method_by_number(query->method))
         return refuse(checking, FMB_UNKNOWN_METHOD, "method", NULL);
-    if (query->want & ~QUERY_WANT_BOX)
+    if (query->want & ~(QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE))
         return refuse(checking, FMB_UNKNOWN_WANT, "want", NULL);
     for (int f = 0; f < 2; f++) {
         checking->side = side_name[f];
@@ -143,8 +143,20 @@ static void place(struct fmb_frame *out, const struct query_frame *frame,
     memcpy(out->velocity, frame->velocity.number, sizeof out->velocity);
 }
 
-static void decide(struct pair_result *result, const struct pair_query *query,
-                   const struct fmb_body body[2])
+/* One that is too long is left out. */
+static void certify(struct answerer *answerer, const struct fmb_pair *pair,
+                    struct pair_result *result)
+{
+    size_t length;
+    enum fmb_status status =
+        fmb_certificate(pair, answerer->certificate, sizeof answerer->certificate, &length);
+    assert(status == FMB_OK || status == FMB_OVER_LIMIT);
+    if (status == FMB_OK)
+        result->certificate = answerer->certificate;
+}
+
+static void decide(struct answerer *answerer, struct pair_result *result,
+                   const struct pair_query *query, const struct fmb_body body[2])
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
     struct fmb_pair pair = {.duration = query->duration};
@@ -160,6 +172,8 @@ static void decide(struct pair_result *result, const struct pair_query *query,
     }
     result->method = method->number;
     result->dim = result->answer.has_box ? body[0].dim : 0;
+    if (query->want & QUERY_WANT_CERTIFICATE)
+        certify(answerer, &pair, result);
 }
 
 void answer_pair(struct answerer *answerer, const struct pair_query *query,
@@ -178,5 +192,5 @@ void answer_pair(struct answerer *answerer, const struct pair_query *query,
         return;
     struct fmb_body body[2];
     if (find_bodies(answerer, &checking, query, body))
-        decide(result, query, body);
+        decide(answerer, result, query, body);
 }

@@ -29,6 +29,10 @@ enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2 };
 
 enum { QUERY_TEXT_MAX = 160 };
 
+/* Of a certificate, with the final 0: the result that carries it is one datagram of less than
+ * 65,000 bytes. */
+enum { QUERY_CERTIFICATE_MAX = 60000 };
+
 /* A list of doubles as it came: count may be anything from 0, only the first
  * FMB_COMPONENTS_MAX numbers are kept. */
 struct query_numbers {
@@ -63,6 +67,7 @@ struct pair_result {
     int32_t method;              /* 0 where not OK */
     int32_t dim;                 /* of the box, 2 or 3; 0 where there is none */
     struct fmb_answer answer;    /* all 0 where not OK */
+    const char *certificate;     /* NULL: none. Not owned: of the answerer, or of the message */
     int64_t compute_ns;
 };
 

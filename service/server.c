@@ -69,7 +69,7 @@ static void note_malformed(struct server *server, uint32_t size, const char *rea
 
 static void publish_result(struct server *server, const struct pair_result *result)
 {
-    unsigned char bytes[WIRE_BYTES_MAX];
+    unsigned char bytes[WIRE_RESULT_BYTES_MAX];
     size_t size = wire_write_pair_result(result, bytes);
     if (lcm_publish(server->lcm, server->result_channel, bytes, (unsigned) size) != 0) {
         server->status.unsent++;

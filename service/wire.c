@@ -8,6 +8,8 @@
 #include <float.h>
 #include <string.h>
 
+static_assert(WIRE_RESULT_BYTES_MAX < 65000, "a result is one datagram");
+
 /* The numbers of the messages are those of the engine. */
 static_assert((int) FMB_CUBOID == FMB_MSGS_FRAME_T_SHAPE_CUBOID &&
                   (int) FMB_TETRAHEDRON == FMB_MSGS_FRAME_T_SHAPE_TETRAHEDRON &&
@@ -103,22 +105,36 @@ static void read_numbers(struct cursor *cursor, struct query_numbers *out)
     read_doubles(cursor, out->count, out->number, FMB_COMPONENTS_MAX);
 }
 
-/* A string; what does not fit into size bytes is cut, and what is not printable ASCII,
- * which could do things to a terminal, becomes '?'. */
+/* A string, where it stands in the message. Returns its length, without the final 0; after an
+ * error 0, and *bytes is left alone. */
+static size_t take_string(struct cursor *cursor, const unsigned char **bytes)
+{
+    int32_t size = read_count(cursor, 1);
+    const unsigned char *at;
+    if (!take(cursor, (uint64_t) size, &at))
+        return 0;
+    if (size == 0 || memchr(at, 0, (size_t) size) != at + size - 1) {
+        cursor->error = "string without an end, or with two";
+        return 0;
+    }
+    *bytes = at;
+    return (size_t) size - 1;
+}
+
+/* ASCII; other bytes could do things to a terminal. */
+static bool is_printable(unsigned char byte)
+{
+    return byte >= ' ' && byte < 0x7f;
+}
+
+/* A string; what does not fit into size bytes is cut, and what is not printable becomes '?'. */
 static void read_string(struct cursor *cursor, char *out, size_t size)
 {
-    int32_t length = read_count(cursor, 1);
-    const unsigned char *bytes;
-    out[0] = '\0';
-    if (!take(cursor, (uint64_t) length, &bytes))
-        return;
-    if (length == 0 || memchr(bytes, 0, (size_t) length) != bytes + length - 1) {
-        cursor->error = "string without an end, or with two";
-        return;
-    }
-    size_t kept = (size_t) length <= size ? (size_t) length - 1 : size - 1;
+    const unsigned char *bytes = NULL;
+    size_t length = take_string(cursor, &bytes);
+    size_t kept = length < size ? length : size - 1;
     for (size_t i = 0; i < kept; i++)
-        out[i] = bytes[i] < ' ' || bytes[i] >= 0x7f ? '?' : (char) bytes[i];
+        out[i] = is_printable(bytes[i]) ? (char) bytes[i] : '?';
     out[kept] = '\0';
 }
 
@@ -195,10 +211,25 @@ static void read_contact(struct cursor *cursor, struct fmb_answer *out)
     out->has_contact = count > 0;
 }
 
+static void read_certificate(struct cursor *cursor, struct pair_result *out)
+{
+    const unsigned char *bytes = NULL;
+    size_t length = take_string(cursor, &bytes);
+    if (length == 0)
+        return;
+    if (out->status != FMB_OK)
+        cursor->error = "a certificate without a verdict";
+    if (length >= QUERY_CERTIFICATE_MAX)
+        cursor->error = "a certificate that is too long";
+    for (size_t i = 0; i < length && !cursor->error; i++)
+        if (!is_printable(bytes[i]))
+            cursor->error = "a certificate that is not printable";
+    out->certificate = (const char *) bytes;
+}
+
 const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out)
 {
     struct cursor cursor = begin_reading(bytes, size, __fmb_msgs_pair_result_t_get_hash());
-    char certificate[1];
     memset(out, 0, sizeof *out);
     out->utime = read_int64(&cursor);
     out->client_id = read_int64(&cursor);
@@ -217,7 +248,7 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
     out->answer.verdict = (enum fmb_verdict) verdict;
     read_contact(&cursor, &out->answer);
     read_box(&cursor, out);
-    read_string(&cursor, certificate, sizeof certificate);
+    read_certificate(&cursor, out);
     out->compute_ns = read_int64(&cursor);
     return end_reading(&cursor);
 }
@@ -251,9 +282,10 @@ const char *wire_read_status(const void *bytes, uint32_t size, struct wire_statu
 
 /* ---- Writing: by the generated encoders ------------------------------------------------ */
 
+/* What an encoder returns: -1 where there is no room. */
 static size_t written(int size)
 {
-    assert(size > 0 && size <= WIRE_BYTES_MAX);
+    assert(size > 0);
     return (size_t) size;
 }
 
@@ -288,7 +320,8 @@ size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[W
     return written(fmb_msgs_pair_query_t_encode(out, 0, WIRE_BYTES_MAX, &message));
 }
 
-size_t wire_write_pair_result(const struct pair_result *result, unsigned char out[WIRE_BYTES_MAX])
+size_t wire_write_pair_result(const struct pair_result *result,
+                              unsigned char out[WIRE_RESULT_BYTES_MAX])
 {
     double box[2 * FMB_DIM_MAX];
     int dim = result->answer.has_box ? result->dim : 0;
@@ -312,10 +345,10 @@ size_t wire_write_pair_result(const struct pair_result *result, unsigned char ou
         .contact = (double *) result->answer.contact,
         .num_box = 2 * dim,
         .box = box,
-        .certificate = (char *) "",
+        .certificate = (char *) (result->certificate ? result->certificate : ""),
         .compute_ns = result->compute_ns,
     };
-    return written(fmb_msgs_pair_result_t_encode(out, 0, WIRE_BYTES_MAX, &message));
+    return written(fmb_msgs_pair_result_t_encode(out, 0, WIRE_RESULT_BYTES_MAX, &message));
 }
 
 size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX])

@@ -6,7 +6,8 @@
  * caller: a count may say anything, they never read beyond the datagram and never allocate.
  * They accept exactly what lcm-gen's encoders write: the fingerprint of the type, counts from
  * 0, strings that end where they say, and not one byte more or less; of results only those with
- * a verdict just where the status is OK, and with intervals and boxes that are such. */
+ * a verdict just where the status is OK, with intervals and boxes that are such, and with a
+ * certificate only beside a verdict: printable ASCII, shorter than QUERY_CERTIFICATE_MAX. */
 #ifndef WIRE_H
 #define WIRE_H
 
@@ -20,8 +21,9 @@
 #define WIRE_PAIR_RESULT "FMB_PAIR_RESULT"
 #define WIRE_STATUS "FMB_STATUS"
 
-/* Every message written here fits into this many bytes, and so into one datagram. */
-enum { WIRE_BYTES_MAX = 1400 };
+/* Every message written here fits into this many bytes, and so into one datagram; a result may take
+ * more, by the length of its certificate. */
+enum { WIRE_BYTES_MAX = 1400, WIRE_RESULT_BYTES_MAX = WIRE_BYTES_MAX + QUERY_CERTIFICATE_MAX };
 
 /* The counters of the heartbeat, all int64_t, in the order of status_t.lcm: those before its list
  * of results, and those after it. */
@@ -61,14 +63,15 @@ struct wire_status {
 /* Readers. On input: size bytes as LCM gives them (size is unsigned there, and can be a
  * negative number of ints: that is refused). On output: NULL and *out; or a static text of
  * what is wrong, and *out unspecified. Texts longer than the struct holds are cut; statuses
- * beyond FMB_STATUS_COUNT are left out. */
+ * beyond FMB_STATUS_COUNT are left out. The certificate of a result stays where it is, in bytes. */
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out);
 const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out);
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
 
 /* Writers: return how many bytes of out were used. */
 size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[WIRE_BYTES_MAX]);
-size_t wire_write_pair_result(const struct pair_result *result, unsigned char out[WIRE_BYTES_MAX]);
+size_t wire_write_pair_result(const struct pair_result *result,
+                              unsigned char out[WIRE_RESULT_BYTES_MAX]);
 size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX]);
 
 #endif

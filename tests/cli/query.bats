@@ -167,6 +167,92 @@ $two, \"pairs\": []}"
 2 overlapping, 0 touching, 1 separated"
 }
 
+# ---- Certificates ----------------------------------------------------------------------------
+
+# Three squares: 1 and 2 touch, 1 and 3 overlap, and 2 and 3 are apart. squares MEMBERS: with these
+# members more in the third.
+squares() {
+    echo "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [0,0]},
+        {\"id\": 2, $square, \"origin\": [1,0]}, {\"id\": 3, $square, \"origin\": [-0.5,0.25] $1}]}"
+}
+
+@test "--certificate proves every verdict, at rest and moving, behind all else" {
+    for members in '' ', "velocity": [0,0.5]'; do
+        query "$(squares "$members")" --certificate --box
+        ended 0
+        said ''
+        jq -e '[.pairs[].verdict] == ["touching", "overlapping", "separated"]' <<< "$output"
+        jq -e '[.pairs[] | (.verdict as $verdict | .certificate | startswith($verdict + " "))
+            and (keys_unsorted | last == "certificate")] | all' <<< "$output"
+        certified=$output
+        query "$(squares "$members")" --box
+        jq -e --argjson certified "$certified" '. == ($certified | del(.pairs[].certificate))' <<< "$output"
+        [[ $output != *certificate* ]]
+    done
+}
+
+@test "a certificate stands below its row, where people read" {
+    certificates=$(query "$(squares)" --certificate && jq -r '.pairs[].certificate' <<< "$output")
+    run "$FMB" query --local --certificate <<< "$(squares)"
+    ended 0
+    [ "${#lines[@]}" = 9 ]
+    [ "${lines[2]}" = '  1  2  touching' ]
+    [ "${lines[4]}" = '  1  3  overlapping' ]
+    [ "${lines[6]}" = '  2  3  separated' ]
+    [ "$(sed -n '4p;6p;8p' <<< "$output" | sed 's/^        //')" = "$certificates" ]
+}
+
+@test "every case of tests/cases has certificates, and the same answers" {
+    for file in "$CASES"/*.json; do
+        scene=$(jq -c .scene "$file")
+        query "$scene" --box
+        plain=$output
+        query "$scene" --box --certificate
+        ended 0
+        jq -e '[.pairs[] | has("certificate")] | all' <<< "$output"
+        jq -e --argjson plain "$plain" 'del(.pairs[].certificate) == $plain' <<< "$output"
+    done
+}
+
+@test "a certificate of many digits is whole in JSON, and cut where people read" {
+    scene='{"dim": 3, "bodies": [
+        {"id": 1, "shape": "face", "origin": [7,0,-7e-310], "velocity": [-0.1,-1e300,0],
+         "components": [[5e-324,-1e300,0], [-3e-300,3e-300,3e-160]]},
+        {"id": 2, "shape": "face", "origin": [0.1,0,0], "velocity": [-0.1,7,-1e150],
+         "components": [[1e300,-3e-160,3e-300], [-5e-324,7,0.1]]}]}'
+    query "$scene" --certificate
+    ended 0
+    length=$(jq '.pairs[0].certificate | length' <<< "$output")
+    [ "$length" -gt 10000 ]
+    run "$FMB" query --local --certificate <<< "$scene"
+    ended 0
+    [ "${#lines[3]}" -lt 250 ]
+    [[ ${lines[3]//,/} == *"... ($length characters)" ]]
+}
+
+@test "where an inexact method is wrong, the certificate does not hold" {
+    scene='{"dim": 2, "bodies": [
+        {"id": 1, "shape": "tetrahedron", "origin": [-0.5,-0.6], "components": [[-0.2,0.9], [0.5,-0.2]]},
+        {"id": 2, "shape": "tetrahedron", "origin": [-0.7,0.3], "components": [[0.2,0.5], [0.5,-0.2]]}]}'
+    for method in fmb sat; do
+        query "$scene" --method $method
+        ended 0
+        query "$scene" --method $method --certificate
+        ended 1
+        [[ $(jq -r '.pairs[0].error' <<< "$output") == "the certificate does not hold: "?* ]]
+    done
+    query "$scene" --certificate
+    ended 0
+}
+
+@test "a pair that is not decided has no certificate" {
+    query '{"dim": 2, "bodies": [
+        {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
+        {"id": 2, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]}]}' --method sat --certificate
+    ended 1
+    [ "$(jq -c '.pairs[0] | keys' <<< "$output")" = '["a","b","error"]' ]
+}
+
 # ---- Methods ---------------------------------------------------------------------------------
 
 @test "the inexact methods can be asked" {

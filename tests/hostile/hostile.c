@@ -11,13 +11,13 @@
 #include <string.h>
 
 /* Layouts, after the fingerprint: l 8 bytes, i 4 bytes, n a count and its numbers of 8 bytes,
- * s a string. */
+ * s a string, p one that is printable. */
 #define FRAME "llinnn"
 static const struct {
     const char *type, *layout;
 } layouts[] = {
     {"pair_query", "llllii" FRAME FRAME},
-    {"pair_result", "llllllllisiinnsl"},
+    {"pair_result", "llllllllisiinnpl"},
     {"status", "llslllllllnlllllllllllln"},
 };
 
@@ -53,7 +53,7 @@ static size_t good_pair_query(unsigned char *out)
 
 static size_t good_pair_result(unsigned char *out)
 {
-    char detail[] = "", certificate[] = "";
+    char detail[] = "", certificate[] = "touching + a0 at 0 (1 0 1/2)";
     double contact[2] = {0, 0.5}, box[6] = {0, 0, 0, 1, 1, 1};
     fmb_msgs_pair_result_t result = {.client_id = 2,
                                      .detail = detail,
@@ -128,6 +128,22 @@ static void damage_count(struct damage *damage, size_t at, bool string)
     }
 }
 
+/* The text at a place, with a byte in it that no text has. */
+static void damage_text(struct damage *damage, size_t at)
+{
+    static const unsigned char none[] = {1, '\t', '\n', 0x1b, 0x1f, 0x7f, 0x80, 0xff};
+    size_t length = (size_t) get_int32(damage->good + at) - 1;
+    for (size_t i = 0; i < length; i += length - 1)
+        for (size_t k = 0; k < sizeof none; k++) {
+            unsigned char bytes[HOSTILE_BYTES_MAX];
+            char what[80];
+            memcpy(bytes, damage->good, damage->size);
+            bytes[at + 4 + i] = none[k];
+            snprintf(what, sizeof what, "text with byte %d at %zu", none[k], i);
+            emit(damage, what, bytes, damage->size);
+        }
+}
+
 static void damage_string(struct damage *damage, size_t at)
 {
     unsigned char bytes[HOSTILE_BYTES_MAX];
@@ -146,15 +162,19 @@ static void damage_fields(struct damage *damage, const char *layout)
 {
     size_t at = 8;
     for (const char *field = layout; *field; field++) {
-        if (*field == 'n' || *field == 's')
-            damage_count(damage, at, *field == 's');
-        if (*field == 's')
+        bool string = *field == 's' || *field == 'p';
+        if (*field == 'n' || string)
+            damage_count(damage, at, string);
+        if (string)
             damage_string(damage, at);
+        if (*field == 'p')
+            damage_text(damage, at);
         switch (*field) {
         case 'l': at += 8; break;
         case 'i': at += 4; break;
         case 'n': at += 4 + 8 * (size_t) get_int32(damage->good + at); break;
-        case 's': at += 4 + (size_t) get_int32(damage->good + at); break;
+        case 's':
+        case 'p': at += 4 + (size_t) get_int32(damage->good + at); break;
         }
     }
     if (at != damage->size) {
@@ -195,4 +215,22 @@ size_t hostile_each(const char *type, hostile_visit visit, void *context)
     damage_fingerprint(&damage);
     damage_fields(&damage, layout_of(type));
     return damage.count;
+}
+
+size_t hostile_lie(const void *query, size_t size, char *certificate,
+                   unsigned char out[HOSTILE_BYTES_MAX])
+{
+    fmb_msgs_pair_query_t asked;
+    char detail[] = "";
+    if (fmb_msgs_pair_query_t_decode(query, 0, (int) size, &asked) < 0)
+        return 0;
+    fmb_msgs_pair_result_t result = {.client_id = asked.client_id,
+                                     .sequence_number = asked.sequence_number,
+                                     .detail = detail,
+                                     .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
+                                     .verdict = FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
+                                     .certificate = certificate};
+    fmb_msgs_pair_query_t_decode_cleanup(&asked);
+    int written = fmb_msgs_pair_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
+    return written < 0 ? 0 : (size_t) written;
 }

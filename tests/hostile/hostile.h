@@ -18,4 +18,9 @@ size_t hostile_each(const char *type, hostile_visit visit, void *context);
 /* A good message of the type, the one that is damaged. Returns its size. */
 size_t hostile_good(const char *type, unsigned char out[HOSTILE_BYTES_MAX]);
 
+/* What a service that lies answers to a good pair_query: whatever the frames are, they overlap, and
+ * this is the certificate. Returns its size; 0 where there is no room for it. */
+size_t hostile_lie(const void *query, size_t size, char *certificate,
+                   unsigned char out[HOSTILE_BYTES_MAX]);
+
 #endif

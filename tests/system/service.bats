@@ -42,6 +42,99 @@ load service
     stop_fmbd
 }
 
+# grid_scene DIM MOVING: unit cuboids and the corners cut off such ones, on halves, so that all
+# verdicts occur.
+grid_scene() {
+    awk -v dim="$1" -v moving="$2" '
+        function vector(x, y, z) {
+            return "[" x "," y (dim == 3 ? "," z : "") "]"
+        }
+        BEGIN {
+            edges = "[" vector(1, 0, 0) "," vector(0, 1, 0) (dim == 3 ? "," vector(0, 0, 1) : "") "]"
+            printf "{\"dim\":%d,\"bodies\":[", dim
+            for (b = 0; b < 12; b++) {
+                printf "%s{\"id\":%d,\"shape\":\"%s\",\"components\":%s,\"origin\":%s", (b ? "," : ""),
+                    b + 1, (b % 3 ? "cuboid" : "tetrahedron"), edges, vector(b % 5 / 2, b % 4, b % 7 / 4)
+                if (moving && b % 2) printf ",\"velocity\":%s", vector(b % 3 - 1, 0.25, 0)
+                printf "}"
+            }
+            print "]}"
+        }'
+}
+
+@test "the bus gives the certificates of --local, for all verdicts, at rest and moving" {
+    start_fmbd
+    for scene in '2 0' '3 0' '2 1' '3 1'; do
+        grid_scene $scene > "$BATS_TEST_TMPDIR/scene.json"
+        "$FMB" query --certificate --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+        "$FMB" query --certificate --json --local "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local"
+        cmp "$BATS_TEST_TMPDIR/bus" "$BATS_TEST_TMPDIR/local"
+        [ "$(jq -c '[.pairs[].verdict] | unique' "$BATS_TEST_TMPDIR/bus")" = '["overlapping","separated","touching"]' ]
+        jq -e '[.pairs[] | .verdict as $verdict | .certificate | startswith($verdict)] | all' "$BATS_TEST_TMPDIR/bus"
+    done
+    for dim in 2 3; do
+        random_scene $dim 30 > "$BATS_TEST_TMPDIR/scene.json"
+        "$FMB" query --certificate --box --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+        "$FMB" query --certificate --box --json --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    done
+    stop_fmbd
+}
+
+@test "a certificate of many kilobytes comes over the bus" {
+    start_fmbd
+    echo '{"dim": 3, "bodies": [
+        {"id": 1, "shape": "face", "origin": [7,0,-7e-310], "velocity": [-0.1,-1e300,0],
+         "components": [[5e-324,-1e300,0], [-3e-300,3e-300,3e-160]]},
+        {"id": 2, "shape": "face", "origin": [0.1,0,0], "velocity": [-0.1,7,-1e150],
+         "components": [[1e300,-3e-160,3e-300], [-5e-324,7,0.1]]}]}' > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --certificate --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --certificate --json --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    [ "$(jq '.pairs[0].certificate | length' "$BATS_TEST_TMPDIR/bus")" -gt 10000 ]
+    stop_fmbd
+}
+
+@test "a service that lies is believed, but not where a certificate is asked for" {
+    cube='"shape": "cuboid", "components": [[1,0],[0,1]]'
+    echo "{\"dim\": 2, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0]}, {\"id\": 2, $cube, \"origin\": [2,0]}]}" > "$BATS_TEST_TMPDIR/scene.json"
+    for certificate in 'overlapping at 0 (1/2 1/2)' 'separated + a0' 'nonsense'; do
+        "$FMB_BUILD/poke" lie "$certificate" 3>&- &
+        started="${started-} $!"
+        run "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json"
+        [ "$status" = 0 ]
+        [ "$output" = '{"pairs": [{"a": 1, "b": 2, "verdict": "overlapping"}]}' ]
+        run "$FMB" query --json --timeout 0.2 --retries 50 --certificate "$BATS_TEST_TMPDIR/scene.json"
+        [ "$status" = 1 ]
+        [[ $(jq -r '.pairs[0].error' <<< "$output") == "the service's certificate does not hold: "?* ]]
+        [ "$(jq -c '.pairs[0] | keys' <<< "$output")" = '["a","b","error"]' ]
+        kill $!
+        wait $! || true
+    done
+}
+
+@test "a certificate that has no room in a message is an error that says so" {
+    random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB_BUILD/poke" lie '' 3>&- &
+    started="${started-} $!"
+    run "$FMB" query --timeout 0.2 --retries 50 --certificate "$BATS_TEST_TMPDIR/scene.json"
+    [ "$status" = 1 ]
+    [[ ${lines[2]} == *"  1  2  not decided: the certificate is too long for a message: ask with --local" ]]
+}
+
+@test "watch shows the certificates that pass, in JSON" {
+    start_fmbd
+    "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+    watch=$!
+    started="$started $watch"
+    random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
+    asked() {
+        "$FMB" query --certificate --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+        ! kill -0 $watch 2> /dev/null
+    }
+    wait_until asked
+    [ "$(jq .certificate "$BATS_TEST_TMPDIR/watch")" = "$(jq '.pairs[0].certificate' "$BATS_TEST_TMPDIR/bus")" ]
+    stop_fmbd
+}
+
 @test "clients at the same time get each its own answers" {
     start_fmbd
     pids=

@@ -267,6 +267,78 @@ static void test_bad_questions(void **state)
     expect(&query, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
 }
 
+/* The pair of a query whose frames come whole. */
+static struct fmb_pair pair_of(const struct pair_query *query, struct fmb_body body[2])
+{
+    struct fmb_pair pair = {.duration = query->duration};
+    struct fmb_frame *frames[2] = {&pair.a, &pair.b};
+    for (int f = 0; f < 2; f++) {
+        const struct query_frame *from = &query->frame[f];
+        assert_int_equal(fmb_body_make(from->dim, from->shape, from->components.number,
+                                       (size_t) from->components.count, &body[f]),
+                         FMB_OK);
+        frames[f]->body = &body[f];
+        frames[f]->moving = from->velocity.count > 0;
+        memcpy(frames[f]->origin, from->origin.number, sizeof frames[f]->origin);
+        memcpy(frames[f]->velocity, from->velocity.number, sizeof frames[f]->velocity);
+    }
+    return pair;
+}
+
+static bool certified(const struct pair_query *query, const struct pair_result *result)
+{
+    struct fmb_body body[2];
+    struct fmb_pair pair = pair_of(query, body);
+    char why[200];
+    assert_int_equal(result->status, FMB_OK);
+    assert_non_null(result->certificate);
+    return fmb_certificate_holds(&pair, result->answer.verdict, result->certificate, why,
+                                 sizeof why);
+}
+
+static void test_certificates(void **state)
+{
+    (void) state;
+    const double apart[] = {0.5, 1, 1.5};
+    const enum fmb_verdict verdict[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
+    for (int i = 0; i < 6; i++) {
+        struct pair_query query = cubes();
+        query.frame[1].origin.number[0] = apart[i % 3];
+        if (i >= 3)
+            query.frame[0].velocity = (struct query_numbers){.count = 3, .number = {0, 0.25, 0}};
+        query.want = QUERY_WANT_CERTIFICATE;
+        struct pair_result result = ask(&query);
+        assert_int_equal(result.answer.verdict, verdict[i % 3]);
+        assert_true(certified(&query, &result));
+        assert_false(result.answer.has_box);
+        char text[200];
+        assert_true(strlen(result.certificate) < sizeof text);
+        strcpy(text, result.certificate);
+        query.want |= QUERY_WANT_BOX;
+        result = ask(&query);
+        assert_string_equal(result.certificate, text);
+        assert_int_equal(result.answer.has_box, verdict[i % 3] != FMB_SEPARATED);
+        query.want = QUERY_WANT_BOX;
+        assert_null(ask(&query).certificate);
+        query.want = QUERY_WANT_CERTIFICATE;
+        query.frame[0].origin.number[0] = NAN;
+        assert_null(ask(&query).certificate);
+    }
+}
+
+/* Of a frame that comes by key too. */
+static void test_certificate_by_key(void **state)
+{
+    (void) state;
+    struct pair_query query = cubes();
+    query.want = QUERY_WANT_CERTIFICATE;
+    struct pair_query by_key = query;
+    by_key.frame[1].key = ask(&query).key[1];
+    by_key.frame[1].components = (struct query_numbers){0};
+    struct pair_result result = ask(&by_key);
+    assert_true(certified(&query, &result));
+}
+
 static void test_inexact_methods_on_a_flat_frame(void **state)
 {
     (void) state;
@@ -308,6 +380,8 @@ int main(void)
         TEST(test_bad_shapes_and_dimensions),
         TEST(test_bad_ids),
         TEST(test_bad_questions),
+        TEST(test_certificates),
+        TEST(test_certificate_by_key),
         TEST(test_inexact_methods_on_a_flat_frame),
         TEST(test_a_repeat_gets_the_same),
     };

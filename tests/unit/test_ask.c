@@ -24,7 +24,7 @@ static void on_query(const lcm_recv_buf_t *buffer, const char *channel, void *us
     struct service *service = user;
     struct pair_query query;
     struct pair_result result;
-    unsigned char bytes[WIRE_BYTES_MAX];
+    unsigned char bytes[WIRE_RESULT_BYTES_MAX];
     (void) channel;
     assert_null(wire_read_pair_query(buffer->data, buffer->data_size, &query));
     service->heard++;

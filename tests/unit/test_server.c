@@ -20,6 +20,8 @@ static struct {
     struct server *server;
     int results, statuses;
     struct pair_result result;
+    char certificate[QUERY_CERTIFICATE_MAX]; /* of the result; "" where it has none */
+    uint32_t size;                           /* of the result, in bytes */
     struct wire_status status;
 } bus;
 
@@ -28,6 +30,8 @@ static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *u
     (void) channel;
     (void) user;
     assert_null(wire_read_pair_result(buffer->data, buffer->data_size, &bus.result));
+    strcpy(bus.certificate, bus.result.certificate ? bus.result.certificate : "");
+    bus.size = buffer->data_size;
     bus.results++;
 }
 
@@ -112,6 +116,32 @@ static void test_a_query_gets_one_result(void **state)
     assert_int_equal(bus.result.dim, 2);
     assert_true(bus.result.answer.box[0][0] == 0.25);
     assert_true(bus.result.compute_ns > 0);
+}
+
+static void test_certificates_are_given_where_wanted(void **state)
+{
+    (void) state;
+    const double apart[] = {0.25, 1, 3};
+    const char *const begin[] = {"overlapping", "touching", "separated"};
+    struct pair_query query = sample(1);
+    for (int i = 0; i < 3; i++) {
+        query.frame[1].origin.number[0] = apart[i];
+        query.want = QUERY_WANT_BOX;
+        publish_query(&query);
+        settle();
+        assert_string_equal(bus.certificate, "");
+        query.want = QUERY_WANT_CERTIFICATE;
+        publish_query(&query);
+        settle();
+        assert_memory_equal(bus.certificate, begin[i], strlen(begin[i]));
+    }
+    assert_int_equal(bus.results, 6);
+    query.frame[1].shape = 9;
+    publish_query(&query);
+    settle();
+    assert_int_equal(bus.result.status, FMB_UNKNOWN_SHAPE);
+    assert_string_equal(bus.certificate, "");
+    assert_int_equal(status_now().pairs, 6);
 }
 
 static void test_status_counts(void **state)
@@ -208,6 +238,10 @@ static void check_answer(void *user, const struct pair_result *result)
     assert_int_equal(fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &answer), FMB_OK);
     assert_int_equal(result->status, FMB_OK);
     assert_memory_equal(&answer, &result->answer, sizeof answer);
+    char certificate[1000];
+    size_t length;
+    assert_int_equal(fmb_certificate(&pair, certificate, sizeof certificate, &length), FMB_OK);
+    assert_string_equal(result->certificate, certificate);
 }
 
 static void fill(struct asking *asking)
@@ -238,8 +272,10 @@ static void test_asking_gets_the_library_s_answers(void **state)
 {
     (void) state;
     static struct asking asking;
-    const struct ask_options options = {
-        .prefix = "T_", .want = QUERY_WANT_BOX, .timeout = 5, .retries = 0};
+    const struct ask_options options = {.prefix = "T_",
+                                        .want = QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE,
+                                        .timeout = 5,
+                                        .retries = 0};
     fill(&asking);
     struct ask *ask = ask_open(bus.lcm, &options);
     assert_non_null(ask);
@@ -278,8 +314,11 @@ static void test_asking_nobody_ends(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_a_query_gets_one_result), TEST(test_status_counts),
-        TEST(test_damage_is_counted),       TEST(test_asking_gets_the_library_s_answers),
+        TEST(test_a_query_gets_one_result),
+        TEST(test_certificates_are_given_where_wanted),
+        TEST(test_status_counts),
+        TEST(test_damage_is_counted),
+        TEST(test_asking_gets_the_library_s_answers),
         TEST(test_asking_nobody_ends),
     };
     return cmocka_run_group_tests_name("server", tests, NULL, NULL);

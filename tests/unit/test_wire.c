@@ -176,6 +176,18 @@ static void test_long_lists_are_walked(void **state)
     assert_int_equal(query.frame[1].dim, 0);
 }
 
+/* The certificate is read where it stands. */
+static void assert_same_result(const struct pair_result *result, const struct pair_result *read,
+                               const unsigned char *bytes, size_t size)
+{
+    struct pair_result other = *read;
+    assert_string_equal(result->certificate, read->certificate);
+    assert_true((const unsigned char *) read->certificate > bytes);
+    assert_true((const unsigned char *) read->certificate < bytes + size);
+    other.certificate = result->certificate;
+    assert_memory_equal(result, &other, sizeof other);
+}
+
 static void test_pair_result_round_trip(void **state)
 {
     (void) state;
@@ -196,18 +208,84 @@ static void test_pair_result_round_trip(void **state)
             result.answer.box[1][axis] = 1.0 / (axis + 3);
         result.answer.box[1][0] = HUGE_VAL;
         result.compute_ns = 1234;
-        unsigned char bytes[WIRE_BYTES_MAX];
+        unsigned char bytes[WIRE_RESULT_BYTES_MAX];
         size_t size = wire_write_pair_result(&result, bytes);
         assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
         assert_memory_equal(&result, &read, sizeof result);
+
+        result.certificate = "overlapping at 0 (1/2 1/4)";
+        size = wire_write_pair_result(&result, bytes);
+        assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
+        assert_same_result(&result, &read, bytes, size);
     }
+}
+
+/* A result with this certificate, as no service need have written it. */
+static size_t write_certificate(char *certificate, int32_t status, int32_t verdict,
+                                unsigned char *out, size_t room)
+{
+    char detail[] = "";
+    fmb_msgs_pair_result_t message = {
+        .status = status, .detail = detail, .verdict = verdict, .certificate = certificate};
+    int size = fmb_msgs_pair_result_t_encode(out, 0, (int) room, &message);
+    assert_true(size > 0);
+    return (size_t) size;
+}
+
+static void test_certificates_end_somewhere(void **state)
+{
+    (void) state;
+    static char text[3 * QUERY_CERTIFICATE_MAX];
+    static unsigned char bytes[4 * QUERY_CERTIFICATE_MAX];
+    const size_t longest = QUERY_CERTIFICATE_MAX - 1;
+    const size_t lengths[] = {1, longest, longest + 1, sizeof text - 1};
+    struct pair_result result;
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        memset(text, '7', lengths[i]);
+        text[lengths[i]] = '\0';
+        size_t size = write_certificate(text, FMB_OK, FMB_SEPARATED, bytes, sizeof bytes);
+        const char *error = wire_read_pair_result(bytes, (uint32_t) size, &result);
+        if (lengths[i] <= longest) {
+            assert_null(error);
+            assert_string_equal(result.certificate, text);
+            assert_true(wire_write_pair_result(&result, bytes + size) < 65000);
+        } else {
+            assert_non_null(error);
+        }
+    }
+}
+
+static void test_certificates_are_printable(void **state)
+{
+    (void) state;
+    for (int byte = 1; byte < 256; byte++) {
+        char text[] = {'a', (char) byte, 'b', '\0'};
+        unsigned char bytes[WIRE_BYTES_MAX];
+        struct pair_result result;
+        size_t size = write_certificate(text, FMB_OK, FMB_TOUCHING, bytes, sizeof bytes);
+        const char *error = wire_read_pair_result(bytes, (uint32_t) size, &result);
+        assert_int_equal(error == NULL, byte >= ' ' && byte <= '~');
+    }
+}
+
+static void test_certificates_have_a_verdict(void **state)
+{
+    (void) state;
+    char some[] = "separated + a0", none[] = "";
+    unsigned char bytes[WIRE_BYTES_MAX];
+    struct pair_result result;
+    size_t size = write_certificate(some, FMB_CANNOT_DECIDE, 0, bytes, sizeof bytes);
+    assert_non_null(wire_read_pair_result(bytes, (uint32_t) size, &result));
+    size = write_certificate(none, FMB_CANNOT_DECIDE, 0, bytes, sizeof bytes);
+    assert_null(wire_read_pair_result(bytes, (uint32_t) size, &result));
+    assert_null(result.certificate);
 }
 
 static void test_refusal_round_trip(void **state)
 {
     (void) state;
     struct pair_result result = {.status = FMB_NOT_FINITE, .detail = "a.origin[1]: bad"}, read;
-    unsigned char bytes[WIRE_BYTES_MAX];
+    unsigned char bytes[WIRE_RESULT_BYTES_MAX];
     size_t size = wire_write_pair_result(&result, bytes);
     assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
     assert_int_equal(read.status, FMB_NOT_FINITE);
@@ -259,6 +337,9 @@ int main(void)
         cmocka_unit_test(test_pair_query_round_trip),
         cmocka_unit_test(test_long_lists_are_walked),
         cmocka_unit_test(test_pair_result_round_trip),
+        cmocka_unit_test(test_certificates_end_somewhere),
+        cmocka_unit_test(test_certificates_are_printable),
+        cmocka_unit_test(test_certificates_have_a_verdict),
         cmocka_unit_test(test_refusal_round_trip),
         cmocka_unit_test(test_status_round_trip),
         cmocka_unit_test(test_status_of_a_newer_service),

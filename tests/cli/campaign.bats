@@ -1,0 +1,73 @@
+# The campaigns, in small: they run, find nothing wrong, and find what is planted.
+
+setup() {
+    BUILD=${FMB_BUILD:-build}
+    JSON=$BATS_TEST_TMPDIR/report.json
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    pairs=25
+    case ${FMB_FAST:-0} in 0) ;; *) pairs=4 ;; esac
+}
+
+# ended CODE: as the last run did.
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status"
+        echo "$output" | tail -n 20
+        return 1
+    }
+}
+
+@test "accuracy: no method is wrong that never must be, and the families are what they say" {
+    run "$BUILD/accuracy" --pairs $pairs --json "$JSON"
+    ended 0
+    jq -e 'all(.cells[].methods[] | select(.name == "certified" or .name == "exact");
+               .broken == 0 and .order_verdict == 0 and .refused == 0
+               and .false_separated + .false_contact + .false_kind == 0)' "$JSON"
+    jq -e '[.cells[].methods[] | select(.name == "certified")] | length > 700' "$JSON"
+    jq -e 'all(.cells[]; .not_as_made == 0)' "$JSON"
+    jq -e '.families[] | select(.name == "touch-face-face") | .verdict == "touching"' "$JSON"
+}
+
+@test "accuracy: the counts do not depend on how many work at it" {
+    for workers in 1 3; do
+        run "$BUILD/accuracy" --pairs 20 --family gap-ulp --family faces --workers $workers \
+            --json "$JSON"
+        ended 0
+        jq 'del(.workers, .cells[].methods[].ns_verdict, .cells[].methods[].ns_box)' "$JSON" \
+            > "$BATS_TEST_TMPDIR/$workers"
+    done
+    cmp "$BATS_TEST_TMPDIR/1" "$BATS_TEST_TMPDIR/3"
+}
+
+@test "accuracy: a bound that is wrong is found" {
+    run "$BUILD/accuracy-planted" --pairs 20 --family touch-vertex-vertex --family gap-ulp \
+        --family random --json "$JSON"
+    ended 1
+    jq -e '[.cells[].methods[] | select(.name == "certified") |
+            .false_separated + .false_contact + .false_kind] | add > 0' "$JSON"
+    jq -e 'all(.cells[].methods[] | select(.name == "exact"); .broken == 0)' "$JSON"
+    [[ $output == *"struct question question = {"* ]] # a reproducer
+}
+
+@test "validate: no method is wrong that never must be" {
+    run "$BUILD/validate" --pairs $((pairs * 100))
+    ended 0
+    [[ ${lines[-1]} == *"no wrong verdict of a method that is never wrong" ]]
+}
+
+@test "usage" {
+    for program in accuracy validate; do
+        run "$BUILD/$program" --help
+        ended 0
+        run "$BUILD/$program" --pairs 0
+        ended 2
+        run "$BUILD/$program" --nothing
+        ended 2
+        run "$BUILD/$program" more
+        ended 2
+    done
+    run "$BUILD/accuracy" --family nobody
+    ended 2
+    run "$BUILD/accuracy" --pairs 1 --family random --json /nowhere/report.json
+    ended 2
+}
