@@ -9,234 +9,110 @@
  * surely does the inner one. The true box lies between; where the two are close enough the outer
  * one is the answer.
  *
- * Accuracy. Cuts: weighed.h bounds the error of normal . w for vertices w of one frame seen from the
- * other. Where nothing rounds (limbs_never_round) there is none but that of quotients and of the
- * points made with them.
- *
- * Coordinates: o + sum x_i c_i + tau v T with x or tau in [0,1] is rounded at most 8 times, to
- * within 2^-49 of the sum of the magnitudes. */
+ * Accuracy. Cuts: weighed.h bounds the error of normal . w for vertices w of one frame seen from
+ * the other. Where nothing rounds (limbs_never_round) there is none but that of quotients and of
+ * the points made with them.
+ */
 #include "certified.h"
 
 #include "clip.h"
-#include "weighed.h"
+#include "part.h"
 
 #include <float.h>
 #include <string.h>
 
-enum { VERTICES_MAX = 8, FACES_MAX = 4, DIRECTIONS_MAX = 6, EDGES_MAX = 12 };
-
 /* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
 static const double limit = 0.9e-12;
 
-/* Of the magnitudes. */
-static const double point_error = 0x1p-49;
-/* Beyond this, of a place or a displacement, the exact method is asked. */
-static const double largest_place = 0x1p300;
-
-struct edge {
-    int direction, start; /* number of its direction and of the vertex in which it starts */
-};
-
-/* A frame: its vertices and edges, and its faces, which cut those of the other one. */
-struct part {
-    enum fmb_shape shape;
-    int dim, vertices, directions, edges, faces;
-    struct weighed component[FMB_DIM_MAX];
-    struct weighed direction[DIRECTIONS_MAX];
-    struct edge edge[EDGES_MAX];
-    double vertex[VERTICES_MAX][FMB_DIM_MAX]; /* with the origin at 0 */
-    double place[VERTICES_MAX][FMB_DIM_MAX];  /* in the world, at the start */
-    double displacement[FMB_DIM_MAX];         /* v T */
-    double slack[FMB_DIM_MAX];                /* error of a point of the frame */
-    /* Points x of the frame have normal . x between 0 and its volume, whatever its sign. */
-    struct weighed normal[FACES_MAX];
-    double low, high;
-};
-
-/* What the faces of the other frame say of one of these: c + s g >= 0 inside, twice for each face.
- */
+/* What the faces of the other frame say of one of these: two inequalities for each. */
 struct cuts {
-    double c[2 * FACES_MAX], c_error[FACES_MAX];
-    double g[FACES_MAX], g_error[FACES_MAX]; /* -g[face] for the second */
+    int count;
+    struct inequality cut[2 * PART_FACES];
 };
 
 struct boxing {
     const struct slabs_pair *slabs;
     bool rounds;
     struct part part[2];
-    struct weighed offset, drift;                        /* of part 1 against part 0 */
+    struct weighed offset, drift; /* of part 1 against part 0 */
+    double reach[FMB_DIM_MAX];    /* sum of the magnitudes of offset, drift, all components */
     double outer[2][FMB_DIM_MAX], inner[2][FMB_DIM_MAX]; /* [0] lower, [1] upper ends */
     double largest; /* coordinate of a vertex of either over the window */
 };
 
-static double least(double x, double y)
-{
-    return x < y ? x : y;
-}
-
-static double greatest(double x, double y)
-{
-    return x > y ? x : y;
-}
-
-/* ---- A frame ---- */
-
-static void add_edge(struct part *part, int direction, int start)
-{
-    part->edge[part->edges++] = (struct edge){direction, start};
-}
-
-/* Vertex v of a cuboid is the sum of the components whose bits are set in v; of a simplex the
- * origin, then the end of each component. Edges go by direction. */
-static void set_cuboid(struct part *part)
-{
-    part->vertices = 1 << part->dim;
-    for (int i = 0; i < part->dim; i++) {
-        const int bit = 1 << i;
-        part->direction[part->directions++] = part->component[i];
-        for (int v = 0; v < part->vertices; v++) {
-            if (!(v & bit))
-                add_edge(part, i, v);
-            for (int axis = 0; v & bit && axis < part->dim; axis++)
-                part->vertex[v][axis] += part->component[i].at[axis];
-        }
-    }
-}
-
-static void set_simplex(struct part *part)
-{
-    part->vertices = part->dim + 1;
-    for (int i = 0; i < part->dim; i++) {
-        memcpy(part->vertex[i + 1], part->component[i].at, sizeof part->vertex[i + 1]);
-        add_edge(part, part->directions, 0);
-        part->direction[part->directions++] = part->component[i];
-        for (int j = i + 1; j < part->dim; j++) {
-            add_edge(part, part->directions, i + 1);
-            part->direction[part->directions++] =
-                weighed_sum(&part->component[j], -1, &part->component[i]);
-        }
-    }
-}
-
-/* normal[k] . c_k is the volume, normal[k] . c_i is 0 for other i; the face across from the origin
- * of a simplex has their sum. In 2D these are the components turned by a right angle. */
-static void set_faces(struct part *part)
-{
-    const struct weighed *c = part->component;
-    part->faces = part->dim;
-    if (part->dim == 2) {
-        const struct weighed turned = weighed_turn(&c[1]), zero = {{0}, {0}};
-        part->normal[0] = weighed_sum(&zero, -1, &turned);
-        part->normal[1] = weighed_turn(&c[0]);
-    } else {
-        for (int k = 0; k < 3; k++)
-            part->normal[k] = weighed_cross(&c[(k + 1) % 3], &c[(k + 2) % 3]);
-    }
-    const double volume = weighed_dot(part->normal[0].at, c[0].at);
-    part->low = least(0, volume);
-    part->high = greatest(0, volume);
-    if (part->shape == FMB_CUBOID)
-        return;
-    part->normal[part->faces] = weighed_sum(&part->normal[0], 1, &part->normal[1]);
-    if (part->dim == 3)
-        part->normal[part->faces] = weighed_sum(&part->normal[part->faces], 1, &part->normal[2]);
-    part->faces++;
-}
-
-/* False if a place is too far away. */
-static bool set_places(const struct fmb_frame *frame, double duration, struct part *part)
-{
-    bool near = true;
-    for (int axis = 0; axis < part->dim; axis++) {
-        part->displacement[axis] = frame->moving ? frame->velocity[axis] * duration : 0;
-        double magnitude = fabs(frame->origin[axis]) + fabs(part->displacement[axis]);
-        near = near && magnitude <= largest_place;
-        for (int i = 0; i < part->dim; i++)
-            magnitude += part->component[i].weight[axis];
-        part->slack[axis] = point_error * magnitude;
-        for (int v = 0; v < part->vertices; v++)
-            part->place[v][axis] = frame->origin[axis] + part->vertex[v][axis];
-    }
-    return near;
-}
-
-static bool set_part(const struct fmb_frame *frame, double duration, struct part *part)
-{
-    memset(part, 0, sizeof *part);
-    part->shape = frame->body->shape;
-    part->dim = frame->body->dim;
-    for (int i = 0; i < part->dim; i++)
-        part->component[i] = weigh(frame->body->component[i]);
-    if (part->shape == FMB_CUBOID)
-        set_cuboid(part);
-    else
-        set_simplex(part);
-    set_faces(part);
-    return set_places(frame, duration, part);
-}
-
 /* ---- Points ---- */
 
-/* point + s path, and how far off it may be: not at all where it is found to be exact. */
-static double point_at(const struct boxing *boxing, double point, double s, double path,
-                       double slack, double *error)
+/* Widens the box by a point known to lie in x: the outer one by all of that, and the inner one by
+ * what is sure, if the point is surely one of the intersection. */
+static void include(struct boxing *boxing, int axis, struct range x, bool outer, bool inner)
 {
-    const double way = s * path, x = point + way;
-    const bool exact =
-        !boxing->rounds && fma(s, path, -way) == 0 && x - point == way && x - way == point;
-    *error = exact ? 0 : slack;
-    return x;
+    double(*out)[FMB_DIM_MAX] = boxing->outer, (*in)[FMB_DIM_MAX] = boxing->inner;
+    if (outer) {
+        out[0][axis] = range_least(out[0][axis], x.low);
+        out[1][axis] = range_greatest(out[1][axis], x.high);
+    }
+    if (inner) {
+        in[0][axis] = range_least(in[0][axis], x.high);
+        in[1][axis] = range_greatest(in[1][axis], x.low);
+    }
 }
 
-/* Widens ends by a point known to lie in [x - error, x + error]: side 1 the outer ones, by all of
- * that; side -1 the inner ones, by what is sure. */
-static void include(double ends[2][FMB_DIM_MAX], int axis, double x, double error, int side)
+/* An edge at an end of the window, or the path of a vertex. */
+struct segment {
+    const struct range *from, *to; /* places */
+    const double *path;            /* to - from, rounded */
+};
+
+/* from + s path: a vertex where the segment is not cut; exact where nothing rounds, and it is found
+ * that this did not either. */
+static struct range point_at(const struct boxing *boxing, const struct part *part,
+                             const struct segment *segment, double s, int axis)
 {
-    ends[0][axis] = least(ends[0][axis], x - side * error);
-    ends[1][axis] = greatest(ends[1][axis], x + side * error);
+    const struct range from = segment->from[axis];
+    const double way = s * segment->path[axis], x = from.low + way;
+    if (s == 0 || s == 1)
+        return s == 0 ? from : segment->to[axis];
+    if (!boxing->rounds && fma(s, segment->path[axis], -way) == 0 &&
+        range_sum_error(from.low, way, x) == 0)
+        return range_of(x);
+    return (struct range){x - part->slack[axis], x + part->slack[axis]};
 }
 
-static void include_part(struct boxing *boxing, const struct part *part, const double *point,
-                         const double *path, struct clip clip, bool outer)
+static void include_part(struct boxing *boxing, const struct part *part,
+                         const struct segment *segment, struct clip clip, bool outer)
 {
     if (clip.low > clip.high)
         return;
-    for (int axis = 0; axis < part->dim; axis++)
-        for (int end = 0; end < 2; end++) {
-            double error;
-            const double x = point_at(boxing, point[axis], end ? clip.high : clip.low, path[axis],
-                                      part->slack[axis], &error);
-            include(outer ? boxing->outer : boxing->inner, axis, x, error, outer ? 1 : -1);
-        }
+    for (int axis = 0; axis < part->dim; axis++) {
+        include(boxing, axis, point_at(boxing, part, segment, clip.low, axis), outer, !outer);
+        include(boxing, axis, point_at(boxing, part, segment, clip.high, axis), outer, !outer);
+    }
 }
 
 /* ---- Kinds 1 and 2: segments cut by the faces of the other frame ---- */
 
-/* Widens the box by what is left of the segment point + s path of a part. */
-static void include_segment(struct boxing *boxing, const struct part *part, const double *point,
-                            const double *path, const struct cuts *cuts, int faces)
+/* Widens the box by what is left of a segment of a part. */
+static void include_segment(struct boxing *boxing, const struct part *part,
+                            const struct segment *segment, const struct cuts *cuts)
 {
     struct clip outer = {0, 1}, inner = {0, 1};
-    for (int face = 0; face < faces; face++) {
-        const double e = cuts->c_error[face], f = cuts->g_error[face], g = cuts->g[face];
-        const double c = cuts->c[2 * face], d = cuts->c[2 * face + 1];
-        clip_cut(&outer, c + e, g + f, true, boxing->rounds);
-        clip_cut(&outer, d + e, -g + f, true, boxing->rounds);
-        clip_cut(&inner, c - e, g - f, false, boxing->rounds);
-        clip_cut(&inner, d - e, -g - f, false, boxing->rounds);
-    }
-    include_part(boxing, part, point, path, outer, true);
-    include_part(boxing, part, point, path, inner, false);
+    for (int i = 0; i < cuts->count; i++)
+        if (never_holds(&cuts->cut[i]))
+            return;
+    for (int i = 0; i < cuts->count; i++)
+        clip_both(&outer, &inner, &cuts->cut[i], boxing->rounds);
+    include_part(boxing, part, segment, outer, true);
+    include_part(boxing, part, segment, inner, false);
 }
 
 /* What the faces of the other frame say of the motion and of each vertex and direction of a
  * part. */
 struct seen {
     int faces;
-    double vertex[FACES_MAX][VERTICES_MAX]; /* normal . vertex, at the start */
-    double motion[FACES_MAX], motion_error[FACES_MAX];
-    double direction[FACES_MAX][DIRECTIONS_MAX], direction_error[FACES_MAX][DIRECTIONS_MAX];
-    double error[FACES_MAX]; /* of vertex, and of what is taken from it */
+    double vertex[PART_FACES][PART_VERTICES]; /* normal . vertex, at the start */
+    double motion[PART_FACES], motion_error[PART_FACES];
+    double direction[PART_DIRECTIONS][PART_FACES], direction_error[PART_DIRECTIONS][PART_FACES];
+    double error[PART_FACES]; /* of vertex, and of what is taken from it */
 };
 
 static double error_of(const struct boxing *boxing, double weight)
@@ -254,36 +130,35 @@ static void set_seen(const struct boxing *boxing, int f, struct seen *out)
     for (int face = 0; face < other->faces; face++) {
         const struct weighed *normal = &other->normal[face];
         const double start = sign * weighed_dot(normal->at, boxing->offset.at);
-        double weight = weighed_dot(normal->weight, boxing->offset.weight) +
-                        weighed_dot(normal->weight, boxing->drift.weight);
-        for (int i = 0; i < part->dim; i++)
-            weight += weighed_dot(normal->weight, part->component[i].weight) +
-                      weighed_dot(normal->weight, other->component[i].weight);
-        out->error[face] = error_of(boxing, weight);
+        out->error[face] = error_of(boxing, weighed_dot(normal->weight, boxing->reach));
         out->motion[face] = sign * weighed_dot(normal->at, boxing->drift.at);
         out->motion_error[face] =
             error_of(boxing, weighed_dot(normal->weight, boxing->drift.weight));
         for (int v = 0; v < part->vertices; v++)
             out->vertex[face][v] = start + weighed_dot(normal->at, part->vertex[v]);
         for (int i = 0; i < part->directions; i++) {
-            out->direction[face][i] = weighed_dot(normal->at, part->direction[i].at);
-            out->direction_error[face][i] =
+            out->direction[i][face] = weighed_dot(normal->at, part->direction[i].at);
+            out->direction_error[i][face] =
                 error_of(boxing, weighed_dot(normal->weight, part->direction[i].weight));
         }
     }
 }
 
-/* Sets c for a vertex at an end of the window. */
-static void cut_from(const struct boxing *boxing, int f, const struct seen *seen, int vertex,
-                     int end, struct cuts *out)
+/* The cuts of a segment that starts in a vertex at an end of the window, and on which
+ * normal . point changes by change[face]. */
+static struct cuts cuts_of(const struct boxing *boxing, int f, const struct seen *seen, int vertex,
+                           int end, const double *change, const double *change_error)
 {
     const struct part *other = &boxing->part[1 - f];
+    struct cuts out = {.count = 2 * seen->faces};
     for (int face = 0; face < seen->faces; face++) {
         const double at = seen->vertex[face][vertex] + (end ? seen->motion[face] : 0);
-        out->c[2 * face] = at - other->low;
-        out->c[2 * face + 1] = other->high - at;
-        out->c_error[face] = seen->error[face];
+        out.cut[2 * face] = (struct inequality){at - other->low, change[face], seen->error[face],
+                                                change_error[face]};
+        out.cut[2 * face + 1] = (struct inequality){other->high - at, -change[face],
+                                                    seen->error[face], change_error[face]};
     }
+    return out;
 }
 
 /* Kind 1, at an end of the window. */
@@ -291,18 +166,13 @@ static void include_edges(struct boxing *boxing, int f, const struct seen *seen,
 {
     const struct part *part = &boxing->part[f];
     for (int e = 0; e < part->edges; e++) {
-        const struct edge edge = part->edge[e];
-        struct cuts cuts;
-        double point[FMB_DIM_MAX];
-        cut_from(boxing, f, seen, edge.start, end, &cuts);
-        for (int face = 0; face < seen->faces; face++) {
-            cuts.g[face] = seen->direction[face][edge.direction];
-            cuts.g_error[face] = seen->direction_error[face][edge.direction];
-        }
-        for (int axis = 0; axis < part->dim; axis++)
-            point[axis] = part->place[edge.start][axis] + (end ? part->displacement[axis] : 0);
-        include_segment(boxing, part, point, part->direction[edge.direction].at, &cuts,
-                        seen->faces);
+        const struct part_edge edge = part->edge[e];
+        const struct cuts cuts =
+            cuts_of(boxing, f, seen, edge.start, end, seen->direction[edge.direction],
+                    seen->direction_error[edge.direction]);
+        const struct segment segment = {part->place[end][edge.start], part->place[end][edge.end],
+                                        part->direction[edge.direction].at};
+        include_segment(boxing, part, &segment, &cuts);
     }
 }
 
@@ -311,11 +181,9 @@ static void include_paths(struct boxing *boxing, int f, const struct seen *seen)
 {
     const struct part *part = &boxing->part[f];
     for (int v = 0; v < part->vertices; v++) {
-        struct cuts cuts;
-        cut_from(boxing, f, seen, v, 0, &cuts);
-        memcpy(cuts.g, seen->motion, sizeof cuts.g);
-        memcpy(cuts.g_error, seen->motion_error, sizeof cuts.g_error);
-        include_segment(boxing, part, part->place[v], part->displacement, &cuts, seen->faces);
+        const struct cuts cuts = cuts_of(boxing, f, seen, v, 0, seen->motion, seen->motion_error);
+        const struct segment segment = {part->place[0][v], part->place[1][v], part->displacement};
+        include_segment(boxing, part, &segment, &cuts);
     }
 }
 
@@ -340,14 +208,7 @@ static void set_crossing(const struct boxing *boxing, const struct weighed *e,
     const struct weighed *normals[3] = {&ef, &fd, &ed};
     const double det = weighed_dot(boxing->drift.at, ef.at);
     for (int i = 0; i < 3; i++) {
-        double weight[2] = {0, 0};
-        for (int part = 0; part < 2; part++)
-            for (int c = 0; c < FMB_DIM_MAX; c++)
-                weight[part] +=
-                    weighed_dot(normals[i]->weight, boxing->part[part].component[c].weight);
-        out->error[i] =
-            error_of(boxing, weighed_dot(normals[i]->weight, boxing->offset.weight) +
-                                 (weight[0] + weight[1]));
+        out->error[i] = error_of(boxing, weighed_dot(normals[i]->weight, boxing->reach));
         const double sign = (det < 0 ? -1 : 1) * (i == 0 ? -1 : 1);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             out->normal[i][axis] = sign * normals[i]->at[axis];
@@ -373,50 +234,47 @@ static struct parameter parameter_of(const struct boxing *boxing, const struct c
     if (least_det <= 0 || !out.possible)
         return out;
     if (num - error > 0)
-        out.outer.low = least(1, quotient_below(num - error, most, boxing->rounds));
+        out.outer.low = range_least(1, quotient_below(num - error, most, boxing->rounds));
     if (num + error < least_det)
-        out.outer.high = least(1, quotient_above(num + error, least_det, boxing->rounds));
+        out.outer.high = range_least(1, quotient_above(num + error, least_det, boxing->rounds));
     return out;
 }
 
-/* The range of start + s edge + tau displacement along an axis. */
-static struct clip point_range(const struct part *part, int vertex, const struct weighed *edge,
-                               struct clip s, struct clip tau, int axis)
+/* start + s edge + tau displacement along an axis. */
+static struct range point_range(const struct part *part, int vertex, const struct weighed *edge,
+                                struct clip s, struct clip tau, int axis)
 {
     const double e = edge->at[axis], v = part->displacement[axis];
-    const double at = part->place[vertex][axis], slack = part->slack[axis];
-    return (struct clip){at + (least(s.low * e, s.high * e) + least(tau.low * v, tau.high * v)) -
-                             slack,
-                         at +
-                             (greatest(s.low * e, s.high * e) +
-                              greatest(tau.low * v, tau.high * v)) +
-                             slack};
+    const struct range at = part->place[0][vertex][axis];
+    const double slack = part->slack[axis];
+    return (struct range){
+        at.low + (range_least(s.low * e, s.high * e) + range_least(tau.low * v, tau.high * v)) -
+            slack,
+        at.high +
+            (range_greatest(s.low * e, s.high * e) + range_greatest(tau.low * v, tau.high * v)) +
+            slack};
 }
 
 /* The point lies on both edges, and so in both ranges. */
-static void include_crossing(struct boxing *boxing, struct edge a, struct edge b,
+static void include_crossing(struct boxing *boxing, struct part_edge a, struct part_edge b,
                              const struct parameter parameter[3])
 {
     const struct part *part = boxing->part;
     const bool sure = parameter[0].sure && parameter[1].sure && parameter[2].sure;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const struct clip on_a = point_range(&part[0], a.start, &part[0].direction[a.direction],
-                                             parameter[1].outer, parameter[0].outer, axis);
-        const struct clip on_b = point_range(&part[1], b.start, &part[1].direction[b.direction],
-                                             parameter[2].outer, parameter[0].outer, axis);
-        const double low = greatest(on_a.low, on_b.low), high = least(on_a.high, on_b.high);
-        include(boxing->outer, axis, low, 0, 1);
-        include(boxing->outer, axis, high, 0, 1);
-        if (!sure)
-            continue;
-        boxing->inner[0][axis] = least(boxing->inner[0][axis], high);
-        boxing->inner[1][axis] = greatest(boxing->inner[1][axis], low);
+        const struct range on_a = point_range(&part[0], a.start, &part[0].direction[a.direction],
+                                              parameter[1].outer, parameter[0].outer, axis);
+        const struct range on_b = point_range(&part[1], b.start, &part[1].direction[b.direction],
+                                              parameter[2].outer, parameter[0].outer, axis);
+        const struct range both = {range_greatest(on_a.low, on_b.low),
+                                   range_least(on_a.high, on_b.high)};
+        include(boxing, axis, both, true, sure);
     }
 }
 
 /* False where edges may cross, but nothing can be said of where. */
 static bool include_crossing_at(struct boxing *boxing, const struct crossing *crossing,
-                                struct edge a, struct edge b)
+                                struct part_edge a, struct part_edge b)
 {
     double r[FMB_DIM_MAX];
     struct parameter parameter[3];
@@ -435,56 +293,63 @@ static bool include_crossing_at(struct boxing *boxing, const struct crossing *cr
     return true;
 }
 
+/* The edges of direction i of A and j of B: each direction has as many, one after the other. */
+static bool include_parallel_crossings(struct boxing *boxing, int i, int j,
+                                       const struct crossing *crossing)
+{
+    const struct part *a = &boxing->part[0], *b = &boxing->part[1];
+    const int each_a = a->edges / a->directions, each_b = b->edges / b->directions;
+    for (int k = i * each_a; k < (i + 1) * each_a; k++)
+        for (int l = j * each_b; l < (j + 1) * each_b; l++)
+            if (!include_crossing_at(boxing, crossing, a->edge[k], b->edge[l]))
+                return false;
+    return true;
+}
+
 /* Edges of which det is exactly 0 have no vertex of this kind. */
 static bool include_crossings(struct boxing *boxing)
 {
     const struct part *a = &boxing->part[0], *b = &boxing->part[1];
-    for (int i = 0; i < a->edges; i++) {
-        struct crossing crossing;
-        int direction = -1;
-        for (int j = 0; j < b->edges; j++) {
-            if (b->edge[j].direction != direction) {
-                direction = b->edge[j].direction;
-                set_crossing(boxing, &a->direction[a->edge[i].direction], &b->direction[direction],
-                             &crossing);
-            }
+    for (int i = 0; i < a->directions; i++)
+        for (int j = 0; j < b->directions; j++) {
+            struct crossing crossing;
+            set_crossing(boxing, &a->direction[i], &b->direction[j], &crossing);
             if (!boxing->rounds && crossing.det == 0)
                 continue;
-            if (!include_crossing_at(boxing, &crossing, a->edge[i], b->edge[j]))
+            if (!include_parallel_crossings(boxing, i, j, &crossing))
                 return false;
         }
-    }
     return true;
 }
 
 /* ---- All of it ---- */
 
-static void find_largest(struct boxing *boxing)
-{
-    boxing->largest = 0;
-    for (int f = 0; f < 2; f++) {
-        const struct part *part = &boxing->part[f];
-        for (int v = 0; v < part->vertices; v++)
-            for (int axis = 0; axis < part->dim; axis++) {
-                const double x = part->place[v][axis], y = x + part->displacement[axis];
-                boxing->largest = greatest(boxing->largest, greatest(fabs(x), fabs(y)));
-            }
-    }
-}
-
 /* Frames that do not drift have the same displacement, and their intersection moves by it. */
 static void sweep(struct boxing *boxing)
 {
     const struct part *part = boxing->part;
-    for (int axis = 0; axis < part[0].dim; axis++) {
-        const double way = part[0].displacement[axis];
-        const double slack = greatest(part[0].slack[axis], part[1].slack[axis]);
-        const int end = way > 0, side = end ? 1 : -1;
-        double error, *outer = &boxing->outer[end][axis];
-        *outer = point_at(boxing, *outer, 1, way, slack, &error);
-        *outer += side * error;
+    for (int axis = 0; axis < part->dim; axis++) {
+        const double way = part->displacement[axis];
+        const int end = way > 0;
+        const struct range moved = range_sum(range_of(boxing->outer[end][axis]), part->way[axis]);
+        boxing->outer[end][axis] = end ? moved.high : moved.low;
         boxing->inner[end][axis] += way;
     }
+}
+
+/* The intersection lies in the extents of both frames: where these are ends of it, in boxes along
+ * the axes say, they are as near as doubles go. Also finds the largest coordinate. */
+static void cut_to_extents(struct boxing *boxing)
+{
+    boxing->largest = 0;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < boxing->part[f].dim; axis++) {
+            const struct range extent = boxing->part[f].extent[axis];
+            boxing->outer[0][axis] = range_greatest(boxing->outer[0][axis], extent.low);
+            boxing->outer[1][axis] = range_least(boxing->outer[1][axis], extent.high);
+            boxing->largest = range_greatest(boxing->largest,
+                                             range_greatest(fabs(extent.low), fabs(extent.high)));
+        }
 }
 
 static bool is_tight(const struct boxing *boxing)
@@ -520,10 +385,16 @@ bool box_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool ro
                             .rounds = rounds,
                             .offset = weigh(slabs->motion.offset),
                             .drift = weigh(slabs->motion.drift)};
-    if (!set_part(&pair->a, pair->duration, &boxing.part[0]) ||
-        !set_part(&pair->b, pair->duration, &boxing.part[1]))
+    if (!part_set(&pair->a, pair->duration, &boxing.part[0]) ||
+        !part_set(&pair->b, pair->duration, &boxing.part[1]))
         return false;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        double size[2] = {0, 0};
+        for (int f = 0; f < 2; f++)
+            for (int i = 0; i < FMB_DIM_MAX; i++)
+                size[f] += boxing.part[f].component[i].weight[axis];
+        boxing.reach[axis] =
+            (boxing.offset.weight[axis] + boxing.drift.weight[axis]) + (size[0] + size[1]);
         boxing.outer[0][axis] = boxing.inner[0][axis] = INFINITY;
         boxing.outer[1][axis] = boxing.inner[1][axis] = -INFINITY;
     }
@@ -531,7 +402,7 @@ bool box_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool ro
         return false;
     if (!slabs->motion.drifts)
         sweep(&boxing);
-    find_largest(&boxing);
+    cut_to_extents(&boxing);
     if (!is_tight(&boxing))
         return false;
     for (int axis = 0; axis < boxing.part[0].dim; axis++)

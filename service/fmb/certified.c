@@ -28,24 +28,9 @@ static enum fmb_verdict verdict_of_sign(int sign)
     return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }
 
-/* The slabs of numbers that do not round have no error. A normal is zero just where the extent
- * of the pair along it is: both frames are solid. */
-static enum fmb_verdict verdict_unrounded(const struct slabs_pair *pair)
-{
-    struct slab_value slab[SLABS_MAX];
-    const int count = slabs_list(pair, false, slab);
-    int sign = -1;
-    for (int i = 0; i < count && sign <= 0; i++) {
-        const double gap = slab_gap(&slab[i]);
-        if (gap >= 0 && slab[i].low < slab[i].high)
-            sign = gap > 0;
-    }
-    return verdict_of_sign(sign);
-}
-
-/* The slabs that doubles leave open, each looked at again alone; returns how many. *separated: one
- * of them separates, and the rest was not looked at. */
-static int open_slabs(const struct slabs_pair *pair, struct slab_normal out[SLABS_MAX],
+/* The slabs that doubles leave open, each looked at again alone if asked to; returns how many.
+ * *separated: one of them separates, and the rest was not looked at. */
+static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_normal out[SLABS_MAX],
                       bool *separated)
 {
     struct slab_value slab[SLABS_MAX];
@@ -55,7 +40,8 @@ static int open_slabs(const struct slabs_pair *pair, struct slab_normal out[SLAB
     for (int i = 0; i < count && !*separated; i++) {
         if (slab_gap(&slab[i]) < -slab[i].error)
             continue;
-        slabs_refine(pair, &slab[i]);
+        if (refine)
+            slabs_refine(pair, &slab[i]);
         const double gap = slab_gap(&slab[i]);
         *separated = gap > slab[i].error;
         if (gap >= -slab[i].error)
@@ -75,21 +61,33 @@ static enum fmb_verdict verdict_in_limbs(const struct limbs_pair *limbs,
     return verdict_of_sign(sign);
 }
 
+static enum fmb_verdict verdict_of_outcome(enum slabs_outcome outcome)
+{
+    switch (outcome) {
+    case SLABS_SEPARATED: return FMB_SEPARATED;
+    case SLABS_OVERLAPPING: return FMB_OVERLAPPING;
+    case SLABS_UNSURE: break;
+    }
+    return FMB_TOUCHING;
+}
+
+/* A slab in one limb costs no more than in doubles with a bound of its own. */
 static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
     find_span(certified);
     if (!certified->rounds) {
         certified->path = CERTIFIED_UNROUNDED;
-        return verdict_unrounded(&certified->slabs);
+        return verdict_of_outcome(slabs_filter(&certified->slabs, false));
     }
     struct slab_normal open[SLABS_MAX];
     struct limbs_pair limbs;
     bool separated;
-    const int count = open_slabs(&certified->slabs, open, &separated);
+    const bool fits = limbs_prepare(certified->pair, certified->span, &limbs);
+    const int count = open_slabs(&certified->slabs, !fits || limbs.limbs > 1, open, &separated);
     certified->path = CERTIFIED_REFINED;
     if (separated || count == 0)
         return separated ? FMB_SEPARATED : FMB_OVERLAPPING;
-    if (limbs_prepare(certified->pair, certified->span, &limbs)) {
+    if (fits) {
         certified->path = CERTIFIED_LIMBS;
         return verdict_in_limbs(&limbs, open, count);
     }
@@ -103,11 +101,9 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 static enum fmb_verdict verdict_of(struct certified *certified)
 {
     certified->path = CERTIFIED_FILTER;
-    switch (slabs_filter(&certified->slabs)) {
-    case SLABS_SEPARATED: return FMB_SEPARATED;
-    case SLABS_OVERLAPPING: return FMB_OVERLAPPING;
-    case SLABS_UNSURE: break;
-    }
+    const enum slabs_outcome outcome = slabs_filter(&certified->slabs, true);
+    if (outcome != SLABS_UNSURE)
+        return verdict_of_outcome(outcome);
     return verdict_of_unsure(certified);
 }
 
@@ -153,8 +149,7 @@ enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
     answer->verdict = verdict_of(&certified);
     if (answer->verdict == FMB_SEPARATED)
         return FMB_OK;
-    const bool good_contact =
-        !certified.slabs.motion.moving || answer_contact(&certified, answer);
+    const bool good_contact = !certified.slabs.motion.moving || answer_contact(&certified, answer);
     const bool good_box = !(want & FMB_WANT_BOX) || answer_box(&certified, answer);
     if (!good_contact || !good_box)
         complete(pair, want, good_contact, good_box, answer);

@@ -54,4 +54,32 @@ static inline void clip_cut(struct clip *clip, double c, double g, bool outer, b
     }
 }
 
+/* An inequality whose c is known within c_error, and its g within g_error. */
+struct inequality {
+    double c, g, c_error, g_error;
+};
+
+/* It holds nowhere on the segment, or everywhere: known without a cut, and so it is mostly. */
+static inline bool never_holds(const struct inequality *x)
+{
+    const double c = x->c + x->c_error;
+    return c < 0 && c + (x->g + x->g_error) < 0;
+}
+
+static inline bool always_holds(const struct inequality *x)
+{
+    const double c = x->c - x->c_error;
+    return c >= 0 && c + (x->g - x->g_error) >= 0;
+}
+
+/* Cuts both parts of a segment. */
+static inline void clip_both(struct clip *outer, struct clip *inner, const struct inequality *x,
+                             bool rounds)
+{
+    if (always_holds(x))
+        return;
+    clip_cut(outer, x->c + x->c_error, x->g + x->g_error, true, rounds);
+    clip_cut(inner, x->c - x->c_error, x->g - x->g_error, false, rounds);
+}
+
 #endif

@@ -22,19 +22,15 @@ struct times {
     struct clip outer, inner; /* of tau */
 };
 
-/* c is start - low (high - start), with the error of a gap. */
-static void cut_outer(struct clip *clip, const struct slab_value *slab, bool rounds)
+/* Both inequalities of a slab. */
+static void cut(struct times *times, const struct slab_value *slab, bool rounds)
 {
-    clip_cut(clip, slab->start - slab->low + slab->error, slab->slope + slab->error, true, rounds);
-    clip_cut(clip, slab->high - slab->start + slab->error, -slab->slope + slab->error, true,
-             rounds);
-}
-
-static void cut_inner(struct clip *clip, const struct slab_value *slab, bool rounds)
-{
-    clip_cut(clip, slab->start - slab->low - slab->error, slab->slope - slab->error, false, rounds);
-    clip_cut(clip, slab->high - slab->start - slab->error, -slab->slope - slab->error, false,
-             rounds);
+    const struct inequality above = {slab->start - slab->low, slab->slope, slab->error,
+                                     slab->error};
+    const struct inequality below = {slab->high - slab->start, -slab->slope, slab->error,
+                                     slab->error};
+    clip_both(&times->outer, &times->inner, &above, rounds);
+    clip_both(&times->outer, &times->inner, &below, rounds);
 }
 
 /* Seconds of a tau in [0,1]: at most one double beyond tau T. */
@@ -91,23 +87,35 @@ static double exact_time(struct exact_end *end, int side, double duration)
                                end->scratch);
 }
 
-/* Slabs whose ends are too loose, again with bounds of their own; then all ends. */
-static void cut_all(const struct slabs_pair *slabs, struct slab_value *slab, int count, bool rounds,
-                    bool refine, struct times *times)
+/* Whether the end of a slab might be beyond the one that surely holds for all. */
+static bool contends(const struct slab_value *slab, const struct times *times, int side)
+{
+    struct times own = {{0, 1}, {0, 1}};
+    cut(&own, slab, true);
+    return side ? own.inner.high < times->outer.high : own.inner.low > times->outer.low;
+}
+
+static void cut_all(const struct slab_value *slab, int count, bool rounds, struct times *times)
 {
     *times = (struct times){{0, 1}, {0, 1}};
-    for (int i = 0; i < count; i++) {
-        if (refine)
-            slabs_refine(slabs, &slab[i]);
-        cut_outer(&times->outer, &slab[i], rounds);
-        cut_inner(&times->inner, &slab[i], rounds);
-    }
+    for (int i = 0; i < count; i++)
+        cut(times, &slab[i], rounds);
 }
 
 static bool good_end(const struct times *times, int side)
 {
     return side ? times->outer.high - times->inner.high <= limit
                 : times->inner.low - times->outer.low <= limit;
+}
+
+/* Looks again, alone, at those slabs on which an end that is not good depends. */
+static void refine(const struct slabs_pair *slabs, struct slab_value *slab, int count,
+                   const struct times *times)
+{
+    const bool open[2] = {!good_end(times, 0), !good_end(times, 1)};
+    for (int i = 0; i < count; i++)
+        if ((open[0] && contends(&slab[i], times, 0)) || (open[1] && contends(&slab[i], times, 1)))
+            slabs_refine(slabs, &slab[i]);
 }
 
 /* Moves an end to the exact time of each slab that might be beyond it. */
@@ -117,9 +125,7 @@ static void settle(const struct slab_value *slab, int count, const struct limbs_
     struct exact_end end;
     exact_end_each(&end, mpz_init);
     for (int i = 0; i < count; i++) {
-        struct clip inner = {0, 1};
-        cut_inner(&inner, &slab[i], true);
-        if (side ? inner.high >= times->outer.high : inner.low <= times->outer.low)
+        if (!contends(&slab[i], times, side))
             continue;
         limbs_slab(limbs, slab[i].normal, end.low, end.high, end.start, end.slope);
         const double exact = exact_time(&end, side, duration);
@@ -136,9 +142,11 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, boo
     const int count = slabs_list(slabs, rounds, slab);
     struct times times;
     struct limbs_pair limbs;
-    cut_all(slabs, slab, count, rounds, false, &times);
-    if (!good_end(&times, 0) || !good_end(&times, 1))
-        cut_all(slabs, slab, count, rounds, rounds, &times);
+    cut_all(slab, count, rounds, &times);
+    if (rounds && (!good_end(&times, 0) || !good_end(&times, 1))) {
+        refine(slabs, slab, count, &times);
+        cut_all(slab, count, rounds, &times);
+    }
     contact[0] = seconds_below(times.outer.low, pair->duration, rounds);
     contact[1] = seconds_above(times.outer.high, pair->duration, rounds);
     if (good_end(&times, 0) && good_end(&times, 1))

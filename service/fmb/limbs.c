@@ -76,14 +76,16 @@ INLINE void multiply(const int nx, const uint64_t *x, const int ny, const uint64
 
 enum { NORMAL_MAX = 2 * LIMBS_MAX, VALUE_MAX = 3 * LIMBS_MAX };
 
-/* out := normal . w */
+/* out := normal . w. Axes in which either is 0, as in every scene of boxes along the axes, cost
+ * next to nothing. */
 INLINE void dot(const int n, uint64_t normal[FMB_DIM_MAX][NORMAL_MAX],
                 const limbs_length w[FMB_DIM_MAX], uint64_t out[VALUE_MAX])
 {
     uint64_t term[VALUE_MAX];
-    multiply(2 * n, normal[0], n, w[0], out);
-#pragma GCC unroll 2
-    for (int axis = 1; axis < FMB_DIM_MAX; axis++) {
+    memset(out, 0, (size_t) (3 * n) * sizeof *out);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        if (is_zero(2 * n, normal[axis]) || is_zero(n, w[axis]))
+            continue;
         multiply(2 * n, normal[axis], n, w[axis], term);
         add(3 * n, out, term);
     }

@@ -9,7 +9,7 @@
  * 2^-1075. Equal velocities give a drift of exactly 0. */
 struct relative_motion {
     bool moving;
-    bool drifts; /* the velocities differ, and the window is not empty */
+    bool drifts;                /* the velocities differ, and the window is not empty */
     double offset[FMB_DIM_MAX]; /* of b's origin from a's, at t = 0 */
     double drift[FMB_DIM_MAX];  /* of b against a, over the whole window */
 };

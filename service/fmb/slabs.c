@@ -31,10 +31,10 @@
  *
  * which is 16 times: its share of the result has a factor within (1 +- u)^16, and the sum an error
  * of at most 16.01 u 6 |u| |v| T < 97 u |u| |v| T. Maxima and minima do not round, and move by
- * no more than what they choose from. The bound 2^-46 |u| |v| T = 128 u |u| |v| T is itself computed
- * with at most 15 roundings, which takes less than 2^-49 of it. In 2D: two monomials, rounded at
- * most 3 + 2 + 1 + 1 + 3 = 10 times, 21 u |u| T against 32.
- * (That of low, high, start and slope alone is no larger.)
+ * no more than what they choose from. The bound 2^-46 |u| |v| T = 128 u |u| |v| T is itself
+ * computed with at most 15 roundings, which takes less than 2^-49 of it. In 2D: two monomials,
+ * rounded at most 3 + 2 + 1 + 1 + 3 = 10 times, 21 u |u| T against 32. (That of low, high, start
+ * and slope alone is no larger.)
  *
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.
@@ -197,8 +197,7 @@ INLINE void set_side(const struct slabs_pair *pair, const struct kind kind, int 
 
 /* The differences of a tetrahedron's components take part in both indices alike, so that the pair
  * the other way round has the same bits. */
-INLINE void add_product_differences(const struct kind kind,
-                                    double value[SLABS_EDGES][SLABS_EDGES])
+INLINE void add_product_differences(const struct kind kind, double value[SLABS_EDGES][SLABS_EDGES])
 {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
@@ -300,8 +299,8 @@ INLINE void visit_edges(const struct kind kind, const struct side side[2],
         for (int j = 0; j < edge_count(kind.b); j++) {
             struct range of_a =
                 extent_at_edge(kind.a, i, a->other[0][j], a->other[1][j], a->other[2][j]);
-            struct range of_b = negative(
-                extent_at_edge(kind.b, j, b->other[0][i], b->other[1][i], b->other[2][i]));
+            struct range of_b =
+                negative(extent_at_edge(kind.b, j, b->other[0][i], b->other[1][i], b->other[2][i]));
             visit(visitor, context, i, SLABS_EDGE_OF_B + j, a->size[i] * b->size[j] * unit, of_a,
                   of_b, edges->start[i][j], kind.drifts ? edges->slope[i][j] : 0);
         }
@@ -396,8 +395,8 @@ INLINE void visit_plane_edges(const struct slabs_pair *pair, const struct kind k
 }
 
 INLINE void visit_plane_drift(const struct slabs_pair *pair, const struct kind kind,
-                              const struct plane_edges *a, const struct plane_edges *b,
-                              double unit, visit_slab visitor, void *context)
+                              const struct plane_edges *a, const struct plane_edges *b, double unit,
+                              visit_slab visitor, void *context)
 {
     visit(visitor, context, SLABS_DRIFT, 0, pair->drift_size * unit,
           extent_of_two(kind.a, -a->slope[0], -a->slope[1]),
@@ -448,18 +447,18 @@ INLINE void walk_space(const struct slabs_pair *pair, const struct kind kind, do
 INLINE void walk(const struct slabs_pair *pair, double unit, visit_slab visitor, walk_done done,
                  void *context)
 {
-#define WALK(function, shape_a, shape_b)                                                       \
-    if (pair->a->shape == (shape_a) && pair->b->shape == (shape_b)) {                          \
-        if (pair->motion.drifts)                                                                      \
-            function(pair, (struct kind){shape_a, shape_b, true}, unit, visitor, done, context); \
-        else                                                                                   \
+#define WALK(function, shape_a, shape_b)                                                          \
+    if (pair->a->shape == (shape_a) && pair->b->shape == (shape_b)) {                             \
+        if (pair->motion.drifts)                                                                  \
+            function(pair, (struct kind){shape_a, shape_b, true}, unit, visitor, done, context);  \
+        else                                                                                      \
             function(pair, (struct kind){shape_a, shape_b, false}, unit, visitor, done, context); \
-        return;                                                                                \
+        return;                                                                                   \
     }
-#define WALK_ALL(function)                              \
-    WALK(function, FMB_CUBOID, FMB_CUBOID)              \
-    WALK(function, FMB_CUBOID, FMB_TETRAHEDRON)         \
-    WALK(function, FMB_TETRAHEDRON, FMB_CUBOID)         \
+#define WALK_ALL(function)                      \
+    WALK(function, FMB_CUBOID, FMB_CUBOID)      \
+    WALK(function, FMB_CUBOID, FMB_TETRAHEDRON) \
+    WALK(function, FMB_TETRAHEDRON, FMB_CUBOID) \
     WALK(function, FMB_TETRAHEDRON, FMB_TETRAHEDRON)
     if (pair->a->dim == 2) {
         WALK_ALL(walk_plane)
@@ -470,9 +469,9 @@ INLINE void walk(const struct slabs_pair *pair, double unit, visit_slab visitor,
 #undef WALK
 }
 
-static double error_unit(const struct slabs_pair *pair)
+static double error_unit(const struct slabs_pair *pair, bool rounds)
 {
-    return (pair->a->dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING) * pair->reach;
+    return rounds ? (pair->a->dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING) * pair->reach : 0;
 }
 
 /* ---- What is made of them ---- */
@@ -482,12 +481,19 @@ struct verdict {
     double possibly; /* largest of gap + error: < 0 where all slabs surely overlap */
 };
 
+/* A zero normal says nothing. Since both frames are solid, it shows in that their extents along it
+ * are zero: certain where nothing rounds. */
 INLINE void judge(void *context, const struct slab_value *slab)
 {
     struct verdict *verdict = context;
     const double gap = slab_gap(slab);
+#ifndef SLABS_UNBOUNDED
+    const bool says_nothing = slab->error == 0 && slab->low == slab->high;
     verdict->surely = greatest(gap - slab->error, verdict->surely);
-    verdict->possibly = greatest(gap + slab->error, verdict->possibly);
+    verdict->possibly = greatest(says_nothing ? -INFINITY : gap + slab->error, verdict->possibly);
+#else /* for the benchmark: what the bounds cost */
+    verdict->surely = verdict->possibly = greatest(gap, verdict->possibly);
+#endif
 }
 
 INLINE bool surely_separated(const void *context)
@@ -513,12 +519,12 @@ static bool extents_separate(const struct slabs_pair *pair)
     return gap > error;
 }
 
-enum slabs_outcome slabs_filter(const struct slabs_pair *pair)
+enum slabs_outcome slabs_filter(const struct slabs_pair *pair, bool rounds)
 {
     if (extents_separate(pair))
         return SLABS_SEPARATED;
     struct verdict verdict = {-1, -INFINITY};
-    walk(pair, error_unit(pair), judge, surely_separated, &verdict);
+    walk(pair, error_unit(pair, rounds), judge, surely_separated, &verdict);
     if (verdict.surely > 0)
         return SLABS_SEPARATED;
     return verdict.possibly < 0 ? SLABS_OVERLAPPING : SLABS_UNSURE;
@@ -543,7 +549,7 @@ INLINE bool never(const void *context)
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX])
 {
     struct list list = {out};
-    walk(pair, rounds ? error_unit(pair) : 0, append, never, &list);
+    walk(pair, error_unit(pair, rounds), append, never, &list);
     return (int) (list.next - out);
 }
 

@@ -73,13 +73,13 @@ static inline double slab_gap(const struct slab_value *slab)
 
 enum slabs_outcome { SLABS_SEPARATED, SLABS_OVERLAPPING, SLABS_UNSURE };
 
-/* The filter. */
-enum slabs_outcome slabs_filter(const struct slabs_pair *pair);
+/* The filter. rounds: whether an operation on these numbers may round; else every error is 0, and
+ * unsure means touching. */
+enum slabs_outcome slabs_filter(const struct slabs_pair *pair, bool rounds);
 
 enum { SLABS_MAX = 56 }; /* two tetrahedra, moving: 4 + 4 + 36 + 12 */
 
-/* All slabs of the pair; returns how many. rounds: whether an operation on these numbers may
- * round; else every error is 0. */
+/* All slabs of the pair; returns how many. */
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
 
 /* The same slab again, with a bound on its error made for it alone, if that is smaller. */
