@@ -30,7 +30,8 @@ static const char usage[] =
     "                   scene alone; a verdict that it does not show counts as not decided\n"
     "  --svg FILE       draw the scenes into FILE, with the boxes, which the answers then have\n"
     "                   too\n"
-    "  --method NAME    how to decide: exact (the default), or fmb or sat, which are\n"
+    "  --method NAME    how to decide: certified (the default: never wrong, and fast); exact\n"
+    "                   (boxes and intervals to the last bit); or fmb or sat, which are\n"
     "                   inexact and there to be compared\n"
     "  --timeout SECONDS    wait so long before a query is sent again (0.5)\n"
     "  --retries N          send it again so often before giving up (5)\n" ARGS_COMMON_USAGE

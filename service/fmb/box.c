@@ -63,18 +63,17 @@ struct segment {
     const double *path;            /* to - from, rounded */
 };
 
-/* from + s path: a vertex where the segment is not cut; exact where nothing rounds, and it is found
- * that this did not either. */
+/* from + s path: a vertex where the segment is not cut. Where nothing rounds, from and path are
+ * exact. */
 static struct range point_at(const struct boxing *boxing, const struct part *part,
                              const struct segment *segment, double s, int axis)
 {
     const struct range from = segment->from[axis];
-    const double way = s * segment->path[axis], x = from.low + way;
     if (s == 0 || s == 1)
         return s == 0 ? from : segment->to[axis];
-    if (!boxing->rounds && fma(s, segment->path[axis], -way) == 0 &&
-        range_sum_error(from.low, way, x) == 0)
-        return range_of(x);
+    if (!boxing->rounds)
+        return range_sum(from, range_product(s, segment->path[axis]));
+    const double x = from.low + s * segment->path[axis];
     return (struct range){x - part->slack[axis], x + part->slack[axis]};
 }
 
@@ -324,16 +323,18 @@ static bool include_crossings(struct boxing *boxing)
 
 /* ---- All of it ---- */
 
-/* Frames that do not drift have the same displacement, and their intersection moves by it. */
+/* Frames that do not drift have the same displacement, and their intersection moves by it. The
+ * union holds the place where it starts too: an end only moves outward. */
 static void sweep(struct boxing *boxing)
 {
     const struct part *part = boxing->part;
     for (int axis = 0; axis < part->dim; axis++) {
-        const double way = part->displacement[axis];
-        const int end = way > 0;
-        const struct range moved = range_sum(range_of(boxing->outer[end][axis]), part->way[axis]);
-        boxing->outer[end][axis] = end ? moved.high : moved.low;
-        boxing->inner[end][axis] += way;
+        const struct range low = range_sum(range_of(boxing->outer[0][axis]), part->way[axis]);
+        const struct range high = range_sum(range_of(boxing->outer[1][axis]), part->way[axis]);
+        boxing->outer[0][axis] = range_least(boxing->outer[0][axis], low.low);
+        boxing->outer[1][axis] = range_greatest(boxing->outer[1][axis], high.high);
+        boxing->inner[0][axis] += fmin(part->displacement[axis], 0);
+        boxing->inner[1][axis] += fmax(part->displacement[axis], 0);
     }
 }
 

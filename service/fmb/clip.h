@@ -17,23 +17,24 @@ struct clip {
     double low, high;
 };
 
-/* With q = x / y rounded, 0 <= q <= 2: a number of [0,2] that is not larger (not smaller) than
- * the true quotient. Unless the remainder says that q is exact, it is moved by 2^-51 q, more than
- * twice its error even after it is rounded again; quotients below 2^-900, where
- * underflow might tell, become 0 (2^-899). rounds = false: the remainder is worth asking. */
+/* With q = x / y rounded, 0 <= q <= 2: a number that is not larger (not smaller) than the true
+ * quotient. It is moved by 2^-51 q, more than twice its error even after that is rounded again;
+ * quotients below 2^-900, where underflow might tell, become 0 (2^-899). Where x and y are exact
+ * (rounds = false) it is worth asking the remainder q y - x, a double itself, on which side q lies:
+ * what is exact stays so. */
 static inline double quotient_below(double x, double y, bool rounds)
 {
     const double q = x / y;
-    if (!rounds && fma(q, y, -x) == 0)
-        return q;
+    if (!rounds && q >= 0x1p-100)
+        return fma(q, y, -x) > 0 ? nextafter(q, 0) : q;
     return q < 0x1p-900 ? 0 : q - q * 0x1p-51;
 }
 
 static inline double quotient_above(double x, double y, bool rounds)
 {
     const double q = x / y;
-    if (!rounds && fma(q, y, -x) == 0)
-        return q;
+    if (!rounds && (q == 0 || q >= 0x1p-100))
+        return fma(q, y, -x) < 0 ? nextafter(q, 3) : q;
     return q < 0x1p-900 ? 0x1p-899 : q + q * 0x1p-51;
 }
 

@@ -33,19 +33,21 @@ static void cut(struct times *times, const struct slab_value *slab, bool rounds)
     clip_both(&times->outer, &times->inner, &below, rounds);
 }
 
-/* Seconds of a tau in [0,1]: at most one double beyond tau T. */
-static double seconds_below(double tau, double duration, bool rounds)
+/* Whether a product is found to be no larger (side 0) or no smaller (side 1) than x y; its error
+ * is a double where the product is not tiny. */
+static bool on_side(double x, double y, double product, int side)
 {
-    const double time = tau * duration;
-    const bool exact = tau == 0 || tau == 1 || (!rounds && fma(tau, duration, -time) == 0);
-    return exact ? time + 0.0 : nextafter(time, 0) + 0.0;
+    const double error = fma(x, y, -product);
+    return product >= 0x1p-900 && (side ? error <= 0 : error >= 0);
 }
 
-static double seconds_above(double tau, double duration, bool rounds)
+/* Seconds of a tau in [0,1], on the outer side: the tightest, or the double next to it. */
+static double seconds(double tau, double duration, int side)
 {
     const double time = tau * duration;
-    const bool exact = tau == 0 || tau == 1 || (!rounds && fma(tau, duration, -time) == 0);
-    return fmin(exact ? time : nextafter(time, INFINITY), duration) + 0.0;
+    if (tau == 0 || tau == 1 || on_side(tau, duration, time, side))
+        return time + 0.0;
+    return side ? fmin(nextafter(time, INFINITY), duration) : nextafter(time, 0) + 0.0;
 }
 
 /* ---- Exact ends ---- */
@@ -147,8 +149,8 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, boo
         refine(slabs, slab, count, &times);
         cut_all(slab, count, rounds, &times);
     }
-    contact[0] = seconds_below(times.outer.low, pair->duration, rounds);
-    contact[1] = seconds_above(times.outer.high, pair->duration, rounds);
+    contact[0] = seconds(times.outer.low, pair->duration, 0);
+    contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))
         return true;
     if (!limbs_prepare(pair, span, &limbs))

@@ -29,9 +29,10 @@
  * Link with -lfmb -lgmp -lm (pkg-config fmb).
  *
  * All functions are reentrant and keep nothing between calls. No input is written to.
- * Memory is allocated by the exact method, and by fmb_body_make() for a body that is nearly
- * flat: through GMP, which ends the process if there is none; it is freed before they return.
- * The stack holds up to 100 kB at a time.
+ * Memory is allocated where exact arithmetic is needed (by the exact method, by the certified one
+ * for the few pairs that need it, by certificates), and by fmb_body_make() for a body that is
+ * nearly flat: through GMP, which ends the process if there is none; it is freed before they
+ * return. The stack holds up to 100 kB at a time.
  *
  * The answers are the same bits on every machine with 64-bit longs whose doubles are IEEE 754
  * binary64, rounded to nearest; the library is compiled without contraction. The caller must
@@ -146,8 +147,12 @@ enum fmb_want { FMB_WANT_BOX = 1 };
 /* The answer. The box is that of the intersection, in world coordinates; of a moving pair, of the
  * union of its intersections over the window.
  *
- * Intervals and boxes of the exact method are the smallest of doubles that contain the exact
- * ones: no end is farther off than the next double. An end of a box beyond the largest double is
+ * Intervals and boxes of the methods certified and exact contain the exact ones. Those of exact are
+ * the smallest of doubles that do: no end is farther off than the next double. Those of certified
+ * are as tight wherever nothing rounds on the way, as in scenes made of small whole numbers, halves
+ * and quarters; else an end of an interval is at most 1e-12 T too far out, and one of a box 1e-12
+ * of the largest magnitude of a coordinate of any vertex of either frame over the window. Both are
+ * the same bits for the pair the other way round. An end of a box beyond the largest double is
  * infinite, with its sign. No number is -0. Those of fmb and sat are rounded as they come. */
 struct fmb_answer {
     enum fmb_verdict verdict;
@@ -169,13 +174,15 @@ struct fmb_method {
                               struct fmb_answer *answer);
 };
 
-/*   exact  right for every finite input, flat frames included (GMP)
- *   fmb    the article's elimination in doubles: verdict, interval, the article's loose box
- *   sat    the separating axis theorem in doubles: verdict and interval, no box
- * fmb and sat are inexact and cannot decide flat frames.
+/*   certified  the default: never wrong. Doubles with bounds on their errors decide nearly all
+ * pairs, exact arithmetic those that are too close for doubles, and flat frames exact      never
+ * wrong either, and all of it in exact arithmetic (GMP) fmb        the article's elimination in
+ * doubles: verdict, interval, the article's loose box sat        the separating axis theorem in
+ * doubles: verdict and interval, no box fmb and sat are inexact and cannot decide flat frames.
  *
  * exact takes microseconds for numbers of like size, and a bounded time for any (exact.c says
- * which): milliseconds where the exponents go from one end of the doubles to the other. */
+ * which): milliseconds where the exponents go from one end of the doubles to the other. That bounds
+ * the time of certified too. */
 const struct fmb_method *fmb_method_default(void);
 const struct fmb_method *fmb_method_at(size_t index);          /* NULL past the last */
 const struct fmb_method *fmb_method_by_name(const char *name); /* NULL: none of that name */

@@ -490,7 +490,7 @@ Try 'fmb $1 --help'."
     wrong "option '--svg' needs a value" query --svg
     wrong "option '-l' needs a value" watch -l
     wrong "option '--json=1' takes no value" status --json=1
-    wrong "--method: there are exact, fmb and sat, not 'best'" query --method best
+    wrong "--method: there are certified, exact, fmb and sat, not 'best'" query --method best
     wrong "--timeout: expected a number from 0.001 to 3600, found '1s'" query --timeout 1s
     wrong "--timeout: expected a number from 0.001 to 3600, found 'nan'" query --timeout nan
     wrong "--timeout: expected a number from 0.001 to 3600, found ''" status --timeout ''
