@@ -3,7 +3,8 @@
 #   make deps demo          installs what building needs, then lets the service answer a scene
 #   make deps-test test     installs what the tests need, then runs them
 #
-# Others: all, tests (builds them), test-fast, headers, format, format-check, install, clean.
+# Others: all, tests (builds them), test-fast, validate, accuracy, bench, headers, format,
+# format-check, install, clean.
 # MODE=release|debug|asan.
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
@@ -55,7 +56,7 @@ client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard 
 
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
-test_programs := $(B)/poke
+test_programs := $(B)/poke $(B)/validate $(B)/accuracy $(B)/accuracy-planted
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(demo_programs)
@@ -124,6 +125,8 @@ unit_tests := $(unit_names:%=$(B)/tests/%)
 hostile_objects := $(O)/tests/hostile/hostile.o
 oracle_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/oracle/*.c))
 engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(unit_names))
+# Those that see inside of it.
+internal_tests := test_bounds test_limbs test_outward
 
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
@@ -134,9 +137,22 @@ $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objec
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
-$(filter-out $(engine_tests:%=$(B)/tests/%),$(unit_tests)): $(B)/tests/%: $(O)/tests/unit/%.o \
-		$(hostile_objects) $(server_objects) $(client_objects) $(bus_objects) $(message_objects) \
-		$(B)/libfmb.a
+# slabs.c is there three times: as it is, with fused operations, with a bound that is wrong.
+$(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/slab_truth.o \
+		$(O)/slabs/fused.o $(O)/slabs/planted.o $(oracle_objects) $(lib_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
+
+slabs_names := slabs_prepare slabs_filter slabs_list slabs_refine slab_inequalities
+slabs_fused := -ffp-contract=fast $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),-mfma)
+slabs_planted := -DSLABS_ROUNDING=0x1p-54
+$(O)/slabs/fused.o $(O)/slabs/planted.o: $(O)/slabs/%.o: service/fmb/slabs.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) $(slabs_$*) $(foreach f,$(slabs_names),-D$f=$*_$f)
+
+$(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests)),$(unit_tests)): \
+		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
+		$(client_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
 
@@ -150,8 +166,8 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests)),-Itests/oracle,\
-		-Iservice -Iclients -Itests/hostile -I$(GEN))
+	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth),\
+		-Itests/oracle,-Iservice -Iclients -Itests/hostile -I$(GEN))
 
 .PHONY: tests test test-fast check
 tests: all $(test_programs) $(unit_tests)
@@ -169,14 +185,66 @@ test check:
 test-fast:
 	FMB_FAST=1 tests/run.sh
 
+# ---- Campaigns: long tests of the engine, whose names they see all ---------------------------
+
+campaign_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/accuracy.c %/validate.c,\
+	$(wildcard tests/campaign/*.c))) $(filter-out %/referee.o,$(oracle_objects))
+
+$(B)/validate $(B)/accuracy: $(B)/%: $(O)/tests/campaign/%.o $(campaign_objects) $(lib_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -pthread -o $@ $^ -lgmp -lm
+
+# With a bound on rounding that is wrong, which the campaign must find.
+$(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_objects) \
+		$(lib_objects:%/slabs.o=$(O)/planted/slabs.o)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -pthread -o $@ $^ -lgmp -lm
+
+# Sanitizers would take long for what another object of theirs has seen.
+$(O)/planted/slabs.o: service/fmb/slabs.c $(O)/settings
+	@mkdir -p $(@D)
+	$(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DSLABS_ROUNDING=0x1p-70
+
+$(O)/tests/campaign/%.o: tests/campaign/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -pthread -Iservice/fmb -Itests/oracle
+
+# validate: minutes; accuracy: most of an hour, on two cores.
+.PHONY: validate accuracy
+validate: $(B)/validate
+	$<
+
+accuracy: $(B)/accuracy
+	$< --json $<.json
+
+# ---- Benchmark -------------------------------------------------------------------------------
+
+bench_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/bench/*.c))
+
+$(B)/bench: $(bench_objects) $(campaign_objects) $(lib_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -pthread -o $@ $^ -lgmp -lm
+
+$(O)/tests/bench/%.o: tests/bench/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Iservice/fmb -Itests/oracle -Itests/campaign
+
+.PHONY: bench
+bench: $(B)/bench
+	$<
+
+# ---- Headers, format -------------------------------------------------------------------------
+
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
-headers := $(wildcard service/fmb/*.h service/*.h clients/*.h tests/oracle/*.h tests/hostile/*.h)
+headers := $(wildcard service/fmb/*.h service/*.h clients/*.h tests/oracle/*.h tests/hostile/*.h \
+	tests/campaign/*.h tests/bench/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(CC) $(flags) -Iservice -Iservice/fmb -Iclients -I$(GEN) -fsyntax-only -x c $<
+	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/%,$<),-Itests/oracle -Itests/campaign) \
+		-Iservice -Iservice/fmb -Iclients -I$(GEN) -fsyntax-only -x c $<
 	@touch $@
 
 .PHONY: format format-check

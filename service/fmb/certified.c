@@ -28,6 +28,13 @@ static enum fmb_verdict verdict_of_sign(int sign)
     return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }
 
+/* Whether c + tau g > 0 surely holds at some time. */
+static bool surely_holds(const struct inequality *x)
+{
+    const double c = x->c - x->c_error;
+    return c > 0 || c + (x->g - x->g_error) > 0;
+}
+
 /* The slabs that doubles leave open, each looked at again alone if asked to; returns how many.
  * *separated: one of them separates, and the rest was not looked at. */
 static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_normal out[SLABS_MAX],
@@ -38,13 +45,14 @@ static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_no
     int open = 0;
     *separated = false;
     for (int i = 0; i < count && !*separated; i++) {
+        struct inequality side[2];
         if (slab_gap(&slab[i]) < -slab[i].error)
             continue;
+        slab_inequalities(&slab[i], side);
         if (refine)
-            slabs_refine(pair, &slab[i]);
-        const double gap = slab_gap(&slab[i]);
-        *separated = gap > slab[i].error;
-        if (gap >= -slab[i].error)
+            slabs_refine(pair, slab[i].normal, side);
+        *separated = never_holds(&side[0]) || never_holds(&side[1]);
+        if (!surely_holds(&side[0]) || !surely_holds(&side[1]))
             out[open++] = slab[i].normal;
     }
     return open;
@@ -97,14 +105,27 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     return answer.verdict;
 }
 
+/* Components of few bits, as people write them: it is likely that nothing rounds, and then to be
+ * known before the filter is asked in vain. */
+static bool is_plain(const struct fmb_body *body)
+{
+    return body->bits[1] - body->bits[0] <= 24;
+}
+
 /* On input: a pair that is prepared. */
 static enum fmb_verdict verdict_of(struct certified *certified)
 {
+    const struct slabs_pair *slabs = &certified->slabs;
     certified->path = CERTIFIED_FILTER;
-    const enum slabs_outcome outcome = slabs_filter(&certified->slabs, true);
-    if (outcome != SLABS_UNSURE)
-        return verdict_of_outcome(outcome);
-    return verdict_of_unsure(certified);
+    if (is_plain(slabs->a) && is_plain(slabs->b)) {
+        find_span(certified);
+        if (!certified->rounds) {
+            certified->path = CERTIFIED_UNROUNDED;
+            return verdict_of_outcome(slabs_filter(slabs, false));
+        }
+    }
+    const enum slabs_outcome outcome = slabs_filter(slabs, true);
+    return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
 }
 
 /* A pair that does not drift is in contact over the whole window. False: ask the exact method. */

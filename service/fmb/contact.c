@@ -22,15 +22,10 @@ struct times {
     struct clip outer, inner; /* of tau */
 };
 
-/* Both inequalities of a slab. */
-static void cut(struct times *times, const struct slab_value *slab, bool rounds)
+static void cut(struct times *times, const struct inequality side[2], bool rounds)
 {
-    const struct inequality above = {slab->start - slab->low, slab->slope, slab->error,
-                                     slab->error};
-    const struct inequality below = {slab->high - slab->start, -slab->slope, slab->error,
-                                     slab->error};
-    clip_both(&times->outer, &times->inner, &above, rounds);
-    clip_both(&times->outer, &times->inner, &below, rounds);
+    clip_both(&times->outer, &times->inner, &side[0], rounds);
+    clip_both(&times->outer, &times->inner, &side[1], rounds);
 }
 
 /* Whether a product is found to be no larger (side 0) or no smaller (side 1) than x y; its error
@@ -89,19 +84,38 @@ static double exact_time(struct exact_end *end, int side, double duration)
                                end->scratch);
 }
 
-/* Whether the end of a slab might be beyond the one that surely holds for all. */
-static bool contends(const struct slab_value *slab, const struct times *times, int side)
+/* Whether the end of a slab might be beyond the one that surely holds for all, by more than may be
+ * neglected. */
+static bool contends(const struct inequality slab[2], const struct times *times, int end)
 {
     struct times own = {{0, 1}, {0, 1}};
     cut(&own, slab, true);
-    return side ? own.inner.high < times->outer.high : own.inner.low > times->outer.low;
+    return end ? own.inner.high < times->outer.high - limit
+               : own.inner.low > times->outer.low + limit;
 }
 
-static void cut_all(const struct slab_value *slab, int count, bool rounds, struct times *times)
+/* The slabs of a pair. */
+struct slabs {
+    int count;
+    struct slab_normal normal[SLABS_MAX];
+    struct inequality side[SLABS_MAX][2];
+};
+
+static void set_slabs(const struct slabs_pair *pair, bool rounds, struct slabs *out)
+{
+    struct slab_value slab[SLABS_MAX];
+    out->count = slabs_list(pair, rounds, slab);
+    for (int i = 0; i < out->count; i++) {
+        out->normal[i] = slab[i].normal;
+        slab_inequalities(&slab[i], out->side[i]);
+    }
+}
+
+static void cut_all(const struct slabs *slabs, bool rounds, struct times *times)
 {
     *times = (struct times){{0, 1}, {0, 1}};
-    for (int i = 0; i < count; i++)
-        cut(times, &slab[i], rounds);
+    for (int i = 0; i < slabs->count; i++)
+        cut(times, slabs->side[i], rounds);
 }
 
 static bool good_end(const struct times *times, int side)
@@ -111,43 +125,43 @@ static bool good_end(const struct times *times, int side)
 }
 
 /* Looks again, alone, at those slabs on which an end that is not good depends. */
-static void refine(const struct slabs_pair *slabs, struct slab_value *slab, int count,
-                   const struct times *times)
+static void refine(const struct slabs_pair *pair, const struct times *times, struct slabs *slabs)
 {
     const bool open[2] = {!good_end(times, 0), !good_end(times, 1)};
-    for (int i = 0; i < count; i++)
-        if ((open[0] && contends(&slab[i], times, 0)) || (open[1] && contends(&slab[i], times, 1)))
-            slabs_refine(slabs, &slab[i]);
+    for (int i = 0; i < slabs->count; i++)
+        if ((open[0] && contends(slabs->side[i], times, 0)) ||
+            (open[1] && contends(slabs->side[i], times, 1)))
+            slabs_refine(pair, slabs->normal[i], slabs->side[i]);
 }
 
 /* Moves an end to the exact time of each slab that might be beyond it. */
-static void settle(const struct slab_value *slab, int count, const struct limbs_pair *limbs,
-                   const struct times *times, int side, double duration, double *time)
+static void settle(const struct slabs *slabs, const struct limbs_pair *limbs,
+                   const struct times *times, int end, double duration, double *time)
 {
-    struct exact_end end;
-    exact_end_each(&end, mpz_init);
-    for (int i = 0; i < count; i++) {
-        if (!contends(&slab[i], times, side))
+    struct exact_end exact;
+    exact_end_each(&exact, mpz_init);
+    for (int i = 0; i < slabs->count; i++) {
+        if (!contends(slabs->side[i], times, end))
             continue;
-        limbs_slab(limbs, slab[i].normal, end.low, end.high, end.start, end.slope);
-        const double exact = exact_time(&end, side, duration);
-        if (side ? exact < *time : exact > *time)
-            *time = exact;
+        limbs_slab(limbs, slabs->normal[i], exact.low, exact.high, exact.start, exact.slope);
+        const double of_slab = exact_time(&exact, end, duration);
+        if (end ? of_slab < *time : of_slab > *time)
+            *time = of_slab;
     }
-    exact_end_each(&end, mpz_clear);
+    exact_end_each(&exact, mpz_clear);
 }
 
-bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
+bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
                 struct dyadic_span span, double contact[2])
 {
-    struct slab_value slab[SLABS_MAX];
-    const int count = slabs_list(slabs, rounds, slab);
+    struct slabs slabs;
     struct times times;
     struct limbs_pair limbs;
-    cut_all(slab, count, rounds, &times);
+    set_slabs(slabs_pair, rounds, &slabs);
+    cut_all(&slabs, rounds, &times);
     if (rounds && (!good_end(&times, 0) || !good_end(&times, 1))) {
-        refine(slabs, slab, count, &times);
-        cut_all(slab, count, rounds, &times);
+        refine(slabs_pair, &times, &slabs);
+        cut_all(&slabs, rounds, &times);
     }
     contact[0] = seconds(times.outer.low, pair->duration, 0);
     contact[1] = seconds(times.outer.high, pair->duration, 1);
@@ -155,8 +169,8 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, boo
         return true;
     if (!limbs_prepare(pair, span, &limbs))
         return false;
-    for (int side = 0; side < 2; side++)
-        if (!good_end(&times, side))
-            settle(slab, count, &limbs, &times, side, pair->duration, &contact[side]);
+    for (int end = 0; end < 2; end++)
+        if (!good_end(&times, end))
+            settle(&slabs, &limbs, &times, end, pair->duration, &contact[end]);
     return true;
 }

@@ -32,7 +32,7 @@ INLINE bool is_zero(const int n, const uint64_t *x)
 INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 {
     uint64_t carry = 0;
-#pragma GCC unroll 12
+#pragma GCC unroll 6
     for (int i = 0; i < n; i++) {
         two_limbs sum = (two_limbs) x[i] + y[i] + carry;
         x[i] = (uint64_t) sum;
@@ -43,7 +43,7 @@ INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 {
     uint64_t borrow = 0;
-#pragma GCC unroll 12
+#pragma GCC unroll 6
     for (int i = 0; i < n; i++) {
         two_limbs difference = (two_limbs) x[i] - y[i] - borrow;
         x[i] = (uint64_t) difference;
@@ -51,16 +51,15 @@ INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
     }
 }
 
-/* out := x y, of nx + ny limbs. As unsigned numbers, x is 2^(64 nx) more than it means where it is
- * negative, and so the product y 2^(64 nx) too much; y likewise. */
-INLINE void multiply(const int nx, const uint64_t *x, const int ny, const uint64_t *y,
-                     uint64_t *out)
+/* out := x y as unsigned numbers, of nx + ny limbs. */
+INLINE void multiply_limbs(const int nx, const uint64_t *x, const int ny, const uint64_t *y,
+                           uint64_t *out)
 {
     memset(out, 0, (size_t) (nx + ny) * sizeof *out);
-#pragma GCC unroll 4
+#pragma GCC unroll 2
     for (int j = 0; j < ny; j++) {
         uint64_t carry = 0;
-#pragma GCC unroll 8
+#pragma GCC unroll 4
         for (int i = 0; i < nx; i++) {
             two_limbs sum = (two_limbs) x[i] * y[j] + out[i + j] + carry;
             out[i + j] = (uint64_t) sum;
@@ -68,6 +67,18 @@ INLINE void multiply(const int nx, const uint64_t *x, const int ny, const uint64
         }
         out[nx + j] = carry;
     }
+}
+
+/* out := x y, of nx + ny limbs. As an unsigned number, x is 2^(64 nx) more than it means where it
+ * is negative, and so the product y 2^(64 nx) too much; y likewise. */
+INLINE void multiply(const int nx, const uint64_t *x, const int ny, const uint64_t *y,
+                     uint64_t *out)
+{
+    if (is_zero(nx, x) || is_zero(ny, y)) { /* often, where boxes lie along the axes */
+        memset(out, 0, (size_t) (nx + ny) * sizeof *out);
+        return;
+    }
+    multiply_limbs(nx, x, ny, y, out);
     if (is_negative(nx, x))
         subtract(ny, out + nx, y);
     if (is_negative(ny, y))
@@ -76,8 +87,7 @@ INLINE void multiply(const int nx, const uint64_t *x, const int ny, const uint64
 
 enum { NORMAL_MAX = 2 * LIMBS_MAX, VALUE_MAX = 3 * LIMBS_MAX };
 
-/* out := normal . w. Axes in which either is 0, as in every scene of boxes along the axes, cost
- * next to nothing. */
+/* out := normal . w */
 INLINE void dot(const int n, uint64_t normal[FMB_DIM_MAX][NORMAL_MAX],
                 const limbs_length w[FMB_DIM_MAX], uint64_t out[VALUE_MAX])
 {
@@ -140,12 +150,12 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
 /* out := x y 2^-unit, of n limbs. */
 static void set_product(int n, limbs_length out, struct dyadic x, struct dyadic y, long unit)
 {
-    memset(out, 0, sizeof(limbs_length));
-    if (x.mantissa == 0 || y.mantissa == 0)
-        return;
     const __int128 product = (__int128) x.mantissa * y.mantissa;
-    const two_limbs magnitude = (two_limbs) (product < 0 ? -product : product);
     const long shift = x.exponent + y.exponent - unit;
+    memset(out, 0, (size_t) n * sizeof *out);
+    if (product == 0)
+        return;
+    const two_limbs magnitude = (two_limbs) (product < 0 ? -product : product);
     const int word = (int) (shift / 64), bit = (int) (shift % 64);
     const uint64_t part[3] = {(uint64_t) magnitude << bit, (uint64_t) (magnitude >> (64 - bit)),
                               bit ? (uint64_t) (magnitude >> 64) >> (64 - bit) : 0};
@@ -153,45 +163,66 @@ static void set_product(int n, limbs_length out, struct dyadic x, struct dyadic 
         out[word + i] = part[i];
     if (product < 0) {
         limbs_length negative = {0};
-        subtract(LIMBS_MAX, negative, out);
-        memcpy(out, negative, sizeof negative);
+        subtract(n, negative, out);
+        memcpy(out, negative, (size_t) n * sizeof *out);
+    }
+}
+
+struct unit {
+    long exponent;
+    double inverse; /* 2^-exponent, if lengths have one limb */
+};
+
+/* out := sign x 2^-unit, of n limbs. A number of one limb is below 2^61 units, and units of numbers
+ * in range are within 2^-261 and 2^200: the product is exact, and so is its conversion. */
+static void set_length(int n, limbs_length out, double x, int sign, struct unit unit)
+{
+    static const struct dyadic one[2] = {{-1, 0}, {1, 0}};
+    if (n == 1)
+        out[0] = (uint64_t) (int64_t) (sign * x * unit.inverse);
+    else
+        set_product(n, out, dyadic_of(x), one[sign > 0], unit.exponent);
+}
+
+/* What one frame brings to the pair: the first with sign -1, the second with +1. */
+static void add_frame(const struct fmb_frame *frame, int f, struct dyadic window, struct unit unit,
+                      struct limbs_pair *out)
+{
+    const int n = out->limbs, sign = f ? 1 : -1;
+    out->body[f] = frame->body;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const bool there = axis < frame->body->dim;
+        limbs_length term;
+        for (int i = 0; i < frame->body->count; i++)
+            set_length(n, out->component[f][i][axis], frame->body->component[i][axis], 1, unit);
+        set_length(n, term, there ? frame->origin[axis] : 0, sign, unit);
+        add(n, out->offset[axis], term);
+        if (!frame->moving || !there)
+            continue;
+        struct dyadic speed = dyadic_of(frame->velocity[axis]);
+        speed.mantissa *= sign;
+        set_product(n, term, speed, window, unit.exponent);
+        add(n, out->drift[axis], term);
     }
 }
 
 bool limbs_prepare(const struct fmb_pair *pair, struct dyadic_span span, struct limbs_pair *out)
 {
-    static const struct dyadic one = {1, 0}, minus_one = {-1, 0};
-    const struct fmb_frame *frames[2] = {&pair->a, &pair->b};
     const struct dyadic window = dyadic_of(pair->duration);
     const long bits = span.top - span.unit;
     if (bits > 64 * LIMBS_MAX - 3)
         return false;
-    out->limbs = bits <= 64 - 3 ? 1 : bits <= 128 - 3 ? 2 : 4;
-    memset(out->offset, 0, sizeof out->offset);
-    memset(out->drift, 0, sizeof out->drift);
-    memset(out->component, 0, sizeof out->component);
-    out->drifts = false;
-    for (int f = 0; f < 2; f++) {
-        const struct fmb_body *body = frames[f]->body;
-        limbs_length term;
-        out->body[f] = body;
-        for (int axis = 0; axis < body->dim; axis++) {
-            for (int i = 0; i < body->count; i++)
-                set_product(out->limbs, out->component[f][i][axis],
-                            dyadic_of(body->component[i][axis]), one, span.unit);
-            set_product(out->limbs, term, dyadic_of(frames[f]->origin[axis]), f ? one : minus_one,
-                        span.unit);
-            add(LIMBS_MAX, out->offset[axis], term);
-            if (!frames[f]->moving)
-                continue;
-            struct dyadic speed = dyadic_of(frames[f]->velocity[axis]);
-            speed.mantissa = f ? speed.mantissa : -speed.mantissa;
-            set_product(out->limbs, term, speed, window, span.unit);
-            add(LIMBS_MAX, out->drift[axis], term);
-        }
+    out->limbs = bits <= 64 - 3 ? 1 : bits <= 128 - 3 ? 2 : bits <= 256 - 3 ? 4 : 8;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        memset(out->offset[axis], 0, (size_t) out->limbs * sizeof *out->offset[axis]);
+        memset(out->drift[axis], 0, (size_t) out->limbs * sizeof *out->drift[axis]);
     }
+    const struct unit unit = {span.unit, out->limbs == 1 ? ldexp(1, (int) -span.unit) : 0};
+    add_frame(&pair->a, 0, window, unit, out);
+    add_frame(&pair->b, 1, window, unit, out);
+    out->drifts = false;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        out->drifts = out->drifts || !is_zero(LIMBS_MAX, out->drift[axis]);
+        out->drifts = out->drifts || !is_zero(out->limbs, out->drift[axis]);
     return true;
 }
 
@@ -201,31 +232,31 @@ struct value_range {
     uint64_t low[VALUE_MAX], high[VALUE_MAX];
 };
 
+typedef const limbs_length *limbs_vector; /* of FMB_DIM_MAX */
+
 /* Difference edges as slabs.h numbers them: with p, q, r cyclic, number 3 + r is c_q - c_p. */
-INLINE void set_edge(const int n, const struct limbs_pair *pair, int edge,
-                     limbs_length out[FMB_DIM_MAX])
+INLINE limbs_vector edge_of(const int n, const struct limbs_pair *pair, int edge,
+                            limbs_length scratch[FMB_DIM_MAX])
 {
-    if (edge == SLABS_DRIFT) {
-        memcpy(out, pair->drift, sizeof pair->drift);
-        return;
-    }
+    if (edge == SLABS_DRIFT)
+        return pair->drift;
     const int f = edge >= SLABS_EDGE_OF_B, e = f ? edge - SLABS_EDGE_OF_B : edge;
     const int dim = pair->body[f]->dim;
-    if (e < dim) {
-        memcpy(out, pair->component[f][e], sizeof pair->component[f][e]);
-        return;
-    }
+    if (e < dim)
+        return pair->component[f][e];
     const int p = dim == 2 ? 0 : (e + 1) % 3, q = dim == 2 ? 1 : (e + 2) % 3;
-    memcpy(out, pair->component[f][q], sizeof pair->component[f][q]);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        subtract(n, out[axis], pair->component[f][p][axis]);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        memcpy(scratch[axis], pair->component[f][q][axis], (size_t) n * sizeof *scratch[axis]);
+        subtract(n, scratch[axis], pair->component[f][p][axis]);
+    }
+    return (limbs_vector) scratch;
 }
 
-INLINE void set_plane_normal(const int n, limbs_length e[FMB_DIM_MAX],
-                             uint64_t normal[FMB_DIM_MAX][NORMAL_MAX])
+INLINE void set_plane_normal(const int n, limbs_vector e, uint64_t normal[FMB_DIM_MAX][NORMAL_MAX])
 {
     static const uint64_t zero[LIMBS_MAX], plus[LIMBS_MAX] = {1};
-    const uint64_t minus[LIMBS_MAX] = {~UINT64_C(0), ~UINT64_C(0), ~UINT64_C(0), ~UINT64_C(0)};
+    uint64_t minus[LIMBS_MAX];
+    memset(minus, 0xff, sizeof minus);
     multiply(n, e[1], n, minus, normal[0]);
     multiply(n, e[0], n, plus, normal[1]);
     multiply(n, zero, n, zero, normal[2]);
@@ -234,14 +265,14 @@ INLINE void set_plane_normal(const int n, limbs_length e[FMB_DIM_MAX],
 INLINE void set_normal(const int n, const struct limbs_pair *pair, struct slab_normal edges,
                        uint64_t normal[FMB_DIM_MAX][NORMAL_MAX])
 {
-    limbs_length u[FMB_DIM_MAX], v[FMB_DIM_MAX];
+    limbs_length scratch[2][FMB_DIM_MAX];
     uint64_t term[NORMAL_MAX];
-    set_edge(n, pair, edges.u, u);
+    const limbs_vector u = edge_of(n, pair, edges.u, scratch[0]);
     if (pair->body[0]->dim == 2) {
         set_plane_normal(n, u, normal);
         return;
     }
-    set_edge(n, pair, edges.v, v);
+    const limbs_vector v = edge_of(n, pair, edges.v, scratch[1]);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -259,22 +290,23 @@ INLINE bool less(const int n, const uint64_t *x, const uint64_t *y)
     return is_negative(n, difference);
 }
 
-INLINE struct value_range extent(const int n, const struct limbs_pair *pair, int f,
-                                 uint64_t normal[FMB_DIM_MAX][NORMAL_MAX])
+INLINE void set_extent(const int n, const struct limbs_pair *pair, int f,
+                       uint64_t normal[FMB_DIM_MAX][NORMAL_MAX], struct value_range *range)
 {
-    struct value_range range = {{0}, {0}};
+    const size_t size = (size_t) (3 * n) * sizeof *range->low;
     const struct fmb_body *body = pair->body[f];
+    memset(range->low, 0, size);
+    memset(range->high, 0, size);
     for (int i = 0; i < body->count; i++) {
         uint64_t at[VALUE_MAX];
         dot(n, normal, pair->component[f][i], at);
         if (body->shape == FMB_CUBOID)
-            add(3 * n, is_negative(3 * n, at) ? range.low : range.high, at);
-        else if (less(3 * n, at, range.low))
-            memcpy(range.low, at, (size_t) (3 * n) * sizeof *at);
-        else if (less(3 * n, range.high, at))
-            memcpy(range.high, at, (size_t) (3 * n) * sizeof *at);
+            add(3 * n, is_negative(3 * n, at) ? range->low : range->high, at);
+        else if (less(3 * n, at, range->low))
+            memcpy(range->low, at, size);
+        else if (less(3 * n, range->high, at))
+            memcpy(range->high, at, size);
     }
-    return range;
 }
 
 struct slab_limbs {
@@ -287,17 +319,19 @@ INLINE bool set_slab(const int n, const struct limbs_pair *pair, struct slab_nor
                      struct slab_limbs *out)
 {
     uint64_t normal[FMB_DIM_MAX][NORMAL_MAX];
+    struct value_range b;
     set_normal(n, pair, edges, normal);
     if (is_zero(2 * n, normal[0]) && is_zero(2 * n, normal[1]) && is_zero(2 * n, normal[2]))
         return false;
-    struct value_range b = extent(n, pair, 1, normal);
-    out->between = extent(n, pair, 0, normal);
+    set_extent(n, pair, 0, normal, &out->between);
+    set_extent(n, pair, 1, normal, &b);
     subtract(3 * n, out->between.low, b.high);
     subtract(3 * n, out->between.high, b.low);
     dot(n, normal, pair->offset, out->start);
-    memset(out->slope, 0, sizeof out->slope);
     if (pair->drifts)
         dot(n, normal, pair->drift, out->slope);
+    else
+        memset(out->slope, 0, (size_t) (3 * n) * sizeof *out->slope);
     return true;
 }
 
@@ -314,7 +348,7 @@ INLINE int gap_sign(const int n, const struct limbs_pair *pair, struct slab_norm
         return -1;
     uint64_t above[VALUE_MAX];
     uint64_t *below = slab.between.low;
-    memcpy(above, slab.start, sizeof above);
+    memcpy(above, slab.start, (size_t) (3 * n) * sizeof *above);
     add(3 * n, is_negative(3 * n, slab.slope) ? above : slab.start, slab.slope);
     subtract(3 * n, above, slab.between.high);
     subtract(3 * n, below, slab.start);
@@ -327,7 +361,8 @@ int limbs_gap_sign(const struct limbs_pair *pair, struct slab_normal normal)
     switch (pair->limbs) {
     case 1: return gap_sign(1, pair, normal);
     case 2: return gap_sign(2, pair, normal);
-    default: return gap_sign(4, pair, normal);
+    case 4: return gap_sign(4, pair, normal);
+    default: return gap_sign(8, pair, normal);
     }
 }
 
@@ -336,7 +371,7 @@ static void to_mpz(int n, uint64_t *x, mpz_t out)
     const bool negative = is_negative(n, x);
     uint64_t magnitude[VALUE_MAX] = {0};
     if (negative)
-        subtract(VALUE_MAX, magnitude, x);
+        subtract(n, magnitude, x);
     else
         memcpy(magnitude, x, (size_t) n * sizeof *x);
     mpz_import(out, (size_t) n, -1, sizeof *x, 0, 0, magnitude);
@@ -348,12 +383,15 @@ void limbs_slab(const struct limbs_pair *pair, struct slab_normal normal, mpz_t 
                 mpz_t start, mpz_t slope)
 {
     struct slab_limbs slab;
-    memset(&slab, 0, sizeof slab);
+    bool says_something = false;
     switch (pair->limbs) {
-    case 1: set_slab(1, pair, normal, &slab); break;
-    case 2: set_slab(2, pair, normal, &slab); break;
-    default: set_slab(4, pair, normal, &slab); break;
+    case 1: says_something = set_slab(1, pair, normal, &slab); break;
+    case 2: says_something = set_slab(2, pair, normal, &slab); break;
+    case 4: says_something = set_slab(4, pair, normal, &slab); break;
+    default: says_something = set_slab(8, pair, normal, &slab); break;
     }
+    if (!says_something)
+        memset(&slab, 0, sizeof slab);
     const int n = 3 * pair->limbs;
     to_mpz(n, slab.between.low, low);
     to_mpz(n, slab.between.high, high);

@@ -1,7 +1,7 @@
 /* Slabs in integers of fixed width: the step between doubles and GMP.
  *
  * A slab that the filter leaves open is asked again here, alone, in two's complement integers of
- * 1, 2 or 4 limbs of 64 bits for lengths, without an allocation. Nothing rounds. A pair whose
+ * 1, 2, 4 or 8 limbs of 64 bits for lengths, without an allocation. Nothing rounds. A pair whose
  * numbers need more bits than that is left to the exact method. */
 #ifndef FMB_LIMBS_H
 #define FMB_LIMBS_H
@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 
-enum { LIMBS_MAX = 4 };
+enum { LIMBS_MAX = 8 };
 
 /* A length: an integer times 2^unit of the pair, least significant limb first. Only the first
  * limbs of the pair are used. */

@@ -568,33 +568,70 @@ static struct weighed edge_of(const struct slabs_pair *pair, int number)
     return weighed_sum(&to, -1, &from);
 }
 
-static struct range extent_along(const struct fmb_body *body, const struct weighed *normal,
-                                 double *weight)
+/* A number known within error. */
+struct known {
+    double value, error;
+};
+
+static struct known known_dot(const struct weighed *normal, const double w[FMB_DIM_MAX])
 {
-    double at[FMB_DIM_MAX] = {0};
-    for (int i = 0; i < body->dim; i++) {
-        const struct weighed c = weigh(body->component[i]);
-        at[i] = weighed_dot(normal->at, c.at);
-        *weight += weighed_dot(normal->weight, c.weight);
-    }
-    return extent_of_three(body->shape, at[0], at[1], at[2]);
+    const struct weighed vector = weigh(w);
+    return (struct known){weighed_dot(normal->at, vector.at),
+                          weighed_error(weighed_dot(normal->weight, vector.weight))};
 }
 
-void slabs_refine(const struct slabs_pair *pair, struct slab_value *slab)
+static double middle_error(double low, double value, double high)
 {
-    const struct weighed u = edge_of(pair, slab->normal.u), v = edge_of(pair, slab->normal.v);
+    return greatest(value - low, high - value);
+}
+
+/* The largest of 0 and of all x (simplex), or the sum of those that are positive (cuboid), from
+ * sign x. A component that surely does not count brings no error. Subtractions and sums round by
+ * less than what weighed_error() leaves room for. */
+static struct known farthest(const struct fmb_body *body, const struct known x[FMB_DIM_MAX],
+                             double sign)
+{
+    double value = 0, low = 0, high = 0;
+    for (int i = 0; i < body->dim; i++) {
+        const double at = sign * x[i].value;
+        const double below = above_zero(at - x[i].error), above = above_zero(at + x[i].error);
+        if (body->shape == FMB_CUBOID) {
+            value += above_zero(at);
+            low += above > 0 ? below - above_zero(at) : 0;
+            high += above > 0 ? above - above_zero(at) : 0;
+        } else {
+            value = greatest(value, at);
+            low = greatest(low, below);
+            high = greatest(high, above);
+        }
+    }
+    return (struct known){
+        value, body->shape == FMB_CUBOID ? greatest(-low, high) : middle_error(low, value, high)};
+}
+
+void slab_inequalities(const struct slab_value *slab, struct inequality out[2])
+{
+    out[0] = (struct inequality){slab->start - slab->low, slab->slope, slab->error, slab->error};
+    out[1] = (struct inequality){slab->high - slab->start, -slab->slope, slab->error, slab->error};
+}
+
+/* Below: start - low, with low = -(farthest of A against the normal) - farthest of B along it. */
+void slabs_refine(const struct slabs_pair *pair, struct slab_normal edges, struct inequality out[2])
+{
+    const struct weighed u = edge_of(pair, edges.u), v = edge_of(pair, edges.v);
     const struct weighed normal = pair->a->dim == 2 ? weighed_turn(&u) : weighed_cross(&u, &v);
-    const struct weighed offset = weigh(pair->motion.offset), drift = weigh(pair->motion.drift);
-    double weight[3] = {weighed_dot(normal.weight, offset.weight) +
-                        weighed_dot(normal.weight, drift.weight)};
-    const struct range a = extent_along(pair->a, &normal, &weight[1]);
-    const struct range b = extent_along(pair->b, &normal, &weight[2]);
-    const double error = weighed_error(weight[0] + (weight[1] + weight[2]));
-    if (error >= slab->error)
-        return;
-    slab->low = a.low - b.high;
-    slab->high = a.high - b.low;
-    slab->start = weighed_dot(normal.at, offset.at);
-    slab->slope = weighed_dot(normal.at, drift.at);
-    slab->error = error;
+    const struct known start = known_dot(&normal, pair->motion.offset);
+    const struct known slope = known_dot(&normal, pair->motion.drift);
+    struct known a[FMB_DIM_MAX], b[FMB_DIM_MAX];
+    for (int i = 0; i < pair->a->dim; i++) {
+        a[i] = known_dot(&normal, pair->a->component[i]);
+        b[i] = known_dot(&normal, pair->b->component[i]);
+    }
+    for (int side = 0; side < 2; side++) {
+        const double sign = side ? -1 : 1;
+        const struct known of_a = farthest(pair->a, a, -sign), of_b = farthest(pair->b, b, sign);
+        out[side] =
+            (struct inequality){sign * start.value + (of_a.value + of_b.value), sign * slope.value,
+                                start.error + (of_a.error + of_b.error), slope.error};
+    }
 }

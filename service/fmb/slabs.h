@@ -21,6 +21,7 @@
 #ifndef FMB_SLABS_H
 #define FMB_SLABS_H
 
+#include "clip.h"
 #include "fmb.h"
 #include "relative.h"
 
@@ -82,7 +83,13 @@ enum { SLABS_MAX = 56 }; /* two tetrahedra, moving: 4 + 4 + 36 + 12 */
 /* All slabs of the pair; returns how many. */
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
 
-/* The same slab again, with a bound on its error made for it alone, if that is smaller. */
-void slabs_refine(const struct slabs_pair *pair, struct slab_value *slab);
+/* A slab as two inequalities of the time, tau in [0,1]: c + tau g >= 0 while the offset is not
+ * below it ([0]), and while it is not above it ([1]). */
+void slab_inequalities(const struct slab_value *slab, struct inequality out[2]);
+
+/* The same of one slab alone, with bounds made for each of its numbers: they cost more, and are
+ * small where the numbers are. */
+void slabs_refine(const struct slabs_pair *pair, struct slab_normal normal,
+                  struct inequality out[2]);
 
 #endif

@@ -403,9 +403,9 @@ static bool contact_agrees(const struct oracle_answer *truth, const struct fmb_p
     return good;
 }
 
+/* scale: the size of the pair. */
 static bool box_end_agrees(const char *name, double end, int sign, const mpq_t exact,
-                           const struct fmb_pair *pair, enum oracle_limit limit, char *why,
-                           size_t size)
+                           const mpq_t scale, enum oracle_limit limit, char *why, size_t size)
 {
     const int beyond = beyond_doubles(exact);
     if (beyond != 0)
@@ -415,15 +415,8 @@ static bool box_end_agrees(const char *name, double end, int sign, const mpq_t e
         return false;
     if (isinf(end))
         return wrong(why, size, "%s: infinite, and the true one is not", name);
-    if (is_tightest(end, sign, exact))
-        return true;
-
-    mpq_t scale;
-    mpq_init(scale);
-    size_of_pair(pair, scale);
-    bool close = limit == ORACLE_DESIGN && is_close(end, exact, scale);
-    mpq_clear(scale);
-    return close ||
+    return is_tightest(end, sign, exact) ||
+           (limit == ORACLE_DESIGN && is_close(end, exact, scale)) ||
            wrong(why, size, "%s: %a is too far out from %.17g", name, end, mpq_get_d(exact));
 }
 
@@ -434,19 +427,22 @@ static bool box_agrees(const struct oracle_answer *truth, const struct fmb_pair 
     static const char *const names[2][FMB_DIM_MAX] = {{"lower x", "lower y", "lower z"},
                                                       {"upper x", "upper y", "upper z"}};
     const int dim = pair->a.body->dim;
-    for (int e = 0; e < 2; e++)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+    mpq_t scale;
+    mpq_init(scale);
+    size_of_pair(pair, scale);
+    bool good = true;
+    for (int e = 0; e < 2 && good; e++)
+        for (int axis = 0; axis < FMB_DIM_MAX && good; axis++) {
             const double end = answer->box[e][axis];
             const char *name = names[e][axis];
-            if (axis < dim) {
-                if (!box_end_agrees(name, end, e == 0 ? -1 : +1, truth->box[e][axis], pair, limit,
-                                    why, size))
-                    return false;
-            } else if (end != 0 || signbit(end)) {
-                return wrong(why, size, "%s: %a, and there is no such axis", name, end);
-            }
+            if (axis < dim)
+                good = box_end_agrees(name, end, e == 0 ? -1 : +1, truth->box[e][axis], scale,
+                                      limit, why, size);
+            else if (end != 0 || signbit(end))
+                good = wrong(why, size, "%s: %a, and there is no such axis", name, end);
         }
-    return true;
+    mpq_clear(scale);
+    return good;
 }
 
 bool oracle_agrees(const struct oracle_answer *truth, const struct fmb_pair *pair,
@@ -485,4 +481,66 @@ bool oracle_check_tightest(const struct fmb_pair *pair, unsigned want,
                            const struct fmb_answer *answer, char *why, size_t size)
 {
     return check(pair, want, answer, ORACLE_TIGHTEST, why, size);
+}
+
+/* ---- How far off is an answer? ---- */
+
+/* (end - exact) / scale, rounded; 0/0 is 0. An end that is infinite is right where the true one is
+ * beyond the doubles. */
+static double relative_error(double end, const mpq_t exact, const mpq_t scale)
+{
+    const int beyond = beyond_doubles(exact);
+    if (beyond != 0)
+        return end == beyond * HUGE_VAL ? 0 : -beyond * HUGE_VAL;
+    if (isinf(end))
+        return end;
+    mpq_t error;
+    mpq_init(error);
+    mpq_set_d(error, end);
+    mpq_sub(error, error, exact);
+    double relative = mpq_sgn(error) == 0 ? 0 : mpq_sgn(error) * HUGE_VAL;
+    if (mpq_sgn(scale) != 0) {
+        mpq_div(error, error, scale);
+        relative = mpq_get_d(error);
+    }
+    mpq_clear(error);
+    return relative;
+}
+
+/* sign as for contains(). */
+static void measure_end(double end, int sign, const mpq_t exact, const mpq_t scale,
+                        struct oracle_excess *excess)
+{
+    excess->has = true;
+    if (isnan(end) || !contains(end, sign, exact))
+        excess->misses = true;
+    if (isnan(end)) {
+        excess->in = HUGE_VAL;
+        return;
+    }
+    double out = sign * relative_error(end, exact, scale);
+    excess->out = fmax(excess->out, out);
+    excess->in = fmax(excess->in, -out);
+}
+
+void oracle_measure(const struct oracle_answer *truth, const struct fmb_pair *pair,
+                    const struct fmb_answer *answer, struct oracle_excess *contact,
+                    struct oracle_excess *box)
+{
+    mpq_t scale;
+    mpq_init(scale);
+    *contact = *box = (struct oracle_excess){0};
+    if (truth->has_contact && answer->has_contact) {
+        mpq_set_d(scale, pair->duration);
+        for (int e = 0; e < 2; e++)
+            measure_end(answer->contact[e], e == 0 ? -1 : +1, truth->contact[e], scale, contact);
+    }
+    if (truth->has_box && answer->has_box) {
+        size_of_pair(pair, scale);
+        for (int e = 0; e < 2; e++)
+            for (int axis = 0; axis < pair->a.body->dim; axis++)
+                measure_end(answer->box[e][axis], e == 0 ? -1 : +1, truth->box[e][axis], scale,
+                            box);
+    }
+    mpq_clear(scale);
 }

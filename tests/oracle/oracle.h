@@ -54,4 +54,19 @@ bool oracle_check(const struct fmb_pair *pair, unsigned want, const struct fmb_a
 bool oracle_check_tightest(const struct fmb_pair *pair, unsigned want,
                            const struct fmb_answer *answer, char *why, size_t size);
 
+/* How far the interval and the box of an answer lie from the true ones: for statistics, of answers
+ * of any method. */
+struct oracle_excess {
+    bool has;    /* both the truth and the answer have one; the rest is 0 where not */
+    bool misses; /* does not contain the true one: some end is too far in, or not a number */
+    /* How far out its worst end is, and how far in; 0: none is. Relative to T, of an interval, and
+     * to the largest absolute coordinate of any vertex of either frame over the window, of a box.
+     * Rounded. Infinite where an end is and should not be, or the other way round. */
+    double out, in;
+};
+
+void oracle_measure(const struct oracle_answer *truth, const struct fmb_pair *pair,
+                    const struct fmb_answer *answer, struct oracle_excess *contact,
+                    struct oracle_excess *box);
+
 #endif

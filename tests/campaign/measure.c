@@ -1,0 +1,147 @@
+#include "measure.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Pairs of a batch: the methods are timed over all of them, one after the other, each asked once,
+ * so that no branch is predicted from having seen the pair before. */
+enum { BATCH = 250 };
+
+enum { IN_ORDER, SWAPPED, BOXLESS, ASKINGS };
+
+struct batch {
+    int count;
+    struct trial trial[BATCH];
+    struct reply reply[TRIAL_METHODS_MAX][ASKINGS][BATCH];
+};
+
+const char *measure_path_name(int path)
+{
+    static const char *const names[MEASURE_PATHS] = {[CERTIFIED_FILTER] = "filter",
+                                                     [CERTIFIED_UNROUNDED] = "unrounded",
+                                                     [CERTIFIED_REFINED] = "refined",
+                                                     [CERTIFIED_LIMBS] = "limbs",
+                                                     [CERTIFIED_EXACT] = "exact"};
+    return names[path];
+}
+
+/* Of the processor, spent by this thread: a machine that is busy otherwise does not count. */
+static double ns_spent(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e9 * (double) now.tv_sec + (double) now.tv_nsec;
+}
+
+/* Puts all pairs of the batch to a method. Returns nanoseconds a query. */
+static double ask_all(struct batch *batch, int method, int asking)
+{
+    static const unsigned wants[ASKINGS] = {FMB_WANT_BOX, FMB_WANT_BOX, 0};
+    const struct fmb_method *asked = fmb_method_at((size_t) method);
+    struct reply *reply = batch->reply[method][asking];
+    const double start = ns_spent();
+    for (int i = 0; i < batch->count; i++)
+        reply[i] = trial_ask(&batch->trial[i], asked, asking == SWAPPED, wants[asking]);
+    return (ns_spent() - start) / batch->count;
+}
+
+/* What a method that is never wrong must keep: it decides, its verdict is the true one in either
+ * order, its interval and box contain the true ones and are as tight as is promised, the verdict
+ * is the same without a box. */
+static void check_promises(struct tally *tally, const struct fmb_method *method,
+                           const struct oracle_answer *truth, const struct trial *trial,
+                           const struct reply *reply[ASKINGS])
+{
+    const enum oracle_limit limit =
+        strcmp(method->name, "exact") == 0 ? ORACLE_TIGHTEST : ORACLE_DESIGN;
+    char why[TALLY_WHY_MAX];
+    for (int order = 0; order < 2; order++)
+        if (reply[order]->status != FMB_OK)
+            tally_broken(tally, &trial->question, fmb_status_text(reply[order]->status));
+        else if (!oracle_agrees(truth, &trial->pair[order], &reply[order]->answer, limit, why,
+                                sizeof why))
+            tally_broken(tally, &trial->question, why);
+    if (!reply_same_verdict(reply[IN_ORDER], reply[BOXLESS]))
+        tally_broken(tally, &trial->question, "another verdict without the box");
+}
+
+static void judge_pair(struct measure *measure, const struct batch *batch, int i,
+                       struct oracle_answer *truth)
+{
+    const struct trial *trial = &batch->trial[i];
+    oracle_decide(&trial->pair[0], FMB_WANT_BOX, truth);
+    measure->pairs++;
+    measure->truth[truth->verdict]++;
+    measure->not_as_made +=
+        measure->family->verdict != 0 && (int) truth->verdict != measure->family->verdict;
+    measure->path[certified_verdict_path(&trial->pair[0])]++;
+    for (int m = 0; m < trial_methods(); m++) {
+        const struct fmb_method *method = fmb_method_at((size_t) m);
+        struct tally *tally = &measure->method[m].tally;
+        const struct reply *reply[ASKINGS] = {&batch->reply[m][IN_ORDER][i],
+                                              &batch->reply[m][SWAPPED][i],
+                                              &batch->reply[m][BOXLESS][i]};
+        for (int order = 0; order < 2; order++)
+            tally_reply(tally, truth, &trial->pair[order], reply[order]);
+        tally_orders(tally, reply[IN_ORDER], reply[SWAPPED]);
+        if (trial_never_wrong(method))
+            check_promises(tally, method, truth, trial, reply);
+    }
+}
+
+static int compare_doubles(const void *p, const void *q)
+{
+    const double x = *(const double *) p, y = *(const double *) q;
+    return (x > y) - (x < y);
+}
+
+static double median(double *value, size_t count)
+{
+    qsort(value, count, sizeof *value, compare_doubles);
+    return count ? value[count / 2] : 0;
+}
+
+static void *get_memory(size_t size)
+{
+    void *memory = calloc(1, size);
+    if (!memory) {
+        fprintf(stderr, "out of memory\n");
+        exit(EXIT_FAILURE);
+    }
+    return memory;
+}
+
+void measure_cell(struct measure *measure, long pairs, uint64_t seed)
+{
+    const size_t batches = (size_t) (pairs + BATCH - 1) / BATCH;
+    const int methods = trial_methods();
+    struct batch *batch = get_memory(sizeof *batch);
+    double *ns = get_memory(2 * TRIAL_METHODS_MAX * batches * sizeof *ns);
+    struct draw draw = cell_draw(seed, measure->family->name, &measure->cell, 0);
+    struct oracle_answer truth;
+    oracle_init(&truth);
+    for (size_t n = 0; n < batches; n++, pairs -= BATCH) {
+        batch->count = pairs < BATCH ? (int) pairs : BATCH;
+        for (int i = 0; i < batch->count; i++) {
+            struct question question;
+            family_draw(measure->family, &measure->cell, &draw, &question);
+            trial_begin(&question, &batch->trial[i]);
+        }
+        for (int m = 0; m < methods; m++) {
+            ns[(size_t) (2 * m) * batches + n] = ask_all(batch, m, BOXLESS);
+            ns[(size_t) (2 * m + 1) * batches + n] = ask_all(batch, m, IN_ORDER);
+            ask_all(batch, m, SWAPPED);
+        }
+        for (int i = 0; i < batch->count; i++)
+            judge_pair(measure, batch, i, &truth);
+    }
+    for (int m = 0; m < methods; m++) {
+        measure->method[m].ns_verdict = median(ns + (size_t) (2 * m) * batches, batches);
+        measure->method[m].ns_box = median(ns + (size_t) (2 * m + 1) * batches, batches);
+    }
+    oracle_clear(&truth);
+    free(ns);
+    free(batch);
+}

@@ -1,0 +1,32 @@
+/* What the accuracy campaign has found, as a table for people and as JSON. */
+#ifndef REPORT_H
+#define REPORT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "measure.h"
+#include "options.h"
+
+struct report {
+    const struct options *options;
+    const struct measure *measure; /* families one after the other */
+    size_t measures;
+};
+
+/* A line a family and method; or a cell and method, where the options ask for it. Then what each
+ * method that is never wrong did, and a reproducer of the first reply of it that was wrong in a
+ * cell, of some of these cells. */
+void report_print(const struct report *report, FILE *out);
+
+/* Everything, a cell and a method at a time. A number that is infinite is null. False if it could
+ * not be written; errno says why. */
+bool report_write_json(const struct report *report, const char *path);
+
+/* Replies that break what is promised by methods that are never wrong, and pairs that differ in
+ * their orders; and pairs that are not what their family made them for. */
+uint64_t report_broken(const struct report *report);
+uint64_t report_not_as_made(const struct report *report);
+
+#endif

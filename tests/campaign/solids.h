@@ -1,0 +1,25 @@
+/* Vectors, and the solids of a question: what drawing needs of them. */
+#ifndef SOLIDS_H
+#define SOLIDS_H
+
+#include "draw.h"
+#include "question.h"
+
+/* Vectors have FMB_DIM_MAX numbers, 0 beyond the dimension. */
+double vector_dot(const double *u, const double *v);
+void vector_cross(const double *u, const double *v, double *out);
+void vector_add(double *to, double times, const double *vector);
+double vector_length(const double *vector);
+void vector_draw_integers(struct draw *draw, int dim, int most, double *vector); /* +-most */
+
+/* A for side 0, B for 1. */
+struct solid *question_solid(struct question *question, int side);
+
+/* The vertices, relative to the origin. Returns how many. */
+enum { VERTICES_MAX = 8 };
+int solid_vertices(const struct solid *solid, double vertex[VERTICES_MAX][FMB_DIM_MAX]);
+
+/* The mean of the vertices, in world coordinates. */
+void solid_centre(const struct solid *solid, double *out);
+
+#endif
