@@ -18,6 +18,10 @@
 /* Of the window; leaves a tenth of the limit of 1e-12 to the product with its duration. */
 static const double limit = 0.9e-12;
 
+/* Seconds: below this, the distance of two doubles is no longer small against the window, and ends
+ * have to be the tightest. */
+static const double least_duration = 0x1p-1000;
+
 struct times {
     struct clip outer, inner; /* of tau */
 };
@@ -163,6 +167,8 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair
         refine(slabs_pair, &times, &slabs);
         cut_all(&slabs, rounds, &times);
     }
+    if (pair->duration < least_duration)
+        return false;
     contact[0] = seconds(times.outer.low, pair->duration, 0);
     contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))

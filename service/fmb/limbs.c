@@ -7,10 +7,10 @@
  * normal is an edge, and everything is smaller. */
 #include "limbs.h"
 
+#include "inlined.h"
+
 #include <math.h>
 #include <string.h>
-
-#define INLINE static inline __attribute__((always_inline))
 
 typedef unsigned __int128 two_limbs;
 
@@ -32,7 +32,6 @@ INLINE bool is_zero(const int n, const uint64_t *x)
 INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 {
     uint64_t carry = 0;
-#pragma GCC unroll 6
     for (int i = 0; i < n; i++) {
         two_limbs sum = (two_limbs) x[i] + y[i] + carry;
         x[i] = (uint64_t) sum;
@@ -43,7 +42,6 @@ INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 {
     uint64_t borrow = 0;
-#pragma GCC unroll 6
     for (int i = 0; i < n; i++) {
         two_limbs difference = (two_limbs) x[i] - y[i] - borrow;
         x[i] = (uint64_t) difference;
@@ -55,11 +53,12 @@ INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 INLINE void multiply_limbs(const int nx, const uint64_t *x, const int ny, const uint64_t *y,
                            uint64_t *out)
 {
-    memset(out, 0, (size_t) (nx + ny) * sizeof *out);
-#pragma GCC unroll 2
+    for (int i = 0; i < nx + ny; i++)
+        out[i] = 0;
+    UNROLL(2)
     for (int j = 0; j < ny; j++) {
         uint64_t carry = 0;
-#pragma GCC unroll 4
+        UNROLL(4)
         for (int i = 0; i < nx; i++) {
             two_limbs sum = (two_limbs) x[i] * y[j] + out[i + j] + carry;
             out[i + j] = (uint64_t) sum;
@@ -67,6 +66,13 @@ INLINE void multiply_limbs(const int nx, const uint64_t *x, const int ny, const 
         }
         out[nx + j] = carry;
     }
+}
+
+/* The same, made once for all larger widths. */
+static __attribute__((noinline)) void multiply_many(int nx, const uint64_t *x, int ny,
+                                                    const uint64_t *y, uint64_t *out)
+{
+    multiply_limbs(nx, x, ny, y, out);
 }
 
 /* out := x y, of nx + ny limbs. As an unsigned number, x is 2^(64 nx) more than it means where it
@@ -78,7 +84,10 @@ INLINE void multiply(const int nx, const uint64_t *x, const int ny, const uint64
         memset(out, 0, (size_t) (nx + ny) * sizeof *out);
         return;
     }
-    multiply_limbs(nx, x, ny, y, out);
+    if (nx + ny <= 6)
+        multiply_limbs(nx, x, ny, y, out);
+    else
+        multiply_many(nx, x, ny, y, out);
     if (is_negative(nx, x))
         subtract(ny, out + nx, y);
     if (is_negative(ny, y))
@@ -273,7 +282,7 @@ INLINE void set_normal(const int n, const struct limbs_pair *pair, struct slab_n
         return;
     }
     const limbs_vector v = edge_of(n, pair, edges.v, scratch[1]);
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         multiply(n, u[j], n, v[k], normal[i]);

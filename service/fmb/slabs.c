@@ -46,11 +46,10 @@
  * 2^-653: the rest of the bound covers that many times over. */
 #include "slabs.h"
 
+#include "inlined.h"
 #include "weighed.h"
 
 #include <math.h>
-
-#define INLINE static inline __attribute__((always_inline))
 
 static double largest_of(double largest, const double v[3])
 {
@@ -74,9 +73,13 @@ bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out)
 /* ---- The list ----
  *
  * The functions below are made for each kind of pair by inlining: shapes, dimension and motion are
- * constants there. A visitor gets the slabs one by one. */
+ * constants there. Each slab is judged where it is found, and kept if a list is wanted. */
 
-typedef void (*visit_slab)(void *context, const struct slab_value *slab);
+struct found {
+    double surely;           /* largest of gap - error: > 0 where some slab surely separates */
+    double possibly;         /* largest of gap + error: < 0 where all slabs surely overlap */
+    struct slab_value *next; /* where the next slab is kept; NULL: no list is wanted */
+};
 
 struct kind {
     enum fmb_shape a, b;
@@ -179,7 +182,7 @@ INLINE void set_side(const struct slabs_pair *pair, const struct kind kind, int 
 {
     const struct fmb_body *own = which ? pair->b : pair->a, *other = which ? pair->a : pair->b;
     const enum fmb_shape shape = which ? kind.b : kind.a, other_shape = which ? kind.a : kind.b;
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int k = 0; k < 3; k++) {
         cross(own->component[next(k)], own->component[next(next(k))], out->n[k]);
         out->size[k] = own->size[k];
@@ -187,7 +190,7 @@ INLINE void set_side(const struct slabs_pair *pair, const struct kind kind, int 
             out->size[3 + k] = own->size[next(k)] + own->size[next(next(k))];
         out->start[k] = dot(out->n[k], pair->motion.offset);
         out->slope[k] = kind.drifts ? dot(out->n[k], pair->motion.drift) : 0;
-#pragma GCC unroll 3
+        UNROLL(3)
         for (int j = 0; j < 3; j++)
             out->other[k][j] = dot(out->n[k], other->component[j]);
         add_differences(other_shape, out->other[k]);
@@ -199,10 +202,10 @@ INLINE void set_side(const struct slabs_pair *pair, const struct kind kind, int 
  * the other way round has the same bits. */
 INLINE void add_product_differences(const struct kind kind, double value[SLABS_EDGES][SLABS_EDGES])
 {
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int i = 0; i < 3; i++) {
         const int p = next(i), q = next(p);
-#pragma GCC unroll 3
+        UNROLL(3)
         for (int j = 0; j < 3; j++) {
             if (kind.b != FMB_CUBOID)
                 value[j][3 + i] = value[j][q] - value[j][p];
@@ -217,60 +220,77 @@ INLINE void add_product_differences(const struct kind kind, double value[SLABS_E
 
 INLINE void set_edges(const struct slabs_pair *pair, const struct kind kind, struct edges *out)
 {
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int i = 0; i < 3; i++)
-#pragma GCC unroll 3
-        for (int j = 0; j < 3; j++) {
-            double normal[3];
-            cross(pair->a->component[i], pair->b->component[j], normal);
-            out->start[i][j] = dot(normal, pair->motion.offset);
-            out->slope[i][j] = kind.drifts ? dot(normal, pair->motion.drift) : 0;
-        }
+        UNROLL(3)
+    for (int j = 0; j < 3; j++) {
+        double normal[3];
+        cross(pair->a->component[i], pair->b->component[j], normal);
+        out->start[i][j] = dot(normal, pair->motion.offset);
+        out->slope[i][j] = kind.drifts ? dot(normal, pair->motion.drift) : 0;
+    }
     add_product_differences(kind, out->start);
     if (kind.drifts)
         add_product_differences(kind, out->slope);
 }
 
-INLINE void visit(visit_slab visitor, void *context, int u, int v, double scale, struct range a,
-                  struct range b, double start, double slope)
+/* A zero normal says nothing. Since both frames are solid, it shows in that their extents along it
+ * are zero: certain where nothing rounds. */
+INLINE void judge(struct found *found, const struct slab_value *slab)
 {
-    const struct slab_value slab = {.normal = {u, v},
+    const double gap = slab_gap(slab);
+#ifndef SLABS_UNBOUNDED
+    const bool says_nothing = slab->error == 0 && slab->low == slab->high;
+    found->surely = greatest(gap - slab->error, found->surely);
+    found->possibly = greatest(says_nothing ? -INFINITY : gap + slab->error, found->possibly);
+#else /* for the benchmark: what the bounds cost */
+    found->surely = found->possibly = greatest(gap, found->possibly);
+#endif
+}
+
+INLINE void add_slab(struct found *found, struct slab_normal normal, double error, struct range a,
+                     struct range b, double start, double slope)
+{
+    const struct slab_value slab = {.normal = normal,
                                     .low = a.low - b.high,
                                     .high = a.high - b.low,
                                     .start = start,
                                     .slope = slope,
-                                    .error = scale};
-    visitor(context, &slab);
+                                    .error = error};
+    judge(found, &slab);
+    if (found->next)
+        *found->next++ = slab;
 }
 
 /* The faces of A (which = 0) or of B. The extent of a frame along its own normals is that of one
  * component; across from the origin all three have the same. */
-INLINE void visit_faces(const struct kind kind, const struct side *side, int which, double unit,
-                        visit_slab visitor, void *context)
+INLINE void add_faces(const struct kind kind, const struct side *side, int which, double unit,
+                      struct found *found)
 {
     const enum fmb_shape shape = which ? kind.b : kind.a, other_shape = which ? kind.a : kind.b;
     const int first = which ? SLABS_EDGE_OF_B : 0;
     const struct range own = extent_of_one(side->volume);
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int k = 0; k < 3; k++) {
         const double *at = side->other[k];
         const struct range other = extent_of_three(other_shape, at[0], at[1], at[2]);
         const int i = next(k), j = next(i);
-        visit(visitor, context, first + i, first + j, side->size[i] * side->size[j] * unit,
-              which ? other : own, which ? own : other, side->start[k], side->slope[k]);
+        add_slab(found, (struct slab_normal){first + i, first + j},
+                 side->size[i] * side->size[j] * unit, which ? other : own, which ? own : other,
+                 side->start[k], side->slope[k]);
     }
     if (shape == FMB_CUBOID)
         return;
     double at[3];
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int j = 0; j < 3; j++)
         at[j] = (side->other[0][j] + side->other[1][j]) + side->other[2][j];
     const struct range other = extent_of_three(other_shape, at[0], at[1], at[2]);
     const double *size = side->size;
     const double scale = (size[0] * size[1] + size[1] * size[2]) + size[2] * size[0];
-    visit(visitor, context, first + 3, first + 4, scale * unit, which ? other : own,
-          which ? own : other, (side->start[0] + side->start[1]) + side->start[2],
-          (side->slope[0] + side->slope[1]) + side->slope[2]);
+    add_slab(found, (struct slab_normal){first + 3, first + 4}, scale * unit, which ? other : own,
+             which ? own : other, (side->start[0] + side->start[1]) + side->start[2],
+             (side->slope[0] + side->slope[1]) + side->slope[2]);
 }
 
 /* The extent of a frame along e x f (f x e: the same with its ends exchanged and negative), e an
@@ -289,50 +309,51 @@ INLINE struct range negative(struct range x)
     return (struct range){-x.high, -x.low};
 }
 
-INLINE void visit_edges(const struct kind kind, const struct side side[2],
-                        const struct edges *edges, double unit, visit_slab visitor, void *context)
+INLINE void add_edges(const struct kind kind, const struct side side[2], const struct edges *edges,
+                      double unit, struct found *found)
 {
     const struct side *a = &side[0], *b = &side[1];
-#pragma GCC unroll 6
+    UNROLL(6)
     for (int i = 0; i < edge_count(kind.a); i++)
-#pragma GCC unroll 6
-        for (int j = 0; j < edge_count(kind.b); j++) {
-            struct range of_a =
-                extent_at_edge(kind.a, i, a->other[0][j], a->other[1][j], a->other[2][j]);
-            struct range of_b =
-                negative(extent_at_edge(kind.b, j, b->other[0][i], b->other[1][i], b->other[2][i]));
-            visit(visitor, context, i, SLABS_EDGE_OF_B + j, a->size[i] * b->size[j] * unit, of_a,
-                  of_b, edges->start[i][j], kind.drifts ? edges->slope[i][j] : 0);
-        }
+        UNROLL(6)
+    for (int j = 0; j < edge_count(kind.b); j++) {
+        struct range of_a =
+            extent_at_edge(kind.a, i, a->other[0][j], a->other[1][j], a->other[2][j]);
+        struct range of_b =
+            negative(extent_at_edge(kind.b, j, b->other[0][i], b->other[1][i], b->other[2][i]));
+        add_slab(found, (struct slab_normal){i, SLABS_EDGE_OF_B + j},
+                 a->size[i] * b->size[j] * unit, of_a, of_b, edges->start[i][j],
+                 kind.drifts ? edges->slope[i][j] : 0);
+    }
 }
 
 /* The planes of the edges of A (which = 0) or of B with the drift: e x D. start = [e D d] for the
  * components, e . (D x d); the slope is 0. [a D b] = -[a b D], [b D a] = [a b D]. */
-INLINE void visit_drift(const struct slabs_pair *pair, const struct kind kind,
-                        const struct side side[2], const struct edges *edges, int which,
-                        double unit, visit_slab visitor, void *context)
+INLINE void add_drift(const struct slabs_pair *pair, const struct kind kind,
+                      const struct side side[2], const struct edges *edges, int which, double unit,
+                      struct found *found)
 {
     const struct side *own = &side[which];
     const struct fmb_body *body = which ? pair->b : pair->a;
     const enum fmb_shape shape = which ? kind.b : kind.a, other_shape = which ? kind.a : kind.b;
     double plane[3], start[SLABS_EDGES];
     cross(pair->motion.drift, pair->motion.offset, plane);
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int i = 0; i < 3; i++)
         start[i] = dot(plane, body->component[i]);
     add_differences(shape, start);
-#pragma GCC unroll 6
+    UNROLL(6)
     for (int i = 0; i < edge_count(shape); i++) {
         double at[3];
-#pragma GCC unroll 3
+        UNROLL(3)
         for (int j = 0; j < 3; j++)
             at[j] = which ? edges->slope[j][i] : -edges->slope[i][j];
         const struct range of_own =
             extent_at_edge(shape, i, own->slope[0], own->slope[1], own->slope[2]);
         const struct range of_other = extent_of_three(other_shape, at[0], at[1], at[2]);
-        visit(visitor, context, (which ? SLABS_EDGE_OF_B : 0) + i, SLABS_DRIFT,
-              own->size[i] * pair->drift_size * unit, which ? of_other : of_own,
-              which ? of_own : of_other, start[i], 0);
+        add_slab(found, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + i, SLABS_DRIFT},
+                 own->size[i] * pair->drift_size * unit, which ? of_other : of_own,
+                 which ? of_own : of_other, start[i], 0);
     }
 }
 
@@ -353,7 +374,7 @@ INLINE void set_plane_edges(const struct slabs_pair *pair, const struct kind kin
                             struct plane_edges *out)
 {
     const struct fmb_body *own = which ? pair->b : pair->a, *other = which ? pair->a : pair->b;
-#pragma GCC unroll 2
+    UNROLL(2)
     for (int i = 0; i < 2; i++) {
         const double *e = own->component[i];
         out->size[i] = own->size[i];
@@ -376,84 +397,92 @@ INLINE int plane_edge_count(enum fmb_shape shape)
 
 /* Along the edge c_0 the component c_1 is at area = [c_0 c_1]; along c_1, c_0 at -area; along
  * c_1 - c_0 both at -area. */
-INLINE void visit_plane_edges(const struct slabs_pair *pair, const struct kind kind, int which,
-                              const struct plane_edges *edges, double unit, visit_slab visitor,
-                              void *context)
+INLINE void add_plane_edges(const struct slabs_pair *pair, const struct kind kind, int which,
+                            const struct plane_edges *edges, double unit, struct found *found)
 {
     const struct fmb_body *own = which ? pair->b : pair->a;
     const enum fmb_shape shape = which ? kind.b : kind.a, other_shape = which ? kind.a : kind.b;
     const double area = product(own->component[0], own->component[1]);
-#pragma GCC unroll 3
+    UNROLL(3)
     for (int e = 0; e < plane_edge_count(shape); e++) {
         const struct range of_own = extent_of_one(e == 0 ? area : -area);
         const struct range of_other =
             extent_of_two(other_shape, edges->other[e][0], edges->other[e][1]);
-        visit(visitor, context, (which ? SLABS_EDGE_OF_B : 0) + e, 0, edges->size[e] * unit,
-              which ? of_other : of_own, which ? of_own : of_other, edges->start[e],
-              edges->slope[e]);
+        add_slab(found, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + e, 0},
+                 edges->size[e] * unit, which ? of_other : of_own, which ? of_own : of_other,
+                 edges->start[e], edges->slope[e]);
     }
 }
 
-INLINE void visit_plane_drift(const struct slabs_pair *pair, const struct kind kind,
-                              const struct plane_edges *a, const struct plane_edges *b, double unit,
-                              visit_slab visitor, void *context)
+INLINE void add_plane_drift(const struct slabs_pair *pair, const struct kind kind,
+                            const struct plane_edges *a, const struct plane_edges *b, double unit,
+                            struct found *found)
 {
-    visit(visitor, context, SLABS_DRIFT, 0, pair->drift_size * unit,
-          extent_of_two(kind.a, -a->slope[0], -a->slope[1]),
-          extent_of_two(kind.b, -b->slope[0], -b->slope[1]),
-          product(pair->motion.drift, pair->motion.offset), 0);
+    add_slab(found, (struct slab_normal){SLABS_DRIFT, 0}, pair->drift_size * unit,
+             extent_of_two(kind.a, -a->slope[0], -a->slope[1]),
+             extent_of_two(kind.b, -b->slope[0], -b->slope[1]),
+             product(pair->motion.drift, pair->motion.offset), 0);
 }
 
-/* ---- All of them ----
- *
- * done() is asked between the parts of the list: true ends the walk. */
+/* ---- All of them ---- */
 
-typedef bool (*walk_done)(const void *context);
+/* Asked between the parts of the list. */
+INLINE bool is_enough(const struct found *found)
+{
+    return found->surely > 0 && !found->next;
+}
 
 INLINE void walk_plane(const struct slabs_pair *pair, const struct kind kind, double unit,
-                       visit_slab visitor, walk_done done, void *context)
+                       struct found *found)
 {
     struct plane_edges a, b;
     set_plane_edges(pair, kind, 0, &a);
-    visit_plane_edges(pair, kind, 0, &a, unit, visitor, context);
-    if (done(context))
+    add_plane_edges(pair, kind, 0, &a, unit, found);
+    if (is_enough(found))
         return;
     set_plane_edges(pair, kind, 1, &b);
-    visit_plane_edges(pair, kind, 1, &b, unit, visitor, context);
+    add_plane_edges(pair, kind, 1, &b, unit, found);
     if (kind.drifts)
-        visit_plane_drift(pair, kind, &a, &b, unit, visitor, context);
+        add_plane_drift(pair, kind, &a, &b, unit, found);
 }
 
 INLINE void walk_space(const struct slabs_pair *pair, const struct kind kind, double unit,
-                       visit_slab visitor, walk_done done, void *context)
+                       struct found *found)
 {
     struct side side[2];
     struct edges edges;
     for (int which = 0; which < 2; which++) {
         set_side(pair, kind, which, &side[which]);
-        visit_faces(kind, &side[which], which, unit, visitor, context);
-        if (done(context))
+        add_faces(kind, &side[which], which, unit, found);
+        if (is_enough(found))
             return;
     }
     set_edges(pair, kind, &edges);
-    visit_edges(kind, side, &edges, unit, visitor, context);
-    if (!kind.drifts || done(context))
+    add_edges(kind, side, &edges, unit, found);
+    if (!kind.drifts || is_enough(found))
         return;
-    visit_drift(pair, kind, side, &edges, 0, unit, visitor, context);
-    visit_drift(pair, kind, side, &edges, 1, unit, visitor, context);
+    add_drift(pair, kind, side, &edges, 0, unit, found);
+    add_drift(pair, kind, side, &edges, 1, unit, found);
 }
 
-/* unit: the error of a slab of scale 1. */
-INLINE void walk(const struct slabs_pair *pair, double unit, visit_slab visitor, walk_done done,
-                 void *context)
+/* The error of a slab of scale 1. */
+static double error_unit(const struct slabs_pair *pair, bool rounds)
 {
-#define WALK(function, shape_a, shape_b)                                                          \
-    if (pair->a->shape == (shape_a) && pair->b->shape == (shape_b)) {                             \
-        if (pair->motion.drifts)                                                                  \
-            function(pair, (struct kind){shape_a, shape_b, true}, unit, visitor, done, context);  \
-        else                                                                                      \
-            function(pair, (struct kind){shape_a, shape_b, false}, unit, visitor, done, context); \
-        return;                                                                                   \
+    return rounds ? (pair->a->dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING) * pair->reach : 0;
+}
+
+/* next: where slabs are to be kept, or NULL. */
+static struct found walk(const struct slabs_pair *pair, bool rounds, struct slab_value *next)
+{
+    const double unit = error_unit(pair, rounds);
+    struct found found = {-1, -INFINITY, next};
+#define WALK(function, shape_a, shape_b)                                          \
+    if (pair->a->shape == (shape_a) && pair->b->shape == (shape_b)) {             \
+        if (pair->motion.drifts)                                                  \
+            function(pair, (struct kind){shape_a, shape_b, true}, unit, &found);  \
+        else                                                                      \
+            function(pair, (struct kind){shape_a, shape_b, false}, unit, &found); \
+        return found;                                                             \
     }
 #define WALK_ALL(function)                      \
     WALK(function, FMB_CUBOID, FMB_CUBOID)      \
@@ -467,39 +496,10 @@ INLINE void walk(const struct slabs_pair *pair, double unit, visit_slab visitor,
     }
 #undef WALK_ALL
 #undef WALK
-}
-
-static double error_unit(const struct slabs_pair *pair, bool rounds)
-{
-    return rounds ? (pair->a->dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING) * pair->reach : 0;
+    return found;
 }
 
 /* ---- What is made of them ---- */
-
-struct verdict {
-    double surely;   /* largest of gap - error: > 0 where some slab surely separates */
-    double possibly; /* largest of gap + error: < 0 where all slabs surely overlap */
-};
-
-/* A zero normal says nothing. Since both frames are solid, it shows in that their extents along it
- * are zero: certain where nothing rounds. */
-INLINE void judge(void *context, const struct slab_value *slab)
-{
-    struct verdict *verdict = context;
-    const double gap = slab_gap(slab);
-#ifndef SLABS_UNBOUNDED
-    const bool says_nothing = slab->error == 0 && slab->low == slab->high;
-    verdict->surely = greatest(gap - slab->error, verdict->surely);
-    verdict->possibly = greatest(says_nothing ? -INFINITY : gap + slab->error, verdict->possibly);
-#else /* for the benchmark: what the bounds cost */
-    verdict->surely = verdict->possibly = greatest(gap, verdict->possibly);
-#endif
-}
-
-INLINE bool surely_separated(const void *context)
-{
-    return ((const struct verdict *) context)->surely > 0;
-}
 
 /* The axes are normals of slabs too, if not of facets: the first to ask, since they cost next to
  * nothing. Roundings: 2 in an extent, 2 in the drift, 4 in the gap, of numbers of which T is the
@@ -523,34 +523,15 @@ enum slabs_outcome slabs_filter(const struct slabs_pair *pair, bool rounds)
 {
     if (extents_separate(pair))
         return SLABS_SEPARATED;
-    struct verdict verdict = {-1, -INFINITY};
-    walk(pair, error_unit(pair, rounds), judge, surely_separated, &verdict);
-    if (verdict.surely > 0)
+    const struct found found = walk(pair, rounds, NULL);
+    if (found.surely > 0)
         return SLABS_SEPARATED;
-    return verdict.possibly < 0 ? SLABS_OVERLAPPING : SLABS_UNSURE;
-}
-
-struct list {
-    struct slab_value *next;
-};
-
-INLINE void append(void *context, const struct slab_value *slab)
-{
-    struct list *list = context;
-    *list->next++ = *slab;
-}
-
-INLINE bool never(const void *context)
-{
-    (void) context;
-    return false;
+    return found.possibly < 0 ? SLABS_OVERLAPPING : SLABS_UNSURE;
 }
 
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX])
 {
-    struct list list = {out};
-    walk(pair, error_unit(pair, rounds), append, never, &list);
-    return (int) (list.next - out);
+    return (int) (walk(pair, rounds, out).next - out);
 }
 
 /* ---- One slab alone ---- */

@@ -1,0 +1,24 @@
+/* Kernels are functions of constants (shapes, dimension, widths) that are made for each case by
+ * inlining, their loops unrolled. Under a sanitizer that would take minutes to compile, and show
+ * nothing more: there, and wherever INLINED_NOT is defined, they stay functions and loops. */
+#ifndef FMB_INLINED_H
+#define FMB_INLINED_H
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define INLINED_NOT
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define INLINED_NOT
+#endif
+
+#ifdef INLINED_NOT
+#define INLINE static inline
+#define UNROLL(times)
+#else
+#define INLINE static inline __attribute__((always_inline))
+#define UNROLL(times) INLINED_PRAGMA(GCC unroll times)
+#define INLINED_PRAGMA(text) _Pragma(#text)
+#endif
+
+#endif
