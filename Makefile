@@ -28,7 +28,7 @@ B := $(if $(filter release,$(variant)),build,build/$(variant))
 O := build/obj/$(variant)
 GEN := build/msgs
 
-mode_flags_release := -O2 -DNDEBUG
+mode_flags_release := -O2 -g1 -DNDEBUG
 mode_flags_debug := -O0 -g3
 mode_flags_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all \
 	-fno-omit-frame-pointer
@@ -137,7 +137,8 @@ $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objec
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
-# slabs.c is there three times: as it is, with fused operations, with a bound that is wrong.
+# slabs.c is there three times: as it is, with fused operations (which a compiler makes only where
+# it optimises), with a bound that is wrong.
 $(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/slab_truth.o \
 		$(O)/slabs/fused.o $(O)/slabs/planted.o $(oracle_objects) $(lib_objects)
 	@mkdir -p $(@D)
@@ -148,7 +149,8 @@ slabs_fused := -ffp-contract=fast $(if $(filter x86_64%,$(shell $(CC) -dumpmachi
 slabs_planted := -DSLABS_ROUNDING=0x1p-54
 $(O)/slabs/fused.o $(O)/slabs/planted.o: $(O)/slabs/%.o: service/fmb/slabs.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile) $(slabs_$*) $(foreach f,$(slabs_names),-D$f=$*_$f)
+	$(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DINLINED_NOT $(slabs_$*) \
+		$(foreach f,$(slabs_names),-D$f=$*_$f)
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
@@ -203,7 +205,8 @@ $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_objects) \
 # Sanitizers would take long for what another object of theirs has seen.
 $(O)/planted/slabs.o: service/fmb/slabs.c $(O)/settings
 	@mkdir -p $(@D)
-	$(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DSLABS_ROUNDING=0x1p-70
+	$(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DINLINED_NOT \
+		-DSLABS_ROUNDING=0x1p-70
 
 $(O)/tests/campaign/%.o: tests/campaign/%.c $(O)/settings
 	@mkdir -p $(@D)

@@ -1,0 +1,43 @@
+/* The slabs of a pair in integers, written once more from what slabs.h says that a slab is: what
+ * doubles and limbs are held against. */
+#ifndef SLAB_TRUTH_H
+#define SLAB_TRUTH_H
+
+#include <gmp.h>
+#include <stdbool.h>
+
+#include "slabs.h"
+
+struct slab_truth {
+    int dim;
+    enum fmb_shape shape[2];
+    mpz_t component[2][FMB_DIM_MAX][FMB_DIM_MAX]; /* [frame][component][axis] */
+    mpz_t offset[FMB_DIM_MAX], drift[FMB_DIM_MAX];
+    long unit; /* all of the above are times 2^-unit; what follows is times 2^(-dim unit) */
+    mpz_t low, high, start, slope, gap;
+    mpz_t side[2], rise[2]; /* start - low and high - start, and what tau adds to them */
+    bool zero;              /* the normal is */
+    mpz_t normal[FMB_DIM_MAX], edge[2][FMB_DIM_MAX], scratch[2];
+};
+
+void slab_truth_init(struct slab_truth *truth);
+void slab_truth_clear(struct slab_truth *truth);
+
+/* On input: a checked pair of solid or flat cuboids and tetrahedra. */
+void slab_truth_set(struct slab_truth *truth, const struct fmb_pair *pair);
+
+/* On output: low to gap, and zero, of this slab of the pair that is set. */
+void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal);
+
+/* |value - exact| / bound, exact being one of low to gap: 0 if value is exact; infinite if it is
+ * not and bound is 0. */
+double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, double value, double bound);
+
+/* The largest of these, of all numbers of a slab and its gap; its own normal is asked. */
+double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab);
+
+/* The same of both inequalities of a slab: as if these were the errors. */
+double slab_truth_worst_side(struct slab_truth *truth, struct slab_normal normal,
+                             const struct inequality side[2]);
+
+#endif

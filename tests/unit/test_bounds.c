@@ -1,0 +1,464 @@
+/* The bounds on the errors of slabs, attacked: for each kind of pair a search for the numbers that
+ * come closest to them, the true errors being found in integers (slab_truth.h).
+ *
+ * The search climbs: it starts from numbers that are likely to round badly (mantissas of ones, an
+ * ulp beside a power of two, near cancellation), changes one at a time, and keeps what makes the
+ * error of one slab larger relative to its bound. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "draw.h"
+#include "question.h"
+#include "referee.h"
+#include "slab_truth.h"
+#include "slabs.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* slabs.c once more, with fused operations, and with a bound that is wrong (Makefile). */
+int fused_slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
+void fused_slab_inequalities(const struct slab_value *slab, struct inequality out[2]);
+void fused_slabs_refine(const struct slabs_pair *pair, struct slab_normal normal,
+                        struct inequality out[2]);
+int planted_slabs_list(const struct slabs_pair *pair, bool rounds,
+                       struct slab_value out[SLABS_MAX]);
+
+/* ---- Numbers ---- */
+
+static double nudged(struct draw *draw, double x, int most)
+{
+    return x * (1 + draw_int(draw, -most, most) * 0x1p-52);
+}
+
+static double draw_number(struct draw *draw)
+{
+    double x = draw_uniform(draw, 1, 2);
+    switch (draw_int(draw, 0, 5)) {
+    case 0: x = 2 - draw_int(draw, 1, 3) * 0x1p-52; break;
+    case 1: x = 1 + draw_int(draw, 1, 3) * 0x1p-52; break;
+    case 2: x = 1 + draw_int(draw, 0, 7) * 0x1p-3 + draw_int(draw, -1, 1) * 0x1p-27; break;
+    case 3: x = nudged(draw, 1.5, 3); break;
+    default: break;
+    }
+    if (draw_int(draw, 0, 3) == 0)
+        x = ldexp(x, draw_int(draw, -3, 3));
+    return draw_coin(draw) ? x : -x;
+}
+
+enum { NUMBERS_MAX = 2 * (FMB_DIM_MAX + 2) * FMB_DIM_MAX + 1 };
+
+/* Where the numbers of a question are; returns how many. */
+static int numbers_of(struct question *question, double *out[NUMBERS_MAX])
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    int count = 0;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < solids[f]->dim; axis++) {
+            for (int i = 0; i < solids[f]->dim; i++)
+                out[count++] = &solids[f]->component[i][axis];
+            out[count++] = &solids[f]->origin[axis];
+            if (solids[f]->moving)
+                out[count++] = &solids[f]->velocity[axis];
+        }
+    if (question->a.moving)
+        out[count++] = &question->duration;
+    return count;
+}
+
+static void mutate(struct draw *draw, struct question *question)
+{
+    double *number[NUMBERS_MAX];
+    const int count = numbers_of(question, number);
+    double *x = number[draw_int(draw, 0, count - 1)];
+    switch (draw_int(draw, 0, 6)) {
+    case 0: *x = nudged(draw, *x, 4); break;
+    case 1: *x += ldexp(*x, -draw_int(draw, 1, 52)); break;
+    case 2: *x -= ldexp(*x, -draw_int(draw, 2, 53)); break;
+    case 3: *x = -*x; break;
+    case 4: *x = draw_number(draw); break;
+    case 5: *x = nudged(draw, *number[draw_int(draw, 0, count - 1)], 2); break;
+    default: *x = ldexp(*x, draw_int(draw, -1, 1)); break;
+    }
+    if (fabs(*x) > 0x1p30 || fabs(*x) < 0x1p-30)
+        *x = draw_number(draw);
+    question->duration = fabs(question->duration);
+}
+
+/* ---- The search ---- */
+
+struct kind {
+    int dim;
+    bool moving;
+    enum fmb_shape a, b;
+};
+
+enum { KINDS = 16 };
+
+static struct kind kind_at(int i)
+{
+    return (struct kind){i & 8 ? 2 : 3, i & 4, i & 2 ? FMB_TETRAHEDRON : FMB_CUBOID,
+                         i & 1 ? FMB_TETRAHEDRON : FMB_CUBOID};
+}
+
+static const char *kind_text(struct kind kind)
+{
+    static char text[40];
+    snprintf(text, sizeof text, "%dD %s %c%c", kind.dim, kind.moving ? "moving" : "static",
+             kind.a == FMB_CUBOID ? 'C' : 'T', kind.b == FMB_CUBOID ? 'C' : 'T');
+    return text;
+}
+
+static struct question draw_question(struct draw *draw, struct kind kind)
+{
+    struct question question = {{.dim = kind.dim, .shape = kind.a, .moving = kind.moving},
+                                {.dim = kind.dim, .shape = kind.b, .moving = kind.moving},
+                                1};
+    double *number[NUMBERS_MAX];
+    for (int i = numbers_of(&question, number) - 1; i >= 0; i--)
+        *number[i] = draw_number(draw);
+    question.duration = fabs(question.duration);
+    return question;
+}
+
+/* Whose bounds are attacked. */
+struct subject {
+    const char *name;
+    int (*list)(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
+    void (*inequalities)(const struct slab_value *slab, struct inequality out[2]);
+    /* NULL: the slabs of the list and their inequalities are attacked, else only these. */
+    void (*refine)(const struct slabs_pair *pair, struct slab_normal normal,
+                   struct inequality out[2]);
+    double ratio; /* that the search must find, to have found anything */
+};
+
+/* The worst error of slab number index (modulo how many there are) relative to its bound; -1 where
+ * doubles say nothing of the pair. */
+static double ratio_of(const struct subject *subject, const struct question *question, int index,
+                       struct slab_truth *truth)
+{
+    struct ready ready;
+    struct slabs_pair pair;
+    struct slab_value slab[SLABS_MAX];
+    referee_ready(question, &ready);
+    if (!slabs_prepare(&ready.pair, &pair))
+        return -1;
+    const int count = subject->list(&pair, true, slab);
+    const struct slab_value *one = &slab[index % count];
+    struct inequality side[2];
+    slab_truth_set(truth, &ready.pair);
+    if (subject->refine) {
+        subject->refine(&pair, one->normal, side);
+        return slab_truth_worst_side(truth, one->normal, side);
+    }
+    subject->inequalities(one, side);
+    return fmax(slab_truth_worst(truth, one), slab_truth_worst_side(truth, one->normal, side));
+}
+
+/* Whom the search is at. */
+struct climb {
+    struct question question;
+    int index; /* of the slab */
+    double ratio;
+};
+
+/* The best of some starts. */
+static struct climb draw_start(struct draw *draw, const struct subject *subject, struct kind kind,
+                               struct slab_truth *truth)
+{
+    struct climb best = {.ratio = -2};
+    for (int n = 0; n < 40; n++) {
+        struct climb start = {draw_question(draw, kind), draw_int(draw, 0, 4 * SLABS_MAX), -1};
+        start.ratio = ratio_of(subject, &start.question, start.index, truth);
+        if (start.ratio > best.ratio)
+            best = start;
+    }
+    return best;
+}
+
+static struct climb climb(struct draw *draw, const struct subject *subject, struct kind kind,
+                          struct slab_truth *truth)
+{
+    struct climb best = draw_start(draw, subject, kind, truth);
+    for (int n = 0; n < 200; n++) {
+        struct climb changed = best;
+        for (int times = draw_int(draw, 1, 2); times > 0; times--)
+            mutate(draw, &changed.question);
+        changed.ratio = ratio_of(subject, &changed.question, changed.index, truth);
+        if (changed.ratio >= best.ratio)
+            best = changed;
+    }
+    return best;
+}
+
+/* The best of some climbs. */
+static struct climb search_kind(struct draw *draw, const struct subject *subject, struct kind kind,
+                                long climbs)
+{
+    struct slab_truth truth;
+    struct climb best = {.ratio = -2};
+    slab_truth_init(&truth);
+    for (; climbs > 0; climbs--) {
+        const struct climb one = climb(draw, subject, kind, &truth);
+        if (one.ratio > best.ratio)
+            best = one;
+    }
+    slab_truth_clear(&truth);
+    return best;
+}
+
+/* Searches all kinds; each must come to the ratio that is asked, and none beyond limit. */
+static void attack(const struct subject *subject, double limit)
+{
+    struct draw draw;
+    draw_begin(&draw, subject->name);
+    for (int i = 0; i < KINDS; i++) {
+        const struct kind kind = kind_at(i);
+        const struct climb worst = search_kind(&draw, subject, kind, draw_sample(30));
+        printf("# %s, %s: largest error %.4g of the bound\n", subject->name, kind_text(kind),
+               worst.ratio);
+        if (!(worst.ratio <= limit))
+            referee_fail(&worst.question, "an error beyond its bound");
+        if (!(worst.ratio >= subject->ratio))
+            referee_fail(&worst.question, "the search finds nothing");
+    }
+}
+
+/* ---- Tests ---- */
+
+static void errors_of_slabs_stay_within_their_bounds(void **state)
+{
+    static const struct subject slabs = {"slabs", slabs_list, slab_inequalities, NULL, 0.01};
+    (void) state;
+    attack(&slabs, 1);
+}
+
+static void errors_of_refined_slabs_stay_within_their_bounds(void **state)
+{
+    static const struct subject refined = {"refined slabs", slabs_list, NULL, slabs_refine, 0.01};
+    (void) state;
+    attack(&refined, 1);
+}
+
+/* The search has teeth: it shows for every kind that a bound so much smaller does not hold. */
+static void a_wrong_bound_is_found(void **state)
+{
+    static const struct subject planted = {"planted slabs", planted_slabs_list, slab_inequalities,
+                                           NULL, 1.01};
+    (void) state;
+    attack(&planted, HUGE_VAL);
+}
+
+static bool has_fused_operations(void)
+{
+#if defined __x86_64__ || defined __i386__
+    return __builtin_cpu_supports("fma");
+#else
+    return true; /* or the compiler has made none */
+#endif
+}
+
+/* The derivation holds for fused operations as well, though the library has none. */
+static void bounds_hold_with_fused_operations(void **state)
+{
+    static const struct subject fused = {"fused slabs", fused_slabs_list, fused_slab_inequalities,
+                                         NULL, 0.01};
+    static const struct subject refined = {"fused refined slabs", fused_slabs_list, NULL,
+                                           fused_slabs_refine, 0.01};
+    (void) state;
+    if (!has_fused_operations())
+        skip();
+    attack(&fused, 1);
+    attack(&refined, 1);
+}
+
+static void fused_operations_are_fused(void **state)
+{
+    (void) state;
+#if defined __x86_64__
+    if (!has_fused_operations())
+        skip();
+    struct draw draw;
+    long different = 0;
+    draw_begin(&draw, "fused_operations_are_fused");
+    for (int n = 0; n < 100; n++) {
+        struct question question = draw_question(&draw, kind_at(0));
+        struct ready ready;
+        struct slabs_pair pair;
+        struct slab_value plain[SLABS_MAX], fused[SLABS_MAX];
+        referee_ready(&question, &ready);
+        if (!slabs_prepare(&ready.pair, &pair))
+            continue;
+        const int count = slabs_list(&pair, true, plain);
+        assert_int_equal(count, fused_slabs_list(&pair, true, fused));
+        for (int i = 0; i < count; i++)
+            different += plain[i].start != fused[i].start;
+    }
+    assert_true(different > 0);
+#else
+    skip();      /* not every machine has them */
+#endif
+}
+
+/* ---- The ends of the range ---- */
+
+/* Components whose largest number lies where the range ends, or between; the others are of any
+ * size below, subnormal too. */
+static void draw_extreme_solid(struct draw *draw, struct solid *solid, int exponent)
+{
+    for (int i = 0; i < solid->dim; i++) {
+        const int largest = draw_int(draw, 0, solid->dim - 1);
+        for (int axis = 0; axis < solid->dim; axis++) {
+            const int least = draw_coin(draw) ? -1074 : exponent - 60;
+            const int e = axis == largest ? exponent : draw_int(draw, least, exponent);
+            solid->component[i][axis] = ldexp(draw_number(draw), e);
+        }
+    }
+}
+
+static int draw_exponent(struct draw *draw)
+{
+    static const int ends[] = {-196, -100, 0, 100, 195};
+    return ends[draw_int(draw, 0, (int) COUNT(ends) - 1)];
+}
+
+static struct question draw_extreme(struct draw *draw)
+{
+    struct question question = draw_question(draw, kind_at(draw_int(draw, 0, KINDS - 1)));
+    struct solid *solids[2] = {&question.a, &question.b};
+    for (int f = 0; f < 2; f++) {
+        draw_extreme_solid(draw, solids[f], draw_exponent(draw));
+        const int e = draw_coin(draw) ? draw_exponent(draw) : draw_int(draw, -1074, 195);
+        for (int axis = 0; axis < question.a.dim; axis++) {
+            solids[f]->origin[axis] = ldexp(draw_number(draw), e - draw_int(draw, 0, 50));
+            solids[f]->velocity[axis] = ldexp(draw_number(draw), draw_exponent(draw) / 2);
+        }
+    }
+    question.duration = ldexp(question.duration, draw_exponent(draw) / 2);
+    return question;
+}
+
+static void bounds_hold_at_the_ends_of_the_range(void **state)
+{
+    static const struct subject subjects[] = {{"slabs", slabs_list, slab_inequalities, NULL, 0},
+                                              {"refined slabs", slabs_list, NULL, slabs_refine, 0}};
+    (void) state;
+    struct draw draw;
+    struct slab_truth truth;
+    long said = 0;
+    double largest[COUNT(subjects)] = {0};
+    draw_begin(&draw, "bounds_hold_at_the_ends_of_the_range");
+    slab_truth_init(&truth);
+    for (long n = draw_sample(40000); n > 0; n--) {
+        struct question question = draw_extreme(&draw);
+        const int index = draw_int(&draw, 0, 4 * SLABS_MAX);
+        for (size_t i = 0; i < COUNT(subjects); i++) {
+            const double ratio = ratio_of(&subjects[i], &question, index, &truth);
+            said += ratio >= 0;
+            largest[i] = fmax(largest[i], ratio);
+            if (ratio > 1)
+                referee_fail(&question, subjects[i].name);
+        }
+    }
+    slab_truth_clear(&truth);
+    printf("# ends of the range: largest error %.4g of the bound, refined %.4g\n", largest[0],
+           largest[1]);
+    assert_true(said > 0 && largest[0] > 1e-3 && largest[1] > 1e-3);
+}
+
+/* ---- Extents ---- */
+
+/* The sign of how far apart boxes along the axes are along one of them, over the window, exactly:
+ * that of the gap of the slab across it. */
+static int gap_sign(struct slab_truth *truth, const struct fmb_pair *pair, int axis)
+{
+    const int dim = pair->a.body->dim, u = (axis + 1) % dim, v = (axis + 2) % dim;
+    slab_truth_set(truth, pair);
+    slab_truth_ask(truth, (struct slab_normal){u, v});
+    return mpz_sgn(truth->gap);
+}
+
+/* Boxes along the axes, end to end along all of them, or nearly. Components may point down; that
+ * of the other frame starts where one ends, at the start of the window or at its end. */
+static struct question draw_end_to_end(struct draw *draw)
+{
+    const bool moving = draw_coin(draw);
+    const int dim = draw_int(draw, 2, 3);
+    struct question question =
+        draw_question(draw, (struct kind){dim, moving, FMB_CUBOID, FMB_CUBOID});
+    question.duration = draw_coin(draw) ? 1 : question.duration;
+    for (int axis = 0; axis < dim; axis++) {
+        for (int i = 0; i < dim; i++) {
+            double *a = &question.a.component[i][axis], *b = &question.b.component[i][axis];
+            *a = i == axis ? ldexp(*a, draw_int(draw, -40, 40)) : 0;
+            *b = i == axis ? ldexp(*b, draw_int(draw, -40, 40)) : 0;
+        }
+        const double far = ldexp(question.a.origin[axis], draw_int(draw, -40, 40));
+        const double end = question.a.component[axis][axis];
+        const double speed = question.b.velocity[axis] - question.a.velocity[axis];
+        question.a.origin[axis] = far;
+        question.b.origin[axis] = far + (end > 0 ? end : 0);
+        if (question.b.component[axis][axis] < 0)
+            question.b.origin[axis] -= question.b.component[axis][axis];
+        if (moving && speed < 0 && draw_coin(draw))
+            question.b.origin[axis] -= speed * question.duration;
+    }
+    return question;
+}
+
+static void extents_part_no_pair_that_touches(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct slab_truth truth;
+    long count[3] = {0};
+    draw_begin(&draw, "extents_part_no_pair_that_touches");
+    slab_truth_init(&truth);
+    for (long n = draw_sample(100000); n > 0; n--) {
+        struct question question = draw_end_to_end(&draw);
+        struct ready ready;
+        struct slabs_pair pair;
+        referee_ready(&question, &ready);
+        if (!slabs_prepare(&ready.pair, &pair))
+            referee_fail(&question, "doubles say nothing of it");
+        int sign = -1;
+        for (int axis = 0; axis < question.a.dim; axis++) {
+            const int one = gap_sign(&truth, &ready.pair, axis);
+            sign = one > sign ? one : sign;
+        }
+        count[sign + 1]++;
+        const enum slabs_outcome outcome = slabs_filter(&pair, true);
+        if (outcome == SLABS_SEPARATED && sign <= 0 && !pair.motion.drifts)
+            referee_fail(&question, "parted, and they touch");
+        if (outcome == SLABS_OVERLAPPING && sign >= 0)
+            referee_fail(&question, "overlapping, and they do not");
+        if (outcome == SLABS_SEPARATED && sign <= 0 && pair.motion.drifts &&
+            referee_assert(&question) != FMB_SEPARATED)
+            referee_fail(&question, "parted, and they meet");
+    }
+    slab_truth_clear(&truth);
+    printf("# end to end: %ld overlap, %ld touch, %ld do not along some axis\n", count[0], count[1],
+           count[2]);
+    assert_true(count[0] > 0 && count[1] > 0 && count[2] > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_of_slabs_stay_within_their_bounds),
+        cmocka_unit_test(errors_of_refined_slabs_stay_within_their_bounds),
+        cmocka_unit_test(a_wrong_bound_is_found),
+        cmocka_unit_test(bounds_hold_with_fused_operations),
+        cmocka_unit_test(fused_operations_are_fused),
+        cmocka_unit_test(bounds_hold_at_the_ends_of_the_range),
+        cmocka_unit_test(extents_part_no_pair_that_touches),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,326 @@
+/* Slabs in integers of fixed width against the same in GMP (slab_truth.h), in every width, with
+ * numbers at the ends of what fits; and whether what is said not to round does not. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "draw.h"
+#include "limbs.h"
+#include "question.h"
+#include "referee.h"
+#include "slab_truth.h"
+#include "slabs.h"
+
+/* ---- Numbers of a span ---- */
+
+/* Most bits that fit one limb, and so on; the last is the most that fit at all. */
+static const int widest[] = {61, 125, 253, 64 * LIMBS_MAX - 3};
+enum { WIDTHS = sizeof widest / sizeof widest[0] };
+
+/* A multiple of 2^unit below 2^(unit + bits) in magnitude, often as large or as small as that
+ * allows; mantissas of ones, of one bit, of any. */
+static double draw_length(struct draw *draw, int unit, int bits)
+{
+    const int size = bits < 53 ? bits : draw_int(draw, 1, 53); /* of the mantissa */
+    double mantissa = ldexp(1, size) - 1;
+    switch (draw_int(draw, 0, 5)) {
+    case 0: return 0;
+    case 1: mantissa = 1; break;
+    case 2: mantissa = ldexp(1, size - 1); break;
+    case 3: mantissa = (double) (draw_bits(draw) >> (64 - size)); break;
+    default: break;
+    }
+    const int most = bits - size;
+    const int shift = draw_coin(draw) ? most : draw_coin(draw) ? 0 : draw_int(draw, 0, most);
+    const double length = ldexp(mantissa, unit + shift);
+    return draw_coin(draw) ? length : -length;
+}
+
+static void draw_lengths(struct draw *draw, int unit, int bits, int dim, double *vector)
+{
+    for (int axis = 0; axis < dim; axis++)
+        vector[axis] = draw_length(draw, unit, bits);
+}
+
+/* A pair that spans as many bits from a unit on, displacements included. */
+static struct question draw_question(struct draw *draw, int unit, int bits)
+{
+    static const double windows[] = {1, 0x1p-3, 3, 0x1.8p5, 0x1.fffffffffffffp0, 0};
+    static const int window_unit[] = {0, -3, 0, 4, -52, 0}, window_bits[] = {1, 1, 2, 2, 53, 0};
+    const int dim = draw_int(draw, 2, 3), window = draw_int(draw, 0, 5);
+    struct question question = {{.dim = dim}, {.dim = dim}, windows[window]};
+    struct solid *solids[2] = {&question.a, &question.b};
+    for (int f = 0; f < 2; f++) {
+        struct solid *solid = solids[f];
+        solid->shape = draw_coin(draw) ? FMB_CUBOID : FMB_TETRAHEDRON;
+        solid->moving = draw_coin(draw);
+        for (int i = 0; i < dim; i++)
+            draw_lengths(draw, unit, bits, dim, solid->component[i]);
+        if (draw_int(draw, 0, 7) == 0) /* parallel edges: normals that are zero */
+            memcpy(solids[1]->component[0], solids[0]->component[draw_int(draw, 0, dim - 1)],
+                   sizeof solid->component[0]);
+        draw_lengths(draw, unit, bits, dim, solid->origin);
+        const int left = bits - window_bits[window];
+        if (left > 0)
+            draw_lengths(draw, unit - window_unit[window], left, dim, solid->velocity);
+    }
+    return question;
+}
+
+/* ---- Slabs ---- */
+
+static int edge_numbers(enum fmb_shape shape, int dim)
+{
+    return shape == FMB_CUBOID ? dim : dim == 3 ? SLABS_EDGES : 3;
+}
+
+/* Any two edges: also such as are no slab of the pair. */
+static int draw_edge(struct draw *draw, const struct question *question)
+{
+    const int dim = question->a.dim;
+    switch (draw_int(draw, 0, 4)) {
+    case 0: return SLABS_DRIFT;
+    case 1:
+    case 2: return draw_int(draw, 0, edge_numbers(question->a.shape, dim) - 1);
+    default: return SLABS_EDGE_OF_B + draw_int(draw, 0, edge_numbers(question->b.shape, dim) - 1);
+    }
+}
+
+/* Whether x 2^of_x = y 2^of_y. */
+static bool same_number(mpz_t x, long of_x, mpz_t y, long of_y)
+{
+    if (of_x > of_y)
+        mpz_mul_2exp(x, x, (mp_bitcnt_t) (of_x - of_y));
+    else
+        mpz_mul_2exp(y, y, (mp_bitcnt_t) (of_y - of_x));
+    return mpz_cmp(x, y) == 0;
+}
+
+/* Compares one slab; returns the sign of its gap. */
+static int compare_slab(const struct question *question, const struct limbs_pair *limbs,
+                        struct dyadic_span span, struct slab_normal normal,
+                        struct slab_truth *truth)
+{
+    mpz_t low, high, start, slope;
+    const int dim = question->a.dim;
+    const long unit = dim * span.unit, of_truth = dim * truth->unit;
+    slab_truth_ask(truth, normal);
+    const int expected = truth->zero ? -1 : mpz_sgn(truth->gap);
+    if (limbs_gap_sign(limbs, normal) != expected)
+        referee_fail(question, "the sign of a gap");
+    mpz_inits(low, high, start, slope, NULL);
+    limbs_slab(limbs, normal, low, high, start, slope);
+    if (!same_number(low, unit, truth->low, of_truth) ||
+        !same_number(high, unit, truth->high, of_truth) ||
+        !same_number(start, unit, truth->start, of_truth) ||
+        !same_number(slope, unit, truth->slope, of_truth))
+        referee_fail(question, "the numbers of a slab");
+    mpz_clears(low, high, start, slope, NULL);
+    return expected;
+}
+
+struct seen {
+    long pairs, zero, sign[3];
+    int most; /* bits of a span */
+};
+
+static int limbs_of(long bits)
+{
+    return bits <= 61 ? 1 : bits <= 125 ? 2 : bits <= 253 ? 4 : 8;
+}
+
+static void compare_pair(struct draw *draw, const struct question *question,
+                         struct slab_truth *truth, struct seen *seen)
+{
+    struct ready ready;
+    struct limbs_pair limbs;
+    referee_ready(question, &ready);
+    const struct dyadic_span span = limbs_span_of(&ready.pair);
+    const long bits = span.top - span.unit;
+    const bool fits = limbs_prepare(&ready.pair, span, &limbs);
+    if (fits != (bits <= 64 * LIMBS_MAX - 3))
+        referee_fail(question, "fits, or does not");
+    if (!fits || bits < 0)
+        return;
+    if (limbs.limbs != limbs_of(bits))
+        referee_fail(question, "another width");
+    slab_truth_set(truth, &ready.pair);
+    for (int n = 0; n < 4; n++) {
+        const struct slab_normal normal = {draw_edge(draw, question), draw_edge(draw, question)};
+        seen->sign[compare_slab(question, &limbs, span, normal, truth) + 1]++;
+        seen->zero += truth->zero;
+    }
+    seen->pairs++;
+    seen->most = bits > seen->most ? (int) bits : seen->most;
+}
+
+/* From unit on as far as the doubles go, so that neither end is one that doubles do not have. */
+static int draw_unit(struct draw *draw, int bits)
+{
+    switch (draw_int(draw, 0, 3)) {
+    case 0: return -1074 + 60; /* room for the window */
+    case 1: return 1000 - bits;
+    case 2: return -bits / 2;
+    default: return draw_int(draw, -900, 900 - bits);
+    }
+}
+
+static void limbs_are_gmp(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct slab_truth truth;
+    draw_begin(&draw, "limbs_are_gmp");
+    slab_truth_init(&truth);
+    for (int width = 0; width < WIDTHS; width++) {
+        struct seen seen = {0};
+        const int least = width == 0 ? 1 : widest[width - 1] + 1;
+        for (long n = draw_sample(40000); n > 0; n--) {
+            const int any = draw_int(&draw, least, widest[width]);
+            const int bits = draw_coin(&draw) ? widest[width] : draw_coin(&draw) ? least : any;
+            struct question question = draw_question(&draw, draw_unit(&draw, bits), bits);
+            compare_pair(&draw, &question, &truth, &seen);
+        }
+        printf(
+            "# up to %d bits: %ld pairs, %d bits at most; normals that are zero %ld; gaps below "
+            "0 %ld, 0 %ld, above %ld\n",
+            widest[width], seen.pairs, seen.most, seen.zero, seen.sign[0], seen.sign[1],
+            seen.sign[2]);
+        assert_true(seen.most == widest[width] && seen.zero > 0);
+        assert_true(seen.sign[0] > 0 && seen.sign[1] > 0 && seen.sign[2] > 0);
+    }
+    slab_truth_clear(&truth);
+}
+
+static struct question cubes_of(double size)
+{
+    const struct solid cube = {3,   FMB_CUBOID, {{size, 0, 0}, {0, size, 0}, {0, 0, size}},
+                               {0}, {0},        false};
+    return (struct question){cube, cube, 1};
+}
+
+/* One bit more than fits is refused, one less is not. */
+static void what_does_not_fit_is_refused(void **state)
+{
+    (void) state;
+    const int most = 64 * LIMBS_MAX - 3;
+    for (int bits = most - 1; bits <= most + 1; bits++) {
+        struct question question = cubes_of(1);
+        struct ready ready;
+        struct limbs_pair limbs;
+        question.b.origin[1] = ldexp(1, bits - 1);
+        referee_ready(&question, &ready);
+        const struct dyadic_span span = limbs_span_of(&ready.pair);
+        assert_int_equal(span.top - span.unit, bits);
+        assert_int_equal(limbs_prepare(&ready.pair, span, &limbs), bits <= most);
+    }
+}
+
+/* ---- What does not round ---- */
+
+static void expect_exact_motion(const struct question *question, const struct slabs_pair *pair,
+                                struct slab_truth *truth)
+{
+    for (int axis = 0; axis < question->a.dim; axis++) {
+        const double offset = mpz_get_d(truth->offset[axis]);
+        const double drift = mpz_get_d(truth->drift[axis]);
+        if (pair->motion.offset[axis] != ldexp(offset, (int) truth->unit) ||
+            (pair->motion.drifts && pair->motion.drift[axis] != ldexp(drift, (int) truth->unit)))
+            referee_fail(question, "the motion has been rounded");
+    }
+}
+
+/* On input: a pair that is said not to round. */
+static void expect_exact_slabs(const struct question *question, const struct fmb_pair *pair,
+                               const struct slabs_pair *slabs, struct slab_truth *truth)
+{
+    struct slab_value slab[SLABS_MAX];
+    struct inequality side[2];
+    slab_truth_set(truth, pair);
+    expect_exact_motion(question, slabs, truth);
+    const int count = slabs_list(slabs, false, slab);
+    for (int i = 0; i < count; i++) {
+        slab_inequalities(&slab[i], side);
+        if (slab[i].error != 0 || slab_truth_worst(truth, &slab[i]) != 0 ||
+            slab_truth_worst_side(truth, slab[i].normal, side) != 0)
+            referee_fail(question, "a slab has been rounded");
+    }
+}
+
+/* Whether the pair is said not to round; if so, it must be so. */
+static bool never_rounds(const struct question *question, struct slab_truth *truth)
+{
+    struct ready ready;
+    struct slabs_pair slabs;
+    referee_ready(question, &ready);
+    if (!slabs_prepare(&ready.pair, &slabs))
+        return false;
+    const struct dyadic_span span = limbs_span_of(&ready.pair);
+    if (!limbs_never_round(&slabs, span))
+        return false;
+    expect_exact_slabs(question, &ready.pair, &slabs, truth);
+    return true;
+}
+
+/* Numbers of so many bits that about half of the pairs are said to round. */
+static void what_is_said_not_to_round_does_not(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct slab_truth truth;
+    long count[2] = {0};
+    draw_begin(&draw, "what_is_said_not_to_round_does_not");
+    slab_truth_init(&truth);
+    for (long n = draw_sample(40000); n > 0; n--) {
+        const int unit = draw_int(&draw, -190, 150);
+        struct question question = draw_question(&draw, unit, draw_int(&draw, 8, 20));
+        if (draw_int(&draw, 0, 3) == 0) { /* lengths far smaller than where they are */
+            const double far = ldexp(draw_int(&draw, -1, 1), unit + draw_int(&draw, 20, 49));
+            question.a.origin[0] += far;
+            question.b.origin[0] += far;
+        }
+        count[never_rounds(&question, &truth)]++;
+    }
+    slab_truth_clear(&truth);
+    printf("# %ld may round, %ld do not\n", count[0], count[1]);
+    assert_true(count[0] > 0 && count[1] > 0);
+}
+
+/* 32 L^2 T < 2^53, with sizes L = 2^15 (six of them in T): T < 2^18, an offset below 2^16. */
+static void the_limit_is_where_it_is_said_to_be(void **state)
+{
+    (void) state;
+    struct slab_truth truth;
+    slab_truth_init(&truth);
+    struct question question = cubes_of(0x1p15);
+    question.b.component[0][1] = 1; /* the unit */
+    question.b.origin[2] = 0x1p16 - 1;
+    assert_true(never_rounds(&question, &truth));
+    question.b.origin[2] = 0x1p16;
+    assert_false(never_rounds(&question, &truth));
+
+    question = cubes_of(1); /* the span: 50 bits */
+    question.a.origin[0] = question.b.origin[0] = 0x1p49;
+    assert_true(never_rounds(&question, &truth));
+    question.a.origin[0] = question.b.origin[0] = 0x1p50;
+    assert_false(never_rounds(&question, &truth));
+    slab_truth_clear(&truth);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(limbs_are_gmp),
+        cmocka_unit_test(what_does_not_fit_is_refused),
+        cmocka_unit_test(what_is_said_not_to_round_does_not),
+        cmocka_unit_test(the_limit_is_where_it_is_said_to_be),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

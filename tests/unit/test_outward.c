@@ -1,0 +1,505 @@
+/* What is rounded outward is outside, and what is inward inside: sums, products, quotients and cuts
+ * against rational numbers; the contact and the box that doubles give against the oracle. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "certified.h"
+#include "clip.h"
+#include "draw.h"
+#include "limbs.h"
+#include "question.h"
+#include "range.h"
+#include "referee.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static mpq_t exact, scratch[2];
+
+static int set_up(void **state)
+{
+    (void) state;
+    mpq_inits(exact, scratch[0], scratch[1], NULL);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void) state;
+    mpq_clears(exact, scratch[0], scratch[1], NULL);
+    return 0;
+}
+
+/* The sign of x - exact. */
+static int side_of(double x)
+{
+    mpq_set_d(scratch[0], x);
+    return mpq_cmp(scratch[0], exact);
+}
+
+/* Mantissas of ones, an ulp beside a power of two, of few bits, any. */
+static double draw_mantissa(struct draw *draw)
+{
+    switch (draw_int(draw, 0, 4)) {
+    case 0: return 2 - draw_int(draw, 1, 3) * 0x1p-52;
+    case 1: return 1 + draw_int(draw, 0, 3) * 0x1p-52;
+    case 2: return 1 + draw_int(draw, 0, 15) / 16.0;
+    case 3: return 1.5 + draw_int(draw, -2, 2) * 0x1p-52;
+    default: return draw_uniform(draw, 1, 2);
+    }
+}
+
+static double draw_between(struct draw *draw, int least, int most)
+{
+    const double x = ldexp(draw_mantissa(draw), draw_int(draw, least, most));
+    return draw_int(draw, 0, 30) == 0 ? 0 : draw_coin(draw) ? x : -x;
+}
+
+/* A number of any size, or one that is near another as sums go: an ulp of half of it, say. */
+static double draw_beside(struct draw *draw, double other)
+{
+    int e = 0;
+    frexp(other, &e);
+    const int least = e - 110 < -1074 ? -1074 : e - 110, most = e + 2 < least ? least : e + 2;
+    switch (draw_int(draw, 0, 3)) {
+    case 0: return draw_between(draw, -1074, 990);
+    case 1: return -other * (1 + draw_int(draw, -3, 3) * 0x1p-52);
+    default: return draw_between(draw, least, most);
+    }
+}
+
+/* ---- Sums and products ---- */
+
+static void expect_range(struct range range, double x, double y, double rounded, double slack)
+{
+    if (side_of(range.low) > 0 || side_of(range.high) < 0)
+        fail_msg("%a and %a: [%a, %a] does not hold it", x, y, range.low, range.high);
+    if (slack == 0 && side_of(rounded) == 0 && (range.low != rounded || range.high != rounded))
+        fail_msg("%a and %a: exact, and [%a, %a]", x, y, range.low, range.high);
+    if (range.high - range.low > fmax(slack, 0x1p-51 * fabs(rounded)))
+        fail_msg("%a and %a: [%a, %a] is wide", x, y, range.low, range.high);
+}
+
+static void sums_hold_the_exact_one(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long exact_ones = 0;
+    draw_begin(&draw, "sums_hold_the_exact_one");
+    for (long n = draw_sample(500000); n > 0; n--) {
+        const double x = draw_between(&draw, -1074, 990), y = draw_beside(&draw, x);
+        mpq_set_d(exact, x);
+        mpq_set_d(scratch[0], y);
+        mpq_add(exact, exact, scratch[0]);
+        expect_range(range_sum(range_of(x), range_of(y)), x, y, x + y, 0);
+        exact_ones += side_of(x + y) == 0;
+    }
+    printf("# %ld sums were exact\n", exact_ones);
+    assert_true(exact_ones > 0);
+}
+
+static void sums_of_ranges_hold_those_of_their_ends(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "sums_of_ranges_hold_those_of_their_ends");
+    for (long n = draw_sample(200000); n > 0; n--) {
+        const double a = draw_between(&draw, -1074, 990), b = draw_beside(&draw, a);
+        const double c = draw_beside(&draw, a), d = draw_beside(&draw, c);
+        const struct range x = {fmin(a, b), fmax(a, b)}, y = {fmin(c, d), fmax(c, d)};
+        const struct range sum = range_sum(x, y);
+        mpq_set_d(exact, x.low);
+        mpq_set_d(scratch[0], y.low);
+        mpq_add(exact, exact, scratch[0]);
+        assert_true(side_of(sum.low) <= 0);
+        mpq_set_d(exact, x.high);
+        mpq_set_d(scratch[0], y.high);
+        mpq_add(exact, exact, scratch[0]);
+        assert_true(side_of(sum.high) >= 0);
+    }
+}
+
+static void products_hold_the_exact_one(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long exact_ones = 0, tiny = 0;
+    draw_begin(&draw, "products_hold_the_exact_one");
+    for (long n = draw_sample(500000); n > 0; n--) {
+        const double x = draw_between(&draw, -1074, 990);
+        int e = 0;
+        frexp(x, &e);
+        const int most = e > 0 ? 990 - e : 990;
+        const int about = -900 - e > most ? most : -900 - e < -1074 ? -1074 : -900 - e;
+        const double y = draw_int(&draw, 0, 3) ? draw_between(&draw, -1074, most)
+                                               : draw_between(&draw, about, about);
+        mpq_set_d(exact, x);
+        mpq_set_d(scratch[0], y);
+        mpq_mul(exact, exact, scratch[0]);
+        const bool small = fabs(x * y) < 0x1p-900 && x != 0 && y != 0;
+        expect_range(range_product(x, y), x, y, x * y, small ? 0x1p-951 : 0);
+        tiny += small;
+        exact_ones += side_of(x * y) == 0;
+    }
+    printf("# %ld products were exact, %ld tiny\n", exact_ones, tiny);
+    assert_true(exact_ones > 0 && tiny > 0);
+}
+
+/* ---- Quotients and cuts ---- */
+
+static void expect_quotients(double x, double y, bool rounds)
+{
+    const double below = quotient_below(x, y, rounds), above = quotient_above(x, y, rounds);
+    const double q = x / y;
+    mpq_set_d(exact, x);
+    mpq_set_d(scratch[0], y);
+    mpq_div(exact, exact, scratch[0]);
+    if (side_of(below) > 0 || side_of(above) < 0)
+        fail_msg("%a / %a: not between %a and %a", x, y, below, above);
+    if (q >= 0x1p-899 && above - below > 0x1p-49 * q)
+        fail_msg("%a / %a: %a and %a are far apart", x, y, below, above);
+    if (rounds || (q < 0x1p-100 && q != 0))
+        return;
+    if (side_of(q) == 0 ? below != q || above != q : nextafter(below, 3) != above)
+        fail_msg("%a / %a: %a and %a are not the tightest", x, y, below, above);
+}
+
+static void quotients_hold_the_exact_one(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "quotients_hold_the_exact_one");
+    for (long n = draw_sample(300000); n > 0; n--) {
+        /* In [0,2], and exact ones among them. */
+        double y = fabs(draw_between(&draw, -700, 900)), x = y * draw_uniform(&draw, 0, 2);
+        switch (draw_int(&draw, 0, 4)) {
+        case 0: x = fabs(draw_beside(&draw, y)); break;
+        case 1: x = y * draw_int(&draw, 0, 8) / 8; break;
+        case 2: x = fabs(draw_between(&draw, -1074, 900)); break;
+        default: break;
+        }
+        if (y == 0 || !(x <= y * 1.5))
+            continue;
+        expect_quotients(x, y, true);
+        if (x == 0 || x >= 0x1p-750)
+            expect_quotients(x, y, false);
+        expect_quotients(ldexp(x, -300), ldexp(y, -300), true); /* where bits go astray */
+    }
+}
+
+/* Whether [low, high] (nothing where low > high) lies in the part of [0,1] where c + s g >= 0; or,
+ * for part_within = true, that part in it. */
+static bool holds(struct clip clip, double c, double g, bool part_within)
+{
+    mpq_set_d(exact, c);
+    mpq_set_d(scratch[0], g);
+    mpq_add(exact, exact, scratch[0]); /* at s = 1 */
+    const bool at_start = c >= 0, at_end = mpq_sgn(exact) >= 0;
+    const bool nothing = clip.low > clip.high;
+    if (!at_start && !at_end)
+        return part_within || nothing;
+    if (nothing && !part_within)
+        return true;
+    bool good = true;
+    if (at_start) /* 0 is in the part */
+        good = part_within ? clip.low <= 0 : clip.low >= 0;
+    if (at_end)
+        good = good && (part_within ? clip.high >= 1 : clip.high <= 1);
+    if (at_start && at_end)
+        return good;
+    mpq_set_d(exact, -c);
+    mpq_div(exact, exact, scratch[0]); /* the end of the part: upper if at_start */
+    const int side = side_of(at_start ? clip.high : clip.low) * (at_start ? 1 : -1);
+    return good && (part_within ? side >= 0 : side <= 0);
+}
+
+static void cuts_are_outside_and_inside(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "cuts_are_outside_and_inside");
+    for (long n = draw_sample(300000); n > 0; n--) {
+        const double c = draw_between(&draw, -600, 600), g = draw_beside(&draw, c);
+        const bool rounds = draw_coin(&draw) || fabs(g) < 0x1p-700;
+        struct clip outer = {0, 1}, inner = {0, 1};
+        clip_cut(&outer, c, g, true, rounds);
+        clip_cut(&inner, c, g, false, rounds);
+        if (!holds(outer, c, g, true) || !holds(inner, c, g, false))
+            fail_msg("%a + s %a: outer [%a, %a], inner [%a, %a]", c, g, outer.low, outer.high,
+                     inner.low, inner.high);
+    }
+}
+
+/* Of an inequality known within errors: whichever of those within is the true one. */
+static void cuts_within_errors_are_outside_and_inside(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "cuts_within_errors_are_outside_and_inside");
+    for (long n = draw_sample(100000); n > 0; n--) {
+        struct inequality x = {.c = draw_between(&draw, -100, 100)};
+        x.g = draw_beside(&draw, x.c);
+        x.c_error = fabs(ldexp(x.c, -draw_int(&draw, 0, 60)));
+        x.g_error = fabs(ldexp(x.g, -draw_int(&draw, 0, 60)));
+        struct clip outer = {0, 1}, inner = {0, 1};
+        clip_both(&outer, &inner, &x, true);
+        const double c[] = {x.c - x.c_error, x.c, x.c + x.c_error};
+        const double g[] = {x.g - x.g_error, x.g, x.g + x.g_error};
+        for (int i = 0; i < 9; i++) {
+            const double of_c = c[i % 3], of_g = g[i / 3];
+            if (!holds(outer, of_c, of_g, true) || !holds(inner, of_c, of_g, false))
+                fail_msg("%a (%a) + s %a (%a): outer [%a, %a], inner [%a, %a], not of %a, %a", x.c,
+                         x.c_error, x.g, x.g_error, outer.low, outer.high, inner.low, inner.high,
+                         of_c, of_g);
+            if (never_holds(&x) && holds((struct clip){2, -1}, of_c, of_g, true) == false)
+                fail_msg("%a (%a) + s %a (%a) holds somewhere", x.c, x.c_error, x.g, x.g_error);
+            if (always_holds(&x) && !holds((struct clip){0, 1}, of_c, of_g, false))
+                fail_msg("%a (%a) + s %a (%a) does not hold", x.c, x.c_error, x.g, x.g_error);
+        }
+    }
+}
+
+/* ---- Contact and box ---- */
+
+static double draw_coordinate(struct draw *draw)
+{
+    return draw_between(draw, -2, 1);
+}
+
+static void draw_solid(struct draw *draw, struct solid *solid)
+{
+    for (int axis = 0; axis < solid->dim; axis++) {
+        for (int i = 0; i < solid->dim; i++)
+            solid->component[i][axis] = draw_coordinate(draw);
+        solid->origin[axis] = draw_coordinate(draw);
+        solid->velocity[axis] = draw_coordinate(draw);
+    }
+}
+
+/* A point of each in one place, at some time of the window or near it. */
+static void bring_together(struct draw *draw, struct question *question)
+{
+    const double tau = draw_int(draw, 0, 2) ? draw_uniform(draw, 0, 1) : draw_int(draw, 0, 1);
+    for (int axis = 0; axis < question->a.dim; axis++)
+        question->b.origin[axis] = question->a.origin[axis];
+    for (int i = 0; i < question->a.dim; i++) {
+        const double of_a = draw_int(draw, 0, 4) / 8.0, of_b = draw_int(draw, 0, 4) / 8.0;
+        for (int axis = 0; axis < question->a.dim; axis++)
+            question->b.origin[axis] +=
+                of_a * question->a.component[i][axis] - of_b * question->b.component[i][axis];
+    }
+    for (int axis = 0; axis < question->a.dim; axis++)
+        question->b.origin[axis] -=
+            tau * question->duration * (question->b.velocity[axis] - question->a.velocity[axis]);
+}
+
+static struct question draw_meeting(struct draw *draw)
+{
+    const int dim = draw_int(draw, 2, 3);
+    const bool moving = draw_int(draw, 0, 3) > 0;
+    struct question question = {{.dim = dim, .moving = moving}, {.dim = dim, .moving = moving}, 1};
+    question.a.shape = draw_coin(draw) ? FMB_CUBOID : FMB_TETRAHEDRON;
+    question.b.shape = draw_coin(draw) ? FMB_CUBOID : FMB_TETRAHEDRON;
+    draw_solid(draw, &question.a);
+    draw_solid(draw, &question.b);
+    if (draw_coin(draw))
+        question.duration = fabs(draw_between(draw, -3, 3)) + 0x1p-5;
+    return question;
+}
+
+static void as_it_comes(struct draw *draw, struct question *question)
+{
+    (void) draw, (void) question;
+}
+
+static void far_from_the_origin(struct draw *draw, struct question *question)
+{
+    for (int axis = 0; axis < question->a.dim; axis++) {
+        const double far = draw_between(draw, 0, 30);
+        question->a.origin[axis] += far;
+        question->b.origin[axis] += far;
+    }
+}
+
+static void fast(struct draw *draw, struct question *question)
+{
+    const int e = draw_int(draw, 1, 40);
+    for (int axis = 0; axis < question->a.dim; axis++)
+        question->b.velocity[axis] = ldexp(question->b.velocity[axis], e);
+}
+
+static void slow(struct draw *draw, struct question *question)
+{
+    const int e = draw_int(draw, 1, 60);
+    for (int axis = 0; axis < question->a.dim; axis++) {
+        question->a.velocity[axis] = ldexp(question->a.velocity[axis], -e);
+        question->b.velocity[axis] = ldexp(question->b.velocity[axis], -e);
+    }
+}
+
+static void thin(struct draw *draw, struct question *question)
+{
+    struct solid *solid = draw_coin(draw) ? &question->a : &question->b;
+    const int e = draw_int(draw, 1, 30);
+    for (int axis = 0; axis < question->a.dim; axis++)
+        solid->component[0][axis] = ldexp(solid->component[0][axis], -e);
+    if (draw_coin(draw)) /* or long, and nearly parallel to another */
+        for (int axis = 0; axis < question->a.dim; axis++)
+            solid->component[0][axis] += solid->component[1][axis];
+}
+
+static void nearly_parallel(struct draw *draw, struct question *question)
+{
+    const double turn = draw_between(draw, -40, -4);
+    for (int i = 0; i < question->a.dim; i++)
+        for (int axis = 0; axis < question->a.dim; axis++)
+            question->b.component[i][axis] =
+                question->a.component[i][axis] +
+                turn * question->a.component[(i + 1) % question->a.dim][axis];
+}
+
+static void nearly_equal_velocities(struct draw *draw, struct question *question)
+{
+    for (int axis = 0; axis < question->a.dim; axis++)
+        question->b.velocity[axis] =
+            question->a.velocity[axis] * (1 + draw_int(draw, -2, 2) * 0x1p-52);
+}
+
+static void along_the_axes(struct draw *draw, struct question *question)
+{
+    (void) draw;
+    for (int i = 0; i < question->a.dim; i++)
+        for (int axis = 0; axis < question->a.dim; axis++)
+            if (axis != i)
+                question->a.component[i][axis] = question->b.component[i][axis] = 0;
+}
+
+static void of_few_bits(struct draw *draw, struct question *question)
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < question->a.dim; axis++) {
+            for (int i = 0; i < question->a.dim; i++)
+                solids[f]->component[i][axis] = draw_int(draw, -8, 8) / 4.0;
+            solids[f]->velocity[axis] = draw_int(draw, -8, 8) / 4.0;
+            solids[f]->origin[axis] = draw_int(draw, -8, 8) / 4.0;
+        }
+    question->duration = draw_int(draw, 1, 8) / 4.0;
+}
+
+struct family {
+    const char *name;
+    void (*change)(struct draw *draw, struct question *question);
+    bool whole; /* origins are multiples of 1/8 */
+};
+
+static const struct family families[] = {
+    {"as_it_comes", as_it_comes, false},
+    {"far_from_the_origin", far_from_the_origin, false},
+    {"fast", fast, false},
+    {"slow", slow, false},
+    {"thin", thin, false},
+    {"nearly_parallel", nearly_parallel, false},
+    {"nearly_equal_velocities", nearly_equal_velocities, false},
+    {"along_the_axes", along_the_axes, false},
+    {"of_few_bits", of_few_bits, true},
+};
+
+struct tally {
+    long met, contacts, boxes;
+    double contact, box; /* how far out the worst end was */
+};
+
+/* *answer has the interval and the box of the exact method, which those of doubles replace. */
+static void ask_doubles(const struct ready *ready, const struct slabs_pair *slabs, bool rounds,
+                        struct dyadic_span span, struct fmb_answer *answer, bool good[2])
+{
+    struct fmb_answer doubles = *answer;
+    good[0] =
+        slabs->motion.drifts && contact_of(&ready->pair, slabs, rounds, span, doubles.contact);
+    good[1] = box_of(&ready->pair, slabs, rounds, doubles.box);
+    if (good[0])
+        memcpy(answer->contact, doubles.contact, sizeof answer->contact);
+    if (good[1])
+        memcpy(answer->box, doubles.box, sizeof answer->box);
+}
+
+/* rounds is what it is, or true, which holds for any pair. */
+static void compare(const struct question *question, const struct ready *ready, bool may_round,
+                    const struct oracle_answer *truth, struct tally *tally)
+{
+    struct slabs_pair slabs;
+    struct fmb_answer answer;
+    struct oracle_excess contact, box;
+    char why[200];
+    bool good[2];
+    if (!slabs_prepare(&ready->pair, &slabs))
+        return;
+    const struct dyadic_span span = limbs_span_of(&ready->pair);
+    const bool rounds = may_round || !limbs_never_round(&slabs, span);
+    referee_ask(question, &answer);
+    ask_doubles(ready, &slabs, rounds, span, &answer, good);
+    if (!oracle_agrees(truth, &ready->pair, &answer, ORACLE_DESIGN, why, sizeof why))
+        referee_fail(question, why);
+    oracle_measure(truth, &ready->pair, &answer, &contact, &box);
+    tally->met++;
+    tally->contacts += good[0];
+    tally->boxes += good[1];
+    tally->contact = fmax(tally->contact, contact.out);
+    tally->box = fmax(tally->box, box.out);
+}
+
+static void doubles_hold_contact_and_box(void **state)
+{
+    const struct family *family = *state;
+    struct draw draw;
+    struct oracle_answer truth;
+    struct tally tally = {0};
+    draw_begin(&draw, family->name);
+    oracle_init(&truth);
+    for (long n = draw_sample(2000); n > 0; n--) {
+        struct question question = draw_meeting(&draw);
+        struct ready ready;
+        family->change(&draw, &question);
+        bring_together(&draw, &question);
+        for (int axis = 0; family->whole && axis < question.a.dim; axis++)
+            question.b.origin[axis] = rint(8 * question.b.origin[axis]) / 8;
+        referee_ready(&question, &ready);
+        oracle_decide(&ready.pair, FMB_WANT_BOX, &truth);
+        if (truth.verdict == FMB_SEPARATED)
+            continue;
+        compare(&question, &ready, false, &truth, &tally);
+        compare(&question, &ready, true, &truth, &tally);
+    }
+    oracle_clear(&truth);
+    printf("# %s: %ld met, %ld contacts at most %.3g out, %ld boxes at most %.3g out\n",
+           family->name, tally.met, tally.contacts, tally.contact, tally.boxes, tally.box);
+    assert_true(tally.contacts > 0 && tally.boxes > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest numbers[] = {
+        cmocka_unit_test(sums_hold_the_exact_one),
+        cmocka_unit_test(sums_of_ranges_hold_those_of_their_ends),
+        cmocka_unit_test(products_hold_the_exact_one),
+        cmocka_unit_test(quotients_hold_the_exact_one),
+        cmocka_unit_test(cuts_are_outside_and_inside),
+        cmocka_unit_test(cuts_within_errors_are_outside_and_inside),
+    };
+    struct CMUnitTest tests[COUNT(numbers) + COUNT(families)];
+    memcpy(tests, numbers, sizeof numbers);
+    for (size_t i = 0; i < COUNT(families); i++)
+        tests[COUNT(numbers) + i] =
+            (struct CMUnitTest){.name = families[i].name,
+                                .test_func = doubles_hold_contact_and_box,
+                                .initial_state = (void *) (uintptr_t) &families[i]};
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
