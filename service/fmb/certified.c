@@ -79,6 +79,13 @@ static enum fmb_verdict verdict_of_outcome(enum slabs_outcome outcome)
     return FMB_TOUCHING;
 }
 
+static enum fmb_verdict exact_verdict(const struct fmb_pair *pair)
+{
+    struct fmb_answer answer = {0};
+    exact_decide(pair, 0, &answer);
+    return answer.verdict;
+}
+
 /* A slab in one limb costs no more than in doubles with a bound of its own. */
 static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
@@ -99,10 +106,8 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
         certified->path = CERTIFIED_LIMBS;
         return verdict_in_limbs(&limbs, open, count);
     }
-    struct fmb_answer answer = {0};
     certified->path = CERTIFIED_EXACT;
-    exact_decide(certified->pair, 0, &answer);
-    return answer.verdict;
+    return exact_verdict(certified->pair);
 }
 
 /* Components of few bits, as people write them: it is likely that nothing rounds, and then to be
@@ -141,10 +146,13 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
                       answer->contact);
 }
 
+/* Where frames only touch, and numbers round, doubles cannot be sure of a single common point. */
 static bool answer_box(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
     find_span(certified);
+    if (answer->verdict == FMB_TOUCHING && certified->rounds)
+        return false;
     return box_of(certified->pair, &certified->slabs, certified->rounds, answer->box);
 }
 
@@ -177,11 +185,14 @@ enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
     return FMB_OK;
 }
 
-enum certified_path certified_verdict_path(const struct fmb_pair *pair)
+enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path)
 {
     struct certified certified = {.pair = pair};
-    if (!slabs_prepare(pair, &certified.slabs))
-        return CERTIFIED_EXACT;
-    verdict_of(&certified);
-    return certified.path;
+    if (!slabs_prepare(pair, &certified.slabs)) {
+        *path = CERTIFIED_EXACT;
+        return exact_verdict(pair);
+    }
+    const enum fmb_verdict verdict = verdict_of(&certified);
+    *path = certified.path;
+    return verdict;
 }

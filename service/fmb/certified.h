@@ -30,7 +30,8 @@ enum certified_path {
     CERTIFIED_EXACT
 };
 
-enum certified_path certified_verdict_path(const struct fmb_pair *pair);
+/* The verdict of a checked pair, and who found it. */
+enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path);
 
 /* For a pair in contact that drifts: answer->contact. rounds: whether operations on these numbers
  * may round; span: of the pair. False if neither doubles nor limbs give it within its limit. */

@@ -76,7 +76,9 @@ static void judge_pair(struct measure *measure, const struct batch *batch, int i
     measure->truth[truth->verdict]++;
     measure->not_as_made +=
         measure->family->verdict != 0 && (int) truth->verdict != measure->family->verdict;
-    measure->path[certified_verdict_path(&trial->pair[0])]++;
+    enum certified_path path;
+    certified_verdict(&trial->pair[0], &path);
+    measure->path[path]++;
     for (int m = 0; m < trial_methods(); m++) {
         const struct fmb_method *method = fmb_method_at((size_t) m);
         struct tally *tally = &measure->method[m].tally;
