@@ -216,7 +216,13 @@ static void set_crossing(const struct boxing *boxing, const struct weighed *e,
     out->det_error = error_of(boxing, weighed_dot(ef.weight, boxing->drift.weight));
 }
 
-/* Where a parameter in [0,1], num / det, may lie. */
+/* Where a parameter in [0,1], num / det, may lie.
+ *
+ * Where the sign of det is not known it may have been turned the wrong way, and num with it; the
+ * true det is then no larger than what det is off by. That is less than 10/32 of det_error, and
+ * what num is off by less than 14/32 of error (of the 32 u in weighed_error(), so many are
+ * roundings of these), and det_error <= error, whose weight has all of the monomials of det in it.
+ * So a true num / det in [0,1] has |num| < error as it is found here, and is possible. */
 struct parameter {
     struct clip outer;
     bool possible, sure; /* in [0,1] */
@@ -239,13 +245,21 @@ static struct parameter parameter_of(const struct boxing *boxing, const struct c
     return out;
 }
 
+static struct range scaled(struct clip s, double x)
+{
+    return range_hull(range_product(s.low, x), range_product(s.high, x));
+}
+
 /* start + s edge + tau displacement along an axis. */
-static struct range point_range(const struct part *part, int vertex, const struct weighed *edge,
-                                struct clip s, struct clip tau, int axis)
+static struct range point_range(const struct boxing *boxing, const struct part *part, int vertex,
+                                const struct weighed *edge, struct clip s, struct clip tau,
+                                int axis)
 {
     const double e = edge->at[axis], v = part->displacement[axis];
     const struct range at = part->place[0][vertex][axis];
     const double slack = part->slack[axis];
+    if (!boxing->rounds)
+        return range_sum(range_sum(at, scaled(s, e)), scaled(tau, v));
     return (struct range){
         at.low + (range_least(s.low * e, s.high * e) + range_least(tau.low * v, tau.high * v)) -
             slack,
@@ -261,10 +275,12 @@ static void include_crossing(struct boxing *boxing, struct part_edge a, struct p
     const struct part *part = boxing->part;
     const bool sure = parameter[0].sure && parameter[1].sure && parameter[2].sure;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const struct range on_a = point_range(&part[0], a.start, &part[0].direction[a.direction],
-                                              parameter[1].outer, parameter[0].outer, axis);
-        const struct range on_b = point_range(&part[1], b.start, &part[1].direction[b.direction],
-                                              parameter[2].outer, parameter[0].outer, axis);
+        const struct range on_a =
+            point_range(boxing, &part[0], a.start, &part[0].direction[a.direction],
+                        parameter[1].outer, parameter[0].outer, axis);
+        const struct range on_b =
+            point_range(boxing, &part[1], b.start, &part[1].direction[b.direction],
+                        parameter[2].outer, parameter[0].outer, axis);
         const struct range both = {range_greatest(on_a.low, on_b.low),
                                    range_least(on_a.high, on_b.high)};
         include(boxing, axis, both, true, sure);
@@ -324,7 +340,8 @@ static bool include_crossings(struct boxing *boxing)
 /* ---- All of it ---- */
 
 /* Frames that do not drift have the same displacement, and their intersection moves by it. The
- * union holds the place where it starts too: an end only moves outward. */
+ * union holds the place where it starts too: an end only moves outward. (The inner ends are
+ * rounded, by less than the tenth of the limit that is left to such things.) */
 static void sweep(struct boxing *boxing)
 {
     const struct part *part = boxing->part;

@@ -161,14 +161,14 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair
     struct slabs slabs;
     struct times times;
     struct limbs_pair limbs;
+    if (pair->duration < least_duration)
+        return false;
     set_slabs(slabs_pair, rounds, &slabs);
     cut_all(&slabs, rounds, &times);
     if (rounds && (!good_end(&times, 0) || !good_end(&times, 1))) {
         refine(slabs_pair, &times, &slabs);
         cut_all(&slabs, rounds, &times);
     }
-    if (pair->duration < least_duration)
-        return false;
     contact[0] = seconds(times.outer.low, pair->duration, 0);
     contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))

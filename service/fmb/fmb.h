@@ -150,10 +150,11 @@ enum fmb_want { FMB_WANT_BOX = 1 };
  * Intervals and boxes of the methods certified and exact contain the exact ones. Those of exact are
  * the smallest of doubles that do: no end is farther off than the next double. Of those of
  * certified, an end of an interval is at most 1e-12 T too far out, and one of a box 1e-12 of the
- * largest magnitude of a coordinate of any vertex of either frame over the window; where numbers
- * have few bits, as people write them, ends are off by a few doubles or none. Both are the same
- * bits for the pair the other way round. An end of a box beyond the largest double is infinite,
- * with its sign. No number is -0. Those of fmb and sat are rounded as they come. */
+ * largest magnitude of a coordinate of any vertex of either frame over the window; in
+ * scenes of small whole numbers, halves and quarters most are the tightest. Both are the same bits
+ * for the pair the other way round and on every machine; another version of the library may give
+ * other ones within these limits. An end of a box beyond the largest double is infinite, with its
+ * sign. No number is -0. Those of fmb and sat are rounded as they come. */
 struct fmb_answer {
     enum fmb_verdict verdict;
     bool has_contact;           /* moving pair, touching or overlapping */

@@ -32,9 +32,10 @@
  * which is 16 times: its share of the result has a factor within (1 +- u)^16, and the sum an error
  * of at most 16.01 u 6 |u| |v| T < 97 u |u| |v| T. Maxima and minima do not round, and move by
  * no more than what they choose from. The bound 2^-46 |u| |v| T = 128 u |u| |v| T is itself
- * computed with at most 15 roundings, which takes less than 2^-49 of it. In 2D: two monomials,
- * rounded at most 3 + 2 + 1 + 1 + 3 = 10 times, 21 u |u| T against 32. (That of low, high, start
- * and slope alone is no larger.)
+ * computed with at most 15 roundings, which takes less than 2^-49 of it, and the sum of it and what
+ * it bounds rounds once more, by less than 7 u |u| |v| T: what is left of it covers both. In 2D:
+ * two monomials, rounded at most 3 + 2 + 1 + 1 + 3 = 10 times, 21 u |u| T against 32. (That of low,
+ * high, start and slope alone is no larger.)
  *
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.

@@ -16,14 +16,14 @@ struct weighed {
 
 /* Bounds the error of n . w, where n is a component turned by a right angle (2D), the cross product
  * of two edges, or the sum of three such (the last face of a tetrahedron), and w a vertex of one
- * frame seen from another, moving or not; weight is that of n . w, less than 2^602.
+ * frame seen from another, moving or not; weight is that of n . w, less than 2^610.
  *
  * A monomial is rounded at most 3 times before (offset once, drift twice), once in each edge that
  * is a difference, 2 times in a cross product, 2 in the sum of three normals, 3 in a dot product,
  * 4 in sums of components and motion, 2 where a bound is taken from it: 18 times, if all of these
  * applied to one. 2^-48 = 32 u leaves room for the rounding of the weight and of what the bound is
  * added to. Underflow: at most 2^8 operations, each off by less than 2^-1074, some of them
- * multiplied by at most 2^401 later (slabs.c): less than 2^-660. */
+ * multiplied later by at most two lengths, of 2^204 each at most: less than 2^-660. */
 static inline double weighed_error(double weight)
 {
     return 0x1p-48 * weight + 0x1p-660;
