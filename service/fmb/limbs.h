@@ -20,7 +20,7 @@ typedef uint64_t limbs_length[LIMBS_MAX];
 struct limbs_pair {
     const struct fmb_body *body[2];
     bool drifts;
-    int limbs;                                           /* of a length: 1, 2 or 4 */
+    int limbs;                                           /* of a length: 1, 2, 4 or 8 */
     limbs_length component[2][FMB_DIM_MAX][FMB_DIM_MAX]; /* [frame][component][axis] */
     limbs_length offset[FMB_DIM_MAX], drift[FMB_DIM_MAX];
 };

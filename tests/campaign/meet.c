@@ -121,7 +121,7 @@ static struct solid draw_lattice_solid(struct draw *draw, const struct cell *cel
 {
     struct solid solid = {.dim = cell->dim, .shape = cell->shape[side]};
     for (int i = 0; i < solid_count(&solid); i++) {
-        vector_draw_integers(draw, cell->dim, (int) most, solid.component[i]);
+        draw_integers(draw, cell->dim, -(int) most, (int) most, solid.component[i]);
         for (int axis = 0; axis < cell->dim; axis++)
             solid.component[i][axis] *= ratio;
     }
@@ -151,7 +151,7 @@ static void span_plane(struct draw *draw, struct features features, double scale
     for (int i = 0; i < 2; i++) {
         memset(along[i], 0, sizeof along[i]);
         if (i < dim - 1)
-            vector_draw_integers(draw, dim, 9, along[i]);
+            draw_integers(draw, dim, -9, 9, along[i]);
     }
     draw_edges(draw, host, edge);
     for (int i = 0; i < features.one && i < dim - 1; i++)
@@ -172,7 +172,7 @@ static void bring_together_exactly(struct draw *draw, struct question *question,
     double point[2][FMB_DIM_MAX];
     for (int side = 0; side < 2; side++)
         draw_within(draw, count[side], vertex[side], point[side]);
-    vector_draw_integers(draw, question->a.dim, 9, question->a.origin);
+    draw_integers(draw, question->a.dim, -9, 9, question->a.origin);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         question->b.origin[axis] = question->a.origin[axis] + point[0][axis] - point[1][axis];
 }

@@ -51,9 +51,9 @@ static void draw_velocities(struct draw *draw, const struct cell *cell, struct q
     question->a.moving = who & 1;
     question->b.moving = who & 2;
     if (question->a.moving)
-        vector_draw_integers(draw, cell->dim, 2, question->a.velocity);
+        draw_integers(draw, cell->dim, -2, 2, question->a.velocity);
     if (question->b.moving)
-        vector_draw_integers(draw, cell->dim, 2, question->b.velocity);
+        draw_integers(draw, cell->dim, -2, 2, question->b.velocity);
 }
 
 /* ---- Flat ---- */
@@ -63,7 +63,7 @@ static void draw_of_rank(struct draw *draw, int rank, struct solid *solid)
 {
     double basis[FMB_DIM_MAX][FMB_DIM_MAX] = {{0}};
     for (int r = 0; r < rank; r++)
-        vector_draw_integers(draw, solid->dim, 4, basis[r]);
+        draw_integers(draw, solid->dim, -4, 4, basis[r]);
     for (int i = 0; i < solid_count(solid); i++)
         for (int axis = 0; axis < solid->dim; axis++) {
             solid->component[i][axis] = 0;
@@ -79,7 +79,7 @@ static void draw_flat(struct draw *draw, const struct cell *cell, int rank_a, in
     begin(cell, out);
     draw_of_rank(draw, rank_a, &out->a);
     draw_of_rank(draw, rank_b, &out->b);
-    vector_draw_integers(draw, cell->dim, 5, out->a.origin);
+    draw_integers(draw, cell->dim, -5, 5, out->a.origin);
     draw_velocities(draw, cell, out);
     const double time = draw_int(draw, 0, 2) / 2.0;
     bring_into_contact(draw, time, out);

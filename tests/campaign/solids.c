@@ -33,12 +33,6 @@ double vector_length(const double *vector)
     return most * sqrt(vector_dot(part, part));
 }
 
-void vector_draw_integers(struct draw *draw, int dim, int most, double *vector)
-{
-    for (int axis = 0; axis < dim; axis++)
-        vector[axis] = draw_int(draw, -most, most);
-}
-
 /* ---- Solids ---- */
 
 struct solid *question_solid(struct question *question, int side)

@@ -10,7 +10,6 @@ double vector_dot(const double *u, const double *v);
 void vector_cross(const double *u, const double *v, double *out);
 void vector_add(double *to, double times, const double *vector);
 double vector_length(const double *vector);
-void vector_draw_integers(struct draw *draw, int dim, int most, double *vector); /* +-most */
 
 /* A for side 0, B for 1. */
 struct solid *question_solid(struct question *question, int side);

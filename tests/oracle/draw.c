@@ -46,6 +46,12 @@ int draw_int(struct draw *draw, int least, int most)
     return least + (int) ((draw_bits(draw) >> 32) * width >> 32);
 }
 
+void draw_integers(struct draw *draw, int dim, int least, int most, double *vector)
+{
+    for (int axis = 0; axis < dim; axis++)
+        vector[axis] = draw_int(draw, least, most);
+}
+
 double draw_uniform(struct draw *draw, double least, double most)
 {
     return least + (most - least) * ((double) (draw_bits(draw) >> 11) * 0x1p-53);

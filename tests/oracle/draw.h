@@ -20,6 +20,8 @@ long draw_sample(long usual);
 uint64_t draw_bits(struct draw *draw);
 bool draw_coin(struct draw *draw);
 int draw_int(struct draw *draw, int least, int most); /* both included */
+/* A vector of them. */
+void draw_integers(struct draw *draw, int dim, int least, int most, double *vector);
 double draw_uniform(struct draw *draw, double least, double most);
 double draw_log(struct draw *draw, int least, int most); /* +-[1,2) 2^e, e from least to most */
 double draw_finite(struct draw *draw); /* any finite double, each pattern as likely */

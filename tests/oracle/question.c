@@ -43,6 +43,18 @@ struct question question_swapped(const struct question *question)
     return swapped;
 }
 
+enum fmb_shape question_draw_shape(struct draw *draw, int dim)
+{
+    return (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
+}
+
+void question_draw_movers(struct draw *draw, struct question *question)
+{
+    const int who = draw_int(draw, 0, 3);
+    question->a.moving = who & 1;
+    question->b.moving = who & 2;
+}
+
 static void print_vector(const double *number)
 {
     printf("{%a, %a, %a}", number[0], number[1], number[2]);

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "draw.h"
 #include "fmb.h"
 
 struct solid {
@@ -31,6 +32,12 @@ void question_pair(const struct question *question, struct fmb_body body[2], str
 
 /* The same question with a and b in each other's place. */
 struct question question_swapped(const struct question *question);
+
+/* Any shape of the dimension. */
+enum fmb_shape question_draw_shape(struct draw *draw, int dim);
+
+/* Who carries a velocity: A, B or both; or, one time in four, none. */
+void question_draw_movers(struct draw *draw, struct question *question);
 
 /* Prints it to standard output as a C initialiser, in hexadecimal: a reproducer that can be
  * pasted into a test. */

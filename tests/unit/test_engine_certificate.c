@@ -26,32 +26,13 @@ static const enum fmb_verdict verdicts[] = {FMB_SEPARATED, FMB_TOUCHING, FMB_OVE
 
 /* ---- Questions ---- */
 
-static enum fmb_shape draw_shape(struct draw *draw, int dim)
-{
-    return (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
-}
-
-static void draw_integers(struct draw *draw, int dim, int most, double *vector)
-{
-    for (int axis = 0; axis < dim; axis++)
-        vector[axis] = draw_int(draw, -most, most);
-}
-
 static struct solid draw_integer_solid(struct draw *draw, int dim, int most)
 {
-    struct solid solid = {.dim = dim, .shape = draw_shape(draw, dim)};
+    struct solid solid = {.dim = dim, .shape = question_draw_shape(draw, dim)};
     for (int i = 0; i < solid_count(&solid); i++)
-        draw_integers(draw, dim, most, solid.component[i]);
-    draw_integers(draw, dim, most, solid.origin);
+        draw_integers(draw, dim, -most, most, solid.component[i]);
+    draw_integers(draw, dim, -most, most, solid.origin);
     return solid;
-}
-
-/* Who carries a velocity: A, B or both; or, one time in four, none. */
-static void draw_who_moves(struct draw *draw, struct question *question)
-{
-    const int who = draw_int(draw, 0, 3);
-    question->a.moving = who & 1;
-    question->b.moving = who & 2;
 }
 
 /* Small whole numbers throughout, the window included. */
@@ -60,9 +41,9 @@ static void small_world(struct draw *draw, struct question *question)
     const int dim = draw_int(draw, 2, 3), most = draw_int(draw, 1, 3);
     *question = (struct question){draw_integer_solid(draw, dim, most),
                                   draw_integer_solid(draw, dim, most), draw_int(draw, 0, 2)};
-    draw_who_moves(draw, question);
-    draw_integers(draw, dim, most, question->a.velocity);
-    draw_integers(draw, dim, most, question->b.velocity);
+    question_draw_movers(draw, question);
+    draw_integers(draw, dim, -most, most, question->a.velocity);
+    draw_integers(draw, dim, -most, most, question->b.velocity);
 }
 
 /* A vector of the space that the first rank vectors of the basis span. */
@@ -85,7 +66,7 @@ static void flat(struct draw *draw, struct question *question)
         struct solid *solid = side == 0 ? &question->a : &question->b;
         double basis[FMB_DIM_MAX][FMB_DIM_MAX];
         for (int r = 0; r < FMB_DIM_MAX; r++)
-            draw_integers(draw, solid->dim, 2, basis[r]);
+            draw_integers(draw, solid->dim, -2, 2, basis[r]);
         const int rank = draw_int(draw, 0, solid->dim - side);
         for (int i = 0; i < solid_count(solid); i++)
             draw_within(draw, solid->dim, basis, rank, solid->component[i]);
@@ -99,7 +80,7 @@ static void flat_in_one_space(struct draw *draw, struct question *question)
     const int dim = question->a.dim, rank = draw_int(draw, 0, dim - 1);
     double basis[FMB_DIM_MAX][FMB_DIM_MAX];
     for (int r = 0; r < FMB_DIM_MAX; r++)
-        draw_integers(draw, dim, 2, basis[r]);
+        draw_integers(draw, dim, -2, 2, basis[r]);
     for (int side = 0; side < 2; side++) {
         struct solid *solid = side == 0 ? &question->a : &question->b;
         for (int i = 0; i < solid_count(solid); i++)
@@ -180,7 +161,7 @@ static void draw_numbers(struct draw *draw, int dim, double (*number)(struct dra
 
 static struct solid draw_solid(struct draw *draw, int dim, double (*number)(struct draw *))
 {
-    struct solid solid = {.dim = dim, .shape = draw_shape(draw, dim)};
+    struct solid solid = {.dim = dim, .shape = question_draw_shape(draw, dim)};
     for (int i = 0; i < solid_count(&solid); i++)
         draw_numbers(draw, dim, number, solid.component[i]);
     draw_numbers(draw, dim, number, solid.origin);
@@ -195,7 +176,7 @@ static void draw_pair(struct draw *draw, struct question *question, double (*num
     const int dim = draw_int(draw, 2, 3);
     *question = (struct question){draw_solid(draw, dim, number), draw_solid(draw, dim, number),
                                   durations[draw_int(draw, 0, (int) COUNT(durations) - 1)]};
-    draw_who_moves(draw, question);
+    question_draw_movers(draw, question);
     if (draw_coin(draw))
         bring_into_contact(draw, question);
     for (int axis = 0; axis < dim; axis++)
@@ -421,7 +402,7 @@ static void certificates_of_other_pairs_prove_no_wrong_verdict(void **state)
         size_t length;
         small_world(&draw, &question[0]);
         question[1] = question[0];
-        draw_integers(&draw, question[1].b.dim, 3, question[1].b.origin);
+        draw_integers(&draw, question[1].b.dim, -3, 3, question[1].b.origin);
         for (int i = 0; i < 2; i++) {
             referee_ready(&question[i], &ready[i]);
             verdict[i] = make(&question[i], &ready[i].pair, text[i], &length);

@@ -25,12 +25,6 @@ enum { TEXT_SIZE = 4000, WHY_SIZE = 200 };
 
 /* ---- Questions ---- */
 
-static void draw_integers(struct draw *draw, int dim, int most, double *vector)
-{
-    for (int axis = 0; axis < dim; axis++)
-        vector[axis] = draw_int(draw, -most, most);
-}
-
 /* One of its components may be a multiple of another one. */
 static struct solid draw_solid(struct draw *draw, int dim)
 {
@@ -39,15 +33,15 @@ static struct solid draw_solid(struct draw *draw, int dim)
         (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
     const int count = solid_count(&solid);
     for (int i = 0; i < count; i++)
-        draw_integers(draw, dim, 2, solid.component[i]);
+        draw_integers(draw, dim, -2, 2, solid.component[i]);
     if (draw_int(draw, 0, 2) == 0) {
         const int from = draw_int(draw, 0, count - 1), to = draw_int(draw, 0, count - 1);
         const int times = draw_int(draw, -2, 2);
         for (int axis = 0; axis < dim; axis++)
             solid.component[to][axis] = times * solid.component[from][axis];
     }
-    draw_integers(draw, dim, 2, solid.origin);
-    draw_integers(draw, dim, 2, solid.velocity);
+    draw_integers(draw, dim, -2, 2, solid.origin);
+    draw_integers(draw, dim, -2, 2, solid.velocity);
     solid.moving = draw_coin(draw);
     return solid;
 }

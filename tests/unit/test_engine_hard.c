@@ -23,22 +23,11 @@
 
 /* ---- Parts ---- */
 
-static enum fmb_shape draw_shape(struct draw *draw, int dim)
-{
-    return (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
-}
-
-static void draw_integers(struct draw *draw, int dim, int most, double *vector)
-{
-    for (int axis = 0; axis < dim; axis++)
-        vector[axis] = draw_int(draw, -most, most);
-}
-
 static struct solid draw_integer_solid(struct draw *draw, int dim, int most)
 {
-    struct solid solid = {.dim = dim, .shape = draw_shape(draw, dim)};
+    struct solid solid = {.dim = dim, .shape = question_draw_shape(draw, dim)};
     for (int i = 0; i < solid_count(&solid); i++)
-        draw_integers(draw, dim, most, solid.component[i]);
+        draw_integers(draw, dim, -most, most, solid.component[i]);
     return solid;
 }
 
@@ -51,14 +40,6 @@ static double draw_duration(struct draw *draw)
 static int draw_dim(struct draw *draw)
 {
     return draw_int(draw, 2, 3);
-}
-
-/* Who carries a velocity: A, B or both; or, one time in four, none. */
-static void draw_who_moves(struct draw *draw, struct question *question)
-{
-    int who = draw_int(draw, 0, 3);
-    question->a.moving = who & 1;
-    question->b.moving = who & 2;
 }
 
 /* A point of the shape, relative to its origin: parameters that are eighths, often at their
@@ -130,7 +111,7 @@ static void draw_direction(struct draw *draw, const struct question *question, d
     const struct solid *other = draw_coin(draw) ? &question->a : &question->b;
     const double *u = draw_component(draw, one), *v = draw_component(draw, other);
     if (draw_int(draw, 0, 3) == 0)
-        draw_integers(draw, one->dim, 3, n);
+        draw_integers(draw, one->dim, -3, 3, n);
     else if (one->dim == 3)
         cross(u, v, n);
     else
@@ -187,7 +168,7 @@ static void draw_touching(struct draw *draw, struct question *question, double *
         memset(n, 0, FMB_DIM_MAX * sizeof n[0]);
         question->a = draw_integer_solid(draw, dim, most);
         question->b = draw_integer_solid(draw, dim, most);
-        draw_integers(draw, dim, 9, question->a.origin);
+        draw_integers(draw, dim, -9, 9, question->a.origin);
         draw_direction(draw, question, n);
     } while (lies_across(&question->a, n)); /* a zero direction too */
     double point_a[FMB_DIM_MAX], point_b[FMB_DIM_MAX];
@@ -227,7 +208,7 @@ static void touch_at(struct draw *draw, struct question *question, const double 
     question->a.moving = draw_coin(draw);
     question->b.moving = true;
     if (question->a.moving)
-        draw_integers(draw, question->a.dim, 3, both);
+        draw_integers(draw, question->a.dim, -3, 3, both);
     for (int axis = 0; axis < question->a.dim; axis++) {
         question->a.velocity[axis] = both[axis];
         question->b.velocity[axis] = both[axis] + w[axis];
@@ -246,7 +227,7 @@ static void sliding(struct draw *draw, struct question *question)
 {
     double n[FMB_DIM_MAX], any[FMB_DIM_MAX], w[FMB_DIM_MAX] = {0};
     draw_touching(draw, question, n);
-    draw_integers(draw, question->a.dim, 2, any);
+    draw_integers(draw, question->a.dim, -2, 2, any);
     if (question->a.dim == 3)
         cross(n, any, w);
     else
@@ -261,7 +242,7 @@ static void at_the_window_s_end(struct draw *draw, struct question *question)
     double n[FMB_DIM_MAX], w[FMB_DIM_MAX];
     draw_touching(draw, question, n);
     do {
-        draw_integers(draw, question->a.dim, 3, w);
+        draw_integers(draw, question->a.dim, -3, 3, w);
     } while (dot(n, w, question->a.dim) == 0);
     bool away = dot(n, w, question->a.dim) > 0;
     touch_at(draw, question, w,
@@ -276,9 +257,9 @@ static void overlap_then_recede(struct draw *draw, struct question *question)
     *question = (struct question){.a = draw_integer_solid(draw, dim, 4),
                                   .b = draw_integer_solid(draw, dim, 4)};
     bring_into_contact(draw, question);
-    draw_who_moves(draw, question);
-    draw_integers(draw, dim, 2, question->a.velocity);
-    draw_integers(draw, dim, 5, question->b.velocity);
+    question_draw_movers(draw, question);
+    draw_integers(draw, dim, -2, 2, question->a.velocity);
+    draw_integers(draw, dim, -5, 5, question->b.velocity);
     question->duration = draw_duration(draw);
 }
 
@@ -287,7 +268,7 @@ static void flatten(struct draw *draw, struct solid *solid, int rank)
 {
     double basis[FMB_DIM_MAX][FMB_DIM_MAX] = {{0}};
     for (int r = 0; r < rank; r++)
-        draw_integers(draw, solid->dim, 2, basis[r]);
+        draw_integers(draw, solid->dim, -2, 2, basis[r]);
     for (int i = 0; i < solid_count(solid); i++)
         for (int axis = 0; axis < solid->dim; axis++) {
             solid->component[i][axis] = 0;
@@ -320,7 +301,7 @@ static void flat_in_one_plane(struct draw *draw, struct question *question)
 
 static struct solid draw_solid(struct draw *draw, int dim, double (*number)(struct draw *))
 {
-    struct solid solid = {.dim = dim, .shape = draw_shape(draw, dim)};
+    struct solid solid = {.dim = dim, .shape = question_draw_shape(draw, dim)};
     for (int axis = 0; axis < dim; axis++) {
         solid.origin[axis] = number(draw);
         solid.velocity[axis] = number(draw);
@@ -335,7 +316,7 @@ static void draw_pair(struct draw *draw, struct question *question, double (*num
     const int dim = draw_dim(draw);
     *question = (struct question){draw_solid(draw, dim, number), draw_solid(draw, dim, number),
                                   draw_duration(draw)};
-    draw_who_moves(draw, question);
+    question_draw_movers(draw, question);
 }
 
 static double ordinary(struct draw *draw)

@@ -22,22 +22,16 @@
 
 /* ---- Questions ---- */
 
-static void draw_integers(struct draw *draw, int dim, int most, double *vector)
-{
-    for (int axis = 0; axis < dim; axis++)
-        vector[axis] = draw_int(draw, -most, most);
-}
-
 static struct solid draw_solid(struct draw *draw, int dim, bool moving)
 {
     struct solid solid = {.dim = dim, .moving = moving};
     solid.shape =
         (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);
     for (int i = 0; i < solid_count(&solid); i++)
-        draw_integers(draw, dim, 4, solid.component[i]);
-    draw_integers(draw, dim, 4, solid.origin);
+        draw_integers(draw, dim, -4, 4, solid.component[i]);
+    draw_integers(draw, dim, -4, 4, solid.origin);
     if (moving)
-        draw_integers(draw, dim, 3, solid.velocity);
+        draw_integers(draw, dim, -3, 3, solid.velocity);
     return solid;
 }
 

@@ -110,12 +110,6 @@ static void all_of_the_plane(void **state)
 
 /* ---- Samples ---- */
 
-static void draw_integers(struct draw *draw, int dim, int least, int most, double *vector)
-{
-    for (int axis = 0; axis < dim; axis++)
-        vector[axis] = draw_int(draw, least, most);
-}
-
 static struct solid draw_body(struct draw *draw, int dim)
 {
     struct solid solid = {.dim = dim};
