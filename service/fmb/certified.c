@@ -2,12 +2,15 @@
 
 #include "exact.h"
 #include "limbs.h"
+#include "run.h"
 
 #include <string.h>
 
 /* What is known of a pair, found when it is needed. */
 struct certified {
     const struct fmb_pair *pair;
+    struct fmb_prepared frame[2]; /* in the places that kind wants */
+    enum run_kind kind;
     struct slabs_pair slabs;
     bool span_known, rounds; /* rounds: operations on these numbers may round */
     struct dyadic_span span;
@@ -46,7 +49,7 @@ static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_no
     *separated = false;
     for (int i = 0; i < count && !*separated; i++) {
         struct inequality side[2];
-        if (slab_gap(&slab[i]) < -slab[i].error)
+        if (slab[i].error == 0 || slab_gap(&slab[i]) < -slab[i].error)
             continue;
         slab_inequalities(&slab[i], side);
         if (refine)
@@ -110,36 +113,59 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     return exact_verdict(certified->pair);
 }
 
-/* Components of few bits, as people write them: it is likely that nothing rounds, and then to be
- * known before the filter is asked in vain. */
-static bool is_plain(const struct fmb_body *body)
+/* False if doubles can say nothing of the pair. */
+static bool prepare(struct certified *certified)
 {
-    return body->bits[1] - body->bits[0] <= 24;
+    const struct fmb_pair *pair = certified->pair;
+    struct fmb_prepared *frame = certified->frame;
+    bool swapped;
+    if (!slabs_prepare(pair, &certified->slabs))
+        return false;
+    prepared_set(&pair->a, &frame[0]);
+    prepared_set(&pair->b, &frame[1]);
+    certified->kind = run_kind_of(&frame[0], &frame[1], pair->duration, &swapped);
+    if (swapped) {
+        prepared_set(&pair->b, &frame[0]);
+        prepared_set(&pair->a, &frame[1]);
+    }
+    return true;
 }
 
 /* On input: a pair that is prepared. */
 static enum fmb_verdict verdict_of(struct certified *certified)
 {
-    const struct slabs_pair *slabs = &certified->slabs;
     certified->path = CERTIFIED_FILTER;
-    if (is_plain(slabs->a) && is_plain(slabs->b)) {
-        find_span(certified);
-        if (!certified->rounds) {
-            certified->path = CERTIFIED_UNROUNDED;
-            return verdict_of_outcome(slabs_filter(slabs, false));
-        }
-    }
-    const enum slabs_outcome outcome = slabs_filter(slabs, true);
+    const enum slabs_outcome outcome =
+        run_alone(certified->kind, &certified->frame[0], &certified->frame[1],
+                  certified->pair->duration);
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
 }
 
-/* A pair that does not drift is in contact over the whole window. False: ask the exact method. */
+/* Components of few bits, as people write them: it is likely that nothing rounds, and the times are
+ * exact then. */
+static bool is_plain(const struct certified *certified)
+{
+    return prepared_kind(&certified->frame[0]) & prepared_kind(&certified->frame[1]) &
+           PREPARED_PLAIN;
+}
+
+/* A pair that does not drift is in contact over the whole window. False: ask the exact method.
+ * Which step gives the times depends on the numbers of the pair alone, so that they are the same
+ * bits wherever they are asked. */
 static bool answer_contact(struct certified *certified, struct fmb_answer *answer)
 {
+    const double duration = certified->pair->duration;
     answer->has_contact = true;
     answer->contact[0] = 0;
-    answer->contact[1] = certified->pair->duration + 0.0; /* never -0 */
+    answer->contact[1] = duration + 0.0; /* never -0 */
     if (!certified->slabs.motion.drifts)
+        return true;
+    const bool plain = is_plain(certified);
+    if (plain)
+        find_span(certified);
+    if ((!plain || certified->rounds) &&
+        run_times_alone(certified->kind, &certified->frame[0], &certified->frame[1], duration,
+                        answer->contact))
         return true;
     find_span(certified);
     return contact_of(certified->pair, &certified->slabs, certified->rounds, certified->span,
@@ -173,7 +199,7 @@ enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
     struct certified certified = {.pair = pair};
-    if (!slabs_prepare(pair, &certified.slabs))
+    if (!prepare(&certified))
         return exact_decide(pair, want, answer);
     answer->verdict = verdict_of(&certified);
     if (answer->verdict == FMB_SEPARATED)
@@ -188,7 +214,7 @@ enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
 enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path)
 {
     struct certified certified = {.pair = pair};
-    if (!slabs_prepare(pair, &certified.slabs)) {
+    if (!prepare(&certified)) {
         *path = CERTIFIED_EXACT;
         return exact_verdict(pair);
     }

@@ -66,7 +66,8 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(UNKNOWN_METHOD, 11, "unknown method")                      \
     X(UNKNOWN_WANT, 12, "wants what this version does not give") \
     X(CANNOT_DECIDE, 13,                                         \
-      "this method cannot decide this pair (a flat frame, or numbers out of its range)")
+      "this method cannot decide this pair (a flat frame, or numbers out of its range)")         \
+    X(NOT_SUPPORTED, 14, "this machine, or this build, does not have what was asked for")
 
 enum fmb_status {
 #define X(name, number, text) FMB_##name = number,
@@ -114,6 +115,7 @@ struct fmb_body {
     double extent[2][FMB_DIM_MAX];
     bool in_range;
     int bits[2];
+    unsigned long long head; /* of frames with this body at rest, prepared (below) */
 };
 
 /* On input: dim; shape; count numbers, components one after the other, number
@@ -194,6 +196,71 @@ const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default
  * UNKNOWN_WANT, CANNOT_DECIDE. */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pair *pair,
                            unsigned want, struct fmb_answer *answer);
+
+/* ---- Many pairs at once ----
+ *
+ * Frames are prepared once, and then pairs of them asked by index, thousands at a time:
+ *
+ *     struct fmb_prepared *frames = aligned_alloc(64, count * sizeof *frames);
+ *     for (size_t i = 0; i < count; i++)
+ *         fmb_prepare(&frame[i], &frames[i]);
+ *     struct fmb_batch batch = {.frames = frames, .frame_count = count, .pairs = pairs,
+ *                               .pair_count = n, .duration = 1, .verdicts = verdicts};
+ *     fmb_decide_batch(&batch);
+ *
+ * The answers are those of the method certified, bit for bit, whatever the instructions and the
+ * number of threads. */
+
+/* A frame made ready: all that is asked of it in two cache lines, if it lies at a multiple of 64
+ * bytes (any address that doubles may have is good). It holds no pointer: the body need not
+ * outlive it. Fill it with fmb_prepare() only. */
+struct fmb_prepared {
+    unsigned long long head; /* its kind and sizes (prepared.h) */
+    /* 3D: origin, components one after the other, velocity; 2D the same with two numbers for three,
+     * and the rest 0. Of a frame that is not moving, the velocity is 0. */
+    double number[15];
+};
+
+/* On output: OK, or NOT_FINITE and *out all 0: pairs with it are refused. */
+enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out);
+
+/* The verdict of one pair, certified; 0 where it is refused: dimensions that differ, a duration
+ * that is negative or not finite, a frame that was not prepared. */
+enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                          double duration);
+
+/* Instruction sets that the batch is compiled for. FMB_BEST: the best that this machine has, asked
+ * at run time. */
+enum fmb_instructions { FMB_BEST = 0, FMB_PLAIN = 1, FMB_SSE2 = 2, FMB_AVX2 = 3, FMB_AVX512 = 4 };
+
+/* "best", "plain", "sse2", "avx2", "avx512"; NULL for another number. Static. */
+const char *fmb_instructions_name(int instructions);
+
+/* Whether this machine has them, and the library was compiled for them. */
+bool fmb_instructions_supported(int instructions);
+
+/* What fmb_decide_batch() is asked, and where it puts the answers. Arrays are the caller's. */
+struct fmb_batch {
+    const struct fmb_prepared *frames; /* [frame_count] */
+    size_t frame_count;
+    const unsigned (*pairs)[2]; /* [pair_count][a, b], indices of frames */
+    size_t pair_count;
+    double duration;         /* T of all pairs, seconds */
+    unsigned char *verdicts; /* [pair_count]: enum fmb_verdict; 0 where the pair is refused */
+    /* [pair_count][first, last], or NULL; as fmb_answer.contact. NAN where there is none: separated
+     * pairs, static ones, refused ones. */
+    double (*contacts)[2];
+    /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN where there is none. */
+    double (*boxes)[2][FMB_DIM_MAX];
+    enum fmb_instructions instructions; /* 0: the best */
+    int threads; /* 0 or 1: the calling one alone. More need a library built with OPENMP=1 */
+};
+
+/* On output: OK; or the status of the first pair that was refused (DIMENSIONS_DIFFER, NOT_FINITE
+ * for a frame that is not prepared, OVER_LIMIT for an index beyond frame_count), all others having
+ * been decided; or a status of the whole, and nothing written: BAD_DURATION, NOT_SUPPORTED for
+ * instructions or threads that are not there. */
+enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
 
 /* ---- Certificates ----
  *

@@ -2,6 +2,7 @@
 
 #include "exact.h"
 #include "integer.h"
+#include "prepared.h"
 
 #include <float.h>
 #include <math.h>
@@ -99,28 +100,34 @@ static void invert(struct fmb_body *body)
 }
 
 /* Sizes whose products of four, sums of a few dozen of them and 2^-53 of those neither overflow
- * nor lose bits to underflow. */
-static const double least_size = 0x1p-200, largest_size = 0x1p200;
+ * nor lose bits to underflow; and no number so small that a product of two underflows. */
+static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
-static void measure(struct fmb_body *body)
+static void measure_number(struct fmb_body *body, int i, int axis, struct dyadic_span *span)
+{
+    const double c = body->component[i][axis];
+    const bool cuboid = body->shape == FMB_CUBOID;
+    double *low = &body->extent[0][axis], *high = &body->extent[1][axis];
+    *low = cuboid ? *low + fmin(0, c) : fmin(*low, c);
+    *high = cuboid ? *high + fmax(0, c) : fmax(*high, c);
+    body->size[i] = fmax(body->size[i], fabs(c));
+    body->in_range = body->in_range && (c == 0 || fabs(c) >= least_number);
+    dyadic_span_add(span, dyadic_of(c));
+}
+
+void body_measure(struct fmb_body *body)
 {
     struct dyadic_span span = dyadic_span_begin();
     body->in_range = !body->flat;
     for (int i = 0; i < body->count; i++) {
-        for (int axis = 0; axis < body->dim; axis++) {
-            double c = body->component[i][axis];
-            bool cuboid = body->shape == FMB_CUBOID;
-            double *low = &body->extent[0][axis], *high = &body->extent[1][axis];
-            *low = cuboid ? *low + fmin(0, c) : fmin(*low, c);
-            *high = cuboid ? *high + fmax(0, c) : fmax(*high, c);
-            body->size[i] = fmax(body->size[i], fabs(c));
-            dyadic_span_add(&span, dyadic_of(c));
-        }
+        for (int axis = 0; axis < body->dim; axis++)
+            measure_number(body, i, axis, &span);
         body->in_range =
             body->in_range && body->size[i] >= least_size && body->size[i] <= largest_size;
     }
     body->bits[0] = (int) span.unit;
     body->bits[1] = (int) span.top;
+    body->head = prepared_head_of(body);
 }
 
 enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
@@ -143,7 +150,7 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
     for (int i = 0; i < vectors; i++)
         memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
     invert(out);
-    measure(out);
+    body_measure(out);
     return FMB_OK;
 }
 

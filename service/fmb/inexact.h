@@ -12,6 +12,11 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
 /* The article's comparator, the separating axis theorem (sat.c). No box. */
 enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);
 
+/* The same, told no more than whether they meet: the yardstick of the benchmark.
+ * On input: of one dimension, both usable (PREPARED_USABLE), and the duration is legal. Where
+ * numbers overflow the answer may be either. */
+bool sat_meets(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration);
+
 /* Bounds of one variable, from inequalities that come in one by one: of the time of a moving
  * pair in windows (tau = t / T), or of the last parameter of a static one. [0] lower, [1]
  * upper. */

@@ -141,19 +141,24 @@ static double greatest(double x, double y)
     return x > y ? x : y;
 }
 
-/* A gap of slabs.c is a sum of monomials u_i v_j w_k of lengths, integers in units; its partial
- * sums are integers of at most 6 |u| |v| T (slabs.c), with |u| and |v| at most twice the largest
- * size. Integers up to 2^53 are doubles, and so are smaller multiples of larger units. The same
- * holds for what offset, drift and extents are computed from. */
+/* A gap of slabs.c is a sum of monomials u_i v_j w_k of lengths; its partial sums are at most
+ * 6 |u| |v| T, in largest magnitudes. In units of the pair, with s the largest size and R the sum
+ * of all (reach): two cuboids have |u|, |v| <= s and T <= 2 R, all of them integers. Else edges may
+ * be differences of doubled components, |u|, |v| <= 4 s, or the half of a drift not an integer:
+ * in halves of the unit all are integers, and |u|, |v| <= 4 s, T <= 2 R there too. Integers up to
+ * 2^53 are doubles, and so are smaller multiples of larger units. The same holds for what offset,
+ * drift and extents are computed from. */
 bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
 {
     if (span.top - span.unit > 50)
         return false;
+    const bool cuboids = pair->a->shape == FMB_CUBOID && pair->b->shape == FMB_CUBOID;
     double largest = pair->drift_size;
     for (int i = 0; i < pair->a->dim; i++)
         largest = greatest(largest, greatest(pair->a->size[i], pair->b->size[i]));
     const double scaled = ldexp(largest, (int) -span.unit);
-    return 32 * scaled * scaled * ldexp(pair->reach, (int) -span.unit) < 0x1p53;
+    const double sum = 2 * ldexp(pair->reach, (int) -span.unit);
+    return (cuboids ? 6 : 6 * 16) * scaled * scaled * sum < 0x1p53;
 }
 
 /* out := x y 2^-unit, of n limbs. */

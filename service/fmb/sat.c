@@ -1,155 +1,388 @@
 /* The separating axis theorem, the article's comparator: two convex bodies are separated just
  * if they are so along one of the normals of their faces or of the planes of an edge of each
- * (Eberly and Schneider, the article's reference 1). Moving bodies: along each axis they are in
- * contact over an interval of time, and all of these must meet.
+ * (Eberly and Schneider, the article's reference 1). A body that moves sweeps a body too: its
+ * drift over the window is one more edge. When a moving pair is in contact is asked only where it
+ * is: along each axis over an interval of time, and all of these must meet.
  *
- * Coordinates are relative to the origin of a; no vertex is built: along an axis n a cuboid
- * extends from sum min(0, n . c_i) to sum max(0, n . c_i), a tetrahedron from
- * min(0, n . c_i) to max(0, n . c_i).
+ * All is doubled, and relative to the origin of a, or to the centre where a is a cuboid: along an
+ * axis n a cuboid extends to sum |n . c_i| on both sides of its centre, a sweep by w to |n . w| on
+ * both sides of its middle, a tetrahedron from min(0, n . 2 c_i) to max(0, n . 2 c_i) from its
+ * origin. No vertex is built. There is no branch but the way out at an axis that separates, and no
+ * division but for the interval. The kernel is made for each dimension, pair of shapes and motion
+ * by inlining.
  *
- * Accuracy: none is promised. Rounding decides near contact. */
+ * Accuracy: none is promised. Rounding decides near contact. But there alone: products that would
+ * be 0 if nothing rounded, as that of an edge with its own normal, are computed like the others.
+ * The normal of edges that are nearly parallel is made of rounding errors; it is a direction all
+ * the same, and extents along it are as good as along any other.
+ *
+ * This file is compiled with -ffinite-math-only -fno-signed-zeros (Makefile), so that least() and
+ * most() are one instruction. They change no bit of an answer of sat_decide(), where all numbers
+ * are finite and the sign of a 0 is not asked for. */
 #include "inexact.h"
+
+#ifndef __OPTIMIZE__ /* megabytes of it, for nothing */
+#define INLINED_NOT
+#endif
+#include "inlined.h"
+#include "prepared.h"
 
 #include <math.h>
 
+/* Of loops that are to stay loops: dozens of axes for dozens of kinds are much code. */
+#ifdef __clang__
+#define ROLL _Pragma("clang loop unroll(disable)")
+#else
+#define ROLL UNROLL(1)
+#endif
+
+/* Edges of a body: its components, of a simplex also their differences. */
 enum { EDGES_MAX = 6 };
 
-/* Directions of edges: the components, of a simplex also their differences. */
-struct edges {
-    int count;
-    double edge[EDGES_MAX][3];
+struct kind {
+    int dim;
+    bool a_simplex, b_simplex;
+    bool moving;
 };
 
-struct sat {
-    const struct fmb_body *a, *b;
-    struct relative_motion motion;
-    struct bounds bounds; /* of the time */
+/* All kinds, in the order of kind_index(). */
+#define KIND_MAP(X)                                                                         \
+    X(2, 0, 0, 0)                                                                           \
+    X(2, 0, 0, 1)                                                                           \
+    X(2, 0, 1, 0) X(2, 0, 1, 1) X(2, 1, 0, 0) X(2, 1, 0, 1) X(2, 1, 1, 0) X(2, 1, 1, 1)     \
+        X(3, 0, 0, 0) X(3, 0, 0, 1) X(3, 0, 1, 0) X(3, 0, 1, 1) X(3, 1, 0, 0) X(3, 1, 0, 1) \
+            X(3, 1, 1, 0) X(3, 1, 1, 1)
+
+static int kind_index(const struct kind kind)
+{
+    return (kind.dim == 3) << 3 | kind.a_simplex << 2 | kind.b_simplex << 1 | kind.moving;
+}
+
+/* In 2D the third number of a vector is not read. */
+struct sides {
+    double a[EDGES_MAX][3], b[EDGES_MAX][3]; /* edges; of a simplex doubled */
+    double offset[3];                        /* from a to b at first, doubled: see set_offset() */
+    double drift[3];                         /* of b against a over the window */
 };
 
-static void edges_of(const struct fmb_body *body, struct edges *out)
+enum purpose { WHETHER, VERDICT, WHEN };
+
+/* A search along one axis after the other. (The sides are no part of it: a compiler does not see
+ * through a struct with arrays that are indexed.) */
+struct search {
+    struct sides *sides;
+    struct kind kind;
+    enum purpose purpose;
+    bool touching;  /* so far */
+    double when[2]; /* tau of the first and the last contact so far, in windows */
+};
+
+INLINE double dot(const int dim, const double *u, const double *v)
 {
-    out->count = 0;
-    for (int i = 0; i < body->dim; i++, out->count++)
-        for (int axis = 0; axis < 3; axis++)
-            out->edge[out->count][axis] = body->component[i][axis];
-    if (body->shape == FMB_CUBOID)
-        return;
-    for (int i = 0; i < body->dim; i++)
-        for (int j = i + 1; j < body->dim; j++, out->count++)
-            for (int axis = 0; axis < 3; axis++)
-                out->edge[out->count][axis] = body->component[j][axis] - body->component[i][axis];
+    const double plane = u[0] * v[0] + u[1] * v[1];
+    return dim == 2 ? plane : plane + u[2] * v[2];
 }
 
-static double dot(const double u[3], const double v[3])
+INLINE double least(double x, double y)
 {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    return x < y ? x : y;
 }
 
-static void extent(const struct fmb_body *body, const double normal[3], double range[2])
+INLINE double most(double x, double y)
 {
-    range[0] = range[1] = 0;
-    for (int i = 0; i < body->dim; i++) {
-        double at = dot(normal, body->component[i]);
-        if (body->shape == FMB_CUBOID) {
-            range[0] += fmin(0, at);
-            range[1] += fmax(0, at);
-        } else {
-            range[0] = fmin(range[0], at);
-            range[1] = fmax(range[1], at);
-        }
+    return x > y ? x : y;
+}
+
+struct range {
+    double low, high;
+};
+
+INLINE struct range extent(const int dim, const bool simplex, const double (*edge)[3],
+                           const double *normal)
+{
+    double at[3] = {0};
+    UNROLL(3)
+    for (int i = 0; i < dim; i++)
+        at[i] = dot(dim, normal, edge[i]);
+    if (simplex) {
+        const double low = least(at[0], at[1]), high = most(at[0], at[1]);
+        return dim == 2 ? (struct range){least(low, 0), most(high, 0)}
+                        : (struct range){least(low, least(at[2], 0)), most(high, most(at[2], 0))};
     }
+    const double reach = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
+    return (struct range){-reach, reach};
 }
 
-/* Contact along the normal is while low <= start + tau slope <= high. False: never. */
-static bool meet_along(struct sat *sat, const double normal[3])
+/* The pair is in contact along the axis while low <= start + 2 tau slope <= high. A slope of 0
+ * says nothing of tau, as the verdict is known to be contact. */
+INLINE void narrow(struct search *search, struct range range, double start, double slope)
 {
-    if (normal[0] == 0 && normal[1] == 0 && normal[2] == 0)
+    const double still = slope == 0, rate = 2 * slope + still; /* never 0 */
+    const double low = (range.low - start) / rate, high = (range.high - start) / rate;
+    search->when[0] = most(search->when[0], still != 0 ? 0 : least(low, high));
+    search->when[1] = least(search->when[1], still != 0 ? 1 : most(low, high));
+}
+
+/* False: the axis separates. One of no length has no extent, and says nothing. */
+INLINE bool meet_along(struct search *search, const double *normal)
+{
+    const struct kind kind = search->kind;
+    const struct sides *sides = search->sides;
+    const struct range a = extent(kind.dim, kind.a_simplex, sides->a, normal);
+    const struct range b = extent(kind.dim, kind.b_simplex, sides->b, normal);
+    const struct range range = {a.low - b.high, a.high - b.low};
+    const double start = dot(kind.dim, normal, sides->offset);
+    const double slope = kind.moving ? dot(kind.dim, normal, sides->drift) : 0;
+    if (search->purpose == WHEN) {
+        narrow(search, range, start, slope);
         return true;
-    double of_a[2], of_b[2];
-    extent(sat->a, normal, of_a);
-    extent(sat->b, normal, of_b);
-    double low = of_a[0] - of_b[1], high = of_a[1] - of_b[0];
-    double start = dot(normal, sat->motion.offset);
-    double slope = sat->motion.moving ? dot(normal, sat->motion.drift) : 0;
-    if (slope == 0) {
-        if (start == low || start == high)
-            sat->bounds.no_interior = true;
-        return !(start < low || start > high);
     }
-    double enter = ((slope > 0 ? low : high) - start) / slope;
-    double leave = ((slope > 0 ? high : low) - start) / slope;
-    sat->bounds.strict[0] = fmax(sat->bounds.strict[0], enter);
-    sat->bounds.strict[1] = fmin(sat->bounds.strict[1], leave);
-    return bounds_verdict(&sat->bounds) != FMB_SEPARATED;
+    const double middle = start + slope, reach = fabs(slope);
+    const double low = range.low - reach, high = range.high + reach;
+    if (search->purpose == VERDICT)
+        search->touching |= (middle == low || middle == high) && low < high;
+    return !((middle < low) | (middle > high));
 }
 
-static bool meet_across(struct sat *sat, const double u[3], const double v[3])
+/* Along the normal of the plane of two edges; in 2D of the first. */
+INLINE bool meet_across(struct search *search, const double *u, const double *v)
 {
-    double normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                        u[0] * v[1] - u[1] * v[0]};
-    return meet_along(sat, normal);
+    if (search->kind.dim == 2)
+        return meet_along(search, (const double[3]){-u[1], u[0], 0});
+    return meet_along(search,
+                      (const double[3]){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                        u[0] * v[1] - u[1] * v[0]});
 }
 
-/* Edges of a tetrahedron: c0, c1, c2, c1 - c0, c2 - c0, c2 - c1. */
-static bool meet_across_faces(struct sat *sat, const struct edges *of)
+/* The faces that components span: in 2D, where a face is an edge, it stands alone. */
+INLINE bool meet_across_components(struct search *search, const double (*edge)[3])
 {
-    return meet_across(sat, of->edge[0], of->edge[1]) &&
-           meet_across(sat, of->edge[1], of->edge[2]) &&
-           meet_across(sat, of->edge[2], of->edge[0]) &&
-           (of->count == 3 || meet_across(sat, of->edge[3], of->edge[4]));
+    return meet_across(search, edge[0], edge[1]) &&
+           meet_across(search, edge[1], search->kind.dim == 2 ? edge[1] : edge[2]) &&
+           (search->kind.dim == 2 || meet_across(search, edge[2], edge[0]));
 }
 
-static bool meet_across_edges_2d(struct sat *sat, const struct edges *of)
+/* The face of a simplex opposite to its origin, and its other edges, which are set here: most
+ * pairs that are separated are known to be so before. */
+INLINE bool meet_across_last_face(struct search *search, const bool simplex, double (*edge)[3])
 {
-    for (int i = 0; i < of->count; i++) {
-        double normal[3] = {-of->edge[i][1], of->edge[i][0], 0};
-        if (!meet_along(sat, normal))
-            return false;
+    const int dim = search->kind.dim;
+    if (!simplex)
+        return true;
+    UNROLL(3)
+    for (int axis = 0; axis < dim; axis++) {
+        edge[dim][axis] = edge[1][axis] - edge[0][axis];
+        if (dim == 2)
+            continue;
+        edge[4][axis] = edge[2][axis] - edge[0][axis];
+        edge[5][axis] = edge[2][axis] - edge[1][axis];
+    }
+    return dim == 2 ? meet_across(search, edge[2], edge[2]) : meet_across(search, edge[3], edge[4]);
+}
+
+INLINE bool meet_across_edges(struct search *search, const double (*edge)[3], const int count,
+                              const double (*other)[3], const int other_count)
+{
+    ROLL for (int i = 0; i < count; i++)
+    {
+        ROLL for (int j = 0; j < other_count;
+                  j++) if (!meet_across(search, edge[i], other[j])) return false;
     }
     return true;
 }
 
-static bool meet(struct sat *sat)
+INLINE int edge_count(const bool simplex)
 {
-    struct edges of_a, of_b;
-    edges_of(sat->a, &of_a);
-    edges_of(sat->b, &of_b);
-    if (sat->a->dim == 2)
-        return meet_across_edges_2d(sat, &of_a) && meet_across_edges_2d(sat, &of_b);
-    if (!meet_across_faces(sat, &of_a) || !meet_across_faces(sat, &of_b))
-        return false;
-    for (int i = 0; i < of_a.count; i++)
-        for (int j = 0; j < of_b.count; j++)
-            if (!meet_across(sat, of_a.edge[i], of_b.edge[j]))
-                return false;
-    return true;
+    return simplex ? EDGES_MAX : 3;
 }
 
-static double largest_of(double largest, const double v[3])
+/* Along all axes of the bodies themselves. */
+INLINE bool meet_at_some_time(struct search *search)
 {
-    return fmax(largest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
+    const struct kind kind = search->kind;
+    struct sides *sides = search->sides;
+    return meet_across_components(search, sides->a) && meet_across_components(search, sides->b) &&
+           meet_across_last_face(search, kind.a_simplex, sides->a) &&
+           meet_across_last_face(search, kind.b_simplex, sides->b) &&
+           (kind.dim == 2 || meet_across_edges(search, sides->a, edge_count(kind.a_simplex),
+                                               sides->b, edge_count(kind.b_simplex)));
+}
+
+/* Along those that the drift adds. */
+INLINE bool meet_across_drift(struct search *search)
+{
+    const struct kind kind = search->kind;
+    const struct sides *sides = search->sides;
+    const double(*drift)[3] = &sides->drift;
+    if (!kind.moving)
+        return true;
+    if (kind.dim == 2)
+        return meet_across(search, *drift, *drift);
+    return meet_across_edges(search, sides->a, edge_count(kind.a_simplex), drift, 1) &&
+           meet_across_edges(search, sides->b, edge_count(kind.b_simplex), drift, 1);
+}
+
+INLINE bool meet(struct search *search)
+{
+    return meet_at_some_time(search) && meet_across_drift(search);
+}
+
+/* components: one after the other, stride numbers apart. */
+INLINE void set_components(const int dim, const bool simplex, const double *components,
+                           const int stride, double (*edge)[3])
+{
+    UNROLL(3)
+    for (int i = 0; i < dim; i++)
+        for (int axis = 0; axis < dim; axis++)
+            edge[i][axis] = (simplex ? 2 : 1) * components[i * stride + axis];
+}
+
+/* From origin to origin it is twice the difference, from and to centres less and more by the
+ * components. */
+INLINE void set_offset(const struct kind kind, const double *difference, struct sides *sides)
+{
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        double to_a = 0, to_b = 0;
+        for (int i = 0; i < kind.dim; i++) {
+            to_a += kind.a_simplex ? 0 : sides->a[i][axis];
+            to_b += kind.b_simplex ? 0 : sides->b[i][axis];
+        }
+        sides->offset[axis] = 2 * difference[axis] + (to_b - to_a);
+    }
+}
+
+/* ---- The verdict of prepared frames ---- */
+
+struct prepared_pair {
+    const struct fmb_prepared *a, *b;
+    double duration;
+};
+
+INLINE bool prepared_meets(const struct prepared_pair *pair, const struct kind kind)
+{
+    const int dim = kind.dim;
+    const double *a = pair->a->number, *b = pair->b->number;
+    double difference[3];
+    struct sides sides;
+    struct search search = {.sides = &sides, .kind = kind, .purpose = WHETHER};
+    UNROLL(3)
+    for (int axis = 0; axis < dim; axis++) {
+        const int velocity = dim + dim * dim + axis;
+        difference[axis] = b[axis] - a[axis];
+        if (kind.moving)
+            sides.drift[axis] = (b[velocity] - a[velocity]) * pair->duration;
+    }
+    set_components(dim, kind.a_simplex, a + dim, dim, sides.a);
+    set_components(dim, kind.b_simplex, b + dim, dim, sides.b);
+    set_offset(kind, difference, &sides);
+    return meet(&search);
+}
+
+#define X(dim, a, b, moving)                                                \
+    static bool meets_##dim##a##b##moving(const struct prepared_pair *pair) \
+    {                                                                       \
+        return prepared_meets(pair, (struct kind){dim, a, b, moving});      \
+    }
+KIND_MAP(X)
+#undef X
+
+bool sat_meets(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
+{
+#define X(dim, a, b, moving) meets_##dim##a##b##moving,
+    static bool (*const meets[])(const struct prepared_pair *pair) = {KIND_MAP(X)};
+#undef X
+    const struct prepared_pair pair = {a, b, duration};
+    const unsigned of_a = prepared_kind(a), of_b = prepared_kind(b);
+    const int dim = of_a & PREPARED_SPACE ? 3 : 2;
+    return meets[kind_index((struct kind){dim, of_a & PREPARED_TETRAHEDRON,
+                                          of_b & PREPARED_TETRAHEDRON,
+                                          (of_a | of_b) & PREPARED_MOVING})](&pair);
+}
+
+/* ---- The method ---- */
+
+struct question {
+    const struct fmb_pair *pair;
+    struct relative_motion motion;
+};
+
+/* Rounding may have put the first contact after the last one, or both out of the window. */
+static void answer_contact(const double when[2], double duration, struct fmb_answer *answer)
+{
+    const double middle = least(most((when[0] + when[1]) / 2, 0), 1);
+    const bool in_order = when[0] <= when[1];
+    answer->has_contact = true;
+    answer->contact[0] = (in_order ? when[0] : middle) * duration + 0.0; /* + 0.0: never -0 */
+    answer->contact[1] = (in_order ? when[1] : middle) * duration + 0.0;
+}
+
+INLINE void decide(const struct question *question, const struct kind kind,
+                   struct fmb_answer *answer)
+{
+    const struct fmb_pair *pair = question->pair;
+    struct sides sides;
+    struct search search = {.sides = &sides, .kind = kind, .purpose = VERDICT};
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        sides.drift[axis] = question->motion.drift[axis];
+    set_components(kind.dim, kind.a_simplex, pair->a.body->component[0], 3, sides.a);
+    set_components(kind.dim, kind.b_simplex, pair->b.body->component[0], 3, sides.b);
+    set_offset(kind, question->motion.offset, &sides);
+    answer->verdict = FMB_SEPARATED;
+    if (!meet(&search))
+        return;
+    answer->verdict = search.touching ? FMB_TOUCHING : FMB_OVERLAPPING;
+    if (!kind.moving)
+        return;
+    search.purpose = WHEN;
+    search.when[0] = 0;
+    search.when[1] = 1;
+    meet_at_some_time(&search);
+    answer_contact(search.when, pair->duration, answer);
+}
+
+#define X(dim, a, b, moving)                                                \
+    static void decide_##dim##a##b##moving(const struct question *question, \
+                                           struct fmb_answer *answer)       \
+    {                                                                       \
+        decide(question, (struct kind){dim, a, b, moving}, answer);         \
+    }
+KIND_MAP(X)
+#undef X
+
+static double largest_of(const double v[3], double largest)
+{
+    for (int axis = 0; axis < 3; axis++)
+        largest = most(fabs(v[axis]), largest);
+    return largest;
 }
 
 /* Products of three lengths, differences and sums of a few of them, must neither overflow nor all
  * vanish: the largest length of the pair has to be within 2^-300 and 2^300. */
-static bool in_range(const struct sat *sat)
+static bool in_range(const struct question *question)
 {
-    double largest = largest_of(largest_of(0, sat->motion.offset), sat->motion.drift);
+    double largest = largest_of(question->motion.offset, 0);
+    largest = largest_of(question->motion.drift, largest);
     for (int i = 0; i < 3; i++)
-        largest = largest_of(largest_of(largest, sat->a->component[i]), sat->b->component[i]);
+        largest =
+            most(most(question->pair->a.body->size[i], question->pair->b.body->size[i]), largest);
     return largest >= 0x1p-300 && largest <= 0x1p300;
 }
 
 enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
 {
+#define X(dim, a, b, moving) decide_##dim##a##b##moving,
+    static void (*const decide_kind[])(const struct question *question,
+                                       struct fmb_answer *answer) = {KIND_MAP(X)};
+#undef X
     (void) want;
-    struct sat sat = {.a = pair->a.body,
-                      .b = pair->b.body,
-                      .bounds = {.strict = {-INFINITY, INFINITY}, .closed = {0, 1}}};
-    if (sat.a->flat || sat.b->flat || !relative_motion_of(pair, &sat.motion) || !in_range(&sat))
+    struct question question = {.pair = pair};
+    if (pair->a.body->flat || pair->b.body->flat || !relative_motion_of(pair, &question.motion) ||
+        !in_range(&question))
         return FMB_CANNOT_DECIDE;
-    answer->verdict = meet(&sat) ? bounds_verdict(&sat.bounds) : FMB_SEPARATED;
-    if (answer->verdict != FMB_SEPARATED && sat.motion.moving)
-        bounds_answer_contact(&sat.bounds, pair->duration, answer);
+    decide_kind[kind_index((struct kind){pair->a.body->dim, pair->a.body->shape == FMB_TETRAHEDRON,
+                                         pair->b.body->shape == FMB_TETRAHEDRON,
+                                         question.motion.moving})](&question, answer);
     return FMB_OK;
 }

@@ -25,15 +25,14 @@
 #include "fmb.h"
 #include "relative.h"
 
-/* Bound on the error of everything that slabs.c computes of a slab in 3D, relative to its scale
- * (below). Derived in slabs.c; a smaller one gives wrong answers, a larger one more that are
- * unsure. */
+/* Bounds on the error of a gap, and of all that it is made of, in 3D and in 2D, relative to the
+ * scale of the slab; and along an axis, relative to the sum of all lengths. Derived in slabs.c: a
+ * smaller one gives wrong answers, a larger one more that are unsure. */
 #ifndef SLABS_ROUNDING
-#define SLABS_ROUNDING 0x1p-46
+#define SLABS_ROUNDING (22 * 0x1p-53)
 #endif
-
-/* In 2D, where the same is of lower degree. */
-#define SLABS_ROUNDING_2D (SLABS_ROUNDING / 4)
+#define SLABS_ROUNDING_2D (SLABS_ROUNDING * 6 / 11)
+#define SLABS_ROUNDING_AXES 0x1p-49
 
 /* A pair that doubles can say something of. */
 struct slabs_pair {
@@ -55,24 +54,30 @@ struct slab_normal {
     int u, v; /* edges; v is not used in 2D */
 };
 
-/* normal . w in [low, high] for w in D; along the way of the offset it goes from start to
- * start + slope. Each of the four is within error of what it stands for, and so is the gap. */
+/* normal . w in [low, high] for w in D, seen from the reference points of the frames (walk.h);
+ * along the way of the offset it goes from middle - swing to middle + swing. Each of the four is
+ * within error of what it stands for, and so is the gap. Where the normal is surely zero, error is
+ * 0, and so are the others. */
 struct slab_value {
     struct slab_normal normal;
-    double low, high, start, slope;
+    double low, high, middle, swing;
     double error;
 };
 
 /* How far the offset stays beyond a bound over the window; < 0: it comes inside. */
 static inline double slab_gap(const struct slab_value *slab)
 {
-    double least = slab->start + (slab->slope < 0 ? slab->slope : 0);
-    double most = slab->start + (slab->slope > 0 ? slab->slope : 0);
-    double above = least - slab->high, below = slab->low - most;
-    return above > below ? above : below;
+    const double above = slab->middle - slab->high, below = slab->low - slab->middle;
+    const double swing = slab->swing < 0 ? -slab->swing : slab->swing;
+    return (above > below ? above : below) - swing;
 }
 
-enum slabs_outcome { SLABS_SEPARATED, SLABS_OVERLAPPING, SLABS_UNSURE };
+/* Those that are verdicts have their numbers. */
+enum slabs_outcome {
+    SLABS_UNSURE = 0,
+    SLABS_SEPARATED = FMB_SEPARATED,
+    SLABS_OVERLAPPING = FMB_OVERLAPPING
+};
 
 /* The filter. rounds: whether an operation on these numbers may round; else every error is 0, and
  * unsure means touching. */

@@ -1,0 +1,336 @@
+/* Many pairs: sorted by kind within blocks, run through the filter side by side, and only those
+ * that it leaves open, and what else is wanted of contacts, one by one. */
+#include "certified.h"
+#include "run.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Pairs sorted at a time: their frames should stay in the first cache. */
+enum { BLOCK = 128 };
+
+/* What blocks have in common. */
+struct job {
+    const struct fmb_batch *batch;
+    run_function *const *verdicts, *const *times; /* of the instruction set */
+    unsigned char in_order[BLOCK];                /* 0, 1, 2, ... */
+};
+
+struct block {
+    const struct fmb_batch *batch;
+    size_t first, count; /* of the batch */
+    /* Sorted by kind, with room for what a run reads and writes beyond. */
+    const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
+    unsigned char start[RUN_REFUSED + 2]; /* of each kind */
+    unsigned char sorted[BLOCK];
+    const unsigned char *slot; /* whose pair it is, after first: sorted, or in_order */
+    unsigned char outcome[BLOCK + RUN_LANES];
+    double contact[BLOCK + RUN_LANES][2];
+    enum fmb_status status; /* of the first pair refused */
+};
+
+/* ---- Sorting ---- */
+
+/* In the place of a frame that is not there. */
+static const struct fmb_prepared nobody;
+
+static inline const struct fmb_prepared *frame_at(const struct fmb_batch *batch, unsigned index)
+{
+    return index < batch->frame_count ? &batch->frames[index] : &nobody;
+}
+
+/* Puts the pairs into the block, in the order of the batch. Returns whether their heads are all of
+ * the same kinds as those of the first. */
+static bool set_pairs(struct block *block)
+{
+    const struct fmb_batch *batch = block->batch;
+    const unsigned(*pairs)[2] = batch->pairs + block->first;
+    const unsigned first_a = prepared_kind(frame_at(batch, pairs[0][0]));
+    const unsigned first_b = prepared_kind(frame_at(batch, pairs[0][1]));
+    unsigned different = 0;
+    for (size_t i = 0; i < block->count; i++) {
+        const struct fmb_prepared *a = frame_at(batch, pairs[i][0]);
+        const struct fmb_prepared *b = frame_at(batch, pairs[i][1]);
+        different |= (prepared_kind(a) ^ first_a) | (prepared_kind(b) ^ first_b);
+        if (first_a & PREPARED_SPACE) { /* what will be read next */
+            __builtin_prefetch((const char *) a + sizeof *a / 2);
+            __builtin_prefetch((const char *) b + sizeof *b / 2);
+        }
+        block->pair[i][0] = a;
+        block->pair[i][1] = b;
+    }
+    for (size_t i = block->count; i < block->count + RUN_LANES; i++)
+        block->pair[i][0] = block->pair[i][1] = &nobody;
+    return different == 0;
+}
+
+/* Puts the frames of a pair into their places. */
+static inline enum run_kind place(const struct fmb_prepared *pair[2], const struct run_kinds *kinds)
+{
+    const struct fmb_prepared *a = pair[0], *b = pair[1];
+    pair[0] = kinds->swapped ? b : a;
+    pair[1] = kinds->swapped ? a : b;
+    return kinds->moving && run_drifts(a, b) ? kinds->drifting : kinds->at_rest;
+}
+
+static struct run_kinds kinds_at(const struct block *block, size_t i)
+{
+    return run_kinds_of(prepared_kind(block->pair[i][0]), prepared_kind(block->pair[i][1]),
+                        block->batch->duration);
+}
+
+/* kind[i]: of pair i. Returns whether all are of one; like_first: their heads are. */
+static bool set_kinds(struct block *block, bool like_first, unsigned char kind[BLOCK])
+{
+    struct run_kinds kinds = kinds_at(block, 0);
+    unsigned different = 0;
+    kind[0] = (unsigned char) kinds.at_rest;
+    if (like_first && !kinds.moving && !kinds.swapped)
+        return true;
+    for (size_t i = 0; i < block->count; i++) {
+        if (!like_first)
+            kinds = kinds_at(block, i);
+        kind[i] = (unsigned char) place(block->pair[i], &kinds);
+        different |= kind[i] ^ kind[0];
+    }
+    return different == 0;
+}
+
+/* By kind, each in the order of the batch. */
+static void sort(struct block *block, const unsigned char kind[BLOCK])
+{
+    const struct fmb_prepared *pair[BLOCK][2];
+    unsigned char next[RUN_REFUSED + 2] = {0};
+    memcpy(pair, block->pair, sizeof pair);
+    for (size_t i = 0; i < block->count; i++)
+        next[kind[i] + 1]++;
+    for (int k = 0; k <= RUN_REFUSED; k++)
+        next[k + 1] = (unsigned char) (next[k + 1] + next[k]);
+    memcpy(block->start, next, sizeof next);
+    for (size_t i = 0; i < block->count; i++) {
+        const size_t to = next[kind[i]]++;
+        block->pair[to][0] = pair[i][0];
+        block->pair[to][1] = pair[i][1];
+        block->sorted[to] = (unsigned char) i;
+    }
+    block->slot = block->sorted;
+}
+
+static void set_block(const struct job *job, size_t first, struct block *block)
+{
+    const size_t left = job->batch->pair_count - first;
+    unsigned char kind[BLOCK];
+    block->batch = job->batch;
+    block->first = first;
+    block->count = left < BLOCK ? left : BLOCK;
+    block->status = FMB_OK;
+    block->slot = job->in_order;
+    const bool like_first = set_pairs(block);
+    if (!set_kinds(block, like_first, kind)) {
+        sort(block, kind);
+        return;
+    }
+    for (int k = 0; k < RUN_REFUSED + 2; k++)
+        block->start[k] = (unsigned char) (k <= kind[0] ? 0 : block->count);
+}
+
+/* ---- Answers ---- */
+
+static void put_nothing(const struct fmb_batch *batch, size_t i)
+{
+    for (int end = 0; end < 2; end++) {
+        if (batch->contacts)
+            batch->contacts[i][end] = NAN;
+        for (int axis = 0; axis < FMB_DIM_MAX && batch->boxes; axis++)
+            batch->boxes[i][end][axis] = NAN;
+    }
+}
+
+/* A pair that the filter does not settle, or whose box is wanted, by itself. */
+static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepared *const pair[2],
+                         size_t i)
+{
+    struct fmb_body body[2];
+    struct fmb_answer answer = {0};
+    const struct fmb_pair one = {prepared_frame(pair[0], &body[0]),
+                                 prepared_frame(pair[1], &body[1]), batch->duration};
+    if (batch->contacts || batch->boxes) {
+        certified_decide(&one, batch->boxes ? FMB_WANT_BOX : 0, &answer);
+    } else {
+        enum certified_path path;
+        answer.verdict = certified_verdict(&one, &path);
+    }
+    batch->verdicts[i] = (unsigned char) answer.verdict;
+    if (batch->contacts && answer.has_contact)
+        memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
+    if (batch->boxes && answer.has_box)
+        memcpy(batch->boxes[i], answer.box, sizeof answer.box);
+}
+
+static bool are_plain(const struct fmb_prepared *const pair[2])
+{
+    return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_PLAIN;
+}
+
+/* What is wanted of a contact beside the verdict. False: it has to be decided alone. */
+static bool put_contact(const struct block *block, enum run_kind kind, size_t k, size_t i)
+{
+    const struct fmb_batch *batch = block->batch;
+    const struct fmb_prepared *const *pair = block->pair[k];
+    if (batch->boxes)
+        return false;
+    if (kind & RUN_DRIFTS) {
+        if (are_plain(pair) || isnan(block->contact[k][0]))
+            return false;
+        memcpy(batch->contacts[i], block->contact[k], sizeof block->contact[k]);
+    } else if ((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_MOVING) {
+        batch->contacts[i][0] = 0;
+        batch->contacts[i][1] = batch->duration + 0.0; /* never -0 */
+    }
+    return true;
+}
+
+static void put_verdicts(const struct block *block, size_t start, size_t end)
+{
+    const struct fmb_batch *batch = block->batch;
+    unsigned char *verdicts = batch->verdicts + block->first;
+    if (block->slot == block->sorted)
+        for (size_t k = start; k < end; k++)
+            verdicts[block->slot[k]] = block->outcome[k];
+    else
+        memcpy(verdicts + start, block->outcome + start, end - start);
+    if (!memchr(block->outcome + start, SLABS_UNSURE, end - start))
+        return;
+    for (size_t k = start; k < end; k++)
+        if (block->outcome[k] == SLABS_UNSURE)
+            decide_alone(batch, block->pair[k], block->first + block->slot[k]);
+}
+
+static void put_answers(const struct block *block, enum run_kind kind, size_t start, size_t end)
+{
+    for (size_t k = start; k < end; k++) {
+        const size_t i = block->first + block->slot[k];
+        const unsigned char outcome = block->outcome[k];
+        block->batch->verdicts[i] = outcome;
+        put_nothing(block->batch, i);
+        if (outcome == SLABS_UNSURE ||
+            (outcome == SLABS_OVERLAPPING && !put_contact(block, kind, k, i)))
+            decide_alone(block->batch, block->pair[k], i);
+    }
+}
+
+static void run_kind(struct block *block, const struct job *job, enum run_kind kind)
+{
+    const struct fmb_batch *batch = job->batch;
+    const size_t start = block->start[kind], end = block->start[kind + 1];
+    const struct run run = {&block->pair[start], end - start, batch->duration,
+                            &block->outcome[start], &block->contact[start]};
+    const bool times = batch->contacts && !batch->boxes && kind & RUN_DRIFTS;
+    (times ? job->times : job->verdicts)[kind](&run);
+    if (batch->contacts || batch->boxes)
+        put_answers(block, kind, start, end);
+    else
+        put_verdicts(block, start, end);
+}
+
+/* ---- Pairs of which doubles can say nothing, and such as cannot be asked ---- */
+
+static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
+{
+    if (pair[0] == &nobody || pair[1] == &nobody)
+        return FMB_OVER_LIMIT;
+    return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_GOOD ? FMB_DIMENSIONS_DIFFER
+                                                                           : FMB_NOT_FINITE;
+}
+
+static void answer_odd(struct block *block)
+{
+    for (size_t k = block->start[RUN_ODD]; k < block->count; k++) {
+        const size_t i = block->first + block->slot[k];
+        put_nothing(block->batch, i);
+        if (k < block->start[RUN_REFUSED]) {
+            decide_alone(block->batch, block->pair[k], i);
+            continue;
+        }
+        block->batch->verdicts[i] = 0;
+        if (block->status == FMB_OK)
+            block->status = refusal(block->pair[k]);
+    }
+}
+
+static enum fmb_status decide_block(const struct job *job, size_t first)
+{
+    struct block block;
+    set_block(job, first, &block);
+    for (int kind = 0; kind < RUN_KINDS; kind++)
+        if (block.start[kind] < block.start[kind + 1])
+            run_kind(&block, job, (enum run_kind) kind);
+    answer_odd(&block);
+    return block.status;
+}
+
+/* ---- The door ---- */
+
+static bool is_duration(double duration)
+{
+    return duration >= 0 && duration <= INFINITY && !isinf(duration);
+}
+
+#ifdef _OPENMP
+static const bool has_threads = true;
+#else
+static const bool has_threads = false;
+#endif
+
+enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
+{
+    if (!is_duration(batch->duration))
+        return FMB_BAD_DURATION;
+    struct job job = {batch, run_verdicts((int) batch->instructions),
+                      run_times((int) batch->instructions), {0}};
+    if (!job.verdicts || (batch->threads > 1 && !has_threads))
+        return FMB_NOT_SUPPORTED;
+    for (int i = 0; i < BLOCK; i++)
+        job.in_order[i] = (unsigned char) i;
+    const long blocks = (long) ((batch->pair_count + BLOCK - 1) / BLOCK);
+    long refused = blocks; /* the first block with a pair that was refused */
+    enum fmb_status status = FMB_OK;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 16) num_threads(batch->threads > 1 ? batch->threads : 1)
+#endif
+    for (long b = 0; b < blocks; b++) {
+        const enum fmb_status of_block = decide_block(&job, (size_t) b * BLOCK);
+        if (of_block == FMB_OK)
+            continue;
+#ifdef _OPENMP
+#pragma omp critical
+#endif
+        if (b < refused) {
+            refused = b;
+            status = of_block;
+        }
+    }
+    return status;
+}
+
+enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                          double duration)
+{
+    bool swapped;
+    if (!is_duration(duration))
+        return 0;
+    const enum run_kind kind = run_kind_of(a, b, duration, &swapped);
+    if (kind == RUN_REFUSED)
+        return 0;
+    if (kind != RUN_ODD) {
+        const enum slabs_outcome outcome = swapped ? run_alone(kind, b, a, duration)
+                                                   : run_alone(kind, a, b, duration);
+        if (outcome != SLABS_UNSURE)
+            return outcome == SLABS_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING;
+    }
+    unsigned char verdict;
+    const struct fmb_prepared *const pair[2] = {a, b};
+    const struct fmb_batch one = {.duration = duration, .verdicts = &verdict};
+    decide_alone(&one, pair, 0);
+    return verdict;
+}

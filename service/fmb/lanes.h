@@ -1,0 +1,153 @@
+/* Lanes: so many doubles side by side, on which each operation does the same. LANES says how many,
+ * before this is included: 1 (plain C), or 2, 4 or 8, in the vector types of gcc and clang.
+ *
+ * Every lane gives the bits that one double would: sums, products and quotients are IEEE's, and the
+ * others do not round. Where the compiler may fuse operations (-ffp-contract=fast) that is given
+ * up: a file that promises bits is compiled without. */
+#ifndef FMB_LANES_H
+#define FMB_LANES_H
+
+#include "inlined.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#if LANES == 1
+typedef double lanes;
+typedef uint64_t lanes_bits;
+typedef int lanes_mask; /* 0 or 1 */
+#else
+typedef double lanes __attribute__((vector_size(8 * LANES)));
+typedef uint64_t lanes_bits __attribute__((vector_size(8 * LANES)));
+typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 */
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+#endif
+
+/* x > y ? x : y and x < y ? x : y: the second where one of them is not a number. */
+#if LANES == 1
+INLINE lanes lanes_greatest(lanes x, lanes y)
+{
+    return x > y ? x : y;
+}
+INLINE lanes lanes_least(lanes x, lanes y)
+{
+    return x < y ? x : y;
+}
+#elif LANES == 2 && defined(__SSE2__)
+INLINE lanes lanes_greatest(lanes x, lanes y)
+{
+    return (lanes) _mm_max_pd((__m128d) x, (__m128d) y);
+}
+INLINE lanes lanes_least(lanes x, lanes y)
+{
+    return (lanes) _mm_min_pd((__m128d) x, (__m128d) y);
+}
+#elif LANES == 4 && defined(__AVX__)
+INLINE lanes lanes_greatest(lanes x, lanes y)
+{
+    return (lanes) _mm256_max_pd((__m256d) x, (__m256d) y);
+}
+INLINE lanes lanes_least(lanes x, lanes y)
+{
+    return (lanes) _mm256_min_pd((__m256d) x, (__m256d) y);
+}
+#elif LANES == 8 && defined(__AVX512F__)
+INLINE lanes lanes_greatest(lanes x, lanes y)
+{
+    return (lanes) _mm512_max_pd((__m512d) x, (__m512d) y);
+}
+INLINE lanes lanes_least(lanes x, lanes y)
+{
+    return (lanes) _mm512_min_pd((__m512d) x, (__m512d) y);
+}
+#else
+INLINE lanes lanes_greatest(lanes x, lanes y)
+{
+    const lanes_mask first = x > y;
+    return (lanes) ((first & (lanes_mask) x) | (~first & (lanes_mask) y));
+}
+INLINE lanes lanes_least(lanes x, lanes y)
+{
+    const lanes_mask first = x < y;
+    return (lanes) ((first & (lanes_mask) x) | (~first & (lanes_mask) y));
+}
+#endif
+
+INLINE lanes lanes_of(double x)
+{
+    lanes out = {0};
+    return out + x;
+}
+
+INLINE lanes_bits lanes_as_bits(lanes x)
+{
+    lanes_bits out;
+    memcpy(&out, &x, sizeof out);
+    return out;
+}
+
+INLINE lanes lanes_from_bits(lanes_bits x)
+{
+    lanes out;
+    memcpy(&out, &x, sizeof out);
+    return out;
+}
+
+INLINE lanes lanes_magnitude(lanes x)
+{
+#if LANES == 1
+    return fabs(x);
+#else
+    return (lanes) ((lanes_mask) x & INT64_MAX);
+#endif
+}
+
+/* x where the mask is set, else y. */
+INLINE lanes lanes_choose(lanes_mask mask, lanes x, lanes y)
+{
+#if LANES == 1
+    return mask ? x : y;
+#else
+    return (lanes) ((mask & (lanes_mask) x) | (~mask & (lanes_mask) y));
+#endif
+}
+
+/* magnitude >= 0, with the sign of x. */
+INLINE lanes lanes_with_sign(lanes magnitude, lanes x)
+{
+#if LANES == 1
+    return copysign(magnitude, x);
+#else
+    return (lanes) ((lanes_mask) magnitude | ((lanes_mask) x & INT64_MIN));
+#endif
+}
+
+/* Bit i: lane i. */
+INLINE unsigned lanes_mask_bits(lanes_mask mask)
+{
+#if LANES == 1
+    return (unsigned) mask;
+#elif LANES == 2 && defined(__SSE2__)
+    return (unsigned) _mm_movemask_pd((__m128d) mask);
+#elif LANES == 4 && defined(__AVX__)
+    return (unsigned) _mm256_movemask_pd((__m256d) mask);
+#elif LANES == 8 && defined(__AVX512F__)
+    return _mm512_test_epi64_mask((__m512i) mask, (__m512i) mask);
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < LANES; i++)
+        bits |= (unsigned) (mask[i] & 1) << i;
+    return bits;
+#endif
+}
+
+INLINE bool lanes_all(lanes_mask mask)
+{
+    return lanes_mask_bits(mask) == (1u << LANES) - 1;
+}
+
+#endif

@@ -1,0 +1,95 @@
+/* The filter over many pairs of one kind: prepared frames in, outcomes out, as many side by side as
+ * the instruction set has lanes. run.c is compiled once for each set, and once more for the
+ * times of contact, whose bits are promised (Makefile: RUN_NAME, LANES). */
+#ifndef FMB_RUN_H
+#define FMB_RUN_H
+
+#include "prepared.h"
+#include "slabs.h"
+
+#include <stddef.h>
+
+/* Kinds of pairs that the filter can be asked. Two frames of different shapes come with the cuboid
+ * first. */
+enum run_kind {
+    RUN_TETRAHEDRON_B = 1 << 0, /* b is a tetrahedron */
+    RUN_TETRAHEDRON_A = 1 << 1, /* a too */
+    RUN_SPACE = 1 << 2,
+    RUN_DRIFTS = 1 << 3, /* the velocities differ and the window is not empty */
+    RUN_ALONG = 1 << 4,  /* 3D: edges or drift may be parallel to the same axis */
+    RUN_KINDS = 1 << 5,
+    RUN_ODD = RUN_KINDS, /* doubles can say nothing of it */
+    RUN_REFUSED          /* cannot be asked */
+};
+
+/* What the heads of two frames say of their pair. Inline, as all that follows, for the inner loop of
+ * a batch. */
+struct run_kinds {
+    enum run_kind at_rest, drifting; /* where the velocities are the same, and where they differ */
+    bool swapped;                    /* a and b change places */
+    bool moving;                     /* the velocities have to be looked at */
+};
+
+static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, double duration)
+{
+    const unsigned both = kind_a & kind_b, any = kind_a | kind_b;
+    if (!(both & PREPARED_GOOD) || ((kind_a ^ kind_b) & PREPARED_SPACE))
+        return (struct run_kinds){RUN_REFUSED, RUN_REFUSED, false, false};
+    if (!(both & PREPARED_USABLE))
+        return (struct run_kinds){RUN_ODD, RUN_ODD, false, false};
+    unsigned kind = (any & PREPARED_TETRAHEDRON ? RUN_TETRAHEDRON_B : 0u) |
+                    (both & PREPARED_TETRAHEDRON ? RUN_TETRAHEDRON_A : 0u) |
+                    (both & PREPARED_SPACE ? RUN_SPACE : 0u);
+    const unsigned along = both & PREPARED_SPACE ? RUN_ALONG : 0;
+    return (struct run_kinds){
+        .at_rest = (enum run_kind) (kind | (both & PREPARED_ALONG ? along : 0)),
+        .drifting = (enum run_kind) (kind | RUN_DRIFTS | (any & PREPARED_ALONG ? along : 0)),
+        .swapped = kind_a & ~kind_b & PREPARED_TETRAHEDRON,
+        .moving = any & PREPARED_MOVING && duration > 0};
+}
+
+static inline bool run_drifts(const struct fmb_prepared *a, const struct fmb_prepared *b)
+{
+    const double *v = prepared_velocity(a), *w = prepared_velocity(b);
+    return v[0] != w[0] || v[1] != w[1] || (prepared_kind(a) & PREPARED_SPACE && v[2] != w[2]);
+}
+
+static inline enum run_kind run_kind_of(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                        double duration, bool *swapped)
+{
+    const struct run_kinds kinds = run_kinds_of(prepared_kind(a), prepared_kind(b), duration);
+    *swapped = kinds.swapped;
+    return kinds.moving && run_drifts(a, b) ? kinds.drifting : kinds.at_rest;
+}
+
+struct run {
+    /* [count][a, b]. Up to RUN_LANES - 1 more are read, and have to be frames of some kind. */
+    const struct fmb_prepared *(*pairs)[2];
+    size_t count; /* at least 1 */
+    double duration;
+    unsigned char *outcomes; /* [count]: enum slabs_outcome; room for RUN_LANES - 1 more */
+    /* [count], room for as many more; by a function of times alone: seconds, where they are known
+     * well enough, else NAN; meant for pairs in contact only. */
+    double (*contacts)[2];
+};
+
+enum { RUN_LANES = 8 };
+
+typedef void run_function(const struct run *run);
+
+/* A function for each kind, NULL for combinations that do not exist; those of times are there for
+ * kinds that drift. */
+typedef run_function *const run_table[RUN_KINDS];
+
+/* By enum fmb_instructions. NULL: not on this machine, or not compiled. */
+run_function *const *run_verdicts(int instructions);
+run_function *const *run_times(int instructions);
+
+/* A pair alone. On input: its kind, and the pair with a and b in their places. */
+enum slabs_outcome run_alone(enum run_kind kind, const struct fmb_prepared *a,
+                             const struct fmb_prepared *b, double duration);
+/* False if they are not known well enough. */
+bool run_times_alone(enum run_kind kind, const struct fmb_prepared *a,
+                     const struct fmb_prepared *b, double duration, double contact[2]);
+
+#endif
