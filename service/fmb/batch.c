@@ -323,8 +323,8 @@ enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepare
     if (kind == RUN_REFUSED)
         return 0;
     if (kind != RUN_ODD) {
-        const enum slabs_outcome outcome = swapped ? run_alone(kind, b, a, duration)
-                                                   : run_alone(kind, a, b, duration);
+        const enum slabs_outcome outcome = run_verdicts_alone()[kind](
+            swapped ? b : a, swapped ? a : b, duration, NULL);
         if (outcome != SLABS_UNSURE)
             return outcome == SLABS_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING;
     }

@@ -4,6 +4,7 @@
 #include "limbs.h"
 #include "run.h"
 
+#include <math.h>
 #include <string.h>
 
 /* What is known of a pair, found when it is needed. */
@@ -11,12 +12,28 @@ struct certified {
     const struct fmb_pair *pair;
     struct fmb_prepared frame[2]; /* in the places that kind wants */
     enum run_kind kind;
+    bool slabs_known, slabs_good; /* slabs_good: doubles can say something of the pair */
     struct slabs_pair slabs;
     bool span_known, rounds; /* rounds: operations on these numbers may round */
     struct dyadic_span span;
     enum certified_path path;
 };
 
+static void begin(struct certified *certified, const struct fmb_pair *pair)
+{
+    certified->pair = pair;
+    certified->slabs_known = certified->span_known = false;
+}
+
+static bool find_slabs(struct certified *certified)
+{
+    if (!certified->slabs_known)
+        certified->slabs_good = slabs_prepare(certified->pair, &certified->slabs);
+    certified->slabs_known = true;
+    return certified->slabs_good;
+}
+
+/* On input: good slabs. */
 static void find_span(struct certified *certified)
 {
     if (certified->span_known)
@@ -72,14 +89,10 @@ static enum fmb_verdict verdict_in_limbs(const struct limbs_pair *limbs,
     return verdict_of_sign(sign);
 }
 
+/* Where nothing rounds, unsure is touching. */
 static enum fmb_verdict verdict_of_outcome(enum slabs_outcome outcome)
 {
-    switch (outcome) {
-    case SLABS_SEPARATED: return FMB_SEPARATED;
-    case SLABS_OVERLAPPING: return FMB_OVERLAPPING;
-    case SLABS_UNSURE: break;
-    }
-    return FMB_TOUCHING;
+    return outcome == SLABS_UNSURE ? FMB_TOUCHING : (enum fmb_verdict) outcome;
 }
 
 static enum fmb_verdict exact_verdict(const struct fmb_pair *pair)
@@ -92,6 +105,10 @@ static enum fmb_verdict exact_verdict(const struct fmb_pair *pair)
 /* A slab in one limb costs no more than in doubles with a bound of its own. */
 static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
+    if (!find_slabs(certified)) {
+        certified->path = CERTIFIED_EXACT;
+        return exact_verdict(certified->pair);
+    }
     find_span(certified);
     if (!certified->rounds) {
         certified->path = CERTIFIED_UNROUNDED;
@@ -118,26 +135,24 @@ static bool prepare(struct certified *certified)
 {
     const struct fmb_pair *pair = certified->pair;
     struct fmb_prepared *frame = certified->frame;
-    bool swapped;
-    if (!slabs_prepare(pair, &certified->slabs))
-        return false;
-    prepared_set(&pair->a, &frame[0]);
-    prepared_set(&pair->b, &frame[1]);
-    certified->kind = run_kind_of(&frame[0], &frame[1], pair->duration, &swapped);
-    if (swapped) {
-        prepared_set(&pair->b, &frame[0]);
-        prepared_set(&pair->a, &frame[1]);
-    }
-    return true;
+    const struct run_kinds kinds = run_kinds_of(prepared_kind_of(&pair->a),
+                                                prepared_kind_of(&pair->b), pair->duration);
+    prepared_set(kinds.swapped ? &pair->b : &pair->a, &frame[0]);
+    prepared_set(kinds.swapped ? &pair->a : &pair->b, &frame[1]);
+    certified->kind =
+        kinds.moving && run_drifts(&frame[0], &frame[1]) ? kinds.drifting : kinds.at_rest;
+    return certified->kind < RUN_KINDS;
 }
 
-/* On input: a pair that is prepared. */
-static enum fmb_verdict verdict_of(struct certified *certified)
+/* On input: a pair that is prepared. contact: NULL, or where the times of a pair that drifts go, as
+ * in struct run. */
+static enum fmb_verdict verdict_of(struct certified *certified, double contact[2])
 {
+    run_alone_function *const *functions = contact ? run_times_alone() : run_verdicts_alone();
     certified->path = CERTIFIED_FILTER;
     const enum slabs_outcome outcome =
-        run_alone(certified->kind, &certified->frame[0], &certified->frame[1],
-                  certified->pair->duration);
+        functions[certified->kind](&certified->frame[0], &certified->frame[1],
+                                   certified->pair->duration, contact);
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
 }
 
@@ -149,24 +164,30 @@ static bool is_plain(const struct certified *certified)
            PREPARED_PLAIN;
 }
 
-/* A pair that does not drift is in contact over the whole window. False: ask the exact method.
- * Which step gives the times depends on the numbers of the pair alone, so that they are the same
+/* Whether the times are exact in doubles: not asked of numbers that are likely to round. */
+static bool never_rounds(struct certified *certified)
+{
+    if (!is_plain(certified) || !find_slabs(certified))
+        return false;
+    find_span(certified);
+    return !certified->rounds;
+}
+
+/* On input: answer->contact, of a pair that drifts, as the filter found it. A pair that does not is
+ * in contact over the whole window. False: ask the exact method. Which step gives the times depends on the numbers of the pair alone, so that they are the same
  * bits wherever they are asked. */
 static bool answer_contact(struct certified *certified, struct fmb_answer *answer)
 {
-    const double duration = certified->pair->duration;
     answer->has_contact = true;
-    answer->contact[0] = 0;
-    answer->contact[1] = duration + 0.0; /* never -0 */
-    if (!certified->slabs.motion.drifts)
+    if (!(certified->kind & RUN_DRIFTS)) {
+        answer->contact[0] = 0;
+        answer->contact[1] = certified->pair->duration + 0.0; /* never -0 */
         return true;
-    const bool plain = is_plain(certified);
-    if (plain)
-        find_span(certified);
-    if ((!plain || certified->rounds) &&
-        run_times_alone(certified->kind, &certified->frame[0], &certified->frame[1], duration,
-                        answer->contact))
+    }
+    if (!never_rounds(certified) && !isnan(answer->contact[0]))
         return true;
+    if (!find_slabs(certified))
+        return false;
     find_span(certified);
     return contact_of(certified->pair, &certified->slabs, certified->rounds, certified->span,
                       answer->contact);
@@ -176,6 +197,8 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 static bool answer_box(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
+    if (!find_slabs(certified))
+        return false;
     find_span(certified);
     if (answer->verdict == FMB_TOUCHING && certified->rounds)
         return false;
@@ -198,13 +221,17 @@ static void complete(const struct fmb_pair *pair, unsigned want, bool good_conta
 enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
-    struct certified certified = {.pair = pair};
+    struct certified certified;
+    begin(&certified, pair);
     if (!prepare(&certified))
         return exact_decide(pair, want, answer);
-    answer->verdict = verdict_of(&certified);
-    if (answer->verdict == FMB_SEPARATED)
+    answer->verdict = verdict_of(&certified, certified.kind & RUN_DRIFTS ? answer->contact : NULL);
+    if (answer->verdict == FMB_SEPARATED) {
+        answer->contact[0] = answer->contact[1] = 0;
         return FMB_OK;
-    const bool good_contact = !certified.slabs.motion.moving || answer_contact(&certified, answer);
+    }
+    const bool moving = pair->a.moving || pair->b.moving;
+    const bool good_contact = !moving || answer_contact(&certified, answer);
     const bool good_box = !(want & FMB_WANT_BOX) || answer_box(&certified, answer);
     if (!good_contact || !good_box)
         complete(pair, want, good_contact, good_box, answer);
@@ -213,12 +240,13 @@ enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
 
 enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path)
 {
-    struct certified certified = {.pair = pair};
+    struct certified certified;
+    begin(&certified, pair);
     if (!prepare(&certified)) {
         *path = CERTIFIED_EXACT;
         return exact_verdict(pair);
     }
-    const enum fmb_verdict verdict = verdict_of(&certified);
+    const enum fmb_verdict verdict = verdict_of(&certified, NULL);
     *path = certified.path;
     return verdict;
 }

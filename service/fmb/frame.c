@@ -154,10 +154,17 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
     return FMB_OK;
 }
 
+/* 0 times a number that is not finite is not 0. */
+static bool is_finite(const double v[FMB_DIM_MAX], int dim)
+{
+    const double none = 0 * v[0] + 0 * v[1];
+    return (dim == 2 ? none : none + 0 * v[2]) == 0;
+}
+
 static bool frame_is_finite(const struct fmb_frame *frame)
 {
-    size_t dim = (size_t) frame->body->dim;
-    return all_finite(frame->origin, dim) && (!frame->moving || all_finite(frame->velocity, dim));
+    const int dim = frame->body->dim;
+    return is_finite(frame->origin, dim) && (!frame->moving || is_finite(frame->velocity, dim));
 }
 
 enum fmb_status fmb_pair_check(const struct fmb_pair *pair)

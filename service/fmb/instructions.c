@@ -9,7 +9,8 @@ RUN_DECLARE(plain)
 RUN_DECLARE(sse2)
 RUN_DECLARE(avx2)
 RUN_DECLARE(avx512)
-extern run_function *const run_fused[RUN_KINDS];
+extern run_alone_function *const run_alone_sse2[RUN_KINDS], *const run_alone_avx2[RUN_KINDS],
+    *const run_times_alone_sse2[RUN_KINDS], *const run_times_alone_avx2[RUN_KINDS];
 
 static bool has(int instructions)
 {
@@ -31,9 +32,14 @@ static run_function *const *const times[] = {[FMB_PLAIN] = run_times_plain,
                                              [FMB_AVX2] = run_times_avx2,
                                              [FMB_AVX512] = run_times_avx512};
 
-static run_function *const *verdicts_alone(void)
+run_alone_function *const *run_verdicts_alone(void)
 {
-    return has(FMB_AVX2) ? run_fused : run_plain;
+    return has(FMB_AVX2) ? run_alone_avx2 : run_alone_sse2;
+}
+
+run_alone_function *const *run_times_alone(void)
+{
+    return has(FMB_AVX2) ? run_times_alone_avx2 : run_times_alone_sse2;
 }
 
 #else
@@ -46,9 +52,17 @@ static bool has(int instructions)
 static run_function *const *const verdicts[] = {[FMB_PLAIN] = run_plain};
 static run_function *const *const times[] = {[FMB_PLAIN] = run_times_plain};
 
-static run_function *const *verdicts_alone(void)
+extern run_alone_function *const run_alone_plain[RUN_KINDS],
+    *const run_times_alone_plain[RUN_KINDS];
+
+run_alone_function *const *run_verdicts_alone(void)
 {
-    return run_plain;
+    return run_alone_plain;
+}
+
+run_alone_function *const *run_times_alone(void)
+{
+    return run_times_alone_plain;
 }
 
 #endif
@@ -76,31 +90,4 @@ run_function *const *run_times(int instructions)
 {
     const int which = instructions == FMB_BEST ? best() : instructions;
     return has(which) ? times[which] : NULL;
-}
-
-enum slabs_outcome run_alone(enum run_kind kind, const struct fmb_prepared *a,
-                             const struct fmb_prepared *b, double duration)
-{
-    unsigned char outcome;
-    const struct fmb_prepared *pair[1][2] = {{a, b}};
-    const struct run run = {pair, 1, duration, &outcome, NULL};
-    verdicts_alone()[kind](&run);
-    return (enum slabs_outcome) outcome;
-}
-
-bool run_times_alone(enum run_kind kind, const struct fmb_prepared *a,
-                     const struct fmb_prepared *b, double duration, double contact[2])
-{
-    unsigned char outcomes[RUN_LANES];
-    double contacts[RUN_LANES][2];
-    const struct fmb_prepared *pairs[RUN_LANES][2];
-    const struct run run = {pairs, 1, duration, outcomes, contacts};
-    for (int i = 0; i < RUN_LANES; i++) {
-        pairs[i][0] = a;
-        pairs[i][1] = b;
-    }
-    run_times(FMB_BEST)[kind](&run);
-    contact[0] = contacts[0][0];
-    contact[1] = contacts[0][1];
-    return contact[0] == contact[0];
 }

@@ -52,17 +52,23 @@ unsigned long long prepared_head_of(const struct fmb_body *body)
 void prepared_set(const struct fmb_frame *frame, struct fmb_prepared *out)
 {
     const struct fmb_body *body = frame->body;
-    const size_t dim = (size_t) body->dim;
+    const double(*c)[FMB_DIM_MAX] = body->component;
     const uint64_t moving = frame->moving ? PREPARED_MOVING : 0;
-    memset(out, 0, sizeof *out);
+    double *number = out->number;
     out->head = body->head | moving << 3 * PREPARED_SIZE_BITS;
-    double *next = out->number;
-    memcpy(next, frame->origin, dim * sizeof *next);
-    next += dim;
-    for (size_t i = 0; i < dim; i++, next += dim)
-        memcpy(next, body->component[i], dim * sizeof *next);
+    memset(number, 0, sizeof out->number);
+    if (body->dim == 3) {
+        memcpy(number, frame->origin, 3 * sizeof *number);
+        memcpy(number + 3, c, 9 * sizeof *number);
+        if (frame->moving)
+            memcpy(number + 12, frame->velocity, 3 * sizeof *number);
+        return;
+    }
+    memcpy(number, frame->origin, 2 * sizeof *number);
+    memcpy(number + 2, c[0], 2 * sizeof *number);
+    memcpy(number + 4, c[1], 2 * sizeof *number);
     if (frame->moving)
-        memcpy(next, frame->velocity, dim * sizeof *next);
+        memcpy(number + 6, frame->velocity, 2 * sizeof *number);
 }
 
 enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out)

@@ -51,6 +51,13 @@ void body_measure(struct fmb_body *body);
 /* The head of a body, of which all else is set; of a frame with it at rest. */
 unsigned long long prepared_head_of(const struct fmb_body *body);
 
+/* The bits of the kind of a frame that is not prepared yet. */
+static inline unsigned prepared_kind_of(const struct fmb_frame *frame)
+{
+    return (unsigned) (frame->body->head >> 3 * PREPARED_SIZE_BITS) |
+           (frame->moving ? PREPARED_MOVING : 0);
+}
+
 /* As fmb_prepare(), of a frame that is known to be finite. */
 void prepared_set(const struct fmb_frame *frame, struct fmb_prepared *out);
 

@@ -1,257 +1,51 @@
-/* Prepared frames into lanes, the walk, outcomes out of them. */
-#include "run.h"
-
-#include "walk.h"
-
-#define RUN_PASTE_(x, y) x##_##y
-#define RUN_PASTE(x, y) RUN_PASTE_(x, y)
-
-/* ---- The gather: words[w] holds word w of LANES frames ---- */
-
-enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
-
-#if LANES == 1
-
-INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
-{
-    UNROLL(4)
-    for (int w = 0; w < 4; w++)
-        words[w] = frame[0][first + w];
-}
-
-#elif LANES == 2
-
-INLINE lanes two_at(const double *from)
-{
-    lanes out;
-    memcpy(&out, from, sizeof out);
-    return out;
-}
-
-INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
-{
-    UNROLL(2)
-    for (int w = 0; w < 4; w += 2) {
-        const lanes x = two_at(frame[0] + first + w), y = two_at(frame[1] + first + w);
-        words[w] = __builtin_shufflevector(x, y, 0, 2);
-        words[w + 1] = __builtin_shufflevector(x, y, 1, 3);
-    }
-}
-
-#else
-
-typedef double four __attribute__((vector_size(32)));
-
-INLINE four four_at(const double *from)
-{
-    four out;
-    memcpy(&out, from, sizeof out);
-    return out;
-}
-
-/* The transpose of a square. */
-INLINE void transpose(const double *const frame[4], int first, four out[4])
-{
-    const four x = four_at(frame[0] + first), y = four_at(frame[1] + first);
-    const four z = four_at(frame[2] + first), w = four_at(frame[3] + first);
-    const four xy_even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-    const four xy_odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-    const four zw_even = __builtin_shufflevector(z, w, 0, 4, 2, 6);
-    const four zw_odd = __builtin_shufflevector(z, w, 1, 5, 3, 7);
-    out[0] = __builtin_shufflevector(xy_even, zw_even, 0, 1, 4, 5);
-    out[1] = __builtin_shufflevector(xy_odd, zw_odd, 0, 1, 4, 5);
-    out[2] = __builtin_shufflevector(xy_even, zw_even, 2, 3, 6, 7);
-    out[3] = __builtin_shufflevector(xy_odd, zw_odd, 2, 3, 6, 7);
-}
-
-INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
-{
-#if LANES == 4
-    transpose(frame, first, (four *) words);
-#else
-    four low[4], high[4];
-    transpose(frame, first, low);
-    transpose(frame + 4, first, high);
-    UNROLL(4)
-    for (int w = 0; w < 4; w++)
-        words[w] = __builtin_shufflevector(low[w], high[w], 0, 1, 2, 3, 4, 5, 6, 7);
-#endif
-}
-
-#endif
-
-/* A frame of each lane. */
-struct run_frame {
-    lanes origin[3], component[3][3], size[3], velocity[3];
-};
-
-INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS], struct run_frame *out)
-{
-    const lanes_bits head = lanes_as_bits(words[0]);
-    UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        out->origin[axis] = words[1 + axis];
-        out->size[axis] = 
-            lanes_from_bits((head << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
-        out->velocity[axis] = words[1 + kind.dim * (1 + kind.dim) + axis];
-        UNROLL(3)
-        for (int i = 0; i < kind.dim; i++)
-            out->component[i][axis] = words[1 + kind.dim * (1 + i) + axis];
-    }
-}
-
-INLINE void gather(const struct run *run, const struct walk_kind kind, size_t first, int which,
-                   struct run_frame *out)
-{
-    const double *frame[LANES];
-    lanes words[WORDS];
-    UNROLL(8)
-    for (int lane = 0; lane < LANES; lane++)
-        frame[lane] = (const double *) run->pairs[first + (size_t) lane][which];
-    const int used = kind.dim == 3 ? (kind.drifts ? 16 : 13) : (kind.drifts ? 9 : 7);
-    UNROLL(4)
-    for (int w = 0; w < used; w += 4)
-        gather_four(frame, w, &words[w]);
-    set_run_frame(kind, words, out);
-}
-
-INLINE void set_pair(const struct run *run, const struct walk_kind kind, size_t first,
-                     struct walk_pair *out)
-{
-    struct run_frame a, b;
-    lanes component[2][3][3], size[2][3], offset[3], drift[3];
-    gather(run, kind, first, 0, &a);
-    gather(run, kind, first, 1, &b);
-    UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        offset[axis] = b.origin[axis] - a.origin[axis];
-        if (kind.drifts)
-            drift[axis] = (b.velocity[axis] - a.velocity[axis]) * run->duration;
-        size[0][axis] = a.size[axis];
-        size[1][axis] = b.size[axis];
-        UNROLL(3)
-        for (int i = 0; i < kind.dim; i++) {
-            component[0][i][axis] = a.component[i][axis];
-            component[1][i][axis] = b.component[i][axis];
-        }
-    }
-    walk_pair_set(kind, component, size, offset, drift, out);
-}
-
-/* ---- Outcomes ---- */
-
-INLINE void put_outcomes(const struct run *run, size_t first, const struct walk_pair *pair,
-                         const struct walk_found *found)
-{
-    const lanes_mask separated = pair->in_range & (found->surely > 0);
-    const lanes_mask overlapping = pair->in_range & (found->possibly < 0) & (found->surely <= 0);
-    const unsigned is_separated = lanes_mask_bits(separated);
-    const unsigned is_overlapping = lanes_mask_bits(overlapping);
-    UNROLL(8)
-    for (int lane = 0; lane < LANES; lane++)
-        run->outcomes[first + (size_t) lane] =
-            (unsigned char) ((is_separated >> lane & 1) * SLABS_SEPARATED +
-                             (is_overlapping >> lane & 1) * SLABS_OVERLAPPING);
-}
+/* LANES pairs side by side. */
+#include "run_lanes.h"
 
 #ifdef RUN_TIMES
 
-/* Seconds: below this a product with a time may underflow. */
-#define LEAST_DURATION 0x1p-900
-
-/* Between outer and inner ends, of a window of length 2: leaves a tenth of 1e-12 of it to what is
- * rounded after. */
-#define TIMES_LIMIT 1.8e-12
-
-/* From outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart. Quotients,
- * slack and this are rounded a few times, each by less than 2^-52 where it matters, within [-1, 1]:
- * 2^-49 covers all. The product with the duration rounds once more. */
-INLINE void put_contacts(const struct run *run, size_t first, const struct walk_pair *pair,
-                         const struct walk_found *found)
+INLINE void put_contacts(const lanes times[2], double (*contacts)[2])
 {
-    const lanes slack = lanes_of(0x1p-49), one = lanes_of(1);
-    const lanes enter = lanes_greatest(found->enter[0] - slack, -one);
-    const lanes leave = lanes_least(found->leave[0] + slack, one);
-    const lanes enter_inner = lanes_greatest(found->enter[1] + slack, -one);
-    const lanes leave_inner = lanes_least(found->leave[1] - slack, one);
-    const lanes duration = lanes_of(run->duration);
-    const lanes start = (0.5 + 0.5 * enter) * duration * (1 - 0x1p-51);
-    const lanes end = lanes_least((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
-    const lanes_mask good = pair->in_range & (enter_inner - enter <= TIMES_LIMIT) &
-                            (leave - leave_inner <= TIMES_LIMIT) & (duration >= LEAST_DURATION);
-    const lanes first_time = lanes_choose(good, start, lanes_of(NAN));
-    const lanes last_time = lanes_choose(good, end, lanes_of(NAN));
-    double times[2][LANES];
-    memcpy(times[0], &first_time, sizeof first_time);
-    memcpy(times[1], &last_time, sizeof last_time);
+    double time[2][LANES];
+    memcpy(time, times, sizeof time);
+    UNROLL(8)
+    for (int lane = 0; lane < LANES; lane++) {
+        contacts[lane][0] = time[0][lane];
+        contacts[lane][1] = time[1][lane];
+    }
+}
+
+#endif
+
+INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+{
+    const double *frame[2][LANES];
+    struct walk_pair pair;
+    struct walk_found found;
+    UNROLL(8)
     for (size_t lane = 0; lane < LANES; lane++) {
-        run->contacts[first + lane][0] = times[0][lane];
-        run->contacts[first + lane][1] = times[1][lane];
+        frame[0][lane] = (const double *) run->pairs[first + lane][0];
+        frame[1][lane] = (const double *) run->pairs[first + lane][1];
     }
+    set_pair(kind, frame[0], frame[1], run->duration, &pair);
+    walk_pair_of(kind, &pair, &found);
+    const struct outcomes outcomes = outcomes_of(&pair, &found);
+    UNROLL(8)
+    for (int lane = 0; lane < LANES; lane++)
+        run->outcomes[first + (size_t) lane] = (unsigned char) outcome_at(outcomes, lane);
+#ifdef RUN_TIMES
+    lanes times[2];
+    times_of(&pair, &found, run->duration, times);
+    put_contacts(times, &run->contacts[first]);
+#endif
 }
 
-#endif
-
-INLINE void run_kind(const struct run *run, const struct walk_kind kind)
-{
-    for (size_t first = 0; first < run->count; first += LANES) {
-        struct walk_pair pair;
-        struct walk_found found;
-        set_pair(run, kind, first, &pair);
-        walk_begin(&found);
-#if LANES == 1
-        found.next = NULL;
-#endif
-        walk(&pair, kind, &found);
-        put_outcomes(run, first, &pair, &found);
-#ifdef RUN_TIMES
-        put_contacts(run, first, &pair, &found);
-#endif
+#define RUN_FUNCTION(name, kind)                                        \
+    static void name(const struct run *run)                             \
+    {                                                                   \
+        for (size_t first = 0; first < run->count; first += LANES)      \
+            run_lanes(kind, run, first);                                \
     }
-}
 
-#ifdef RUN_TIMES
-enum { TIMES = 1 };
-#else
-enum { TIMES = 0 };
-#endif
+RUN_FUNCTIONS(RUN_FUNCTION)
 
-/* One function for each kind: a and b are tetrahedra (1) or cuboids (0). */
-#define RUN_KIND(name, dimension, a, b, drift, parallel)        \
-    static void name(const struct run *run)                     \
-    {                                                           \
-        run_kind(run, (struct walk_kind){.dim = dimension,      \
-                                         .tetrahedron = {a, b}, \
-                                         .drifts = drift,       \
-                                         .along = parallel,     \
-                                         .ordered = TIMES,      \
-                                         .times = TIMES});      \
-    }
-#define RUN_SHAPES(name, dimension, drift, parallel)      \
-    RUN_KIND(name##_cc, dimension, 0, 0, drift, parallel) \
-    RUN_KIND(name##_ct, dimension, 0, 1, drift, parallel) \
-    RUN_KIND(name##_tt, dimension, 1, 1, drift, parallel)
-
-#ifndef RUN_TIMES
-RUN_SHAPES(plane, 2, 0, 0)
-RUN_SHAPES(space, 3, 0, 0)
-RUN_SHAPES(space_along, 3, 0, 1)
-#endif
-RUN_SHAPES(plane_drifts, 2, 1, 0)
-RUN_SHAPES(space_drifts, 3, 1, 0)
-RUN_SHAPES(space_drifts_along, 3, 1, 1)
-
-#define RUN_TABLE(name, kind)                            \
-    [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON_B] = name##_ct, \
-    [(kind) + RUN_TETRAHEDRON_B + RUN_TETRAHEDRON_A] = name##_tt
-
-run_function *const RUN_PASTE(run, RUN_NAME)[RUN_KINDS] = {
-#ifndef RUN_TIMES
-    RUN_TABLE(plane, 0),
-    RUN_TABLE(space, RUN_SPACE),
-    RUN_TABLE(space_along, RUN_SPACE + RUN_ALONG),
-#endif
-    RUN_TABLE(plane_drifts, RUN_DRIFTS),
-    RUN_TABLE(space_drifts, RUN_SPACE + RUN_DRIFTS),
-    RUN_TABLE(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG),
-};
+run_function *const RUN_PASTE(run, RUN_NAME)[RUN_KINDS] = RUN_TABLE;

@@ -1,6 +1,6 @@
 /* The filter over many pairs of one kind: prepared frames in, outcomes out, as many side by side as
- * the instruction set has lanes. run.c is compiled once for each set, and once more for the
- * times of contact, whose bits are promised (Makefile: RUN_NAME, LANES). */
+ * the instruction set has lanes. run.c, and alone.c for pairs alone, are compiled once for each set,
+ * and once more for the times of contact, whose bits are promised (Makefile, run_lanes.h). */
 #ifndef FMB_RUN_H
 #define FMB_RUN_H
 
@@ -76,20 +76,18 @@ struct run {
 enum { RUN_LANES = 8 };
 
 typedef void run_function(const struct run *run);
+typedef enum slabs_outcome run_alone_function(const struct fmb_prepared *a,
+                                              const struct fmb_prepared *b, double duration,
+                                              double contact[2]);
 
 /* A function for each kind, NULL for combinations that do not exist; those of times are there for
- * kinds that drift. */
-typedef run_function *const run_table[RUN_KINDS];
-
-/* By enum fmb_instructions. NULL: not on this machine, or not compiled. */
+ * kinds that drift. By enum fmb_instructions; NULL: not on this machine, or not compiled. */
 run_function *const *run_verdicts(int instructions);
 run_function *const *run_times(int instructions);
 
-/* A pair alone. On input: its kind, and the pair with a and b in their places. */
-enum slabs_outcome run_alone(enum run_kind kind, const struct fmb_prepared *a,
-                             const struct fmb_prepared *b, double duration);
-/* False if they are not known well enough. */
-bool run_times_alone(enum run_kind kind, const struct fmb_prepared *a,
-                     const struct fmb_prepared *b, double duration, double contact[2]);
+/* The same for a pair alone, of any instruction set. contact is as in struct run; functions of
+ * verdicts do not touch it. */
+run_alone_function *const *run_verdicts_alone(void);
+run_alone_function *const *run_times_alone(void);
 
 #endif

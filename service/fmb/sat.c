@@ -46,12 +46,13 @@ struct kind {
 };
 
 /* All kinds, in the order of kind_index(). */
-#define KIND_MAP(X)                                                                         \
-    X(2, 0, 0, 0)                                                                           \
-    X(2, 0, 0, 1)                                                                           \
-    X(2, 0, 1, 0) X(2, 0, 1, 1) X(2, 1, 0, 0) X(2, 1, 0, 1) X(2, 1, 1, 0) X(2, 1, 1, 1)     \
-        X(3, 0, 0, 0) X(3, 0, 0, 1) X(3, 0, 1, 0) X(3, 0, 1, 1) X(3, 1, 0, 0) X(3, 1, 0, 1) \
-            X(3, 1, 1, 0) X(3, 1, 1, 1)
+/* clang-format off */
+#define KIND_MAP(X) \
+    X(2, 0, 0, 0) X(2, 0, 0, 1) X(2, 0, 1, 0) X(2, 0, 1, 1) \
+    X(2, 1, 0, 0) X(2, 1, 0, 1) X(2, 1, 1, 0) X(2, 1, 1, 1) \
+    X(3, 0, 0, 0) X(3, 0, 0, 1) X(3, 0, 1, 0) X(3, 0, 1, 1) \
+    X(3, 1, 0, 0) X(3, 1, 0, 1) X(3, 1, 1, 0) X(3, 1, 1, 1)
+/* clang-format on */
 
 static int kind_index(const struct kind kind)
 {
@@ -312,9 +313,9 @@ static void answer_contact(const double when[2], double duration, struct fmb_ans
 {
     const double middle = least(most((when[0] + when[1]) / 2, 0), 1);
     const bool in_order = when[0] <= when[1];
-    answer->has_contact = true;
-    answer->contact[0] = (in_order ? when[0] : middle) * duration + 0.0; /* + 0.0: never -0 */
-    answer->contact[1] = (in_order ? when[1] : middle) * duration + 0.0;
+    const struct bounds bounds = {
+        .strict = {in_order ? when[0] : middle, in_order ? when[1] : middle}, .closed = {0, 1}};
+    bounds_answer_contact(&bounds, duration, answer); /* not here: it makes 0 of -0 */
 }
 
 INLINE void decide(const struct question *question, const struct kind kind,

@@ -1,0 +1,248 @@
+/* What run.c and alone.c have in common: prepared frames into lanes, and what a walk found into
+ * outcomes and times; and the table of functions, one for each kind of pair, that each of them
+ * makes. RUN_NAME names the table; RUN_TIMES: with the times of contact, whose bits are promised;
+ * RUN_ALONE: one pair, in all lanes. */
+#ifndef FMB_RUN_LANES_H
+#define FMB_RUN_LANES_H
+
+#include "run.h"
+#include "walk.h"
+
+#ifdef RUN_TIMES
+enum { TIMES = 1 };
+#else
+enum { TIMES = 0 };
+#endif
+
+/* ---- The gather: words[w] holds word w of LANES frames ---- */
+
+enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
+
+#if LANES == 1 || defined(RUN_ALONE)
+
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    UNROLL(4)
+    for (int w = 0; w < 4; w++)
+        words[w] = lanes_of(frame[0][first + w]);
+}
+
+#elif LANES == 2
+
+INLINE lanes two_at(const double *from)
+{
+    lanes out;
+    memcpy(&out, from, sizeof out);
+    return out;
+}
+
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    UNROLL(2)
+    for (int w = 0; w < 4; w += 2) {
+        const lanes x = two_at(frame[0] + first + w), y = two_at(frame[1] + first + w);
+        words[w] = __builtin_shufflevector(x, y, 0, 2);
+        words[w + 1] = __builtin_shufflevector(x, y, 1, 3);
+    }
+}
+
+#else
+
+typedef double four __attribute__((vector_size(32)));
+
+INLINE four four_at(const double *from)
+{
+    four out;
+    memcpy(&out, from, sizeof out);
+    return out;
+}
+
+/* The transpose of a square. */
+INLINE void transpose(const double *const frame[4], int first, four out[4])
+{
+    const four x = four_at(frame[0] + first), y = four_at(frame[1] + first);
+    const four z = four_at(frame[2] + first), w = four_at(frame[3] + first);
+    const four xy_even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
+    const four xy_odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+    const four zw_even = __builtin_shufflevector(z, w, 0, 4, 2, 6);
+    const four zw_odd = __builtin_shufflevector(z, w, 1, 5, 3, 7);
+    out[0] = __builtin_shufflevector(xy_even, zw_even, 0, 1, 4, 5);
+    out[1] = __builtin_shufflevector(xy_odd, zw_odd, 0, 1, 4, 5);
+    out[2] = __builtin_shufflevector(xy_even, zw_even, 2, 3, 6, 7);
+    out[3] = __builtin_shufflevector(xy_odd, zw_odd, 2, 3, 6, 7);
+}
+
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+#if LANES == 4
+    transpose(frame, first, (four *) words);
+#else
+    four low[4], high[4];
+    transpose(frame, first, low);
+    transpose(frame + 4, first, high);
+    UNROLL(4)
+    for (int w = 0; w < 4; w++)
+        words[w] = __builtin_shufflevector(low[w], high[w], 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
+
+#endif
+
+/* A frame of each lane. */
+struct run_frame {
+    lanes origin[3], component[3][3], size[3], velocity[3];
+};
+
+INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS], struct run_frame *out)
+{
+    const lanes_bits head = lanes_as_bits(words[0]);
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        out->origin[axis] = words[1 + axis];
+        out->size[axis] = 
+            lanes_from_bits((head << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
+        out->velocity[axis] = words[1 + kind.dim * (1 + kind.dim) + axis];
+        UNROLL(3)
+        for (int i = 0; i < kind.dim; i++)
+            out->component[i][axis] = words[1 + kind.dim * (1 + i) + axis];
+    }
+}
+
+INLINE void gather(const struct walk_kind kind, const double *const frame[LANES],
+                   struct run_frame *out)
+{
+    lanes words[WORDS];
+    const int used = kind.dim == 3 ? (kind.drifts ? 16 : 13) : (kind.drifts ? 9 : 7);
+    UNROLL(4)
+    for (int w = 0; w < used; w += 4)
+        gather_four(frame, w, &words[w]);
+    set_run_frame(kind, words, out);
+}
+
+INLINE void set_pair(const struct walk_kind kind, const double *const frame_a[LANES],
+                     const double *const frame_b[LANES], double duration, struct walk_pair *out)
+{
+    struct run_frame a, b;
+    lanes component[2][3][3], size[2][3], offset[3], drift[3];
+    gather(kind, frame_a, &a);
+    gather(kind, frame_b, &b);
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        offset[axis] = b.origin[axis] - a.origin[axis];
+        if (kind.drifts)
+            drift[axis] = (b.velocity[axis] - a.velocity[axis]) * duration;
+        size[0][axis] = a.size[axis];
+        size[1][axis] = b.size[axis];
+        UNROLL(3)
+        for (int i = 0; i < kind.dim; i++) {
+            component[0][i][axis] = a.component[i][axis];
+            component[1][i][axis] = b.component[i][axis];
+        }
+    }
+    walk_pair_set(kind, component, size, offset, drift, out);
+}
+
+INLINE void walk_pair_of(const struct walk_kind kind, const struct walk_pair *pair,
+                         struct walk_found *found)
+{
+    walk_begin(found);
+#if LANES == 1
+    found->next = NULL;
+#endif
+    walk(pair, kind, found);
+}
+
+/* ---- Outcomes ---- */
+
+/* Bit i of each: lane i. Lanes of neither are unsure. */
+struct outcomes {
+    unsigned separated, overlapping;
+};
+
+INLINE struct outcomes outcomes_of(const struct walk_pair *pair, const struct walk_found *found)
+{
+    const lanes_mask separated = pair->in_range & (found->surely > 0);
+    const lanes_mask overlapping = pair->in_range & (found->possibly < 0) & (found->surely <= 0);
+    return (struct outcomes){lanes_mask_bits(separated), lanes_mask_bits(overlapping)};
+}
+
+INLINE enum slabs_outcome outcome_at(struct outcomes outcomes, int lane)
+{
+    return (enum slabs_outcome) ((outcomes.separated >> lane & 1) * SLABS_SEPARATED +
+                                 (outcomes.overlapping >> lane & 1) * SLABS_OVERLAPPING);
+}
+
+/* Seconds: below this a product with a time may underflow. */
+#define LEAST_DURATION 0x1p-900
+
+/* Between outer and inner ends, of a window of length 2: leaves a tenth of 1e-12 of it to what is
+ * rounded after. */
+#define TIMES_LIMIT 1.8e-12
+
+/* From outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart. Quotients,
+ * slack and this are rounded a few times, each by less than 2^-52 where it matters, within [-1, 1]:
+ * 2^-49 covers all. The product with the duration rounds once more. */
+INLINE void times_of(const struct walk_pair *pair, const struct walk_found *found, double window,
+                     lanes times[2])
+{
+    const lanes slack = lanes_of(0x1p-49), one = lanes_of(1), duration = lanes_of(window);
+    const lanes enter = lanes_greatest(found->enter[0] - slack, -one);
+    const lanes leave = lanes_least(found->leave[0] + slack, one);
+    const lanes enter_inner = lanes_greatest(found->enter[1] + slack, -one);
+    const lanes leave_inner = lanes_least(found->leave[1] - slack, one);
+    const lanes first = (0.5 + 0.5 * enter) * duration * (1 - 0x1p-51);
+    const lanes last = lanes_least((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
+    const lanes_mask good = pair->in_range & (enter_inner - enter <= TIMES_LIMIT) &
+                            (leave - leave_inner <= TIMES_LIMIT) & (duration >= LEAST_DURATION);
+    times[0] = lanes_choose(good, first, lanes_of(NAN));
+    times[1] = lanes_choose(good, last, lanes_of(NAN));
+}
+
+/* ---- The table ----
+ *
+ * FUNCTION(name, kind) defines a function for a struct walk_kind. a and b are tetrahedra (1) or
+ * cuboids (0). */
+
+#define RUN_KIND(FUNCTION, name, dimension, a_is, b_is, drift, parallel)          \
+    FUNCTION(name, ((struct walk_kind){.dim = dimension,                         \
+                                       .tetrahedron = {a_is, b_is},              \
+                                       .drifts = drift,                          \
+                                       .along = parallel,                        \
+                                       .ordered = TIMES,                         \
+                                       .times = TIMES}))
+#define RUN_SHAPES(FUNCTION, name, dimension, drift, parallel)      \
+    RUN_KIND(FUNCTION, name##_cc, dimension, 0, 0, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_ct, dimension, 0, 1, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_tt, dimension, 1, 1, drift, parallel)
+#define RUN_DRIFTING(FUNCTION)                    \
+    RUN_SHAPES(FUNCTION, plane_drifts, 2, 1, 0)   \
+    RUN_SHAPES(FUNCTION, space_drifts, 3, 1, 0)   \
+    RUN_SHAPES(FUNCTION, space_drifts_along, 3, 1, 1)
+#define RUN_AT_REST(FUNCTION)            \
+    RUN_SHAPES(FUNCTION, plane, 2, 0, 0) \
+    RUN_SHAPES(FUNCTION, space, 3, 0, 0) \
+    RUN_SHAPES(FUNCTION, space_along, 3, 0, 1)
+
+#define RUN_ENTRIES(name, kind)                                   \
+    [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON_B] = name##_ct, \
+    [(kind) + RUN_TETRAHEDRON_B + RUN_TETRAHEDRON_A] = name##_tt
+#define RUN_DRIFTING_ENTRIES                            \
+    RUN_ENTRIES(plane_drifts, RUN_DRIFTS),              \
+        RUN_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS), \
+        RUN_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG)
+#define RUN_AT_REST_ENTRIES                \
+    RUN_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
+        RUN_ENTRIES(space_along, RUN_SPACE + RUN_ALONG)
+
+#ifdef RUN_TIMES
+#define RUN_FUNCTIONS(FUNCTION) RUN_DRIFTING(FUNCTION)
+#define RUN_TABLE {RUN_DRIFTING_ENTRIES}
+#else
+#define RUN_FUNCTIONS(FUNCTION) RUN_AT_REST(FUNCTION) RUN_DRIFTING(FUNCTION)
+#define RUN_TABLE {RUN_AT_REST_ENTRIES, RUN_DRIFTING_ENTRIES}
+#endif
+
+#define RUN_PASTE_(x, y) x##_##y
+#define RUN_PASTE(x, y) RUN_PASTE_(x, y)
+
+#endif
