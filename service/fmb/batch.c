@@ -12,8 +12,8 @@ enum { BLOCK = 128 };
 /* What blocks have in common. */
 struct job {
     const struct fmb_batch *batch;
-    run_function *const *verdicts, *const *times; /* of the instruction set */
-    unsigned char in_order[BLOCK];                /* 0, 1, 2, ... */
+    struct run_set run;            /* of the instruction set */
+    unsigned char in_order[BLOCK]; /* 0, 1, 2, ... */
 };
 
 struct block {
@@ -172,24 +172,6 @@ static bool are_plain(const struct fmb_prepared *const pair[2])
     return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_PLAIN;
 }
 
-/* What is wanted of a contact beside the verdict. False: it has to be decided alone. */
-static bool put_contact(const struct block *block, enum run_kind kind, size_t k, size_t i)
-{
-    const struct fmb_batch *batch = block->batch;
-    const struct fmb_prepared *const *pair = block->pair[k];
-    if (batch->boxes)
-        return false;
-    if (kind & RUN_DRIFTS) {
-        if (are_plain(pair) || isnan(block->contact[k][0]))
-            return false;
-        memcpy(batch->contacts[i], block->contact[k], sizeof block->contact[k]);
-    } else if ((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_MOVING) {
-        batch->contacts[i][0] = 0;
-        batch->contacts[i][1] = batch->duration + 0.0; /* never -0 */
-    }
-    return true;
-}
-
 static void put_verdicts(const struct block *block, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
@@ -206,16 +188,85 @@ static void put_verdicts(const struct block *block, size_t start, size_t end)
             decide_alone(batch, block->pair[k], block->first + block->slot[k]);
 }
 
-static void put_answers(const struct block *block, enum run_kind kind, size_t start, size_t end)
+/* Whether the whole window is the time of contact. */
+static bool moves_together(const struct fmb_prepared *const pair[2], enum run_kind kind)
 {
+    return !(kind & RUN_DRIFTS) &&
+           (prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_MOVING;
+}
+
+/* The contact of pair k, as far as the filter knows it: NAN where it does not, or there is none. */
+static const double *contact_at(const struct block *block, enum run_kind kind, size_t k,
+                                const double whole[2])
+{
+    static const double none[2] = {NAN, NAN};
+    if (block->outcome[k] != SLABS_OVERLAPPING)
+        return none;
+    if (kind & RUN_DRIFTS)
+        return are_plain(block->pair[k]) ? none : block->contact[k];
+    return moves_together(block->pair[k], kind) ? whole : none;
+}
+
+static void put_contacts(const struct block *block, enum run_kind kind, size_t start, size_t end)
+{
+    const struct fmb_batch *batch = block->batch;
+    const double whole[2] = {0, batch->duration + 0.0}; /* never -0 */
     for (size_t k = start; k < end; k++) {
         const size_t i = block->first + block->slot[k];
-        const unsigned char outcome = block->outcome[k];
-        block->batch->verdicts[i] = outcome;
-        put_nothing(block->batch, i);
-        if (outcome == SLABS_UNSURE ||
-            (outcome == SLABS_OVERLAPPING && !put_contact(block, kind, k, i)))
-            decide_alone(block->batch, block->pair[k], i);
+        const double *contact = contact_at(block, kind, k, whole);
+        memcpy(batch->contacts[i], contact, sizeof whole);
+        batch->verdicts[i] = block->outcome[k];
+        if (block->outcome[k] == SLABS_UNSURE ||
+            (block->outcome[k] == SLABS_OVERLAPPING && kind & RUN_DRIFTS && isnan(contact[0])))
+            decide_alone(batch, block->pair[k], i);
+    }
+}
+
+/* Pairs at rest that overlap, with their boxes. */
+struct overlaps {
+    size_t count, of[BLOCK]; /* numbers of the block's pairs */
+    const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
+    double box[BLOCK + RUN_LANES][2][FMB_DIM_MAX];
+};
+
+/* Whether the filter may give the box: the method does so for the same pairs. */
+static bool has_plain_box(const struct block *block, enum run_kind kind, size_t k)
+{
+    const struct fmb_prepared *const *pair = block->pair[k];
+    return block->outcome[k] == SLABS_OVERLAPPING && !(kind & RUN_DRIFTS) && !are_plain(pair) &&
+           !((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_MOVING);
+}
+
+static void put_boxes(const struct block *block, run_function *boxes, enum run_kind kind,
+                      size_t start, size_t end)
+{
+    const struct fmb_batch *batch = block->batch;
+    struct overlaps overlaps;
+    overlaps.count = 0;
+    for (size_t k = start; k < end; k++) {
+        const size_t i = block->first + block->slot[k];
+        batch->verdicts[i] = block->outcome[k];
+        put_nothing(batch, i);
+        if (has_plain_box(block, kind, k)) {
+            overlaps.pair[overlaps.count][0] = block->pair[k][0];
+            overlaps.pair[overlaps.count][1] = block->pair[k][1];
+            overlaps.of[overlaps.count++] = k;
+        } else if (block->outcome[k] != SLABS_SEPARATED) {
+            decide_alone(batch, block->pair[k], i);
+        }
+    }
+    if (overlaps.count == 0)
+        return;
+    for (size_t n = overlaps.count; n < overlaps.count + RUN_LANES; n++)
+        overlaps.pair[n][0] = overlaps.pair[n][1] = &nobody;
+    const struct run run = {.pairs = overlaps.pair, .count = overlaps.count, .boxes = overlaps.box};
+    boxes(&run);
+    for (size_t n = 0; n < overlaps.count; n++) {
+        const size_t k = overlaps.of[n], i = block->first + block->slot[k];
+        if (isnan(overlaps.box[n][0][0]))
+            decide_alone(batch, block->pair[k], i);
+        else
+            memcpy(batch->boxes[i], overlaps.box[n], sizeof overlaps.box[n]);
     }
 }
 
@@ -223,12 +274,17 @@ static void run_kind(struct block *block, const struct job *job, enum run_kind k
 {
     const struct fmb_batch *batch = job->batch;
     const size_t start = block->start[kind], end = block->start[kind + 1];
-    const struct run run = {&block->pair[start], end - start, batch->duration,
-                            &block->outcome[start], &block->contact[start]};
+    const struct run run = {.pairs = &block->pair[start],
+                            .count = end - start,
+                            .duration = batch->duration,
+                            .outcomes = &block->outcome[start],
+                            .contacts = &block->contact[start]};
     const bool times = batch->contacts && !batch->boxes && kind & RUN_DRIFTS;
-    (times ? job->times : job->verdicts)[kind](&run);
-    if (batch->contacts || batch->boxes)
-        put_answers(block, kind, start, end);
+    (times ? job->run.times : job->run.verdicts)[kind](&run);
+    if (batch->boxes)
+        put_boxes(block, job->run.boxes[kind], kind, start, end);
+    else if (batch->contacts)
+        put_contacts(block, kind, start, end);
     else
         put_verdicts(block, start, end);
 }
@@ -286,9 +342,8 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
 {
     if (!is_duration(batch->duration))
         return FMB_BAD_DURATION;
-    struct job job = {batch, run_verdicts((int) batch->instructions),
-                      run_times((int) batch->instructions), {0}};
-    if (!job.verdicts || (batch->threads > 1 && !has_threads))
+    struct job job = {.batch = batch};
+    if (!run_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
         return FMB_NOT_SUPPORTED;
     for (int i = 0; i < BLOCK; i++)
         job.in_order[i] = (unsigned char) i;
@@ -323,8 +378,8 @@ enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepare
     if (kind == RUN_REFUSED)
         return 0;
     if (kind != RUN_ODD) {
-        const enum slabs_outcome outcome = run_verdicts_alone()[kind](
-            swapped ? b : a, swapped ? a : b, duration, NULL);
+        const enum slabs_outcome outcome =
+            run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
         if (outcome != SLABS_UNSURE)
             return outcome == SLABS_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING;
     }

@@ -135,8 +135,8 @@ static bool prepare(struct certified *certified)
 {
     const struct fmb_pair *pair = certified->pair;
     struct fmb_prepared *frame = certified->frame;
-    const struct run_kinds kinds = run_kinds_of(prepared_kind_of(&pair->a),
-                                                prepared_kind_of(&pair->b), pair->duration);
+    const struct run_kinds kinds =
+        run_kinds_of(prepared_kind_of(&pair->a), prepared_kind_of(&pair->b), pair->duration);
     prepared_set(kinds.swapped ? &pair->b : &pair->a, &frame[0]);
     prepared_set(kinds.swapped ? &pair->a : &pair->b, &frame[1]);
     certified->kind =
@@ -150,9 +150,8 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
 {
     run_alone_function *const *functions = contact ? run_times_alone() : run_verdicts_alone();
     certified->path = CERTIFIED_FILTER;
-    const enum slabs_outcome outcome =
-        functions[certified->kind](&certified->frame[0], &certified->frame[1],
-                                   certified->pair->duration, contact);
+    const enum slabs_outcome outcome = functions[certified->kind](
+        &certified->frame[0], &certified->frame[1], certified->pair->duration, contact);
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
 }
 
@@ -174,8 +173,8 @@ static bool never_rounds(struct certified *certified)
 }
 
 /* On input: answer->contact, of a pair that drifts, as the filter found it. A pair that does not is
- * in contact over the whole window. False: ask the exact method. Which step gives the times depends on the numbers of the pair alone, so that they are the same
- * bits wherever they are asked. */
+ * in contact over the whole window. False: ask the exact method. Which step gives the times depends
+ * on the numbers of the pair alone, so that they are the same bits wherever they are asked. */
 static bool answer_contact(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_contact = true;
@@ -197,6 +196,14 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 static bool answer_box(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
+    if (answer->verdict == FMB_OVERLAPPING && !answer->has_contact && !never_rounds(certified)) {
+        double box[2][FMB_DIM_MAX];
+        run_boxes_alone()[certified->kind](&certified->frame[0], &certified->frame[1], 0,
+                                           (double *) box);
+        memcpy(answer->box, box, sizeof box);
+        if (!isnan(box[0][0]))
+            return true;
+    }
     if (!find_slabs(certified))
         return false;
     find_span(certified);

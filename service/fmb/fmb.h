@@ -51,22 +51,22 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
 
 /* What can be said of a question; the numbers stand in messages and logs: a code is retired
  * rather than used again. */
-#define FMB_STATUS_MAP(X)                                        \
-    X(OK, 0, "ok")                                               \
-    X(UNKNOWN_BODY, 1, "unknown body")                           \
-    X(BUSY, 2, "busy")                                           \
-    X(OVER_LIMIT, 3, "over the limit")                           \
-    X(UNKNOWN_SHAPE, 4, "unknown shape")                         \
-    X(WRONG_DIMENSION, 5, "wrong dimension")                     \
-    X(WRONG_COUNT, 6, "wrong count of numbers")                  \
-    X(NOT_FINITE, 7, "not a finite number")                      \
-    X(DIMENSIONS_DIFFER, 8, "a 2D frame against a 3D one")       \
-    X(BAD_DURATION, 9, "the duration is negative or not finite") \
-    X(BAD_ID, 10, "id out of range")                             \
-    X(UNKNOWN_METHOD, 11, "unknown method")                      \
-    X(UNKNOWN_WANT, 12, "wants what this version does not give") \
-    X(CANNOT_DECIDE, 13,                                         \
-      "this method cannot decide this pair (a flat frame, or numbers out of its range)")         \
+#define FMB_STATUS_MAP(X)                                                                \
+    X(OK, 0, "ok")                                                                       \
+    X(UNKNOWN_BODY, 1, "unknown body")                                                   \
+    X(BUSY, 2, "busy")                                                                   \
+    X(OVER_LIMIT, 3, "over the limit")                                                   \
+    X(UNKNOWN_SHAPE, 4, "unknown shape")                                                 \
+    X(WRONG_DIMENSION, 5, "wrong dimension")                                             \
+    X(WRONG_COUNT, 6, "wrong count of numbers")                                          \
+    X(NOT_FINITE, 7, "not a finite number")                                              \
+    X(DIMENSIONS_DIFFER, 8, "a 2D frame against a 3D one")                               \
+    X(BAD_DURATION, 9, "the duration is negative or not finite")                         \
+    X(BAD_ID, 10, "id out of range")                                                     \
+    X(UNKNOWN_METHOD, 11, "unknown method")                                              \
+    X(UNKNOWN_WANT, 12, "wants what this version does not give")                         \
+    X(CANNOT_DECIDE, 13,                                                                 \
+      "this method cannot decide this pair (a flat frame, or numbers out of its range)") \
     X(NOT_SUPPORTED, 14, "this machine, or this build, does not have what was asked for")
 
 enum fmb_status {
@@ -106,13 +106,10 @@ struct fmb_body {
      * p[axis] for p = sum x_i c_i. The article's invComp (Listing 1, PROJ). Zero where not
      * inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
-    /* What the certified method keeps: the largest magnitude in each component; the ends of the
-     * body along each axis with its origin at 0, rounded ([0] lower, [1] upper); and whether
-     * doubles can say anything of it: not flat, and no size so large or so small that a product
-     * of a few of them might overflow or vanish. All components are multiples of
-     * 2^bits[0] below 2^bits[1]. */
+    /* What the certified method keeps: the largest magnitude in each component; whether doubles can
+     * say anything of it: not flat, and no number so large or so small that a product of a few of
+     * them might overflow or vanish. All components are multiples of 2^bits[0] below 2^bits[1]. */
     double size[FMB_DIM_MAX];
-    double extent[2][FMB_DIM_MAX];
     bool in_range;
     int bits[2];
     unsigned long long head; /* of frames with this body at rest, prepared (below) */

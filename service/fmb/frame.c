@@ -103,15 +103,11 @@ static void invert(struct fmb_body *body)
  * nor lose bits to underflow; and no number so small that a product of two underflows. */
 static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
-static void measure_number(struct fmb_body *body, int i, int axis, struct dyadic_span *span)
+static void measure_number(struct fmb_body *body, int i, double c, struct dyadic_span *span)
 {
-    const double c = body->component[i][axis];
-    const bool cuboid = body->shape == FMB_CUBOID;
-    double *low = &body->extent[0][axis], *high = &body->extent[1][axis];
-    *low = cuboid ? *low + fmin(0, c) : fmin(*low, c);
-    *high = cuboid ? *high + fmax(0, c) : fmax(*high, c);
-    body->size[i] = fmax(body->size[i], fabs(c));
-    body->in_range = body->in_range && (c == 0 || fabs(c) >= least_number);
+    const double magnitude = fabs(c);
+    body->size[i] = magnitude > body->size[i] ? magnitude : body->size[i];
+    body->in_range = body->in_range && (c == 0 || magnitude >= least_number);
     dyadic_span_add(span, dyadic_of(c));
 }
 
@@ -121,13 +117,12 @@ void body_measure(struct fmb_body *body)
     body->in_range = !body->flat;
     for (int i = 0; i < body->count; i++) {
         for (int axis = 0; axis < body->dim; axis++)
-            measure_number(body, i, axis, &span);
+            measure_number(body, i, body->component[i][axis], &span);
         body->in_range =
             body->in_range && body->size[i] >= least_size && body->size[i] <= largest_size;
     }
     body->bits[0] = (int) span.unit;
     body->bits[1] = (int) span.top;
-    body->head = prepared_head_of(body);
 }
 
 enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
@@ -151,6 +146,7 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
         memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
     invert(out);
     body_measure(out);
+    out->head = prepared_head_of(out);
     return FMB_OK;
 }
 

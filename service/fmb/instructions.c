@@ -2,15 +2,31 @@
  * kept. */
 #include "run.h"
 
-#define RUN_DECLARE(name) extern run_function *const run_##name[RUN_KINDS], *const run_times_##name[RUN_KINDS];
+#define RUN_DECLARE(name)                                                                 \
+    extern run_function *const run_##name[RUN_KINDS], *const run_times_##name[RUN_KINDS], \
+                                                          *const run_boxes_##name[RUN_KINDS];
+#define RUN_DECLARE_ALONE(name)                                   \
+    extern run_alone_function *const run_alone_##name[RUN_KINDS], \
+        *const run_times_alone_##name[RUN_KINDS], *const run_boxes_alone_##name[RUN_KINDS];
+#define RUN_SET(name)                                  \
+    {                                                  \
+        run_##name, run_times_##name, run_boxes_##name \
+    }
 
 RUN_DECLARE(plain)
+
 #if defined(__x86_64__)
+
 RUN_DECLARE(sse2)
 RUN_DECLARE(avx2)
 RUN_DECLARE(avx512)
-extern run_alone_function *const run_alone_sse2[RUN_KINDS], *const run_alone_avx2[RUN_KINDS],
-    *const run_times_alone_sse2[RUN_KINDS], *const run_times_alone_avx2[RUN_KINDS];
+RUN_DECLARE_ALONE(sse2)
+RUN_DECLARE_ALONE(avx2)
+
+static const struct run_set sets[] = {[FMB_PLAIN] = RUN_SET(plain),
+                                      [FMB_SSE2] = RUN_SET(sse2),
+                                      [FMB_AVX2] = RUN_SET(avx2),
+                                      [FMB_AVX512] = RUN_SET(avx512)};
 
 static bool has(int instructions)
 {
@@ -25,13 +41,6 @@ static bool has(int instructions)
     return false;
 }
 
-static run_function *const *const verdicts[] = {
-    [FMB_PLAIN] = run_plain, [FMB_SSE2] = run_sse2, [FMB_AVX2] = run_avx2, [FMB_AVX512] = run_avx512};
-static run_function *const *const times[] = {[FMB_PLAIN] = run_times_plain,
-                                             [FMB_SSE2] = run_times_sse2,
-                                             [FMB_AVX2] = run_times_avx2,
-                                             [FMB_AVX512] = run_times_avx512};
-
 run_alone_function *const *run_verdicts_alone(void)
 {
     return has(FMB_AVX2) ? run_alone_avx2 : run_alone_sse2;
@@ -42,18 +51,21 @@ run_alone_function *const *run_times_alone(void)
     return has(FMB_AVX2) ? run_times_alone_avx2 : run_times_alone_sse2;
 }
 
+run_alone_function *const *run_boxes_alone(void)
+{
+    return has(FMB_AVX2) ? run_boxes_alone_avx2 : run_boxes_alone_sse2;
+}
+
 #else
+
+RUN_DECLARE_ALONE(plain)
+
+static const struct run_set sets[] = {[FMB_PLAIN] = RUN_SET(plain)};
 
 static bool has(int instructions)
 {
     return instructions == FMB_PLAIN;
 }
-
-static run_function *const *const verdicts[] = {[FMB_PLAIN] = run_plain};
-static run_function *const *const times[] = {[FMB_PLAIN] = run_times_plain};
-
-extern run_alone_function *const run_alone_plain[RUN_KINDS],
-    *const run_times_alone_plain[RUN_KINDS];
 
 run_alone_function *const *run_verdicts_alone(void)
 {
@@ -63,6 +75,11 @@ run_alone_function *const *run_verdicts_alone(void)
 run_alone_function *const *run_times_alone(void)
 {
     return run_times_alone_plain;
+}
+
+run_alone_function *const *run_boxes_alone(void)
+{
+    return run_boxes_alone_plain;
 }
 
 #endif
@@ -80,14 +97,11 @@ bool fmb_instructions_supported(int instructions)
     return instructions == FMB_BEST || has(instructions);
 }
 
-run_function *const *run_verdicts(int instructions)
+bool run_set_of(int instructions, struct run_set *out)
 {
     const int which = instructions == FMB_BEST ? best() : instructions;
-    return has(which) ? verdicts[which] : NULL;
-}
-
-run_function *const *run_times(int instructions)
-{
-    const int which = instructions == FMB_BEST ? best() : instructions;
-    return has(which) ? times[which] : NULL;
+    if (!has(which))
+        return false;
+    *out = sets[which];
+    return true;
 }

@@ -106,5 +106,6 @@ struct fmb_frame prepared_frame(const struct fmb_prepared *prepared, struct fmb_
         memcpy(body->component[i], next, dim * sizeof *next);
     memcpy(frame.velocity, next, dim * sizeof *next);
     body_measure(body);
+    body->head = prepared->head & ~((uint64_t) PREPARED_MOVING << 3 * PREPARED_SIZE_BITS);
     return frame;
 }

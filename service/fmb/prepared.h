@@ -44,7 +44,7 @@ static inline double prepared_size(unsigned long long head, int i)
     return size;
 }
 
-/* size, extent, in_range, bits and head of a body, which are 0, from the rest of it but the
+/* size, in_range and bits of a body, which are 0, from the rest of it but the
  * inverse. */
 void body_measure(struct fmb_body *body);
 

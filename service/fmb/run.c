@@ -1,32 +1,55 @@
 /* LANES pairs side by side. */
 #include "run_lanes.h"
 
-#ifdef RUN_TIMES
-
-INLINE void put_contacts(const lanes times[2], double (*contacts)[2])
-{
-    double time[2][LANES];
-    memcpy(time, times, sizeof time);
-    UNROLL(8)
-    for (int lane = 0; lane < LANES; lane++) {
-        contacts[lane][0] = time[0][lane];
-        contacts[lane][1] = time[1][lane];
-    }
-}
-
-#endif
-
-INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+INLINE void gather_pairs(const struct run *run, const struct walk_kind kind, size_t first,
+                         struct run_frame pair[2])
 {
     const double *frame[2][LANES];
-    struct walk_pair pair;
-    struct walk_found found;
     UNROLL(8)
     for (size_t lane = 0; lane < LANES; lane++) {
         frame[0][lane] = (const double *) run->pairs[first + lane][0];
         frame[1][lane] = (const double *) run->pairs[first + lane][1];
     }
-    set_pair(kind, frame[0], frame[1], run->duration, &pair);
+    gather(kind, frame[0], &pair[0]);
+    gather(kind, frame[1], &pair[1]);
+}
+
+/* To every so many doubles. */
+INLINE void scatter(lanes x, double *out, int stride)
+{
+    double at[LANES];
+    memcpy(at, &x, sizeof at);
+    UNROLL(8)
+    for (int lane = 0; lane < LANES; lane++)
+        out[lane * stride] = at[lane];
+}
+
+#ifdef RUN_BOXES
+
+INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+{
+    struct run_frame frame[2];
+    struct walk_pair pair;
+    lanes box[2][3];
+    gather_pairs(run, kind, first, frame);
+    set_pair(kind, &frame[0], &frame[1], run->duration, &pair);
+    boxes_of(kind, &pair, &frame[0], &frame[1], box);
+    UNROLL(2)
+    for (int end = 0; end < 2; end++)
+        UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        scatter(box[end][axis], &run->boxes[first][end][axis], 6);
+}
+
+#else
+
+INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+{
+    struct run_frame frame[2];
+    struct walk_pair pair;
+    struct walk_found found;
+    gather_pairs(run, kind, first, frame);
+    set_pair(kind, &frame[0], &frame[1], run->duration, &pair);
     walk_pair_of(kind, &pair, &found);
     const struct outcomes outcomes = outcomes_of(&pair, &found);
     UNROLL(8)
@@ -35,15 +58,18 @@ INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t
 #ifdef RUN_TIMES
     lanes times[2];
     times_of(&pair, &found, run->duration, times);
-    put_contacts(times, &run->contacts[first]);
+    scatter(times[0], &run->contacts[first][0], 2);
+    scatter(times[1], &run->contacts[first][1], 2);
 #endif
 }
 
-#define RUN_FUNCTION(name, kind)                                        \
-    static void name(const struct run *run)                             \
-    {                                                                   \
-        for (size_t first = 0; first < run->count; first += LANES)      \
-            run_lanes(kind, run, first);                                \
+#endif
+
+#define RUN_FUNCTION(name, kind)                                   \
+    static void name(const struct run *run)                        \
+    {                                                              \
+        for (size_t first = 0; first < run->count; first += LANES) \
+            run_lanes(kind, run, first);                           \
     }
 
 RUN_FUNCTIONS(RUN_FUNCTION)

@@ -1,6 +1,6 @@
 /* The filter over many pairs of one kind: prepared frames in, outcomes out, as many side by side as
- * the instruction set has lanes. run.c, and alone.c for pairs alone, are compiled once for each set,
- * and once more for the times of contact, whose bits are promised (Makefile, run_lanes.h). */
+ * the instruction set has lanes. run.c, and alone.c for pairs alone, are compiled once for each
+ * set, and once more for the times of contact, whose bits are promised (Makefile, run_lanes.h). */
 #ifndef FMB_RUN_H
 #define FMB_RUN_H
 
@@ -22,8 +22,8 @@ enum run_kind {
     RUN_REFUSED          /* cannot be asked */
 };
 
-/* What the heads of two frames say of their pair. Inline, as all that follows, for the inner loop of
- * a batch. */
+/* What the heads of two frames say of their pair. Inline, as all that follows, for the inner loop
+ * of a batch. */
 struct run_kinds {
     enum run_kind at_rest, drifting; /* where the velocities are the same, and where they differ */
     bool swapped;                    /* a and b change places */
@@ -42,8 +42,8 @@ static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, do
                     (both & PREPARED_SPACE ? RUN_SPACE : 0u);
     const unsigned along = both & PREPARED_SPACE ? RUN_ALONG : 0;
     return (struct run_kinds){
-        .at_rest = (enum run_kind) (kind | (both & PREPARED_ALONG ? along : 0)),
-        .drifting = (enum run_kind) (kind | RUN_DRIFTS | (any & PREPARED_ALONG ? along : 0)),
+        .at_rest = (enum run_kind)(kind | (both & PREPARED_ALONG ? along : 0)),
+        .drifting = (enum run_kind)(kind | RUN_DRIFTS | (any & PREPARED_ALONG ? along : 0)),
         .swapped = kind_a & ~kind_b & PREPARED_TETRAHEDRON,
         .moving = any & PREPARED_MOVING && duration > 0};
 }
@@ -67,27 +67,37 @@ struct run {
     const struct fmb_prepared *(*pairs)[2];
     size_t count; /* at least 1 */
     double duration;
-    unsigned char *outcomes; /* [count]: enum slabs_outcome; room for RUN_LANES - 1 more */
-    /* [count], room for as many more; by a function of times alone: seconds, where they are known
-     * well enough, else NAN; meant for pairs in contact only. */
+    /* What is written has room for RUN_LANES - 1 more; NULL where the function does not write it.
+     * [count]: enum slabs_outcome. */
+    unsigned char *outcomes;
+    /* [count][first, last], of pairs in contact: seconds; NAN where they are not known well enough.
+     */
     double (*contacts)[2];
+    double (*boxes)[2][FMB_DIM_MAX]; /* [count], of pairs that overlap; likewise */
 };
 
 enum { RUN_LANES = 8 };
 
 typedef void run_function(const struct run *run);
+
+/* Tables have a function for each kind, NULL for combinations that do not exist. verdicts write
+ * outcomes, of all kinds; times outcomes and contacts, of kinds that drift; boxes boxes, of kinds
+ * at rest. */
+struct run_set {
+    run_function *const *verdicts, *const *times, *const *boxes;
+};
+
+/* By enum fmb_instructions; false if this machine does not have them, or they were not compiled. */
+bool run_set_of(int instructions, struct run_set *out);
+
+/* The same for a pair alone, of any instruction set. Returns the outcome, where it is asked; out is
+ * the contact or the box, [2][FMB_DIM_MAX]. */
 typedef enum slabs_outcome run_alone_function(const struct fmb_prepared *a,
                                               const struct fmb_prepared *b, double duration,
-                                              double contact[2]);
+                                              double *out);
 
-/* A function for each kind, NULL for combinations that do not exist; those of times are there for
- * kinds that drift. By enum fmb_instructions; NULL: not on this machine, or not compiled. */
-run_function *const *run_verdicts(int instructions);
-run_function *const *run_times(int instructions);
-
-/* The same for a pair alone, of any instruction set. contact is as in struct run; functions of
- * verdicts do not touch it. */
 run_alone_function *const *run_verdicts_alone(void);
 run_alone_function *const *run_times_alone(void);
+run_alone_function *const *run_boxes_alone(void);
 
 #endif

@@ -1,17 +1,18 @@
 /* What run.c and alone.c have in common: prepared frames into lanes, and what a walk found into
  * outcomes and times; and the table of functions, one for each kind of pair, that each of them
- * makes. RUN_NAME names the table; RUN_TIMES: with the times of contact, whose bits are promised;
- * RUN_ALONE: one pair, in all lanes. */
+ * makes. RUN_NAME names the table; RUN_TIMES: outcomes with the times of contact; RUN_BOXES: boxes,
+ * of pairs at rest; the bits of both are promised. RUN_ALONE: one pair, in all lanes. */
 #ifndef FMB_RUN_LANES_H
 #define FMB_RUN_LANES_H
 
 #include "run.h"
 #include "walk.h"
+#include "walk_box.h"
 
 #ifdef RUN_TIMES
-enum { TIMES = 1 };
+enum { TIMES = 1, ORDERED = 1 };
 #else
-enum { TIMES = 0 };
+enum { TIMES = 0, ORDERED = 0 };
 #endif
 
 /* ---- The gather: words[w] holds word w of LANES frames ---- */
@@ -90,16 +91,18 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 
 /* A frame of each lane. */
 struct run_frame {
-    lanes origin[3], component[3][3], size[3], velocity[3];
+    lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
 };
 
-INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS], struct run_frame *out)
+INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
+                          struct run_frame *out)
 {
     const lanes_bits head = lanes_as_bits(words[0]);
+    out->origin[2] = lanes_of(0);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         out->origin[axis] = words[1 + axis];
-        out->size[axis] = 
+        out->size[axis] =
             lanes_from_bits((head << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
         out->velocity[axis] = words[1 + kind.dim * (1 + kind.dim) + axis];
         UNROLL(3)
@@ -119,24 +122,21 @@ INLINE void gather(const struct walk_kind kind, const double *const frame[LANES]
     set_run_frame(kind, words, out);
 }
 
-INLINE void set_pair(const struct walk_kind kind, const double *const frame_a[LANES],
-                     const double *const frame_b[LANES], double duration, struct walk_pair *out)
+INLINE void set_pair(const struct walk_kind kind, const struct run_frame *a,
+                     const struct run_frame *b, double duration, struct walk_pair *out)
 {
-    struct run_frame a, b;
     lanes component[2][3][3], size[2][3], offset[3], drift[3];
-    gather(kind, frame_a, &a);
-    gather(kind, frame_b, &b);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        offset[axis] = b.origin[axis] - a.origin[axis];
+        offset[axis] = b->origin[axis] - a->origin[axis];
         if (kind.drifts)
-            drift[axis] = (b.velocity[axis] - a.velocity[axis]) * duration;
-        size[0][axis] = a.size[axis];
-        size[1][axis] = b.size[axis];
+            drift[axis] = (b->velocity[axis] - a->velocity[axis]) * duration;
+        size[0][axis] = a->size[axis];
+        size[1][axis] = b->size[axis];
         UNROLL(3)
         for (int i = 0; i < kind.dim; i++) {
-            component[0][i][axis] = a.component[i][axis];
-            component[1][i][axis] = b.component[i][axis];
+            component[0][i][axis] = a->component[i][axis];
+            component[1][i][axis] = b->component[i][axis];
         }
     }
     walk_pair_set(kind, component, size, offset, drift, out);
@@ -168,8 +168,8 @@ INLINE struct outcomes outcomes_of(const struct walk_pair *pair, const struct wa
 
 INLINE enum slabs_outcome outcome_at(struct outcomes outcomes, int lane)
 {
-    return (enum slabs_outcome) ((outcomes.separated >> lane & 1) * SLABS_SEPARATED +
-                                 (outcomes.overlapping >> lane & 1) * SLABS_OVERLAPPING);
+    return (enum slabs_outcome)((outcomes.separated >> lane & 1) * SLABS_SEPARATED +
+                                (outcomes.overlapping >> lane & 1) * SLABS_OVERLAPPING);
 }
 
 /* Seconds: below this a product with a time may underflow. */
@@ -198,25 +198,44 @@ INLINE void times_of(const struct walk_pair *pair, const struct walk_found *foun
     times[1] = lanes_choose(good, last, lanes_of(NAN));
 }
 
+/* NAN where doubles do not give it within its limit, and in axes that are not there. */
+INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
+                     const struct run_frame *a, const struct run_frame *b, lanes box[2][3])
+{
+    lanes origin[2][3];
+    UNROLL(3)
+    for (int axis = 0; axis < 3; axis++) {
+        origin[0][axis] = a->origin[axis];
+        origin[1][axis] = b->origin[axis];
+    }
+    const lanes_mask good = walk_box(pair, kind, origin, box);
+    UNROLL(2)
+    for (int end = 0; end < 2; end++)
+        UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        box[end][axis] =
+            axis < kind.dim ? lanes_choose(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
+}
+
 /* ---- The table ----
  *
  * FUNCTION(name, kind) defines a function for a struct walk_kind. a and b are tetrahedra (1) or
  * cuboids (0). */
 
-#define RUN_KIND(FUNCTION, name, dimension, a_is, b_is, drift, parallel)          \
-    FUNCTION(name, ((struct walk_kind){.dim = dimension,                         \
-                                       .tetrahedron = {a_is, b_is},              \
-                                       .drifts = drift,                          \
-                                       .along = parallel,                        \
-                                       .ordered = TIMES,                         \
+#define RUN_KIND(FUNCTION, name, dimension, a_is, b_is, drift, parallel) \
+    FUNCTION(name, ((struct walk_kind){.dim = dimension,                 \
+                                       .tetrahedron = {a_is, b_is},      \
+                                       .drifts = drift,                  \
+                                       .along = parallel,                \
+                                       .ordered = ORDERED,               \
                                        .times = TIMES}))
 #define RUN_SHAPES(FUNCTION, name, dimension, drift, parallel)      \
     RUN_KIND(FUNCTION, name##_cc, dimension, 0, 0, drift, parallel) \
     RUN_KIND(FUNCTION, name##_ct, dimension, 0, 1, drift, parallel) \
     RUN_KIND(FUNCTION, name##_tt, dimension, 1, 1, drift, parallel)
-#define RUN_DRIFTING(FUNCTION)                    \
-    RUN_SHAPES(FUNCTION, plane_drifts, 2, 1, 0)   \
-    RUN_SHAPES(FUNCTION, space_drifts, 3, 1, 0)   \
+#define RUN_DRIFTING(FUNCTION)                  \
+    RUN_SHAPES(FUNCTION, plane_drifts, 2, 1, 0) \
+    RUN_SHAPES(FUNCTION, space_drifts, 3, 1, 0) \
     RUN_SHAPES(FUNCTION, space_drifts_along, 3, 1, 1)
 #define RUN_AT_REST(FUNCTION)            \
     RUN_SHAPES(FUNCTION, plane, 2, 0, 0) \
@@ -226,20 +245,34 @@ INLINE void times_of(const struct walk_pair *pair, const struct walk_found *foun
 #define RUN_ENTRIES(name, kind)                                   \
     [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON_B] = name##_ct, \
     [(kind) + RUN_TETRAHEDRON_B + RUN_TETRAHEDRON_A] = name##_tt
-#define RUN_DRIFTING_ENTRIES                            \
-    RUN_ENTRIES(plane_drifts, RUN_DRIFTS),              \
-        RUN_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS), \
+#define RUN_DRIFTING_ENTRIES                                                                  \
+    RUN_ENTRIES(plane_drifts, RUN_DRIFTS), RUN_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS), \
         RUN_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG)
-#define RUN_AT_REST_ENTRIES                \
+#define RUN_AT_REST_ENTRIES                               \
     RUN_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
         RUN_ENTRIES(space_along, RUN_SPACE + RUN_ALONG)
 
-#ifdef RUN_TIMES
+#if defined(RUN_TIMES)
 #define RUN_FUNCTIONS(FUNCTION) RUN_DRIFTING(FUNCTION)
-#define RUN_TABLE {RUN_DRIFTING_ENTRIES}
+#define RUN_TABLE            \
+    {                        \
+        RUN_DRIFTING_ENTRIES \
+    }
+#elif defined(RUN_BOXES) /* normals that are zero do not matter */
+#define RUN_FUNCTIONS(FUNCTION)          \
+    RUN_SHAPES(FUNCTION, plane, 2, 0, 0) \
+    RUN_SHAPES(FUNCTION, space, 3, 0, 0)
+#define RUN_TABLE                                             \
+    {                                                         \
+        RUN_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
+            RUN_ENTRIES(space, RUN_SPACE + RUN_ALONG)         \
+    }
 #else
 #define RUN_FUNCTIONS(FUNCTION) RUN_AT_REST(FUNCTION) RUN_DRIFTING(FUNCTION)
-#define RUN_TABLE {RUN_AT_REST_ENTRIES, RUN_DRIFTING_ENTRIES}
+#define RUN_TABLE                                 \
+    {                                             \
+        RUN_AT_REST_ENTRIES, RUN_DRIFTING_ENTRIES \
+    }
 #endif
 
 #define RUN_PASTE_(x, y) x##_##y

@@ -31,12 +31,14 @@
  * in the lengths of walk_pair. The gap of the slab u x v is a sum of products [u v w], and the
  * lengths of these w have a sum of at most T: H stands in the offset and in the swing, a component
  * of a cuboid in the offset and in the radius, that of a tetrahedron in its extent. Each
- * product is a sum of six monomials, and the sum of their magnitudes is at most
+ * product is a sum of six monomials, and for the sum of their magnitudes, with p_k = |u_i| |v_j| +
+ * |u_j| |v_i| (i, j, k cyclic),
  *
- *     sum_k |w_k| (|u_i| |v_j| + |u_j| |v_i|) <= |w| sqrt(sum_k 2 (u_i^2 v_j^2 + u_j^2 v_i^2))
- *                                             <= sqrt(2) |u| |v| |w|
+ *     sum_k |w_k| p_k <= |w| |p|,
+ *     |p|^2 = |u|^2 |v|^2 + (sum |u_i| |v_i|)^2 - 2 sum (u_i v_i)^2
+ *          <= |u|^2 |v|^2 + (sum |u_i| |v_i|)^2 / 3  <=  4/3 |u|^2 |v|^2
  *
- * (i, j, k cyclic; Cauchy's inequality twice). A monomial is rounded at most
+ * (Cauchy's inequality three times). A monomial is rounded at most
  *
  *     2 times in H;  in the offset 3 times for d, 4 for H and for components
  *     5 times in a triple product: 2 in the cross product, 3 in the dot product
@@ -44,16 +46,17 @@
  *     3 times on from an offset (gap, or the inequalities of the time)
  *     6 times on from a product with a component: -(at[p] + at[q]) 1, extent 2, D 1, gap 2
  *
- * so at most 4 + 5 + 2 + 3 = 14 times in the middle of a slab of edges or faces, 4 + 2 + 5 + 1 + 2 =
- * 14 in that of an edge and the drift (whose normal has H in it), 5 + 1 + 6 = 12 in an extent, 2 + 5
+ * so at most 4 + 5 + 2 + 3 = 14 times in the middle of a slab of edges or faces, 4 + 2 + 5 + 1 + 2
+ * = 14 in that of an edge and the drift (whose normal has H in it), 5 + 1 + 6 = 12 in an extent, 2
+ * + 5
  * + 1 + 6 = 14 in one along a normal with H. So its share of the result has a factor within
- * (1 +- u)^14, and the sum an error of at most 14.01 sqrt(2) u |u| |v| T < 19.9 u |u| |v| T. Maxima
- * and minima do not round, and move by no more than what they choose from. The sum of a gap, which
- * is at most |u| |v| T (Hadamard), and its bound rounds by 1.01 u |u| |v| T more. That makes 20.9
- * of the 22 u of SLABS_ROUNDING; the rest is for the bound itself, computed with 15 roundings, and
- * for the swing that is made longer by 2^-10 of it (bound_times). In 2D a product is two monomials,
- * magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 = 10 times, and 10.01 + 1.01
- * leaves as much of 12 u.
+ * (1 +- u)^14, and the sum an error of at most 14.01 (2 / sqrt(3)) u |u| |v| T < 16.2 u |u| |v| T.
+ * Maxima and minima do not round, and move by no more than what they choose from. The sum of a gap,
+ * which is at most |u| |v| T (Hadamard), and its bound rounds by 1.01 u |u| |v| T more. That
+ * makes 17.3 of the 18 u of SLABS_ROUNDING; the rest is for the bound itself, computed with 15
+ * roundings, and for the swing that is made longer by 2^-10 of it (bound_times). In 2D a product is
+ * two monomials, magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 = 10 times,
+ * and 10.01 + 1.01 leaves as much of 12 u.
  *
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.
@@ -129,21 +132,21 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
                                    struct slab_value *next)
 {
     struct walk_found found;
-#define WALK(dimension, x, y, drift)                                                        \
-    if (pair->a->dim == (dimension) && (pair->a->shape == FMB_TETRAHEDRON) == (x) &&        \
-        (pair->b->shape == FMB_TETRAHEDRON) == (y) && pair->motion.drifts == (drift))       \
-        walk_one(pair,                                                                      \
-                 (struct walk_kind){.dim = dimension,                                       \
-                                    .tetrahedron = {x, y},                                  \
-                                    .drifts = drift,                                        \
-                                    .along = (dimension) == 3,                              \
-                                    .ordered = true},                                       \
+#define WALK(dimension, x, y, drift)                                                  \
+    if (pair->a->dim == (dimension) && (pair->a->shape == FMB_TETRAHEDRON) == (x) &&  \
+        (pair->b->shape == FMB_TETRAHEDRON) == (y) && pair->motion.drifts == (drift)) \
+        walk_one(pair,                                                                \
+                 (struct walk_kind){.dim = dimension,                                 \
+                                    .tetrahedron = {x, y},                            \
+                                    .drifts = drift,                                  \
+                                    .along = (dimension) == 3,                        \
+                                    .ordered = true},                                 \
                  rounds, next, &found);
 #define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
-#define WALK_SHAPES(dimension)      \
-    WALK_MOTIONS(dimension, 0, 0)   \
-    WALK_MOTIONS(dimension, 0, 1)   \
-    WALK_MOTIONS(dimension, 1, 0)   \
+#define WALK_SHAPES(dimension)    \
+    WALK_MOTIONS(dimension, 0, 0) \
+    WALK_MOTIONS(dimension, 0, 1) \
+    WALK_MOTIONS(dimension, 1, 0) \
     WALK_MOTIONS(dimension, 1, 1)
     WALK_SHAPES(2)
     WALK_SHAPES(3)

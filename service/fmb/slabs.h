@@ -29,9 +29,9 @@
  * scale of the slab; and along an axis, relative to the sum of all lengths. Derived in slabs.c: a
  * smaller one gives wrong answers, a larger one more that are unsure. */
 #ifndef SLABS_ROUNDING
-#define SLABS_ROUNDING (22 * 0x1p-53)
+#define SLABS_ROUNDING (18 * 0x1p-53)
 #endif
-#define SLABS_ROUNDING_2D (SLABS_ROUNDING * 6 / 11)
+#define SLABS_ROUNDING_2D (SLABS_ROUNDING * 2 / 3)
 #define SLABS_ROUNDING_AXES 0x1p-49
 
 /* A pair that doubles can say something of. */

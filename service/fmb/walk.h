@@ -22,7 +22,7 @@ struct walk_pair {
     lanes component[2][3][3]; /* [frame][component][axis]; of a cuboid half of it, as above */
     lanes size[2][6];         /* of edges: no smaller than their lengths */
     lanes offset[3];          /* of b's reference point in the middle of the window */
-    lanes half[3];            /* of the drift: the offset goes from offset - half to offset + half */
+    lanes half[3]; /* of the drift: the offset goes from offset - half to offset + half */
     lanes half_size;
     lanes reach;         /* T (walk_error) */
     lanes unit;          /* the error of a slab of scale 1 */
@@ -189,9 +189,8 @@ INLINE struct walk_extent extent_of_two(bool tetrahedron, lanes x, lanes y)
 INLINE struct walk_extent extent_of_three(bool tetrahedron, lanes x, lanes y, lanes z)
 {
     if (!tetrahedron)
-        return (struct walk_extent){
-            lanes_of(0), lanes_of(0),
-            (lanes_magnitude(x) + lanes_magnitude(y)) + lanes_magnitude(z)};
+        return (struct walk_extent){lanes_of(0), lanes_of(0),
+                                    (lanes_magnitude(x) + lanes_magnitude(y)) + lanes_magnitude(z)};
     return (struct walk_extent){
         lanes_least(lanes_least(lanes_least(x, y), z), lanes_of(0)),
         lanes_greatest(lanes_greatest(lanes_greatest(x, y), z), lanes_of(0)), lanes_of(0)};
@@ -315,8 +314,8 @@ INLINE bool is_enough(const struct walk_found *found)
 
 /* ---- Axes ----
  *
- * They are normals of slabs too, if not of facets: in space the first to ask, since they cost little
- * and part most pairs that are far from each other. In the plane a slab costs as little. */
+ * They are normals of slabs too, if not of facets: in space the first to ask, since they cost
+ * little and part most pairs that are far from each other. In the plane a slab costs as little. */
 INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
                      struct walk_found *found)
 {
@@ -329,8 +328,8 @@ INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
             UNROLL(3)
         for (int i = 0; i < kind.dim; i++)
             at[f][i] = pair->component[f][i][axis];
-        const struct walk_extent d = extent_difference(
-            kind, extent_of_frame(kind, 0, at[0]), extent_of_frame(kind, 1, at[1]));
+        const struct walk_extent d = extent_difference(kind, extent_of_frame(kind, 0, at[0]),
+                                                       extent_of_frame(kind, 1, at[1]));
         gap = lanes_greatest(gap_of(kind, d, pair->offset[axis], pair->half[axis]), gap);
     }
     found->surely = gap - SLABS_ROUNDING_AXES * pair->reach;
@@ -340,9 +339,9 @@ INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
 
 /* What a frame has of its own, and what of the pair is linear in its normals. */
 struct walk_side {
-    lanes normal[3][3]; /* normal[k] = c_i x c_j */
-    lanes volume;       /* normal[k] . c_k, any k */
-    lanes other[3][6];  /* normal[k] . edges of the other frame */
+    lanes normal[3][3];        /* normal[k] = c_i x c_j */
+    lanes volume;              /* normal[k] . c_k, any k */
+    lanes other[3][6];         /* normal[k] . edges of the other frame */
     lanes middle[3], swing[3]; /* normal[k] . offset, normal[k] . half */
 };
 
@@ -436,9 +435,9 @@ INLINE void add_product_differences(const struct walk_kind kind, lanes value[6][
         UNROLL(3)
         for (int j = 0; j < 3; j++) {
             const int r = next(j), s = next(r);
-            value[3 + i][3 + j] =
-                kind.ordered ? (value[q][s] + value[p][r]) - (value[q][r] + value[p][s])
-                             : value[3 + i][s] - value[3 + i][r];
+            value[3 + i][3 + j] = kind.ordered
+                                      ? (value[q][s] + value[p][r]) - (value[q][r] + value[p][s])
+                                      : value[3 + i][s] - value[3 + i][r];
         }
     }
 }
@@ -531,7 +530,8 @@ INLINE void add_edges(const struct walk_pair *pair, const struct walk_kind kind,
 }
 
 /* The planes of the edges of a (which = 0) or of b with the drift: e x half. The offset at the
- * middle of the window is in them as good as any. [a half b] = -[a b half], [b half a] = [a b half].
+ * middle of the window is in them as good as any. [a half b] = -[a b half], [b half a] = [a b
+ * half].
  */
 INLINE void add_drift(const struct walk_pair *pair, const struct walk_kind kind, int which,
                       const struct walk_side *own, const struct walk_edges *edges,
