@@ -9,18 +9,20 @@
  * the answer where the inner box is near enough.
  *
  * Accuracy. As in slabs.c, the error of n . x - low for a point x of an edge is a sum over
- * monomials of at most 14 roundings each; there are 4 for the offset between the reference points,
- * 5 for a triple product, 2 for the sum of three normals, 2 for the way from the reference point to
- * the start of the edge, 1 for the difference with the bound. The sum of the magnitudes of the
- * monomials is at most W . X, where W = (|c_i| |c_j| + |c_j| |c_i|) is the cross product with all
- * signs positive, summed over three normals for the face across from the origin, and X the sum,
- * axis by axis, of the magnitudes of the offset of the origins and twice all components (of a
- * cuboid once in the way to its reference point, once in that to a point of the edge; of a
- * tetrahedron in the start of an edge and in its direction). So the error is at most 14.01 u W . X,
- * and 16 u W . X leaves room for the rounding of this bound and for a direction made longer by
- * 2^-10 of it, so that no quotient overflows (slabs.c has the same). Quotients and what is made of
- * them are rounded a few times within [-1, 1]: 2^-49 covers it. A coordinate is made of the origin,
- * the components and s times one by 8 roundings at most: 2^-50 of the sum of the magnitudes.
+ * monomials of at most 11 roundings each: 3 in the offset between the reference points (1 for d), 5
+ * in a triple product, 2 for the sum of three normals or for the way to an edge of a cuboid, 1 for
+ * the start of an edge that is a difference, for its direction, and for the difference with the
+ * bound; but not all of these at once. For each of the vectors w that x and the bound are made of,
+ * the sum of the magnitudes of its monomials is W . |w|, where W = (|c_i| |c_j| + |c_j| |c_i|) is
+ * the cross product with all signs positive, summed over three normals for the face across from the
+ * origin. These w are the offset of the origins; the components of a cuboid, once in the way to its
+ * reference point and once in that to the edge and along it; those of a tetrahedron that the edge
+ * starts at (in start and direction, so twice) and ends at; and one component of the frame of the
+ * face, for the bound, which is the volume of that frame. So the error is at most 11.01 u times
+ * their sum, and 12 u leaves room for the rounding of this bound and for a direction made longer by
+ * 2^-10 of it, so that no quotient overflows (bound_times). Quotients and what is made of them
+ * are rounded a few times within [-1, 1]: 2^-49 covers it. A coordinate is made of the origin, the
+ * components and s times one by 8 roundings at most: 2^-50 of the sum of the magnitudes.
  *
  * In 2D the products [x y] take the place of the triple ones, with fewer roundings. */
 #ifndef FMB_WALK_BOX_H
@@ -28,7 +30,7 @@
 
 #include "walk.h"
 
-#define BOX_ROUNDING 0x1p-49
+#define BOX_ROUNDING (12 * 0x1p-53)
 #define BOX_POINT_ROUNDING 0x1p-50
 #define BOX_CUT_ROUNDING 0x1p-49
 
@@ -44,10 +46,11 @@ struct box_function {
     lanes at, component[3];
 };
 
-/* A face of the other frame. */
+/* A face of the other frame. weight: the sum of the magnitudes of the monomials of function, and of
+ * the bounds. */
 struct box_face {
-    struct box_function function;
-    lanes low, high, error;
+    struct box_function function, weight;
+    lanes low, high;
 };
 
 /* A frame to be cut. Lengths are those of walk_pair. */
@@ -69,87 +72,128 @@ struct box_line {
 
 /* ---- Faces ---- */
 
-INLINE lanes dot_magnitudes(const lanes u[3], const lanes v[3])
+/* Magnitudes of what the offset between reference points is made of. */
+INLINE void set_way(const struct walk_pair *pair, const struct walk_kind kind,
+                    const lanes origin[2][3], lanes way[3])
 {
-    return lanes_magnitude(u[0]) * v[0] + lanes_magnitude(u[1]) * v[1] +
-           lanes_magnitude(u[2]) * v[2];
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        const lanes apart = lanes_magnitude(origin[1][axis] - origin[0][axis]);
+        lanes of[2] = {lanes_of(0), lanes_of(0)};
+        UNROLL(2)
+        for (int f = 0; f < 2; f++)
+            UNROLL(3)
+        for (int i = 0; i < kind.dim; i++)
+            if (!kind.tetrahedron[f])
+                of[f] += lanes_magnitude(pair->component[f][i][axis]);
+        way[axis] = (of[0] + of[1]) + (is_doubled(kind) ? apart + apart : apart);
+    }
 }
 
-/* W . X for the face with c_i and c_j. */
-INLINE lanes face_weight(const lanes u[3], const lanes v[3], const lanes sum[3])
+INLINE lanes weight_of(const lanes weight[3], const lanes v[3])
 {
-    lanes weight[3];
+    return weight[0] * lanes_magnitude(v[0]) + weight[1] * lanes_magnitude(v[1]) +
+           weight[2] * lanes_magnitude(v[2]);
+}
+
+/* The cross product with all signs positive. */
+INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
+{
     UNROLL(3)
     for (int k = 0; k < 3; k++) {
         const int i = next(k), j = next(i);
-        weight[k] = lanes_magnitude(u[i] * v[j]) + lanes_magnitude(u[j] * v[i]);
+        out[k] = lanes_magnitude(u[i] * v[j]) + lanes_magnitude(u[j] * v[i]);
     }
-    return dot(weight, sum);
 }
 
-INLINE void set_bounds(const struct walk_kind kind, int of, lanes size, lanes weight,
-                       struct box_face *face)
+INLINE void set_bounds(const struct walk_kind kind, int of, lanes size, struct box_face *face)
 {
     const struct walk_extent own = extent_of_one(kind.tetrahedron[of], size);
     face->low = kind.tetrahedron[of] ? own.low : -own.radius;
     face->high = kind.tetrahedron[of] ? own.high : own.radius;
-    face->error = BOX_ROUNDING * weight;
+}
+
+INLINE lanes sum_of_three(const struct box_function function[3], int i)
+{
+    return i < 0 ? (function[0].at + function[1].at) + function[2].at
+                 : (function[0].component[i] + function[1].component[i]) + function[2].component[i];
 }
 
 /* The offset is that of b from a. */
 INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                            const lanes sum[3], struct box_frame *out)
+                            const lanes way[3], struct box_frame *out)
 {
     const int other = !which;
+    const lanes(*c)[3] = pair->component[other];
     struct walk_side side;
-    lanes weight[3];
+    struct box_function function[3], weight[3];
+    lanes own = lanes_of(0);
     set_side(pair, kind, other, &side);
     out->faces = kind.tetrahedron[other] ? 4 : 3;
     UNROLL(3)
     for (int k = 0; k < 3; k++) {
-        struct box_face *face = &out->face[k];
-        face->function.at = which ? side.middle[k] : -side.middle[k];
+        lanes normal_weight[3];
+        cross_weight(c[next(k)], c[next(next(k))], normal_weight);
+        if (k == 0)
+            own = weight_of(normal_weight, c[0]);
+        function[k].at = which ? side.middle[k] : -side.middle[k];
+        weight[k].at = weight_of(normal_weight, way) + own;
         UNROLL(3)
-        for (int i = 0; i < 3; i++)
-            face->function.component[i] = side.other[k][i];
-        weight[k] = face_weight(pair->component[other][next(k)],
-                                pair->component[other][next(next(k))], sum);
-        set_bounds(kind, other, side.volume, weight[k], face);
+        for (int i = 0; i < 3; i++) {
+            function[k].component[i] = side.other[k][i];
+            weight[k].component[i] = weight_of(normal_weight, pair->component[which][i]);
+        }
+        out->face[k].function = function[k];
+        out->face[k].weight = weight[k];
+        set_bounds(kind, other, side.volume, &out->face[k]);
     }
     if (!kind.tetrahedron[other])
         return;
     struct box_face *face = &out->face[3];
-    const struct box_face *first = out->face;
-    face->function.at = (first[0].function.at + first[1].function.at) + first[2].function.at;
+    face->function.at = sum_of_three(function, -1);
+    face->weight.at = sum_of_three(weight, -1);
     UNROLL(3)
-    for (int i = 0; i < 3; i++)
-        face->function.component[i] =
-            (first[0].function.component[i] + first[1].function.component[i]) +
-            first[2].function.component[i];
-    set_bounds(kind, other, side.volume, (weight[0] + weight[1]) + weight[2], face);
+    for (int i = 0; i < 3; i++) {
+        face->function.component[i] = sum_of_three(function, i);
+        face->weight.component[i] = sum_of_three(weight, i);
+    }
+    set_bounds(kind, other, side.volume, face);
+}
+
+INLINE lanes plane_weight(const lanes e[3], const lanes v[3])
+{
+    return lanes_magnitude(e[0] * v[1]) + lanes_magnitude(e[1] * v[0]);
 }
 
 INLINE void set_plane_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                            const lanes sum[3], struct box_frame *out)
+                            const lanes way[3], struct box_frame *out)
 {
     const int other = !which;
-    const lanes area = product(pair->component[other][0], pair->component[other][1]);
+    const lanes(*c)[3] = pair->component[other];
+    const lanes area = product(c[0], c[1]), own = plane_weight(c[0], c[1]);
     struct walk_plane_edges edges;
-    lanes weight[2];
+    struct box_function weight[2];
     set_plane_edges(pair, kind, other, &edges);
     out->faces = edge_count(kind, other);
+    UNROLL(2)
+    for (int e = 0; e < 2; e++) {
+        weight[e].at = plane_weight(c[e], way) + own;
+        UNROLL(2)
+        for (int i = 0; i < 2; i++)
+            weight[e].component[i] = plane_weight(c[e], pair->component[which][i]);
+    }
     UNROLL(3)
     for (int e = 0; e < edge_count(kind, other); e++) {
         struct box_face *face = &out->face[e];
         face->function.at = which ? edges.middle[e] : -edges.middle[e];
-        face->function.component[0] = edges.other[e][0];
-        face->function.component[1] = edges.other[e][1];
-        if (e < 2) {
-            const lanes *c = pair->component[other][e];
-            weight[e] = lanes_magnitude(c[0]) * sum[1] + lanes_magnitude(c[1]) * sum[0];
+        face->weight.at = e < 2 ? weight[e].at : weight[0].at + weight[1].at;
+        UNROLL(2)
+        for (int i = 0; i < 2; i++) {
+            face->function.component[i] = edges.other[e][i];
+            face->weight.component[i] =
+                e < 2 ? weight[e].component[i] : weight[0].component[i] + weight[1].component[i];
         }
-        set_bounds(kind, other, e == 0 ? area : -area, e < 2 ? weight[e] : weight[0] + weight[1],
-                   face);
+        set_bounds(kind, other, e == 0 ? area : -area, face);
     }
 }
 
@@ -182,13 +226,14 @@ struct box_part {
     lanes outer[2], inner[2];
 };
 
-/* inverse: of face . direction, made a little longer; error in s. */
+/* inverse: of face . direction, made a little longer; slack: error in s. */
 struct box_cut {
     lanes inverse, slack;
 };
 
-INLINE struct box_cut cut_of(lanes direction, lanes error)
+INLINE struct box_cut cut_of(lanes direction, lanes weight)
 {
+    const lanes error = BOX_ROUNDING * weight;
     struct box_cut cut;
     cut.inverse = 1 / (direction + lanes_with_sign(0x1p-10 * error, direction));
     cut.slack = error * lanes_magnitude(cut.inverse) + BOX_CUT_ROUNDING;
@@ -240,6 +285,13 @@ INLINE lanes cuboid_start(const struct walk_kind kind, const struct box_function
     return signs & 2 ? at + function->component[k] : at - function->component[k];
 }
 
+/* Of all edges alike. */
+INLINE lanes cuboid_weight(const struct walk_kind kind, const struct box_function *weight)
+{
+    const lanes sum = weight->component[0] + weight->component[1];
+    return weight->at + (kind.dim == 2 ? sum : sum + weight->component[2]);
+}
+
 INLINE void add_cuboid_edges(const struct walk_kind kind, const struct box_frame *frame, int i,
                              struct box_found *found)
 {
@@ -247,7 +299,8 @@ INLINE void add_cuboid_edges(const struct walk_kind kind, const struct box_frame
     struct box_cut cut[4];
     UNROLL(4)
     for (int k = 0; k < frame->faces; k++)
-        cut[k] = cut_of(frame->face[k].function.component[i], frame->face[k].error);
+        cut[k] = cut_of(frame->face[k].function.component[i],
+                        cuboid_weight(kind, &frame->face[k].weight));
     UNROLL(4)
     for (int signs = 0; signs < edges; signs++) {
         struct box_part part = {{lanes_of(-1), lanes_of(1)}, {lanes_of(-1), lanes_of(1)}};
@@ -275,6 +328,14 @@ INLINE struct box_line simplex_line(const struct walk_kind kind,
                              function->component[q] - function->component[p]};
 }
 
+INLINE lanes simplex_weight(const struct walk_kind kind, const struct box_function *weight, int e)
+{
+    if (e < kind.dim)
+        return weight->at + weight->component[e];
+    const int p = kind.dim == 2 ? 0 : next(e - 3), q = kind.dim == 2 ? 1 : next(p);
+    return weight->at + ((weight->component[p] + weight->component[p]) + weight->component[q]);
+}
+
 INLINE void add_simplex_edge(const struct walk_kind kind, const struct box_frame *frame, int e,
                              struct box_found *found)
 {
@@ -284,7 +345,8 @@ INLINE void add_simplex_edge(const struct walk_kind kind, const struct box_frame
     for (int k = 0; k < frame->faces; k++) {
         const struct box_face *face = &frame->face[k];
         const struct box_line along = simplex_line(kind, &face->function, e);
-        cut_edge(face, cut_of(along.direction, face->error), along.start, &part);
+        cut_edge(face, cut_of(along.direction, simplex_weight(kind, &face->weight, e)), along.start,
+                 &part);
     }
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
@@ -314,21 +376,10 @@ INLINE lanes largest_place(const struct walk_kind kind, int which, const struct 
     return (1 - 0x1p-40) * largest;
 }
 
-/* X, and boxes of nothing. */
-INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
-                      const lanes origin[2][3], lanes sum[3], struct box_found *found)
+INLINE void begin_box(const struct walk_kind kind, struct box_found *found)
 {
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        const lanes apart = lanes_magnitude(origin[1][axis] - origin[0][axis]);
-        lanes of[2] = {lanes_of(0), lanes_of(0)};
-        UNROLL(2)
-        for (int f = 0; f < 2; f++)
-            UNROLL(3)
-        for (int i = 0; i < kind.dim; i++)
-            of[f] += lanes_magnitude(pair->component[f][i][axis]);
-        const lanes both = of[0] + of[1];
-        sum[axis] = (both + both) + (is_doubled(kind) ? apart + apart : apart);
         found->outer[0][axis] = found->inner[0][axis] = lanes_of(INFINITY);
         found->outer[1][axis] = found->inner[1][axis] = lanes_of(-INFINITY);
     }
@@ -351,15 +402,16 @@ INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind 
                            const lanes origin[2][3], lanes box[2][3])
 {
     struct box_found found;
-    lanes sum[3], largest = lanes_of(0);
-    begin_box(pair, kind, origin, sum, &found);
+    lanes way[3], largest = lanes_of(0);
+    begin_box(kind, &found);
+    set_way(pair, kind, origin, way);
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         struct box_frame frame;
         if (kind.dim == 3)
-            set_space_faces(pair, kind, which, sum, &frame);
+            set_space_faces(pair, kind, which, way, &frame);
         else
-            set_plane_faces(pair, kind, which, sum, &frame);
+            set_plane_faces(pair, kind, which, way, &frame);
         set_places(pair, kind, which, origin[which], &frame);
         largest = lanes_greatest(largest_place(kind, which, &frame), largest);
         add_edges_of(kind, which, &frame, &found);
