@@ -1,259 +1,160 @@
-/* The benchmark: what a verdict costs, by kind of pair and by method; what its bounds cost; what
- * contacts cost in a scene full of them; and the worst that was found.
- *
- * Distinct pairs, methods in turn within each block, medians of blocks, time of this thread alone.
- */
-#include "certified.h"
-#include "draw.h"
-#include "pairs.h"
-#include "stopwatch.h"
-#include "unbounded.h"
+/* The benchmark: what a verdict costs, by kind of pair and by method, beside the article's numbers;
+ * what else costs what; how it grows; and the worst that was found. */
+#include "bench.h"
 
-#include <stdio.h>
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
-enum { PAIRS = 4096, SEED = 20240607 };
+#include "machine.h"
+#include "options.h"
 
-/* ---- What is timed: a call on each pair, nanoseconds ---- */
+/* Of the loop that is always the same: more than this, and no time is to be believed to the last
+ * few per cent. */
+static const double much_noise = 0.05;
 
-typedef double run(const struct pairs *pairs, const void *what);
-
-static volatile unsigned sink; /* so that nothing is left out */
-
-static double run_method(const struct pairs *pairs, const void *what)
+bool bench_wants(const struct bench *bench, const char *section)
 {
-    const double start = stopwatch_now();
-    for (size_t i = 0; i < pairs->count; i++) {
-        struct fmb_answer answer;
-        fmb_decide(what, &pairs->pair[i], 0, &answer);
-        sink += answer.verdict;
-    }
-    return stopwatch_now() - start;
+    return !bench->section || strcmp(bench->section, section) == 0;
 }
 
-static double run_box(const struct pairs *pairs, const void *what)
+void bench_progress(const char *text)
 {
-    const double start = stopwatch_now();
-    for (size_t i = 0; i < pairs->count; i++) {
-        struct fmb_answer answer;
-        fmb_decide(what, &pairs->pair[i], FMB_WANT_BOX, &answer);
-        sink += answer.verdict;
-    }
-    return stopwatch_now() - start;
+    if (isatty(STDERR_FILENO))
+        fprintf(stderr, "\r%-40s\r", text ? text : "");
+    fflush(stdout);
 }
 
-typedef enum slabs_outcome filter(const struct slabs_pair *pair, bool rounds);
-
-struct filter_of {
-    filter *function;
-};
-
-static double run_filter(const struct pairs *pairs, const void *what)
+void bench_put_cell(struct json *json, const struct cell *cell)
 {
-    const struct filter_of *of = what;
-    const double start = stopwatch_now();
-    for (size_t i = 0; i < pairs->count; i++) {
-        struct slabs_pair slabs;
-        if (slabs_prepare(&pairs->pair[i], &slabs))
-            sink += of->function(&slabs, true);
-    }
-    return stopwatch_now() - start;
-}
-
-struct contender {
-    run *run;
-    const void *what;
-};
-
-/* Median nanoseconds a pair of each. */
-static void race(const struct pairs *pairs, const struct contender *contenders, int count,
-                 double *out)
-{
-    struct stopwatch watch[8] = {{{0}, 0}};
-    for (int block = 0; block < STOPWATCH_BLOCKS; block++)
-        for (int i = 0; i < count; i++)
-            watch[i].block[watch[i].blocks++] =
-                contenders[i].run(pairs, contenders[i].what) / (double) pairs->count;
-    for (int i = 0; i < count; i++)
-        out[i] = stopwatch_median(&watch[i]);
-}
-
-/* ---- Sections ---- */
-
-static void print_pair(double in_contact, double separated)
-{
-    printf(" %9.0f /%5.0f", in_contact, separated);
-}
-
-static void race_cell(const struct cell *cell)
-{
-    static const struct filter_of bounded = {slabs_filter}, unbounded = {unbounded_filter};
-    const void *certified = fmb_method_by_name("certified");
-    const struct contender contenders[] = {
-        {run_method, certified},
-        {run_filter, &bounded},
-        {run_filter, &unbounded},
-        {run_method, fmb_method_by_name("sat")},
-        {run_method, fmb_method_by_name("fmb")},
-        {run_method, fmb_method_by_name("exact")},
-        {run_box, certified},
-    };
-    enum { COUNT = sizeof contenders / sizeof *contenders };
-    struct pairs all = pairs_draw(family_by_name("random"), cell, PAIRS, SEED);
-    double ns[2][COUNT];
-    for (int contact = 0; contact < 2; contact++) {
-        struct pairs some = pairs_in_contact(&all, contact);
-        race(&some, contenders, COUNT, ns[contact]);
-        pairs_free(&some);
-    }
     char text[CELL_TEXT_MAX];
-    printf("%-13s", cell_text(cell, text));
-    for (int i = 0; i < COUNT; i++)
-        print_pair(ns[1][i], ns[0][i]);
-    printf("   %.2f /%5.2f\n", ns[1][1] / ns[1][2], ns[0][1] / ns[0][2]);
-    fflush(stdout);
-    pairs_free(&all);
+    json_number(json, "dim", cell->dim);
+    json_bool(json, "moving", cell->moving);
+    json_text(json, "shapes", cell_shapes_text(cell, text));
 }
 
-static void section_random(void)
+void arena_open(const struct bench *bench, const struct cell *cell, bool in_contact,
+                struct arena *out)
 {
-    struct cell cells[CELL_WITH_FACES];
-    const int count = cell_list(false, cells);
-    printf(
-        "Random pairs (the article's distribution), nanoseconds a query, in contact / separated.\n"
-        "certified, fmb, sat and exact: fmb_decide(), with the interval of moving pairs; +box:\n"
-        "with the box; filter: verdict alone, with bounds; bare: the same compiled without;\n"
-        "ratio: filter to bare.\n\n");
-    printf("%-13s %16s %16s %16s %16s %16s %16s %16s   %s\n", "", "certified", "filter", "bare",
-           "sat", "fmb", "exact", "+box", "ratio");
-    for (int i = 0; i < count; i++)
-        race_cell(&cells[i]);
+    out->scene = scene_draw(cell, bench->bodies, bench->seed, false);
+    out->pairs = pairs_draw_of(&out->scene, in_contact, 5 * bench->pairs, bench->seed);
+    out->work = work_of(&out->scene, &out->pairs);
+    out->work.count = bench->pairs;
+    out->work.warm = out->work.pair + bench->pairs; /* so many that they touch nearly all bodies */
+    out->work.warm_count = 4 * bench->pairs;
+    out->work.instructions = bench->instructions;
 }
 
-static void section_unsure(long pairs)
+void arena_close(struct arena *arena)
 {
-    struct cell cells[CELL_WITH_FACES];
-    const int count = cell_list(false, cells);
-    const struct family *random = family_by_name("random");
-    long unsure = 0, asked = 0;
-    for (int i = 0; i < count; i++)
-        for (long done = 0; done < pairs; done += PAIRS) {
-            struct pairs some = pairs_draw(random, &cells[i], PAIRS, SEED + (uint64_t) done);
-            for (size_t k = 0; k < some.count; k++, asked++) {
-                enum certified_path path;
-                certified_verdict(&some.pair[k], &path);
-                unsure += path != CERTIFIED_FILTER;
-            }
-            pairs_free(&some);
-        }
-    printf("\nThe filter was unsure of %ld in %ld random pairs.\n", unsure, asked);
+    work_free(&arena->work);
+    pairs_free(&arena->pairs);
+    scene_free(&arena->scene);
 }
 
-static void race_grid(const char *name, double pitch)
+static const char *instructions_of(const struct bench *bench)
 {
-    const void *certified = fmb_method_by_name("certified");
-    const struct contender contenders[] = {
-        {run_method, certified}, {run_method, fmb_method_by_name("exact")}, {run_box, certified}};
-    struct pairs all = pairs_of_grid(pitch, 22);
-    double ns[3];
-    race(&all, contenders, 3, ns);
-    printf("%-28s %7zu %10.0f %10.0f %10.0f\n", name, all.count, ns[0], ns[1], ns[2]);
-    pairs_free(&all);
+    int best = bench->instructions;
+    for (int set = FMB_PLAIN; bench->instructions == FMB_BEST && set <= FMB_AVX512; set++)
+        best = fmb_instructions_supported(set) ? set : best;
+    return fmb_instructions_name(best);
 }
 
-static void section_grids(void)
+static void put_machine(const struct bench *bench, struct json *json, bool pinned)
 {
-    printf("\n10,648 cubes in a grid, every one with its neighbours, nanoseconds a pair.\n\n");
-    printf("%-28s %7s %10s %10s %10s\n", "", "pairs", "certified", "exact", "+box");
-    race_grid("pitch 1, all touch", 1);
-    race_grid("pitch 0.1, an ulp either way", 0.1);
+    char cpu[MACHINE_TEXT_MAX];
+    const double noise = stopwatch_noise();
+    json_open(json, "machine", '{');
+    json_text(json, "cpu", machine_cpu(cpu));
+    json_number(json, "cores", machine_cores());
+    json_text(json, "compiler", machine_compiler());
+    json_text(json, "instructions", instructions_of(bench));
+    json_number(json, "last_level_cache_bytes", (double) machine_last_cache());
+    json_bool(json, "pinned", pinned);
+    json_number(json, "noise", noise);
+    json_bool(json, "noisy", noise > much_noise);
+    json_close(json, '}');
 }
 
-static double run_verdict(const struct pairs *pairs, const void *what)
+static void put_settings(const struct bench *bench, struct json *json)
 {
-    (void) what;
-    const double start = stopwatch_now();
-    for (size_t i = 0; i < pairs->count; i++) {
-        enum certified_path path;
-        sink += certified_verdict(&pairs->pair[i], &path);
+    json_open(json, "settings", '{');
+    json_number(json, "bodies", (double) bench->bodies);
+    json_number(json, "pairs", (double) bench->pairs);
+    json_number(json, "blocks", bench->race.blocks);
+    json_number(json, "seed", (double) bench->seed);
+    json_bool(json, "quick", bench->quick);
+    json_close(json, '}');
+}
+
+/* The sections have been written to text; what is said of the machine comes before them, and is
+ * known after. */
+static bool write_json(const struct bench *bench, bool pinned, const char *text, const char *path)
+{
+    struct json json = {fopen(path, "w"), false};
+    if (!json.out)
+        return false;
+    fputc('{', json.out);
+    json_number(&json, "bench", 1);
+    json_text(&json, "version", fmb_version());
+    put_machine(bench, &json, pinned);
+    put_settings(bench, &json);
+    fputs(text, json.out);
+    fputs("}\n", json.out);
+    const bool failed = ferror(json.out);
+    return fclose(json.out) == 0 && !failed;
+}
+
+static void print_head(const struct bench *bench)
+{
+    char cpu[MACHINE_TEXT_MAX];
+    printf("%s, %s, batch: %s, last level cache %.3g MB\n", machine_cpu(cpu), machine_compiler(),
+           instructions_of(bench), (double) machine_last_cache() / 0x1p20);
+    printf("%zu bodies, %zu pairs a kind; medians of %d blocks.\n\n", bench->bodies, bench->pairs,
+           bench->race.blocks);
+    contender_help();
+}
+
+static void print_noise(bool pinned)
+{
+    printf("\nNoise: a loop that is always the same took times %.1f %% apart.\n",
+           100 * stopwatch_noise());
+    if (stopwatch_noise() > much_noise)
+        printf(
+            "That is much: something else was running, or the clock of the machine changes.\n"
+            "Compare ratios, and do not believe small differences.\n");
+    if (!pinned)
+        printf("The program could not be tied to one CPU, which adds to it.\n");
+}
+
+int main(int argc, char **argv)
+{
+    struct bench bench;
+    const char *path;
+    char *text = NULL;
+    size_t length = 0;
+    const int outcome = bench_options(argc, argv, &bench, &path);
+    if (outcome != OPTIONS_RUN)
+        return outcome;
+    const bool pinned = stopwatch_pin();
+    bench.json = (struct json){open_memstream(&text, &length), true};
+    if (!bench.json.out) {
+        perror("bench");
+        return EXIT_FAILURE;
     }
-    return stopwatch_now() - start;
-}
-
-/* What a function costs on pairs of a family one by one, in microseconds. */
-struct spread {
-    double mean, kind, worst; /* of all; of the kind of pair that costs most; of one pair */
-};
-
-static double cost_of(const struct contender *contender, const struct fmb_pair *pair,
-                      const struct spread *spread)
-{
-    struct fmb_pair copy = *pair;
-    const struct pairs one = {1, &copy, NULL};
-    double us = contender->run(&one, contender->what) / 1e3;
-    for (int again = 0; us > spread->worst && again < 3; again++) { /* was it the machine? */
-        const double other = contender->run(&one, contender->what) / 1e3;
-        us = other < us ? other : us;
-    }
-    return us;
-}
-
-static struct spread spread_of(const struct family *family, const struct contender *contender,
-                               size_t pairs)
-{
-    struct cell cells[CELL_WITH_FACES];
-    const int count = family_cells(family, cells);
-    struct spread spread = {0};
-    for (int i = 0; i < count; i++) {
-        struct pairs some = pairs_draw(family, &cells[i], pairs, SEED);
-        double sum = 0;
-        for (size_t k = 0; k < some.count; k++) {
-            const double us = cost_of(contender, &some.pair[k], &spread);
-            spread.worst = us > spread.worst ? us : spread.worst;
-            sum += us;
-        }
-        const double mean = sum / (double) pairs;
-        spread.kind = mean > spread.kind ? mean : spread.kind;
-        spread.mean += mean / count;
-        pairs_free(&some);
-    }
-    return spread;
-}
-
-static void print_spread(const char *name, const char *what, struct spread spread)
-{
-    printf("%-16s %-20s %10.1f %10.1f %10.1f\n", name, what, spread.mean, spread.kind,
-           spread.worst);
-    fflush(stdout);
-}
-
-static void worst_of_family(const char *name, size_t pairs)
-{
-    const struct family *family = family_by_name(name);
-    const struct fmb_method *certified = fmb_method_by_name("certified");
-    const struct contender verdict = {run_verdict, NULL}, query = {run_method, certified},
-                           box = {run_box, certified};
-    print_spread(name, "verdict", spread_of(family, &verdict, pairs));
-    print_spread("", "with the interval", spread_of(family, &query, pairs));
-    print_spread("", "and with the box", spread_of(family, &box, pairs));
-}
-
-static void section_worst(void)
-{
-    printf(
-        "\ncertified where exponents differ most, microseconds a query: mean of all, mean of the\n"
-        "kind of pair that costs most, worst pair.\n\n");
-    printf("%-16s %-20s %10s %10s %10s\n", "", "", "mean", "kind", "worst");
-    worst_of_family("exponents-200", 2000);
-    worst_of_family("exponents-all", 300);
-}
-
-int main(void)
-{
-    stopwatch_pin();
-    section_random();
-    section_grids();
-    section_worst();
-    section_unsure(1 << 18);
-    return 0;
+    print_head(&bench);
+    cells_run(&bench);
+    article_run(&bench);
+    instructions_run(&bench);
+    growth_run(&bench);
+    grids_run(&bench);
+    worst_run(&bench);
+    print_noise(pinned);
+    const bool complete = fclose(bench.json.out) == 0;
+    const bool written = complete && (!path || write_json(&bench, pinned, text, path));
+    if (!written)
+        fprintf(stderr, "bench: %s: %s\n", path ? path : "JSON", strerror(errno));
+    free(text);
+    return written ? EXIT_SUCCESS : EXIT_FAILURE;
 }

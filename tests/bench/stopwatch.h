@@ -1,22 +1,29 @@
 /* How long something takes, on a machine that does other things too: the time of this thread, taken
- * in blocks, and of these the median. */
+ * in blocks, and of these the median and the quartiles. */
 #ifndef STOPWATCH_H
 #define STOPWATCH_H
+
+#include <stdbool.h>
 
 /* CPU time of this thread, in nanoseconds. */
 double stopwatch_now(void);
 
-enum { STOPWATCH_BLOCKS = 15 };
+/* Ties the program to the CPU it is on. False: that is not allowed here. */
+bool stopwatch_pin(void);
 
-struct stopwatch {
-    double block[STOPWATCH_BLOCKS]; /* nanoseconds a call */
-    int blocks;
+/* Of times of one thing: the median, and the quartiles. */
+struct spread {
+    double median, low, high;
 };
 
-/* Of the blocks so far. */
-double stopwatch_median(const struct stopwatch *watch);
+/* The values are put in order. All 0 of none. */
+struct spread spread_of(double *values, int count);
 
-/* Ties the program to one CPU, where that is allowed. */
-void stopwatch_pin(void);
+/* Takes the time of a loop that is always the same, between other things. */
+void stopwatch_calibrate(void);
+
+/* How far apart the times of that loop were, from the tenth part of them to the last but one tenth,
+ * against their median: what the machine adds, whatever is measured. */
+double stopwatch_noise(void);
 
 #endif

@@ -1,0 +1,45 @@
+/* The sections of the benchmark. Each prints a table for people and writes its part of the JSON. */
+#ifndef BENCH_H
+#define BENCH_H
+
+#include "contender.h"
+#include "json.h"
+
+struct bench {
+    size_t bodies; /* of a scene */
+    size_t pairs;  /* of a cell, in contact and separated each */
+    struct race race;
+    uint64_t seed;
+    bool quick;
+    enum fmb_instructions instructions;
+    const char *section; /* NULL: all */
+    struct json json;
+};
+
+bool bench_wants(const struct bench *bench, const char *section);
+
+/* A line on stderr that says how far it is, if that is a terminal; NULL takes it away. */
+void bench_progress(const char *text);
+
+/* "dim", "moving", "shapes" of an open object. */
+void bench_put_cell(struct json *json, const struct cell *cell);
+
+/* A scene of a cell, with pairs that are in contact, or such that are not. Not to be copied: the
+ * work points to the scene. */
+struct arena {
+    struct scene scene;
+    struct pairs pairs;
+    struct work work;
+};
+void arena_open(const struct bench *bench, const struct cell *cell, bool in_contact,
+                struct arena *out);
+void arena_close(struct arena *arena);
+
+void cells_run(struct bench *bench);        /* cells, inverse, order, hybrid, box */
+void article_run(struct bench *bench);      /* article */
+void instructions_run(struct bench *bench); /* instructions */
+void growth_run(struct bench *bench);       /* growth */
+void grids_run(struct bench *bench);        /* grids */
+void worst_run(struct bench *bench);        /* worst */
+
+#endif

@@ -1,0 +1,262 @@
+#include "contender.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "inexact.h"
+#include "ordered.h"
+#include "peers.h"
+
+static volatile unsigned sink; /* so that nothing is left out */
+
+struct work work_of(const struct scene *scene, const struct pairs *pairs)
+{
+    return (struct work){.scene = scene,
+                         .pair = (const unsigned(*)[2]) pairs->at,
+                         .count = pairs->count,
+                         .verdicts = scene_allocate(pairs->count, 1),
+                         .contacts = scene_allocate(pairs->count, 2 * sizeof(double)),
+                         .boxes = scene_allocate(pairs->count, 6 * sizeof(double))};
+}
+
+void work_free(struct work *work)
+{
+    free(work->verdicts);
+    free(work->contacts);
+    free(work->boxes);
+}
+
+/* ---- The contenders ---- */
+
+static void run_batch(const struct work *work, bool contacts, bool boxes)
+{
+    const struct fmb_batch batch = {.frames = work->scene->prepared,
+                                    .frame_count = work->scene->count,
+                                    .pairs = work->pair,
+                                    .pair_count = work->count,
+                                    .duration = 1,
+                                    .verdicts = work->verdicts,
+                                    .contacts = contacts ? work->contacts : NULL,
+                                    .boxes = boxes ? work->boxes : NULL,
+                                    .instructions = work->instructions};
+    sink += fmb_decide_batch(&batch);
+}
+
+static void batch(const struct work *work)
+{
+    run_batch(work, false, false);
+}
+
+static void batch_interval(const struct work *work)
+{
+    run_batch(work, true, false);
+}
+
+static void batch_box(const struct work *work)
+{
+    run_batch(work, false, true);
+}
+
+static void single(const struct work *work)
+{
+    const struct fmb_prepared *prepared = work->scene->prepared;
+    for (size_t i = 0; i < work->count; i++)
+        sink += fmb_meet(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]], 1);
+}
+
+static void single_computed(const struct work *work)
+{
+    const struct fmb_frame *frame = work->scene->frame;
+    for (size_t i = 0; i < work->count; i++) {
+        struct fmb_prepared a, b;
+        fmb_prepare(&frame[work->pair[i][0]], &a);
+        fmb_prepare(&frame[work->pair[i][1]], &b);
+        sink += fmb_meet(&a, &b, 1);
+    }
+}
+
+static void sat(const struct work *work)
+{
+    const struct fmb_prepared *prepared = work->scene->prepared;
+    for (size_t i = 0; i < work->count; i++)
+        sink += sat_meets(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]], 1);
+}
+
+/* Pairs are put together in the call; 'first' is the side that is A. */
+static void run_method(const struct work *work, const struct fmb_method *method, unsigned want,
+                       int first)
+{
+    const struct fmb_frame *frame = work->scene->frame;
+    for (size_t i = 0; i < work->count; i++) {
+        const struct fmb_pair pair = {frame[work->pair[i][first]], frame[work->pair[i][!first]], 1};
+        struct fmb_answer answer;
+        fmb_decide(method, &pair, want, &answer);
+        sink += answer.verdict;
+    }
+}
+
+static void query(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("certified"), 0, 0);
+}
+
+static void query_box(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("certified"), FMB_WANT_BOX, 0);
+}
+
+static void fmb(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("fmb"), 0, 0);
+}
+
+static void fmb_box(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("fmb"), FMB_WANT_BOX, 0);
+}
+
+static void fmb_ba(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("fmb"), 0, 1);
+}
+
+static void sat_query(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("sat"), 0, 0);
+}
+
+static void exact(const struct work *work)
+{
+    run_method(work, fmb_method_by_name("exact"), 0, 0);
+}
+
+static const struct fmb_method ordered = {.name = "ordered", .decide = ordered_decide};
+
+static void fmb_sorted(const struct work *work)
+{
+    ordered_choose(ORDER_SORTED);
+    run_method(work, &ordered, 0, 0);
+}
+
+static void fmb_reversed(const struct work *work)
+{
+    ordered_choose(ORDER_REVERSED);
+    run_method(work, &ordered, 0, 0);
+}
+
+/* The body of a, whose inverse it is, is made anew. */
+static void fmb_computed(const struct work *work)
+{
+    const struct fmb_frame *frame = work->scene->frame;
+    for (size_t i = 0; i < work->count; i++) {
+        struct fmb_pair pair = {frame[work->pair[i][0]], frame[work->pair[i][1]], 1};
+        const struct fmb_body *body = pair.a.body;
+        const size_t dim = (size_t) body->dim;
+        double number[FMB_COMPONENTS_MAX];
+        for (size_t k = 0; k < dim; k++)
+            memcpy(&number[k * dim], body->component[k], dim * sizeof *number);
+        struct fmb_body made;
+        fmb_body_make(body->dim, body->shape, number, dim * dim, &made);
+        pair.a.body = &made;
+        struct fmb_answer answer;
+        fmb_decide(fmb_method_by_name("fmb"), &pair, 0, &answer);
+        sink += answer.verdict;
+    }
+}
+
+/* ---- The table ---- */
+
+static const struct {
+    const char *name;
+    void (*run)(const struct work *work);
+    int where;
+} table[] = {
+#define X(id, name, run, where) {name, run, where},
+    CONTENDER_MAP(X)
+#undef X
+};
+
+const char *contender_name(enum contender contender)
+{
+    return table[contender].name;
+}
+
+bool contender_runs(enum contender contender, const struct cell *cell)
+{
+    switch (table[contender].where) {
+    case ONLY_MOVING: return cell->moving;
+    case ONLY_3D_STATIC: return cell->dim == 3 && !cell->moving && peers_are_there();
+    default: return true;
+    }
+}
+
+void contender_run(enum contender contender, const struct work *work)
+{
+    table[contender].run(work);
+}
+
+void contender_help(void)
+{
+    printf(
+        "batch: fmb_decide_batch(), verdicts alone; +interval, +box: with these. single: "
+        "fmb_meet()\n"
+        "of prepared frames; computed: prepared in the call. query: fmb_decide(), certified, with\n"
+        "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
+        "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
+        "doubles,\n"
+        "verdict alone, of prepared frames: the yardstick. gjk, mpr: libccd's%s.\n",
+        peers_are_there() ? "" : " (not in this build: make deps-bench)");
+}
+
+/* ---- Races ---- */
+
+enum { BLOCKS_MAX = 64, LEAST_PAIRS = 64 };
+
+static double time_of(enum contender contender, const struct work *work)
+{
+    const double start = stopwatch_now();
+    contender_run(contender, work);
+    return (stopwatch_now() - start) / (double) work->count;
+}
+
+/* some: what will be timed, of all. Slow ones, that ask but some of the pairs, need no more here.
+ */
+static void warm_up(enum contender contender, const struct work *some, const struct work *all)
+{
+    struct work other = *some;
+    other.pair = all->warm;
+    other.count =
+        some->count < all->count && some->count < all->warm_count ? some->count : all->warm_count;
+    contender_run(contender, &other);
+}
+
+/* As many of the pairs as the budget has room for. */
+static struct work cut(const struct race *race, const struct work *work, enum contender contender)
+{
+    struct work some = *work;
+    some.count = some.count < LEAST_PAIRS ? some.count : LEAST_PAIRS;
+    const double room = race->budget / time_of(contender, &some);
+    if (room > (double) some.count)
+        some.count = room < (double) work->count ? (size_t) room : work->count;
+    return some;
+}
+
+void race_run(const struct race *race, const struct work *work, const enum contender *contenders,
+              int count, struct spread *out)
+{
+    struct work some[CONTENDERS];
+    double times[CONTENDERS][BLOCKS_MAX];
+    const int blocks = race->blocks < BLOCKS_MAX ? race->blocks : BLOCKS_MAX;
+    for (int i = 0; i < count; i++)
+        some[i] = cut(race, work, contenders[i]);
+    for (int block = 0; block < blocks; block++) {
+        stopwatch_calibrate();
+        for (int i = 0; i < count; i++) {
+            warm_up(contenders[i], &some[i], work);
+            times[i][block] = time_of(contenders[i], &some[i]);
+        }
+    }
+    for (int i = 0; i < count; i++)
+        out[i] = spread_of(times[i], blocks);
+}

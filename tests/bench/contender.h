@@ -1,0 +1,77 @@
+/* What is raced: ways to ask about pairs of a scene, one table of them all. */
+#ifndef CONTENDER_H
+#define CONTENDER_H
+
+#include "scene.h"
+#include "stopwatch.h"
+
+/* Pairs to be asked, T = 1, and room for the answers of the batch. */
+struct work {
+    const struct scene *scene;
+    const unsigned (*pair)[2];
+    size_t count;
+    const unsigned (*warm)[2]; /* [warm_count], other ones, asked untimed before */
+    size_t warm_count;
+    enum fmb_instructions instructions; /* of the batch */
+    unsigned char *verdicts;            /* [count] */
+    double (*contacts)[2];              /* [count] */
+    double (*boxes)[2][FMB_DIM_MAX];    /* [count] */
+};
+
+/* With room for the answers. work_free() frees that. */
+struct work work_of(const struct scene *scene, const struct pairs *pairs);
+void work_free(struct work *work);
+
+enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_3D_STATIC = 2 };
+
+/* What each of them is, contender_help() says. */
+#define CONTENDER_MAP(X)                                             \
+    X(BATCH, "batch", batch, ANYWHERE)                               \
+    X(BATCH_INTERVAL, "batch+interval", batch_interval, ONLY_MOVING) \
+    X(BATCH_BOX, "batch+box", batch_box, ANYWHERE)                   \
+    X(SINGLE, "single", single, ANYWHERE)                            \
+    X(SINGLE_COMPUTED, "single computed", single_computed, ANYWHERE) \
+    X(QUERY, "query", query, ANYWHERE)                               \
+    X(QUERY_BOX, "query+box", query_box, ANYWHERE)                   \
+    X(FMB, "fmb", fmb, ANYWHERE)                                     \
+    X(FMB_BOX, "fmb+box", fmb_box, ANYWHERE)                         \
+    X(FMB_COMPUTED, "fmb computed", fmb_computed, ANYWHERE)          \
+    X(FMB_BA, "fmb B-A", fmb_ba, ANYWHERE)                           \
+    X(FMB_SORTED, "fmb sorted", fmb_sorted, ANYWHERE)                \
+    X(FMB_REVERSED, "fmb reversed", fmb_reversed, ANYWHERE)          \
+    X(SAT, "sat", sat, ANYWHERE)                                     \
+    X(SAT_QUERY, "sat query", sat_query, ANYWHERE)                   \
+    X(EXACT, "exact", exact, ANYWHERE)                               \
+    X(GJK, "gjk", peers_gjk, ONLY_3D_STATIC)                         \
+    X(MPR, "mpr", peers_mpr, ONLY_3D_STATIC)
+
+enum contender {
+#define X(id, name, run, where) CONTENDER_##id,
+    CONTENDER_MAP(X)
+#undef X
+        CONTENDERS
+};
+
+const char *contender_name(enum contender contender);
+
+/* Whether it is there for such a cell, and in this build (libccd). */
+bool contender_runs(enum contender contender, const struct cell *cell);
+
+/* Asks all pairs. */
+void contender_run(enum contender contender, const struct work *work);
+
+/* Lines on what the names mean. */
+void contender_help(void);
+
+struct race {
+    int blocks;
+    double budget; /* nanoseconds a block for each: slow ones ask the first pairs only */
+};
+
+/* Nanoseconds a pair of each, taken in turn within each block. What ran before has other code and
+ * other data in the caches: each is warmed up with pairs of the same bodies, which are not those
+ * that are timed, so that no branch is learnt by heart. */
+void race_run(const struct race *race, const struct work *work, const enum contender *contenders,
+              int count, struct spread *out);
+
+#endif

@@ -1,0 +1,183 @@
+#include "scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "family.h"
+
+static void *or_end(void *memory)
+{
+    if (memory)
+        return memory;
+    fputs("bench: no memory\n", stderr);
+    exit(EXIT_FAILURE);
+}
+
+void *scene_allocate(size_t count, size_t size)
+{
+    return or_end(calloc(count ? count : 1, size));
+}
+
+static struct scene scene_of_size(size_t count, size_t bodies)
+{
+    struct scene scene = {.count = count};
+    scene.prepared = or_end(aligned_alloc(64, (count ? count : 1) * sizeof *scene.prepared));
+    if (bodies) {
+        scene.frame = scene_allocate(count, sizeof *scene.frame);
+        scene.body = scene_allocate(bodies, sizeof *scene.body);
+    }
+    return scene;
+}
+
+void scene_free(struct scene *scene)
+{
+    free(scene->prepared);
+    free(scene->frame);
+    free(scene->body);
+    *scene = (struct scene){.count = 0};
+}
+
+static void prepare(const struct fmb_frame *frame, struct fmb_prepared *out)
+{
+    if (fmb_prepare(frame, out) != FMB_OK) {
+        fputs("bench: a frame is refused\n", stderr);
+        exit(EXIT_FAILURE);
+    }
+}
+
+static struct fmb_frame frame_of(const struct solid *solid, struct fmb_body *body)
+{
+    struct fmb_frame frame = {.body = body, .moving = solid->moving};
+    double number[FMB_COMPONENTS_MAX];
+    const size_t dim = (size_t) solid->dim, count = (size_t) solid_count(solid);
+    for (size_t i = 0; i < count; i++)
+        memcpy(&number[i * dim], solid->component[i], dim * sizeof *number);
+    fmb_body_make(solid->dim, solid->shape, number, count * dim, body);
+    memcpy(frame.origin, solid->origin, sizeof frame.origin);
+    memcpy(frame.velocity, solid->velocity, sizeof frame.velocity);
+    return frame;
+}
+
+struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed, bool large)
+{
+    const struct family *random = family_by_name("random");
+    struct draw draw = cell_draw(seed, "scene", cell, 0);
+    struct scene scene = scene_of_size(bodies, large ? 0 : bodies);
+    const size_t half = bodies / 2;
+    for (size_t i = 0; i < half; i++) {
+        struct question question;
+        family_draw(random, cell, &draw, &question);
+        for (size_t side = 0; side < 2; side++) {
+            const size_t at = i + side * half;
+            struct fmb_body body;
+            const struct fmb_frame frame =
+                frame_of(side ? &question.b : &question.a, large ? &body : &scene.body[at]);
+            prepare(&frame, &scene.prepared[at]);
+            if (!large)
+                scene.frame[at] = frame;
+        }
+    }
+    return scene;
+}
+
+struct scene scene_of_grid(double pitch, int side)
+{
+    const double edges[9] = {pitch, 0, 0, 0, pitch, 0, 0, 0, pitch};
+    const size_t cubes = (size_t) (side * side * side);
+    struct scene scene = scene_of_size(cubes, 1);
+    fmb_body_make(3, FMB_CUBOID, edges, 9, scene.body);
+    for (size_t at = 0; at < cubes; at++) {
+        const int i = (int) at;
+        const int place[3] = {i / side / side, i / side % side, i % side};
+        scene.frame[at].body = scene.body;
+        for (int axis = 0; axis < 3; axis++)
+            scene.frame[at].origin[axis] = place[axis] * pitch;
+        prepare(&scene.frame[at], &scene.prepared[at]);
+    }
+    return scene;
+}
+
+static struct pairs pairs_of_size(size_t count)
+{
+    return (struct pairs){0, scene_allocate(count, 2 * sizeof(unsigned))};
+}
+
+void pairs_free(struct pairs *pairs)
+{
+    free(pairs->at);
+    *pairs = (struct pairs){0, NULL};
+}
+
+static void draw_pair(const struct scene *scene, struct draw *draw, unsigned pair[2])
+{
+    const uint64_t half = scene->count / 2;
+    pair[0] = (unsigned) (draw_bits(draw) % half);
+    pair[1] = (unsigned) (half + draw_bits(draw) % half);
+}
+
+struct pairs pairs_draw(const struct scene *scene, size_t count, uint64_t seed)
+{
+    struct draw draw = {seed};
+    struct pairs pairs = pairs_of_size(count);
+    for (; pairs.count < count; pairs.count++)
+        draw_pair(scene, &draw, pairs.at[pairs.count]);
+    return pairs;
+}
+
+/* Random pairs in 3D are rarely in contact: one in dozens. */
+struct pairs pairs_draw_of(const struct scene *scene, bool in_contact, size_t count, uint64_t seed)
+{
+    enum { CHUNK = 4096 };
+    static unsigned char verdict[CHUNK];
+    struct pairs out = pairs_of_size(count);
+    while (out.count < count) {
+        struct pairs some = pairs_draw(scene, CHUNK, seed++);
+        const struct fmb_batch batch = {.frames = scene->prepared,
+                                        .frame_count = scene->count,
+                                        .pairs = (const unsigned(*)[2]) some.at,
+                                        .pair_count = CHUNK,
+                                        .duration = 1,
+                                        .verdicts = verdict};
+        fmb_decide_batch(&batch);
+        for (size_t i = 0; i < CHUNK && out.count < count; i++)
+            if ((verdict[i] != FMB_SEPARATED) == in_contact)
+                memcpy(out.at[out.count++], some.at[i], sizeof some.at[i]);
+        pairs_free(&some);
+    }
+    return out;
+}
+
+/* The neighbours (i, j, k) that come after (0, 0, 0) in the order of rows. */
+static bool comes_after(int i, int j, int k)
+{
+    return i > 0 || (i == 0 && (j > 0 || (j == 0 && k > 0)));
+}
+
+static void add_neighbours(struct pairs *pairs, int side, const int at[3])
+{
+    for (int step = 0; step < 18; step++) {
+        const int way[3] = {step / 9, step / 3 % 3 - 1, step % 3 - 1};
+        bool inside = comes_after(way[0], way[1], way[2]);
+        int to[3];
+        for (int axis = 0; axis < 3; axis++) {
+            to[axis] = at[axis] + way[axis];
+            inside = inside && to[axis] >= 0 && to[axis] < side;
+        }
+        if (!inside)
+            continue;
+        unsigned *pair = pairs->at[pairs->count++];
+        pair[0] = (unsigned) ((at[0] * side + at[1]) * side + at[2]);
+        pair[1] = (unsigned) ((to[0] * side + to[1]) * side + to[2]);
+    }
+}
+
+struct pairs pairs_of_grid(int side)
+{
+    struct pairs pairs = pairs_of_size((size_t) (13 * side * side * side));
+    for (int i = 0; i < side; i++)
+        for (int j = 0; j < side; j++)
+            for (int k = 0; k < side; k++)
+                add_neighbours(&pairs, side, (const int[3]){i, j, k});
+    return pairs;
+}

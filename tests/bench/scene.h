@@ -1,0 +1,43 @@
+/* Bodies to be asked about, and pairs of them: distinct ones, so that no branch is learnt by
+ * heart. */
+#ifndef BENCH_SCENE_H
+#define BENCH_SCENE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cell.h"
+#include "fmb.h"
+
+struct scene {
+    size_t count;
+    struct fmb_prepared *prepared; /* [count], each in two cache lines */
+    struct fmb_frame *frame;       /* [count], or NULL */
+    struct fmb_body *body;         /* the frames'; NULL where these are */
+};
+
+struct pairs {
+    size_t count;
+    unsigned (*at)[2]; /* [count][a, b], indices of bodies */
+};
+
+/* All end the program if there is no memory. */
+void *scene_allocate(size_t count, size_t size);
+
+/* Bodies with the article's distribution: the first half of them of A's shape, the rest of B's.
+ * Large ones are prepared, and nothing else. */
+struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed, bool large);
+/* Cubes in a grid, side of them along each axis: origins are whole multiples of the pitch as
+ * doubles give them, and so is the edge. */
+struct scene scene_of_grid(double pitch, int side);
+void scene_free(struct scene *scene);
+
+/* One of the first half, and one of the rest; anything. */
+struct pairs pairs_draw(const struct scene *scene, size_t count, uint64_t seed);
+/* The same, such as are in contact, or such as are not; sorted out by the certified method. */
+struct pairs pairs_draw_of(const struct scene *scene, bool in_contact, size_t count, uint64_t seed);
+/* All cubes of a grid with those of their 26 neighbours that come after them. */
+struct pairs pairs_of_grid(int side);
+void pairs_free(struct pairs *pairs);
+
+#endif

@@ -1,0 +1,191 @@
+# The report: a page and a picture from two small reports that tests/report/fixture/ holds.
+
+setup() {
+    cd "$BATS_TEST_DIRNAME/../report" || return
+    OUT=$BATS_TEST_TMPDIR/out
+    BENCH=fixture/bench.json
+    ACCURACY=fixture/accuracy.json
+}
+
+bats_require_minimum_version 1.5.0
+
+report() {
+    run --separate-stderr ./report.sh "$BENCH" "$ACCURACY" "$OUT"
+}
+
+# ended CODE: as the last run did.
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status"
+        echo "$output"
+        echo "$stderr"
+        return 1
+    }
+}
+
+said() {
+    [ "$stderr" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+has() {
+    grep -qF -- "$2" "$1" || {
+        echo "$1 has no $2"
+        return 1
+    }
+}
+
+# has_none FILE PATTERN
+has_none() {
+    ! grep -noE -- "$2" "$1"
+}
+
+# well_formed FILE...: XML whose elements are closed in order, whose values are quoted, and whose
+# text holds no bare & or <.
+well_formed() {
+    awk 'BEGIN { RS = "<" }
+        FNR == 1 { next }
+        {
+            end = index($0, ">")
+            tag = substr($0, 1, end - 1)
+            rest = $0
+            gsub(/&(amp|lt|gt|quot|apos|#[0-9]+);/, "", rest)
+            if (!end || rest ~ /&/) wrong("bare < or &")
+            else if (tag ~ /^\//) {
+                if (substr(tag, 2) != open[depth--]) wrong("closes another")
+            } else {
+                name = tag
+                sub(/[ \/].*/, "", name)
+                values = substr(tag, length(name) + 1)
+                gsub(/[ \n]+[a-zA-Z][a-zA-Z0-9:-]*="[^"]*"/, "", values)
+                if (values !~ /^[ \n]*\/?$/) wrong("attributes")
+                if (tag !~ /\/$/) open[++depth] = name
+            }
+        }
+        function wrong(why) { print FILENAME ": " why ": <" $0; failed = 1 }
+        END { if (depth) print FILENAME ": not closed: " open[depth]; exit failed || depth }' "$1"
+    ! command -v xmllint > /dev/null || xmllint --noout "$1"
+}
+
+@test "one page and one picture, whole, that load nothing" {
+    report
+    ended 0
+    [ "$output" = "$OUT/index.html" ]
+    [ "$(cd "$OUT" && echo *)" = "index.html speed-error.svg" ]
+    for file in "$OUT"/*; do
+        has_none "$file" '(src|href|action|data) *= *"?[^#" >]'
+        has_none "$file" '<(script|link|img|iframe|object|image|use)|@import|url\('
+        has_none "$file" '[^a-zA-Z](null|NaN|nan|e[+]?308)[^a-zA-Z]'
+    done
+    tail -n 1 "$OUT/index.html" | grep -qF '</html>'
+}
+
+@test "the pictures are well-formed" {
+    report
+    ended 0
+    well_formed "$OUT/speed-error.svg"
+    sed -n '/^<div class=wide><svg/,/<\/svg>/p' "$OUT/index.html" |
+        sed 's/^<div class=wide>//; s/^<\/div>//' |
+        { echo '<all>'; cat; echo '</all>'; } > "$BATS_TEST_TMPDIR/all.svg"
+    [ "$(grep -c '^<svg' "$BATS_TEST_TMPDIR/all.svg")" -ge 6 ]
+    well_formed "$BATS_TEST_TMPDIR/all.svg"
+}
+
+@test "a picture that is not well-formed is found" {
+    for text in '<svg><g></svg></g>' '<svg><g a=1/></svg>' '<svg>a & b</svg>' '<svg><g></svg>'; do
+        echo "$text" > "$BATS_TEST_TMPDIR/bad.svg"
+        run well_formed "$BATS_TEST_TMPDIR/bad.svg"
+        [ "$status" != 0 ]
+    done
+}
+
+@test "every method, family and section is there" {
+    report
+    ended 0
+    jq -r '.cells[].methods[].name, (.grids, .instructions, .worst)[].name' "$BENCH" |
+        sort -u > "$BATS_TEST_TMPDIR/names"
+    jq -r '.methods[].name, .families[].summary' "$ACCURACY" >> "$BATS_TEST_TMPDIR/names"
+    while read -r name; do
+        has "$OUT/index.html" "$name"
+    done < "$BATS_TEST_TMPDIR/names"
+    for method in certified exact fmb sat; do
+        has "$OUT/speed-error.svg" "mark $method"
+        has "$OUT/speed-error.svg" "$method"
+    done
+    for id in wrong-and-slow families boxes kinds article more growth numbers; do
+        has "$OUT/index.html" "<section id=$id>"
+    done
+    for target in 'make accuracy' 'make bench' 'make report'; do
+        has "$OUT/index.html" "$target"
+    done
+    has "$OUT/index.html" 'Example &amp; Co &lt;2 cores&gt;'
+    has_none "$OUT/index.html" 'class=warn'
+}
+
+@test "the numbers are those of the reports" {
+    report
+    ended 0
+    # Seven cells of 500 pairs, both ways round; fmb refuses two of them.
+    jq -e '[.cells[].methods[] | select(.name == "certified") | .queries] | add == 7000' "$ACCURACY"
+    has "$OUT/index.html" 'Asked 7,000 times'
+    has "$OUT/speed-error.svg" 'certified: none wrong of 7,000'
+    jq -e '[.cells[].methods[] | select(.name == "fmb")
+            | .false_separated + .false_contact + .false_kind] | add == 811' "$ACCURACY"
+    has "$OUT/speed-error.svg" 'fmb, all 4 families: 811 wrong of 5,000 answers'
+    has "$OUT/speed-error.svg" '16.2 % wrong'
+}
+
+@test "what makes a missing report is said, and nothing is run" {
+    BENCH=$BATS_TEST_TMPDIR/none.json
+    report
+    ended 1
+    said "report.sh: there is no $BENCH: 'make bench' makes it"
+    [ ! -e "$OUT" ]
+    BENCH=fixture/bench.json ACCURACY=$BATS_TEST_TMPDIR/none.json
+    report
+    ended 1
+    said "report.sh: there is no $ACCURACY: 'make accuracy' makes it"
+    [ ! -e "$OUT" ]
+}
+
+@test "a report that was cut short is refused" {
+    ACCURACY=$BATS_TEST_TMPDIR/short.json
+    head -c 500 fixture/accuracy.json > "$ACCURACY"
+    report
+    ended 1
+    said "report.sh: $ACCURACY is no report: 'make accuracy' makes it anew"
+}
+
+@test "sections that the benchmark has not are left out" {
+    jq '{bench, version, machine, cells}' fixture/bench.json > "$BATS_TEST_TMPDIR/bench.json"
+    BENCH=$BATS_TEST_TMPDIR/bench.json
+    report
+    ended 0
+    has "$OUT/index.html" '<section id=kinds>'
+    has_none "$OUT/index.html" '<section id=(article|more|growth)>'
+}
+
+@test "a noisy machine, another machine and another version are said" {
+    jq '.machine.noisy = true | .machine.noise = 0.2 | .machine.cpu = "Other" | .version = "0"' \
+        fixture/bench.json > "$BATS_TEST_TMPDIR/bench.json"
+    BENCH=$BATS_TEST_TMPDIR/bench.json
+    report
+    ended 0
+    has "$OUT/index.html" 'noise 20.0 %'
+    has "$OUT/index.html" 'measured on different processors'
+    has "$OUT/index.html" 'of different versions'
+}
+
+@test "a method that is never wrong, and was, is not called right" {
+    jq '(.cells[0].methods[] | select(.name == "certified")).false_kind = 1' \
+        fixture/accuracy.json > "$BATS_TEST_TMPDIR/accuracy.json"
+    ACCURACY=$BATS_TEST_TMPDIR/accuracy.json
+    report
+    ended 0
+    has_none "$OUT/index.html" '<code>certified</code> and <code>exact</code> were never wrong'
+    has "$OUT/index.html" '<code>certified</code> was wrong in'
+    has_none "$OUT/speed-error.svg" 'certified: none wrong of'
+}
