@@ -64,34 +64,52 @@ static bool set_pairs(struct block *block)
     return different == 0;
 }
 
-/* Puts the frames of a pair into their places. */
-static inline enum run_kind place(const struct fmb_prepared *pair[2], const struct run_kinds *kinds)
-{
-    const struct fmb_prepared *a = pair[0], *b = pair[1];
-    pair[0] = kinds->swapped ? b : a;
-    pair[1] = kinds->swapped ? a : b;
-    return kinds->moving && run_drifts(a, b) ? kinds->drifting : kinds->at_rest;
-}
-
 static struct run_kinds kinds_at(const struct block *block, size_t i)
 {
     return run_kinds_of(prepared_kind(block->pair[i][0]), prepared_kind(block->pair[i][1]),
                         block->batch->duration);
 }
 
-/* kind[i]: of pair i. Returns whether all are of one; like_first: their heads are. */
+static void swap(const struct fmb_prepared *pair[2])
+{
+    const struct fmb_prepared *a = pair[0];
+    pair[0] = pair[1];
+    pair[1] = a;
+}
+
+/* Of a block whose pairs are all moving, and of the same dimension. */
+static bool all_drift(const struct block *block)
+{
+    const bool space = prepared_kind(block->pair[0][0]) & PREPARED_SPACE;
+    const ptrdiff_t at = prepared_velocity(block->pair[0][0]) - block->pair[0][0]->number;
+    bool all = true;
+    for (size_t i = 0; i < block->count; i++) {
+        const double *v = block->pair[i][0]->number + at, *w = block->pair[i][1]->number + at;
+        all &= (v[0] != w[0]) | (v[1] != w[1]) | (space && v[2] != w[2]);
+    }
+    return all;
+}
+
+/* kind[i]: of pair i, whose frames are put into their places. Returns whether all are of one;
+ * like_first: their heads are, and kind[0] alone is set then. */
 static bool set_kinds(struct block *block, bool like_first, unsigned char kind[BLOCK])
 {
     struct run_kinds kinds = kinds_at(block, 0);
-    unsigned different = 0;
-    kind[0] = (unsigned char) kinds.at_rest;
-    if (like_first && !kinds.moving && !kinds.swapped)
+    if (like_first && (!kinds.moving || all_drift(block))) {
+        for (size_t i = 0; kinds.swapped && i < block->count; i++)
+            swap(block->pair[i]);
+        kind[0] = (unsigned char) (kinds.moving ? kinds.drifting : kinds.at_rest);
         return true;
+    }
+    unsigned different = 0;
     for (size_t i = 0; i < block->count; i++) {
-        if (!like_first)
-            kinds = kinds_at(block, i);
-        kind[i] = (unsigned char) place(block->pair[i], &kinds);
+        const struct fmb_prepared **pair = block->pair[i];
+        kinds = kinds_at(block, i);
+        kind[i] = (unsigned char) (kinds.moving && run_drifts(pair[0], pair[1]) ? kinds.drifting
+                                                                                : kinds.at_rest);
         different |= kind[i] ^ kind[0];
+        if (kinds.swapped)
+            swap(pair);
     }
     return different == 0;
 }
@@ -120,6 +138,7 @@ static void set_block(const struct job *job, size_t first, struct block *block)
 {
     const size_t left = job->batch->pair_count - first;
     unsigned char kind[BLOCK];
+    kind[0] = RUN_REFUSED;
     block->batch = job->batch;
     block->first = first;
     block->count = left < BLOCK ? left : BLOCK;
@@ -146,7 +165,7 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     }
 }
 
-/* A pair that the filter does not settle, or whose box is wanted, by itself. */
+/* A pair by itself, with all that is wanted of it. */
 static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepared *const pair[2],
                          size_t i)
 {
@@ -154,17 +173,22 @@ static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepare
     struct fmb_answer answer = {0};
     const struct fmb_pair one = {prepared_frame(pair[0], &body[0]),
                                  prepared_frame(pair[1], &body[1]), batch->duration};
-    if (batch->contacts || batch->boxes) {
-        certified_decide(&one, batch->boxes ? FMB_WANT_BOX : 0, &answer);
-    } else {
-        enum certified_path path;
-        answer.verdict = certified_verdict(&one, &path);
-    }
+    certified_decide(&one, batch->boxes ? FMB_WANT_BOX : 0, &answer);
     batch->verdicts[i] = (unsigned char) answer.verdict;
     if (batch->contacts && answer.has_contact)
         memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
     if (batch->boxes && answer.has_box)
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
+}
+
+/* The verdict of a pair of which the filter is unsure, or that it cannot be asked. */
+static enum fmb_verdict verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                      double duration)
+{
+    struct fmb_body body[2];
+    const struct fmb_pair pair = {prepared_frame(a, &body[0]), prepared_frame(b, &body[1]),
+                                  duration};
+    return certified_unsure(&pair);
 }
 
 static bool are_plain(const struct fmb_prepared *const pair[2])
@@ -185,7 +209,8 @@ static void put_verdicts(const struct block *block, size_t start, size_t end)
         return;
     for (size_t k = start; k < end; k++)
         if (block->outcome[k] == SLABS_UNSURE)
-            decide_alone(batch, block->pair[k], block->first + block->slot[k]);
+            verdicts[block->slot[k]] = (unsigned char) verdict_alone(
+                block->pair[k][0], block->pair[k][1], batch->duration);
 }
 
 /* Whether the whole window is the time of contact. */
@@ -383,9 +408,5 @@ enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepare
         if (outcome != SLABS_UNSURE)
             return outcome == SLABS_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING;
     }
-    unsigned char verdict;
-    const struct fmb_prepared *const pair[2] = {a, b};
-    const struct fmb_batch one = {.duration = duration, .verdicts = &verdict};
-    decide_alone(&one, pair, 0);
-    return verdict;
+    return verdict_alone(a, b, duration);
 }

@@ -257,3 +257,10 @@ enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_p
     *path = certified.path;
     return verdict;
 }
+
+enum fmb_verdict certified_unsure(const struct fmb_pair *pair)
+{
+    struct certified certified;
+    begin(&certified, pair);
+    return verdict_of_unsure(&certified);
+}

@@ -33,6 +33,9 @@ enum certified_path {
 /* The verdict of a checked pair, and who found it. */
 enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path);
 
+/* The same of a pair of which the filter is known to be unsure. */
+enum fmb_verdict certified_unsure(const struct fmb_pair *pair);
+
 /* For a pair in contact that drifts: answer->contact. rounds: whether operations on these numbers
  * may round; span: of the pair. False if neither doubles nor limbs give it within its limit. */
 bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,

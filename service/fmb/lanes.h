@@ -9,6 +9,10 @@
 
 #include "inlined.h"
 
+#ifndef LANES /* the header alone */
+#define LANES 1
+#endif
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>

@@ -51,10 +51,7 @@ INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t
     gather_pairs(run, kind, first, frame);
     set_pair(kind, &frame[0], &frame[1], run->duration, &pair);
     walk_pair_of(kind, &pair, &found);
-    const struct outcomes outcomes = outcomes_of(&pair, &found);
-    UNROLL(8)
-    for (int lane = 0; lane < LANES; lane++)
-        run->outcomes[first + (size_t) lane] = (unsigned char) outcome_at(outcomes, lane);
+    put_outcomes(outcomes_of(&pair, &found), &run->outcomes[first]);
 #ifdef RUN_TIMES
     lanes times[2];
     times_of(&pair, &found, run->duration, times);

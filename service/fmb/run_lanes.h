@@ -111,14 +111,33 @@ INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
     }
 }
 
+/* A word by itself. */
+INLINE lanes gather_one(const double *const frame[LANES], int word)
+{
+#if LANES == 1 || defined(RUN_ALONE)
+    return lanes_of(frame[0][word]);
+#elif LANES == 2
+    return (lanes){frame[0][word], frame[1][word]};
+#elif LANES == 4
+    return (lanes){frame[0][word], frame[1][word], frame[2][word], frame[3][word]};
+#else
+    return (lanes){frame[0][word], frame[1][word], frame[2][word], frame[3][word],
+                   frame[4][word], frame[5][word], frame[6][word], frame[7][word]};
+#endif
+}
+
+/* Of head, origin, components and, where it is wanted, velocity. */
 INLINE void gather(const struct walk_kind kind, const double *const frame[LANES],
                    struct run_frame *out)
 {
     lanes words[WORDS];
-    const int used = kind.dim == 3 ? (kind.drifts ? 16 : 13) : (kind.drifts ? 9 : 7);
+    const int used = 1 + kind.dim * (1 + kind.dim + (kind.drifts ? 1 : 0));
+    const int in_fours = used - used % 4 + (used % 4 > 1 ? 4 : 0);
     UNROLL(4)
-    for (int w = 0; w < used; w += 4)
+    for (int w = 0; w < in_fours; w += 4)
         gather_four(frame, w, &words[w]);
+    if (in_fours < used)
+        words[used - 1] = gather_one(frame, used - 1);
     set_run_frame(kind, words, out);
 }
 
@@ -170,6 +189,23 @@ INLINE enum slabs_outcome outcome_at(struct outcomes outcomes, int lane)
 {
     return (enum slabs_outcome)((outcomes.separated >> lane & 1) * SLABS_SEPARATED +
                                 (outcomes.overlapping >> lane & 1) * SLABS_OVERLAPPING);
+}
+
+/* To bytes. */
+INLINE void put_outcomes(struct outcomes outcomes, unsigned char out[LANES])
+{
+#if LANES >= 4 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    UNROLL(2)
+    for (int lane = 0; lane < LANES; lane += 4) { /* bits 0 to 3 of a number to its four bytes */
+        const uint32_t separated = (outcomes.separated >> lane & 15) * 0x00204081 & 0x01010101;
+        const uint32_t overlapping = (outcomes.overlapping >> lane & 15) * 0x00204081 & 0x01010101;
+        const uint32_t bytes = separated * SLABS_SEPARATED + overlapping * SLABS_OVERLAPPING;
+        memcpy(out + lane, &bytes, sizeof bytes);
+    }
+#else
+    for (int lane = 0; lane < LANES; lane++)
+        out[lane] = (unsigned char) outcome_at(outcomes, lane);
+#endif
 }
 
 /* Seconds: below this a product with a time may underflow. */

@@ -72,12 +72,10 @@
 #include "slabs.h"
 
 #include "prepared.h"
+#include "walk.h"
 #include "weighed.h"
 
 #include <math.h>
-
-#define LANES 1
-#include "walk.h"
 
 static double largest_of(double largest, const double v[3])
 {

@@ -1,0 +1,153 @@
+/* A pair of frames in lanes, as the kernels want it: seen from reference points, in lengths that
+ * need no halves. */
+#ifndef FMB_WALK_PAIR_H
+#define FMB_WALK_PAIR_H
+
+#include "lanes.h"
+#include "slabs.h"
+
+/* What is known when a kernel is compiled. */
+struct walk_kind {
+    int dim;
+    bool tetrahedron[2]; /* of a, of b; else cuboids */
+    bool drifts;
+    bool along;   /* edges may be parallel to the same axis: zero normals are looked for (3D) */
+    bool ordered; /* every number is to have the same bits for the pair the other way round */
+    bool times;   /* the times of contact are wanted; ordered */
+};
+
+/* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a tetrahedron.
+ * In a pair with a cuboid all lengths are doubled, so that the halves of its edges are its
+ * components. */
+struct walk_pair {
+    lanes component[2][3][3]; /* [frame][component][axis]; of a cuboid half of it, as above */
+    lanes size[2][6];         /* of edges: no smaller than their lengths */
+    lanes offset[3];          /* of b's reference point in the middle of the window */
+    lanes half[3]; /* of the drift: the offset goes from offset - half to offset + half */
+    lanes half_size;
+    lanes reach;         /* T (walk_error) */
+    lanes unit;          /* the error of a slab of scale 1 */
+    lanes_mask in_range; /* doubles can say something of it */
+};
+
+INLINE int next(int i)
+{
+    return i == 2 ? 0 : i + 1;
+}
+
+INLINE int edge_count(const struct walk_kind kind, int which)
+{
+    return !kind.tetrahedron[which] ? kind.dim : kind.dim == 2 ? 3 : 6;
+}
+
+INLINE lanes dot(const lanes u[3], const lanes v[3])
+{
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+INLINE void cross(const lanes u[3], const lanes v[3], lanes out[3])
+{
+    out[0] = u[1] * v[2] - u[2] * v[1];
+    out[1] = u[2] * v[0] - u[0] * v[2];
+    out[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+/* In the plane. */
+INLINE lanes product(const lanes x[3], const lanes y[3])
+{
+    return x[0] * y[1] - x[1] * y[0];
+}
+
+/* ---- The pair ---- */
+
+/* Bound on the error of a gap, and of what it is made of, relative to the scale of the slab:
+ * derived in slabs.c. */
+INLINE double walk_error(const struct walk_kind kind)
+{
+    return kind.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING;
+}
+
+INLINE bool is_doubled(const struct walk_kind kind)
+{
+    return !kind.tetrahedron[0] || !kind.tetrahedron[1];
+}
+
+/* Components and sizes of a frame; returns its share of the reach. */
+INLINE lanes set_frame(const struct walk_kind kind, int which, const lanes component[3][3],
+                       const lanes size[3], struct walk_pair *out)
+{
+    const bool twice = is_doubled(kind) && kind.tetrahedron[which];
+    lanes sum = size[0] + size[1];
+    UNROLL(3)
+    for (int i = 0; i < kind.dim; i++) {
+        UNROLL(3)
+        for (int axis = 0; axis < kind.dim; axis++)
+            out->component[which][i][axis] =
+                twice ? component[i][axis] + component[i][axis] : component[i][axis];
+        out->size[which][i] = twice ? size[i] + size[i] : size[i];
+    }
+    if (kind.dim == 3)
+        sum += size[2];
+    lanes *own = out->size[which];
+    UNROLL(3)
+    for (int i = 0; i < 3; i++)
+        if (kind.tetrahedron[which] && kind.dim == 3)
+            own[3 + i] = own[next(i)] + own[next(next(i))];
+    if (kind.tetrahedron[which] && kind.dim == 2)
+        own[2] = own[0] + own[1];
+    return is_doubled(kind) ? sum + sum : sum;
+}
+
+/* From the origin of a frame to its reference point, along an axis. */
+INLINE lanes shift_of(const struct walk_kind kind, const lanes component[3][3], int axis)
+{
+    const lanes sum = component[0][axis] + component[1][axis];
+    return kind.dim == 2 ? sum : sum + component[2][axis];
+}
+
+/* The offset of the reference points at the middle of the window, along an axis. The same for the
+ * pair the other way round, negative. */
+INLINE lanes offset_of(const struct walk_kind kind, const lanes component[2][3][3], lanes offset,
+                       lanes half, int axis)
+{
+    const lanes at = kind.drifts ? offset + half : offset;
+    if (kind.tetrahedron[0])
+        return kind.tetrahedron[1] ? at : at + shift_of(kind, component[1], axis);
+    if (kind.tetrahedron[1])
+        return at - shift_of(kind, component[0], axis);
+    return at + (shift_of(kind, component[1], axis) - shift_of(kind, component[0], axis));
+}
+
+/* From components, sizes of components, offset of the origins and drift, as the frames have them.
+ */
+INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][3][3],
+                          const lanes size[2][3], const lanes offset[3], const lanes drift[3],
+                          struct walk_pair *out)
+{
+    const lanes reach_a = set_frame(kind, 0, component[0], size[0], out);
+    const lanes reach_b = set_frame(kind, 1, component[1], size[1], out);
+    lanes offset_size = lanes_of(0), half_size = lanes_of(0);
+    lanes_mask tiny = {0};
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        const lanes at = is_doubled(kind) ? offset[axis] + offset[axis] : offset[axis];
+        const lanes half = !kind.drifts       ? lanes_of(0)
+                           : is_doubled(kind) ? drift[axis]
+                                              : 0.5 * drift[axis];
+        out->half[axis] = half;
+        out->offset[axis] = offset_of(kind, component, at, half, axis);
+        offset_size += lanes_magnitude(at);
+        half_size += lanes_magnitude(half);
+        tiny |= (half != 0) & (lanes_magnitude(half) < 0x1p-400);
+    }
+    out->half_size = half_size;
+    out->reach = (reach_a + reach_b) + (offset_size + (half_size + half_size));
+    out->unit = walk_error(kind) * out->reach;
+    out->in_range = offset_size <= 0x1p200;
+    if (kind.drifts)
+        out->in_range &= (half_size <= 0x1p200) & (half_size >= 0x1p-200);
+    if (kind.drifts && kind.along)
+        out->in_range &= tiny == 0;
+}
+
+#endif

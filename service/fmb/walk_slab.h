@@ -1,0 +1,193 @@
+/* One slab of a pair in lanes: what is found of it. */
+#ifndef FMB_WALK_SLAB_H
+#define FMB_WALK_SLAB_H
+
+#include "walk_pair.h"
+
+/* What a walk finds. */
+struct walk_found {
+    lanes surely;   /* largest of gap - error: > 0 where some slab surely separates */
+    lanes possibly; /* largest of gap + error: < 0 where all slabs surely overlap */
+    /* [outer, inner]: of the time of contact, from -1 (the start of the window) to 1, as far as
+     * slabs bound it */
+    lanes enter[2], leave[2];
+#if LANES == 1
+    struct slab_value *next; /* where the next slab is kept; NULL: no list is wanted */
+#endif
+};
+
+/* ---- Extents along a normal ----
+ *
+ * Of a frame about its reference point: of a cuboid [-radius, radius], of a tetrahedron
+ * [low, high]; of D, the sum of both. */
+struct walk_extent {
+    lanes low, high, radius;
+};
+
+INLINE struct walk_extent extent_of_one(bool tetrahedron, lanes x)
+{
+    if (!tetrahedron)
+        return (struct walk_extent){lanes_of(0), lanes_of(0), lanes_magnitude(x)};
+    return (struct walk_extent){lanes_least(x, lanes_of(0)), lanes_greatest(x, lanes_of(0)),
+                                lanes_of(0)};
+}
+
+INLINE struct walk_extent extent_of_two(bool tetrahedron, lanes x, lanes y)
+{
+    if (!tetrahedron)
+        return (struct walk_extent){lanes_of(0), lanes_of(0),
+                                    lanes_magnitude(x) + lanes_magnitude(y)};
+    return (struct walk_extent){lanes_least(lanes_least(x, y), lanes_of(0)),
+                                lanes_greatest(lanes_greatest(x, y), lanes_of(0)), lanes_of(0)};
+}
+
+INLINE struct walk_extent extent_of_three(bool tetrahedron, lanes x, lanes y, lanes z)
+{
+    if (!tetrahedron)
+        return (struct walk_extent){lanes_of(0), lanes_of(0),
+                                    (lanes_magnitude(x) + lanes_magnitude(y)) + lanes_magnitude(z)};
+    return (struct walk_extent){
+        lanes_least(lanes_least(lanes_least(x, y), z), lanes_of(0)),
+        lanes_greatest(lanes_greatest(lanes_greatest(x, y), z), lanes_of(0)), lanes_of(0)};
+}
+
+/* Of all components along what makes at[] of them. */
+INLINE struct walk_extent extent_of_frame(const struct walk_kind kind, int which, const lanes at[3])
+{
+    return kind.dim == 2 ? extent_of_two(kind.tetrahedron[which], at[0], at[1])
+                         : extent_of_three(kind.tetrahedron[which], at[0], at[1], at[2]);
+}
+
+/* The extent of D = A - B from those of A and B along the same direction. */
+INLINE struct walk_extent extent_difference(const struct walk_kind kind, struct walk_extent a,
+                                            struct walk_extent b)
+{
+    struct walk_extent out = {lanes_of(0), lanes_of(0), lanes_of(0)};
+    if (kind.tetrahedron[0] && kind.tetrahedron[1])
+        return (struct walk_extent){a.low - b.high, a.high - b.low, out.radius};
+    if (!kind.tetrahedron[0] && !kind.tetrahedron[1]) {
+        out.radius = a.radius + b.radius;
+        return out;
+    }
+    out.radius = kind.tetrahedron[0] ? b.radius : a.radius;
+    out.low = kind.tetrahedron[0] ? a.low : -b.high;
+    out.high = kind.tetrahedron[0] ? a.high : -b.low;
+    return out;
+}
+
+/* The same with the extent of B along the opposite direction. */
+INLINE struct walk_extent extent_sum(const struct walk_kind kind, struct walk_extent a,
+                                     struct walk_extent b)
+{
+    if (kind.tetrahedron[0] && kind.tetrahedron[1])
+        return (struct walk_extent){a.low + b.low, a.high + b.high, lanes_of(0)};
+    if (!kind.tetrahedron[0] && !kind.tetrahedron[1])
+        return (struct walk_extent){lanes_of(0), lanes_of(0), a.radius + b.radius};
+    return kind.tetrahedron[0] ? (struct walk_extent){a.low, a.high, b.radius}
+                               : (struct walk_extent){b.low, b.high, a.radius};
+}
+
+/* How far beyond D the offset is at most over the window: D widened by the drift. */
+INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes middle, lanes swing)
+{
+    const bool round = !kind.tetrahedron[0] && !kind.tetrahedron[1];
+    const lanes beyond =
+        round ? lanes_magnitude(middle) : lanes_greatest(middle - d.high, d.low - middle);
+    if (kind.tetrahedron[0] && kind.tetrahedron[1])
+        return kind.drifts ? beyond - lanes_magnitude(swing) : beyond;
+    return beyond - (kind.drifts ? d.radius + lanes_magnitude(swing) : d.radius);
+}
+
+/* ---- A slab ---- */
+
+/* What is known of the time: middle + s swing lies within the bounds of D, s in [-1, 1]. With
+ * swing made a little longer no quotient overflows; the error has room for it (slabs.c). */
+INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes error,
+                        lanes middle, lanes swing, lanes_mask nothing, struct walk_found *found)
+{
+    const bool both = kind.tetrahedron[0] && kind.tetrahedron[1];
+    const bool none = !kind.tetrahedron[0] && !kind.tetrahedron[1];
+    lanes low = both ? d.low : none ? -d.radius : d.low - d.radius;
+    lanes high = both ? d.high : none ? d.radius : d.high + d.radius;
+    low -= middle;
+    high -= middle;
+    if (kind.along) {
+        low = lanes_choose(nothing, lanes_of(-4), low);
+        high = lanes_choose(nothing, lanes_of(4), high);
+        error = lanes_choose(nothing, lanes_of(1), error);
+    }
+    const lanes inverse = 1 / (swing + lanes_with_sign(0x1p-10 * error, swing));
+    const lanes one = low * inverse, other = high * inverse;
+    const lanes slack = error * lanes_magnitude(inverse);
+    const lanes enter = lanes_least(one, other), leave = lanes_greatest(one, other);
+    found->enter[0] = lanes_greatest(enter - slack, found->enter[0]);
+    found->enter[1] = lanes_greatest(enter + slack, found->enter[1]);
+    found->leave[0] = lanes_least(leave + slack, found->leave[0]);
+    found->leave[1] = lanes_least(leave - slack, found->leave[1]);
+}
+
+/* nothing: lanes whose normal is zero; they say nothing. timeless: the slab of a drift. */
+INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, struct walk_extent d,
+                     lanes scale, lanes unit, lanes middle, lanes swing, bool timeless,
+                     lanes_mask nothing, struct walk_found *found)
+{
+    const lanes gap = gap_of(kind, d, middle, swing);
+#if LANES == 1 /* where nothing rounds, a zero normal shows in that both frames have no extent */
+    nothing |= unit == 0 && d.low == d.high && d.radius == 0;
+#endif
+    const lanes above = gap + scale * unit;
+    found->surely = lanes_greatest(gap - scale * unit, found->surely);
+    found->possibly = lanes_greatest(
+        kind.along ? lanes_choose(nothing, lanes_of(-INFINITY), above) : above, found->possibly);
+    if (kind.times && !timeless)
+        bound_times(kind, d, scale * unit, middle, swing, nothing, found);
+#if LANES == 1
+    struct slab_value slab = {.normal = normal};
+    if (!nothing) {
+        slab.low = d.low - d.radius;
+        slab.high = d.high + d.radius;
+        slab.middle = middle;
+        slab.swing = swing;
+        slab.error = scale * unit;
+    }
+    if (found->next)
+        *found->next++ = slab;
+#else
+    (void) normal;
+#endif
+}
+
+/* Whether every lane is known to be separated, and no more is wanted. */
+INLINE bool is_enough(const struct walk_found *found)
+{
+#if LANES == 1
+    if (found->next)
+        return false;
+#endif
+    return lanes_all(found->surely > 0);
+}
+
+/* ---- Axes ----
+ *
+ * They are normals of slabs too, if not of facets: in space the first to ask, since they cost
+ * little and part most pairs that are far from each other. In the plane a slab costs as little. */
+INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
+                     struct walk_found *found)
+{
+    lanes gap = lanes_of(-1);
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        lanes at[2][3];
+        UNROLL(2)
+        for (int f = 0; f < 2; f++)
+            UNROLL(3)
+        for (int i = 0; i < kind.dim; i++)
+            at[f][i] = pair->component[f][i][axis];
+        const struct walk_extent d = extent_difference(kind, extent_of_frame(kind, 0, at[0]),
+                                                       extent_of_frame(kind, 1, at[1]));
+        gap = lanes_greatest(gap_of(kind, d, pair->offset[axis], pair->half[axis]), gap);
+    }
+    found->surely = gap - SLABS_ROUNDING_AXES * pair->reach;
+}
+
+#endif

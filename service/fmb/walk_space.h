@@ -1,0 +1,258 @@
+/* The slabs of a pair in 3D. */
+#ifndef FMB_WALK_SPACE_H
+#define FMB_WALK_SPACE_H
+
+#include "walk_slab.h"
+
+/* What a frame has of its own, and what of the pair is linear in its normals. */
+struct walk_side {
+    lanes normal[3][3];        /* normal[k] = c_i x c_j */
+    lanes volume;              /* normal[k] . c_k, any k */
+    lanes other[3][6];         /* normal[k] . edges of the other frame */
+    lanes middle[3], swing[3]; /* normal[k] . offset, normal[k] . half */
+};
+
+INLINE void add_differences(const struct walk_kind kind, int which, lanes value[6])
+{
+    if (!kind.tetrahedron[which])
+        return;
+    value[3] = value[2] - value[1];
+    value[4] = value[0] - value[2];
+    value[5] = value[1] - value[0];
+}
+
+INLINE void set_side(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                     struct walk_side *out)
+{
+    UNROLL(3)
+    for (int k = 0; k < 3; k++) {
+        cross(pair->component[which][next(k)], pair->component[which][next(next(k))],
+              out->normal[k]);
+        out->middle[k] = dot(out->normal[k], pair->offset);
+        out->swing[k] = kind.drifts ? dot(out->normal[k], pair->half) : lanes_of(0);
+        UNROLL(3)
+        for (int j = 0; j < 3; j++)
+            out->other[k][j] = dot(out->normal[k], pair->component[!which][j]);
+        add_differences(kind, !which, out->other[k]);
+    }
+    out->volume = dot(out->normal[0], pair->component[which][0]);
+}
+
+/* The faces of a (which = 0) or of b. The extent of a frame along its own normals is that of one
+ * component; across from the origin all three have the same. */
+INLINE void add_face(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                     struct slab_normal normal, const struct walk_side *side, const lanes at[3],
+                     lanes scale, lanes middle, lanes swing, struct walk_found *found)
+{
+    const struct walk_extent own = extent_of_one(kind.tetrahedron[which], side->volume);
+    const struct walk_extent other = extent_of_frame(kind, !which, at);
+    const lanes_mask none = {0};
+    add_slab(kind, normal, extent_difference(kind, which ? other : own, which ? own : other), scale,
+             pair->unit, middle, swing, false, none, found);
+}
+
+INLINE void add_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                      const struct walk_side *side, struct walk_found *found)
+{
+    const int first = which ? SLABS_EDGE_OF_B : 0;
+    const lanes *size = pair->size[which];
+    UNROLL(3)
+    for (int k = 0; k < 3; k++) {
+        const int i = next(k), j = next(i);
+        add_face(pair, kind, which, (struct slab_normal){first + i, first + j}, side,
+                 side->other[k], size[i] * size[j], side->middle[k], side->swing[k], found);
+    }
+    if (!kind.tetrahedron[which])
+        return;
+    lanes at[3];
+    UNROLL(3)
+    for (int j = 0; j < 3; j++)
+        at[j] = (side->other[0][j] + side->other[1][j]) + side->other[2][j];
+    add_face(pair, kind, which, (struct slab_normal){first + 3, first + 4}, side, at,
+             (size[0] * size[1] + size[1] * size[2]) + size[2] * size[0],
+             (side->middle[0] + side->middle[1]) + side->middle[2],
+             (side->swing[0] + side->swing[1]) + side->swing[2], found);
+}
+
+/* What is linear in an edge of each: [a b offset], [a b half]. */
+struct walk_edges {
+    lanes middle[6][6], swing[6][6];
+};
+
+/* The differences of a tetrahedron's components take part in both indices alike, so that the pair
+ * the other way round has the same bits. */
+INLINE void add_product_differences(const struct walk_kind kind, lanes value[6][6])
+{
+    UNROLL(3)
+    for (int i = 0; i < 3; i++) {
+        const int p = next(i), q = next(p);
+        UNROLL(3)
+        for (int j = 0; j < 3; j++) {
+            if (kind.tetrahedron[1])
+                value[j][3 + i] = value[j][q] - value[j][p];
+            if (kind.tetrahedron[0])
+                value[3 + i][j] = value[q][j] - value[p][j];
+        }
+    }
+    if (!kind.tetrahedron[0] || !kind.tetrahedron[1])
+        return;
+    UNROLL(3)
+    for (int i = 0; i < 3; i++) {
+        const int p = next(i), q = next(p);
+        UNROLL(3)
+        for (int j = 0; j < 3; j++) {
+            const int r = next(j), s = next(r);
+            value[3 + i][3 + j] = kind.ordered
+                                      ? (value[q][s] + value[p][r]) - (value[q][r] + value[p][s])
+                                      : value[3 + i][s] - value[3 + i][r];
+        }
+    }
+}
+
+/* [a_i b_j w] for all i, j: (a_i x b_j) . w has the same bits the other way round, (w x a_i) . b_j
+ * takes fewer operations. */
+INLINE void set_products(const struct walk_pair *pair, const struct walk_kind kind,
+                         const lanes w[3], lanes value[6][6])
+{
+    UNROLL(3)
+    for (int i = 0; i < 3; i++) {
+        lanes turned[3];
+        if (!kind.ordered)
+            cross(w, pair->component[0][i], turned);
+        UNROLL(3)
+        for (int j = 0; j < 3; j++) {
+            if (kind.ordered) {
+                cross(pair->component[0][i], pair->component[1][j], turned);
+                value[i][j] = dot(turned, w);
+            } else {
+                value[i][j] = dot(turned, pair->component[1][j]);
+            }
+        }
+    }
+    add_product_differences(kind, value);
+}
+
+/* The extent of a frame along e x f, e an edge of its own; at[k] = normal[k] . f. */
+INLINE struct walk_extent extent_at_edge(const struct walk_kind kind, int which, int e, lanes at0,
+                                         lanes at1, lanes at2)
+{
+    const lanes at[3] = {at0, at1, at2};
+    if (e < 3)
+        return extent_of_two(kind.tetrahedron[which],
+                             kind.tetrahedron[which] ? -at[next(next(e))] : at[next(next(e))],
+                             at[next(e)]);
+    const int r = e - 3, p = next(r), q = next(p);
+    return extent_of_two(true, at[r], -(at[p] + at[q]));
+}
+
+/* An edge by number; a difference that is 0 is exact, and none is tiny. */
+INLINE void walk_edge(const struct walk_pair *pair, int which, int e, lanes out[3])
+{
+    const int p = next(e % 3), q = next(p);
+    UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = e < 3 ? pair->component[which][e][axis]
+                          : pair->component[which][q][axis] - pair->component[which][p][axis];
+}
+
+/* Whether u x v is exactly 0 because each of the products in it has a factor 0. No product of two
+ * numbers that are not 0 is so small as to become 0. */
+INLINE lanes_mask cross_is_nothing(const lanes u[3], const lanes v[3])
+{
+    const lanes x = lanes_magnitude(u[0]) * (lanes_magnitude(v[1]) + lanes_magnitude(v[2]));
+    const lanes y = lanes_magnitude(u[1]) * (lanes_magnitude(v[2]) + lanes_magnitude(v[0]));
+    const lanes z = lanes_magnitude(u[2]) * (lanes_magnitude(v[0]) + lanes_magnitude(v[1]));
+    return (x + y) + z == 0;
+}
+
+INLINE void add_edges(const struct walk_pair *pair, const struct walk_kind kind,
+                      const struct walk_side side[2], const struct walk_edges *edges,
+                      struct walk_found *found)
+{
+    const struct walk_side *a = &side[0], *b = &side[1];
+    UNROLL(6)
+    for (int i = 0; i < edge_count(kind, 0); i++) {
+        const lanes unit = kind.ordered ? pair->unit : pair->size[0][i] * pair->unit;
+        lanes u[3], v[3];
+        lanes_mask nothing = {0};
+        if (kind.along)
+            walk_edge(pair, 0, i, u);
+        UNROLL(6)
+        for (int j = 0; j < edge_count(kind, 1); j++) {
+            const struct walk_extent of_a =
+                extent_at_edge(kind, 0, i, a->other[0][j], a->other[1][j], a->other[2][j]);
+            const struct walk_extent of_b =
+                extent_at_edge(kind, 1, j, b->other[0][i], b->other[1][i], b->other[2][i]);
+            if (kind.along) {
+                walk_edge(pair, 1, j, v);
+                nothing = cross_is_nothing(u, v);
+            }
+            const lanes scale =
+                kind.ordered ? pair->size[0][i] * pair->size[1][j] : pair->size[1][j];
+            add_slab(kind, (struct slab_normal){i, SLABS_EDGE_OF_B + j},
+                     extent_sum(kind, of_a, of_b), scale, unit, edges->middle[i][j],
+                     edges->swing[i][j], false, nothing, found);
+        }
+    }
+}
+
+/* The planes of the edges of a (which = 0) or of b with the drift: e x half. The offset at the
+ * middle of the window is in them as good as any. [a half b] = -[a b half], [b half a] = [a b
+ * half].
+ */
+INLINE void add_drift(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                      const struct walk_side *own, const struct walk_edges *edges,
+                      struct walk_found *found)
+{
+    lanes plane[3], middle[6];
+    cross(pair->half, pair->offset, plane);
+    UNROLL(3)
+    for (int i = 0; i < 3; i++)
+        middle[i] = dot(plane, pair->component[which][i]);
+    add_differences(kind, which, middle);
+    const lanes unit = pair->half_size * pair->unit;
+    UNROLL(6)
+    for (int i = 0; i < edge_count(kind, which); i++) {
+        lanes at[3], edge[3];
+        lanes_mask nothing = {0};
+        UNROLL(3)
+        for (int j = 0; j < 3; j++)
+            at[j] = which ? edges->swing[j][i] : -edges->swing[i][j];
+        if (kind.along) {
+            walk_edge(pair, which, i, edge);
+            nothing = cross_is_nothing(edge, pair->half);
+        }
+        const struct walk_extent of_own =
+            extent_at_edge(kind, which, i, own->swing[0], own->swing[1], own->swing[2]);
+        const struct walk_extent of_other = extent_of_frame(kind, !which, at);
+        add_slab(kind, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + i, SLABS_DRIFT},
+                 extent_difference(kind, which ? of_other : of_own, which ? of_own : of_other),
+                 pair->size[which][i], unit, middle[i], lanes_of(0), true, nothing, found);
+    }
+}
+
+INLINE void walk_space(const struct walk_pair *pair, const struct walk_kind kind,
+                       struct walk_found *found)
+{
+    struct walk_side side[2];
+    struct walk_edges edges;
+    UNROLL(2)
+    for (int which = 0; which < 2; which++) {
+        set_side(pair, kind, which, &side[which]);
+        add_faces(pair, kind, which, &side[which], found);
+        if (is_enough(found))
+            return;
+    }
+    set_products(pair, kind, pair->offset, edges.middle);
+    if (kind.drifts)
+        set_products(pair, kind, pair->half, edges.swing);
+    else
+        memset(edges.swing, 0, sizeof edges.swing);
+    add_edges(pair, kind, side, &edges, found);
+    if (!kind.drifts || is_enough(found))
+        return;
+    add_drift(pair, kind, 0, &side[0], &edges, found);
+    add_drift(pair, kind, 1, &side[1], &edges, found);
+}
+
+#endif
