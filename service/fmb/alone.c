@@ -2,10 +2,14 @@
  * one, and the set has minima and maxima besides. */
 #include "run_lanes.h"
 
+#if defined(RUN_TIMES) || defined(RUN_BOXES)
+
 INLINE void put_first(lanes x, double *out)
 {
     memcpy(out, &x, sizeof *out);
 }
+
+#endif
 
 INLINE enum slabs_outcome run_one(const struct walk_kind kind, const struct fmb_prepared *a,
                                   const struct fmb_prepared *b, double duration, double *out)

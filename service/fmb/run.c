@@ -14,6 +14,8 @@ INLINE void gather_pairs(const struct run *run, const struct walk_kind kind, siz
     gather(kind, frame[1], &pair[1]);
 }
 
+#if defined(RUN_TIMES) || defined(RUN_BOXES)
+
 /* To every so many doubles. */
 INLINE void scatter(lanes x, double *out, int stride)
 {
@@ -23,6 +25,8 @@ INLINE void scatter(lanes x, double *out, int stride)
     for (int lane = 0; lane < LANES; lane++)
         out[lane * stride] = at[lane];
 }
+
+#endif
 
 #ifdef RUN_BOXES
 
