@@ -3,13 +3,14 @@
 #   make deps demo          installs what building needs, then lets the service answer a scene
 #   make deps-test test     installs what the tests need, then runs them
 #
-# Others: all, tests (builds them), test-fast, validate, accuracy, bench, headers, format,
+# Others: all, tests (builds them), test-fast, validate, accuracy, bench, report, headers, format,
 # format-check, install, clean.
-# MODE=release|debug|asan.
+# MODE=release|debug|asan. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
 VERSION := 0.1.0
 MODE ?= release
+OPENMP ?=
 ifeq ($(origin CC),default)
 CC := gcc
 endif
@@ -23,7 +24,8 @@ OBJCOPY ?= objcopy
 
 # What the default mode builds lies in build/, what another mode or compiler does beside it.
 compiler := $(notdir $(firstword $(CC)))
-variant := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))
+openmp_flag := $(if $(filter-out 0,$(OPENMP)),-fopenmp)
+variant := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))$(openmp_flag:-f%=-%)
 B := $(if $(filter release,$(variant)),build,build/$(variant))
 O := build/obj/$(variant)
 GEN := build/msgs
@@ -40,13 +42,34 @@ mode_link_asan := -fsanitize=address,undefined
 # -ffp-contract=off: the same bits on every machine.
 flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -g \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
-	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(CPPFLAGS) $(CFLAGS)
-link_flags := $(mode_link_$(MODE)) $(CFLAGS) $(LDFLAGS)
+	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(openmp_flag) $(CPPFLAGS) $(CFLAGS)
+link_flags := $(mode_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
 compile = $(CC) $(flags) -MMD -MP -c $< -o $@
 
 # ---- The parts, and who may see whom: an arrow in the wrong direction fails to build ----
 
-lib_objects := $(patsubst %.c,$(O)/%.o,$(wildcard service/fmb/*.c))
+# run.c is there three times for each instruction set: for verdicts, with fused operations where there
+# are any, for times and for boxes, whose bits are promised; alone.c likewise, for pairs alone.
+x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine))
+run_flags_plain := -DLANES=1
+run_flags_sse2 := -DLANES=2
+run_flags_avx2 := -DLANES=4 -mavx2 -mfma
+run_flags_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
+run_alone_plain := -DLANES=1
+run_alone_sse2 := -DLANES=2
+run_alone_avx2 := -DLANES=2 -mavx2 -mfma
+run_sets := plain $(if $(x86),sse2 avx2 avx512)
+run_alone_sets := $(if $(x86),sse2 avx2,plain)
+run_verdicts := $(run_sets:%=$(O)/run/%.o)
+run_times := $(run_sets:%=$(O)/run/times_%.o)
+run_boxes := $(run_sets:%=$(O)/run/boxes_%.o)
+alone_verdicts := $(run_alone_sets:%=$(O)/run/alone_%.o)
+alone_times := $(run_alone_sets:%=$(O)/run/times_alone_%.o)
+alone_boxes := $(run_alone_sets:%=$(O)/run/boxes_alone_%.o)
+run_objects := $(run_verdicts) $(run_times) $(run_boxes) $(alone_verdicts) $(alone_times) \
+	$(alone_boxes)
+lib_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/run.c %/alone.c,$(wildcard service/fmb/*.c))) \
+	$(run_objects)
 message_names := frame_t pair_query_t pair_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
@@ -88,6 +111,21 @@ $(O)/service/fmb/%.o: service/fmb/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile)
 
+compile_run = @mkdir -p $(@D) && \
+	$(compile) -DRUN_NAME=$(basename $(@F)) -Wno-psabi
+$(run_verdicts): $(O)/run/%.o: service/fmb/run.c $(O)/settings
+	$(compile_run) $(run_flags_$*) -ffp-contract=fast
+$(run_times): $(O)/run/times_%.o: service/fmb/run.c $(O)/settings
+	$(compile_run) $(run_flags_$*) -DRUN_TIMES
+$(run_boxes): $(O)/run/boxes_%.o: service/fmb/run.c $(O)/settings
+	$(compile_run) $(run_flags_$*) -DRUN_BOXES
+$(alone_verdicts): $(O)/run/alone_%.o: service/fmb/alone.c $(O)/settings
+	$(compile_run) $(run_alone_$*) -DRUN_ALONE -ffp-contract=fast
+$(alone_times): $(O)/run/times_alone_%.o: service/fmb/alone.c $(O)/settings
+	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_TIMES
+$(alone_boxes): $(O)/run/boxes_alone_%.o: service/fmb/alone.c $(O)/settings
+	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_BOXES
+
 $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iservice -I$(GEN)
@@ -126,7 +164,11 @@ hostile_objects := $(O)/tests/hostile/hostile.o
 oracle_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/oracle/*.c))
 engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(unit_names))
 # Those that see inside of it.
-internal_tests := test_bounds test_limbs test_outward
+internal_tests := test_bounds test_limbs test_outward test_kernels
+# Those that draw from the hard families of the campaigns.
+family_tests := test_kernels test_engine_batch
+family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
+	family.o meet.o meeting.o odd.o scene.o solids.o)
 
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
@@ -137,20 +179,45 @@ $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objec
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
+$(family_tests:%=$(B)/tests/%): $(family_objects)
+
 # slabs.c is there three times: as it is, with fused operations (which a compiler makes only where
-# it optimises), with a bound that is wrong.
-$(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/slab_truth.o \
-		$(O)/slabs/fused.o $(O)/slabs/planted.o $(oracle_objects) $(lib_objects)
+# it optimises), with a bound that is wrong. So is what the kernels make of a pair.
+slab_objects := $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
+	kernel_fused.o kernel_planted.o)
+
+$(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(slab_objects) \
+		$(oracle_objects) $(lib_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
 slabs_names := slabs_prepare slabs_filter slabs_list slabs_refine slab_inequalities
-slabs_fused := -ffp-contract=fast $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),-mfma)
+slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
 slabs_planted := -DSLABS_ROUNDING=0x1p-54
+# Optimised, and without sanitizers, whatever the mode: they would take long for what another object
+# of theirs has seen. What is not inlined is not seen to be initialised.
+compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DINLINED_NOT \
+	-Wno-unknown-warning-option -Wno-maybe-uninitialized -Wno-psabi
 $(O)/slabs/fused.o $(O)/slabs/planted.o: $(O)/slabs/%.o: service/fmb/slabs.c $(O)/settings
 	@mkdir -p $(@D)
-	$(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DINLINED_NOT $(slabs_$*) \
-		$(foreach f,$(slabs_names),-D$f=$*_$f)
+	$(compile_bare) $(slabs_$*) $(foreach f,$(slabs_names),-D$f=$*_$f)
+
+$(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/slabs/%.o: \
+		tests/unit/slab_kernel.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile_bare) -Iservice/fmb -DLANES=1 $(slabs_$(*:kernel_%=%)) \
+		$(if $(filter kernel_%,$*),$(foreach f,slab_kernel_list slab_kernel_axes,-D$f=$(*:kernel_%=%)_$f))
+
+# run.c with eight lanes, in vectors that every machine has; and with a bound that is wrong.
+run_wide := $(addprefix $(O)/run/,wide.o times_wide.o boxes_wide.o wide_planted.o)
+run_wide_times_wide := -DRUN_TIMES
+run_wide_boxes_wide := -DRUN_BOXES
+run_wide_wide := -ffp-contract=fast
+run_wide_wide_planted := -ffp-contract=fast -DSLABS_ROUNDING=0x1p-56
+$(B)/tests/test_kernels: $(run_wide)
+$(run_wide): $(O)/run/%.o: service/fmb/run.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile_bare) -DLANES=8 -DRUN_NAME=$* $(run_wide_$*)
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
@@ -168,16 +235,17 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth),\
-		-Itests/oracle,-Iservice -Iclients -Itests/hostile -I$(GEN))
+	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth pair_draw),\
+		-Itests/oracle $(if $(filter $*,$(family_tests) pair_draw),-Itests/campaign),\
+		-Iservice -Iclients -Itests/hostile -I$(GEN))
 
 .PHONY: tests test test-fast check
 tests: all $(test_programs) $(unit_tests)
 
-# The script builds what it tests: release, and asan with gcc and with clang.
+# The script builds what it tests: release, asan with gcc and with clang, and release with OPENMP=1.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
 ifneq ($(variant),release)
-$(error 'make test' chooses modes and compilers itself: leave out MODE and CC)
+$(error 'make test' chooses modes and compilers itself: leave out MODE, CC and OPENMP)
 endif
 endif
 
@@ -222,19 +290,53 @@ accuracy: $(B)/accuracy
 
 # ---- Benchmark -------------------------------------------------------------------------------
 
-bench_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/bench/*.c))
+# The smaller and the larger of two numbers are one instruction each where there is no NaN to think
+# of: sat.c says why none is met. Nothing else changes.
+$(O)/service/fmb/sat.o: flags += -ffinite-math-only -fno-signed-zeros
 
-$(B)/bench: $(bench_objects) $(campaign_objects) $(lib_objects)
+# libccd is raced too where it is installed: make deps-bench, then make bench.
+ccd := $(shell pkg-config --exists ccd 2> /dev/null && echo ccd)
+peers := $(O)/peers/$(or $(ccd),none).o
+bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/peers.c,$(wildcard tests/bench/*.c))) \
+	$(peers) $(O)/ordered/eliminate.o
+
+$(B)/bench/bench: $(bench_objects) $(campaign_objects) $(lib_objects)
+	@[ ! -f $(@D) ] || rm $(@D) # it was a program once
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -pthread -o $@ $^ -lgmp -lm
+	$(CC) $(link_flags) -pthread -o $@ $^ $(if $(ccd),$(shell pkg-config --libs ccd)) -lgmp -lm
 
 $(O)/tests/bench/%.o: tests/bench/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Iservice/fmb -Itests/oracle -Itests/campaign
 
-.PHONY: bench
-bench: $(B)/bench
-	$<
+$(peers): tests/bench/peers.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Iservice/fmb -Itests/oracle -Itests/campaign \
+		$(if $(ccd),-DBENCH_CCD $(shell pkg-config --cflags ccd))
+
+# The article's elimination once more, with rows in an order that the benchmark chooses.
+$(O)/ordered/eliminate.o: service/fmb/eliminate.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Drows_of_pair=ordered_rows_of_pair -Deliminate_decide=ordered_decide
+
+# Minutes; what it measured is in bench/report.json then.
+.PHONY: bench deps-bench
+bench: $(B)/bench/bench
+	$< --json $(B)/bench/report.json
+
+deps-bench:
+	$(call install_packages,libccd-dev pkg-config)
+
+# ---- Report ----------------------------------------------------------------------------------
+
+# One page of what 'make bench' and 'make accuracy' measured; it runs neither.
+.PHONY: report deps-report
+report:
+	tests/report/report.sh $(B)/bench/report.json $(B)/accuracy.json $(B)/report
+
+report_packages := jq
+deps-report:
+	$(call install_packages,$(report_packages))
 
 # ---- Headers, format -------------------------------------------------------------------------
 
@@ -270,7 +372,8 @@ install: all
 	$(INSTALL) -m 644 $(B)/libfmb.a "$(DESTDIR)$(PREFIX)/lib"
 	$(INSTALL) -m 644 service/fmb/fmb.h "$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_names:%=msgs/%.lcm) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' service/fmb/fmb.pc.in \
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' \
+		$(if $(openmp_flag),-e 's|^Libs:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
 		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb.pc"
 
 .PHONY: clean
@@ -303,7 +406,7 @@ deps-test:
 
 # In 'make deps demo' the packages come first, and in 'make clean all' the cleaning, whatever
 # -j says.
-ifneq ($(filter deps deps-test clean,$(MAKECMDGOALS)),)
+ifneq ($(filter deps deps-test deps-report clean,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 

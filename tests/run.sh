@@ -86,11 +86,17 @@ build() {
     }
 }
 
+list_units() {
+    for test in "$1"/tests/test_*; do
+        [ -x "$test" ] && echo "unit $1 $(basename "$test")"
+    done
+}
+
+# Of a build with threads only the one suite that uses them was built.
 list() {
     for build in "$@"; do
-        for test in "$build"/tests/test_*; do
-            [ -x "$test" ] && echo "unit $build $(basename "$test")"
-        done
+        list_units "$build"
+        [ "$build" = "$threads" ] && continue
         for file in tests/system/*.bats; do echo "netns $build system/$(basename "$file")"; done
         for file in tests/cli/*.bats; do echo "bats $build cli/$(basename "$file")"; done
     done
@@ -98,13 +104,15 @@ list() {
 
 rm -rf "$log"
 mkdir -p "$log"
-rm -rf build/tests build/asan/tests build/asan-clang/tests
+threads=build/release-openmp
+rm -rf build/tests build/asan/tests build/asan-clang/tests $threads/tests
 build format-check headers tests
 builds=build
 if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan tests
     build MODE=asan CC=clang tests
-    builds="build build/asan build/asan-clang"
+    build OPENMP=1 $threads/tests/test_engine_batch
+    builds="build build/asan build/asan-clang $threads"
 fi
 # Until it has ended, a suite has failed.
 # shellcheck disable=SC2086

@@ -11,6 +11,7 @@ static void each(struct slab_truth *truth, void (*call)(mpz_ptr))
         }
         call(truth->offset[axis]);
         call(truth->drift[axis]);
+        call(truth->shift[axis]);
         call(truth->normal[axis]);
         call(truth->edge[0][axis]);
         call(truth->edge[1][axis]);
@@ -20,6 +21,10 @@ static void each(struct slab_truth *truth, void (*call)(mpz_ptr))
     call(truth->start);
     call(truth->slope);
     call(truth->gap);
+    call(truth->seen_low);
+    call(truth->seen_high);
+    call(truth->middle);
+    call(truth->swing);
     call(truth->side[0]);
     call(truth->side[1]);
     call(truth->rise[0]);
@@ -97,6 +102,17 @@ static void set_frame(struct slab_truth *truth, int f, const struct fmb_frame *f
     }
 }
 
+/* From the origin of a frame to its reference point: half of the way across a cuboid. The unit is
+ * half of what the numbers need. */
+static void add_shift(struct slab_truth *truth, int f)
+{
+    for (int axis = 0; axis < truth->dim && truth->shape[f] == FMB_CUBOID; axis++)
+        for (int i = 0; i < truth->dim; i++) {
+            mpz_tdiv_q_2exp(truth->scratch[0], truth->component[f][i][axis], 1);
+            (f ? mpz_add : mpz_sub)(truth->shift[axis], truth->shift[axis], truth->scratch[0]);
+        }
+}
+
 static void zero(mpz_ptr x)
 {
     mpz_set_ui(x, 0);
@@ -109,8 +125,11 @@ void slab_truth_set(struct slab_truth *truth, const struct fmb_pair *pair)
     truth->unit = 2000;
     lower_to_frame(&truth->unit, &pair->a, pair->duration);
     lower_to_frame(&truth->unit, &pair->b, pair->duration);
+    truth->unit--;
     set_frame(truth, 0, &pair->a, pair->duration);
     set_frame(truth, 1, &pair->b, pair->duration);
+    add_shift(truth, 0);
+    add_shift(truth, 1);
 }
 
 /* ---- Slabs ---- */
@@ -193,8 +212,39 @@ static void set_gap(struct slab_truth *truth)
     mpz_set(truth->gap, mpz_cmp(above, below) > 0 ? above : below);
 }
 
+/* A pair with a cuboid is walked in doubled lengths, its edges being those of a doubled tetrahedron
+ * and halves of those of a doubled cuboid. The drift's edge is its half. */
+static int factor_of_edge(const struct slab_truth *truth, int number, bool doubled)
+{
+    if (number == SLABS_DRIFT)
+        return doubled ? 0 : -1;
+    return doubled && truth->shape[number >= SLABS_EDGE_OF_B] != FMB_CUBOID ? 1 : 0;
+}
+
+static int factor_of(const struct slab_truth *truth, struct slab_normal normal)
+{
+    const bool doubled = truth->shape[0] == FMB_CUBOID || truth->shape[1] == FMB_CUBOID;
+    int factor = (doubled ? 1 : 0) + factor_of_edge(truth, normal.u, doubled);
+    if (truth->dim == 3)
+        factor += factor_of_edge(truth, normal.v, doubled);
+    return factor;
+}
+
+/* The unit is half of what the numbers need, so that half a slope is an integer too. */
+static void set_seen(struct slab_truth *truth)
+{
+    mpz_ptr shift = truth->scratch[0];
+    dot(truth, truth->shift, shift);
+    mpz_add(truth->seen_low, truth->low, shift);
+    mpz_add(truth->seen_high, truth->high, shift);
+    mpz_tdiv_q_2exp(truth->swing, truth->slope, 1);
+    mpz_add(truth->middle, truth->start, truth->swing);
+    mpz_add(truth->middle, truth->middle, shift);
+}
+
 void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal)
 {
+    truth->factor = factor_of(truth, normal);
     set_normal(truth, normal);
     truth->zero = mpz_sgn(truth->normal[0]) == 0 && mpz_sgn(truth->normal[1]) == 0 &&
                   mpz_sgn(truth->normal[2]) == 0;
@@ -208,16 +258,19 @@ void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal)
     mpz_sub(truth->side[1], truth->high, truth->start);
     mpz_set(truth->rise[0], truth->slope);
     mpz_neg(truth->rise[1], truth->slope);
+    set_seen(truth);
     set_gap(truth);
 }
 
-double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, double value, double bound)
+/* |value - exact 2^unit| / bound */
+static double ratio_of(struct slab_truth *truth, const mpz_t exact, long unit, double value,
+                       double bound)
 {
     mpz_ptr error = truth->scratch[0], of_value = truth->scratch[1];
     long e, of_error;
     int of_bound;
     mpz_set_si(of_value, mantissa_of(value, &e));
-    const long shift = mpz_sgn(of_value) == 0 ? 0 : e - truth->dim * truth->unit;
+    const long shift = mpz_sgn(of_value) == 0 ? 0 : e - unit;
     mpz_mul_2exp(error, exact, shift < 0 ? (mp_bitcnt_t) -shift : 0);
     mpz_mul_2exp(of_value, of_value, shift > 0 ? (mp_bitcnt_t) shift : 0);
     mpz_sub(error, error, of_value);
@@ -225,28 +278,79 @@ double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, double valu
         return 0;
     const double size = fabs(mpz_get_d_2exp(&of_error, error));
     const double of_size = frexp(bound, &of_bound);
-    of_error += truth->dim * truth->unit + (shift < 0 ? shift : 0) - of_bound;
+    of_error += unit + (shift < 0 ? shift : 0) - of_bound;
     return bound == 0 ? HUGE_VAL : ldexp(size / of_size, (int) of_error);
+}
+
+double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, int factor, double value,
+                        double bound)
+{
+    return ratio_of(truth, exact, truth->dim * truth->unit + factor, value, bound);
+}
+
+/* Of both inequalities, in lengths times 2^factor. */
+static double worst_side(struct slab_truth *truth, int factor, const struct inequality side[2])
+{
+    double worst = 0;
+    for (int i = 0; i < 2; i++) {
+        const double of_c =
+            slab_truth_ratio(truth, truth->side[i], factor, side[i].c, side[i].c_error);
+        const double of_g =
+            slab_truth_ratio(truth, truth->rise[i], factor, side[i].g, side[i].g_error);
+        worst = fmax(worst, fmax(of_c, of_g));
+    }
+    return worst;
 }
 
 double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
 {
+    const double bound = slab->error;
+    struct inequality side[2];
     slab_truth_ask(truth, slab->normal);
-    double worst = slab_truth_ratio(truth, truth->low, slab->low, slab->error);
-    worst = fmax(worst, slab_truth_ratio(truth, truth->high, slab->high, slab->error));
-    worst = fmax(worst, slab_truth_ratio(truth, truth->start, slab->start, slab->error));
-    worst = fmax(worst, slab_truth_ratio(truth, truth->slope, slab->slope, slab->error));
-    return fmax(worst, slab_truth_ratio(truth, truth->gap, slab_gap(slab), slab->error));
+    const int factor = truth->factor;
+    double worst = slab_truth_ratio(truth, truth->seen_low, factor, slab->low, bound);
+    worst = fmax(worst, slab_truth_ratio(truth, truth->seen_high, factor, slab->high, bound));
+    worst = fmax(worst, slab_truth_ratio(truth, truth->middle, factor, slab->middle, bound));
+    worst = fmax(worst, slab_truth_ratio(truth, truth->swing, factor, slab->swing, bound));
+    worst = fmax(worst, slab_truth_ratio(truth, truth->gap, factor, slab_gap(slab), bound));
+    slab_inequalities(slab, side);
+    return fmax(worst, worst_side(truth, factor, side));
 }
 
-double slab_truth_worst_side(struct slab_truth *truth, struct slab_normal normal,
-                             const struct inequality side[2])
+double slab_truth_worst_refined(struct slab_truth *truth, struct slab_normal normal,
+                                const struct inequality side[2])
 {
-    double worst = 0;
     slab_truth_ask(truth, normal);
-    for (int i = 0; i < 2; i++) {
-        worst = fmax(worst, slab_truth_ratio(truth, truth->side[i], side[i].c, side[i].c_error));
-        worst = fmax(worst, slab_truth_ratio(truth, truth->rise[i], side[i].g, side[i].g_error));
+    return worst_side(truth, 0, side);
+}
+
+/* The gap along an axis: that of the slab across it. */
+static void ask_axis(struct slab_truth *truth, int axis)
+{
+    for (int i = 0; i < FMB_DIM_MAX; i++)
+        mpz_set_ui(truth->normal[i], i == axis);
+    mpz_set_ui(truth->low, 0);
+    mpz_set_ui(truth->high, 0);
+    add_extent(truth, 0, truth->low, truth->high);
+    add_extent(truth, 1, truth->low, truth->high);
+    dot(truth, truth->offset, truth->start);
+    dot(truth, truth->drift, truth->slope);
+    set_gap(truth);
+}
+
+double slab_truth_axes(struct slab_truth *truth, double surely, double bound)
+{
+    const bool doubled = truth->shape[0] == FMB_CUBOID || truth->shape[1] == FMB_CUBOID;
+    const long unit = truth->unit + (doubled ? 1 : 0);
+    mpz_t gap;
+    mpz_init(gap);
+    for (int axis = 0; axis < truth->dim; axis++) {
+        ask_axis(truth, axis);
+        if (axis == 0 || mpz_cmp(truth->gap, gap) > 0)
+            mpz_set(gap, truth->gap);
     }
-    return worst;
+    const double most = ratio_of(truth, gap, unit, surely, bound);
+    const double rounded = ldexp(mpz_get_d(gap), (int) unit);
+    mpz_clear(gap);
+    return rounded < -1 ? 0 : 1 + (rounded < surely ? most : -most);
 }

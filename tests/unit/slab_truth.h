@@ -13,8 +13,13 @@ struct slab_truth {
     enum fmb_shape shape[2];
     mpz_t component[2][FMB_DIM_MAX][FMB_DIM_MAX]; /* [frame][component][axis] */
     mpz_t offset[FMB_DIM_MAX], drift[FMB_DIM_MAX];
+    mpz_t shift[FMB_DIM_MAX]; /* what the reference points add to the offset (walk.h) */
     long unit; /* all of the above are times 2^-unit; what follows is times 2^(-dim unit) */
     mpz_t low, high, start, slope, gap;
+    /* As struct slab_value has them, but in the lengths of the pair: those times 2^factor are the
+     * slab's. low and high of A - B with the reference points at 0. */
+    mpz_t seen_low, seen_high, middle, swing;
+    int factor;
     mpz_t side[2], rise[2]; /* start - low and high - start, and what tau adds to them */
     bool zero;              /* the normal is */
     mpz_t normal[FMB_DIM_MAX], edge[2][FMB_DIM_MAX], scratch[2];
@@ -26,18 +31,25 @@ void slab_truth_clear(struct slab_truth *truth);
 /* On input: a checked pair of solid or flat cuboids and tetrahedra. */
 void slab_truth_set(struct slab_truth *truth, const struct fmb_pair *pair);
 
-/* On output: low to gap, and zero, of this slab of the pair that is set. */
+/* On output: low to zero, of this slab of the pair that is set. */
 void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal);
 
-/* |value - exact| / bound, exact being one of low to gap: 0 if value is exact; infinite if it is
- * not and bound is 0. */
-double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, double value, double bound);
+/* |value - exact| / bound, exact being one of low to rise, value and bound in the lengths of the
+ * pair times 2^factor: 0 if value is exact; infinite if it is not and bound is 0. */
+double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, int factor, double value,
+                        double bound);
 
-/* The largest of these, of all numbers of a slab and its gap; its own normal is asked. */
+/* The largest of these, of all numbers of a slab, its gap, and the inequalities that are made of
+ * it; its own normal is asked. */
 double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab);
 
-/* The same of both inequalities of a slab: as if these were the errors. */
-double slab_truth_worst_side(struct slab_truth *truth, struct slab_normal normal,
-                             const struct inequality side[2]);
+/* On input: what axes said of the pair that is set, in space: a gap made smaller by bound. On
+ * output: by how much of the bound the gap was too large (< 0: too small); 0 where it is below -1,
+ * which the kernels do not tell. */
+double slab_truth_axes(struct slab_truth *truth, double surely, double bound);
+
+/* The same of both inequalities of a slab that slabs_refine() made. */
+double slab_truth_worst_refined(struct slab_truth *truth, struct slab_normal normal,
+                                const struct inequality side[2]);
 
 #endif

@@ -1,0 +1,53 @@
+/* What run.c is made of, once more, so that what is attacked is what runs. */
+#include "run_lanes.h"
+
+#include "slab_kernel.h"
+
+static struct walk_kind kind_of(const struct fmb_pair *pair, bool along)
+{
+    struct slabs_pair slabs;
+    struct walk_kind kind = {.dim = pair->a.body->dim};
+    kind.tetrahedron[0] = pair->a.body->shape == FMB_TETRAHEDRON;
+    kind.tetrahedron[1] = pair->b.body->shape == FMB_TETRAHEDRON;
+    kind.drifts = slabs_prepare(pair, &slabs) && slabs.motion.drifts;
+    kind.along = along && kind.dim == 3;
+    return kind;
+}
+
+static void set_walk_pair(const struct fmb_pair *pair, const struct walk_kind kind,
+                          struct walk_pair *out)
+{
+    struct fmb_prepared prepared[2];
+    const double *const at[2][LANES] = {{(const double *) &prepared[0]},
+                                        {(const double *) &prepared[1]}};
+    struct run_frame frame[2];
+    prepared_set(&pair->a, &prepared[0]);
+    prepared_set(&pair->b, &prepared[1]);
+    gather(kind, at[0], &frame[0]);
+    gather(kind, at[1], &frame[1]);
+    set_pair(kind, &frame[0], &frame[1], pair->duration, out);
+}
+
+int slab_kernel_list(const struct fmb_pair *pair, bool along, struct slab_value out[SLABS_MAX])
+{
+    const struct walk_kind kind = kind_of(pair, along);
+    struct walk_pair one;
+    struct walk_found found;
+    set_walk_pair(pair, kind, &one);
+    walk_begin(&found);
+    found.next = out;
+    walk(&one, kind, &found);
+    return (int) (found.next - out);
+}
+
+double slab_kernel_axes(const struct fmb_pair *pair, double *bound)
+{
+    const struct walk_kind kind = kind_of(pair, false);
+    struct walk_pair one;
+    struct walk_found found;
+    set_walk_pair(pair, kind, &one);
+    walk_begin(&found);
+    ask_axes(&one, kind, &found);
+    *bound = SLABS_ROUNDING_AXES * one.reach;
+    return found.surely;
+}

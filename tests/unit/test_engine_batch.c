@@ -1,0 +1,854 @@
+/* Many pairs at once, through fmb.h alone: what fmb_decide_batch() and fmb_meet() say is what the
+ * method certified says, bit for bit, for each instruction set, in any order, at any address; and
+ * that agrees with the exact method, and on samples with the oracle. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+
+#include "draw.h"
+#include "oracle.h"
+#include "pair_draw.h"
+#include "question.h"
+#include "referee.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+enum { FRAMES = 128, PAIRS_MAX = 1000, GUARD = 0xa5, GUARDS = 64 };
+
+/* ---- What a batch says of a pair ---- */
+
+struct said {
+    unsigned char verdict;
+    double contact[2], box[2][FMB_DIM_MAX];
+};
+
+static void say_nothing(struct said *out)
+{
+    out->verdict = 0;
+    for (int end = 0; end < 2; end++) {
+        out->contact[end] = NAN;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            out->box[end][axis] = NAN;
+    }
+}
+
+static bool same_number(double one, double other)
+{
+    return (isnan(one) && isnan(other)) || memcmp(&one, &other, sizeof one) == 0;
+}
+
+static bool same_numbers(const double *one, const double *other, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!same_number(one[i], other[i]))
+            return false;
+    return true;
+}
+
+/* ---- A world: frames, and pairs of them ---- */
+
+struct world {
+    struct solid solid[FRAMES];
+    struct fmb_prepared frame[FRAMES];
+    double duration;
+    unsigned pair[PAIRS_MAX][2];
+    size_t count;
+    struct said expected[PAIRS_MAX];
+    enum fmb_status status; /* of the first pair refused */
+};
+
+static const struct solid *solid_at(const struct world *world, unsigned index)
+{
+    return &world->solid[index];
+}
+
+static struct question question_of(const struct world *world, const unsigned pair[2])
+{
+    return (struct question){*solid_at(world, pair[0]), *solid_at(world, pair[1]), world->duration};
+}
+
+/* The body is gone when this returns, as it may. */
+static void prepare(const struct solid *solid, struct fmb_prepared *out)
+{
+    const struct question question = {*solid, *solid, 1};
+    struct ready ready;
+    referee_ready(&question, &ready);
+    assert_int_equal(fmb_prepare(&ready.pair.a, out), FMB_OK);
+    memset(&ready, GUARD, sizeof ready);
+}
+
+/* Windows of a length that the pairs of a campaign have, and others. */
+static double draw_duration(struct draw *draw)
+{
+    static const double others[] = {0, -0.0, 0x1p-1074, 1e-300, 0.1, 3, 1e300, DBL_MAX};
+    return draw_coin(draw) ? 1 : others[draw_int(draw, 0, (int) COUNT(others) - 1)];
+}
+
+/* Frames 2 i and 2 i + 1 come from one question. cell: all of them are of it; NULL: of any. */
+static void draw_frames(struct draw *draw, const struct cell *cell, double duration,
+                        struct world *world)
+{
+    world->duration = duration;
+    for (int i = 0; i < FRAMES; i += 2) {
+        const struct cell any = cell ? *cell : pair_draw_cell(draw);
+        struct question question;
+        (draw_int(draw, 0, 7) ? pair_draw : pair_draw_stretched)(draw, &any, &question);
+        if (duration > 0x1p-1000)
+            pair_set_duration(&question, duration);
+        world->solid[i] = question.a;
+        world->solid[i + 1] = question.b;
+        prepare(&question.a, &world->frame[i]);
+        prepare(&question.b, &world->frame[i + 1]);
+    }
+}
+
+static unsigned draw_frame(struct draw *draw)
+{
+    return (unsigned) draw_int(draw, 0, FRAMES - 1);
+}
+
+/* Of frames that can be asked together: neighbours in either order, any two, one with itself, an
+ * earlier pair again or the other way round. */
+static void draw_pair(struct draw *draw, struct world *world, size_t i)
+{
+    unsigned *pair = world->pair[i];
+    pair[0] = draw_frame(draw);
+    pair[1] = pair[0] ^ 1;
+    switch (draw_int(draw, 0, 7)) {
+    case 0: do { pair[1] = draw_frame(draw);
+        } while (solid_at(world, pair[0])->dim != solid_at(world, pair[1])->dim);
+        break;
+    case 1: pair[1] = pair[0]; break;
+    case 2:
+        if (i > 0) {
+            const unsigned *earlier = world->pair[draw_int(draw, 0, (int) i - 1)];
+            const bool turned = draw_coin(draw);
+            pair[0] = earlier[turned];
+            pair[1] = earlier[!turned];
+        }
+        break;
+    default: break;
+    }
+}
+
+static void draw_pairs(struct draw *draw, size_t count, struct world *world)
+{
+    world->count = count;
+    for (size_t i = 0; i < count; i++)
+        draw_pair(draw, world, i);
+}
+
+/* ---- What is expected ---- */
+
+static void expect_right(const struct question *question, const struct fmb_pair *pair,
+                         const struct fmb_answer *answer, bool ask_oracle)
+{
+    struct fmb_answer exact;
+    char why[200];
+    assert_int_equal(fmb_decide(fmb_method_by_name("exact"), pair, 0, &exact), FMB_OK);
+    if (answer->verdict != exact.verdict)
+        referee_fail(question, "the exact method has another verdict");
+    if (ask_oracle && !oracle_check(pair, FMB_WANT_BOX, answer, why, sizeof why))
+        referee_fail(question, why);
+}
+
+/* As the method certified says of a pair that can be asked. */
+static void set_expected(const struct world *world, const unsigned pair[2], bool ask_oracle,
+                         struct said *out)
+{
+    const struct question question = question_of(world, pair);
+    struct ready ready;
+    struct fmb_answer answer;
+    say_nothing(out);
+    referee_ready(&question, &ready);
+    assert_int_equal(
+        fmb_decide(fmb_method_by_name("certified"), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
+    expect_right(&question, &ready.pair, &answer, ask_oracle);
+    out->verdict = (unsigned char) answer.verdict;
+    if (answer.has_contact)
+        memcpy(out->contact, answer.contact, sizeof out->contact);
+    if (answer.has_box)
+        memcpy(out->box, answer.box, sizeof out->box);
+}
+
+/* Of all pairs; the oracle is asked of one in so many. */
+static void set_all_expected(struct world *world, int oracle_of)
+{
+    world->status = FMB_OK;
+    for (size_t i = 0; i < world->count; i++)
+        set_expected(world, world->pair[i], (int) (i % (size_t) oracle_of) == 0,
+                     &world->expected[i]);
+}
+
+/* ---- Batches ---- */
+
+/* Room for one array of answers with guards on both sides. */
+struct guarded {
+    unsigned char *all;
+    size_t size;
+};
+
+static void *guarded_new(struct guarded *guarded, size_t size)
+{
+    guarded->size = size;
+    guarded->all = malloc(size + 2 * GUARDS);
+    assert_non_null(guarded->all);
+    memset(guarded->all, GUARD, size + 2 * GUARDS);
+    return guarded->all + GUARDS;
+}
+
+static bool is_untouched(const unsigned char *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i++)
+        if (bytes[i] != GUARD)
+            return false;
+    return true;
+}
+
+static void expect_guards(const struct guarded *guarded)
+{
+    assert_true(is_untouched(guarded->all, GUARDS));
+    assert_true(is_untouched(guarded->all + GUARDS + guarded->size, GUARDS));
+}
+
+/* How a batch is asked. */
+struct way {
+    int instructions, threads;
+    bool contacts, boxes;
+};
+
+struct answers {
+    struct guarded verdicts, contacts, boxes;
+    struct fmb_batch batch;
+    enum fmb_status status;
+};
+
+static void answers_free(struct answers *answers)
+{
+    free(answers->verdicts.all);
+    free(answers->contacts.all);
+    free(answers->boxes.all);
+}
+
+/* frames: those of the world, wherever they lie. */
+static void ask(const struct world *world, const struct fmb_prepared *frames, const struct way *way,
+                struct answers *out)
+{
+    const size_t n = world->count;
+    out->batch =
+        (struct fmb_batch){.frames = frames,
+                           .frame_count = FRAMES,
+                           .pairs = world->pair,
+                           .pair_count = n,
+                           .duration = world->duration,
+                           .verdicts = guarded_new(&out->verdicts, n),
+                           .contacts = guarded_new(&out->contacts, n * sizeof *out->batch.contacts),
+                           .boxes = guarded_new(&out->boxes, n * sizeof *out->batch.boxes),
+                           .instructions = (enum fmb_instructions) way->instructions,
+                           .threads = way->threads};
+    if (!way->contacts)
+        out->batch.contacts = NULL;
+    if (!way->boxes)
+        out->batch.boxes = NULL;
+    out->status = fmb_decide_batch(&out->batch);
+    expect_guards(&out->verdicts);
+    expect_guards(&out->contacts);
+    expect_guards(&out->boxes);
+    if (!way->contacts)
+        assert_true(is_untouched(out->contacts.all, out->contacts.size));
+    if (!way->boxes)
+        assert_true(is_untouched(out->boxes.all, out->boxes.size));
+}
+
+static const char *way_text(const struct way *way)
+{
+    static char text[80];
+    snprintf(text, sizeof text, "%s, %d threads%s%s", fmb_instructions_name(way->instructions),
+             way->threads, way->contacts ? ", contacts" : "", way->boxes ? ", boxes" : "");
+    return text;
+}
+
+static void fail_at(const struct world *world, const struct way *way, size_t i, const char *what)
+{
+    const struct question question = question_of(world, world->pair[i]);
+    printf("# pair %zu of %zu, %u with %u; %s\n", i, world->count, world->pair[i][0],
+           world->pair[i][1], way_text(way));
+    referee_fail(&question, what);
+}
+
+static void expect_said(const struct world *world, const struct way *way,
+                        const struct answers *answers)
+{
+    const struct fmb_batch *batch = &answers->batch;
+    assert_int_equal(answers->status, world->status);
+    for (size_t i = 0; i < world->count; i++) {
+        const struct said *expected = &world->expected[i];
+        if (batch->verdicts[i] != expected->verdict)
+            fail_at(world, way, i, "another verdict in a batch");
+        if (way->contacts && !same_numbers(batch->contacts[i], expected->contact, 2))
+            fail_at(world, way, i, "other times in a batch");
+        if (way->boxes && !same_numbers(batch->boxes[i][0], expected->box[0], 2 * FMB_DIM_MAX))
+            fail_at(world, way, i, "another box in a batch");
+    }
+}
+
+static void expect_asked(const struct world *world, const struct fmb_prepared *frames,
+                         const struct way *way)
+{
+    struct answers answers;
+    ask(world, frames, way, &answers);
+    expect_said(world, way, &answers);
+    answers_free(&answers);
+}
+
+/* With all instructions of this machine, contacts and boxes wanted or not. */
+static void expect_all_ways(const struct world *world)
+{
+    for (int instructions = FMB_BEST; instructions <= FMB_AVX512; instructions++)
+        for (int wants = 0; fmb_instructions_supported(instructions) && wants < 4; wants++) {
+            const struct way way = {instructions, wants == 0, wants & 1, wants & 2};
+            expect_asked(world, world->frame, &way);
+        }
+}
+
+static void expect_meet(const struct world *world)
+{
+    for (size_t i = 0; i < world->count; i++) {
+        const struct fmb_prepared *a = &world->frame[world->pair[i][0]];
+        const struct fmb_prepared *b = &world->frame[world->pair[i][1]];
+        const enum fmb_verdict expected = (enum fmb_verdict) world->expected[i].verdict;
+        const struct way way = {0};
+        if (fmb_meet(a, b, world->duration) != expected ||
+            fmb_meet(b, a, world->duration) != expected)
+            fail_at(world, &way, i, "fmb_meet() has another verdict");
+    }
+}
+
+/* ---- Tests: answers ---- */
+
+static struct world *world_new(void)
+{
+    struct world *world = calloc(1, sizeof *world);
+    assert_non_null(world);
+    return world;
+}
+
+struct tally {
+    long verdict[4], contacts, boxes;
+};
+
+static void count_said(const struct world *world, struct tally *tally)
+{
+    for (size_t i = 0; i < world->count; i++) {
+        const struct said *said = &world->expected[i];
+        tally->verdict[said->verdict]++;
+        tally->contacts += !isnan(said->contact[0]);
+        tally->boxes += !isnan(said->box[0][0]);
+    }
+}
+
+static void expect_all_seen(const struct tally *tally)
+{
+    printf("# %ld separated, %ld touching, %ld overlapping; %ld contacts, %ld boxes\n",
+           tally->verdict[1], tally->verdict[2], tally->verdict[3], tally->contacts, tally->boxes);
+    for (int verdict = 1; verdict < 4; verdict++)
+        assert_true(tally->verdict[verdict] > 0);
+    assert_true(tally->contacts > 0 && tally->boxes == tally->verdict[2] + tally->verdict[3]);
+}
+
+/* All kinds side by side. */
+static void mixed_batches_are_certified(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct tally tally = {0};
+    struct world *world = world_new();
+    draw_begin(&draw, "mixed_batches_are_certified");
+    for (long n = draw_sample(16); n > 0; n--) {
+        draw_frames(&draw, NULL, draw_duration(&draw), world);
+        draw_pairs(&draw, (size_t) draw_int(&draw, 1, 400), world);
+        set_all_expected(world, 20);
+        expect_all_ways(world);
+        expect_meet(world);
+        count_said(world, &tally);
+    }
+    free(world);
+    expect_all_seen(&tally);
+}
+
+/* Batches of one kind take shorter ways. */
+static void batches_of_one_kind_are_certified(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct tally tally = {0};
+    struct cell cells[CELL_WITH_FACES];
+    struct world *world = world_new();
+    const int count = cell_list(true, cells);
+    draw_begin(&draw, "batches_of_one_kind_are_certified");
+    for (long n = draw_sample(2 * count); n > 0; n--) {
+        const double duration = draw_int(&draw, 0, 3) ? 1 : draw_duration(&draw);
+        draw_frames(&draw, &cells[n % count], duration, world);
+        draw_pairs(&draw, (size_t) draw_int(&draw, 1, 200), world);
+        set_all_expected(world, 40);
+        expect_all_ways(world);
+        count_said(world, &tally);
+    }
+    free(world);
+    expect_all_seen(&tally);
+}
+
+/* Where blocks begin and end. */
+static void any_count_is_answered(void **state)
+{
+    (void) state;
+    static const size_t counts[] = {0, 1, 127, 128, 129, 1000};
+    struct draw draw;
+    struct world *world = world_new();
+    draw_begin(&draw, "any_count_is_answered");
+    for (size_t i = 0; i < COUNT(counts); i++) {
+        draw_frames(&draw, NULL, 1, world);
+        draw_pairs(&draw, counts[i], world);
+        set_all_expected(world, 1000);
+        expect_all_ways(world);
+    }
+    free(world);
+}
+
+/* Arrays may be missing where there is nothing. */
+static void nothing_is_answered(void **state)
+{
+    (void) state;
+    const struct fmb_batch batch = {.duration = 1};
+    assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
+}
+
+/* ---- Tests: order and address ---- */
+
+static void exchange_frames(struct world *world, unsigned i, unsigned j)
+{
+    const struct solid solid = world->solid[i];
+    const struct fmb_prepared frame = world->frame[i];
+    world->solid[i] = world->solid[j];
+    world->frame[i] = world->frame[j];
+    world->solid[j] = solid;
+    world->frame[j] = frame;
+    for (size_t k = 0; k < world->count; k++)
+        for (int f = 0; f < 2; f++) {
+            unsigned *index = &world->pair[k][f];
+            *index = *index == i ? j : *index == j ? i : *index;
+        }
+}
+
+static void exchange_pairs(struct world *world, size_t i, size_t j)
+{
+    const struct said said = world->expected[i];
+    const unsigned pair[2] = {world->pair[i][0], world->pair[i][1]};
+    world->expected[i] = world->expected[j];
+    memcpy(world->pair[i], world->pair[j], sizeof pair);
+    world->expected[j] = said;
+    memcpy(world->pair[j], pair, sizeof pair);
+}
+
+static void turn_pair(unsigned pair[2])
+{
+    const unsigned first = pair[0];
+    pair[0] = pair[1];
+    pair[1] = first;
+}
+
+/* What is expected stays as it was. */
+static void shuffle(struct draw *draw, struct world *world)
+{
+    for (int n = 0; n < FRAMES; n++)
+        exchange_frames(world, draw_frame(draw), draw_frame(draw));
+    for (size_t i = 0; i < world->count; i++) {
+        exchange_pairs(world, i, (size_t) draw_int(draw, 0, (int) world->count - 1));
+        if (draw_coin(draw))
+            turn_pair(world->pair[i]);
+    }
+}
+
+static void order_does_not_matter(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct world *world = world_new();
+    draw_begin(&draw, "order_does_not_matter");
+    for (long n = draw_sample(8); n > 0; n--) {
+        draw_frames(&draw, NULL, draw_duration(&draw), world);
+        draw_pairs(&draw, (size_t) draw_int(&draw, 1, 300), world);
+        set_all_expected(world, 1000);
+        shuffle(&draw, world);
+        expect_all_ways(world);
+        expect_meet(world);
+    }
+    free(world);
+}
+
+/* Any address that doubles may have. */
+static void address_does_not_matter(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct world *world = world_new();
+    unsigned char *room = aligned_alloc(64, sizeof world->frame + 64);
+    assert_non_null(room);
+    draw_begin(&draw, "address_does_not_matter");
+    draw_frames(&draw, NULL, 1, world);
+    draw_pairs(&draw, 300, world);
+    set_all_expected(world, 1000);
+    for (size_t at = 0; at < 64; at += 8) {
+        struct fmb_prepared *frames = (struct fmb_prepared *) (void *) (room + at);
+        memcpy(frames, world->frame, sizeof world->frame);
+        for (int instructions = FMB_BEST; instructions <= FMB_AVX512; instructions++) {
+            const struct way way = {instructions, 0, at & 8, false};
+            if (fmb_instructions_supported(instructions))
+                expect_asked(world, frames, &way);
+        }
+        assert_memory_equal(frames, world->frame, sizeof world->frame); /* nothing is written */
+    }
+    free(room);
+    free(world);
+}
+
+/* ---- Tests: what is refused ---- */
+
+/* The frames that cannot be asked are the first ones. */
+enum { ALL_ZERO, NOT_PREPARED, BAD_FRAMES };
+
+static void spoil_frames(struct world *world)
+{
+    const struct question question = {world->solid[NOT_PREPARED], world->solid[NOT_PREPARED], 1};
+    static const struct fmb_prepared zero;
+    struct ready ready;
+    memset(&world->frame[ALL_ZERO], 0, sizeof world->frame[ALL_ZERO]);
+    memset(&world->frame[NOT_PREPARED], GUARD, sizeof world->frame[NOT_PREPARED]);
+    referee_ready(&question, &ready);
+    ready.pair.a.origin[1] = NAN;
+    assert_int_equal(fmb_prepare(&ready.pair.a, &world->frame[NOT_PREPARED]), FMB_NOT_FINITE);
+    assert_memory_equal(&world->frame[NOT_PREPARED], &zero, sizeof zero);
+}
+
+/* On output: a pair that is refused, and why. */
+static enum fmb_status draw_refused(struct draw *draw, const struct world *world, unsigned pair[2])
+{
+    static const unsigned beyond[] = {FRAMES, FRAMES + 1, INT_MAX, UINT_MAX};
+    enum fmb_status status = FMB_DIMENSIONS_DIFFER;
+    pair[0] = BAD_FRAMES + draw_frame(draw) % (FRAMES - BAD_FRAMES);
+    switch (draw_int(draw, 0, 2)) {
+    case 0:
+        pair[1] = beyond[draw_int(draw, 0, (int) COUNT(beyond) - 1)];
+        pair[0] = draw_int(draw, 0, 3) ? pair[0] : ALL_ZERO;
+        status = FMB_OVER_LIMIT;
+        break;
+    case 1:
+        pair[1] = (unsigned) draw_int(draw, ALL_ZERO, NOT_PREPARED);
+        pair[0] = draw_int(draw, 0, 3) ? pair[0] : ALL_ZERO;
+        status = FMB_NOT_FINITE;
+        break;
+    default: do { pair[1] = BAD_FRAMES + draw_frame(draw) % (FRAMES - BAD_FRAMES);
+        } while (world->solid[pair[0]].dim == world->solid[pair[1]].dim);
+        break;
+    }
+    if (draw_coin(draw))
+        turn_pair(pair);
+    return status;
+}
+
+static bool has_bad_frame(const unsigned pair[2])
+{
+    return pair[0] < BAD_FRAMES || pair[1] < BAD_FRAMES;
+}
+
+/* One pair in so many is refused, from one of them on. */
+static void refuse_some(struct draw *draw, int one_in, struct world *world)
+{
+    const size_t from = (size_t) draw_int(draw, 0, (int) world->count - 1);
+    world->status = FMB_OK;
+    spoil_frames(world);
+    for (size_t i = 0; i < world->count; i++) {
+        const bool refused = i >= from && draw_int(draw, 1, one_in) == 1;
+        if (refused) {
+            const enum fmb_status status = draw_refused(draw, world, world->pair[i]);
+            world->status = world->status == FMB_OK ? status : world->status;
+            say_nothing(&world->expected[i]);
+            continue;
+        }
+        while (has_bad_frame(world->pair[i]))
+            world->pair[i][0] = world->pair[i][1] = draw_frame(draw);
+        set_expected(world, world->pair[i], false, &world->expected[i]);
+    }
+}
+
+static void refused_pairs_stop_no_other(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct world *world = world_new();
+    long seen[FMB_STATUS_COUNT] = {0};
+    draw_begin(&draw, "refused_pairs_stop_no_other");
+    for (long n = draw_sample(32); n > 0; n--) {
+        draw_frames(&draw, NULL, draw_duration(&draw), world);
+        draw_pairs(&draw, (size_t) draw_int(&draw, 1, 300), world);
+        refuse_some(&draw, 1 << draw_int(&draw, 0, 8), world);
+        seen[world->status]++;
+        expect_all_ways(world);
+        for (size_t i = 0; i < world->count; i++)
+            if (world->pair[i][0] < FRAMES && world->pair[i][1] < FRAMES)
+                assert_int_equal(fmb_meet(&world->frame[world->pair[i][0]],
+                                          &world->frame[world->pair[i][1]], world->duration),
+                                 world->expected[i].verdict);
+    }
+    free(world);
+    printf("# first refused: %ld not finite, %ld over the limit, %ld of other dimensions; %ld ok\n",
+           seen[FMB_NOT_FINITE], seen[FMB_OVER_LIMIT], seen[FMB_DIMENSIONS_DIFFER], seen[FMB_OK]);
+    assert_true(seen[FMB_NOT_FINITE] + seen[FMB_OVER_LIMIT] + seen[FMB_DIMENSIONS_DIFFER] > 0);
+}
+
+/* All of a frame is finite where it is read, or it is not prepared. */
+static void what_is_not_finite_is_not_prepared(void **state)
+{
+    (void) state;
+    static const double bad[] = {NAN, INFINITY, -INFINITY};
+    static const struct fmb_prepared zero;
+    struct draw draw;
+    draw_begin(&draw, "what_is_not_finite_is_not_prepared");
+    for (long n = draw_sample(400); n > 0; n--) {
+        const struct cell cell = pair_draw_cell(&draw);
+        const int axis = draw_int(&draw, 0, FMB_DIM_MAX - 1);
+        struct question question;
+        struct ready ready;
+        struct fmb_prepared good, found;
+        pair_draw(&draw, &cell, &question);
+        referee_ready(&question, &ready);
+        assert_int_equal(fmb_prepare(&ready.pair.a, &good), FMB_OK);
+        const bool velocity = draw_coin(&draw);
+        struct fmb_frame *frame = &ready.pair.a;
+        (velocity ? frame->velocity : frame->origin)[axis] = bad[draw_int(&draw, 0, 2)];
+        const bool read = axis < cell.dim && (!velocity || frame->moving);
+        assert_int_equal(fmb_prepare(frame, &found), read ? FMB_NOT_FINITE : FMB_OK);
+        assert_memory_equal(&found, read ? &zero : &good, sizeof found);
+    }
+}
+
+/* ---- Tests: what is refused as a whole ---- */
+
+static void expect_whole_refused(const struct world *world, const struct way *way,
+                                 enum fmb_status status)
+{
+    struct answers answers;
+    ask(world, world->frame, way, &answers);
+    assert_int_equal(answers.status, status);
+    assert_true(is_untouched(answers.verdicts.all, answers.verdicts.size + GUARDS));
+    assert_true(is_untouched(answers.contacts.all, answers.contacts.size + GUARDS));
+    assert_true(is_untouched(answers.boxes.all, answers.boxes.size + GUARDS));
+    answers_free(&answers);
+}
+
+static void durations_that_are_none_are_refused(void **state)
+{
+    (void) state;
+    static const double bad[] = {NAN, -NAN, INFINITY, -INFINITY, -1, -0x1p-1074, -DBL_MAX};
+    const struct way way = {0, 0, true, true};
+    struct draw draw;
+    struct world *world = world_new();
+    draw_begin(&draw, "durations_that_are_none_are_refused");
+    draw_frames(&draw, NULL, 1, world);
+    draw_pairs(&draw, 10, world);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        world->duration = bad[i];
+        expect_whole_refused(world, &way, FMB_BAD_DURATION);
+        for (size_t k = 0; k < world->count; k++)
+            assert_int_equal(fmb_meet(&world->frame[world->pair[k][0]],
+                                      &world->frame[world->pair[k][1]], bad[i]),
+                             0);
+    }
+    free(world);
+}
+
+static void instructions_that_are_not_there_are_refused(void **state)
+{
+    (void) state;
+    static const int others[] = {-1, FMB_AVX512 + 1, 1000, INT_MAX, INT_MIN};
+    struct draw draw;
+    struct world *world = world_new();
+    draw_begin(&draw, "instructions_that_are_not_there_are_refused");
+    draw_frames(&draw, NULL, 1, world);
+    draw_pairs(&draw, 10, world);
+    assert_true(fmb_instructions_supported(FMB_BEST));
+    assert_true(fmb_instructions_supported(FMB_PLAIN));
+    for (int i = FMB_BEST; i <= FMB_AVX512; i++) {
+        const struct way way = {i, 0, true, true};
+        if (!fmb_instructions_supported(i))
+            expect_whole_refused(world, &way, FMB_NOT_SUPPORTED);
+    }
+    for (size_t i = 0; i < COUNT(others); i++) {
+        const struct way way = {others[i], 0, true, true};
+        assert_false(fmb_instructions_supported(others[i]));
+        expect_whole_refused(world, &way, FMB_NOT_SUPPORTED);
+    }
+    free(world);
+}
+
+static void instructions_have_names(void **state)
+{
+    (void) state;
+    static const int unknown[] = {-1, 5, 1000, INT_MAX, INT_MIN};
+    assert_string_equal(fmb_instructions_name(FMB_BEST), "best");
+    assert_string_equal(fmb_instructions_name(FMB_PLAIN), "plain");
+    assert_string_equal(fmb_instructions_name(FMB_SSE2), "sse2");
+    assert_string_equal(fmb_instructions_name(FMB_AVX2), "avx2");
+    assert_string_equal(fmb_instructions_name(FMB_AVX512), "avx512");
+    for (size_t i = 0; i < COUNT(unknown); i++)
+        assert_null(fmb_instructions_name(unknown[i]));
+}
+
+/* ---- Tests: threads ---- */
+
+/* A library without threads says so, one with them does with any number what it does with one. */
+static void threads_are_there_or_refused(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct world *world = world_new();
+    draw_begin(&draw, "threads_are_there_or_refused");
+    draw_frames(&draw, NULL, 1, world);
+    draw_pairs(&draw, 400, world);
+    set_all_expected(world, 1000);
+    for (int threads = 0; threads <= 4; threads++) {
+        const struct way way = {FMB_BEST, threads, true, true};
+#ifdef _OPENMP
+        const bool there = true;
+#else
+        const bool there = threads <= 1;
+#endif
+        if (there)
+            expect_asked(world, world->frame, &way);
+        else
+            expect_whole_refused(world, &way, FMB_NOT_SUPPORTED);
+    }
+    free(world);
+}
+
+#ifdef _OPENMP
+
+/* So many that each thread gets some. */
+enum { CROWD = 30000 };
+
+struct crowd {
+    struct fmb_batch batch;
+    struct guarded verdicts, contacts, boxes;
+    enum fmb_status status;
+};
+
+static void crowd_ask(const struct world *world, const unsigned (*pairs)[2], int threads,
+                      bool boxes, struct crowd *out)
+{
+    out->batch = (struct fmb_batch){
+        .frames = world->frame,
+        .frame_count = FRAMES,
+        .pairs = pairs,
+        .pair_count = CROWD,
+        .duration = world->duration,
+        .verdicts = guarded_new(&out->verdicts, CROWD),
+        .contacts = guarded_new(&out->contacts, CROWD * sizeof *out->batch.contacts),
+        .boxes = guarded_new(&out->boxes, CROWD * sizeof *out->batch.boxes),
+        .threads = threads};
+    if (!boxes)
+        out->batch.boxes = NULL;
+    out->status = fmb_decide_batch(&out->batch);
+}
+
+static void crowd_free(struct crowd *crowd)
+{
+    free(crowd->verdicts.all);
+    free(crowd->contacts.all);
+    free(crowd->boxes.all);
+}
+
+static bool same_bytes(const struct guarded *one, const struct guarded *other)
+{
+    return memcmp(one->all, other->all, one->size + 2 * GUARDS) == 0;
+}
+
+/* The pairs of the world over and over, a few of them refused; returns the status of the first of
+ * these. */
+static enum fmb_status draw_crowd(struct draw *draw, const struct world *world,
+                                  unsigned (*pairs)[2])
+{
+    enum fmb_status status = FMB_OK;
+    const int one_in = 1 << draw_int(draw, 8, 14);
+    for (size_t i = 0; i < CROWD; i++) {
+        const bool refused = draw_int(draw, 1, one_in) == 1;
+        memcpy(pairs[i], world->pair[i % world->count], sizeof pairs[i]);
+        const enum fmb_status one = refused ? draw_refused(draw, world, pairs[i]) : FMB_OK;
+        status = status == FMB_OK ? one : status;
+    }
+    return status;
+}
+
+static void threads_change_nothing(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct world *world = world_new();
+    unsigned(*pairs)[2] = malloc(CROWD * sizeof *pairs);
+    assert_non_null(pairs);
+    draw_begin(&draw, "threads_change_nothing");
+    for (long n = draw_sample(3); n > 0; n--) {
+        draw_frames(&draw, NULL, 1, world);
+        draw_pairs(&draw, 300, world);
+        refuse_some(&draw, INT_MAX, world);
+        const enum fmb_status status = draw_crowd(&draw, world, pairs);
+        struct crowd one;
+        crowd_ask(world, (const unsigned(*)[2]) pairs, 1, n % 2 == 0, &one);
+        assert_int_equal(one.status, status);
+        for (int threads = 2; threads <= 4; threads++) {
+            struct crowd many;
+            crowd_ask(world, (const unsigned(*)[2]) pairs, threads, n % 2 == 0, &many);
+            assert_int_equal(many.status, status);
+            assert_true(same_bytes(&many.verdicts, &one.verdicts));
+            assert_true(same_bytes(&many.contacts, &one.contacts));
+            assert_true(same_bytes(&many.boxes, &one.boxes));
+            crowd_free(&many);
+        }
+        crowd_free(&one);
+    }
+    free(pairs);
+    free(world);
+}
+
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mixed_batches_are_certified),
+        cmocka_unit_test(batches_of_one_kind_are_certified),
+        cmocka_unit_test(any_count_is_answered),
+        cmocka_unit_test(nothing_is_answered),
+        cmocka_unit_test(order_does_not_matter),
+        cmocka_unit_test(address_does_not_matter),
+        cmocka_unit_test(refused_pairs_stop_no_other),
+        cmocka_unit_test(what_is_not_finite_is_not_prepared),
+        cmocka_unit_test(durations_that_are_none_are_refused),
+        cmocka_unit_test(instructions_that_are_not_there_are_refused),
+        cmocka_unit_test(instructions_have_names),
+        cmocka_unit_test(threads_are_there_or_refused),
+#ifdef _OPENMP
+        cmocka_unit_test(threads_change_nothing),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

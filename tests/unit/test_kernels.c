@@ -1,0 +1,782 @@
+/* The filter's kernels, each instruction set of this machine and eight lanes without AVX-512: no
+ * outcome contradicts the exact method, wherever in the lanes a pair lies; times of contact and
+ * boxes are the same bits everywhere, hold the exact ones, and are close to them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <gmp.h>
+#include <math.h>
+
+#include "draw.h"
+#include "family.h"
+#include "pair_draw.h"
+#include "prepared.h"
+#include "question.h"
+#include "referee.h"
+#include "run.h"
+#include "solids.h"
+
+/* run.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (Makefile). */
+extern run_function *const run_wide[RUN_KINDS], *const run_times_wide[RUN_KINDS],
+                                                    *const run_boxes_wide[RUN_KINDS],
+                                                        *const run_wide_planted[RUN_KINDS];
+#if defined __x86_64__
+extern run_alone_function *const run_alone_sse2[RUN_KINDS],
+    *const run_times_alone_sse2[RUN_KINDS], *const run_boxes_alone_sse2[RUN_KINDS];
+#endif
+
+/* ---- Subjects ---- */
+
+struct subject {
+    const char *name;
+    struct run_set set;
+};
+
+enum { SUBJECTS_MAX = FMB_AVX512 + 1 };
+
+/* Those of this machine; the first is plain. Returns how many. */
+static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
+{
+    int count = 0;
+    for (int i = FMB_PLAIN; i <= FMB_AVX512; i++) {
+        struct subject one = {.name = fmb_instructions_name(i)};
+        const bool there = run_set_of(i, &one.set);
+        assert_int_equal(there, fmb_instructions_supported(i));
+        if (there)
+            out[count++] = one;
+    }
+    out[count++] = (struct subject){"wide", {run_wide, run_times_wide, run_boxes_wide}};
+    return count;
+}
+
+/* Of pairs alone. */
+struct alone {
+    const char *name;
+    run_alone_function *const *verdicts, *const *times, *const *boxes;
+};
+
+enum { ALONE_MAX = 2 };
+
+/* That of this machine, and what older ones have. Returns how many. */
+static int alone_of_machine(struct alone out[ALONE_MAX])
+{
+    out[0] = (struct alone){"alone", run_verdicts_alone(), run_times_alone(), run_boxes_alone()};
+#if defined __x86_64__
+    out[1] =
+        (struct alone){"alone, sse2", run_alone_sse2, run_times_alone_sse2, run_boxes_alone_sse2};
+    return 2;
+#else
+    return 1;
+#endif
+}
+
+/* ---- Sizes ---- */
+
+/* The square of a vector's length. */
+static void set_square(mpq_t out, const double *vector, int dim)
+{
+    mpq_t number;
+    mpq_init(number);
+    mpq_set_ui(out, 0, 1);
+    for (int axis = 0; axis < dim; axis++) {
+        mpq_set_d(number, vector[axis]);
+        mpq_mul(number, number, number);
+        mpq_add(out, out, number);
+    }
+    mpq_clear(number);
+}
+
+/* What the head of a frame says of a component of a body that doubles can say something of: no less
+ * than its length, and at most a fifteenth more. */
+static void expect_size(const struct fmb_body *body, int i)
+{
+    const double size = prepared_size(body->head, i), least = size * 15 / 16;
+    mpq_t length, said;
+    mpq_inits(length, said, NULL);
+    set_square(length, body->component[i], body->dim);
+    set_square(said, &size, 1);
+    assert_true(mpq_cmp(said, length) >= 0);
+    set_square(said, &least, 1);
+    assert_true(mpq_cmp(said, length) <= 0);
+    mpq_clears(length, said, NULL);
+}
+
+static void sizes_are_lengths_or_a_little_more(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long sizes = 0;
+    draw_begin(&draw, "sizes_are_lengths_or_a_little_more");
+    for (long n = draw_sample(20000); n > 0; n--) {
+        const struct cell cell = pair_draw_cell(&draw);
+        struct question question;
+        struct ready ready;
+        pair_draw(&draw, &cell, &question);
+        if (draw_coin(&draw)) /* a length that fits, or all but */
+            question.a.component[0][0] =
+                ldexp(1 + draw_int(&draw, 0, 16) / 16.0, draw_int(&draw, -190, 190)) *
+                (1 + draw_int(&draw, -1, 1) * 0x1p-52);
+        if (draw_coin(&draw))
+            question.a.component[0][1] = question.a.component[0][2] = 0;
+        referee_ready(&question, &ready);
+        const struct fmb_body *body = &ready.body[0];
+        for (int i = 0; i < body->dim && body->in_range; i++, sizes++)
+            expect_size(body, i);
+        for (int i = body->in_range ? body->dim : 0; i < FMB_DIM_MAX; i++)
+            assert_true(prepared_size(body->head, i) == 0);
+    }
+    printf("# %ld sizes\n", sizes);
+    assert_true(sizes > 0);
+}
+
+/* ---- Kinds ---- */
+
+static bool is_kind(int kind)
+{
+    return run_wide[kind] != NULL;
+}
+
+static const char *kind_text(int kind)
+{
+    static char text[40];
+    snprintf(text, sizeof text, "%dD %s %c%c%s", kind & RUN_SPACE ? 3 : 2,
+             kind & RUN_DRIFTS ? "drifts" : "at rest", kind & RUN_TETRAHEDRON_A ? 'T' : 'C',
+             kind & RUN_TETRAHEDRON_B ? 'T' : 'C', kind & RUN_ALONG ? " along" : "");
+    return text;
+}
+
+/* Any order of the two shapes. */
+static struct cell draw_cell(struct draw *draw, int kind, bool may_move)
+{
+    const enum fmb_shape a = kind & RUN_TETRAHEDRON_A ? FMB_TETRAHEDRON : FMB_CUBOID;
+    const enum fmb_shape b = kind & RUN_TETRAHEDRON_B ? FMB_TETRAHEDRON : FMB_CUBOID;
+    const bool turned = draw_coin(draw);
+    return (struct cell){kind & RUN_SPACE ? 3 : 2,
+                         kind & RUN_DRIFTS || (may_move && draw_int(draw, 0, 7) == 0),
+                         {turned ? b : a, turned ? a : b}};
+}
+
+/* ---- Pools of pairs of one kind and duration ---- */
+
+enum { POOL = 40, ROOM = POOL + RUN_LANES };
+
+struct pool {
+    int kind, count;
+    bool boxes; /* they are of interest: nothing moves */
+    double duration;
+    struct question question[POOL];
+    struct fmb_prepared frame[POOL][2]; /* in their places */
+    struct fmb_answer exact[POOL];
+};
+
+static const struct fmb_prepared nobody;
+
+static double draw_duration(struct draw *draw)
+{
+    static const double usual[] = {1, 1, 1, 0.25, 2, 3, 0.1};
+    return draw_int(draw, 0, 7) ? usual[draw_int(draw, 0, 6)] : fabs(draw_log(draw, -300, 300));
+}
+
+typedef void pair_function(struct draw *draw, const struct cell *cell, struct question *out);
+
+/* Lets an edge of a frame, or how they move, be parallel to an axis. */
+static void align(struct draw *draw, struct question *question)
+{
+    struct solid *solid = draw_coin(draw) ? &question->a : &question->b;
+    double *edge = solid->component[draw_int(draw, 0, solid->dim - 1)];
+    const int kept = draw_int(draw, 0, solid->dim - 1);
+    for (int axis = 0; axis < solid->dim; axis++)
+        edge[axis] = axis == kept ? edge[axis] : 0;
+    for (int axis = 0; axis < solid->dim && draw_coin(draw); axis++)
+        question->b.velocity[axis] = question->a.velocity[axis];
+}
+
+/* A kernel that looks for zero normals may be asked a pair that has none. */
+static bool is_of_kind(int found, int wanted)
+{
+    return found == wanted || (wanted & RUN_ALONG && found == (wanted & ~RUN_ALONG));
+}
+
+/* False: it came out as another kind. */
+static bool draw_pair(struct draw *draw, pair_function *pair, struct pool *pool, int i)
+{
+    const struct cell cell = draw_cell(draw, pool->kind, !pool->boxes);
+    struct question *question = &pool->question[i];
+    struct ready ready;
+    struct fmb_prepared a, b;
+    bool swapped;
+    pair(draw, &cell, question);
+    pair_set_duration(question, pool->duration);
+    if (pool->kind & RUN_ALONG && draw_int(draw, 0, 3) == 0)
+        align(draw, question);
+    referee_ready(question, &ready);
+    prepared_set(&ready.pair.a, &a);
+    prepared_set(&ready.pair.b, &b);
+    if (!is_of_kind((int) run_kind_of(&a, &b, pool->duration, &swapped), pool->kind))
+        return false;
+    pool->frame[i][0] = swapped ? b : a;
+    pool->frame[i][1] = swapped ? a : b;
+    memset(&pool->exact[i], 0, sizeof pool->exact[i]);
+    assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &ready.pair,
+                                pool->boxes ? FMB_WANT_BOX : 0, &pool->exact[i]),
+                     FMB_OK);
+    return true;
+}
+
+static void fill_pool(struct draw *draw, pair_function *pair, struct pool *pool)
+{
+    for (pool->count = 0; pool->count < POOL;)
+        pool->count += draw_pair(draw, pair, pool, pool->count);
+}
+
+static void draw_pool(struct draw *draw, pair_function *pair, int kind, double duration,
+                      struct pool *pool)
+{
+    pool->kind = kind;
+    pool->duration = duration;
+    pool->boxes = false;
+    fill_pool(draw, pair, pool);
+}
+
+static void draw_box_pool(struct draw *draw, pair_function *pair, int kind, struct pool *pool)
+{
+    pool->kind = kind;
+    pool->duration = 1;
+    pool->boxes = true;
+    fill_pool(draw, pair, pool);
+}
+
+/* ---- Runs ---- */
+
+enum { GUARD = 0xa5 };
+
+/* What a function left, and room beyond what it may write. */
+struct left {
+    unsigned char outcome[ROOM + RUN_LANES];
+    double contact[ROOM + RUN_LANES][2];
+    double box[ROOM + RUN_LANES][2][FMB_DIM_MAX];
+};
+
+static bool is_untouched(const void *from, size_t size)
+{
+    const unsigned char *bytes = from;
+    for (size_t i = 0; i < size; i++)
+        if (bytes[i] != GUARD)
+            return false;
+    return true;
+}
+
+/* Runs pairs first to first + count of the pool; what follows them are other pairs of it, or
+ * nobody. */
+static void run_part(run_function *function, const struct pool *pool, int first, int count,
+                     struct left *out)
+{
+    const struct fmb_prepared *pairs[ROOM][2];
+    const struct run run = {pairs,        (size_t) count, pool->duration,
+                            out->outcome, out->contact,   out->box};
+    for (int i = 0; i < count + RUN_LANES - 1; i++) {
+        const bool here = first + i < pool->count && (i < count || first % 2 == 0);
+        pairs[i][0] = here ? &pool->frame[first + i][0] : &nobody;
+        pairs[i][1] = here ? &pool->frame[first + i][1] : &nobody;
+    }
+    memset(out, GUARD, sizeof *out);
+    function(&run);
+    const size_t end = (size_t) count + RUN_LANES - 1;
+    assert_true(is_untouched(out->outcome + end, sizeof out->outcome - end));
+    assert_true(is_untouched(out->contact + end, sizeof out->contact - end * sizeof *out->contact));
+    assert_true(is_untouched(out->box + end, sizeof out->box - end * sizeof *out->box));
+}
+
+static void run_all(run_function *function, const struct pool *pool, struct left *out)
+{
+    run_part(function, pool, 0, pool->count, out);
+}
+
+static void expect_outcomes(const struct subject *subject, const struct pool *pool,
+                            const struct left *left)
+{
+    for (int i = 0; i < pool->count; i++)
+        if (left->outcome[i] != SLABS_UNSURE && left->outcome[i] != pool->exact[i].verdict) {
+            printf("# %s, %s: %d\n", subject->name, kind_text(pool->kind), left->outcome[i]);
+            referee_fail(&pool->question[i], "an outcome that is wrong");
+        }
+}
+
+static long unsure_among(const struct pool *pool, const struct left *left)
+{
+    long unsure = 0;
+    for (int i = 0; i < pool->count; i++)
+        unsure += left->outcome[i] == SLABS_UNSURE;
+    return unsure;
+}
+
+/* ---- Outcomes ---- */
+
+/* Any part of a pool has the same outcomes as it has in all of it. */
+static void expect_same_in_parts(struct draw *draw, run_function *function, const struct pool *pool,
+                                 const struct left *whole)
+{
+    struct left part;
+    for (int count = 1; count <= 17; count++) {
+        const int first = draw_int(draw, 0, pool->count - count);
+        run_part(function, pool, first, count, &part);
+        for (int i = 0; i < count; i++)
+            if (part.outcome[i] != whole->outcome[first + i])
+                referee_fail(&pool->question[first + i], "another outcome in another lane");
+    }
+}
+
+static void no_outcome_is_wrong(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    draw_begin(&draw, "no_outcome_is_wrong");
+    for (int kind = 0; kind < RUN_KINDS; kind++) {
+        long verdicts[4] = {0}, unsure[SUBJECTS_MAX] = {0};
+        for (long n = is_kind(kind) ? draw_sample(60) : 0; n > 0; n--) {
+            struct pool pool;
+            struct left left;
+            draw_pool(&draw, pair_draw, kind, draw_duration(&draw), &pool);
+            for (int i = 0; i < pool.count; i++)
+                verdicts[pool.exact[i].verdict]++;
+            for (int s = 0; s < subjects; s++) {
+                run_all(subject[s].set.verdicts[kind], &pool, &left);
+                expect_outcomes(&subject[s], &pool, &left);
+                unsure[s] += unsure_among(&pool, &left);
+                expect_same_in_parts(&draw, subject[s].set.verdicts[kind], &pool, &left);
+            }
+        }
+        if (!is_kind(kind))
+            continue;
+        printf("# %s: %ld separated, %ld touching, %ld overlapping; unsure", kind_text(kind),
+               verdicts[1], verdicts[2], verdicts[3]);
+        for (int s = 0; s < subjects; s++)
+            printf(" %s %ld", subject[s].name, unsure[s]);
+        printf("\n");
+        assert_true(verdicts[1] > 0 && verdicts[2] > 0 && verdicts[3] > 0);
+        for (int s = 0; s < subjects; s++) /* touching is never sure */
+            assert_true(unsure[s] >= verdicts[2] && unsure[s] < verdicts[1] + verdicts[2]);
+    }
+}
+
+static void random_pairs_are_never_unsure(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    long pairs = 0;
+    draw_begin(&draw, "random_pairs_are_never_unsure");
+    for (int kind = 0; kind < RUN_KINDS; kind++)
+        for (long n = is_kind(kind) ? draw_sample(20) : 0; n > 0; n--) {
+            struct pool pool;
+            struct left left;
+            draw_pool(&draw, family_draw_random, kind, 1, &pool);
+            pairs += pool.count;
+            for (int s = 0; s < subjects; s++) {
+                run_all(subject[s].set.verdicts[kind], &pool, &left);
+                expect_outcomes(&subject[s], &pool, &left);
+                assert_int_equal(unsure_among(&pool, &left), 0);
+            }
+        }
+    printf("# %ld random pairs, none unsure\n", pairs);
+}
+
+/* With a bound so much smaller each kind says what is wrong. */
+static void a_wrong_bound_is_found(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "a_wrong_bound_is_found");
+    for (int kind = 0; kind < RUN_KINDS; kind++) {
+        long wrong = 0, asked = 0;
+        for (int n = 0; is_kind(kind) && n < 3000 && wrong == 0; n++) {
+            struct pool pool;
+            struct left left;
+            draw_pool(&draw, pair_draw, kind, 1, &pool);
+            run_all(run_wide_planted[kind], &pool, &left);
+            asked += pool.count;
+            for (int i = 0; i < pool.count; i++)
+                wrong +=
+                    left.outcome[i] != SLABS_UNSURE && left.outcome[i] != pool.exact[i].verdict;
+        }
+        if (!is_kind(kind))
+            continue;
+        printf("# %s: %ld wrong of %ld\n", kind_text(kind), wrong, asked);
+        assert_true(wrong > 0);
+    }
+}
+
+/* ---- Pairs alone ---- */
+
+/* What a function leaves of all pairs of a pool, one by one: outcomes and, if it makes them, times
+ * or boxes. */
+static void run_alone(run_alone_function *function, const struct pool *pool, struct left *out)
+{
+    memset(out, GUARD, sizeof *out);
+    for (int i = 0; i < pool->count; i++) {
+        double numbers[2 * FMB_DIM_MAX];
+        memset(numbers, GUARD, sizeof numbers);
+        out->outcome[i] = (unsigned char) function(&pool->frame[i][0], &pool->frame[i][1],
+                                                   pool->duration, numbers);
+        memcpy(out->contact[i], numbers, sizeof out->contact[i]);
+        memcpy(out->box[i], numbers, sizeof out->box[i]);
+    }
+}
+
+static void expect_alone(const struct alone *alone, const struct pool *pool, long *unsure)
+{
+    const struct subject subject = {.name = alone->name};
+    struct left left;
+    run_alone(alone->verdicts[pool->kind], pool, &left);
+    expect_outcomes(&subject, pool, &left);
+    *unsure += unsure_among(pool, &left);
+    assert_true(is_untouched(left.contact, sizeof left.contact));
+    assert_true(is_untouched(left.box, sizeof left.box));
+}
+
+static void no_outcome_alone_is_wrong(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct alone alone[ALONE_MAX];
+    const int count = alone_of_machine(alone);
+    draw_begin(&draw, "no_outcome_alone_is_wrong");
+    for (int kind = 0; kind < RUN_KINDS; kind++)
+        for (long n = is_kind(kind) ? draw_sample(30) : 0; n > 0; n--) {
+            struct pool hard, random;
+            long of_hard = 0, of_random = 0;
+            draw_pool(&draw, pair_draw, kind, draw_duration(&draw), &hard);
+            draw_pool(&draw, family_draw_random, kind, 1, &random);
+            for (int i = 0; i < count; i++) {
+                expect_alone(&alone[i], &hard, &of_hard);
+                expect_alone(&alone[i], &random, &of_random);
+            }
+            assert_int_equal(of_random, 0);
+        }
+}
+
+/* ---- Times ---- */
+
+static bool same_times(const double one[2], const double other[2])
+{
+    return memcmp(one, other, 2 * sizeof *one) == 0;
+}
+
+/* The interval of the exact method is the tightest of doubles, so that what holds it holds the
+ * exact one. */
+static void expect_times(const struct pool *pool, int i, const double times[2])
+{
+    const double *exact = pool->exact[i].contact;
+    const double most = 1e-12 * pool->duration;
+    if (!(times[0] >= 0 && times[0] <= exact[0] && times[1] >= exact[1] &&
+          times[1] <= pool->duration))
+        referee_fail(&pool->question[i], "times that do not hold the exact ones");
+    if (!(exact[0] - times[0] <= most && times[1] - exact[1] <= most))
+        referee_fail(&pool->question[i], "times that are far from the exact ones");
+    if (signbit(times[0]) || signbit(times[1]))
+        referee_fail(&pool->question[i], "times that are -0");
+}
+
+struct seen {
+    long met, known;
+    double worst; /* how far out, of T */
+};
+
+static void count_times(const struct pool *pool, const struct left *left, struct seen *seen)
+{
+    for (int i = 0; i < pool->count; i++) {
+        const double *times = left->contact[i], *exact = pool->exact[i].contact;
+        if (pool->exact[i].verdict == FMB_SEPARATED)
+            continue;
+        seen->met++;
+        if (isnan(times[0]) || isnan(times[1])) {
+            assert_true(isnan(times[0]) && isnan(times[1]));
+            continue;
+        }
+        seen->known++;
+        expect_times(pool, i, times);
+        const double out = fmax(exact[0] - times[0], times[1] - exact[1]) / pool->duration;
+        seen->worst = fmax(seen->worst, out);
+    }
+}
+
+static void expect_same_times(const struct subject *subject, const struct pool *pool, int first,
+                              int count, const struct left *whole, const struct left *part)
+{
+    for (int i = 0; i < count; i++) {
+        if (pool->exact[first + i].verdict == FMB_SEPARATED)
+            continue;
+        if (part->outcome[i] != whole->outcome[first + i] ||
+            !same_times(part->contact[i], whole->contact[first + i])) {
+            printf("# %s, %s: [%a, %a] and [%a, %a]\n", subject->name, kind_text(pool->kind),
+                   whole->contact[first + i][0], whole->contact[first + i][1], part->contact[i][0],
+                   part->contact[i][1]);
+            referee_fail(&pool->question[first + i], "times of other bits");
+        }
+    }
+}
+
+/* Frames of the same shape in each other's place. */
+static void swap_pool(struct pool *pool)
+{
+    for (int i = 0; i < pool->count; i++) {
+        const struct fmb_prepared a = pool->frame[i][0];
+        pool->frame[i][0] = pool->frame[i][1];
+        pool->frame[i][1] = a;
+    }
+}
+
+static bool is_symmetric(int kind)
+{
+    return !(kind & RUN_TETRAHEDRON_B) || kind & RUN_TETRAHEDRON_A;
+}
+
+static void expect_same_for_all(struct draw *draw, struct pool *pool, const struct subject *subject,
+                                int subjects, const struct left *whole)
+{
+    struct left part;
+    for (int s = 0; s < subjects; s++) {
+        run_function *times = subject[s].set.times[pool->kind];
+        for (int count = 1; count <= 17; count++) {
+            const int first = draw_int(draw, 0, pool->count - count);
+            run_part(times, pool, first, count, &part);
+            expect_same_times(&subject[s], pool, first, count, whole, &part);
+        }
+        if (is_symmetric(pool->kind))
+            swap_pool(pool);
+        run_all(times, pool, &part);
+        expect_same_times(&subject[s], pool, 0, pool->count, whole, &part);
+        if (is_symmetric(pool->kind))
+            swap_pool(pool);
+    }
+    struct alone alone[ALONE_MAX];
+    for (int i = alone_of_machine(alone) - 1; i >= 0; i--) {
+        const struct subject as_subject = {.name = alone[i].name};
+        run_alone(alone[i].times[pool->kind], pool, &part);
+        expect_same_times(&as_subject, pool, 0, pool->count, whole, &part);
+    }
+}
+
+static void times_hold_the_exact_ones(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    draw_begin(&draw, "times_hold_the_exact_ones");
+    for (int kind = RUN_DRIFTS; kind < RUN_KINDS; kind++) {
+        struct seen hard = {0}, random = {0};
+        if (!run_times_wide[kind])
+            continue;
+        for (long n = draw_sample(60); n > 0; n--) {
+            struct pool pool;
+            struct left whole;
+            const bool is_hard = n % 4;
+            draw_pool(&draw, is_hard ? pair_draw : family_draw_random, kind,
+                      is_hard ? draw_duration(&draw) : 1, &pool);
+            run_all(subject[0].set.times[kind], &pool, &whole);
+            expect_outcomes(&subject[0], &pool, &whole);
+            count_times(&pool, &whole, is_hard ? &hard : &random);
+            expect_same_for_all(&draw, &pool, subject, subjects, &whole);
+        }
+        printf("# %s: %ld meet, %ld times known, at most %.3g out; random %ld, %ld, %.3g\n",
+               kind_text(kind), hard.met, hard.known, hard.worst, random.met, random.known,
+               random.worst);
+        assert_true(4 * hard.known > hard.met && hard.worst > 0);
+        assert_true(random.met > 0 && 10 * (random.met - random.known) <= random.met);
+    }
+}
+
+/* ---- Boxes ---- */
+
+static bool has_known_box(const struct left *left, int i)
+{
+    const double *box = left->box[i][0];
+    int unknown = 0;
+    for (int k = 0; k < 2 * FMB_DIM_MAX; k++)
+        unknown += isnan(box[k]);
+    return unknown == 0;
+}
+
+/* The largest magnitude of a coordinate of any vertex, rounded. */
+static double largest_coordinate(const struct question *question)
+{
+    const struct solid *solids[2] = {&question->a, &question->b};
+    double largest = 0;
+    for (int f = 0; f < 2; f++) {
+        double vertex[VERTICES_MAX][FMB_DIM_MAX];
+        for (int v = solid_vertices(solids[f], vertex) - 1; v >= 0; v--)
+            for (int axis = 0; axis < solids[f]->dim; axis++)
+                largest = fmax(largest, fabs(solids[f]->origin[axis] + vertex[v][axis]));
+    }
+    return largest;
+}
+
+/* The box of the exact method is the tightest of doubles. */
+static double expect_box(const struct pool *pool, int i, const double box[2][FMB_DIM_MAX])
+{
+    const double(*exact)[FMB_DIM_MAX] = pool->exact[i].box;
+    const int dim = pool->question[i].a.dim;
+    double out = 0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double below = exact[0][axis] - box[0][axis], above = box[1][axis] - exact[1][axis];
+        if (!(below >= 0 && above >= 0))
+            referee_fail(&pool->question[i], "a box that does not hold the exact one");
+        for (int end = 0; end < 2; end++)
+            if ((box[end][axis] == 0 && signbit(box[end][axis])) ||
+                (axis >= dim && box[end][axis] != 0))
+                referee_fail(&pool->question[i], "a box with a number that is none");
+        out = fmax(out, fmax(below, above));
+    }
+    out /= largest_coordinate(&pool->question[i]);
+    if (!(out <= 1e-12))
+        referee_fail(&pool->question[i], "a box that is far from the exact one");
+    return out;
+}
+
+static void count_boxes(const struct pool *pool, const struct left *left, struct seen *seen)
+{
+    for (int i = 0; i < pool->count; i++) {
+        if (pool->exact[i].verdict != FMB_OVERLAPPING)
+            continue;
+        seen->met++;
+        if (!has_known_box(left, i))
+            continue;
+        seen->known++;
+        seen->worst = fmax(seen->worst, expect_box(pool, i, left->box[i]));
+    }
+}
+
+/* Pairs of the pool from first on; a box that is not known is so everywhere. */
+static void expect_same_boxes(const char *name, const struct pool *pool, int first, int count,
+                              const struct left *whole, const struct left *part)
+{
+    for (int i = 0; i < count; i++) {
+        if (pool->exact[first + i].verdict != FMB_OVERLAPPING)
+            continue;
+        const bool known = has_known_box(whole, first + i);
+        if (known != has_known_box(part, i) ||
+            (known && memcmp(part->box[i], whole->box[first + i], sizeof part->box[i]) != 0)) {
+            printf("# %s, %s\n", name, kind_text(pool->kind));
+            referee_fail(&pool->question[first + i], "a box of other bits");
+        }
+    }
+}
+
+static void expect_same_boxes_for_all(struct draw *draw, struct pool *pool,
+                                      const struct subject *subject, int subjects,
+                                      const struct left *whole)
+{
+    struct left part;
+    struct alone alone[ALONE_MAX];
+    for (int s = 0; s < subjects; s++) {
+        run_function *boxes = subject[s].set.boxes[pool->kind];
+        for (int count = 1; count <= 17; count++) {
+            const int first = draw_int(draw, 0, pool->count - count);
+            run_part(boxes, pool, first, count, &part);
+            expect_same_boxes(subject[s].name, pool, first, count, whole, &part);
+        }
+        if (is_symmetric(pool->kind))
+            swap_pool(pool);
+        run_all(boxes, pool, &part);
+        expect_same_boxes(subject[s].name, pool, 0, pool->count, whole, &part);
+        if (is_symmetric(pool->kind))
+            swap_pool(pool);
+    }
+    for (int i = alone_of_machine(alone) - 1; i >= 0; i--) {
+        run_alone(alone[i].boxes[pool->kind], pool, &part);
+        expect_same_boxes(alone[i].name, pool, 0, pool->count, whole, &part);
+    }
+}
+
+static void boxes_hold_the_exact_ones(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    draw_begin(&draw, "boxes_hold_the_exact_ones");
+    for (int kind = 0; kind < RUN_KINDS; kind++) {
+        struct seen hard = {0}, random = {0};
+        if (!run_boxes_wide[kind])
+            continue;
+        for (long n = draw_sample(40); n > 0; n--) {
+            struct pool pool;
+            struct left whole;
+            const bool is_hard = n % 4;
+            draw_box_pool(&draw, is_hard ? pair_draw : family_draw_random, kind, &pool);
+            run_all(subject[0].set.boxes[kind], &pool, &whole);
+            count_boxes(&pool, &whole, is_hard ? &hard : &random);
+            expect_same_boxes_for_all(&draw, &pool, subject, subjects, &whole);
+        }
+        printf("# %s: %ld overlap, %ld boxes known, at most %.3g out; random %ld, %ld, %.3g\n",
+               kind_text(kind), hard.met, hard.known, hard.worst, random.met, random.known,
+               random.worst);
+        assert_true(4 * hard.known > hard.met && hard.worst > 0);
+        assert_true(random.met > 0 && 10 * (random.met - random.known) <= random.met);
+    }
+}
+
+/* ---- What doubles can say nothing of ---- */
+
+/* At whatever place in the lanes, nothing wrong is said, and nothing is known of times and boxes
+ * that are not. */
+static void expect_stretched(struct draw *draw, int kind, const struct subject *subject,
+                             int subjects)
+{
+    struct pool pool;
+    struct left left, whole;
+    struct seen seen = {0};
+    draw_pool(draw, pair_draw_stretched, kind, draw_duration(draw), &pool);
+    for (int s = 0; s < subjects; s++) {
+        run_all(subject[s].set.verdicts[kind], &pool, &left);
+        expect_outcomes(&subject[s], &pool, &left);
+    }
+    if (run_times_wide[kind]) {
+        run_all(subject[0].set.times[kind], &pool, &whole);
+        count_times(&pool, &whole, &seen);
+        expect_same_for_all(draw, &pool, subject, subjects, &whole);
+    }
+    if (run_boxes_wide[kind]) {
+        draw_box_pool(draw, pair_draw_stretched, kind, &pool);
+        run_all(subject[0].set.boxes[kind], &pool, &whole);
+        count_boxes(&pool, &whole, &seen);
+        expect_same_boxes_for_all(draw, &pool, subject, subjects, &whole);
+    }
+}
+
+static void ends_of_the_range(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    draw_begin(&draw, "ends_of_the_range");
+    for (int kind = 0; kind < RUN_KINDS; kind++)
+        for (long n = is_kind(kind) ? draw_sample(16) : 0; n > 0; n--)
+            expect_stretched(&draw, kind, subject, subjects);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sizes_are_lengths_or_a_little_more),
+        cmocka_unit_test(no_outcome_is_wrong),
+        cmocka_unit_test(random_pairs_are_never_unsure),
+        cmocka_unit_test(a_wrong_bound_is_found),
+        cmocka_unit_test(no_outcome_alone_is_wrong),
+        cmocka_unit_test(times_hold_the_exact_ones),
+        cmocka_unit_test(boxes_hold_the_exact_ones),
+        cmocka_unit_test(ends_of_the_range),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
