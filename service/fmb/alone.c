@@ -1,6 +1,56 @@
-/* One pair alone. It lies in all lanes, of two: an instruction does as much for two doubles as for
- * one, and the set has minima and maxima besides. */
+/* One pair alone. It lies in both of two lanes: an instruction does as much for two doubles as for
+ * one, and the set has minima and maxima besides. Two frames of the same shape in 2D lie in the
+ * second lane the other way round, so that half of the walk does for all of it. */
 #include "run_lanes.h"
+
+INLINE bool is_mirrored(const struct walk_kind kind)
+{
+    return LANES == 2 && !kind.ordered && kind.dim == 2 &&
+           kind.tetrahedron[0] == kind.tetrahedron[1];
+}
+
+INLINE lanes exchanged(lanes x)
+{
+#if LANES == 1
+    return x;
+#else
+    return __builtin_shufflevector(x, x, 1, 0);
+#endif
+}
+
+INLINE lanes side_by_side(double x, double y)
+{
+#if LANES == 1
+    (void) y;
+    return x;
+#else
+    return (lanes){x, y};
+#endif
+}
+
+INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepared *a,
+                            const struct fmb_prepared *b, struct run_frame *of_a,
+                            struct run_frame *of_b)
+{
+    const double *x = (const double *) a, *y = (const double *) b;
+    lanes words[2][WORDS];
+    UNROLL(16)
+    for (int w = 0; w < word_count(kind); w++) {
+        words[0][w] = side_by_side(x[w], y[w]);
+        words[1][w] = exchanged(words[0][w]);
+    }
+    set_run_frame(kind, words[0], of_a);
+    set_run_frame(kind, words[1], of_b);
+}
+
+INLINE void gather_both(const struct walk_kind kind, const struct fmb_prepared *a,
+                        const struct fmb_prepared *b, struct run_frame *of_a,
+                        struct run_frame *of_b)
+{
+    const double *const frame[2][LANES] = {{(const double *) a}, {(const double *) b}};
+    gather(kind, frame[0], of_a);
+    gather(kind, frame[1], of_b);
+}
 
 #if defined(RUN_TIMES) || defined(RUN_BOXES)
 
@@ -11,14 +61,30 @@ INLINE void put_first(lanes x, double *out)
 
 #endif
 
-INLINE enum slabs_outcome run_one(const struct walk_kind kind, const struct fmb_prepared *a,
+#ifndef RUN_BOXES
+
+/* From lanes that hold the same, or, mirrored, each half of what there is to know. */
+INLINE enum slabs_outcome outcome_of(const struct walk_kind kind, struct outcomes outcomes)
+{
+    if (!kind.mirrored)
+        return outcome_at(outcomes, 0);
+    return outcomes.separated          ? SLABS_SEPARATED
+           : outcomes.overlapping == 3 ? SLABS_OVERLAPPING
+                                       : SLABS_UNSURE;
+}
+
+#endif
+
+INLINE enum slabs_outcome run_one(struct walk_kind kind, const struct fmb_prepared *a,
                                   const struct fmb_prepared *b, double duration, double *out)
 {
-    const double *const frame[2][LANES] = {{(const double *) a}, {(const double *) b}};
     struct run_frame of_a, of_b;
     struct walk_pair pair;
-    gather(kind, frame[0], &of_a);
-    gather(kind, frame[1], &of_b);
+    kind.mirrored = is_mirrored(kind);
+    if (kind.mirrored)
+        gather_mirrored(kind, a, b, &of_a, &of_b);
+    else
+        gather_both(kind, a, b, &of_a, &of_b);
     set_pair(kind, &of_a, &of_b, duration, &pair);
 #ifdef RUN_BOXES
     lanes box[2][3];
@@ -37,7 +103,7 @@ INLINE enum slabs_outcome run_one(const struct walk_kind kind, const struct fmb_
 #else
     (void) out;
 #endif
-    return outcome_at(outcomes_of(&pair, &found), 0);
+    return outcome_of(kind, outcomes_of(&pair, &found));
 #endif
 }
 

@@ -181,9 +181,10 @@ static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepare
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
-/* The verdict of a pair of which the filter is unsure, or that it cannot be asked. */
-static enum fmb_verdict verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                                      double duration)
+/* The verdict of a pair of which the filter is unsure, or that it cannot be asked. Not inlined: the
+ * door has no room of its own to set up then. */
+static enum fmb_verdict __attribute__((noinline))
+verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
 {
     struct fmb_body body[2];
     const struct fmb_pair pair = {prepared_frame(a, &body[0]), prepared_frame(b, &body[1]),
@@ -402,11 +403,9 @@ enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepare
     const enum run_kind kind = run_kind_of(a, b, duration, &swapped);
     if (kind == RUN_REFUSED)
         return 0;
-    if (kind != RUN_ODD) {
-        const enum slabs_outcome outcome =
-            run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
-        if (outcome != SLABS_UNSURE)
-            return outcome == SLABS_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING;
-    }
-    return verdict_alone(a, b, duration);
+    const enum slabs_outcome outcome =
+        kind == RUN_ODD
+            ? SLABS_UNSURE
+            : run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
+    return outcome == SLABS_UNSURE ? verdict_alone(a, b, duration) : (enum fmb_verdict) outcome;
 }

@@ -17,8 +17,8 @@ enum {
     PREPARED_FACE = 1 << 1,
     PREPARED_SPACE = 1 << 2,  /* 3D */
     PREPARED_MOVING = 1 << 3, /* carries a velocity */
-    PREPARED_USABLE = 1 << 4, /* doubles can say something of it: fmb_body.in_range */
-    PREPARED_ALONG = 1 << 5,  /* an edge is parallel to a coordinate axis */
+    PREPARED_ALONG = 1 << 4,  /* an edge is parallel to a coordinate axis */
+    PREPARED_USABLE = 1 << 5, /* doubles can say something of it: fmb_body.in_range */
     PREPARED_PLAIN = 1 << 6,  /* components of few bits, as people write them */
     PREPARED_GOOD = 1 << 7    /* it was prepared */
 };

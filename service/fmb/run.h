@@ -7,6 +7,7 @@
 #include "prepared.h"
 #include "slabs.h"
 
+#include <assert.h>
 #include <stddef.h>
 
 /* Kinds of pairs that the filter can be asked. Two frames of different shapes come with the cuboid
@@ -30,6 +31,7 @@ struct run_kinds {
     bool moving;                     /* the velocities have to be looked at */
 };
 
+/* The bits of a frame that its pair takes over stand where they do there. */
 static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, double duration)
 {
     const unsigned both = kind_a & kind_b, any = kind_a | kind_b;
@@ -37,16 +39,20 @@ static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, do
         return (struct run_kinds){RUN_REFUSED, RUN_REFUSED, false, false};
     if (!(both & PREPARED_USABLE))
         return (struct run_kinds){RUN_ODD, RUN_ODD, false, false};
-    unsigned kind = (any & PREPARED_TETRAHEDRON ? RUN_TETRAHEDRON_B : 0u) |
-                    (both & PREPARED_TETRAHEDRON ? RUN_TETRAHEDRON_A : 0u) |
-                    (both & PREPARED_SPACE ? RUN_SPACE : 0u);
-    const unsigned along = both & PREPARED_SPACE ? RUN_ALONG : 0;
-    return (struct run_kinds){
-        .at_rest = (enum run_kind)(kind | (both & PREPARED_ALONG ? along : 0)),
-        .drifting = (enum run_kind)(kind | RUN_DRIFTS | (any & PREPARED_ALONG ? along : 0)),
-        .swapped = kind_a & ~kind_b & PREPARED_TETRAHEDRON,
-        .moving = any & PREPARED_MOVING && duration > 0};
+    const unsigned space = both & PREPARED_SPACE;
+    const unsigned kind = (any & PREPARED_TETRAHEDRON) | (both & PREPARED_TETRAHEDRON) << 1 | space;
+    const unsigned along = space / PREPARED_SPACE * PREPARED_ALONG;
+    return (struct run_kinds){.at_rest = (enum run_kind)(kind | (both & along)),
+                              .drifting = (enum run_kind)(kind | RUN_DRIFTS | (any & along)),
+                              .swapped = kind_a & ~kind_b & PREPARED_TETRAHEDRON,
+                              .moving = any & PREPARED_MOVING && duration > 0};
 }
+
+static_assert((int) RUN_TETRAHEDRON_B == (int) PREPARED_TETRAHEDRON &&
+                  (int) RUN_TETRAHEDRON_A == PREPARED_TETRAHEDRON << 1 &&
+                  (int) RUN_SPACE == (int) PREPARED_SPACE &&
+                  (int) RUN_ALONG == (int) PREPARED_ALONG,
+              "run_kinds_of() takes bits over as they are");
 
 static inline bool run_drifts(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {

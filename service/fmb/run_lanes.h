@@ -127,11 +127,16 @@ INLINE lanes gather_one(const double *const frame[LANES], int word)
 }
 
 /* Of head, origin, components and, where it is wanted, velocity. */
+INLINE int word_count(const struct walk_kind kind)
+{
+    return 1 + kind.dim * (1 + kind.dim + (kind.drifts ? 1 : 0));
+}
+
 INLINE void gather(const struct walk_kind kind, const double *const frame[LANES],
                    struct run_frame *out)
 {
     lanes words[WORDS];
-    const int used = 1 + kind.dim * (1 + kind.dim + (kind.drifts ? 1 : 0));
+    const int used = word_count(kind);
     const int in_fours = used - used % 4 + (used % 4 > 1 ? 4 : 0);
     UNROLL(4)
     for (int w = 0; w < in_fours; w += 4)

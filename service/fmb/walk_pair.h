@@ -13,7 +13,10 @@ struct walk_kind {
     bool drifts;
     bool along;   /* edges may be parallel to the same axis: zero normals are looked for (3D) */
     bool ordered; /* every number is to have the same bits for the pair the other way round */
-    bool times;   /* the times of contact are wanted; ordered */
+    /* 2D: the second of two lanes holds the pair the other way round. The slabs of b are those of a
+     * there. */
+    bool mirrored;
+    bool times; /* the times of contact are wanted; ordered */
 };
 
 /* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a tetrahedron.

@@ -68,6 +68,8 @@ INLINE void walk_plane(const struct walk_pair *pair, const struct walk_kind kind
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         set_plane_edges(pair, kind, which, &side[which]);
+        if (which == 1 && kind.mirrored)
+            break;
         add_plane_edges(pair, kind, which, &side[which], found);
         if (is_enough(found))
             return;
