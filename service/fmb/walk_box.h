@@ -354,6 +354,53 @@ INLINE void add_simplex_edge(const struct walk_kind kind, const struct box_frame
     widen_both(kind, &part, line, frame->slack, found);
 }
 
+/* ---- Extents ----
+ *
+ * The intersection lies in the extents of both frames. Where these are ends of it (boxes along the
+ * axes, a frame within the other) they are as near as doubles go: a sum is rounded outward, if it
+ * rounds. The error of a sum is a double (Knuth, The Art of Computer Programming, volume 2, 4.2.2,
+ * theorem B), and 2^-52 of a normal number is between one and two units in its last place; sums
+ * that are not normal are exact. */
+
+INLINE lanes sum_error(lanes x, lanes y, lanes sum)
+{
+    const lanes part = sum - x;
+    return (x - (sum - part)) + (y - part);
+}
+
+INLINE lanes sum_below(lanes x, lanes y)
+{
+    const lanes sum = x + y;
+    return lanes_choose(sum_error(x, y, sum) < 0, sum - 0x1p-52 * lanes_magnitude(sum), sum);
+}
+
+INLINE lanes sum_above(lanes x, lanes y)
+{
+    const lanes sum = x + y;
+    return lanes_choose(sum_error(x, y, sum) > 0, sum + 0x1p-52 * lanes_magnitude(sum), sum);
+}
+
+/* Cuts the box, in the lengths of the world. */
+INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                          const lanes origin[3], int axis, lanes box[2][3])
+{
+    const bool twice = is_doubled(kind) && kind.tetrahedron[which];
+    lanes low = origin[axis], high = origin[axis];
+    UNROLL(3)
+    for (int i = 0; i < kind.dim; i++) {
+        const lanes c = (twice ? 0.5 : 1.0) * pair->component[which][i][axis];
+        if (kind.tetrahedron[which]) {
+            low = lanes_least(sum_below(origin[axis], c), low);
+            high = lanes_greatest(sum_above(origin[axis], c), high);
+        } else {
+            low = sum_below(low, lanes_least(c, lanes_of(0)));
+            high = sum_above(high, lanes_greatest(c, lanes_of(0)));
+        }
+    }
+    box[0][axis] = lanes_greatest(low, box[0][axis]);
+    box[1][axis] = lanes_least(high, box[1][axis]);
+}
+
 /* ---- All of it ---- */
 
 /* Of a vertex along an axis, in the lengths of walk_pair: the largest magnitude, or a little less.
@@ -423,7 +470,13 @@ INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind 
                 (found.outer[1][axis] - found.inner[1][axis] <= BOX_LIMIT * largest);
         UNROLL(2)
         for (int end = 0; end < 2; end++)
-            box[end][axis] = (is_doubled(kind) ? 0.5 : 1.0) * found.outer[end][axis] + 0.0;
+            box[end][axis] = (is_doubled(kind) ? 0.5 : 1.0) * found.outer[end][axis];
+        UNROLL(2)
+        for (int which = 0; which < 2; which++)
+            cut_to_extent(pair, kind, which, origin[which], axis, box);
+        UNROLL(2)
+        for (int end = 0; end < 2; end++)
+            box[end][axis] += 0.0; /* never -0 */
     }
     return good;
 }
