@@ -79,7 +79,8 @@ client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard 
 
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
-test_programs := $(B)/poke $(B)/validate $(B)/accuracy $(B)/accuracy-planted
+test_programs := $(B)/poke $(B)/validate $(B)/accuracy $(B)/accuracy-planted\
+	$(B)/bench/bench
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(demo_programs)

@@ -115,6 +115,8 @@ INLINE lanes lanes_choose(lanes_mask mask, lanes x, lanes y)
 {
 #if LANES == 1
     return mask ? x : y;
+#elif LANES == 4 && defined(__AVX__)
+    return (lanes) _mm256_blendv_pd((__m256d) y, (__m256d) x, (__m256d) mask);
 #else
     return (lanes) ((mask & (lanes_mask) x) | (~mask & (lanes_mask) y));
 #endif

@@ -82,6 +82,16 @@ static double largest_of(double largest, const double v[3])
     return fmax(largest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
 }
 
+/* As components, of which fmb_body.in_range says it: no product of two underflows, half a number
+ * included. */
+static bool are_not_tiny(const double v[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (v[axis] != 0 && fabs(v[axis]) < 0x1p-399)
+            return false;
+    return true;
+}
+
 bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out)
 {
     out->a = pair->a.body;
@@ -93,7 +103,10 @@ bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out)
     out->drift_size = drift;
     out->reach = (offset + drift) + ((out->a->size[0] + out->a->size[1] + out->a->size[2]) +
                                      (out->b->size[0] + out->b->size[1] + out->b->size[2]));
-    return offset <= 0x1p200 && drift <= 0x1p200 && (drift >= 0x1p-200 || !out->motion.drifts);
+    if (!out->motion.drifts)
+        return offset <= 0x1p200;
+    return offset <= 0x1p200 && drift <= 0x1p200 && drift >= 0x1p-200 &&
+           are_not_tiny(out->motion.drift);
 }
 
 /* ---- The list, of one pair ---- */

@@ -9,20 +9,21 @@
  * the answer where the inner box is near enough.
  *
  * Accuracy. As in slabs.c, the error of n . x - low for a point x of an edge is a sum over
- * monomials of at most 11 roundings each: 3 in the offset between the reference points (1 for d), 5
- * in a triple product, 2 for the sum of three normals or for the way to an edge of a cuboid, 1 for
- * the start of an edge that is a difference, for its direction, and for the difference with the
- * bound; but not all of these at once. For each of the vectors w that x and the bound are made of,
- * the sum of the magnitudes of its monomials is W . |w|, where W = (|c_i| |c_j| + |c_j| |c_i|) is
- * the cross product with all signs positive, summed over three normals for the face across from the
- * origin. These w are the offset of the origins; the components of a cuboid, once in the way to its
- * reference point and once in that to the edge and along it; those of a tetrahedron that the edge
- * starts at (in start and direction, so twice) and ends at; and one component of the frame of the
- * face, for the bound, which is the volume of that frame. So the error is at most 11.01 u times
- * their sum, and 12 u leaves room for the rounding of this bound and for a direction made longer by
- * 2^-10 of it, so that no quotient overflows (bound_times). Quotients and what is made of them
- * are rounded a few times within [-1, 1]: 2^-49 covers it. A coordinate is made of the origin, the
- * components and s times one by 8 roundings at most: 2^-50 of the sum of the magnitudes.
+ * monomials of at most 13 roundings each: 4 in the offset between the reference points of two
+ * cuboids, 3 where one is a tetrahedron; 5 in a triple product; 2 for the sum of three normals,
+ * which a cuboid does not have; 2 for the way to an edge of a cuboid, or 1 each for the start and
+ * the direction of one that is a difference; 1 for the difference with the bound. For each of the
+ * vectors w that x and the bound are made of, the sum of the magnitudes of its monomials is W .
+ * |w|, where W = (|c_i| |c_j| + |c_j| |c_i|) is the cross product with all signs positive, summed
+ * over three normals for the face across from the origin. These w are the offset of the origins;
+ * the components of a cuboid, once in the way to its reference point and once in that to the edge
+ * and along it; those of a tetrahedron that the edge starts at (in start and direction, so twice)
+ * and ends at; and one component of the frame of the face, for the bound, which is the volume of
+ * that frame. So the error is at most 13.01 u times their sum, and 14 u leaves room for the
+ * rounding of this bound and for a direction made longer by 2^-10 of it, so that no quotient
+ * overflows (bound_times). Quotients and what is made of them are rounded a few times within [-1,
+ * 1]: 2^-49 covers it. A coordinate is made of the origin, the components and s times one by 8
+ * roundings at most: 2^-50 of the sum of the magnitudes.
  *
  * In 2D the products [x y] take the place of the triple ones, with fewer roundings. */
 #ifndef FMB_WALK_BOX_H
@@ -30,7 +31,7 @@
 
 #include "walk.h"
 
-#define BOX_ROUNDING (12 * 0x1p-53)
+#define BOX_ROUNDING (14 * 0x1p-53)
 #define BOX_POINT_ROUNDING 0x1p-50
 #define BOX_CUT_ROUNDING 0x1p-49
 

@@ -101,7 +101,9 @@ INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes mid
 /* ---- A slab ---- */
 
 /* What is known of the time: middle + s swing lies within the bounds of D, s in [-1, 1]. With
- * swing made a little longer no quotient overflows; the error has room for it (slabs.c). */
+ * swing made a little longer no quotient overflows; the error has room for it (slabs.c), and for
+ * its sign too where it is 0: then both signs are right, and what they have in common is the same
+ * for the pair the other way round. */
 INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes error,
                         lanes middle, lanes swing, lanes_mask nothing, struct walk_found *found)
 {
@@ -111,11 +113,15 @@ INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes
     lanes high = both ? d.high : none ? d.radius : d.high + d.radius;
     low -= middle;
     high -= middle;
-    if (kind.along) {
+    if (kind.along) { /* what would bound nothing, in place of what was rounded */
         low = lanes_choose(nothing, lanes_of(-4), low);
         high = lanes_choose(nothing, lanes_of(4), high);
+        swing = lanes_choose(nothing, lanes_of(0), swing);
         error = lanes_choose(nothing, lanes_of(1), error);
     }
+    const lanes nearest = lanes_least(-low, high);
+    low = lanes_choose(swing == 0, -nearest, low);
+    high = lanes_choose(swing == 0, nearest, high);
     const lanes inverse = 1 / (swing + lanes_with_sign(0x1p-10 * error, swing));
     const lanes one = low * inverse, other = high * inverse;
     const lanes slack = error * lanes_magnitude(inverse);

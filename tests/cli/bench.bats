@@ -1,0 +1,35 @@
+# The benchmark, in small: it runs, and the report can be made of what it writes. Nothing here is
+# about time.
+
+setup() {
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    BENCH=${FMB_BUILD:-build}/bench/bench
+    JSON=$BATS_TEST_TMPDIR/report.json
+}
+
+@test "bench --quick measures every section, in every cell, by every method" {
+    run "$BENCH" --quick --json "$JSON"
+    [ "$status" = 0 ]
+    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .worst;
+               length > 0)' "$JSON"
+    jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
+    jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",
+                                                       "exact"]))' "$JSON"
+    jq -e 'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' "$JSON"
+    jq -e '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)' "$JSON"
+}
+
+@test "the report is made of what the benchmark writes" {
+    "$BENCH" --quick --json "$JSON" > "$BATS_TEST_TMPDIR/table"
+    tests/report/report.sh "$JSON" tests/report/fixture/accuracy.json "$BATS_TEST_TMPDIR/report"
+    grep -q '3D static CC' "$BATS_TEST_TMPDIR/report/index.html"
+}
+
+@test "bench says what is wrong with an option" {
+    run "$BENCH" --section nowhere
+    [ "$status" = 2 ]
+    run "$BENCH" --instructions abacus
+    [ "$status" = 2 ]
+    run "$BENCH" --help
+    [ "$status" = 0 ]
+}
