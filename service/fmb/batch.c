@@ -3,6 +3,7 @@
 #include "certified.h"
 #include "run.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -355,7 +356,7 @@ static enum fmb_status decide_block(const struct job *job, size_t first)
 
 static bool is_duration(double duration)
 {
-    return duration >= 0 && duration <= INFINITY && !isinf(duration);
+    return duration >= 0 && duration <= DBL_MAX;
 }
 
 #ifdef _OPENMP

@@ -238,7 +238,7 @@ bool fmb_instructions_supported(int instructions);
 
 /* What fmb_decide_batch() is asked, and where it puts the answers. Arrays are the caller's. */
 struct fmb_batch {
-    const struct fmb_prepared *frames; /* [frame_count] */
+    const struct fmb_prepared *frames; /* [frame_count]; huge pages help where there are many */
     size_t frame_count;
     const unsigned (*pairs)[2]; /* [pair_count][a, b], indices of frames */
     size_t pair_count;
@@ -250,7 +250,9 @@ struct fmb_batch {
     /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN where there is none. */
     double (*boxes)[2][FMB_DIM_MAX];
     enum fmb_instructions instructions; /* 0: the best */
-    int threads; /* 0 or 1: the calling one alone. More need a library built with OPENMP=1 */
+    /* 0 or 1: the calling one alone. More need a library built with OPENMP=1, and batches of some
+     * thousands of pairs to be of use. */
+    int threads;
 };
 
 /* On output: OK; or the status of the first pair that was refused (DIMENSIONS_DIFFER, NOT_FINITE

@@ -1,7 +1,9 @@
+#define _DEFAULT_SOURCE
 #include "scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <string.h>
 
 #include "family.h"
@@ -19,10 +21,25 @@ void *scene_allocate(size_t count, size_t size)
     return or_end(calloc(count ? count : 1, size));
 }
 
+/* Many of them in huge pages, where the system has them: what is looked up at random is then not
+ * looked for in the tables of pages too. */
+static struct fmb_prepared *allocate_frames(size_t count)
+{
+    const size_t huge = (size_t) 1 << 21, size = (count ? count : 1) * sizeof(struct fmb_prepared);
+    if (size < huge)
+        return or_end(aligned_alloc(64, size));
+    const size_t whole = (size + huge - 1) / huge * huge;
+    struct fmb_prepared *frames = or_end(aligned_alloc(huge, whole));
+#ifdef MADV_HUGEPAGE
+    madvise(frames, whole, MADV_HUGEPAGE);
+#endif
+    return frames;
+}
+
 static struct scene scene_of_size(size_t count, size_t bodies)
 {
     struct scene scene = {.count = count};
-    scene.prepared = or_end(aligned_alloc(64, (count ? count : 1) * sizeof *scene.prepared));
+    scene.prepared = allocate_frames(count);
     if (bodies) {
         scene.frame = scene_allocate(count, sizeof *scene.frame);
         scene.body = scene_allocate(bodies, sizeof *scene.body);
