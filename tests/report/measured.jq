@@ -140,4 +140,4 @@ def others_part:
         "Nanoseconds a pair; neighbours in a grid of cubes.";
         [["certified / exact", "certified_ns", "exact_ns"]])
     + open_table(.worst; "The worst";
-        "Pairs made to cost as much as they can; nanoseconds a query."; []);
+        "Pairs made to cost as much as they can; microseconds a query."; []);
