@@ -4,7 +4,7 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Others: all, tests (builds them), test-fast, validate, accuracy, bench, report, headers, format,
-# format-check, install, clean.
+# format-check, install, clean; deps-bench and deps-report install what is only good for these.
 # MODE=release|debug|asan. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
