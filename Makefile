@@ -50,7 +50,8 @@ compile = $(CC) $(flags) -MMD -MP -c $< -o $@
 
 # run.c is there three times for each instruction set: for verdicts, with fused operations where there
 # are any, for times and for boxes, whose bits are promised; alone.c likewise, for pairs alone.
-x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine))
+# Asked before 'make deps' has installed the compiler, it is the machine that answers.
+x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 run_flags_plain := -DLANES=1
 run_flags_sse2 := -DLANES=2
 run_flags_avx2 := -DLANES=4 -mavx2 -mfma
