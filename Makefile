@@ -363,7 +363,8 @@ format-check:
 # ---- Demo, installation ------------------------------------------------------------------
 
 .PHONY: demo
-demo: all
+demo: # builds on all cores, also where packages are installed first
+	+$(MAKE) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) all
 	clients/demo/run.sh $(B)
 
 .PHONY: install
