@@ -3,7 +3,6 @@
 #include "certified.h"
 #include "run.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -193,11 +192,6 @@ verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b, double
     return certified_unsure(&pair);
 }
 
-static bool are_plain(const struct fmb_prepared *const pair[2])
-{
-    return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_PLAIN;
-}
-
 static void put_verdicts(const struct block *block, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
@@ -215,13 +209,6 @@ static void put_verdicts(const struct block *block, size_t start, size_t end)
                 block->pair[k][0], block->pair[k][1], batch->duration);
 }
 
-/* Whether the whole window is the time of contact. */
-static bool moves_together(const struct fmb_prepared *const pair[2], enum run_kind kind)
-{
-    return !(kind & RUN_DRIFTS) &&
-           (prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_MOVING;
-}
-
 /* The contact of pair k, as far as the filter knows it: NAN where it does not, or there is none. */
 static const double *contact_at(const struct block *block, enum run_kind kind, size_t k,
                                 const double whole[2])
@@ -229,9 +216,10 @@ static const double *contact_at(const struct block *block, enum run_kind kind, s
     static const double none[2] = {NAN, NAN};
     if (block->outcome[k] != SLABS_OVERLAPPING)
         return none;
+    const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
     if (kind & RUN_DRIFTS)
-        return are_plain(block->pair[k]) ? none : block->contact[k];
-    return moves_together(block->pair[k], kind) ? whole : none;
+        return prepared_both_plain(a, b) ? none : block->contact[k];
+    return prepared_one_moves(a, b) ? whole : none; /* together */
 }
 
 static void put_contacts(const struct block *block, enum run_kind kind, size_t start, size_t end)
@@ -259,9 +247,9 @@ struct overlaps {
 /* Whether the filter may give the box: the method does so for the same pairs. */
 static bool has_plain_box(const struct block *block, enum run_kind kind, size_t k)
 {
-    const struct fmb_prepared *const *pair = block->pair[k];
-    return block->outcome[k] == SLABS_OVERLAPPING && !(kind & RUN_DRIFTS) && !are_plain(pair) &&
-           !((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_MOVING);
+    const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
+    return block->outcome[k] == SLABS_OVERLAPPING && !(kind & RUN_DRIFTS) &&
+           !prepared_both_plain(a, b) && !prepared_one_moves(a, b);
 }
 
 static void put_boxes(const struct block *block, run_function *boxes, enum run_kind kind,
@@ -354,11 +342,6 @@ static enum fmb_status decide_block(const struct job *job, size_t first)
 
 /* ---- The door ---- */
 
-static bool is_duration(double duration)
-{
-    return duration >= 0 && duration <= DBL_MAX;
-}
-
 #ifdef _OPENMP
 static const bool has_threads = true;
 #else
@@ -367,7 +350,7 @@ static const bool has_threads = false;
 
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
 {
-    if (!is_duration(batch->duration))
+    if (!prepared_is_duration(batch->duration))
         return FMB_BAD_DURATION;
     struct job job = {.batch = batch};
     if (!run_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
@@ -399,7 +382,7 @@ enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepare
                           double duration)
 {
     bool swapped;
-    if (!is_duration(duration))
+    if (!prepared_is_duration(duration))
         return 0;
     const enum run_kind kind = run_kind_of(a, b, duration, &swapped);
     if (kind == RUN_REFUSED)

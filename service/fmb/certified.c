@@ -159,8 +159,7 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
  * exact then. */
 static bool is_plain(const struct certified *certified)
 {
-    return prepared_kind(&certified->frame[0]) & prepared_kind(&certified->frame[1]) &
-           PREPARED_PLAIN;
+    return prepared_both_plain(&certified->frame[0], &certified->frame[1]);
 }
 
 /* Whether the times are exact in doubles: not asked of numbers that are likely to round. */

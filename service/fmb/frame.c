@@ -163,13 +163,18 @@ static bool frame_is_finite(const struct fmb_frame *frame)
     return is_finite(frame->origin, dim) && (!frame->moving || is_finite(frame->velocity, dim));
 }
 
+bool prepared_is_duration(double duration)
+{
+    return duration >= 0 && duration <= DBL_MAX;
+}
+
 enum fmb_status fmb_pair_check(const struct fmb_pair *pair)
 {
     if (pair->a.body->dim != pair->b.body->dim)
         return FMB_DIMENSIONS_DIFFER;
     if (!frame_is_finite(&pair->a) || !frame_is_finite(&pair->b))
         return FMB_NOT_FINITE;
-    if (!(pair->duration >= 0 && pair->duration <= DBL_MAX))
+    if (!prepared_is_duration(pair->duration))
         return FMB_BAD_DURATION;
     return FMB_OK;
 }

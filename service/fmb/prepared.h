@@ -29,6 +29,17 @@ static inline unsigned prepared_kind(const struct fmb_prepared *frame)
     return (unsigned) (frame->head >> 3 * PREPARED_SIZE_BITS);
 }
 
+/* Of a pair: both frames plain; one of them moving. */
+static inline bool prepared_both_plain(const struct fmb_prepared *a, const struct fmb_prepared *b)
+{
+    return prepared_kind(a) & prepared_kind(b) & PREPARED_PLAIN;
+}
+
+static inline bool prepared_one_moves(const struct fmb_prepared *a, const struct fmb_prepared *b)
+{
+    return (prepared_kind(a) | prepared_kind(b)) & PREPARED_MOVING;
+}
+
 static inline const double *prepared_velocity(const struct fmb_prepared *frame)
 {
     return frame->number + (prepared_kind(frame) & PREPARED_SPACE ? 12 : 6);
@@ -47,6 +58,9 @@ static inline double prepared_size(unsigned long long head, int i)
 /* size, in_range and bits of a body, which are 0, from the rest of it but the
  * inverse. */
 void body_measure(struct fmb_body *body);
+
+/* Whether a window may last so long, in seconds: not negative, and finite. */
+bool prepared_is_duration(double duration);
 
 /* The head of a body, of which all else is set; of a frame with it at rest. */
 unsigned long long prepared_head_of(const struct fmb_body *body);

@@ -242,18 +242,24 @@ static void set_seen(struct slab_truth *truth)
     mpz_add(truth->middle, truth->middle, shift);
 }
 
-void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal)
+/* Of its normal: low, high, start and slope. */
+static void set_along_normal(struct slab_truth *truth)
 {
-    truth->factor = factor_of(truth, normal);
-    set_normal(truth, normal);
-    truth->zero = mpz_sgn(truth->normal[0]) == 0 && mpz_sgn(truth->normal[1]) == 0 &&
-                  mpz_sgn(truth->normal[2]) == 0;
     mpz_set_ui(truth->low, 0);
     mpz_set_ui(truth->high, 0);
     add_extent(truth, 0, truth->low, truth->high);
     add_extent(truth, 1, truth->low, truth->high);
     dot(truth, truth->offset, truth->start);
     dot(truth, truth->drift, truth->slope);
+}
+
+void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal)
+{
+    truth->factor = factor_of(truth, normal);
+    set_normal(truth, normal);
+    truth->zero = mpz_sgn(truth->normal[0]) == 0 && mpz_sgn(truth->normal[1]) == 0 &&
+                  mpz_sgn(truth->normal[2]) == 0;
+    set_along_normal(truth);
     mpz_sub(truth->side[0], truth->start, truth->low);
     mpz_sub(truth->side[1], truth->high, truth->start);
     mpz_set(truth->rise[0], truth->slope);
@@ -329,12 +335,7 @@ static void ask_axis(struct slab_truth *truth, int axis)
 {
     for (int i = 0; i < FMB_DIM_MAX; i++)
         mpz_set_ui(truth->normal[i], i == axis);
-    mpz_set_ui(truth->low, 0);
-    mpz_set_ui(truth->high, 0);
-    add_extent(truth, 0, truth->low, truth->high);
-    add_extent(truth, 1, truth->low, truth->high);
-    dot(truth, truth->offset, truth->start);
-    dot(truth, truth->drift, truth->slope);
+    set_along_normal(truth);
     set_gap(truth);
 }
 
