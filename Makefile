@@ -71,11 +71,13 @@ run_objects := $(run_verdicts) $(run_times) $(run_boxes) $(alone_verdicts) $(alo
 	$(alone_boxes)
 lib_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/run.c %/alone.c,$(wildcard service/fmb/*.c))) \
 	$(run_objects)
-message_names := frame_t pair_query_t pair_result_t status_t
+message_names := frame_t pair_query_t pair_result_t scene_query_t scene_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
-bus_objects := $(addprefix $(O)/service/,wire.o bus.o clock.o random_id.o signals.o)
-server_objects := $(addprefix $(O)/service/,server.o answer.o cache.o senders.o histogram.o)
+bus_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
+	wire_status.o bus.o clock.o random_id.o signals.o)
+server_objects := $(addprefix $(O)/service/,server.o answer_pair.o answer_scene.o scene_pairs.o \
+	check.o bodies.o cache.o queue.o senders.o histogram.o malformed.o say.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))
 
 programs := $(B)/fmbd $(B)/fmb

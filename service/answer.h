@@ -7,11 +7,24 @@
 #include "cache.h"
 #include "query.h"
 
+struct scene_work;
+
+/* All 0 but for what the caller sets. */
 struct answerer {
     struct cache *cache; /* not owned */
     int64_t server_id;
+    /* Called between the parts of a scene, which may take long, so that others need not wait; may
+     * answer pairs, not scenes. NULL: nobody waits. */
+    void (*between)(void *user);
+    void *user;
+    struct scene_work *work;                 /* owned: answer_prepare() */
     char certificate[QUERY_CERTIFICATE_MAX]; /* of the last result that has one */
 };
+
+/* Takes all memory that answers will need, to be freed with answer_release(). False: there is
+ * none. */
+bool answer_prepare(struct answerer *answerer);
+void answer_release(struct answerer *answerer);
 
 /* On output: the result, complete but for compute_ns (0). A query that cannot be decided gets
  * its status, and detail names the place: "b.components[4]: not a finite number". A query
@@ -19,5 +32,16 @@ struct answerer {
  * wanted and fits, and holds until the next call. */
 void answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result);
+
+/* Likewise, complete but for compute_ns and lost (0). Of pairs that are not all to be had in one
+ * datagram, those that are, in their order; end_pair tells how many. */
+void answer_scene(struct answerer *answerer, const struct scene_query *query,
+                  struct scene_result *result);
+
+/* The result of a query that nobody looked at. */
+void answer_pair_refused(const struct answerer *answerer, const struct pair_query *query,
+                         enum fmb_status status, struct pair_result *result);
+void answer_scene_refused(const struct answerer *answerer, const struct query_header *query,
+                          enum fmb_status status, struct scene_result *result);
 
 #endif

@@ -136,8 +136,8 @@ static bool same_body(const struct fmb_body *body, int dim, int shape, const dou
     return true;
 }
 
-int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const double *components,
-                   struct fmb_body *out)
+const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int shape,
+                                  const double *components, int64_t *key)
 {
     int32_t e = find(cache, id);
     if (e != NONE && same_body(&cache->entry[e].body, dim, shape, components)) {
@@ -156,21 +156,19 @@ int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const do
         entry->key = cache->next_key++;
     }
     touch(cache, e);
-    *out = cache->entry[e].body;
-    return cache->entry[e].key;
+    *key = cache->entry[e].key;
+    return &cache->entry[e].body;
 }
 
-bool cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape,
-                struct fmb_body *out)
+const struct fmb_body *cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape)
 {
     int32_t e = find(cache, id);
     if (e == NONE || cache->entry[e].key != key || cache->entry[e].body.dim != dim ||
         (int) cache->entry[e].body.shape != shape)
-        return false;
+        return NULL;
     cache->counts.hits++;
     touch(cache, e);
-    *out = cache->entry[e].body;
-    return true;
+    return &cache->entry[e].body;
 }
 
 struct cache_counts cache_counts(const struct cache *cache)

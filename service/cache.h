@@ -31,15 +31,16 @@ struct cache_counts {
 struct cache *cache_create(size_t capacity, int64_t first_key);
 void cache_destroy(struct cache *cache);
 
-/* Finds the body with these components (bitwise), or keeps it. On input: id > 0, the rest as
- * fmb_body_make() accepts it. On output: *out, and its key is returned. */
-int64_t cache_keep(struct cache *cache, int64_t id, int dim, int shape, const double *components,
-                   struct fmb_body *out);
+/* Both return a body that is good until the cache is asked again. */
 
-/* Finds the body that the key was given for, if it has this dimension and shape. False: it is
- * not held (any more); that counts neither as hit nor as miss. */
-bool cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape,
-                struct fmb_body *out);
+/* Finds the body with these components (bitwise), or keeps it. On input: id > 0, the rest as
+ * fmb_body_make() accepts it. On output: never NULL; *key. */
+const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int shape,
+                                  const double *components, int64_t *key);
+
+/* Finds the body that the key was given for, if it has this dimension and shape. NULL: it is not
+ * held (any more); that counts neither as hit nor as miss. */
+const struct fmb_body *cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape);
 
 struct cache_counts cache_counts(const struct cache *cache);
 

@@ -14,8 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/timerfd.h>
-#include <unistd.h>
 
 enum { EXIT_USAGE = 2 };
 enum { DEFAULT_BODIES = 65536 };
@@ -99,30 +97,17 @@ static int parse_options(int argc, char **argv, struct options *out)
     return -1;
 }
 
-/* Readable once a second. -1: errno. */
-static int open_heartbeat(void)
+/* Serves until a signal comes; returns the exit code. */
+static int serve(lcm_t *lcm, struct server *server, int signals)
 {
-    struct itimerspec each_second = {.it_interval = {.tv_sec = 1}, .it_value = {.tv_sec = 1}};
-    int fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC);
-    if (fd >= 0 && timerfd_settime(fd, 0, &each_second, NULL) != 0) {
-        close(fd);
-        fd = -1;
-    }
-    return fd;
-}
-
-/* Serves until a signal comes; returns the exit code. One message a turn, so that neither a
- * signal nor the heartbeat waits behind a full queue. */
-static int serve(lcm_t *lcm, struct server *server, int signals, int heartbeat)
-{
-    enum { BUS, SIGNALS, HEARTBEAT, SOURCES };
+    enum { BUS, SIGNALS, SOURCES };
     struct pollfd source[SOURCES] = {
         [BUS] = {.fd = lcm_get_fileno(lcm), .events = POLLIN},
         [SIGNALS] = {.fd = signals, .events = POLLIN},
-        [HEARTBEAT] = {.fd = heartbeat, .events = POLLIN},
     };
     for (;;) {
-        if (poll(source, SOURCES, -1) < 0) {
+        const int due_ms = server_beat(server);
+        if (poll(source, SOURCES, server_is_waiting(server) ? 0 : due_ms) < 0) {
             if (errno == EINTR)
                 continue;
             perror("fmbd: poll");
@@ -130,38 +115,36 @@ static int serve(lcm_t *lcm, struct server *server, int signals, int heartbeat)
         }
         if (source[SIGNALS].revents)
             return EXIT_SUCCESS;
-        uint64_t seconds;
-        if (source[HEARTBEAT].revents && read(heartbeat, &seconds, sizeof seconds) > 0)
-            server_publish_status(server);
-        if (source[BUS].revents && lcm_handle(lcm) != 0) {
+        if (source[BUS].revents && !server_drain(server)) {
             fputs("fmbd: the bus failed\n", stderr);
             return EXIT_FAILURE;
         }
+        server_answer(server);
     }
 }
 
 static void say_ready(const struct server *server, const struct server_options *options)
 {
     fprintf(stderr,
-            "fmbd %s ready: answers %s on %s, heartbeat on %s; %zu bodies; receive buffer %ld "
-            "bytes; server %" PRId64 "\n",
-            fmb_version(), server_query_channel(server), server_result_channel(server),
-            server_status_channel(server), options->bodies, options->receive_buffer,
-            options->server_id);
+            "fmbd %s ready: answers %s on %s, %s on %s, heartbeat on %s; %zu bodies; receive "
+            "buffer %ld bytes; server %" PRId64 "\n",
+            fmb_version(), server_query_channel(server, SERVER_PAIRS),
+            server_result_channel(server, SERVER_PAIRS),
+            server_query_channel(server, SERVER_SCENES),
+            server_result_channel(server, SERVER_SCENES), server_status_channel(server),
+            options->bodies, options->receive_buffer, options->server_id);
 }
 
 static int serve_until_signal(lcm_t *lcm, struct server *server,
                               const struct server_options *options)
 {
     int signals = signals_open();
-    int heartbeat = open_heartbeat();
-    if (signals < 0 || heartbeat < 0) {
-        perror("fmbd: signals and timer");
+    if (signals < 0) {
+        perror("fmbd: signals");
         return EXIT_FAILURE;
     }
     say_ready(server, options);
-    server_publish_status(server);
-    return serve(lcm, server, signals, heartbeat);
+    return serve(lcm, server, signals);
 }
 
 static int run(const struct options *options)
@@ -169,7 +152,8 @@ static int run(const struct options *options)
     struct server_options server_options = {.prefix = options->prefix,
                                             .bodies = options->bodies,
                                             .server_id = random_id(),
-                                            .first_key = (random_id() + 1) / 2};
+                                            .first_key = (random_id() + 1) / 2,
+                                            .seed = (uint64_t) random_id()};
     lcm_t *lcm = bus_open("fmbd", options->lcm_url, &server_options.receive_buffer);
     if (!lcm)
         return EXIT_FAILURE;

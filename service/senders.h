@@ -14,6 +14,7 @@ enum { SENDERS_SETS = 256, SENDERS_WAYS = 4 };
 struct sender {
     int64_t client_id;
     int64_t last;     /* highest sequence number so far */
+    int64_t gaps;     /* sequence numbers skipped */
     uint64_t used_at; /* 0: free */
 };
 
@@ -21,11 +22,14 @@ struct sender {
 struct senders {
     struct sender sender[SENDERS_SETS][SENDERS_WAYS];
     uint64_t now;
-    int64_t gaps;     /* sequence numbers skipped */
+    int64_t gaps;     /* of all clients, forgotten ones too */
     int64_t repeated; /* not above the highest so far */
 };
 
 /* Both numbers from 0 to 2^53 - 1. */
 void senders_note(struct senders *senders, int64_t client_id, int64_t sequence_number);
+
+/* How many of this client's sequence numbers were skipped; 0 where it is not remembered. */
+int64_t senders_gaps(const struct senders *senders, int64_t client_id);
 
 #endif

@@ -8,11 +8,11 @@
 
 static const struct fmb_method methods[] = {
     {"certified", 4, "never wrong: doubles with bounds, exact arithmetic where these are unsure",
-     certified_decide},
-    {"exact", 1, "right for every input, flat frames included (GMP)", exact_decide},
-    {"fmb", 2, "the article's elimination in doubles, with its loose box; inexact",
+     true, true, certified_decide},
+    {"exact", 1, "right for every input, flat frames included (GMP)", true, true, exact_decide},
+    {"fmb", 2, "the article's elimination in doubles, with its loose box; inexact", false, true,
      eliminate_decide},
-    {"sat", 3, "separating axes in doubles, no box; inexact", sat_decide},
+    {"sat", 3, "separating axes in doubles, no box; inexact", false, false, sat_decide},
 };
 
 enum { METHOD_COUNT = sizeof methods / sizeof *methods };

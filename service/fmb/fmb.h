@@ -51,23 +51,24 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
 
 /* What can be said of a question; the numbers stand in messages and logs: a code is retired
  * rather than used again. */
-#define FMB_STATUS_MAP(X)                                                                \
-    X(OK, 0, "ok")                                                                       \
-    X(UNKNOWN_BODY, 1, "unknown body")                                                   \
-    X(BUSY, 2, "busy")                                                                   \
-    X(OVER_LIMIT, 3, "over the limit")                                                   \
-    X(UNKNOWN_SHAPE, 4, "unknown shape")                                                 \
-    X(WRONG_DIMENSION, 5, "wrong dimension")                                             \
-    X(WRONG_COUNT, 6, "wrong count of numbers")                                          \
-    X(NOT_FINITE, 7, "not a finite number")                                              \
-    X(DIMENSIONS_DIFFER, 8, "a 2D frame against a 3D one")                               \
-    X(BAD_DURATION, 9, "the duration is negative or not finite")                         \
-    X(BAD_ID, 10, "id out of range")                                                     \
-    X(UNKNOWN_METHOD, 11, "unknown method")                                              \
-    X(UNKNOWN_WANT, 12, "wants what this version does not give")                         \
-    X(CANNOT_DECIDE, 13,                                                                 \
-      "this method cannot decide this pair (a flat frame, or numbers out of its range)") \
-    X(NOT_SUPPORTED, 14, "this machine, or this build, does not have what was asked for")
+#define FMB_STATUS_MAP(X)                                                                 \
+    X(OK, 0, "ok")                                                                        \
+    X(UNKNOWN_BODY, 1, "unknown body")                                                    \
+    X(BUSY, 2, "busy")                                                                    \
+    X(OVER_LIMIT, 3, "over the limit")                                                    \
+    X(UNKNOWN_SHAPE, 4, "unknown shape")                                                  \
+    X(WRONG_DIMENSION, 5, "wrong dimension")                                              \
+    X(WRONG_COUNT, 6, "wrong count of numbers")                                           \
+    X(NOT_FINITE, 7, "not a finite number")                                               \
+    X(DIMENSIONS_DIFFER, 8, "a 2D frame against a 3D one")                                \
+    X(BAD_DURATION, 9, "the duration is negative or not finite")                          \
+    X(BAD_ID, 10, "id out of range")                                                      \
+    X(UNKNOWN_METHOD, 11, "unknown method")                                               \
+    X(UNKNOWN_WANT, 12, "wants what this version does not give")                          \
+    X(CANNOT_DECIDE, 13,                                                                  \
+      "this method cannot decide this pair (a flat frame, or numbers out of its range)")  \
+    X(NOT_SUPPORTED, 14, "this machine, or this build, does not have what was asked for") \
+    X(BAD_PAIR, 15, "indices that name no two frames")
 
 enum fmb_status {
 #define X(name, number, text) FMB_##name = number,
@@ -168,6 +169,8 @@ struct fmb_method {
     const char *name;
     int number;          /* stands in messages; 0 is not used: it asks for the default */
     const char *summary; /* one line, for people */
+    bool certain;        /* never wrong */
+    bool boxes;          /* gives boxes of contacts */
     /* On input: a checked pair, *answer all 0. On output: OK and *answer, or CANNOT_DECIDE. Not to
      * be called directly: fmb_decide() checks. */
     enum fmb_status (*decide)(const struct fmb_pair *pair, unsigned want,
@@ -260,6 +263,67 @@ struct fmb_batch {
  * been decided; or a status of the whole, and nothing written: BAD_DURATION, NOT_SUPPORTED for
  * instructions or threads that are not there. */
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
+
+/* ---- Which pairs may meet ----
+ *
+ * Most pairs of a large scene are far from each other. A tree of boxes finds for a frame all those
+ * that are not, without asking every one:
+ *
+ *     struct fmb_tree tree;
+ *     void *memory = malloc(fmb_tree_bytes(count));
+ *     fmb_tree_build(frames, count, 1, memory, &tree);
+ *     for (unsigned i = 0; i < count; i++) {
+ *         fmb_tree_ask(&tree, &frames[i], i + 1, found, &n);
+ *         ... decide the pairs of i and found[0] to found[n - 1] ...
+ *     }
+ *
+ * The box of a frame holds all its points at all times of the window. It is the smallest one where
+ * no sum of its numbers rounds, and else a few units in the last place larger. A pair of which fmb
+ * says that it touches or overlaps is never left out: its boxes have a point in common; those that
+ * merely touch have, too. */
+
+/* Where frames are, in memory of the caller's. Fill it with fmb_tree_build() only. */
+struct fmb_tree {
+    size_t frame_count;
+    size_t node_count;
+    int dim;
+    double duration;
+    struct fmb_tree_node *nodes; /* [node_count] */
+    struct fmb_tree_box *boxes;  /* [frame_count], in the order below */
+    /* [frame_count]: the indices of the frames, neighbours in space near each other. Frames asked
+     * about in this order are answered sooner, if there are many. */
+    unsigned *order;
+};
+
+/* How many bytes a tree of so many frames needs: 84 a frame, and at most 200 more. SIZE_MAX where
+ * that is not a number of bytes, or fmb_tree_build() refuses so many. */
+size_t fmb_tree_bytes(size_t count);
+
+/* On input: frames of one dimension, which need not outlive the call; T of all that will be asked;
+ * fmb_tree_bytes(count) bytes at any address, which the tree uses from now on. count may be 0, and
+ * frames and memory NULL then.
+ * On output: OK and *out. Or BAD_DURATION, NOT_FINITE for a frame that is not prepared,
+ * DIMENSIONS_DIFFER, OVER_LIMIT for UINT_MAX frames or more, and *out is a tree of no frames.
+ *
+ * Takes a time that grows as n log n, whatever the frames are. */
+enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, double duration,
+                               void *memory, struct fmb_tree *out);
+
+/* The same tree for frames that have moved since, or changed. What is found is exactly what a new
+ * tree finds; it takes longer to find as frames go far from where they were when the tree was
+ * built.
+ * On input: tree->frame_count frames.
+ * On output: OK; or a status of fmb_tree_build(), and the tree is as it was. */
+enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared *frames,
+                               double duration);
+
+/* On input: a frame, of the tree or not; out has room for all frames of the tree.
+ * On output: OK, and in out[0] to out[*count - 1] the indices of all frames of the tree whose boxes
+ * meet that of this one, it itself included, and that are at least from, in ascending order. Or
+ * NOT_FINITE for a frame that is not prepared, DIMENSIONS_DIFFER, and *count is 0. The rest of out
+ * may be written to. */
+enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepared *frame,
+                             unsigned from, unsigned *out, size_t *count);
 
 /* ---- Certificates ----
  *

@@ -18,22 +18,29 @@ static void cube(double edge, double out[9])
     out[0] = out[4] = out[8] = edge;
 }
 
+static int64_t key_of(struct cache *cache, int64_t id, int dim, int shape, const double *components)
+{
+    int64_t key;
+    cache_keep(cache, id, dim, shape, components, &key);
+    return key;
+}
+
 static int64_t keep(struct cache *cache, int64_t id, double edge)
 {
     double components[9];
-    struct fmb_body body;
+    int64_t key;
     cube(edge, components);
-    int64_t key = cache_keep(cache, id, 3, FMB_CUBOID, components, &body);
-    assert_true(body.component[2][2] == edge);
-    assert_true(body.inverse[2][2] == 1 / edge);
+    const struct fmb_body *body = cache_keep(cache, id, 3, FMB_CUBOID, components, &key);
+    assert_true(body->component[2][2] == edge);
+    assert_true(body->inverse[2][2] == 1 / edge);
     return key;
 }
 
 /* The edge of the body that the key stands for, or 0. */
 static double find(struct cache *cache, int64_t id, int64_t key)
 {
-    struct fmb_body body;
-    return cache_find(cache, id, key, 3, FMB_CUBOID, &body) ? body.component[0][0] : 0;
+    const struct fmb_body *body = cache_find(cache, id, key, 3, FMB_CUBOID);
+    return body ? body->component[0][0] : 0;
 }
 
 static void test_hit_and_miss(void **state)
@@ -74,19 +81,19 @@ static void test_components_are_compared_bit_by_bit(void **state)
 {
     (void) state;
     struct cache *cache = cache_create(4, FIRST_KEY);
-    struct fmb_body body;
     double components[9];
     cube(1, components);
-    int64_t key = cache_keep(cache, 1, 3, FMB_CUBOID, components, &body);
+    int64_t key = key_of(cache, 1, 3, FMB_CUBOID, components);
     components[1] = -0.0;
-    assert_int_not_equal(cache_keep(cache, 1, 3, FMB_CUBOID, components, &body), key);
-    key = cache_keep(cache, 1, 3, FMB_CUBOID, components, &body);
-    assert_int_not_equal(cache_keep(cache, 1, 3, FMB_TETRAHEDRON, components, &body), key);
-    assert_int_equal(body.shape, FMB_TETRAHEDRON);
+    assert_int_not_equal(key_of(cache, 1, 3, FMB_CUBOID, components), key);
+    key = key_of(cache, 1, 3, FMB_CUBOID, components);
+    assert_int_not_equal(key_of(cache, 1, 3, FMB_TETRAHEDRON, components), key);
+    const struct fmb_body *body = cache_keep(cache, 1, 3, FMB_TETRAHEDRON, components, &key);
+    assert_int_equal(body->shape, FMB_TETRAHEDRON);
     /* Four numbers of a 2D body are not the first four of a 3D one. */
-    key = cache_keep(cache, 2, 2, FMB_CUBOID, components, &body);
-    assert_int_equal(cache_keep(cache, 2, 2, FMB_CUBOID, components, &body), key);
-    assert_int_not_equal(cache_keep(cache, 2, 3, FMB_CUBOID, components, &body), key);
+    key = key_of(cache, 2, 2, FMB_CUBOID, components);
+    assert_int_equal(key_of(cache, 2, 2, FMB_CUBOID, components), key);
+    assert_int_not_equal(key_of(cache, 2, 3, FMB_CUBOID, components), key);
     cache_destroy(cache);
 }
 

@@ -499,7 +499,8 @@ static void statuses(void **state)
     assert_int_equal(FMB_UNKNOWN_BODY, 1);
     assert_int_equal(FMB_CANNOT_DECIDE, 13);
     assert_int_equal(FMB_NOT_SUPPORTED, 14);
-    assert_int_equal(FMB_STATUS_COUNT, 15);
+    assert_int_equal(FMB_BAD_PAIR, 15);
+    assert_int_equal(FMB_STATUS_COUNT, 16);
 #define X(name, number, text) assert_string_equal(fmb_status_text(number), text);
     FMB_STATUS_MAP(X)
 #undef X

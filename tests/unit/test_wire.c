@@ -5,6 +5,8 @@
 #include "fmb_msgs_frame_t.h"
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
+#include "fmb_msgs_scene_query_t.h"
+#include "fmb_msgs_scene_result_t.h"
 #include "fmb_msgs_status_t.h"
 
 #include <math.h>
@@ -49,6 +51,8 @@ static void test_fingerprints_are_pinned(void **state)
     assert_int_equal(__fmb_msgs_frame_t_get_hash(), 0x9265058e7e235b03u);
     assert_int_equal(__fmb_msgs_pair_query_t_get_hash(), 0x1704231dbc74a72cu);
     assert_int_equal(__fmb_msgs_pair_result_t_get_hash(), 0xeb1e69337997c3dcu);
+    assert_int_equal(__fmb_msgs_scene_query_t_get_hash(), 0x52891e4394056640u);
+    assert_int_equal(__fmb_msgs_scene_result_t_get_hash(), 0xc3b42b0975213c58u);
     assert_int_equal(__fmb_msgs_status_t_get_hash(), 0x98458447f1c5ee86u);
 }
 

@@ -1,0 +1,82 @@
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+
+bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
+                  const char *reason)
+{
+    *checking->status = (int32_t) status;
+    snprintf(checking->detail, QUERY_TEXT_MAX, "%s%s%s: %s", checking->place,
+             checking->place[0] ? "." : "", field, reason ? reason : fmb_status_text(status));
+    return false;
+}
+
+static bool check_id(struct checking *checking, const char *field, int64_t id)
+{
+    return query_id_ok(id) || check_refuse(checking, FMB_BAD_ID, field, "not from 0 to 2^53 - 1");
+}
+
+static bool check_count(struct checking *checking, const char *field, int expected,
+                        const struct query_numbers *numbers)
+{
+    if (numbers->count == expected)
+        return true;
+    char reason[64];
+    snprintf(reason, sizeof reason, "expected %d numbers, found %d", expected,
+             (int) numbers->count);
+    return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
+}
+
+static bool check_finite(struct checking *checking, const char *field,
+                         const struct query_numbers *numbers)
+{
+    for (int i = 0; i < numbers->count; i++)
+        if (!isfinite(numbers->number[i])) {
+            char place[32];
+            snprintf(place, sizeof place, "%s[%d]", field, i);
+            return check_refuse(checking, FMB_NOT_FINITE, place, NULL);
+        }
+    return true;
+}
+
+bool check_by_key(const struct query_frame *frame)
+{
+    return frame->components.count == 0 && frame->key != 0;
+}
+
+bool check_frame(struct checking *checking, const struct query_frame *frame)
+{
+    if (!check_id(checking, "body_id", frame->body_id) || !check_id(checking, "key", frame->key))
+        return false;
+    if (!fmb_shape_name(frame->shape))
+        return check_refuse(checking, FMB_UNKNOWN_SHAPE, "shape", NULL);
+    int vectors = fmb_component_count(frame->dim, frame->shape);
+    if (vectors == 0)
+        return check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
+                            frame->dim == 2 ? "a face is in 3D" : "neither 2 nor 3");
+    return check_count(checking, "origin", frame->dim, &frame->origin) &&
+           (check_by_key(frame) ||
+            check_count(checking, "components", vectors * frame->dim, &frame->components)) &&
+           (frame->velocity.count == 0 ||
+            check_count(checking, "velocity", frame->dim, &frame->velocity)) &&
+           check_finite(checking, "origin", &frame->origin) &&
+           check_finite(checking, "components", &frame->components) &&
+           check_finite(checking, "velocity", &frame->velocity);
+}
+
+bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number)
+{
+    return check_id(checking, "client_id", client_id) &&
+           check_id(checking, "sequence_number", sequence_number);
+}
+
+bool check_question(struct checking *checking, double duration, int32_t method, int32_t want,
+                    int32_t wants)
+{
+    if (!(duration >= 0 && isfinite(duration)))
+        return check_refuse(checking, FMB_BAD_DURATION, "duration", "negative or not finite");
+    if (!fmb_method_by_number(method))
+        return check_refuse(checking, FMB_UNKNOWN_METHOD, "method", NULL);
+    return (want & ~wants) == 0 || check_refuse(checking, FMB_UNKNOWN_WANT, "want", NULL);
+}

@@ -1,0 +1,52 @@
+/* A walk over bytes that nobody vouches for, in LCM's encoding: big-endian, no padding. Sizes are
+ * of 64 bits, so that no count can make them wrap. The first error ends the walk: everything
+ * read after it is 0. */
+#ifndef CURSOR_H
+#define CURSOR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct cursor {
+    const unsigned char *at;
+    uint64_t left;
+    const char *error; /* static; NULL: none so far */
+};
+
+/* On input: size bytes as LCM gives them (it is unsigned there, and can be a negative number of
+ * ints: that is an error); what type they should be of. */
+struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint);
+
+/* The error, also that something is left over; or NULL. */
+const char *cursor_end(const struct cursor *cursor);
+
+/* An error of the caller's finding; the first one stays. */
+void cursor_fail(struct cursor *cursor, const char *error);
+
+int64_t cursor_int64(struct cursor *cursor);
+int32_t cursor_int32(struct cursor *cursor);
+double cursor_double(struct cursor *cursor);
+
+/* A count of things of at least size bytes each: they are there, or it is an error, and 0. */
+int32_t cursor_count(struct cursor *cursor, uint64_t size);
+
+/* Counted lists: all of it is walked, the first max of it put into out. Returns the count. */
+int32_t cursor_doubles(struct cursor *cursor, double *out, int max);
+int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max);
+int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max);
+
+/* Of 16 bits each; a negative number becomes one above 2^31. */
+int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max);
+
+/* A string, where it stands. Returns its length, without the final 0; after an error 0, and *bytes
+ * is left alone. */
+size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes);
+
+/* A string; what does not fit into size bytes is cut, and what is not printable becomes '?'. */
+void cursor_string(struct cursor *cursor, char *out, size_t size);
+
+/* ASCII; other bytes could do things to a terminal. */
+bool cursor_is_printable(unsigned char byte);
+
+#endif

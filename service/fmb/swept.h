@@ -1,0 +1,134 @@
+/* Boxes of frames over a window, rounded outward.
+ *
+ * On an axis, the points o + t v + sum x_i c_i of a frame, t in [0, T], reach from
+ *
+ *     low = o + min(0, v T) + sum_i min(0, c_i)       of a cuboid
+ *     low = o + min(0, v T) + min(0, c_0, c_1, ...)   of a tetrahedron and of a face
+ *
+ * to high, which is -low of the frame with -o, -v and -c_i. So a box keeps low and -high side by
+ * side: both come from the same sum, and both are too large where they are wrong.
+ *
+ * Accuracy. Terms are added one by one, and what is exact stays exact. A sum that was rounded up is
+ * known by the sign of its error, which is a double (range.h), and steps down by 2^-52 of itself:
+ * by a whole unit in its last place at least, where it was at most half of one off. It is a normal
+ * number then, since sums do not underflow. v T likewise; where the error of that product might not
+ * be a double it steps down anyway, by 2^-1074 more, as half of that is how far off it may be where
+ * it underflows.
+ *
+ * Special cases. All terms but o are zero or negative, and o is finite: a sum that overflows goes
+ * to -infinity, and stays there. No infinity of the other sign is met, hence no number that is
+ * none. Inside the error of a sum there might be one where the numbers are among the largest: such
+ * a sum steps down. */
+#ifndef FMB_SWEPT_H
+#define FMB_SWEPT_H
+
+#ifndef LANES
+#define LANES 2
+#endif
+#include "lanes.h"
+#include "prepared.h"
+
+#include <math.h>
+
+/* [axis], each {low, -high}. In 2D the third is {0, 0}. */
+struct swept {
+    lanes end[FMB_DIM_MAX];
+};
+
+/* x + y or less. On input: x is no +infinity, y <= 0. */
+INLINE lanes swept_sum(lanes x, lanes y)
+{
+    const lanes sum = x + y, part = sum - x;
+    const lanes error = (x - (sum - part)) + (y - part);
+    const lanes_mask holds = (error >= lanes_of(0)) & (error < lanes_of(INFINITY));
+    const lanes step = lanes_magnitude(sum) * 0x1p-52;
+    return sum - lanes_choose(holds, lanes_of(0), step);
+}
+
+/* -speed * duration or less; both are finite and not negative. */
+INLINE double swept_path(double speed, double duration)
+{
+    const double path = -speed * duration;
+    if (speed == 0 || duration == 0 || duration == 1)
+        return path;
+    if (path > -0x1p-900)
+        return path + path * 0x1p-52 - 0x1p-1074;
+    return fma(-speed, duration, -path) < 0 ? path + path * 0x1p-52 : path;
+}
+
+/* {x, -x}, where it is negative. */
+INLINE lanes swept_extent(double x)
+{
+    return lanes_least((lanes){x, -x}, lanes_of(0));
+}
+
+/* The components, on an axis. */
+INLINE lanes swept_axis(const double *number, const int dim, bool cuboid)
+{
+    lanes end = {number[0], -number[0]};
+    lanes first = swept_extent(number[dim]);
+    const lanes second = swept_extent(number[2 * dim]);
+    if (cuboid)
+        end = swept_sum(end, first);
+    first = cuboid ? second : lanes_least(first, second);
+    if (dim < 3)
+        return swept_sum(end, first);
+    const lanes third = swept_extent(number[3 * dim]);
+    if (cuboid)
+        end = swept_sum(end, first);
+    return swept_sum(end, cuboid ? third : lanes_least(first, third));
+}
+
+INLINE void swept_axes(const struct fmb_prepared *frame, const int dim, double duration,
+                       struct swept *out)
+{
+    const unsigned kind = prepared_kind(frame);
+    const bool cuboid = !(kind & (PREPARED_TETRAHEDRON | PREPARED_FACE));
+    const double *velocity = frame->number + dim * (dim + 1);
+    for (int axis = 0; axis < dim; axis++)
+        out->end[axis] = swept_axis(frame->number + axis, dim, cuboid);
+    for (int axis = 0; axis < dim && kind & PREPARED_MOVING; axis++) {
+        const double path = swept_path(fabs(velocity[axis]), duration);
+        const lanes back = {path, 0}, forth = {0, path};
+        out->end[axis] = swept_sum(out->end[axis], velocity[axis] < 0 ? back : forth);
+    }
+}
+
+/* On input: a prepared frame, a legal duration. */
+INLINE struct swept swept_of(const struct fmb_prepared *frame, double duration)
+{
+    struct swept out = {{{0}}};
+    if (prepared_kind(frame) & PREPARED_SPACE)
+        swept_axes(frame, 3, duration, &out);
+    else
+        swept_axes(frame, 2, duration, &out);
+    return out;
+}
+
+/* The smallest box that holds both. */
+INLINE struct swept swept_hull(struct swept x, struct swept y)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        x.end[axis] = lanes_least(x.end[axis], y.end[axis]);
+    return x;
+}
+
+/* What boxes are held against that may meet a box: {high, -low} of it. */
+INLINE struct swept swept_against(const struct swept *box)
+{
+    struct swept out;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out.end[axis] = (lanes){-box->end[axis][1], -box->end[axis][0]};
+    return out;
+}
+
+/* Whether the boxes, one of them turned round by swept_against(), have a point in common. */
+INLINE bool swept_meet(const struct swept *box, const struct swept *against)
+{
+    lanes_mask meet = box->end[0] <= against->end[0];
+    for (int axis = 1; axis < FMB_DIM_MAX; axis++)
+        meet &= box->end[axis] <= against->end[axis];
+    return lanes_all(meet);
+}
+
+#endif

@@ -1,0 +1,51 @@
+#include "wire_frame.h"
+
+const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
+                             struct query_header *out)
+{
+    struct cursor cursor = cursor_begin(bytes, size, fingerprint);
+    out->utime = cursor_int64(&cursor);
+    out->client_id = cursor_int64(&cursor);
+    out->sequence_number = cursor_int64(&cursor);
+    return cursor.error;
+}
+
+/* The first numbers of a list, which may be of any length. */
+static void read_numbers(struct cursor *cursor, struct query_numbers *out)
+{
+    out->count = cursor_doubles(cursor, out->number, FMB_COMPONENTS_MAX);
+    for (int i = out->count; i < FMB_COMPONENTS_MAX; i++)
+        out->number[i] = 0;
+}
+
+void wire_read_frame(struct cursor *cursor, struct query_frame *out)
+{
+    out->body_id = cursor_int64(cursor);
+    out->key = cursor_int64(cursor);
+    out->shape = cursor_int32(cursor);
+    read_numbers(cursor, &out->origin);
+    out->dim = out->origin.count;
+    read_numbers(cursor, &out->components);
+    read_numbers(cursor, &out->velocity);
+}
+
+fmb_msgs_frame_t wire_frame_message(const struct query_frame *frame)
+{
+    return (fmb_msgs_frame_t){
+        .body_id = frame->body_id,
+        .key = frame->key,
+        .shape = frame->shape,
+        .dim = frame->origin.count,
+        .origin = (double *) frame->origin.number,
+        .num_components = frame->components.count,
+        .components = (double *) frame->components.number,
+        .num_velocity = frame->velocity.count,
+        .velocity = (double *) frame->velocity.number,
+    };
+}
+
+size_t wire_frame_bytes(const struct query_frame *frame)
+{
+    const int numbers = frame->origin.count + frame->components.count + frame->velocity.count;
+    return WIRE_FRAME_BYTES_MIN + sizeof(double) * (size_t) numbers;
+}

@@ -1,0 +1,165 @@
+#include "wire.h"
+
+#include "wire_encoded.h"
+#include "wire_frame.h"
+
+#include "fmb_msgs_pair_query_t.h"
+#include "fmb_msgs_pair_result_t.h"
+
+#include <assert.h>
+#include <float.h>
+#include <string.h>
+
+static_assert((int) WIRE_RESULT_BYTES_MAX < (int) QUERY_BYTES_MAX, "a result is one datagram");
+
+/* The numbers of the messages are those of the engine. */
+static_assert((int) FMB_CUBOID == FMB_MSGS_FRAME_T_SHAPE_CUBOID &&
+                  (int) FMB_TETRAHEDRON == FMB_MSGS_FRAME_T_SHAPE_TETRAHEDRON &&
+                  (int) FMB_FACE == FMB_MSGS_FRAME_T_SHAPE_FACE,
+              "shapes");
+static_assert((int) FMB_SEPARATED == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED &&
+                  (int) FMB_TOUCHING == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING &&
+                  (int) FMB_OVERLAPPING == FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
+              "verdicts");
+static_assert((int) QUERY_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
+                  (int) QUERY_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE,
+              "wants");
+#define X(name, number, text) \
+    static_assert((int) FMB_##name == FMB_MSGS_PAIR_RESULT_T_STATUS_##name, text);
+FMB_STATUS_MAP(X)
+#undef X
+
+const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out)
+{
+    return wire_read_header(bytes, size, __fmb_msgs_pair_query_t_get_hash(), out);
+}
+
+const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out)
+{
+    struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_query_t_get_hash());
+    memset(out, 0, sizeof *out);
+    out->utime = cursor_int64(&cursor);
+    out->client_id = cursor_int64(&cursor);
+    out->sequence_number = cursor_int64(&cursor);
+    out->duration = cursor_double(&cursor);
+    out->method = cursor_int32(&cursor);
+    out->want = cursor_int32(&cursor);
+    wire_read_frame(&cursor, &out->frame[0]);
+    wire_read_frame(&cursor, &out->frame[1]);
+    return cursor_end(&cursor);
+}
+
+/* Lower ends of all axes, then the upper ends. */
+static void read_box(struct cursor *cursor, struct pair_result *out)
+{
+    double ends[2 * FMB_DIM_MAX] = {0};
+    const int32_t count = cursor_doubles(cursor, ends, 2 * FMB_DIM_MAX);
+    if (count != 0 && count != 4 && count != 6)
+        cursor_fail(cursor, "a box of neither 4 nor 6 numbers");
+    out->dim = count / 2;
+    out->answer.has_box = count > 0;
+    for (int side = 0; side < 2 && !cursor->error; side++)
+        for (int axis = 0; axis < out->dim; axis++)
+            out->answer.box[side][axis] = ends[side * out->dim + axis];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        if (!(out->answer.box[0][axis] <= out->answer.box[1][axis]))
+            cursor_fail(cursor, "a box that is no box");
+}
+
+static void read_contact(struct cursor *cursor, struct fmb_answer *out)
+{
+    const int32_t count = cursor_doubles(cursor, out->contact, 2);
+    if (count != 0 && count != 2)
+        cursor_fail(cursor, "a contact interval of neither 0 nor 2 numbers");
+    if (!(0 <= out->contact[0] && out->contact[0] <= out->contact[1] && out->contact[1] <= DBL_MAX))
+        cursor_fail(cursor, "a contact interval that is no interval");
+    out->has_contact = count > 0;
+}
+
+static void read_certificate(struct cursor *cursor, struct pair_result *out)
+{
+    const unsigned char *bytes = NULL;
+    size_t length = cursor_take_string(cursor, &bytes);
+    if (length == 0)
+        return;
+    if (out->status != FMB_OK)
+        cursor_fail(cursor, "a certificate without a verdict");
+    if (length >= QUERY_CERTIFICATE_MAX)
+        cursor_fail(cursor, "a certificate that is too long");
+    for (size_t i = 0; i < length && !cursor->error; i++)
+        if (!cursor_is_printable(bytes[i]))
+            cursor_fail(cursor, "a certificate that is not printable");
+    out->certificate = (const char *) bytes;
+}
+
+const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out)
+{
+    struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_result_t_get_hash());
+    memset(out, 0, sizeof *out);
+    out->utime = cursor_int64(&cursor);
+    out->client_id = cursor_int64(&cursor);
+    out->sequence_number = cursor_int64(&cursor);
+    out->server_id = cursor_int64(&cursor);
+    for (int f = 0; f < 2; f++)
+        out->body_id[f] = cursor_int64(&cursor);
+    for (int f = 0; f < 2; f++)
+        out->key[f] = cursor_int64(&cursor);
+    out->status = cursor_int32(&cursor);
+    cursor_string(&cursor, out->detail, sizeof out->detail);
+    out->method = cursor_int32(&cursor);
+    int32_t verdict = cursor_int32(&cursor);
+    if ((out->status == FMB_OK) != (fmb_verdict_name(verdict) != NULL))
+        cursor_fail(&cursor, "verdict and status do not go together");
+    out->answer.verdict = (enum fmb_verdict) verdict;
+    read_contact(&cursor, &out->answer);
+    read_box(&cursor, out);
+    read_certificate(&cursor, out);
+    out->compute_ns = cursor_int64(&cursor);
+    return cursor_end(&cursor);
+}
+
+size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[WIRE_BYTES_MAX])
+{
+    fmb_msgs_pair_query_t message = {
+        .utime = query->utime,
+        .client_id = query->client_id,
+        .sequence_number = query->sequence_number,
+        .duration = query->duration,
+        .method = query->method,
+        .want = query->want,
+        .a = wire_frame_message(&query->frame[0]),
+        .b = wire_frame_message(&query->frame[1]),
+    };
+    return wire_encoded(fmb_msgs_pair_query_t_encode(out, 0, WIRE_BYTES_MAX, &message));
+}
+
+size_t wire_write_pair_result(const struct pair_result *result,
+                              unsigned char out[WIRE_RESULT_BYTES_MAX])
+{
+    double box[2 * FMB_DIM_MAX];
+    int dim = result->answer.has_box ? result->dim : 0;
+    for (int side = 0; side < 2; side++)
+        for (int axis = 0; axis < dim; axis++)
+            box[side * dim + axis] = result->answer.box[side][axis];
+    fmb_msgs_pair_result_t message = {
+        .utime = result->utime,
+        .client_id = result->client_id,
+        .sequence_number = result->sequence_number,
+        .server_id = result->server_id,
+        .body_a = result->body_id[0],
+        .body_b = result->body_id[1],
+        .key_a = result->key[0],
+        .key_b = result->key[1],
+        .status = result->status,
+        .detail = (char *) result->detail,
+        .method = result->method,
+        .verdict = (int32_t) result->answer.verdict,
+        .num_contact = result->answer.has_contact ? 2 : 0,
+        .contact = (double *) result->answer.contact,
+        .num_box = 2 * dim,
+        .box = box,
+        .certificate = (char *) (result->certificate ? result->certificate : ""),
+        .compute_ns = result->compute_ns,
+    };
+    return wire_encoded(fmb_msgs_pair_result_t_encode(out, 0, WIRE_RESULT_BYTES_MAX, &message));
+}

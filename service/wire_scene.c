@@ -1,0 +1,204 @@
+#include "wire.h"
+
+#include "wire_encoded.h"
+#include "wire_frame.h"
+
+#include "fmb_msgs_pair_query_t.h"
+#include "fmb_msgs_scene_query_t.h"
+#include "fmb_msgs_scene_result_t.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static_assert((int) QUERY_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
+                  (int) QUERY_PAIRS_ALL == FMB_MSGS_SCENE_QUERY_T_PAIRS_ALL &&
+                  (int) QUERY_PAIRS_ACROSS == FMB_MSGS_SCENE_QUERY_T_PAIRS_ACROSS,
+              "which pairs");
+static_assert((int) QUERY_WANT_BOX == FMB_MSGS_SCENE_QUERY_T_WANT_BOX &&
+                  (int) QUERY_WANT_TIMES == FMB_MSGS_SCENE_QUERY_T_WANT_TIMES &&
+                  FMB_MSGS_SCENE_QUERY_T_WANT_TIMES != FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE,
+              "wants");
+
+/* ---- Queries ---- */
+
+const char *wire_read_scene_header(const void *bytes, uint32_t size, struct query_header *out)
+{
+    return wire_read_header(bytes, size, __fmb_msgs_scene_query_t_get_hash(), out);
+}
+
+/* Those that there is no room for are walked over. */
+static int32_t read_frames(struct cursor *cursor, struct query_frame *out)
+{
+    const int32_t count = cursor_count(cursor, WIRE_FRAME_BYTES_MIN);
+    struct query_frame beyond;
+    for (int32_t i = 0; i < count && !cursor->error; i++)
+        wire_read_frame(cursor, i < QUERY_FRAMES_MAX ? &out[i] : &beyond);
+    return count;
+}
+
+const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene_query *out)
+{
+    struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_query_t_get_hash());
+    out->utime = cursor_int64(&cursor);
+    out->client_id = cursor_int64(&cursor);
+    out->sequence_number = cursor_int64(&cursor);
+    out->duration = cursor_double(&cursor);
+    out->method = cursor_int32(&cursor);
+    out->want = cursor_int32(&cursor);
+    out->which = cursor_int32(&cursor);
+    out->split = cursor_int32(&cursor);
+    out->first_pair = cursor_int32(&cursor);
+    out->frame_count = read_frames(&cursor, out->frame);
+    out->index_count = cursor_indices(&cursor, out->pair[0], 2 * QUERY_PAIRS_MAX);
+    return cursor_end(&cursor);
+}
+
+static void indices_of(const unsigned (*pair)[2], int32_t count, int16_t *out)
+{
+    for (int32_t i = 0; i < 2 * count; i++)
+        out[i] = (int16_t) pair[i / 2][i % 2];
+}
+
+size_t wire_write_scene_query(const struct scene_query *query, unsigned char out[QUERY_BYTES_MAX])
+{
+    fmb_msgs_frame_t frame[QUERY_FRAMES_MAX];
+    int16_t index[2 * QUERY_PAIRS_MAX];
+    for (int32_t i = 0; i < query->frame_count; i++)
+        frame[i] = wire_frame_message(&query->frame[i]);
+    indices_of(query->pair, query->index_count / 2, index);
+    fmb_msgs_scene_query_t message = {
+        .utime = query->utime,
+        .client_id = query->client_id,
+        .sequence_number = query->sequence_number,
+        .duration = query->duration,
+        .method = query->method,
+        .want = query->want,
+        .which = query->which,
+        .split = query->split,
+        .first_pair = query->first_pair,
+        .num_frames = query->frame_count,
+        .frames = frame,
+        .num_indices = query->index_count,
+        .indices = index,
+    };
+    return wire_encoded(fmb_msgs_scene_query_t_encode(out, 0, QUERY_BYTES_MAX, &message));
+}
+
+/* ---- Results ---- */
+
+/* Returns how many of the pairs are contacts. */
+static int32_t read_verdicts(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = cursor_bytes(cursor, out->verdict, QUERY_VERDICTS_MAX);
+    int32_t contacts = 0;
+    if (count > QUERY_VERDICTS_MAX)
+        cursor_fail(cursor, "more verdicts than a message has room for");
+    for (int32_t i = 0; i < count && !cursor->error; i++) {
+        if (out->verdict[i] > FMB_OVERLAPPING)
+            cursor_fail(cursor, "a verdict that is none");
+        contacts += out->verdict[i] >= FMB_TOUCHING;
+    }
+    if (count > 0 && out->status != FMB_OK)
+        cursor_fail(cursor, "verdicts and status do not go together");
+    out->verdict_count = count;
+    return contacts;
+}
+
+static void read_pairs(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = cursor_indices(cursor, out->pair[0], 2 * QUERY_FOUND_MAX);
+    if (count != 0 && (count != 2 * out->verdict_count || count > 2 * QUERY_FOUND_MAX))
+        cursor_fail(cursor, "as many pairs as verdicts, or none");
+    for (int32_t i = 0; i < count && !cursor->error; i++)
+        if (out->pair[i / 2][i % 2] >= QUERY_FRAMES_MAX)
+            cursor_fail(cursor, "an index of no frame");
+    out->names_pairs = count > 0;
+}
+
+/* None: both NaN. */
+static bool is_interval(const double times[2])
+{
+    return (isnan(times[0]) && isnan(times[1])) ||
+           (0 <= times[0] && times[0] <= times[1] && times[1] <= DBL_MAX);
+}
+
+static void read_times(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = cursor_doubles(cursor, out->times, QUERY_NUMBERS_MAX);
+    if (count != 0 && (count != 2 * out->contact_count || count > QUERY_NUMBERS_MAX))
+        cursor_fail(cursor, "two times for each contact, or none");
+    for (int32_t i = 0; i < count && !cursor->error; i += 2)
+        if (!is_interval(&out->times[i]))
+            cursor_fail(cursor, "a contact interval that is no interval");
+    out->has_times = count > 0;
+}
+
+static void read_boxes(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = cursor_doubles(cursor, out->boxes, QUERY_NUMBERS_MAX);
+    out->dim = count == 0 ? 0 : count == 4 * out->contact_count ? 2 : 3;
+    if (count != 2 * out->dim * out->contact_count || count > QUERY_NUMBERS_MAX)
+        cursor_fail(cursor, "a box of 4 or 6 numbers for each contact, or none");
+    for (int32_t i = 0; i < count && !cursor->error; i++) {
+        const bool lower = i / out->dim % 2 == 0;
+        if (lower && !(out->boxes[i] <= out->boxes[i + out->dim]))
+            cursor_fail(cursor, "a box that is no box");
+    }
+    out->has_boxes = count > 0;
+}
+
+const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scene_result *out)
+{
+    struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_result_t_get_hash());
+    out->utime = cursor_int64(&cursor);
+    out->client_id = cursor_int64(&cursor);
+    out->sequence_number = cursor_int64(&cursor);
+    out->server_id = cursor_int64(&cursor);
+    out->status = cursor_int32(&cursor);
+    cursor_string(&cursor, out->detail, sizeof out->detail);
+    out->method = cursor_int32(&cursor);
+    out->lost = cursor_int64(&cursor);
+    out->key_count = cursor_int64s(&cursor, out->key, QUERY_FRAMES_MAX);
+    if (out->key_count > QUERY_FRAMES_MAX)
+        cursor_fail(&cursor, "more keys than a query has frames");
+    out->end_pair = cursor_int32(&cursor);
+    out->contact_count = read_verdicts(&cursor, out);
+    read_pairs(&cursor, out);
+    read_times(&cursor, out);
+    read_boxes(&cursor, out);
+    out->compute_ns = cursor_int64(&cursor);
+    return cursor_end(&cursor);
+}
+
+size_t wire_write_scene_result(const struct scene_result *result,
+                               unsigned char out[QUERY_BYTES_MAX])
+{
+    int16_t index[2 * QUERY_FOUND_MAX];
+    const int32_t named = result->names_pairs ? result->verdict_count : 0;
+    indices_of(result->pair, named, index);
+    fmb_msgs_scene_result_t message = {
+        .utime = result->utime,
+        .client_id = result->client_id,
+        .sequence_number = result->sequence_number,
+        .server_id = result->server_id,
+        .status = result->status,
+        .detail = (char *) result->detail,
+        .method = result->method,
+        .lost = result->lost,
+        .num_keys = result->key_count,
+        .keys = (int64_t *) result->key,
+        .end_pair = result->end_pair,
+        .num_verdicts = result->verdict_count,
+        .verdicts = (uint8_t *) result->verdict,
+        .num_indices = 2 * named,
+        .indices = index,
+        .num_times = result->has_times ? 2 * result->contact_count : 0,
+        .times = (double *) result->times,
+        .num_boxes = result->has_boxes ? 2 * result->dim * result->contact_count : 0,
+        .boxes = (double *) result->boxes,
+        .compute_ns = result->compute_ns,
+    };
+    return wire_encoded(fmb_msgs_scene_result_t_encode(out, 0, QUERY_BYTES_MAX, &message));
+}

@@ -1,0 +1,51 @@
+#include "wire.h"
+
+#include "cursor.h"
+#include "wire_encoded.h"
+
+#include "fmb_msgs_status_t.h"
+
+enum {
+#define X(name) +1
+    MORE_COUNT = 0 WIRE_COUNTERS_MORE(X)
+#undef X
+};
+
+const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out)
+{
+    struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_status_t_get_hash());
+    *out = (struct wire_status){.utime = cursor_int64(&cursor)};
+    out->server_id = cursor_int64(&cursor);
+    cursor_string(&cursor, out->version, sizeof out->version);
+#define X(name) out->name = cursor_int64(&cursor);
+    WIRE_COUNTERS_BEFORE(X)
+    cursor_int64s(&cursor, out->results, FMB_STATUS_COUNT);
+    WIRE_COUNTERS_AFTER(X)
+#undef X
+    int64_t more[MORE_COUNT] = {0};
+    cursor_int64s(&cursor, more, MORE_COUNT);
+    const int64_t *next = more;
+#define X(name) out->name = *next++;
+    WIRE_COUNTERS_MORE(X)
+#undef X
+    return cursor_end(&cursor);
+}
+
+size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX])
+{
+#define X(name) status->name,
+    const int64_t more[] = {WIRE_COUNTERS_MORE(X)};
+#undef X
+    fmb_msgs_status_t message = {.utime = status->utime,
+                                 .server_id = status->server_id,
+                                 .version = (char *) status->version,
+                                 .num_results = FMB_STATUS_COUNT,
+                                 .results = (int64_t *) status->results,
+                                 .num_more = MORE_COUNT,
+                                 .more = (int64_t *) more,
+#define X(name) .name = status->name,
+                                 WIRE_COUNTERS_BEFORE(X) WIRE_COUNTERS_AFTER(X)
+#undef X
+    };
+    return wire_encoded(fmb_msgs_status_t_encode(out, 0, WIRE_BYTES_MAX, &message));
+}
