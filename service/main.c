@@ -153,7 +153,7 @@ static int run(const struct options *options)
                                             .bodies = options->bodies,
                                             .server_id = random_id(),
                                             .first_key = (random_id() + 1) / 2,
-                                            .seed = (uint64_t) random_id()};
+                                            .seed = (uint64_t) random_id() << 32 ^ (uint64_t) random_id()};
     lcm_t *lcm = bus_open("fmbd", options->lcm_url, &server_options.receive_buffer);
     if (!lcm)
         return EXIT_FAILURE;
