@@ -3,8 +3,9 @@
 #   make deps demo          installs what building needs, then lets the service answer a scene
 #   make deps-test test     installs what the tests need, then runs them
 #
-# Others: all, tests (builds them), test-fast, validate, accuracy, bench, report, headers, format,
-# format-check, install, clean; deps-bench and deps-report install what is only good for these.
+# Others: all, examples, tests (builds them), test-fast, validate, accuracy, bench, report, headers,
+# format, format-check, install, clean; deps-bench and deps-report install what is only good for
+# these.
 # MODE=release|debug|asan. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
@@ -160,6 +161,32 @@ $(O)/settings: Makefile FORCE
 		echo '$(subst ','\'',$(settings))' > $@
 .PHONY: FORCE
 
+# ---- Examples -------------------------------------------------------------------------------
+
+# One client for each language, and the message types in it; the same in all modes. Whether there
+# is a Java compiler is asked when it is needed: 'make deps-test examples' has just installed one.
+E := build/examples
+message_files := $(message_names:%=msgs/%.lcm)
+lcm_jar := /usr/share/java/lcm.jar
+
+.PHONY: examples
+examples: $(E)/lua/fmb_msgs/init.lua
+	@if command -v javac > /dev/null && [ -f $(lcm_jar) ]; then \
+		$(MAKE) -s $(E)/java/AskPair.class; \
+	else echo 'make $@: not the one in Java: there is no javac, or no $(lcm_jar)'; fi
+
+# A type that is gone would stay: each begins afresh.
+$(E)/lua/fmb_msgs/init.lua: $(message_files) Makefile
+	@rm -rf $(E)/lua
+	@mkdir -p $(E)/lua
+	lcm-gen -l --lpath $(E)/lua $(message_files)
+
+$(E)/java/AskPair.class: clients/examples/AskPair.java $(message_files) Makefile
+	@rm -rf $(E)/java
+	@mkdir -p $(E)/java
+	lcm-gen -j --jpath $(E)/java $(message_files)
+	javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $<
+
 # ---- Tests ----------------------------------------------------------------------------------
 
 unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
@@ -244,7 +271,7 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 		-Iservice -Iclients -Itests/hostile -I$(GEN))
 
 .PHONY: tests test test-fast check
-tests: all $(test_programs) $(unit_tests)
+tests: all examples $(test_programs) $(unit_tests)
 
 # The script builds what it tests: release, asan with gcc and with clang, and release with OPENMP=1.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
@@ -388,7 +415,8 @@ clean:
 # ---- Packages ----------------------------------------------------------------------------
 
 build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev
-test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev pkg-config
+test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
+	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2
 
 as_root = $$([ $$(id -u) = 0 ] || echo sudo)
 define install_packages
