@@ -7,9 +7,11 @@
 #include <string.h>
 
 /* Entries are linked by index: each into the chain of its bucket, and all that are used into a
- * ring in the order of use. One entry more than the capacity holds no body: it closes the
- * ring, with the newest beyond it on one side and the oldest on the other. */
-enum { NONE = -1 };
+ * ring in the order of use. Entry 0 holds no body: it closes the ring, with the newest beyond it
+ * on one side and the oldest on the other; and it ends the chains, so that buckets start as the
+ * zeros that calloc() has without touching them: a large cache is there at once, and takes
+ * memory as bodies come. */
+enum { NONE = 0, ENDS = 0 };
 
 struct entry {
     int64_t id, key;
@@ -22,7 +24,6 @@ struct cache {
     int64_t next_key;
     uint32_t bucket_mask;
     int32_t *bucket; /* first entry of each */
-    int32_t ends;    /* the entry that closes the ring */
     struct entry *entry;
     struct cache_counts counts;
 };
@@ -35,22 +36,19 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
         buckets *= 2;
     struct cache *cache = malloc(sizeof *cache);
     struct entry *entry = malloc((capacity + 1) * sizeof *entry);
-    int32_t *bucket = malloc(buckets * sizeof *bucket);
+    int32_t *bucket = calloc(buckets, sizeof *bucket);
     if (!cache || !entry || !bucket) {
         free(cache);
         free(entry);
         free(bucket);
         return NULL;
     }
-    for (uint32_t b = 0; b < buckets; b++)
-        bucket[b] = NONE;
     *cache = (struct cache){.next_key = first_key,
                             .bucket_mask = buckets - 1,
                             .bucket = bucket,
-                            .ends = (int32_t) capacity,
                             .entry = entry,
                             .counts = {.capacity = (int64_t) capacity}};
-    entry[capacity].newer = entry[capacity].older = cache->ends;
+    entry[ENDS].newer = entry[ENDS].older = ENDS;
     return cache;
 }
 
@@ -85,11 +83,11 @@ static void unlink_use(struct cache *cache, int32_t e)
 
 static void link_newest(struct cache *cache, int32_t e)
 {
-    int32_t newest = cache->entry[cache->ends].older;
-    cache->entry[e].newer = cache->ends;
+    int32_t newest = cache->entry[ENDS].older;
+    cache->entry[e].newer = ENDS;
     cache->entry[e].older = newest;
     cache->entry[newest].newer = e;
-    cache->entry[cache->ends].older = e;
+    cache->entry[ENDS].older = e;
 }
 
 static void touch(struct cache *cache, int32_t e)
@@ -100,7 +98,7 @@ static void touch(struct cache *cache, int32_t e)
 
 static int32_t evict_oldest(struct cache *cache)
 {
-    int32_t e = cache->entry[cache->ends].newer;
+    int32_t e = cache->entry[ENDS].newer;
     int32_t *link = bucket_of(cache, cache->entry[e].id);
     while (*link != e)
         link = &cache->entry[*link].next;
@@ -114,7 +112,7 @@ static int32_t evict_oldest(struct cache *cache)
 /* A new entry for the id, linked everywhere. */
 static int32_t insert(struct cache *cache, int64_t id)
 {
-    int32_t e = cache->counts.bodies < cache->counts.capacity ? (int32_t) cache->counts.bodies
+    int32_t e = cache->counts.bodies < cache->counts.capacity ? (int32_t) cache->counts.bodies + 1
                                                               : evict_oldest(cache);
     int32_t *bucket = bucket_of(cache, id);
     cache->entry[e].id = id;

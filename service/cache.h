@@ -1,9 +1,10 @@
 /* The bodies that the service has met, by id: components, inverse and all that fmb_body holds.
  *
- * A fixed number of bodies; the least recently used goes first. All memory is taken at the
- * start. Each set of components that is kept gets a key, a number that no other set gets in
- * the life of the cache: a frame may name its components by id and key. A key dies when its
- * body is replaced (same id, other components, shape or dimension) or evicted. */
+ * A fixed number of bodies; the least recently used goes first. All memory is asked for at the
+ * start, and touched as bodies come. Each set of components that is kept gets a key, a number
+ * that no other set gets in the life of the cache: a frame may name its components by id and
+ * key. A key dies when its body is replaced (same id, other components, shape or dimension) or
+ * evicted. */
 #ifndef CACHE_H
 #define CACHE_H
 
