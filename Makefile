@@ -76,14 +76,15 @@ message_names := frame_t pair_query_t pair_result_t scene_query_t scene_result_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
 bus_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
-	wire_status.o bus.o clock.o random_id.o signals.o)
+	wire_status.o bus.o clock.o random_id.o say.o signals.o)
+supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
 server_objects := $(addprefix $(O)/service/,server.o answer_pair.o answer_scene.o scene_pairs.o \
-	check.o bodies.o cache.o queue.o senders.o histogram.o malformed.o say.o)
+	check.o bodies.o cache.o queue.o senders.o histogram.o malformed.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))
 
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
-test_programs := $(B)/poke $(B)/validate $(B)/accuracy $(B)/accuracy-planted\
+test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted\
 	$(B)/bench/bench
 
 .PHONY: all
@@ -97,7 +98,8 @@ $(B)/libfmb.a: $(lib_objects)
 	rm -f $@
 	$(AR) rcs $@ $(O)/libfmb.o
 
-$(B)/fmbd: $(O)/service/main.o $(server_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+$(B)/fmbd: $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
+		$(message_objects) $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
 
 $(B)/fmb: $(O)/clients/fmb.o $(client_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
@@ -204,6 +206,10 @@ family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,c
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
+
+$(B)/poison: $(O)/tests/system/poison.o
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^
 
 # Tests of the engine link neither LCM nor the service.
 $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objects) $(B)/libfmb.a

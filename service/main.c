@@ -2,27 +2,18 @@
 #include "bus.h"
 #include "cache.h"
 #include "fmb/fmb.h"
-#include "random_id.h"
-#include "server.h"
-#include "signals.h"
+#include "supervisor.h"
+#include "worker.h"
 
 #include <errno.h>
 #include <getopt.h>
-#include <inttypes.h>
-#include <poll.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { EXIT_USAGE = 2 };
 enum { DEFAULT_BODIES = 65536 };
-
-struct options {
-    const char *lcm_url;
-    const char *prefix;
-    size_t bodies;
-};
 
 static const char usage[] =
     "usage: fmbd [options]\n"
@@ -30,7 +21,8 @@ static const char usage[] =
     "Answers pairs of frames (cuboids, tetrahedra, faces; 2D and 3D; at rest and moving) on an\n"
     "LCM bus: separated, touching or overlapping, when, and in which box. Queries come on\n"
     "FMB_PAIR_QUERY, results go to FMB_PAIR_RESULT, once a second a heartbeat to FMB_STATUS.\n"
-    "Ask with 'fmb query'; ends on SIGINT and SIGTERM.\n"
+    "Ask with 'fmb query'; ends on SIGINT and SIGTERM. It is a supervisor and a worker: a worker\n"
+    "that malformed packets crash (LCM lets them) is replaced at once, with an empty cache.\n"
     "\n"
     "  -l, --lcm-url URL   the bus; else LCM_DEFAULT_URL; else this host alone\n"
     "                      (udpm://239.255.76.67:7667?ttl=0)\n"
@@ -39,7 +31,8 @@ static const char usage[] =
     "  -h, --help          print this\n"
     "  -V, --version       print the version\n"
     "\n"
-    "Exit codes: 0 ended by a signal, 1 no bus or no memory, 2 wrong options.\n";
+    "Exit codes: 0 ended by a signal, 1 no bus, no memory, or workers that die before they are\n"
+    "ready, 2 wrong options.\n";
 
 static int wrong_option(const char *option, const char *value, const char *expected)
 {
@@ -65,14 +58,14 @@ static bool parse_bodies(const char *text, size_t *out)
 }
 
 /* Returns -1 to go on, or the code to exit with. */
-static int parse_options(int argc, char **argv, struct options *out)
+static int parse_options(int argc, char **argv, struct worker_options *out)
 {
     static const struct option long_options[] = {
         {"lcm-url", required_argument, NULL, 'l'}, {"prefix", required_argument, NULL, 'p'},
         {"bodies", required_argument, NULL, 'b'},  {"help", no_argument, NULL, 'h'},
         {"version", no_argument, NULL, 'V'},       {0},
     };
-    *out = (struct options){.prefix = "", .bodies = DEFAULT_BODIES};
+    *out = (struct worker_options){.prefix = "", .bodies = DEFAULT_BODIES};
     int option;
     while ((option = getopt_long(argc, argv, ":l:p:b:hV", long_options, NULL)) != -1) {
         switch (option) {
@@ -97,82 +90,10 @@ static int parse_options(int argc, char **argv, struct options *out)
     return -1;
 }
 
-/* Serves until a signal comes; returns the exit code. */
-static int serve(lcm_t *lcm, struct server *server, int signals)
-{
-    enum { BUS, SIGNALS, SOURCES };
-    struct pollfd source[SOURCES] = {
-        [BUS] = {.fd = lcm_get_fileno(lcm), .events = POLLIN},
-        [SIGNALS] = {.fd = signals, .events = POLLIN},
-    };
-    for (;;) {
-        const int due_ms = server_beat(server);
-        if (poll(source, SOURCES, server_is_waiting(server) ? 0 : due_ms) < 0) {
-            if (errno == EINTR)
-                continue;
-            perror("fmbd: poll");
-            return EXIT_FAILURE;
-        }
-        if (source[SIGNALS].revents)
-            return EXIT_SUCCESS;
-        if (source[BUS].revents && !server_drain(server)) {
-            fputs("fmbd: the bus failed\n", stderr);
-            return EXIT_FAILURE;
-        }
-        server_answer(server);
-    }
-}
-
-static void say_ready(const struct server *server, const struct server_options *options)
-{
-    fprintf(stderr,
-            "fmbd %s ready: answers %s on %s, %s on %s, heartbeat on %s; %zu bodies; receive "
-            "buffer %ld bytes; server %" PRId64 "\n",
-            fmb_version(), server_query_channel(server, SERVER_PAIRS),
-            server_result_channel(server, SERVER_PAIRS),
-            server_query_channel(server, SERVER_SCENES),
-            server_result_channel(server, SERVER_SCENES), server_status_channel(server),
-            options->bodies, options->receive_buffer, options->server_id);
-}
-
-static int serve_until_signal(lcm_t *lcm, struct server *server,
-                              const struct server_options *options)
-{
-    int signals = signals_open();
-    if (signals < 0) {
-        perror("fmbd: signals");
-        return EXIT_FAILURE;
-    }
-    say_ready(server, options);
-    return serve(lcm, server, signals);
-}
-
-static int run(const struct options *options)
-{
-    struct server_options server_options = {.prefix = options->prefix,
-                                            .bodies = options->bodies,
-                                            .server_id = random_id(),
-                                            .first_key = (random_id() + 1) / 2,
-                                            .seed = (uint64_t) random_id() << 32 ^ (uint64_t) random_id()};
-    lcm_t *lcm = bus_open("fmbd", options->lcm_url, &server_options.receive_buffer);
-    if (!lcm)
-        return EXIT_FAILURE;
-    int code = EXIT_FAILURE;
-    struct server *server = server_create(lcm, &server_options);
-    if (server)
-        code = serve_until_signal(lcm, server, &server_options);
-    else
-        fprintf(stderr, "fmbd: cannot start: no memory for %zu bodies, or the bus refused\n",
-                options->bodies);
-    server_destroy(server);
-    lcm_destroy(lcm);
-    return code;
-}
-
 int main(int argc, char **argv)
 {
-    struct options options;
+    struct worker_options options;
     signal(SIGPIPE, SIG_IGN); /* a reader of stderr that goes away must not end the service */
     int code = parse_options(argc, argv, &options);
-    return code >= 0 ? code : run(&options);
+    return code >= 0 ? code : supervisor_run(worker_run, &options);
 }

@@ -367,6 +367,7 @@ static bool open_server(struct server *server, const struct server_options *opti
     server->answerer.user = server;
     server->answerer.cache = cache_create(options->bodies, options->first_key);
     server->status.server_id = options->server_id;
+    server->status.restarts = options->restarts;
     server->status.receive_buffer = options->receive_buffer;
     snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
     server->ready_ns = clock_ns();

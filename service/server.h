@@ -21,6 +21,7 @@ struct server_options {
     int64_t server_id;   /* random, 1 to 2^53 - 1 */
     int64_t first_key;   /* random, see cache_create() */
     uint64_t seed;       /* random, see queue_create() */
+    int64_t restarts;    /* to be told in the status */
     long receive_buffer; /* to be told in the status; 0: not known */
 };
 
