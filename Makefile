@@ -405,7 +405,8 @@ demo: # builds on all cores, also where packages are installed first
 .PHONY: install
 install: all
 	$(INSTALL) -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/lib/pkgconfig" \
-		"$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
+		"$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes" \
+		"$(DESTDIR)$(PREFIX)/lib/systemd/system"
 	$(INSTALL) $(programs) "$(DESTDIR)$(PREFIX)/bin"
 	$(INSTALL) -m 644 $(B)/libfmb.a "$(DESTDIR)$(PREFIX)/lib"
 	$(INSTALL) -m 644 service/fmb/fmb.h "$(DESTDIR)$(PREFIX)/include"
@@ -413,6 +414,8 @@ install: all
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' \
 		$(if $(openmp_flag),-e 's|^Libs:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
 		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb.pc"
+	sed -e 's|@PREFIX@|$(PREFIX)|' service/fmbd.service.in \
+		> "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
 
 .PHONY: clean
 clean:
