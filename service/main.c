@@ -6,11 +6,13 @@
 #include "worker.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <getopt.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { EXIT_USAGE = 2 };
 enum { DEFAULT_BODIES = 65536 };
@@ -90,9 +92,22 @@ static int parse_options(int argc, char **argv, struct worker_options *out)
     return -1;
 }
 
+/* A standard descriptor that is closed would be the number of what is opened next, and lines meant
+ * for people would go there: to /dev/null instead. */
+static void open_standard_descriptors(void)
+{
+    int fd;
+    do
+        fd = open("/dev/null", O_RDWR);
+    while (fd >= 0 && fd <= STDERR_FILENO);
+    if (fd > STDERR_FILENO)
+        close(fd);
+}
+
 int main(int argc, char **argv)
 {
     struct worker_options options;
+    open_standard_descriptors();
     signal(SIGPIPE, SIG_IGN); /* a reader of stderr that goes away must not end the service */
     int code = parse_options(argc, argv, &options);
     return code >= 0 ? code : supervisor_run(worker_run, &options);

@@ -202,6 +202,18 @@ log_event() {
     done
 }
 
+@test "without standard error it starts, and ends, as with it" {
+    "$FMBD" 2>&- 3>&- &
+    fmbd=$!
+    started="${started-} $fmbd"
+    wait_until "$FMB" status --timeout 0.2
+    # What is said goes nowhere, and not into what was opened next.
+    for pid in "$fmbd" "$(worker_of "$fmbd")"; do
+        [ "$(readlink "/proc/$pid/fd/2")" = /dev/null ]
+    done
+    stop_fmbd
+}
+
 @test "the supervisor sleeps while nothing happens" {
     start_fmbd
     wakes() { awk '/^voluntary/ { print $2 }' "/proc/$fmbd/status"; }
