@@ -9,9 +9,13 @@
 /* Entries are linked by index: each into the chain of its bucket, and all that are used into a
  * ring in the order of use. Entry 0 holds no body: it closes the ring, with the newest beyond it
  * on one side and the oldest on the other; and it ends the chains, so that buckets start as the
- * zeros that calloc() has without touching them: a large cache is there at once, and takes
- * memory as bodies come. */
+ * zeros that calloc() has without touching them. */
 enum { NONE = 0, ENDS = 0 };
+
+/* Memory up to here is touched at the start, which takes some milliseconds, so that the service
+ * takes no more than it had when it was ready. A larger cache is there at once all the same, and
+ * takes memory as bodies come. */
+enum { TOUCHED_MAX = 64 << 20, PAGE = 4096 };
 
 struct entry {
     int64_t id, key;
@@ -22,20 +26,29 @@ struct entry {
 
 struct cache {
     int64_t next_key;
-    uint32_t bucket_mask;
-    int32_t *bucket; /* first entry of each */
+    uint64_t multiplier; /* odd, random */
+    int bucket_shift;
+    int32_t *bucket; /* [2^(64 - bucket_shift)]: first entry of each */
     struct entry *entry;
     struct cache_counts counts;
 };
 
+static void touch_pages(void *memory, size_t size)
+{
+    volatile char *page = memory;
+    for (size_t at = 0; at < size && size <= TOUCHED_MAX; at += PAGE)
+        page[at] = 0;
+}
+
 struct cache *cache_create(size_t capacity, int64_t first_key)
 {
     assert(capacity >= 1 && capacity <= CACHE_BODIES_MAX);
-    uint32_t buckets = 1;
-    while (buckets < capacity)
-        buckets *= 2;
+    int bucket_bits = 1;
+    while (((size_t) 1 << bucket_bits) < capacity)
+        bucket_bits++;
+    const size_t entries = capacity + 1, buckets = (size_t) 1 << bucket_bits;
     struct cache *cache = malloc(sizeof *cache);
-    struct entry *entry = malloc((capacity + 1) * sizeof *entry);
+    struct entry *entry = malloc(entries * sizeof *entry);
     int32_t *bucket = calloc(buckets, sizeof *bucket);
     if (!cache || !entry || !bucket) {
         free(cache);
@@ -44,10 +57,13 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
         return NULL;
     }
     *cache = (struct cache){.next_key = first_key,
-                            .bucket_mask = buckets - 1,
+                            .multiplier = query_id_mix(first_key) | 1,
+                            .bucket_shift = 64 - bucket_bits,
                             .bucket = bucket,
                             .entry = entry,
                             .counts = {.capacity = (int64_t) capacity}};
+    touch_pages(entry, entries * sizeof *entry);
+    touch_pages(bucket, buckets * sizeof *bucket);
     entry[ENDS].newer = entry[ENDS].older = ENDS;
     return cache;
 }
@@ -61,9 +77,11 @@ void cache_destroy(struct cache *cache)
     free(cache);
 }
 
+/* Multiplicative hashing: the upper bits of the product. The multiplier is random, lest somebody
+ * chooses ids that all fall into one bucket. */
 static int32_t *bucket_of(struct cache *cache, int64_t id)
 {
-    return &cache->bucket[query_id_hash(id) & cache->bucket_mask];
+    return &cache->bucket[(uint64_t) id * cache->multiplier >> cache->bucket_shift];
 }
 
 static int32_t find(struct cache *cache, int64_t id)

@@ -19,10 +19,15 @@ static inline bool query_id_ok(int64_t id)
     return id >= 0 && id <= QUERY_ID_MAX;
 }
 
-/* Multiplicative hashing: the high half of the product with 2^64 / golden ratio. */
+/* Multiplicative hashing: the product with 2^64 / golden ratio, and its high half. */
+static inline uint64_t query_id_mix(int64_t id)
+{
+    return (uint64_t) id * UINT64_C(0x9e3779b97f4a7c15);
+}
+
 static inline uint32_t query_id_hash(int64_t id)
 {
-    return (uint32_t) ((uint64_t) id * UINT64_C(0x9e3779b97f4a7c15) >> 32);
+    return (uint32_t) (query_id_mix(id) >> 32);
 }
 
 enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2, QUERY_WANT_TIMES = 4 };

@@ -5,7 +5,7 @@ load service
 @test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
     for signal in TERM INT; do
         start_fmbd
-        grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, heartbeat on FMB_STATUS' "$fmbd_log"
+        grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, FMB_SCENE_QUERY on FMB_SCENE_RESULT, heartbeat on FMB_STATUS' "$fmbd_log"
         stop_fmbd "$signal"
     done
 }

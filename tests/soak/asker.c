@@ -1,0 +1,264 @@
+/* Clients that ask without end, and know the answers: is none lost, and none wrong? The bus is that
+ * of LCM_DEFAULT_URL.
+ *
+ * soak-asker [--clients N] [--seconds S] [--rate R] [--pairs P]
+ *
+ * N clients (1), a thread each, ask for S seconds (10), R queries a second all together (0: as many
+ * as they can). Of P pairs each (1): one by a pair query, more by a scene; about half of the pairs
+ * are in contact, some just touch, half of the frames move. Prints a line of JSON. Exit code 0:
+ * each query got its answers, and each answer was that of libfmb, bit for bit. */
+#include "clock.h"
+#include "fmb_client.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { FRAMES = 200, CLIENTS_MAX = 64 };
+
+/* A query is sent so often, each time after so many seconds: an outage of half a minute is waited
+ * out. */
+static const int tries = 300;
+static const double timeout = 0.1;
+
+struct plan {
+    long clients, rate, pairs;
+    double seconds;
+};
+
+struct asker {
+    const struct plan *plan;
+    int number;
+    pthread_t thread;
+    struct fmb_client *client;
+    uint64_t random;
+    struct fmb_client_frame frame[FRAMES];
+    struct fmb_body body[FRAMES];
+    unsigned (*pair)[2];        /* owned: [plan->pairs] */
+    struct fmb_answer *answers; /* owned: what libfmb says of them */
+    size_t seen;                /* of the query under way */
+    int64_t queries, pairs, unanswered, wrong, longest_ns;
+};
+
+/* ---- Questions ---- */
+
+static double uniform(struct asker *asker)
+{
+    asker->random ^= asker->random << 13;
+    asker->random ^= asker->random >> 7;
+    asker->random ^= asker->random << 17;
+    return (double) (asker->random >> 11) * 0x1p-53;
+}
+
+/* Every other frame lies on a grid, where many touch. */
+static double coordinate(struct asker *asker, int i, double size)
+{
+    const double x = size * (uniform(asker) - 0.5);
+    return i % 2 ? x : floor(x);
+}
+
+static void draw_frame(struct asker *asker, int i)
+{
+    struct fmb_client_frame *frame = &asker->frame[i];
+    *frame = (struct fmb_client_frame){.body_id = 1 + asker->number * FRAMES + i, .dim = 3};
+    frame->shape = uniform(asker) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON;
+    frame->moving = uniform(asker) < 0.5;
+    for (int axis = 0; axis < 3; axis++) {
+        frame->origin[axis] = coordinate(asker, i, 4);
+        frame->velocity[axis] = coordinate(asker, i, 2);
+        frame->components[4 * axis] = 1 + fabs(coordinate(asker, i, 2));
+    }
+    fmb_body_make(3, frame->shape, frame->components, 9, &asker->body[i]);
+}
+
+static struct fmb_frame frame_of(const struct asker *asker, unsigned i)
+{
+    struct fmb_frame frame = {.body = &asker->body[i], .moving = asker->frame[i].moving};
+    memcpy(frame.origin, asker->frame[i].origin, sizeof frame.origin);
+    memcpy(frame.velocity, asker->frame[i].velocity, sizeof frame.velocity);
+    return frame;
+}
+
+static void draw_pair(struct asker *asker, long k)
+{
+    unsigned *pair = asker->pair[k];
+    pair[0] = (unsigned) (uniform(asker) * FRAMES);
+    pair[1] = (pair[0] + 1 + (unsigned) (uniform(asker) * (FRAMES - 1))) % FRAMES;
+    const struct fmb_pair both = {frame_of(asker, pair[0]), frame_of(asker, pair[1]), 1};
+    fmb_decide(fmb_method_default(), &both, FMB_WANT_BOX, &asker->answers[k]);
+}
+
+/* Half of the bodies turn now and then: their ids get other components. */
+static void draw(struct asker *asker)
+{
+    for (int i = asker->queries == 0 ? 0 : FRAMES / 2; i < FRAMES; i++)
+        draw_frame(asker, i);
+    for (long k = 0; k < asker->plan->pairs; k++)
+        draw_pair(asker, k);
+}
+
+/* ---- Answers ---- */
+
+/* Number by number: the bytes between them mean nothing. */
+static bool same(const struct fmb_answer *x, const struct fmb_answer *y)
+{
+    return x->verdict == y->verdict && x->has_contact == y->has_contact &&
+           x->has_box == y->has_box && memcmp(x->contact, y->contact, sizeof x->contact) == 0 &&
+           memcmp(x->box, y->box, sizeof x->box) == 0;
+}
+
+static void take(void *user, const struct fmb_client_answer *answer)
+{
+    struct asker *asker = user;
+    const size_t k = asker->seen++;
+    const unsigned *pair = asker->pair[k];
+    if (answer->status != FMB_OK)
+        asker->unanswered++;
+    else if (answer->a != pair[0] || answer->b != pair[1] ||
+             !same(&answer->answer, &asker->answers[k]))
+        asker->wrong++;
+}
+
+static void ask(struct asker *asker)
+{
+    const struct fmb_client_scene scene = {
+        .frames = asker->frame,
+        .frame_count = FRAMES,
+        .which = FMB_CLIENT_LISTED,
+        .pairs = (const unsigned(*)[2]) asker->pair,
+        .pair_count = (size_t) asker->plan->pairs,
+        .duration = 1,
+        .want = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES,
+    };
+    const int64_t begin = clock_ns();
+    asker->seen = 0;
+    if (asker->plan->pairs == 1) {
+        const struct fmb_client_frame both[2] = {asker->frame[asker->pair[0][0]],
+                                                 asker->frame[asker->pair[0][1]]};
+        struct fmb_client_answer answer;
+        fmb_client_ask_pair(asker->client, both, 1, FMB_CLIENT_WANT_BOX, &answer);
+        answer.a = asker->pair[0][0];
+        answer.b = asker->pair[0][1];
+        take(asker, &answer);
+    } else {
+        fmb_client_ask(asker->client, &scene, take, asker);
+    }
+    asker->unanswered += asker->plan->pairs - (int64_t) asker->seen;
+    asker->pairs += asker->plan->pairs;
+    asker->queries++;
+    const int64_t time = clock_ns() - begin;
+    asker->longest_ns = time > asker->longest_ns ? time : asker->longest_ns;
+}
+
+/* ---- Threads ---- */
+
+static void sleep_until(int64_t when_ns)
+{
+    const int64_t left = when_ns - clock_ns();
+    if (left <= 0)
+        return;
+    const struct timespec pause = {left / 1000000000, left % 1000000000};
+    nanosleep(&pause, NULL);
+}
+
+static void *run(void *user)
+{
+    struct asker *asker = user;
+    const struct plan *plan = asker->plan;
+    const int64_t begin = clock_ns(), end = begin + (int64_t) (1e9 * plan->seconds);
+    const double pause_ns = plan->rate ? 1e9 * (double) plan->clients / (double) plan->rate : 0;
+    while (clock_ns() < end) {
+        if (asker->queries % 100 == 0)
+            draw(asker);
+        sleep_until(begin + (int64_t) (pause_ns * (double) asker->queries));
+        ask(asker);
+    }
+    return NULL;
+}
+
+static bool start(struct asker *asker, int number, const struct plan *plan)
+{
+    const struct fmb_client_options options = {.timeout = timeout, .tries = tries};
+    char why[FMB_CLIENT_WHY_MAX];
+    asker->plan = plan;
+    asker->number = number;
+    asker->random = 88172645463325252u + 1000003u * (uint64_t) number;
+    asker->pair = calloc((size_t) plan->pairs, sizeof *asker->pair);
+    asker->answers = calloc((size_t) plan->pairs, sizeof *asker->answers);
+    asker->client = fmb_client_open(&options, why, sizeof why);
+    if (!asker->client)
+        fprintf(stderr, "soak-asker: %s\n", why);
+    return asker->client && asker->pair && asker->answers &&
+           pthread_create(&asker->thread, NULL, run, asker) == 0;
+}
+
+/* ---- Sum ---- */
+
+static int report(const struct asker *asker, const struct plan *plan, double seconds)
+{
+    int64_t queries = 0, pairs = 0, unanswered = 0, wrong = 0, longest_ns = 0;
+    struct fmb_client_counts sum = {0};
+    for (long i = 0; i < plan->clients; i++) {
+        const struct fmb_client_counts counts = fmb_client_counts(asker[i].client);
+        queries += asker[i].queries;
+        pairs += asker[i].pairs;
+        unanswered += asker[i].unanswered;
+        wrong += asker[i].wrong;
+        longest_ns = asker[i].longest_ns > longest_ns ? asker[i].longest_ns : longest_ns;
+        sum.repeated += counts.repeated;
+        sum.malformed += counts.malformed;
+        sum.outages += counts.outages;
+    }
+    printf("{\"clients\": %ld, \"seconds\": %.1f, \"queries\": %" PRId64 ", \"pairs\": %" PRId64
+           ", \"queries_a_second\": %.0f, \"pairs_a_second\": %.0f, \"unanswered\": %" PRId64
+           ", \"wrong\": %" PRId64 ", \"asked_again\": %" PRIu64 ", \"malformed\": %" PRIu64
+           ", \"outages\": %" PRIu64 ", \"longest_ms\": %.1f}\n",
+           plan->clients, seconds, queries, pairs, (double) queries / seconds,
+           (double) pairs / seconds, unanswered, wrong, sum.repeated, sum.malformed, sum.outages,
+           1e-6 * (double) longest_ns);
+    return queries > 0 && unanswered == 0 && wrong == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+static bool parse(int argc, char **argv, struct plan *out)
+{
+    *out = (struct plan){.clients = 1, .pairs = 1, .seconds = 10};
+    for (int i = 1; i + 1 < argc; i += 2) {
+        char *end;
+        const double value = strtod(argv[i + 1], &end);
+        if (end == argv[i + 1] || *end)
+            return false;
+        if (strcmp(argv[i], "--clients") == 0)
+            out->clients = (long) value;
+        else if (strcmp(argv[i], "--rate") == 0)
+            out->rate = (long) value;
+        else if (strcmp(argv[i], "--pairs") == 0)
+            out->pairs = (long) value;
+        else if (strcmp(argv[i], "--seconds") == 0)
+            out->seconds = value;
+        else
+            return false;
+    }
+    return argc % 2 == 1 && out->clients >= 1 && out->clients <= CLIENTS_MAX && out->rate >= 0 &&
+           out->pairs >= 1 && out->pairs <= 1000000 && out->seconds > 0;
+}
+
+int main(int argc, char **argv)
+{
+    static struct asker asker[CLIENTS_MAX];
+    struct plan plan;
+    if (!parse(argc, argv, &plan)) {
+        fputs("usage: soak-asker [--clients N] [--seconds S] [--rate R] [--pairs P]\n", stderr);
+        return 2;
+    }
+    const int64_t begin = clock_ns();
+    for (int i = 0; i < plan.clients; i++)
+        if (!start(&asker[i], i, &plan))
+            return EXIT_FAILURE;
+    for (int i = 0; i < plan.clients; i++)
+        pthread_join(asker[i].thread, NULL);
+    return report(asker, &plan, 1e-9 * (double) (clock_ns() - begin));
+}
