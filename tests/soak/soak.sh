@@ -1,0 +1,125 @@
+#!/bin/sh
+# soak.sh BUILD_DIR [SECONDS]: clients that know the answers ask a service to which bad things are
+# done. One line for each trial, what went on in build/soak/; exit code 0 only if no answer was lost
+# and none was wrong.
+set -u
+
+build=${1:?usage: soak.sh BUILD_DIR [SECONDS [TRIAL]]}
+seconds=${2:-60}
+trial=${3-}
+out=$build/soak
+# Queries a second, all clients together: 80 % of what the bare echo takes without loss
+# (make bench-bus), if that was measured here.
+pair_rate=${FMB_PAIR_RATE:-0}
+scene_rate=${FMB_SCENE_RATE:-0}
+ids=${FMB_SOAK_IDS:-10000000}
+channels=${FMB_SOAK_CHANNELS:-300000}
+
+trials='pairs scenes crowd killed poisoned hostile lossy ids channels'
+
+log=$out/$trial.log
+started=
+
+start() {
+    "$@" >> "$log" 2>&1 &
+    started="$started $!"
+}
+
+stop_all() {
+    # shellcheck disable=SC2086
+    kill $started 2> /dev/null
+    wait 2> /dev/null
+}
+
+start_fmbd() {
+    "$build/fmbd" 2> "$out/$trial.fmbd" &
+    fmbd=$!
+    tries=100
+    until grep -q ready "$out/$trial.fmbd"; do
+        tries=$((tries - 1))
+        [ $tries -gt 0 ] || { echo "soak.sh: fmbd did not start" >&2; exit 1; }
+        sleep 0.1
+    done
+}
+
+# The daemon that serves; its supervisor stays.
+worker() {
+    tr -d ' ' < "/proc/$fmbd/task/$fmbd/children"
+}
+
+# every PERIOD COMMAND...: again and again, until it is ended.
+every() {
+    period=$1
+    shift
+    while :; do
+        "$@"
+        sleep "$period"
+    done
+}
+
+kill_worker() {
+    kill -KILL "$(worker)"
+}
+
+poison() {
+    "$build/poison" wrap FMB_PAIR_QUERY
+    "$build/poison" short FMB_SCENE_QUERY
+}
+
+damage() {
+    for type in pair_query scene_query pair_result scene_result status; do
+        "$build/poke" FMB_PAIR_QUERY $type
+        "$build/poke" FMB_SCENE_QUERY $type
+    done
+}
+
+ask() {
+    "$build/soak-asker" --seconds "$seconds" "$@"
+}
+
+run_trial() {
+    start_fmbd
+    case $trial in
+    pairs) ask --rate "$pair_rate" --clients 4 ;;
+    scenes) ask --rate "$scene_rate" --clients 2 --pairs 900 ;;
+    crowd) ask --clients 16 --pairs 40 ;;
+    killed) start every 1 kill_worker; ask --clients 4 --pairs 40 ;;
+    poisoned) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
+    hostile) start every 0 damage; ask --clients 4 --pairs 40 ;;
+    lossy)
+        tc qdisc add dev lo root netem delay 200us reorder 99% loss 1% 2> /dev/null || return 77
+        ask --clients 4 --pairs 40
+        ;;
+    ids) "$build/soak-memory" ids "$(worker)" "$ids" ;;
+    channels) "$build/soak-memory" channels "$(worker)" "$channels" ;;
+    esac
+}
+
+# Inside of a network of its own.
+if [ -n "$trial" ]; then
+    trap stop_all EXIT
+    trap 'exit 1' HUP INT TERM
+    run_trial
+    code=$?
+    "$build/fmb" status --json > "$out/$trial.status" 2> /dev/null
+    kill "$fmbd"
+    wait "$fmbd" || code=1
+    exit $code
+fi
+
+mkdir -p "$out" || exit 1
+worst=0
+for trial in $trials; do
+    printf '%-9s ' "$trial"
+    "$build/netns" "$0" "$build" "$seconds" "$trial" > "$out/$trial.json" 2> "$out/$trial.err"
+    code=$?
+    case $code in
+    0) cat "$out/$trial.json" ;;
+    77) echo 'skipped: this system cannot' ;;
+    *)
+        worst=1
+        echo "FAILED: $(cat "$out/$trial.json" "$out/$trial.err")"
+        ;;
+    esac
+done
+exit $worst
