@@ -199,7 +199,7 @@ engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(uni
 # Those that see inside of it.
 internal_tests := test_bounds test_limbs test_outward test_kernels
 # Those that draw from the hard families of the campaigns.
-family_tests := test_kernels test_engine_batch
+family_tests := test_kernels test_engine_batch test_engine_tree
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 

@@ -28,6 +28,7 @@
 #include "lanes.h"
 #include "prepared.h"
 
+#include <float.h>
 #include <math.h>
 
 /* [axis], each {low, -high}. In 2D the third is {0, 0}. */
@@ -35,12 +36,23 @@ struct swept {
     lanes end[FMB_DIM_MAX];
 };
 
+/* x <= y. gcc takes such masks apart where it sees what they are made of. */
+INLINE lanes_mask swept_at_most(lanes x, lanes y)
+{
+#if defined(__SSE2__)
+    return (lanes_mask) _mm_cmple_pd((__m128d) x, (__m128d) y);
+#else
+    return x <= y;
+#endif
+}
+
 /* x + y or less. On input: x is no +infinity, y <= 0. */
 INLINE lanes swept_sum(lanes x, lanes y)
 {
     const lanes sum = x + y, part = sum - x;
     const lanes error = (x - (sum - part)) + (y - part);
-    const lanes_mask holds = (error >= lanes_of(0)) & (error < lanes_of(INFINITY));
+    const lanes_mask holds =
+        swept_at_most(lanes_of(0), error) & swept_at_most(error, lanes_of(DBL_MAX));
     const lanes step = lanes_magnitude(sum) * 0x1p-52;
     return sum - lanes_choose(holds, lanes_of(0), step);
 }
@@ -125,9 +137,9 @@ INLINE struct swept swept_against(const struct swept *box)
 /* Whether the boxes, one of them turned round by swept_against(), have a point in common. */
 INLINE bool swept_meet(const struct swept *box, const struct swept *against)
 {
-    lanes_mask meet = box->end[0] <= against->end[0];
+    lanes_mask meet = swept_at_most(box->end[0], against->end[0]);
     for (int axis = 1; axis < FMB_DIM_MAX; axis++)
-        meet &= box->end[axis] <= against->end[axis];
+        meet &= swept_at_most(box->end[axis], against->end[axis]);
     return lanes_all(meet);
 }
 

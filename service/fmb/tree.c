@@ -1,10 +1,10 @@
 /* Which pairs may meet: a binary tree of boxes.
  *
- * Method. Boxes of the frames are split in two halves, along an axis and by their centres, until
- * there are few enough for a leaf. The halves are full leaves but for the last one, so the shape of
- * the tree, its depth and where each node stands follow from the number of frames alone, whatever
- * the boxes are; boxes decide only who goes where. Time: a bounded number of passes over the boxes
- * a level (select_first() says how many), and as many levels as the number of leaves has bits.
+ * Method. The boxes of many frames are parted in two, along an axis and by their centres, near the
+ * middle: neither side has less than a quarter of them. Of those of FEW frames and less the halves
+ * are full leaves but for the last one. That bounds how many nodes there are and how deep, whatever
+ * the boxes are. Time: a bounded number of passes over the boxes a level, which select_first()
+ * tells; nearly always one.
  *
  * Nothing here can lose a pair: centres and axes are rounded, or no number at all, and only make a
  * tree good or bad. */
@@ -15,7 +15,8 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { CACHE_LINE = 64, DEPTH_MAX = 33 };
+/* DEPTH_MAX: log 2^32 / log(4/3) is 77.1. */
+enum { CACHE_LINE = 64, FEW = 64, DEPTH_MAX = 78 };
 
 _Static_assert(sizeof(struct fmb_tree_node) == CACHE_LINE, "a node is a cache line");
 
@@ -24,20 +25,25 @@ static size_t leaves_of(size_t frames)
     return frames / TREE_LEAF + (frames % TREE_LEAF != 0);
 }
 
-static size_t nodes_of(size_t frames)
+/* At most. Those of whom there are few are at least FEW / 4 if not all there are, and have one leaf
+ * more than they fill. */
+static size_t most_nodes(size_t frames)
 {
-    return frames ? 2 * leaves_of(frames) - 1 : 0;
+    return 2 * (frames / TREE_LEAF + frames / (FEW / 4)) + 3;
 }
 
-/* The nodes are fewer than frames / 2 + 2: no sum here overflows where that of the first line does
- * not. */
+static size_t bytes_without_nodes(size_t count)
+{
+    return CACHE_LINE + count * (sizeof(struct fmb_tree_box) + sizeof(unsigned));
+}
+
 size_t fmb_tree_bytes(size_t count)
 {
+    /* A frame has less than half a node. */
     const size_t each = sizeof(struct fmb_tree_box) + sizeof(unsigned) + CACHE_LINE / 2;
-    if (count >= UINT_MAX || count > (SIZE_MAX - 3 * CACHE_LINE) / each)
+    if (count >= UINT_MAX || count > (SIZE_MAX - 4 * CACHE_LINE) / each)
         return SIZE_MAX;
-    return CACHE_LINE + nodes_of(count) * sizeof(struct fmb_tree_node) +
-           count * (sizeof(struct fmb_tree_box) + sizeof(unsigned));
+    return bytes_without_nodes(count) + most_nodes(count) * sizeof(struct fmb_tree_node);
 }
 
 /* ---- Centres ---- */
@@ -50,13 +56,21 @@ static inline double centre_of(const struct fmb_tree_box *box, int axis)
     return centre == centre ? centre : 0;
 }
 
-/* The least and the greatest centre of boxes on each axis; as a box, {least, -greatest}. */
+/* Some boxes of many, as far apart in their order: no more of them are asked what they are like. */
+enum { ASKED = 16 };
+
+static size_t stride_of(size_t count)
+{
+    return (count + ASKED - 1) / ASKED;
+}
+
+/* The least and the greatest centre of some boxes on each axis; as a box, {least, -greatest}. */
 static struct swept centres_of(const struct fmb_tree_box *box, size_t count)
 {
     struct swept out;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out.end[axis] = lanes_of(INFINITY);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i += stride_of(count))
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
             const lanes half = box[i].box.end[axis] * 0.5;
             const lanes centre = half - (lanes){half[1], half[0]};
@@ -75,41 +89,36 @@ static double reach_of(lanes centres)
 
 /* ---- The axis ---- */
 
-/* How large boxes are against the reach of their centres, each at most 1: the part of them that
- * would be in both halves. Of large numbers of them, a few are asked. least: what is added to each,
- * so that of small boxes the longest axis is best. */
-static double share_in_both(const struct fmb_tree_box *box, size_t count, int axis, double reach,
-                            double least)
+/* How large some boxes are against the reach of their centres, each at most 1: the part of them
+ * that would be in both halves. Few enough are none: what is asked about is often larger. */
+static double share_in_both(const struct fmb_tree_box *box, size_t count, int axis, double reach)
 {
-    enum { ASKED = 16 };
-    const size_t stride = count / ASKED + 1;
+    const double inverse =
+        1 / reach; /* of the least doubles it is infinite, and so all are large */
     double sum = 0, asked = 0;
-    for (size_t i = 0; i < count; i += stride, asked++) {
+    for (size_t i = 0; i < count; i += stride_of(count), asked++) {
         const lanes end = box[i].box.end[axis];
-        const double size = (-end[0] - end[1] + least) / reach;
+        const double size = (-end[0] - end[1]) * inverse;
         sum += size < 1 ? size : 1;
     }
-    return sum / asked;
+    return sum > asked / 64 ? sum / asked : 1.0 / 64;
 }
 
 /* The axis on which halves have the fewest boxes in common, of equal ones the longest; -1 if all
- * centres are the same. */
+ * centres that are asked are the same. */
 static int axis_of(const struct fmb_tree_box *box, size_t count)
 {
     const struct swept centres = centres_of(box, count);
-    double reach[FMB_DIM_MAX], best = 2;
-    int longest = 0, out = -1;
+    double best = INFINITY, longest = 0;
+    int out = -1;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        reach[axis] = reach_of(centres.end[axis]);
-        longest = reach[axis] > reach[longest] ? axis : longest;
-    }
-    for (int k = 0; k < FMB_DIM_MAX; k++) {
-        const int axis = (longest + k) % FMB_DIM_MAX;
-        if (reach[axis] == 0)
+        const double reach = reach_of(centres.end[axis]);
+        if (reach == 0)
             continue;
-        const double share = share_in_both(box, count, axis, reach[axis], reach[longest] * 0x1p-10);
-        if (share < best) {
+        const double share = share_in_both(box, count, axis, reach);
+        if (share < best || (share == best && reach > longest)) {
             best = share;
+            longest = reach;
             out = axis;
         }
     }
@@ -143,31 +152,43 @@ static inline void swap_items(const struct items *items, size_t i, size_t j)
     items->order[j] = index;
 }
 
-/* Few of them. Their ranks are counted, equal ones in the order they are in, and then those that
- * are on the wrong side change places. */
-enum { FEW = 12 };
+/* Those that are on the wrong side change places. */
+static void swap_wrong(const struct items *items, const unsigned char rank[], size_t target)
+{
+    unsigned char left[FEW], right[FEW];
+    size_t wrong = 0, others = 0;
+    for (size_t i = 0; i < target; i++) {
+        left[wrong] = (unsigned char) i;
+        wrong += rank[i] >= target;
+    }
+    for (size_t i = target; i < items->count; i++) {
+        right[others] = (unsigned char) i;
+        others += rank[i] < target;
+    }
+    for (size_t i = 0; i < wrong; i++)
+        swap_items(items, left[i], right[i]);
+}
 
+/* Few of them. How many come before each is counted, equal ones in the order they are in. */
 static void select_few(const struct items *items, size_t target)
 {
-    double key[FEW];
+    lanes key[FEW / 2];
     unsigned char rank[FEW];
     for (size_t i = 0; i < items->count; i++)
-        key[i] = key_of(items, i);
+        key[i / 2][i % 2] = key_of(items, i);
+    if (items->count % 2)
+        key[items->count / 2][1] = INFINITY;
     for (size_t i = 0; i < items->count; i++) {
-        unsigned before = 0;
-        for (size_t j = 0; j < i; j++)
-            before += key[j] <= key[i];
-        for (size_t j = i + 1; j < items->count; j++)
-            before += key[j] < key[i];
-        rank[i] = (unsigned char) before;
+        const double x = key[i / 2][i % 2];
+        lanes_mask before = {0};
+        for (size_t k = 0; k < i / 2; k++)
+            before -= swept_at_most(key[k], lanes_of(x));
+        for (size_t k = i / 2 + 1; k < (items->count + 1) / 2; k++)
+            before -= ~swept_at_most(lanes_of(x), key[k]);
+        const int beside = i % 2 ? key[i / 2][0] <= x : key[i / 2][1] < x;
+        rank[i] = (unsigned char) (before[0] + before[1] + beside);
     }
-    for (size_t i = 0, j = target; i < target; i++) {
-        if (rank[i] < target)
-            continue;
-        while (rank[j] >= target)
-            j++;
-        swap_items(items, i, j++);
-    }
+    swap_wrong(items, rank, target);
 }
 
 /* Two ends of what is not parted yet: [first, end). */
@@ -223,19 +244,19 @@ static size_t part(const struct items *items, double pivot)
     }
 }
 
-/* The middle one of a few. */
+/* The middle one of some. */
 static double middle_key(const struct items *items)
 {
-    enum { ASKED = 9 };
     double key[ASKED];
-    for (size_t k = 0; k < ASKED; k++) {
-        const double x = key_of(items, (2 * k + 1) * (items->count / (2 * ASKED)));
-        size_t to = k;
+    size_t asked = 0;
+    for (size_t i = 0; i < items->count; i += stride_of(items->count), asked++) {
+        const double x = key_of(items, i);
+        size_t to = asked;
         for (; to > 0 && key[to - 1] > x; to--)
             key[to] = key[to - 1];
         key[to] = x;
     }
-    return key[ASKED / 2];
+    return key[asked / 2];
 }
 
 /* Doubles as integers in the same order. */
@@ -254,30 +275,35 @@ static double from_ordered(int64_t bits)
     return x;
 }
 
-/* Between the least and the greatest, with as many doubles to either side. */
-static double halfway_key(const struct items *items)
+static void keys_between(const struct items *items, double *least, double *greatest)
 {
-    double least = INFINITY, greatest = -INFINITY;
+    *least = INFINITY;
+    *greatest = -INFINITY;
     for (size_t i = 0; i < items->count; i++) {
         const double key = key_of(items, i);
-        least = key < least ? key : least;
-        greatest = key > greatest ? key : greatest;
+        *least = key < *least ? key : *least;
+        *greatest = key > *greatest ? key : *greatest;
     }
+}
+
+/* With as many doubles to either side; below the greatest. */
+static double halfway(double least, double greatest)
+{
     const int64_t from = ordered(least), to = ordered(greatest);
     return from_ordered((from >> 1) + (to >> 1) + (from & to & 1));
 }
 
-/* Puts the first target of them, by their keys, before the others. Passes over them: middle keys
- * halve what is left, or nearly so, of all but odd sequences; after GUESSES of them, halfway keys
- * halve the doubles that are left, which are below 2^64. */
+/* Puts the first target of them, by their keys, before the others. A pass halves the doubles that
+ * are left between the least and the greatest, which are below 2^64; once these are neighbours, it
+ * leaves them all the same, or halves those that are the least. */
 static void select_first(struct items items, size_t target)
 {
-    enum { GUESSES = 24 };
-    for (int round = 0; items.count > FEW; round++) {
-        if (target == 0 || target == items.count)
+    while (items.count > FEW) {
+        double least, greatest;
+        keys_between(&items, &least, &greatest);
+        if (target == 0 || target == items.count || least == greatest)
             return;
-        const size_t before =
-            part(&items, round < GUESSES ? middle_key(&items) : halfway_key(&items));
+        const size_t before = part(&items, halfway(least, greatest));
         if (before > target) {
             items.count = before;
             continue;
@@ -292,33 +318,49 @@ static void select_first(struct items items, size_t target)
 
 /* ---- The tree ---- */
 
-struct range_of_frames {
+/* Puts those of one child before those of the other, and returns how many they are. */
+static size_t split(const struct fmb_tree *tree, size_t first, size_t count)
+{
+    struct items items = {tree->boxes + first, tree->order + first, count, 0, false};
+    items.axis = axis_of(items.box, count);
+    if (items.axis < 0) {
+        items.axis = 0;
+        items.by_end = true;
+    }
+    if (count > FEW) {
+        const size_t before = part(&items, middle_key(&items));
+        if (before >= count / 4 + 1 && count - before >= count / 4 + 1)
+            return before;
+    }
+    const size_t half = leaves_of(count) / 2 * TREE_LEAF;
+    select_first(items, half);
+    return half;
+}
+
+struct pending {
     size_t first, count;
 };
 
 /* Which frames are below which node, from the root on; the boxes are put in order. */
 static void set_nodes(struct fmb_tree *tree)
 {
-    struct range_of_frames later[DEPTH_MAX], now = {0, tree->frame_count};
-    size_t depth = 0;
-    for (size_t at = 0; at < tree->node_count; at++) {
+    struct pending later[DEPTH_MAX], now = {0, tree->frame_count};
+    size_t depth = 0, at = 0;
+    for (;; at++) {
         struct fmb_tree_node *node = &tree->nodes[at];
-        node->skip = (unsigned) (at + nodes_of(now.count));
         node->first = (unsigned) now.first;
         node->count = now.count <= TREE_LEAF ? (unsigned) now.count : 0;
-        if (node->count) {
-            now = depth ? later[--depth] : now;
-            continue;
+        if (!node->count) {
+            const size_t before = split(tree, now.first, now.count);
+            later[depth++] = (struct pending){now.first + before, now.count - before};
+            now.count = before;
+        } else if (depth) {
+            now = later[--depth];
+        } else {
+            break;
         }
-        const size_t half = leaves_of(now.count) / 2 * TREE_LEAF;
-        struct fmb_tree_box *box = tree->boxes + now.first;
-        const int axis = axis_of(box, now.count);
-        select_first(
-            (struct items){box, tree->order + now.first, now.count, axis < 0 ? 0 : axis, axis < 0},
-            half);
-        later[depth++] = (struct range_of_frames){now.first + half, now.count - half};
-        now.count = half;
     }
+    tree->node_count = at + 1;
 }
 
 static void set_leaf(const struct fmb_tree *tree, struct fmb_tree_node *node)
@@ -338,10 +380,12 @@ static void set_boxes(const struct fmb_tree *tree)
     for (size_t at = tree->node_count; at-- > 0;) {
         struct fmb_tree_node *node = &tree->nodes[at];
         if (node->count) {
+            node->skip = (unsigned) at + 1;
             set_leaf(tree, node);
             continue;
         }
         const struct fmb_tree_node *first = node + 1, *second = &tree->nodes[first->skip];
+        node->skip = second->skip;
         node->box = swept_hull(first->box, second->box);
         node->last = first->last > second->last ? first->last : second->last;
     }
@@ -368,14 +412,14 @@ static enum fmb_status check(const struct fmb_prepared *frames, size_t count, do
                                         : FMB_OK;
 }
 
+/* Each at a multiple of what its numbers need: the nodes, the boxes, the order. */
 static void lay_out(void *memory, size_t count, struct fmb_tree *out)
 {
     char *at = memory;
     at += -(uintptr_t) at % CACHE_LINE;
     out->frame_count = count;
-    out->node_count = nodes_of(count);
     out->nodes = (void *) at;
-    at += out->node_count * sizeof *out->nodes;
+    at += most_nodes(count) * sizeof *out->nodes;
     out->boxes = (void *) at;
     at += count * sizeof *out->boxes;
     out->order = (void *) at;
@@ -401,6 +445,13 @@ enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, 
     return FMB_OK;
 }
 
+/* Both of its cache lines. */
+static void prefetch(const struct fmb_prepared *frame)
+{
+    __builtin_prefetch(frame);
+    __builtin_prefetch((const char *) frame + CACHE_LINE);
+}
+
 enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared *frames,
                                double duration)
 {
@@ -409,8 +460,11 @@ enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared 
         return status;
     tree->dim = dimension_of(frames);
     tree->duration = duration;
-    for (size_t k = 0; k < tree->frame_count; k++)
+    for (size_t k = 0; k < tree->frame_count; k++) {
+        const size_t ahead = k + 8 < tree->frame_count ? k + 8 : k;
+        prefetch(&frames[tree->order[ahead]]);
         tree->boxes[k].box = swept_of(&frames[tree->order[k]], duration);
+    }
     set_boxes(tree);
     return FMB_OK;
 }

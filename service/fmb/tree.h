@@ -11,7 +11,7 @@
 #include "swept.h"
 
 /* Frames of a leaf; all leaves but the last are full. */
-enum { TREE_LEAF = 4 };
+enum { TREE_LEAF = 8 };
 
 /* One cache line. */
 struct fmb_tree_node {
@@ -41,7 +41,8 @@ INLINE size_t tree_walk(const struct fmb_tree *tree, const struct swept *box, un
         at = enter ? at + 1 : node->skip;
         if (!enter)
             continue;
-        for (unsigned k = node->first; k < node->first + node->count; k++) {
+        const unsigned end = node->first + node->count;
+        for (unsigned k = node->first; k < end; k++) {
             /* There is room for this one, and it is written over if it is not one of them. */
             const unsigned index = tree->order[k];
             out[found] = index;
