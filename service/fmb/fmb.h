@@ -266,8 +266,8 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
 
 /* ---- Which pairs may meet ----
  *
- * Most pairs of a large scene are far from each other. A tree of boxes finds for a frame all those
- * that are not, without asking every one:
+ * Most pairs of a large scene are far from each other. A tree of boxes finds those that are not,
+ * without asking every one:
  *
  *     struct fmb_tree tree;
  *     void *memory = malloc(fmb_tree_bytes(count));
@@ -277,10 +277,16 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
  *         ... decide the pairs of i and found[0] to found[n - 1] ...
  *     }
  *
+ * or, several times faster and in an order of its own,
+ *
+ *     struct fmb_tree_place place = {0};
+ *     while (fmb_tree_pairs(&tree, &tree, &place, pairs, room, &n) == FMB_OK && n > 0)
+ *         ... decide pairs[0] to pairs[n - 1] ...
+ *
  * The box of a frame holds all its points at all times of the window. It is the smallest one where
- * no sum of its numbers rounds, and else a few units in the last place larger. A pair of which fmb
- * says that it touches or overlaps is never left out: its boxes have a point in common; those that
- * merely touch have, too. */
+ * no sum of its numbers rounds, and else larger by a few units in the last place of the largest of
+ * them. A pair that touches or overlaps is never left out: the boxes have a point in common then;
+ * those that merely touch have, too. What is found is the same on every machine. */
 
 /* Where frames are, in memory of the caller's. Fill it with fmb_tree_build() only. */
 struct fmb_tree {
@@ -290,12 +296,11 @@ struct fmb_tree {
     double duration;
     struct fmb_tree_node *nodes; /* [node_count] */
     struct fmb_tree_box *boxes;  /* [frame_count], in the order below */
-    /* [frame_count]: the indices of the frames, neighbours in space near each other. Frames asked
-     * about in this order are answered sooner, if there are many. */
+    /* [frame_count]: the indices of the frames, neighbours in space near each other. */
     unsigned *order;
 };
 
-/* How many bytes a tree of so many frames needs: 84 a frame, and at most 200 more. SIZE_MAX where
+/* How many bytes a tree of so many frames needs: 76 a frame, and 256 more. SIZE_MAX where
  * that is not a number of bytes, or fmb_tree_build() refuses so many. */
 size_t fmb_tree_bytes(size_t count);
 
@@ -324,6 +329,27 @@ enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared 
  * may be written to. */
 enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepared *frame,
                              unsigned from, unsigned *out, size_t *count);
+
+/* How far fmb_tree_pairs() has come; all 0 to begin with. */
+struct fmb_tree_place {
+    unsigned leaf, node;
+    bool inside;
+};
+
+/* The least room for pairs. */
+enum { FMB_TREE_ROOM = 64 };
+
+/* All pairs of a frame of one tree and a frame of another whose boxes meet; or, of a tree with
+ * itself (a == b), all pairs of two of its frames, each once and the smaller index first. Some at a
+ * time: each call goes on from *place, and the trees must not change between.
+ * On input: out has room for so many pairs.
+ * On output: OK, and in out[0] to out[*count - 1] pairs [index in a, index in b], each once;
+ * *count is 0 just if there are no more. Or DIMENSIONS_DIFFER, BAD_DURATION for trees of different
+ * windows, OVER_LIMIT for less than FMB_TREE_ROOM, and *count is 0. The rest of out may be written
+ * to. */
+enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
+                               struct fmb_tree_place *place, unsigned (*out)[2], size_t room,
+                               size_t *count);
 
 /* ---- Certificates ----
  *

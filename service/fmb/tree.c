@@ -19,6 +19,7 @@
 enum { CACHE_LINE = 64, FEW = 64, DEPTH_MAX = 78 };
 
 _Static_assert(sizeof(struct fmb_tree_node) == CACHE_LINE, "a node is a cache line");
+_Static_assert(TREE_LEAF *TREE_LEAF == FMB_TREE_ROOM, "there is room for all pairs of two leaves");
 
 static size_t leaves_of(size_t frames)
 {
@@ -539,5 +540,90 @@ enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepa
     const struct swept box = swept_of(frame, tree->duration);
     *count = tree_walk(tree, &box, from, out, NULL);
     sort(out, *count, (unsigned) tree->frame_count);
+    return FMB_OK;
+}
+
+/* ---- Pairs ---- */
+
+/* A leaf, with what the boxes of its frames are held against. */
+struct asking {
+    const struct fmb_tree *tree;
+    const struct fmb_tree_node *leaf;
+    struct swept all, one[TREE_LEAF];
+};
+
+static void set_asking(const struct fmb_tree *tree, const struct fmb_tree_node *leaf,
+                       struct asking *out)
+{
+    out->tree = tree;
+    out->leaf = leaf;
+    out->all = swept_against(&leaf->box);
+    for (unsigned k = 0; k < leaf->count; k++)
+        out->one[k] = swept_against(&tree->boxes[leaf->first + k].box);
+}
+
+static inline void put_pair(unsigned first, unsigned second, bool ordered, unsigned out[2])
+{
+    const bool swapped = (int) ordered & (first > second);
+    out[0] = swapped ? second : first;
+    out[1] = swapped ? first : second;
+}
+
+/* The pairs of a frame of the one leaf and one of the other, of a leaf with itself each once. There
+ * is room for all of them: each is written, and written over if it is not one. */
+static size_t pairs_of_leaves(const struct asking *asking, const struct fmb_tree *tree,
+                              const struct fmb_tree_node *leaf, unsigned (*out)[2])
+{
+    const bool same_tree = asking->tree == tree;
+    const unsigned end = leaf->first + leaf->count;
+    size_t found = 0;
+    for (unsigned k = 0; k < asking->leaf->count; k++) {
+        const unsigned index = asking->tree->order[asking->leaf->first + k];
+        if (!swept_meet(&leaf->box, &asking->one[k]))
+            continue;
+        for (unsigned m = leaf->first + (leaf == asking->leaf ? k + 1 : 0); m < end; m++) {
+            put_pair(index, tree->order[m], same_tree, out[found]);
+            found += swept_meet(&tree->boxes[m].box, &asking->one[k]);
+        }
+    }
+    return found;
+}
+
+static enum fmb_status check_pairs(const struct fmb_tree *a, const struct fmb_tree *b, size_t room)
+{
+    if (a->frame_count == 0 || b->frame_count == 0)
+        return FMB_OK;
+    return a->dim != b->dim             ? FMB_DIMENSIONS_DIFFER
+           : a->duration != b->duration ? FMB_BAD_DURATION
+           : room < FMB_TREE_ROOM       ? FMB_OVER_LIMIT
+                                        : FMB_OK;
+}
+
+/* Each leaf of the first tree walks through the second; in its own tree from itself on, so that it
+ * meets every other leaf once. */
+enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
+                               struct fmb_tree_place *place, unsigned (*out)[2], size_t room,
+                               size_t *count)
+{
+    const enum fmb_status status = check_pairs(a, b, room);
+    *count = 0;
+    if (status != FMB_OK || b->frame_count == 0)
+        return status;
+    for (; place->leaf < a->node_count; place->leaf++, place->inside = false) {
+        struct asking asking;
+        const struct fmb_tree_node *leaf = &a->nodes[place->leaf];
+        if (!leaf->count)
+            continue;
+        set_asking(a, leaf, &asking);
+        unsigned at = place->inside ? place->node : a == b ? place->leaf : 0;
+        while ((leaf = tree_next(b, &asking.all, 0, &at, NULL))) {
+            *count += pairs_of_leaves(&asking, b, leaf, out + *count);
+            if (room - *count >= FMB_TREE_ROOM)
+                continue;
+            place->node = at;
+            place->inside = true;
+            return FMB_OK;
+        }
+    }
     return FMB_OK;
 }

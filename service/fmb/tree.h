@@ -26,23 +26,37 @@ struct fmb_tree_box {
     struct swept box;
 };
 
+/* The next leaf that may meet a box, of which against is the other side, and may have an index that
+ * is not below from; or NULL. at: the node to go on with, 0 to begin with. visits counts nodes, or
+ * is NULL. */
+INLINE const struct fmb_tree_node *tree_next(const struct fmb_tree *tree,
+                                             const struct swept *against, unsigned from,
+                                             unsigned *at, size_t *visits)
+{
+    while (*at < tree->node_count) {
+        const struct fmb_tree_node *node = &tree->nodes[*at];
+        const bool enter = (int) swept_meet(&node->box, against) & (node->last >= from);
+        if (visits)
+            ++*visits;
+        *at = enter ? *at + 1 : node->skip;
+        if (enter && node->count)
+            return node;
+    }
+    return NULL;
+}
+
 /* Puts the indices of the frames that may meet a box and are not below from into out, as they come,
- * and returns how many. visits counts nodes, or is NULL. */
+ * and returns how many. */
 INLINE size_t tree_walk(const struct fmb_tree *tree, const struct swept *box, unsigned from,
                         unsigned *out, size_t *visits)
 {
     const struct swept against = swept_against(box);
+    const struct fmb_tree_node *leaf;
+    unsigned at = 0;
     size_t found = 0;
-    for (unsigned at = 0; at < tree->node_count;) {
-        const struct fmb_tree_node *node = &tree->nodes[at];
-        const bool enter = (int) swept_meet(&node->box, &against) & (node->last >= from);
-        if (visits)
-            ++*visits;
-        at = enter ? at + 1 : node->skip;
-        if (!enter)
-            continue;
-        const unsigned end = node->first + node->count;
-        for (unsigned k = node->first; k < end; k++) {
+    while ((leaf = tree_next(tree, &against, from, &at, visits))) {
+        const unsigned end = leaf->first + leaf->count;
+        for (unsigned k = leaf->first; k < end; k++) {
             /* There is room for this one, and it is written over if it is not one of them. */
             const unsigned index = tree->order[k];
             out[found] = index;

@@ -149,6 +149,7 @@ int main(int argc, char **argv)
     instructions_run(&bench);
     growth_run(&bench);
     grids_run(&bench);
+    broad_run(&bench);
     worst_run(&bench);
     print_noise(pinned);
     const bool complete = fclose(bench.json.out) == 0;

@@ -4,8 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const sections[] = {"cells",   "inverse",      "order",  "hybrid", "box",
-                                       "article", "instructions", "growth", "grids",  "worst"};
+static const char *const sections[] = {"cells", "inverse", "order",        "hybrid",
+                                       "box",   "article", "instructions", "growth",
+                                       "grids", "broad",   "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

@@ -1,6 +1,7 @@
 #define _DEFAULT_SOURCE
 #include "scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -111,6 +112,31 @@ struct scene scene_of_grid(double pitch, int side)
         for (int axis = 0; axis < 3; axis++)
             scene.frame[at].origin[axis] = place[axis] * pitch;
         prepare(&scene.frame[at], &scene.prepared[at]);
+    }
+    return scene;
+}
+
+/* Boxes of a mean size s along each axis meet where centres are no farther than that from each
+ * other: those of (2 s)^3. Of three uniform components s is 3/4, of the hull of two of them and 0
+ * it is 5/12. */
+struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours, size_t count,
+                            uint64_t seed)
+{
+    struct draw draw = {seed};
+    struct scene scene = scene_of_size(count, 0);
+    const double size = shape == FMB_CUBOID ? 0.75 : 5.0 / 12;
+    const double wide = 2 * size * cbrt((double) count / neighbours);
+    for (size_t i = 0; i < count; i++) {
+        struct solid solid = {.dim = 3, .shape = shape, .moving = moving};
+        struct fmb_body body;
+        for (int axis = 0; axis < 3; axis++) {
+            solid.origin[axis] = draw_uniform(&draw, 0, wide);
+            solid.velocity[axis] = draw_uniform(&draw, -0.05, 0.05);
+            for (int c = 0; c < solid_count(&solid); c++)
+                solid.component[c][axis] = draw_uniform(&draw, -0.5, 0.5);
+        }
+        const struct fmb_frame frame = frame_of(&solid, &body);
+        prepare(&frame, &scene.prepared[i]);
     }
     return scene;
 }

@@ -30,6 +30,10 @@ struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed, b
 /* Cubes in a grid, side of them along each axis: origins are whole multiples of the pitch as
  * doubles give them, and so is the edge. */
 struct scene scene_of_grid(double pitch, int side);
+/* Frames anywhere in a cube, so dense that the box of each meets those of about so many others.
+ * Components are uniform in [-1/2, 1/2], velocities in a tenth of that. */
+struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours, size_t count,
+                            uint64_t seed);
 void scene_free(struct scene *scene);
 
 /* One of the first half, and one of the rest; anything. */

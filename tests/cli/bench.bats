@@ -10,7 +10,8 @@ setup() {
 @test "bench --quick measures every section, in every cell, by every method" {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
-    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .worst;
+    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .broad,
+                   .worst;
                length > 0)' "$JSON"
     jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
     jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",

@@ -105,7 +105,7 @@ well_formed() {
 @test "every method, family and section is there" {
     report
     ended 0
-    jq -r '.cells[].methods[].name, (.grids, .instructions, .worst)[].name' "$BENCH" |
+    jq -r '.cells[].methods[].name, (.grids, .instructions, .broad, .worst)[].name' "$BENCH" |
         sort -u > "$BATS_TEST_TMPDIR/names"
     jq -r '.methods[].name, .families[].summary' "$ACCURACY" >> "$BATS_TEST_TMPDIR/names"
     while read -r name; do

@@ -410,6 +410,67 @@ static void ask_about_some(struct draw *draw, const struct scene *scene, struct 
     }
 }
 
+/* Counts in times[i * count + j] how often fmb_tree_pairs() says the pair, in calls of any room. */
+static void count_pairs(struct draw *draw, const struct fmb_tree *a, const struct fmb_tree *b,
+                        unsigned char *times)
+{
+    enum { MOST = 200 };
+    unsigned pairs[MOST + 1][2];
+    struct fmb_tree_place place = {0};
+    for (size_t count = 1; count > 0;) {
+        const size_t room = (size_t) draw_int(draw, FMB_TREE_ROOM, MOST);
+        pairs[room][0] = UINT_MAX;
+        assert_int_equal(fmb_tree_pairs(a, b, &place, pairs, room, &count), FMB_OK);
+        assert_true(count <= room && pairs[room][0] == UINT_MAX);
+        for (size_t k = 0; k < count; k++) {
+            assert_true(pairs[k][0] < a->frame_count && pairs[k][1] < b->frame_count);
+            times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
+        }
+    }
+}
+
+static void expect_same_pairs(struct draw *draw, const struct scene *scene, struct planted *planted,
+                              const struct scene *others, const struct planted *second)
+{
+    unsigned char *times = calloc(scene->count * others->count + 1, 1);
+    assert_non_null(times);
+    count_pairs(draw, &planted->tree, &second->tree, times);
+    for (unsigned i = 0; i < scene->count; i++) {
+        const unsigned from = scene == others ? i + 1 : 0;
+        const size_t found = find_all(others, &scene->frame[i], from, second->expected);
+        for (size_t k = 0; k < found; k++)
+            times[i * others->count + second->expected[k]] ^= 1;
+    }
+    for (size_t k = 0; k < scene->count * others->count; k++)
+        assert_int_equal(times[k], 0);
+    free(times);
+}
+
+static void pairs_of_trees_are_what_asking_every_pair_finds(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "pairs_of_trees_are_what_asking_every_pair_finds");
+    for (long n = draw_sample(160); n > 0; n--) {
+        struct scene scene, others;
+        struct planted planted, second;
+        const int dim = draw_int(&draw, 2, 3);
+        drawing *how = drawings[n % (long) COUNT(drawings)];
+        scene_open((size_t) draw_int(&draw, 0, 200), 1, &scene);
+        scene_open((size_t) draw_int(&draw, 0, 200), 1, &others);
+        scene_draw(&draw, how, dim, true, &scene);
+        scene_draw(&draw, how, dim, false, &others);
+        plant(&draw, &scene, &planted);
+        plant(&draw, &others, &second);
+        expect_same_pairs(&draw, &scene, &planted, &scene, &planted);
+        expect_same_pairs(&draw, &scene, &planted, &others, &second);
+        uproot(&planted);
+        uproot(&second);
+        scene_close(&scene);
+        scene_close(&others);
+    }
+}
+
 static double draw_duration(struct draw *draw)
 {
     static const double some[] = {0, 1, 1, 1, 0.1, 1e-300, 1e300};
@@ -787,6 +848,19 @@ static void what_cannot_be_asked_is_refused(void **state)
     assert_int_equal(count, 0);
     assert_int_equal(fmb_tree_ask(tree, &nobody, 0, found, &count), FMB_NOT_FINITE);
     ask_about_some(&draw, &deep, &planted, &deep); /* the tree is as it was */
+    struct fmb_tree_place place = {0};
+    unsigned pairs[FMB_TREE_ROOM][2];
+    assert_int_equal(fmb_tree_pairs(tree, tree, &place, pairs, FMB_TREE_ROOM - 1, &count),
+                     FMB_OVER_LIMIT);
+    other = *tree;
+    other.dim = 2;
+    assert_int_equal(fmb_tree_pairs(tree, &other, &place, pairs, FMB_TREE_ROOM, &count),
+                     FMB_DIMENSIONS_DIFFER);
+    assert_int_equal(fmb_tree_refit(tree, deep.frame, 2), FMB_OK);
+    other.dim = 3;
+    assert_int_equal(fmb_tree_pairs(tree, &other, &place, pairs, FMB_TREE_ROOM, &count),
+                     FMB_BAD_DURATION);
+    assert_int_equal(count, 0);
     assert_int_equal(fmb_tree_build(NULL, 0, 1, NULL, &other), FMB_OK);
     assert_int_equal(fmb_tree_ask(&other, &flat.frame[0], 0, found, &count), FMB_OK);
     assert_int_equal(count, 0);
@@ -806,6 +880,7 @@ int main(void)
         cmocka_unit_test(sums_step_down_just_where_they_were_rounded_up),
         cmocka_unit_test(trees_of_every_small_number_are_sound),
         cmocka_unit_test(trees_find_what_asking_every_frame_finds),
+        cmocka_unit_test(pairs_of_trees_are_what_asking_every_pair_finds),
         cmocka_unit_test(cubes_in_a_grid_have_their_neighbours),
         cmocka_unit_test(pairs_that_meet_are_found),
         cmocka_unit_test(asking_costs_no_more_than_a_few_nodes_a_level),
