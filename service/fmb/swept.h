@@ -97,6 +97,7 @@ INLINE void swept_axes(const struct fmb_prepared *frame, const int dim, double d
     const unsigned kind = prepared_kind(frame);
     const bool cuboid = !(kind & (PREPARED_TETRAHEDRON | PREPARED_FACE));
     const double *velocity = frame->number + dim * (dim + 1);
+    UNROLL(3)
     for (int axis = 0; axis < dim; axis++)
         out->end[axis] = swept_axis(frame->number + axis, dim, cuboid);
     for (int axis = 0; axis < dim && kind & PREPARED_MOVING; axis++) {
@@ -120,6 +121,7 @@ INLINE struct swept swept_of(const struct fmb_prepared *frame, double duration)
 /* The smallest box that holds both. */
 INLINE struct swept swept_hull(struct swept x, struct swept y)
 {
+    UNROLL(3)
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         x.end[axis] = lanes_least(x.end[axis], y.end[axis]);
     return x;
@@ -129,6 +131,7 @@ INLINE struct swept swept_hull(struct swept x, struct swept y)
 INLINE struct swept swept_against(const struct swept *box)
 {
     struct swept out;
+    UNROLL(3)
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out.end[axis] = (lanes){-box->end[axis][1], -box->end[axis][0]};
     return out;
@@ -138,6 +141,7 @@ INLINE struct swept swept_against(const struct swept *box)
 INLINE bool swept_meet(const struct swept *box, const struct swept *against)
 {
     lanes_mask meet = swept_at_most(box->end[0], against->end[0]);
+    UNROLL(3)
     for (int axis = 1; axis < FMB_DIM_MAX; axis++)
         meet &= swept_at_most(box->end[axis], against->end[axis]);
     return lanes_all(meet);

@@ -68,15 +68,19 @@ static size_t stride_of(size_t count)
 /* The least and the greatest centre of some boxes on each axis; as a box, {least, -greatest}. */
 static struct swept centres_of(const struct fmb_tree_box *box, size_t count)
 {
+    const size_t stride = stride_of(count);
     struct swept out;
+    UNROLL(3)
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out.end[axis] = lanes_of(INFINITY);
-    for (size_t i = 0; i < count; i += stride_of(count))
+    for (size_t i = 0; i < count; i += stride) {
+        UNROLL(3)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
             const lanes half = box[i].box.end[axis] * 0.5;
             const lanes centre = half - (lanes){half[1], half[0]};
             out.end[axis] = lanes_least(centre, out.end[axis]); /* that, where it is no number */
         }
+    }
     return out;
 }
 
