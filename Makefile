@@ -200,6 +200,8 @@ engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(uni
 internal_tests := test_bounds test_limbs test_outward test_kernels
 # Those that draw from the hard families of the campaigns.
 family_tests := test_kernels test_engine_batch test_engine_tree
+# Those of the service that do; they link no clients.
+scene_tests := test_answer_scene test_answer_clients
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 
@@ -256,7 +258,13 @@ $(run_wide): $(O)/run/%.o: service/fmb/run.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DLANES=8 -DRUN_NAME=$* $(run_wide_$*)
 
-$(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests)),$(unit_tests)): \
+$(scene_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/scene_truth.o \
+		$(family_objects) $(oracle_objects) $(server_objects) $(bus_objects) $(message_objects) \
+		$(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lgmp -lm
+
+$(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
 		$(client_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
@@ -272,9 +280,10 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice/fmb $(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth pair_draw),\
+	$(compile) -Iservice/fmb $(if $(filter $*,$(scene_tests) scene_truth),\
+		-Iservice -Itests/oracle -Itests/campaign,$(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth pair_draw),\
 		-Itests/oracle $(if $(filter $*,$(family_tests) pair_draw),-Itests/campaign),\
-		-Iservice -Iclients -Itests/hostile -I$(GEN))
+		-Iservice -Iclients -Itests/hostile -I$(GEN)))
 
 .PHONY: tests test test-fast check
 tests: all examples $(test_programs) $(unit_tests)

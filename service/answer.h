@@ -14,8 +14,9 @@ struct answerer {
     struct cache *cache; /* not owned */
     int64_t server_id;
     /* Called between the parts of a scene, which may take long, so that others need not wait; may
-     * answer pairs, not scenes. NULL: nobody waits. */
-    void (*between)(void *user);
+     * answer pairs, not scenes. False: the scene has taken long enough, and its result is of the
+     * pairs decided so far. NULL: nobody waits. */
+    bool (*between)(void *user);
     void *user;
     struct scene_work *work;                 /* owned: answer_prepare() */
     char certificate[QUERY_CERTIFICATE_MAX]; /* of the last result that has one */
@@ -34,7 +35,8 @@ void answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result);
 
 /* Likewise, complete but for compute_ns and lost (0). Of pairs that are not all to be had in one
- * datagram, those that are, in their order; end_pair tells how many. */
+ * datagram, or before between() says that it is enough, those that are, in their order, and at
+ * least one; end_pair tells how many. */
 void answer_scene(struct answerer *answerer, const struct scene_query *query,
                   struct scene_result *result);
 

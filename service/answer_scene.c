@@ -11,8 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pairs decided at a time: some tens of microseconds' worth. */
-enum { BLOCK = 1024 };
+/* Pairs decided at a time: some tens of microseconds' worth as a rule, of boxes of frames that move
+ * and of methods that take pairs one by one some hundreds. Hostile ones take milliseconds each, and
+ * others wait so long; fewer at a time would make the batch slower by more than a tenth. */
+enum { BLOCK = 128, BLOCK_OF_BOXES = 64, BLOCK_OF_SINGLES = 8 };
 
 struct scene_work {
     struct fmb_prepared frame[QUERY_FRAMES_MAX]; /* first: they lie at multiples of 64 bytes */
@@ -292,16 +294,27 @@ static void set_form(const struct answering *answering)
     const struct scene_query *query = answering->query;
     struct scene_result *result = answering->result;
     result->method = answering->method->number;
-    result->dim = query->frame_count > 0 ? query->frame[0].dim : 0;
     result->names_pairs = query->which != QUERY_PAIRS_LISTED;
     result->has_times = query->want & QUERY_WANT_TIMES && any_moves(query);
     result->has_boxes = query->want & QUERY_WANT_BOX && answering->method->boxes;
+    result->dim = result->has_boxes && query->frame_count > 0 ? query->frame[0].dim : 0;
+}
+
+static size_t block_of(const struct answering *answering)
+{
+    if (!answering->batched)
+        return BLOCK_OF_SINGLES;
+    return answering->result->has_boxes ? BLOCK_OF_BOXES : BLOCK;
+}
+
+static bool may_go_on(const struct answerer *answerer)
+{
+    return !answerer->between || answerer->between(answerer->user);
 }
 
 static void answer_pairs(const struct answering *answering)
 {
-    const struct answerer *answerer = answering->answerer;
-    struct scene_work *work = answerer->work;
+    struct scene_work *work = answering->answerer->work;
     struct scene_result *result = answering->result;
     long room = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - 8 * result->key_count;
     const unsigned(*pair)[2];
@@ -309,14 +322,16 @@ static void answer_pairs(const struct answering *answering)
     set_form(answering);
     scene_pairs_begin(&work->pairs, answering->query, work->frame, work->tree);
     do {
-        count = scene_pairs_next(&work->pairs, work->pair, BLOCK, &pair);
+        count = scene_pairs_next(&work->pairs, work->pair, block_of(answering), &pair);
         decide(answering, pair, count);
         kept = append(result, work, pair, count, &room);
-        if (answerer->between)
-            answerer->between(answerer->user);
-    } while (count > 0 && kept == count);
-    result->end_pair = kept < count ? scene_pairs_number(answering->query, pair, kept)
-                                    : scene_pairs_total(answering->query);
+        if (kept < count)
+            result->end_pair = scene_pairs_number(answering->query, pair, kept);
+        else if (count > 0)
+            result->end_pair = scene_pairs_number(answering->query, pair, count - 1) + 1;
+        else
+            result->end_pair = scene_pairs_total(answering->query);
+    } while (count > 0 && kept == count && may_go_on(answering->answerer));
 }
 
 /* The arrays of the result stay as they are. */

@@ -43,6 +43,10 @@ enum {
 /* A scene is interrupted so often, to drain the bus and let pairs pass. */
 static const int64_t interrupted_every_ns = 200000;
 
+/* What a scene may take while others wait. One datagram can ask for a million pairs that need
+ * milliseconds each; most scenes take less than one altogether. */
+static const int64_t scene_turn_ns = 100000000;
+
 static const int64_t beat_ns = 1000000000;
 
 /* A subscription to the queries of a kind. */
@@ -67,11 +71,11 @@ struct server {
     struct wire_status status; /* counts so far; the rest is filled in when it is published */
     int64_t ready_ns, beat_at_ns;
     bool failed; /* the bus did */
-    /* The scene that is being answered: when the bus was last looked at, and the time spent on
-     * others meanwhile. */
+    /* The scene that is being answered: since when, when the bus was last looked at, and the time
+     * spent on others meanwhile. */
     struct scene_query scene;
     struct scene_result scene_result, refused;
-    int64_t looked_at_ns, elsewhere_ns;
+    int64_t begin_ns, looked_at_ns, elsewhere_ns;
     unsigned char thrown[QUEUE_DATAGRAM_MAX]; /* out of a queue, for others to have room */
     struct malformed malformed;
     /* The other service last heard on the same channels (0: none), and when that was said. */
@@ -102,14 +106,23 @@ static void publish_pair(struct server *server, const struct pair_result *result
     server->status.pairs += result->status == FMB_OK;
 }
 
-/* Pairs that the broad phase kept apart are decided too, up to the last one found. */
+/* Those that the broad phase kept apart are decided too; those that a method cannot decide are not.
+ */
+static int64_t decided(const struct scene_result *result, int32_t first_pair)
+{
+    int64_t pairs = result->end_pair - first_pair;
+    for (int32_t i = 0; i < result->verdict_count; i++)
+        pairs -= result->verdict[i] == 0;
+    return pairs;
+}
+
 static void publish_scene(struct server *server, int32_t first_pair, struct scene_result *result)
 {
     unsigned char bytes[QUERY_BYTES_MAX];
     result->lost = senders_gaps(&server->senders, result->client_id);
     publish(server, SCENES, bytes, wire_write_scene_result(result, bytes), result->status);
     if (result->status == FMB_OK)
-        server->status.pairs += result->end_pair - first_pair;
+        server->status.pairs += decided(result, first_pair);
 }
 
 /* ---- Answering ---- */
@@ -142,10 +155,10 @@ static void answer_a_scene(struct server *server, const unsigned char *bytes, si
                        error);
         return;
     }
-    const int64_t begin = server->looked_at_ns = clock_ns();
+    server->begin_ns = server->looked_at_ns = clock_ns();
     server->elsewhere_ns = 0;
     answer_scene(&server->answerer, query, result);
-    result->compute_ns = clock_ns() - begin - server->elsewhere_ns;
+    result->compute_ns = clock_ns() - server->begin_ns - server->elsewhere_ns;
     if (result->status == FMB_OK)
         histogram_add(&server->compute_ns, result->compute_ns);
     publish_scene(server, query->first_pair, result);
@@ -188,19 +201,21 @@ static bool is_readable(const struct server *server)
     return poll(&bus, 1, 0) > 0;
 }
 
-/* While a scene is answered. */
-static void between(void *user)
+/* While a scene is answered. Returns whether to go on. */
+static bool between(void *user)
 {
     struct server *server = user;
     const int64_t begin = clock_ns();
     if (begin - server->looked_at_ns < interrupted_every_ns)
-        return;
+        return true;
     if (is_readable(server))
         server_drain(server);
     server_beat(server);
     answer_pairs(server);
     server->looked_at_ns = clock_ns();
     server->elsewhere_ns += server->looked_at_ns - begin;
+    return queue_counts(server->intake[SCENES].queue).datagrams == 0 ||
+           server->looked_at_ns - server->begin_ns - server->elsewhere_ns < scene_turn_ns;
 }
 
 /* ---- Queries coming in ---- */

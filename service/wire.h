@@ -8,7 +8,8 @@
  * 0, strings that end where they say, and not one byte more or less; of results only those with
  * a verdict just where the status is OK, with intervals and boxes that are such, and with a
  * certificate only beside a verdict: printable ASCII, shorter than QUERY_CERTIFICATE_MAX; of
- * results of scenes only those with as many names, times and boxes as their verdicts ask for. */
+ * results of scenes only those with as many names, times and boxes as their verdicts ask for, and
+ * with the pairs that are named in their order. */
 #ifndef WIRE_H
 #define WIRE_H
 

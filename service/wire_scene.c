@@ -57,7 +57,7 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
 
 static void indices_of(const unsigned (*pair)[2], int32_t count, int16_t *out)
 {
-    for (int32_t i = 0; i < 2 * count; i++)
+    for (int32_t i = 0; i < count; i++)
         out[i] = (int16_t) pair[i / 2][i % 2];
 }
 
@@ -67,7 +67,7 @@ size_t wire_write_scene_query(const struct scene_query *query, unsigned char out
     int16_t index[2 * QUERY_PAIRS_MAX];
     for (int32_t i = 0; i < query->frame_count; i++)
         frame[i] = wire_frame_message(&query->frame[i]);
-    indices_of(query->pair, query->index_count / 2, index);
+    indices_of(query->pair, query->index_count, index);
     fmb_msgs_scene_query_t message = {
         .utime = query->utime,
         .client_id = query->client_id,
@@ -106,14 +106,22 @@ static int32_t read_verdicts(struct cursor *cursor, struct scene_result *out)
     return contacts;
 }
 
+/* Two different frames, and after the pair before them. */
+static bool is_next_pair(const unsigned (*pair)[2], int32_t i)
+{
+    const unsigned a = pair[i][0], b = pair[i][1];
+    return a < b && b < QUERY_FRAMES_MAX &&
+           (i == 0 || pair[i - 1][0] < a || (pair[i - 1][0] == a && pair[i - 1][1] < b));
+}
+
 static void read_pairs(struct cursor *cursor, struct scene_result *out)
 {
     const int32_t count = cursor_indices(cursor, out->pair[0], 2 * QUERY_FOUND_MAX);
     if (count != 0 && (count != 2 * out->verdict_count || count > 2 * QUERY_FOUND_MAX))
         cursor_fail(cursor, "as many pairs as verdicts, or none");
-    for (int32_t i = 0; i < count && !cursor->error; i++)
-        if (out->pair[i / 2][i % 2] >= QUERY_FRAMES_MAX)
-            cursor_fail(cursor, "an index of no frame");
+    for (int32_t i = 0; i < count / 2 && !cursor->error; i++)
+        if (!is_next_pair((const unsigned(*)[2]) out->pair, i) || out->verdict[i] < FMB_TOUCHING)
+            cursor_fail(cursor, "a pair out of order, or that does not meet");
     out->names_pairs = count > 0;
 }
 
@@ -164,6 +172,8 @@ const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scen
     if (out->key_count > QUERY_FRAMES_MAX)
         cursor_fail(&cursor, "more keys than a query has frames");
     out->end_pair = cursor_int32(&cursor);
+    if (out->end_pair < 0)
+        cursor_fail(&cursor, "an end before the first pair");
     out->contact_count = read_verdicts(&cursor, out);
     read_pairs(&cursor, out);
     read_times(&cursor, out);
@@ -176,7 +186,7 @@ size_t wire_write_scene_result(const struct scene_result *result,
                                unsigned char out[QUERY_BYTES_MAX])
 {
     int16_t index[2 * QUERY_FOUND_MAX];
-    const int32_t named = result->names_pairs ? result->verdict_count : 0;
+    const int32_t named = result->names_pairs ? 2 * result->verdict_count : 0;
     indices_of(result->pair, named, index);
     fmb_msgs_scene_result_t message = {
         .utime = result->utime,
@@ -192,7 +202,7 @@ size_t wire_write_scene_result(const struct scene_result *result,
         .end_pair = result->end_pair,
         .num_verdicts = result->verdict_count,
         .verdicts = (uint8_t *) result->verdict,
-        .num_indices = 2 * named,
+        .num_indices = named,
         .indices = index,
         .num_times = result->has_times ? 2 * result->contact_count : 0,
         .times = (double *) result->times,

@@ -1,0 +1,174 @@
+#include "scene_truth.h"
+
+#include "pair_draw.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void set_vector(const double *vector, int dim, struct query_numbers *out)
+{
+    out->count = dim;
+    memcpy(out->number, vector, (size_t) dim * sizeof *vector);
+}
+
+void scene_set_frame(const struct solid *solid, int64_t body_id, struct query_frame *out)
+{
+    *out = (struct query_frame){.body_id = body_id, .shape = (int32_t) solid->shape};
+    out->dim = solid->dim;
+    set_vector(solid->origin, solid->dim, &out->origin);
+    if (solid->moving)
+        set_vector(solid->velocity, solid->dim, &out->velocity);
+    for (int i = 0; i < solid_count(solid); i++)
+        for (int axis = 0; axis < solid->dim; axis++)
+            out->components.number[out->components.count++] = solid->component[i][axis];
+}
+
+void scene_draw_frames(struct draw *draw, int dim, int moving, int32_t count,
+                       struct scene_query *out)
+{
+    out->frame_count = count;
+    for (int32_t i = 0; i < count; i += 2) {
+        struct cell cell;
+        struct question question;
+        do
+            cell = pair_draw_cell(draw);
+        while (cell.dim != dim || (moving >= 0 && cell.moving != (moving > 0)));
+        (draw_int(draw, 0, 15) ? pair_draw : pair_draw_stretched)(draw, &cell, &question);
+        scene_set_frame(&question.a, 0, &out->frame[i]);
+        if (i + 1 < count)
+            scene_set_frame(&question.b, 0, &out->frame[i + 1]);
+    }
+}
+
+void scene_draw_pairs(struct draw *draw, int32_t count, struct scene_query *out)
+{
+    const int last = out->frame_count - 1;
+    out->index_count = 2 * count;
+    for (int32_t i = 0; i < count; i++) {
+        unsigned *pair = out->pair[i];
+        pair[0] = (unsigned) draw_int(draw, 0, last);
+        pair[1] = pair[0] ^ 1;
+        while (draw_coin(draw) || pair[1] == pair[0] || (int) pair[1] > last)
+            pair[1] = (unsigned) draw_int(draw, 0, last);
+    }
+}
+
+int32_t scene_list(const struct scene_query *query, const unsigned (**out)[2])
+{
+    static unsigned list[QUERY_FRAMES_MAX * QUERY_FRAMES_MAX / 2][2];
+    const bool across = query->which == QUERY_PAIRS_ACROSS;
+    const int32_t split = query->split, n = query->frame_count;
+    int32_t count = 0;
+    *out = (const unsigned(*)[2]) list;
+    if (query->which == QUERY_PAIRS_LISTED) {
+        *out = query->pair;
+        return query->index_count / 2;
+    }
+    for (int32_t a = 0; a < (across ? split : n); a++)
+        for (int32_t b = across ? split : a + 1; b < n; b++) {
+            list[count][0] = (unsigned) a;
+            list[count++][1] = (unsigned) b;
+        }
+    return count;
+}
+
+static struct fmb_frame frame_of(const struct query_frame *frame, struct fmb_body *body)
+{
+    struct fmb_frame out = {.body = body, .moving = frame->velocity.count > 0};
+    assert_int_equal(fmb_body_make(frame->dim, frame->shape, frame->components.number,
+                                   (size_t) frame->components.count, body),
+                     FMB_OK);
+    memcpy(out.origin, frame->origin.number, sizeof out.origin);
+    memcpy(out.velocity, frame->velocity.number, sizeof out.velocity);
+    return out;
+}
+
+enum fmb_status scene_decide(const struct scene_query *query, const unsigned pair[2],
+                             struct fmb_answer *answer)
+{
+    struct fmb_body body[2];
+    const struct fmb_pair both = {.a = frame_of(&query->frame[pair[0]], &body[0]),
+                                  .b = frame_of(&query->frame[pair[1]], &body[1]),
+                                  .duration = query->duration};
+    return fmb_decide(fmb_method_by_number(query->method), &both, FMB_WANT_BOX, answer);
+}
+
+/* ---- A result, read from its beginning ---- */
+
+struct reading {
+    const struct scene_query *query;
+    const struct scene_result *result;
+    int32_t verdict, contact; /* the next ones */
+};
+
+static void assert_times(const struct reading *reading, const struct fmb_answer *answer)
+{
+    const double *times = &reading->result->times[2 * reading->contact];
+    if (answer->has_contact)
+        assert_memory_equal(times, answer->contact, sizeof answer->contact);
+    else
+        assert_true(isnan(times[0]) && isnan(times[1]));
+}
+
+static void assert_box(const struct reading *reading, const struct fmb_answer *answer)
+{
+    const int dim = reading->result->dim;
+    const double *box = &reading->result->boxes[2 * dim * reading->contact];
+    assert_true(answer->has_box);
+    for (int side = 0; side < 2; side++)
+        assert_memory_equal(box + side * dim, answer->box[side], (size_t) dim * sizeof *box);
+}
+
+static void assert_pair(struct reading *reading, const unsigned pair[2])
+{
+    const struct scene_result *result = reading->result;
+    struct fmb_answer answer;
+    scene_decide(reading->query, pair, &answer);
+    const bool contact = answer.verdict >= FMB_TOUCHING;
+    if (result->names_pairs && !contact)
+        return;
+    assert_true(reading->verdict < result->verdict_count);
+    if (result->names_pairs)
+        assert_memory_equal(result->pair[reading->verdict], pair, sizeof result->pair[0]);
+    assert_int_equal(result->verdict[reading->verdict++], answer.verdict);
+    if (!contact)
+        return;
+    if (result->has_times)
+        assert_times(reading, &answer);
+    if (result->has_boxes)
+        assert_box(reading, &answer);
+    reading->contact++;
+}
+
+static bool any_moves(const struct scene_query *query)
+{
+    bool moves = false;
+    for (int32_t i = 0; i < query->frame_count; i++)
+        moves = moves || query->frame[i].velocity.count > 0;
+    return moves;
+}
+
+void scene_assert(const struct scene_query *whole, const struct scene_result *result)
+{
+    struct reading reading = {whole, result, 0, 0};
+    const struct fmb_method *method = fmb_method_by_number(whole->method);
+    const unsigned(*pair)[2];
+    const int32_t count = scene_list(whole, &pair);
+    assert_string_equal(result->detail, "");
+    assert_int_equal(result->status, FMB_OK);
+    assert_int_equal(result->method, method->number);
+    assert_int_equal(result->names_pairs, whole->which != QUERY_PAIRS_LISTED);
+    assert_int_equal(result->has_times, whole->want & QUERY_WANT_TIMES && any_moves(whole));
+    assert_int_equal(result->has_boxes, whole->want & QUERY_WANT_BOX && method->boxes);
+    assert_true(whole->first_pair <= result->end_pair && result->end_pair <= count);
+    assert_true(result->end_pair > whole->first_pair || whole->first_pair == count);
+    for (int32_t i = whole->first_pair; i < result->end_pair; i++)
+        assert_pair(&reading, pair[i]);
+    assert_int_equal(reading.verdict, result->verdict_count);
+    assert_int_equal(reading.contact, result->contact_count);
+}
