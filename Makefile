@@ -202,6 +202,7 @@ internal_tests := test_bounds test_limbs test_outward test_kernels
 family_tests := test_kernels test_engine_batch test_engine_tree
 # Those of the service that do; they link no clients.
 scene_tests := test_answer_scene test_answer_clients
+comma := ,
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 
@@ -258,11 +259,13 @@ $(run_wide): $(O)/run/%.o: service/fmb/run.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DLANES=8 -DRUN_NAME=$* $(run_wide_$*)
 
+# Counts what our own code allocates.
+wraps_test_answer_scene := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc aligned_alloc)
 $(scene_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/scene_truth.o \
 		$(family_objects) $(oracle_objects) $(server_objects) $(bus_objects) $(message_objects) \
 		$(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lgmp -lm
+	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -llcm -lgmp -lm
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \

@@ -36,11 +36,14 @@ enum {
     LCM_QUEUE = 4096,
     /* Messages drained before something is answered: a flood must not keep the service from it. */
     DRAINED_MAX = 256,
-    /* Pairs answered before the bus is looked at again. */
-    PAIRS_A_TURN = 8
+    /* Pairs answered before the bus is looked at again: as many. To refuse one takes no less time
+     * than to answer it, most of it in sending: who answered fewer than it drains would spend its
+     * time on refusing what it could have answered. */
+    PAIRS_A_TURN = DRAINED_MAX
 };
 
-/* A scene is interrupted so often, to drain the bus and let pairs pass. */
+/* A scene is interrupted so often, to drain the bus and let pairs pass; or as long after the last
+ * time as that took, so that half of the time is the scene's. */
 static const int64_t interrupted_every_ns = 200000;
 
 /* What a scene may take while others wait. One datagram can ask for a million pairs that need
@@ -71,11 +74,11 @@ struct server {
     struct wire_status status; /* counts so far; the rest is filled in when it is published */
     int64_t ready_ns, beat_at_ns;
     bool failed; /* the bus did */
-    /* The scene that is being answered: since when, when the bus was last looked at, and the time
-     * spent on others meanwhile. */
+    /* The scene that is being answered: since when, when the bus is to be looked at again, and the
+     * time spent on others meanwhile. */
     struct scene_query scene;
     struct scene_result scene_result, refused;
-    int64_t begin_ns, looked_at_ns, elsewhere_ns;
+    int64_t begin_ns, look_at_ns, elsewhere_ns;
     unsigned char thrown[QUEUE_DATAGRAM_MAX]; /* out of a queue, for others to have room */
     struct malformed malformed;
     /* The other service last heard on the same channels (0: none), and when that was said. */
@@ -155,7 +158,8 @@ static void answer_a_scene(struct server *server, const unsigned char *bytes, si
                        error);
         return;
     }
-    server->begin_ns = server->looked_at_ns = clock_ns();
+    server->begin_ns = clock_ns();
+    server->look_at_ns = server->begin_ns + interrupted_every_ns;
     server->elsewhere_ns = 0;
     answer_scene(&server->answerer, query, result);
     result->compute_ns = clock_ns() - server->begin_ns - server->elsewhere_ns;
@@ -206,16 +210,17 @@ static bool between(void *user)
 {
     struct server *server = user;
     const int64_t begin = clock_ns();
-    if (begin - server->looked_at_ns < interrupted_every_ns)
+    if (begin < server->look_at_ns)
         return true;
     if (is_readable(server))
         server_drain(server);
     server_beat(server);
     answer_pairs(server);
-    server->looked_at_ns = clock_ns();
-    server->elsewhere_ns += server->looked_at_ns - begin;
+    const int64_t end = clock_ns(), took = end - begin;
+    server->look_at_ns = end + (took > interrupted_every_ns ? took : interrupted_every_ns);
+    server->elsewhere_ns += took;
     return queue_counts(server->intake[SCENES].queue).datagrams == 0 ||
-           server->looked_at_ns - server->begin_ns - server->elsewhere_ns < scene_turn_ns;
+           end - server->begin_ns - server->elsewhere_ns < scene_turn_ns;
 }
 
 /* ---- Queries coming in ---- */

@@ -2,6 +2,8 @@
 
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
+#include "fmb_msgs_scene_query_t.h"
+#include "fmb_msgs_scene_result_t.h"
 #include "fmb_msgs_status_t.h"
 
 #include <stdbool.h>
@@ -10,14 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Layouts, after the fingerprint: l 8 bytes, i 4 bytes, n a count and its numbers of 8 bytes,
- * s a string, p one that is printable. */
+/* Layouts, after the fingerprint: l 8 bytes, i 4 bytes, n a count and its numbers of 8 bytes, h a
+ * count and its numbers of 2, b a count and its bytes, f a count and its frames, s a string, p one
+ * that is printable. */
 #define FRAME "llinnn"
 static const struct {
     const char *type, *layout;
 } layouts[] = {
-    {"pair_query", "llllii" FRAME FRAME},
-    {"pair_result", "llllllllisiinnpl"},
+    {"pair_query", "llllii" FRAME FRAME},   {"pair_result", "llllllllisiinnpl"},
+    {"scene_query", "lllliiiiifh"},         {"scene_result", "llllisilnibhnnl"},
     {"status", "llslllllllnlllllllllllln"},
 };
 
@@ -34,11 +37,11 @@ static const char *layout_of(const char *type)
     return layout;
 }
 
-static size_t good_pair_query(unsigned char *out)
+static fmb_msgs_frame_t good_frame(void)
 {
-    double origin[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25};
-    double cube[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    fmb_msgs_frame_t frame = {.body_id = 7,
+    static double origin[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25};
+    static double cube[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    return (fmb_msgs_frame_t){.body_id = 7,
                               .shape = FMB_MSGS_FRAME_T_SHAPE_CUBOID,
                               .dim = 3,
                               .origin = origin,
@@ -46,6 +49,11 @@ static size_t good_pair_query(unsigned char *out)
                               .components = cube,
                               .num_velocity = 3,
                               .velocity = velocity};
+}
+
+static size_t good_pair_query(unsigned char *out)
+{
+    fmb_msgs_frame_t frame = good_frame();
     fmb_msgs_pair_query_t query = {
         .utime = 1, .client_id = 2, .sequence_number = 3, .duration = 1, .a = frame, .b = frame};
     return (size_t) fmb_msgs_pair_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &query);
@@ -67,6 +75,49 @@ static size_t good_pair_result(unsigned char *out)
     return (size_t) fmb_msgs_pair_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
 }
 
+/* The last frame comes by key. */
+static size_t good_scene_query(unsigned char *out)
+{
+    int16_t index[4] = {0, 1, 2, 1};
+    fmb_msgs_frame_t frames[3] = {good_frame(), good_frame(), good_frame()};
+    frames[2].key = 5;
+    frames[2].num_components = frames[2].num_velocity = 0;
+    fmb_msgs_scene_query_t query = {.client_id = 2,
+                                    .sequence_number = 3,
+                                    .duration = 1,
+                                    .want = FMB_MSGS_SCENE_QUERY_T_WANT_BOX,
+                                    .num_frames = 3,
+                                    .frames = frames,
+                                    .num_indices = 4,
+                                    .indices = index};
+    return (size_t) fmb_msgs_scene_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &query);
+}
+
+static size_t good_scene_result(unsigned char *out)
+{
+    char detail[] = "";
+    int64_t keys[3] = {0, 501, 502};
+    uint8_t verdicts[2] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING,
+                           FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING};
+    int16_t indices[4] = {0, 1, 0, 2};
+    double times[4] = {0, 0.5, 0.25, 0.25}, boxes[12] = {0, 0, 0, 1, 1, 1, -1, 2, 0, 1, 2, 3};
+    fmb_msgs_scene_result_t result = {.client_id = 2,
+                                      .detail = detail,
+                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_CERTIFIED,
+                                      .num_keys = 3,
+                                      .keys = keys,
+                                      .end_pair = 3,
+                                      .num_verdicts = 2,
+                                      .verdicts = verdicts,
+                                      .num_indices = 4,
+                                      .indices = indices,
+                                      .num_times = 4,
+                                      .times = times,
+                                      .num_boxes = 12,
+                                      .boxes = boxes};
+    return (size_t) fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
+}
+
 static size_t good_status(unsigned char *out)
 {
     char version[] = "1.2.3";
@@ -76,12 +127,22 @@ static size_t good_status(unsigned char *out)
     return (size_t) fmb_msgs_status_t_encode(out, 0, HOSTILE_BYTES_MAX, &status);
 }
 
+static const struct {
+    const char *type;
+    size_t (*write)(unsigned char *out);
+} goods[] = {
+    {"pair_query", good_pair_query},   {"pair_result", good_pair_result},
+    {"scene_query", good_scene_query}, {"scene_result", good_scene_result},
+    {"status", good_status},
+};
+
 size_t hostile_good(const char *type, unsigned char out[HOSTILE_BYTES_MAX])
 {
-    layout_of(type);
-    if (strcmp(type, "pair_query") == 0)
-        return good_pair_query(out);
-    return strcmp(type, "status") == 0 ? good_status(out) : good_pair_result(out);
+    for (size_t i = 0; i < sizeof goods / sizeof *goods; i++)
+        if (strcmp(goods[i].type, type) == 0)
+            return goods[i].write(out);
+    layout_of(type); /* ends it */
+    return 0;
 }
 
 struct damage {
@@ -158,26 +219,44 @@ static void damage_string(struct damage *damage, size_t at)
     }
 }
 
+/* Returns the place behind a layout that begins at a place. */
+static size_t damage_layout(struct damage *damage, const char *layout, size_t at);
+
+/* Each of the fields is a count and as many things. */
+static size_t damage_list(struct damage *damage, char field, size_t at)
+{
+    const bool string = field == 's' || field == 'p';
+    const size_t count = (size_t) get_int32(damage->good + at);
+    damage_count(damage, at, string);
+    if (string)
+        damage_string(damage, at);
+    if (field == 'p')
+        damage_text(damage, at);
+    at += 4;
+    for (size_t i = 0; field == 'f' && i < count; i++)
+        at = damage_layout(damage, FRAME, at);
+    switch (field) {
+    case 'n': return at + 8 * count;
+    case 'h': return at + 2 * count;
+    case 'f': return at;
+    default: return at + count;
+    }
+}
+
+static size_t damage_layout(struct damage *damage, const char *layout, size_t at)
+{
+    for (const char *field = layout; *field; field++) {
+        if (*field == 'l' || *field == 'i')
+            at += *field == 'l' ? 8 : 4;
+        else
+            at = damage_list(damage, *field, at);
+    }
+    return at;
+}
+
 static void damage_fields(struct damage *damage, const char *layout)
 {
-    size_t at = 8;
-    for (const char *field = layout; *field; field++) {
-        bool string = *field == 's' || *field == 'p';
-        if (*field == 'n' || string)
-            damage_count(damage, at, string);
-        if (string)
-            damage_string(damage, at);
-        if (*field == 'p')
-            damage_text(damage, at);
-        switch (*field) {
-        case 'l': at += 8; break;
-        case 'i': at += 4; break;
-        case 'n': at += 4 + 8 * (size_t) get_int32(damage->good + at); break;
-        case 's':
-        case 'p': at += 4 + (size_t) get_int32(damage->good + at); break;
-        }
-    }
-    if (at != damage->size) {
+    if (damage_layout(damage, layout, 8) != damage->size) {
         fprintf(stderr, "hostile: the layout does not fit the message\n");
         exit(2);
     }
@@ -215,6 +294,31 @@ size_t hostile_each(const char *type, hostile_visit visit, void *context)
     damage_fingerprint(&damage);
     damage_fields(&damage, layout_of(type));
     return damage.count;
+}
+
+size_t hostile_flood(const char *type, long long client_id, long long sequence_number,
+                     unsigned char out[HOSTILE_BYTES_MAX])
+{
+    int16_t index[400];
+    fmb_msgs_frame_t frames[2] = {good_frame(), good_frame()};
+    fmb_msgs_pair_query_t pair = {.client_id = client_id,
+                                  .sequence_number = sequence_number,
+                                  .duration = 1,
+                                  .a = frames[0],
+                                  .b = frames[1]};
+    fmb_msgs_scene_query_t scene = {.client_id = client_id,
+                                    .sequence_number = sequence_number,
+                                    .duration = 1,
+                                    .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
+                                    .num_frames = 2,
+                                    .frames = frames,
+                                    .num_indices = 400,
+                                    .indices = index};
+    for (int i = 0; i < 400; i++)
+        index[i] = (int16_t) (i % 2);
+    if (strcmp(type, "scene_query") == 0)
+        return (size_t) fmb_msgs_scene_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &scene);
+    return (size_t) fmb_msgs_pair_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &pair);
 }
 
 size_t hostile_lie(const void *query, size_t size, char *certificate,

@@ -11,12 +11,17 @@ enum { HOSTILE_BYTES_MAX = 2048 };
 typedef void (*hostile_visit)(void *context, const char *what, const unsigned char *bytes,
                               size_t size);
 
-/* type: "pair_query", "pair_result" or "status". Every message visited differs from what any
- * encoder of that type can write; returns how many there were. */
+/* type: "pair_query", "pair_result", "scene_query", "scene_result" or "status". Every message
+ * visited differs from what any encoder of that type can write; returns how many there were. */
 size_t hostile_each(const char *type, hostile_visit visit, void *context);
 
 /* A good message of the type, the one that is damaged. Returns its size. */
 size_t hostile_good(const char *type, unsigned char out[HOSTILE_BYTES_MAX]);
+
+/* A query, "pair_query" or "scene_query", as one client may send many of: good; a scene takes some
+ * milliseconds. Returns its size. */
+size_t hostile_flood(const char *type, long long client_id, long long sequence_number,
+                     unsigned char out[HOSTILE_BYTES_MAX]);
 
 /* What a service that lies answers to a good pair_query: whatever the frames are, they overlap, and
  * this is the certificate. Returns its size; 0 where there is no room for it. */

@@ -2,12 +2,16 @@
  *
  * poke CHANNEL TYPE: publishes every damaged message of the type on the channel, and prints how
  * many there were.
+ * poke flood TYPE CLIENT SECONDS: publishes good queries, pair_query or scene_query, of this client
+ * as fast as it can, and prints how many there were.
  * poke lie CERTIFICATE: a service that says of every pair, with this certificate, that it
  * overlaps; until it is ended. */
 #include "hostile.h"
 
 #include <lcm/lcm.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -33,6 +37,20 @@ static int damage(lcm_t *lcm, const char *channel, const char *type)
     struct poke poke = {.lcm = lcm, .channel = channel};
     printf("%zu\n", hostile_each(type, publish, &poke));
     return poke.failed != 0;
+}
+
+static int flood(lcm_t *lcm, const char *type, long long client_id, long seconds)
+{
+    const char *channel = strcmp(type, "scene_query") == 0 ? "FMB_SCENE_QUERY" : "FMB_PAIR_QUERY";
+    const time_t end = time(NULL) + seconds;
+    long long count = 0;
+    for (; time(NULL) < end; count++) {
+        unsigned char bytes[HOSTILE_BYTES_MAX];
+        const size_t size = hostile_flood(type, client_id, count, bytes);
+        lcm_publish(lcm, channel, bytes, (unsigned) size);
+    }
+    printf("%lld\n", count);
+    return 0;
 }
 
 struct liar {
@@ -61,15 +79,21 @@ static int lie(lcm_t *lcm, char *certificate)
 
 int main(int argc, char **argv)
 {
-    if (argc != 3) {
-        fputs("usage: poke CHANNEL pair_query|pair_result|status, or poke lie CERTIFICATE\n",
+    const char *what = argc > 1 ? argv[1] : "";
+    const bool floods = strcmp(what, "flood") == 0;
+    if (argc != (floods ? 5 : 3)) {
+        fputs("usage: poke CHANNEL TYPE, poke flood TYPE CLIENT SECONDS, or poke lie CERTIFICATE\n",
               stderr);
         return 2;
     }
     lcm_t *lcm = lcm_create(NULL);
     if (!lcm)
         return 1;
-    int code = strcmp(argv[1], "lie") == 0 ? lie(lcm, argv[2]) : damage(lcm, argv[1], argv[2]);
+    int code;
+    if (floods)
+        code = flood(lcm, argv[2], atoll(argv[3]), atol(argv[4]));
+    else
+        code = strcmp(what, "lie") == 0 ? lie(lcm, argv[2]) : damage(lcm, what, argv[2]);
     lcm_destroy(lcm);
     return code;
 }

@@ -208,13 +208,15 @@ grid_scene() {
     "$FMB" watch > "$BATS_TEST_TMPDIR/watch" 2> "$BATS_TEST_TMPDIR/watch.err" 3>&- &
     watch=$!
     started="$started $watch"
-    sent=0 to_watch=0
-    for type in pair_query pair_result status; do
+    sent=0 to_watch=0 scenes_to_watch=0
+    for type in pair_query pair_result scene_query scene_result status; do
         sent=$((sent + $("$FMB_BUILD/poke" FMB_PAIR_QUERY $type)))
+        sent=$((sent + $("$FMB_BUILD/poke" FMB_SCENE_QUERY $type)))
+        scenes_to_watch=$((scenes_to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
         to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_PAIR_RESULT $type)))
         "$FMB_BUILD/poke" FMB_STATUS $type
     done
-    [ "$sent" -gt 600 ]
+    [ "$sent" -gt 5000 ]
     [ "$(status_of malformed)" = "$sent" ]
     [ "$(grep -c malformed "$fmbd_log")" -lt 20 ]
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
@@ -222,7 +224,9 @@ grid_scene() {
     wait_until grep -q '[a-z]ed\|touching' "$BATS_TEST_TMPDIR/watch"
     kill -INT $watch
     wait $watch
-    grep -qx "fmb: $to_watch messages could not be read" "$BATS_TEST_TMPDIR/watch.err"
+    # Whether it looks at scenes or not.
+    grep -qx -e "fmb: $to_watch messages could not be read" \
+        -e "fmb: $((to_watch + scenes_to_watch)) messages could not be read" "$BATS_TEST_TMPDIR/watch.err"
     stop_fmbd
 }
 

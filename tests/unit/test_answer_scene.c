@@ -616,6 +616,79 @@ static void test_more_bodies_than_the_cache_holds(void **state)
     }
 }
 
+/* ---- Memory ---- */
+
+/* The linker puts these in the place of malloc() and the like, where our own code calls them
+ * (GMP, which the exact step asks, has its own). */
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+
+static long allocations;
+
+void *__wrap_malloc(size_t size)
+{
+    allocations++;
+    return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    allocations++;
+    return __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    allocations++;
+    return __real_realloc(old, size);
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    allocations++;
+    return __real_aligned_alloc(alignment, size);
+}
+
+/* All is taken at the start, whatever is asked: by key or whole, evicting or not, refused or not.
+ */
+static void test_answers_allocate_nothing(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "memory");
+    assert_true(allocations > 0); /* by set_up() */
+    allocations = 0;
+    for (int round = 0; round < 40; round++) {
+        scene_draw_frames(&draw, 2 + round % 2, -1, 60, &scene);
+        for (int i = 0; i < 60; i++)
+            scene.frame[i].body_id = draw_int(&draw, 0, 100);
+        scene.want = wants[round % 4];
+        scene.which = round % 3;
+        scene.split = scene.which == QUERY_PAIRS_ACROSS ? 20 : 0;
+        scene.index_count = 0;
+        if (scene.which == QUERY_PAIRS_LISTED)
+            scene_draw_pairs(&draw, 500, &scene);
+        ask(&scene);
+        assert_int_equal(result.status, FMB_OK);
+        scene.frame[7].key = 3;
+        scene.frame[7].components.count = 0;
+        ask(&scene);
+        assert_int_equal(result.status, FMB_UNKNOWN_BODY);
+    }
+    set_heap(1400, 3, true, true);
+    scene.which = QUERY_PAIRS_ALL;
+    scene.split = scene.index_count = 0;
+    ask(&scene);
+    assert_int_equal(result.status, FMB_OK);
+    assert_int_equal(allocations, 0);
+}
+
 /* ---- Calls between ---- */
 
 static int64_t asked_between;
@@ -730,6 +803,7 @@ int main(void)
         TEST(test_dead_keys),
         TEST(test_one_id_with_two_bodies),
         TEST(test_more_bodies_than_the_cache_holds),
+        TEST(test_answers_allocate_nothing),
         TEST(test_pairs_answered_between_do_not_show),
         TEST(test_scenes_end_early_where_others_wait),
         TEST(test_others_are_let_in_often),

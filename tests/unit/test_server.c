@@ -174,19 +174,23 @@ static void test_status_counts(void **state)
 
 static void publish_damage(void *context, const char *what, const unsigned char *bytes, size_t size)
 {
-    (void) context;
+    const char *channel = context;
     (void) what;
-    publish(bytes, size);
+    lcm_publish(bus.lcm, channel, bytes, (unsigned) size);
     settle();
 }
 
-/* Damaged messages of every type on the query channel: counted, not answered, not fatal. */
+/* Damaged messages of every type on the query channels: counted, not answered, not fatal. */
 static void test_damage_is_counted(void **state)
 {
     (void) state;
-    size_t sent = hostile_each("pair_query", publish_damage, NULL);
-    sent += hostile_each("pair_result", publish_damage, NULL);
-    sent += hostile_each("status", publish_damage, NULL);
+    static const char *const types[] = {"pair_query", "pair_result", "scene_query", "scene_result",
+                                        "status"};
+    static char channels[][32] = {"T_" WIRE_PAIR_QUERY, "T_" WIRE_SCENE_QUERY};
+    size_t sent = 0;
+    for (size_t t = 0; t < sizeof types / sizeof *types; t++)
+        for (size_t c = 0; c < sizeof channels / sizeof *channels; c++)
+            sent += hostile_each(types[t], publish_damage, channels[c]);
     assert_int_equal(bus.results, 0);
     assert_int_equal(status_now().malformed, sent);
     assert_int_equal(status_now().received, 0);

@@ -24,9 +24,11 @@
 static const char *read_any(const char *type, const unsigned char *bytes, size_t size)
 {
     unsigned char *copy = malloc(size ? size : 1);
-    union {
+    static union {
         struct pair_query query;
         struct pair_result result;
+        struct scene_query scene_query;
+        struct scene_result scene_result;
         struct wire_status status;
     } out;
     const char *error;
@@ -36,13 +38,19 @@ static const char *read_any(const char *type, const unsigned char *bytes, size_t
         error = wire_read_pair_query(copy, (uint32_t) size, &out.query);
     else if (strcmp(type, "pair_result") == 0)
         error = wire_read_pair_result(copy, (uint32_t) size, &out.result);
+    else if (strcmp(type, "scene_query") == 0)
+        error = wire_read_scene_query(copy, (uint32_t) size, &out.scene_query);
+    else if (strcmp(type, "scene_result") == 0)
+        error = wire_read_scene_result(copy, (uint32_t) size, &out.scene_result);
     else
         error = wire_read_status(copy, (uint32_t) size, &out.status);
     free(copy);
     return error;
 }
 
-static const char *const types[] = {"pair_query", "pair_result", "status"};
+static const char *const types[] = {"pair_query", "pair_result", "scene_query", "scene_result",
+                                    "status"};
+enum { TYPES = sizeof types / sizeof *types };
 
 /* A change of any field changes the fingerprint, and with it breaks every old client and log. */
 static void test_fingerprints_are_pinned(void **state)
@@ -66,7 +74,7 @@ static void expect_refused(void *context, const char *what, const unsigned char 
 static void test_damage_is_refused(void **state)
 {
     (void) state;
-    for (size_t t = 0; t < sizeof types / sizeof *types; t++) {
+    for (size_t t = 0; t < TYPES; t++) {
         unsigned char good[HOSTILE_BYTES_MAX];
         assert_null(read_any(types[t], good, hostile_good(types[t], good)));
         assert_true(hostile_each(types[t], expect_refused, (void *) types[t]) > 200);
@@ -79,10 +87,14 @@ static void test_negative_size_is_refused(void **state)
     (void) state;
     unsigned char good[HOSTILE_BYTES_MAX];
     struct pair_query query;
+    struct query_header header;
     hostile_good("pair_query", good);
     assert_non_null(wire_read_pair_query(good, (uint32_t) -3, &query));
     assert_non_null(wire_read_pair_query(good, (uint32_t) -1, &query));
     assert_non_null(wire_read_pair_query(NULL, 0, &query));
+    assert_null(wire_read_pair_header(good, 32, &header));
+    assert_non_null(wire_read_pair_header(good, (uint32_t) -1, &header));
+    assert_non_null(wire_read_pair_header(NULL, 0, &header));
 }
 
 static uint64_t next_random(uint64_t *seed)
@@ -99,8 +111,8 @@ static void test_mutants_are_survived(void **state)
     (void) state;
     uint64_t seed = 88172645463325252u;
     size_t accepted = 0, refused = 0;
-    for (int round = 0; round < 60000; round++) {
-        const char *type = types[round % 3];
+    for (int round = 0; round < 100000; round++) {
+        const char *type = types[round % TYPES];
         unsigned char bytes[HOSTILE_BYTES_MAX] = {0};
         size_t size = hostile_good(type, bytes);
         for (uint64_t n = next_random(&seed) % 4 + 1; n > 0; n--)

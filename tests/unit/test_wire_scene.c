@@ -1,0 +1,516 @@
+/* Scenes on the wire: read back as they were written, of the sizes that were said, up to the last
+ * byte of a datagram; and what a service that lies may not say. */
+#include "hostile.h"
+#include "wire.h"
+
+#include "fmb_msgs_frame_t.h"
+#include "fmb_msgs_scene_query_t.h"
+#include "fmb_msgs_scene_result_t.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct scene_query query, query_read;
+static struct scene_result result, result_read;
+static unsigned char bytes[2 * QUERY_BYTES_MAX], again[QUERY_BYTES_MAX];
+
+static int set_up(void **state)
+{
+    (void) state;
+    memset(&query, 0, sizeof query);
+    memset(&result, 0, sizeof result);
+    memset(&query_read, 0, sizeof query_read);
+    memset(&result_read, 0, sizeof result_read);
+    return 0;
+}
+
+/* From a copy that ends where it ends, so that a sanitizer sees any byte read beyond it. */
+static const char *read_query(size_t size)
+{
+    unsigned char *copy = malloc(size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    const char *error = wire_read_scene_query(copy, (uint32_t) size, &query_read);
+    free(copy);
+    return error;
+}
+
+static const char *read_result(size_t size)
+{
+    unsigned char *copy = malloc(size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    const char *error = wire_read_scene_result(copy, (uint32_t) size, &result_read);
+    free(copy);
+    return error;
+}
+
+static void expect_read(const char *error)
+{
+    if (error)
+        fail_msg("not read: %s", error);
+}
+
+/* ---- Queries ---- */
+
+/* By shape, dimension, by key or whole, at rest or moving. */
+static void set_frame(int i, struct query_frame *out)
+{
+    const int dim = 2 + i % 2;
+    *out = (struct query_frame){.body_id = i, .key = i % 3 ? 0 : 1000 + i, .shape = 1 + i % 3};
+    out->dim = out->origin.count = dim;
+    out->components.count = i % 3 ? dim * fmb_component_count(dim, out->shape) : 0;
+    out->velocity.count = i % 5 ? 0 : dim;
+    for (int k = 0; k < out->components.count; k++)
+        out->components.number[k] = k * 0.1 - 0x1p-1074;
+    for (int k = 0; k < dim; k++)
+        out->origin.number[k] = k ? -0.0 : 1.0 / (i + 1);
+    for (int k = 0; k < out->velocity.count; k++)
+        out->velocity.number[k] = k ? 1e308 : -i;
+}
+
+static void set_query(int32_t frames, int32_t indices)
+{
+    query.utime = 1700000000000000;
+    query.client_id = QUERY_ID_MAX;
+    query.sequence_number = 42;
+    query.duration = 0.1;
+    query.method = 2;
+    query.want = 5;
+    query.which = QUERY_PAIRS_ACROSS;
+    query.split = 3;
+    query.first_pair = 7;
+    query.frame_count = frames;
+    query.index_count = indices;
+    for (int32_t i = 0; i < frames; i++)
+        set_frame(i, &query.frame[i]);
+    for (int32_t i = 0; i < indices; i++)
+        query.pair[i / 2][i % 2] = (unsigned) (i * 7 % 1400);
+}
+
+static size_t size_of_query(void)
+{
+    size_t size = WIRE_SCENE_QUERY_BYTES + (size_t) query.index_count / 2 * WIRE_PAIR_BYTES;
+    for (int32_t i = 0; i < query.frame_count; i++)
+        size += wire_frame_bytes(&query.frame[i]);
+    return size;
+}
+
+static void assert_same_query(void)
+{
+    const size_t frames = (size_t) query.frame_count, indices = (size_t) query.index_count;
+    assert_int_equal(query.utime, query_read.utime);
+    assert_int_equal(query.client_id, query_read.client_id);
+    assert_int_equal(query.sequence_number, query_read.sequence_number);
+    assert_memory_equal(&query.duration, &query_read.duration, sizeof query.duration);
+    assert_int_equal(query.method, query_read.method);
+    assert_int_equal(query.want, query_read.want);
+    assert_int_equal(query.which, query_read.which);
+    assert_int_equal(query.split, query_read.split);
+    assert_int_equal(query.first_pair, query_read.first_pair);
+    assert_int_equal(query.frame_count, query_read.frame_count);
+    assert_int_equal(query.index_count, query_read.index_count);
+    assert_memory_equal(query.frame, query_read.frame, frames * sizeof query.frame[0]);
+    assert_memory_equal(query.pair, query_read.pair, indices * sizeof query.pair[0][0]);
+}
+
+static void test_query_round_trip(void **state)
+{
+    (void) state;
+    for (int32_t frames = 0; frames < 40; frames++)
+        for (int32_t indices = 0; indices < 7; indices++) { /* odd ones too, as they may come */
+            set_query(frames, indices);
+            const size_t size = wire_write_scene_query(&query, bytes);
+            assert_int_equal(size, size_of_query() + (size_t) indices % 2 * WIRE_PAIR_BYTES / 2);
+            expect_read(read_query(size));
+            assert_same_query();
+            fmb_msgs_scene_query_t message;
+            assert_int_equal(fmb_msgs_scene_query_t_decode(bytes, 0, (int) size, &message), size);
+            assert_int_equal(message.num_frames, frames);
+            assert_int_equal(message.first_pair, 7);
+            fmb_msgs_scene_query_t_decode_cleanup(&message);
+        }
+}
+
+/* To the last byte: pairs alone, and frames alone. */
+static void test_largest_queries(void **state)
+{
+    (void) state;
+    set_query(0, (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / 2);
+    assert_int_equal(wire_write_scene_query(&query, bytes), QUERY_BYTES_MAX);
+    expect_read(read_query(QUERY_BYTES_MAX));
+    assert_same_query();
+    set_query(1352, 0);
+    for (int i = 0; i < 1352; i++) {
+        query.frame[i].dim = query.frame[i].origin.count = 2;
+        query.frame[i].origin.number[2] = 0;
+        query.frame[i].components = query.frame[i].velocity = (struct query_numbers){0};
+    }
+    query.frame[7].velocity.count = 3; /* 24 bytes more */
+    const size_t size = wire_write_scene_query(&query, bytes);
+    assert_int_equal(size, WIRE_SCENE_QUERY_BYTES + 1352 * 48 + 24);
+    assert_true(size <= QUERY_BYTES_MAX);
+    expect_read(read_query(size));
+    assert_same_query();
+}
+
+/* More frames than any good query has, and lists that are too long: read, walked over, and told. */
+static void test_more_than_there_is_room_for(void **state)
+{
+    (void) state;
+    static double many[64];
+    static fmb_msgs_frame_t frames[1600];
+    static int16_t indices[2 * QUERY_PAIRS_MAX + 2];
+    for (int i = 0; i < 1600; i++)
+        frames[i] =
+            (fmb_msgs_frame_t){.body_id = i, .origin = many, .components = many, .velocity = many};
+    frames[3].dim = 40;
+    frames[3].num_components = 64;
+    fmb_msgs_scene_query_t message = {.num_frames = 1600, .frames = frames, .indices = indices};
+    int size = fmb_msgs_scene_query_t_encode(bytes, 0, sizeof bytes, &message);
+    assert_true(size > 0);
+    expect_read(read_query((size_t) size));
+    assert_int_equal(query_read.frame_count, 1600);
+    assert_int_equal(query_read.frame[3].dim, 40);
+    assert_int_equal(query_read.frame[3].components.count, 64);
+    assert_int_equal(query_read.frame[1399].body_id, 1399);
+
+    message.num_frames = 0;
+    message.num_indices = 2 * QUERY_PAIRS_MAX + 2;
+    indices[2 * QUERY_PAIRS_MAX - 1] = -2;
+    size = fmb_msgs_scene_query_t_encode(bytes, 0, sizeof bytes, &message);
+    assert_true(size > 0);
+    expect_read(read_query((size_t) size));
+    assert_int_equal(query_read.index_count, 2 * QUERY_PAIRS_MAX + 2);
+    assert_int_equal(query_read.pair[QUERY_PAIRS_MAX - 1][1], (unsigned) -2);
+}
+
+/* ---- Results ---- */
+
+static void set_result(int dim, int32_t keys, int32_t verdicts, bool names, bool times, bool boxes)
+{
+    result.utime = 1;
+    result.client_id = 2;
+    result.sequence_number = 3;
+    result.server_id = QUERY_ID_MAX;
+    result.method = 4;
+    result.lost = 5;
+    result.compute_ns = 1234;
+    result.dim = boxes ? dim : 0;
+    result.key_count = keys;
+    result.verdict_count = verdicts;
+    result.end_pair = verdicts + 1000;
+    result.contact_count = 0;
+    for (int32_t i = 0; i < keys; i++)
+        result.key[i] = 1000 + i;
+    for (int32_t i = 0; i < verdicts; i++) {
+        result.verdict[i] = (unsigned char) (names ? 2 + i % 2 : i % 4);
+        result.contact_count += result.verdict[i] >= 2;
+        result.pair[i][0] = (unsigned) i / 1000;
+        result.pair[i][1] = 100 + (unsigned) i % 1000;
+    }
+    for (int32_t i = 0; i < result.contact_count && times; i++) {
+        result.times[2 * i] = i % 3 ? 0.25 : NAN;
+        result.times[2 * i + 1] = i % 3 ? 0.25 * (1 + i) : NAN;
+    }
+    for (int32_t i = 0; i < 2 * dim * result.contact_count && boxes; i++)
+        result.boxes[i] = i / dim % 2 ? (i % 5 ? i : HUGE_VAL) : -1.5;
+    result.names_pairs = names && verdicts > 0;
+    result.has_times = times && result.contact_count > 0;
+    result.has_boxes = boxes && result.contact_count > 0;
+    if (!result.has_boxes)
+        result.dim = 0;
+}
+
+static size_t bound_of_result(void)
+{
+    const size_t contacts = (size_t) result.contact_count, verdicts = (size_t) result.verdict_count;
+    return WIRE_SCENE_RESULT_BYTES + 8 * (size_t) result.key_count + verdicts +
+           (result.names_pairs ? WIRE_PAIR_BYTES * verdicts : 0) +
+           (result.has_times ? 16 * contacts : 0) +
+           (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0);
+}
+
+static void assert_same_result(void)
+{
+    const size_t verdicts = (size_t) result.verdict_count, contacts = (size_t) result.contact_count;
+    assert_int_equal(result.utime, result_read.utime);
+    assert_int_equal(result.client_id, result_read.client_id);
+    assert_int_equal(result.sequence_number, result_read.sequence_number);
+    assert_int_equal(result.server_id, result_read.server_id);
+    assert_int_equal(result.status, result_read.status);
+    assert_string_equal(result.detail, result_read.detail);
+    assert_int_equal(result.method, result_read.method);
+    assert_int_equal(result.lost, result_read.lost);
+    assert_int_equal(result.end_pair, result_read.end_pair);
+    assert_int_equal(result.compute_ns, result_read.compute_ns);
+    assert_int_equal(result.dim, result_read.dim);
+    assert_int_equal(result.key_count, result_read.key_count);
+    assert_int_equal(result.verdict_count, result_read.verdict_count);
+    assert_int_equal(result.contact_count, result_read.contact_count);
+    assert_int_equal(result.names_pairs, result_read.names_pairs);
+    assert_int_equal(result.has_times, result_read.has_times);
+    assert_int_equal(result.has_boxes, result_read.has_boxes);
+    assert_memory_equal(result.key, result_read.key,
+                        (size_t) result.key_count * sizeof *result.key);
+    assert_memory_equal(result.verdict, result_read.verdict, verdicts);
+    if (result.names_pairs)
+        assert_memory_equal(result.pair, result_read.pair, verdicts * sizeof result.pair[0]);
+    if (result.has_times)
+        assert_memory_equal(result.times, result_read.times, 2 * contacts * sizeof(double));
+    if (result.has_boxes)
+        assert_memory_equal(result.boxes, result_read.boxes,
+                            2 * (size_t) result.dim * contacts * sizeof(double));
+}
+
+static size_t write_and_read(void)
+{
+    const size_t size = wire_write_scene_result(&result, bytes);
+    assert_true(size <= bound_of_result());
+    expect_read(read_result(size));
+    assert_same_result();
+    return size;
+}
+
+static void test_result_round_trip(void **state)
+{
+    (void) state;
+    for (int form = 0; form < 16; form++)
+        for (int32_t verdicts = 0; verdicts < 40; verdicts++) {
+            set_result(2 + form % 2, verdicts / 2, verdicts, form & 2, form & 4, form & 8);
+            const size_t size = write_and_read();
+            fmb_msgs_scene_result_t message;
+            assert_int_equal(fmb_msgs_scene_result_t_decode(bytes, 0, (int) size, &message), size);
+            assert_int_equal(message.num_keys, verdicts / 2);
+            assert_int_equal(message.num_times, form & 4 ? 2 * result.contact_count : 0);
+            fmb_msgs_scene_result_t_decode_cleanup(&message);
+        }
+}
+
+/* As many of each kind of answer as the bound has room for, with the longest detail that there is:
+ * one datagram, and nothing is left of it. */
+static void test_results_that_fill_a_datagram(void **state)
+{
+    (void) state;
+    for (int form = 0; form < 16; form++) {
+        int32_t verdicts = 0;
+        do
+            set_result(2 + form % 2, 1400, ++verdicts, form & 2, form & 4, form & 8);
+        while (bound_of_result() + 5 + 16 + 48 < QUERY_BYTES_MAX && verdicts < QUERY_VERDICTS_MAX);
+        memset(result.detail, 'x', QUERY_TEXT_MAX - 1);
+        const size_t size = write_and_read();
+        assert_true(size <= QUERY_BYTES_MAX);
+        assert_true(bound_of_result() - size < 8);
+        result.detail[0] = '\0';
+    }
+    set_result(2, 0, QUERY_VERDICTS_MAX, false, false, false);
+    write_and_read();
+    /* To the very last byte. */
+    set_result(2, 0, QUERY_FOUND_MAX - 60, true, false, false);
+    const size_t left = QUERY_BYTES_MAX - wire_write_scene_result(&result, bytes);
+    assert_true(left < QUERY_TEXT_MAX + 80 && left / 8 <= QUERY_FRAMES_MAX);
+    result.key_count = (int32_t) (left / 8);
+    memset(result.detail, 'x', left % 8);
+    result.detail[left % 8] = '\0';
+    assert_int_equal(write_and_read(), QUERY_BYTES_MAX);
+}
+
+static void test_refusal_round_trip(void **state)
+{
+    (void) state;
+    result.status = FMB_UNKNOWN_BODY;
+    strcpy(result.detail, "frames: not held");
+    result.key_count = 3;
+    result.key[1] = 7;
+    write_and_read();
+}
+
+/* ---- Results that no service gives ---- */
+
+/* Three contacts with times and boxes in 3D, and room for what a test makes of them. */
+struct lie {
+    fmb_msgs_scene_result_t message;
+    char detail[8];
+    int64_t keys[QUERY_FRAMES_MAX + 1];
+    uint8_t verdicts[QUERY_VERDICTS_MAX + 1];
+    int16_t indices[2 * QUERY_FOUND_MAX + 2];
+    double times[QUERY_NUMBERS_MAX + 8], boxes[QUERY_NUMBERS_MAX + 8];
+};
+
+static struct lie lie;
+
+static void begin_lie(void)
+{
+    static const int16_t indices[6] = {0, 1, 0, 2, 1, 2};
+    memset(&lie, 0, sizeof lie);
+    lie.message = (fmb_msgs_scene_result_t){.detail = lie.detail,
+                                            .keys = lie.keys,
+                                            .end_pair = 3,
+                                            .num_verdicts = 3,
+                                            .verdicts = lie.verdicts,
+                                            .num_indices = 6,
+                                            .indices = lie.indices,
+                                            .num_times = 6,
+                                            .times = lie.times,
+                                            .num_boxes = 18,
+                                            .boxes = lie.boxes};
+    memcpy(lie.indices, indices, sizeof indices);
+    for (int i = 0; i < 3; i++) {
+        lie.verdicts[i] = FMB_OVERLAPPING;
+        lie.times[2 * i + 1] = 1;
+        for (int axis = 0; axis < 3; axis++)
+            lie.boxes[6 * i + 3 + axis] = 1;
+    }
+}
+
+static const char *read_lie(void)
+{
+    static unsigned char large[8 * QUERY_BYTES_MAX];
+    const int size = fmb_msgs_scene_result_t_encode(large, 0, sizeof large, &lie.message);
+    assert_true(size > 0);
+    return wire_read_scene_result(large, (uint32_t) size, &result_read);
+}
+
+#define LIE(change)                            \
+    do {                                       \
+        begin_lie();                           \
+        assert_null(read_lie());               \
+        change;                                \
+        if (!read_lie())                       \
+            fail_msg("believed: %s", #change); \
+    } while (0)
+
+#define TRUE(change)             \
+    do {                         \
+        begin_lie();             \
+        change;                  \
+        assert_null(read_lie()); \
+    } while (0)
+
+static void test_lies_about_verdicts(void **state)
+{
+    (void) state;
+    LIE(lie.verdicts[1] = 4);
+    LIE(lie.verdicts[2] = 255);
+    LIE(lie.message.status = FMB_BUSY);
+    LIE(lie.message.num_verdicts = 2);
+    LIE(lie.verdicts[0] = FMB_SEPARATED); /* then there are too many times */
+    LIE((lie.verdicts[0] = FMB_SEPARATED, lie.message.num_times = 4, lie.message.num_boxes = 12));
+    LIE((lie.verdicts[0] = 0, lie.message.num_times = 4, lie.message.num_boxes = 12));
+    LIE((lie.message.num_verdicts = QUERY_VERDICTS_MAX + 1, lie.message.num_indices = 0));
+    LIE(lie.message.num_keys = QUERY_FRAMES_MAX + 1);
+    LIE(lie.message.end_pair = -1);
+    TRUE((lie.verdicts[0] = FMB_SEPARATED, lie.message.num_times = 4, lie.message.num_boxes = 12,
+          lie.message.num_indices = 0));
+}
+
+static void test_lies_about_pairs(void **state)
+{
+    (void) state;
+    LIE(lie.message.num_indices = 4);
+    LIE(lie.message.num_indices = 5);
+    LIE(lie.indices[5] = QUERY_FRAMES_MAX);
+    LIE(lie.indices[5] = -1);
+    LIE(lie.indices[0] = -1);
+    LIE(lie.indices[4] = 2);                       /* with itself */
+    LIE(lie.indices[5] = 0);                       /* the other way round */
+    LIE(lie.indices[3] = 1);                       /* a second time */
+    LIE(lie.indices[4] = 0);                       /* the same */
+    LIE((lie.indices[2] = 1, lie.indices[4] = 0)); /* out of order */
+    TRUE(lie.message.num_indices = 0);
+    TRUE(lie.indices[5] = QUERY_FRAMES_MAX - 1);
+}
+
+static void test_lies_about_times(void **state)
+{
+    (void) state;
+    LIE(lie.message.num_times = 4);
+    LIE(lie.message.num_times = 5);
+    LIE(lie.times[0] = NAN);
+    LIE(lie.times[5] = NAN);
+    LIE(lie.times[2] = -0x1p-1074);
+    LIE(lie.times[3] = -1);
+    LIE(lie.times[5] = INFINITY);
+    LIE(lie.times[4] = 1.5);
+    TRUE(lie.times[4] = lie.times[5] = NAN);
+    TRUE(lie.times[4] = 1);
+    TRUE(lie.message.num_times = 0);
+}
+
+static void test_lies_about_boxes(void **state)
+{
+    (void) state;
+    LIE(lie.message.num_boxes = 6);
+    LIE(lie.message.num_boxes = 17);
+    LIE(lie.message.num_boxes = 1);
+    LIE(lie.boxes[0] = NAN);
+    LIE(lie.boxes[17] = NAN);
+    LIE(lie.boxes[14] = 1.5);
+    LIE(lie.boxes[3] = -INFINITY);
+    LIE((lie.message.num_boxes = 12, lie.boxes[0] = 2)); /* in 2D */
+    TRUE(lie.boxes[17] = INFINITY);
+    TRUE(lie.message.num_boxes = 0);
+}
+
+/* ---- Mutants ---- */
+
+static uint64_t next_random(uint64_t *seed)
+{
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    return *seed;
+}
+
+/* What is read from damaged bytes, if anything, is what lcm-gen's decoder reads from them: written
+ * again it is the same bytes. */
+static void test_what_is_read_of_mutants_is_there(void **state)
+{
+    (void) state;
+    uint64_t seed = 88172645463325252u;
+    int accepted[2] = {0}, refused[2] = {0};
+    for (int round = 0; round < 60000; round++) {
+        const bool is_query = round % 2;
+        const size_t size = hostile_good(is_query ? "scene_query" : "scene_result", bytes);
+        for (uint64_t n = next_random(&seed) % 3 + 1; n > 0; n--)
+            bytes[8 + next_random(&seed) % (size - 8)] = (unsigned char) next_random(&seed);
+        if (is_query ? read_query(size) : read_result(size)) {
+            refused[is_query]++;
+            continue;
+        }
+        accepted[is_query]++;
+        const size_t written = is_query ? wire_write_scene_query(&query_read, again)
+                                        : wire_write_scene_result(&result_read, again);
+        assert_int_equal(written, size);
+        assert_memory_equal(again, bytes, size);
+    }
+    for (int i = 0; i < 2; i++)
+        assert_true(accepted[i] > 1000 && refused[i] > 1000);
+}
+
+#define TEST(name) cmocka_unit_test_setup(name, set_up)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(test_query_round_trip),
+        TEST(test_largest_queries),
+        TEST(test_more_than_there_is_room_for),
+        TEST(test_result_round_trip),
+        TEST(test_results_that_fill_a_datagram),
+        TEST(test_refusal_round_trip),
+        TEST(test_lies_about_verdicts),
+        TEST(test_lies_about_pairs),
+        TEST(test_lies_about_times),
+        TEST(test_lies_about_boxes),
+        TEST(test_what_is_read_of_mutants_is_there),
+    };
+    return cmocka_run_group_tests_name("wire_scene", tests, NULL, NULL);
+}
