@@ -216,7 +216,7 @@ grid_scene() {
         to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_PAIR_RESULT $type)))
         "$FMB_BUILD/poke" FMB_STATUS $type
     done
-    [ "$sent" -gt 5000 ]
+    [ "$sent" -gt 4000 ]
     [ "$(status_of malformed)" = "$sent" ]
     [ "$(grep -c malformed "$fmbd_log")" -lt 20 ]
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"

@@ -213,6 +213,8 @@ static void set_result(int dim, int32_t keys, int32_t verdicts, bool names, bool
     for (int32_t i = 0; i < verdicts; i++) {
         result.verdict[i] = (unsigned char) (names ? 2 + i % 2 : i % 4);
         result.contact_count += result.verdict[i] >= 2;
+        if (!names)
+            continue;
         result.pair[i][0] = (unsigned) i / 1000;
         result.pair[i][1] = 100 + (unsigned) i % 1000;
     }
@@ -286,6 +288,8 @@ static void test_result_round_trip(void **state)
         for (int32_t verdicts = 0; verdicts < 40; verdicts++) {
             set_result(2 + form % 2, verdicts / 2, verdicts, form & 2, form & 4, form & 8);
             const size_t size = write_and_read();
+            if (verdicts == 0)
+                continue; /* lcm-gen's decoder copies no bytes to nowhere, which sanitizers see */
             fmb_msgs_scene_result_t message;
             assert_int_equal(fmb_msgs_scene_result_t_decode(bytes, 0, (int) size, &message), size);
             assert_int_equal(message.num_keys, verdicts / 2);
