@@ -434,6 +434,26 @@ static void test_lost_queries_are_told(void **state)
     assert_int_equal(bus.status.repeated, 1);
 }
 
+/* A pair that the method says nothing of got no verdict. */
+static void test_pairs_without_a_verdict_do_not_count(void **state)
+{
+    (void) state;
+    memset(&scene, 0, sizeof scene);
+    scene.method = fmb_method_by_name("sat")->number;
+    scene.frame_count = 3;
+    for (int i = 0; i < 3; i++)
+        set_frame(i, &scene.frame[i]);
+    scene.frame[2].components.number[3] = 0; /* flat */
+    scene.index_count = 6;
+    scene.pair[0][1] = scene.pair[2][0] = 1;
+    scene.pair[1][1] = scene.pair[2][1] = 2;
+    publish_scene(1, 1);
+    settle();
+    assert_int_equal(bus.count, 1);
+    assert_int_equal(bus.heard[0].end_pair, 3);
+    assert_int_equal(status_now()->pairs, 1);
+}
+
 static void publish(const char *channel, const unsigned char *bytes, int size)
 {
     assert_true(size > 0);
@@ -513,6 +533,7 @@ int main(void)
         TEST(test_a_flood_of_scenes),
         TEST(test_a_full_queue_gives_room_to_others),
         TEST(test_lost_queries_are_told),
+        TEST(test_pairs_without_a_verdict_do_not_count),
         TEST(test_datagrams_beyond_the_limit),
         TEST(test_malformed_behind_a_good_header),
     };
