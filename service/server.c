@@ -50,6 +50,10 @@ static const int64_t interrupted_every_ns = 200000;
  * milliseconds each; most scenes take less than one altogether. */
 static const int64_t scene_turn_ns = 100000000;
 
+/* What pairs may take before the bus is looked at again: far less than LCM's queue holds of a
+ * flood, also where each needs milliseconds. */
+static const int64_t pairs_turn_ns = 5000000;
+
 static const int64_t beat_ns = 1000000000;
 
 /* A subscription to the queries of a kind. */
@@ -180,9 +184,13 @@ static bool answer_next(struct server *server, enum kind kind)
 
 static bool answer_pairs(struct server *server)
 {
+    const int64_t end = clock_ns() + pairs_turn_ns;
     int answered = 0;
-    while (answered < PAIRS_A_TURN && answer_next(server, PAIRS))
+    while (answered < PAIRS_A_TURN && answer_next(server, PAIRS)) {
         answered++;
+        if (clock_ns() >= end)
+            break;
+    }
     return answered > 0;
 }
 

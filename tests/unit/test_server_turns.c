@@ -136,6 +136,30 @@ static void ask_pair(int64_t client, int64_t number)
     lcm_publish(bus.lcm, WIRE_PAIR_QUERY, bytes, (unsigned) size);
 }
 
+/* Its exponents go from one end of the doubles to the other: it takes milliseconds. */
+static void ask_costly_pair(int64_t client, int64_t number)
+{
+    static const double numbers[2][12] = {
+        {7, 0, -7e-310, -0.1, -1e300, 0, 0x1p-1074, -1e300, 0, -3e-300, 3e-300, 3e-160},
+        {0.1, 0, 0, -0.1, 7, -1e150, 1e300, -3e-160, 3e-300, -0x1p-1074, 7, 0.1},
+    };
+    struct pair_query query = {.client_id = client, .sequence_number = number, .duration = 1};
+    unsigned char bytes[WIRE_BYTES_MAX];
+    query.method = fmb_method_by_name("exact")->number;
+    query.want = QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE;
+    for (int f = 0; f < 2; f++) {
+        struct query_frame *frame = &query.frame[f];
+        *frame = (struct query_frame){.shape = FMB_FACE, .dim = 3};
+        frame->origin.count = frame->velocity.count = 3;
+        frame->components.count = 6;
+        memcpy(frame->origin.number, numbers[f], 3 * sizeof(double));
+        memcpy(frame->velocity.number, numbers[f] + 3, 3 * sizeof(double));
+        memcpy(frame->components.number, numbers[f] + 6, 6 * sizeof(double));
+    }
+    const size_t size = wire_write_pair_query(&query, bytes);
+    lcm_publish(bus.lcm, WIRE_PAIR_QUERY, bytes, (unsigned) size);
+}
+
 static struct scene_query scene;
 
 static void publish_scene(int64_t client, int64_t number)
@@ -263,6 +287,28 @@ static void test_pairs_pass_scenes(void **state)
     expect(ASKED, true, 7, 1);
     assert_int_equal(bus.heard[ASKED].end_pair, 250 * 249 / 2);
     assert_int_equal(bus.heard[ASKED].found, 0);
+}
+
+/* Pairs that take long do not keep the service from the bus until all of them are answered. */
+static void test_costly_pairs_are_interrupted(void **state)
+{
+    (void) state;
+    enum { ASKED = 256 };
+    for (int64_t i = 0; i < ASKED; i++)
+        ask_costly_pair(7, i);
+    drain();
+    assert_true(server_answer(bus.server));
+    drain();
+    assert_true(bus.count > 0 && bus.count < ASKED / 2);
+    const int answered = bus.count;
+    ask_pair(8, 1);
+    drain();
+    while (bus.count < answered + 2) {
+        assert_true(server_answer(bus.server));
+        drain();
+    }
+    expect(answered, false, 7, answered);
+    expect(answered + 1, false, 8, 1);
 }
 
 /* Scenes that come while one is answered wait for it; but not for minutes. */
@@ -528,6 +574,7 @@ int main(void)
         TEST(test_all_is_drained_before_anything_is_answered),
         TEST(test_clients_take_turns),
         TEST(test_pairs_pass_scenes),
+        TEST(test_costly_pairs_are_interrupted),
         TEST(test_scenes_do_not_wait_for_a_long_one),
         TEST(test_a_flood_of_pairs),
         TEST(test_a_flood_of_scenes),
