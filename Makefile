@@ -75,12 +75,14 @@ lib_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/run.c %/alone.c,$(wildcard
 message_names := frame_t pair_query_t pair_result_t scene_query_t scene_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
-bus_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
-	wire_status.o bus.o clock.o random_id.o say.o signals.o)
+wire_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
+	wire_status.o bus.o clock.o random_id.o)
+bus_objects := $(wire_objects) $(addprefix $(O)/service/,bus_open.o say.o signals.o)
 supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
 server_objects := $(addprefix $(O)/service/,server.o answer_pair.o answer_scene.o scene_pairs.o \
 	check.o bodies.o cache.o queue.o senders.o histogram.o malformed.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))
+asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
@@ -88,21 +90,32 @@ test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy
 	$(B)/bench/bench
 
 .PHONY: all
-all: $(programs) $(B)/libfmb.a $(demo_programs)
+all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
 
-# One object that shows the names of fmb.h alone, so that no program's own names meet ours.
-$(B)/libfmb.a: $(lib_objects)
+# One object that shows the names of the header alone, so that no program's own names meet ours; and
+# names.o, which is the same in both libraries: who links them both takes it once.
+names := $(O)/service/fmb/names.o
+define archive
 	@mkdir -p $(@D)
-	$(CC) -r -nostdlib -o $(O)/libfmb.o $^
-	$(OBJCOPY) --wildcard --keep-global-symbol='fmb_*' $(O)/libfmb.o
+	$(CC) -r -nostdlib -o $(O)/$(@F:.a=.o) $(filter-out $(names),$^)
+	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' $(O)/$(@F:.a=.o)
 	rm -f $@
-	$(AR) rcs $@ $(O)/libfmb.o
+	$(AR) rcs $@ $(O)/$(@F:.a=.o) $(names)
+endef
+
+$(B)/libfmb.a: $(lib_objects)
+	$(call archive,fmb_*)
+
+$(B)/libfmb-client.a: $(asking_objects) $(wire_objects) $(message_objects) $(names)
+	$(call archive,fmb_client_*)
 
 $(B)/fmbd: $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
 		$(message_objects) $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
 
-$(B)/fmb: $(O)/clients/fmb.o $(client_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+# What is on the bus the command sees through the library alone.
+$(B)/fmb: $(O)/clients/fmb.o $(client_objects) $(O)/service/clock.o $(O)/service/signals.o \
+		$(B)/libfmb-client.a $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 $(B)/arm: $(O)/clients/demo/arm.o
@@ -137,9 +150,13 @@ $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iservice -I$(GEN)
 
+$(O)/clients/lib/%.o: clients/lib/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) -Iclients/lib -Iservice -Iservice/fmb -I$(GEN)
+
 $(O)/clients/%.o: clients/%.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile) -Iclients -Iservice -Iservice/fmb
+	$(compile) -Iclients -Iclients/lib -Iservice -Iservice/fmb
 
 $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -156,7 +173,7 @@ $(foreach m,$(message_names),$(GEN)/fmb_msgs_$(m).c $(GEN)/fmb_msgs_$(m).h) &: \
 	lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
 
 # Changes when the flags or the lists of files do, and then everything is built again.
-settings := $(CC) $(flags) $(link_flags) $(lib_objects) $(client_objects)
+settings := $(CC) $(flags) $(link_flags) $(lib_objects) $(client_objects) $(asking_objects)
 $(O)/settings: Makefile FORCE
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ && [ $@ -nt Makefile ] || \
@@ -205,6 +222,9 @@ scene_tests := test_answer_scene test_answer_clients
 comma := ,
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
+
+client_tests := $(filter test_client_%,$(unit_names))
+$(client_tests:%=$(B)/tests/%): $(O)/tests/unit/relay.o
 
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
@@ -269,7 +289,7 @@ $(scene_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
-		$(client_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
 
@@ -286,7 +306,7 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	$(compile) -Iservice/fmb $(if $(filter $*,$(scene_tests) scene_truth),\
 		-Iservice -Itests/oracle -Itests/campaign,$(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth pair_draw),\
 		-Itests/oracle $(if $(filter $*,$(family_tests) pair_draw),-Itests/campaign),\
-		-Iservice -Iclients -Itests/hostile -I$(GEN)))
+		-Iservice -Iclients -Iclients/lib -Itests/hostile -I$(GEN)))
 
 .PHONY: tests test test-fast check
 tests: all examples $(test_programs) $(unit_tests)
@@ -391,14 +411,14 @@ deps-report:
 
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
-headers := $(wildcard service/fmb/*.h service/*.h clients/*.h tests/oracle/*.h tests/hostile/*.h \
-	tests/campaign/*.h tests/bench/*.h)
+headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h tests/oracle/*.h \
+	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/%,$<),-Itests/oracle -Itests/campaign) \
-		-Iservice -Iservice/fmb -Iclients -I$(GEN) -fsyntax-only -x c $<
+		-Iservice -Iservice/fmb -Iclients -Iclients/lib -I$(GEN) -fsyntax-only -x c $<
 	@touch $@
 
 .PHONY: format format-check
@@ -420,14 +440,16 @@ install: all
 		"$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes" \
 		"$(DESTDIR)$(PREFIX)/lib/systemd/system"
 	$(INSTALL) $(programs) "$(DESTDIR)$(PREFIX)/bin"
-	$(INSTALL) -m 644 $(B)/libfmb.a "$(DESTDIR)$(PREFIX)/lib"
-	$(INSTALL) -m 644 service/fmb/fmb.h "$(DESTDIR)$(PREFIX)/include"
+	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(PREFIX)/lib"
+	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h "$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_names:%=msgs/%.lcm) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' \
 		$(if $(openmp_flag),-e 's|^Libs:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
 		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb.pc"
 	sed -e 's|@PREFIX@|$(PREFIX)|' service/fmbd.service.in \
 		> "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' clients/lib/fmb-client.pc.in \
+		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb-client.pc"
 
 .PHONY: clean
 clean:

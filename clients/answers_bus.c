@@ -1,9 +1,8 @@
 #include "answers.h"
 
 #include "allocate.h"
-#include "ask.h"
-#include "bus.h"
-#include "wire.h"
+#include "complain.h"
+#include "fmb_client.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -11,128 +10,146 @@
 
 struct answers_bus {
     struct args_bus bus;
-    bool certificate; /* wanted */
-    lcm_t *lcm;       /* NULL: could not be opened */
-    struct ask *ask;  /* NULL: could not be opened */
-    double patience;  /* seconds until a query is given up */
-    uint64_t advised; /* outages of which the user was told */
+    struct answers_question question;
+    struct fmb_client *client; /* NULL: could not be opened */
+    double patience;           /* seconds until a query is given up */
+    uint64_t advised;          /* outages of which the user was told */
 };
 
-/* One scene being asked: the questions run ahead of the answers. */
+/* One scene being asked. */
 struct asking {
     const struct scene *scene;
-    struct scene_cursor asked, answered;
-    const struct answers_bus *answers;
+    struct scene_cursor told; /* pairs so far */
+    bool certificate;         /* wanted */
     answers_sink *sink;
     void *user;
 };
-
-static int32_t want_of(const struct answers_question *question)
-{
-    return (question->box ? QUERY_WANT_BOX : 0) |
-           (question->certificate ? QUERY_WANT_CERTIFICATE : 0);
-}
 
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      const struct answers_question *question, double timeout,
                                      int retries)
 {
     struct answers_bus *answers = allocate(1, sizeof *answers);
-    struct ask_options options = {.prefix = bus->prefix,
-                                  .method = question->method ? question->method->number : 0,
-                                  .want = want_of(question),
-                                  .timeout = timeout,
-                                  .retries = retries};
+    const struct fmb_client_options options = {
+        .url = bus->url, .prefix = bus->prefix, .timeout = timeout, .tries = retries + 1};
+    char why[FMB_CLIENT_WHY_MAX];
     answers->bus = *bus;
-    answers->certificate = question->certificate;
+    answers->question = *question;
     answers->patience = timeout * (retries + 1);
-    answers->lcm = bus_open("fmb", bus->url, NULL);
-    if (answers->lcm)
-        answers->ask = ask_open(answers->lcm, &options);
-    if (answers->lcm && !answers->ask)
-        fprintf(stderr, "fmb: cannot listen on %s\n", args_bus_name(bus));
-    if (!answers->ask)
-        fprintf(stderr, "fmb: to decide without a bus: fmb query --local\n");
+    answers->client = fmb_client_open(&options, why, sizeof why);
+    if (answers->client)
+        return answers;
+    complain(why);
+    complain("to decide without a bus: fmb query --local");
     return answers;
 }
 
 void answers_bus_close(struct answers_bus *answers)
 {
-    if (answers->ask)
-        ask_close(answers->ask);
-    if (answers->lcm)
-        lcm_destroy(answers->lcm);
+    fmb_client_close(answers->client);
     free(answers);
 }
 
-static void fill_numbers(struct query_numbers *out, const double *numbers, int count)
-{
-    out->count = count;
-    memcpy(out->number, numbers, (size_t) count * sizeof *numbers);
-}
+/* ---- The question ---------------------------------------------------------------------------- */
 
-static void fill_frame(const struct scene_body *body, struct query_frame *out)
+static struct fmb_client_frame frame_of(const struct scene_body *body)
 {
-    int dim = body->body.dim;
-    double components[FMB_COMPONENTS_MAX];
+    const int dim = body->body.dim;
+    struct fmb_client_frame frame = {
+        .body_id = body->id, .shape = (int) body->body.shape, .dim = dim, .moving = body->moving};
     for (int i = 0; i < body->body.count; i++)
-        memcpy(components + i * dim, body->body.component[i], (size_t) dim * sizeof *components);
-    out->body_id = body->id;
-    out->shape = (int32_t) body->body.shape;
-    out->dim = dim;
-    fill_numbers(&out->origin, body->origin, dim);
-    fill_numbers(&out->components, components, body->body.count * dim);
-    fill_numbers(&out->velocity, body->velocity, body->moving ? dim : 0);
+        memcpy(frame.components + i * dim, body->body.component[i],
+               (size_t) dim * sizeof *frame.components);
+    memcpy(frame.origin, body->origin, sizeof frame.origin);
+    memcpy(frame.velocity, body->velocity, sizeof frame.velocity);
+    return frame;
 }
 
-static bool next_question(void *user, struct pair_query *out)
+static struct fmb_client_frame *frames_of(const struct scene *scene)
 {
-    struct asking *asking = user;
-    struct scene_pair pair;
-    if (!scene_next_pair(asking->scene, &asking->asked, &pair))
-        return false;
-    out->duration = asking->scene->duration;
-    fill_frame(&asking->scene->body[pair.a], &out->frame[0]);
-    fill_frame(&asking->scene->body[pair.b], &out->frame[1]);
-    return true;
+    struct fmb_client_frame *frame = allocate(scene->body_count, sizeof *frame);
+    for (size_t i = 0; i < scene->body_count; i++)
+        frame[i] = frame_of(&scene->body[i]);
+    return frame;
 }
 
-static const char *error_of(const struct asking *asking, const struct pair_result *result)
+static unsigned (*pairs_of(const struct scene *scene))[2]
 {
-    const struct answers_bus *answers = asking->answers;
-    if (!answers->ask)
-        return "no bus";
-    if (!result)
-        return ask_is_silent(answers->ask) ? "no fmbd answered" : "fmbd gave no answer";
-    if (answers->certificate && result->status == FMB_OK && !result->certificate)
+    unsigned(*pair)[2] = allocate(scene->pair_count, sizeof *pair);
+    for (size_t i = 0; i < scene->pair_count; i++) {
+        pair[i][0] = (unsigned) scene->pair[i].a;
+        pair[i][1] = (unsigned) scene->pair[i].b;
+    }
+    return pair;
+}
+
+static unsigned want_of(const struct answers_question *question, const struct scene *scene)
+{
+    unsigned want = 0;
+    if (question->box)
+        want |= FMB_CLIENT_WANT_BOX;
+    if (question->certificate)
+        want |= FMB_CLIENT_WANT_CERTIFICATE;
+    for (size_t i = 0; i < scene->body_count; i++)
+        if (scene->body[i].moving)
+            want |= FMB_CLIENT_WANT_TIMES;
+    return want;
+}
+
+/* ---- The answers ----------------------------------------------------------------------------- */
+
+/* Pairs of which nothing is heard, where all are asked, are separated. */
+static void give_separated(const struct asking *asking, struct scene_pair pair)
+{
+    const struct outcome outcome = {.pair = pair, .answer.verdict = FMB_SEPARATED};
+    asking->sink(asking->user, asking->scene, &outcome);
+}
+
+static const char *error_of(const struct asking *asking, const struct fmb_client_answer *answer)
+{
+    if (answer->status != FMB_OK)
+        return answer->text;
+    if (asking->certificate && !answer->certificate)
         return "the certificate is too long for a message: ask with --local";
-    return report_refusal(result);
+    return NULL;
 }
 
-static void take_answer(void *user, const struct pair_result *result)
+static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct asking *asking = user;
-    struct outcome outcome;
-    memset(&outcome, 0, sizeof outcome);
-    scene_next_pair(asking->scene, &asking->answered, &outcome.pair);
-    outcome.error = error_of(asking, result);
+    struct outcome outcome = {.error = error_of(asking, answer)};
+    while (scene_next_pair(asking->scene, &asking->told, &outcome.pair) &&
+           (outcome.pair.a != answer->a || outcome.pair.b != answer->b))
+        give_separated(asking, outcome.pair);
     if (!outcome.error) {
-        outcome.answer = result->answer;
-        outcome.certificate = asking->answers->certificate ? result->certificate : NULL;
+        outcome.answer = answer->answer;
+        outcome.certificate = answer->certificate;
     }
     asking->sink(asking->user, asking->scene, &outcome);
+}
+
+/* error: why nothing was asked; NULL if it was. */
+static void give_rest(struct asking *asking, const char *error)
+{
+    struct outcome outcome = {.error = error};
+    while (scene_next_pair(asking->scene, &asking->told, &outcome.pair))
+        if (error)
+            asking->sink(asking->user, asking->scene, &outcome);
+        else
+            give_separated(asking, outcome.pair);
 }
 
 /* Once for each outage. */
 static void advise(struct answers_bus *answers)
 {
     const char *prefix = answers->bus.prefix;
-    struct ask_counts counts = ask_counts(answers->ask);
+    const struct fmb_client_counts counts = fmb_client_counts(answers->client);
     if (answers->advised == counts.outages)
         return;
     answers->advised = counts.outages;
-    fprintf(stderr, "fmb: no fmbd answered on channel %s%s of %s within %g s\n", prefix,
-            WIRE_PAIR_RESULT, args_bus_name(&answers->bus), answers->patience);
+    fprintf(stderr, "fmb: no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s\n", prefix,
+            answers->question.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
+            answers->patience);
     if (counts.malformed > 0)
         fprintf(stderr, "fmb: %" PRIu64 " results could not be read: another version of fmbd?\n",
                 counts.malformed);
@@ -140,16 +157,36 @@ static void advise(struct answers_bus *answers)
             *prefix ? " --prefix " : "", prefix);
 }
 
+static void ask(struct answers_bus *answers, struct asking *asking)
+{
+    const struct answers_question *question = &answers->question;
+    const struct scene *scene = asking->scene;
+    struct fmb_client_frame *frame = frames_of(scene);
+    unsigned(*pair)[2] = pairs_of(scene);
+    const struct fmb_client_scene asked = {
+        .frames = frame,
+        .frame_count = scene->body_count,
+        .which = scene->all_pairs ? FMB_CLIENT_ALL : FMB_CLIENT_LISTED,
+        .pairs = pair,
+        .pair_count = scene->pair_count,
+        .duration = scene->duration,
+        .want = want_of(question, scene),
+        .method = question->method ? question->method->number : 0,
+    };
+    const int status = fmb_client_ask(answers->client, &asked, take_answer, asking);
+    give_rest(asking, status == FMB_OK ? NULL : fmb_client_why(answers->client));
+    free(frame);
+    free(pair);
+    advise(answers);
+}
+
 void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user)
 {
-    struct asking asking = {.scene = scene, .answers = answers, .sink = sink, .user = user};
-    struct pair_query query;
-    if (answers->ask) {
-        ask_all(answers->ask, next_question, take_answer, &asking);
-        advise(answers);
-        return;
-    }
-    while (next_question(&asking, &query))
-        take_answer(&asking, NULL);
+    struct asking asking = {
+        .scene = scene, .certificate = answers->question.certificate, .sink = sink, .user = user};
+    if (answers->client)
+        ask(answers, &asking);
+    else
+        give_rest(&asking, "no bus");
 }

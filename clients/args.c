@@ -1,6 +1,6 @@
 #include "args.h"
 
-#include "bus.h"
+#include "fmb_client.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -78,9 +78,9 @@ static bool refuse(const struct args *args, int option, char **argv)
 
 static bool take_prefix(struct args *args)
 {
-    if (!bus_prefix_ok(optarg))
+    if (!fmb_client_prefix_ok(optarg))
         return args_error(args, "--prefix: expected at most %d letters, digits, '_' or '-'",
-                          BUS_PREFIX_MAX);
+                          FMB_CLIENT_PREFIX_MAX);
     args->bus.prefix = optarg;
     return true;
 }

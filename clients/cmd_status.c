@@ -5,7 +5,6 @@
 #include "listen.h"
 #include "number.h"
 #include "report.h"
-#include "wire.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -24,7 +23,8 @@ struct options {
 };
 
 struct heartbeat {
-    struct wire_status status;
+    struct fmb_client_heartbeat status;
+    char version[32];
     bool heard;
     const char *malformed; /* what was wrong with the last one that could not be read */
 };
@@ -47,23 +47,29 @@ static bool take_option(const struct args *args, int option, void *out)
     return true;
 }
 
-static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static void on_heartbeat(void *user, const struct fmb_client_heartbeat *status)
 {
     struct heartbeat *heartbeat = user;
-    (void) channel;
-    heartbeat->malformed = wire_read_status(buffer->data, buffer->data_size, &heartbeat->status);
-    heartbeat->heard = heartbeat->malformed == NULL;
+    heartbeat->status = *status;
+    snprintf(heartbeat->version, sizeof heartbeat->version, "%s", status->version);
+    heartbeat->status.version = heartbeat->version;
+    heartbeat->heard = true;
+}
+
+static void on_malformed(void *user, const char *what)
+{
+    struct heartbeat *heartbeat = user;
+    heartbeat->malformed = what;
 }
 
 /* ---- Printing -------------------------------------------------------------------------------- */
 
-static void print_json(const struct wire_status *status)
+static void print_json(const struct fmb_client_heartbeat *status)
 {
     fputs("{\"version\": ", stdout);
     report_string_json(stdout, status->version);
 #define X(name) printf(", \"%s\": %" PRId64, #name, status->name);
-    WIRE_COUNTERS_BEFORE(X)
-    WIRE_COUNTERS_AFTER(X)
+    FMB_CLIENT_COUNTERS(X)
 #undef X
     fputs(", \"results\": {", stdout);
 #define X(name, number, text) \
@@ -91,7 +97,7 @@ static void print_duration(int64_t microseconds)
     printf("%" PRId64 " s", seconds % 60);
 }
 
-static void print_refusals(const struct wire_status *status)
+static void print_refusals(const struct fmb_client_heartbeat *status)
 {
     for (int i = 0; i < FMB_STATUS_COUNT; i++)
         if (i != FMB_OK && status->results[i] > 0)
@@ -99,7 +105,7 @@ static void print_refusals(const struct wire_status *status)
                    fmb_status_text(i));
 }
 
-static void print_text(const struct wire_status *status)
+static void print_text(const struct fmb_client_heartbeat *status)
 {
     printf("fmbd %s, server %" PRId64 ", up ", status->version, status->server_id);
     print_duration(status->uptime_us);
@@ -107,6 +113,7 @@ static void print_text(const struct wire_status *status)
         printf(", restarted %" PRId64 " times", status->restarts);
     puts("\nqueries");
     print_count("received", status->received);
+    print_count("  scenes", status->scenes);
     print_count("answered", status->answered);
     print_count("pairs decided", status->pairs);
     print_refusals(status);
@@ -114,6 +121,8 @@ static void print_text(const struct wire_status *status)
     print_count("asked again", status->repeated);
     print_count("lost on the way", status->sequence_gaps);
     print_count("not readable", status->malformed);
+    print_count("waiting", status->waiting);
+    print_count("  at most", status->most_waiting);
     puts("bodies");
     print_count("held", status->bodies);
     print_count("room for", status->capacity);
@@ -132,8 +141,8 @@ static void print_text(const struct wire_status *status)
 static void advise(const struct options *options, const struct args_bus *bus,
                    const struct heartbeat *heartbeat)
 {
-    fprintf(stderr, "fmb: no heartbeat on channel %s%s of %s within %g s\n", bus->prefix,
-            WIRE_STATUS, args_bus_name(bus), options->timeout);
+    fprintf(stderr, "fmb: no heartbeat on channel %sFMB_STATUS of %s within %g s\n", bus->prefix,
+            args_bus_name(bus), options->timeout);
     if (heartbeat->malformed)
         fprintf(stderr, "fmb: but one that could not be read (%s): another version of fmbd?\n",
                 heartbeat->malformed);
@@ -142,7 +151,7 @@ static void advise(const struct options *options, const struct args_bus *bus,
                 bus->prefix);
 }
 
-static int print_heartbeat(const struct options *options, const struct wire_status *status)
+static int print_heartbeat(const struct options *options, const struct fmb_client_heartbeat *status)
 {
     if (options->json)
         print_json(status);
@@ -160,10 +169,12 @@ int cmd_status(int argc, char **argv)
     struct options options = {.timeout = 3};
     struct listener listener;
     struct heartbeat heartbeat = {.heard = false};
+    const struct fmb_client_watcher watcher = {
+        .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &heartbeat};
     int code = args_parse(&args, argc, argv, &options);
     if (code != ARGS_RUN)
         return code;
-    if (!listen_open(&args.bus, WIRE_STATUS, on_status, &heartbeat, &listener))
+    if (!listen_open(&args.bus, &watcher, &listener))
         return ARGS_FAILED;
     enum listen_end end = listen_until(&listener, &heartbeat.heard, options.timeout);
     listen_close(&listener);

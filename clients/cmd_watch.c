@@ -4,7 +4,6 @@
 #include "args.h"
 #include "listen.h"
 #include "report.h"
-#include "wire.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -13,7 +12,10 @@ static const char usage[] =
     "usage: fmb watch [OPTIONS]\n"
     "\n"
     "Prints the results that pass on the bus, whoever asked, one line each, until SIGINT or\n"
-    "SIGTERM. Body 0 is one without an id.\n"
+    "SIGTERM: of pairs, with the ids of the bodies (0 is one without an id), and of scenes.\n"
+    "The result of a scene has one datagram's answers: to the pairs up to the one it names.\n"
+    "Where not all pairs were listed, those that meet alone are counted, all others are\n"
+    "separated.\n"
     "\n"
     "  --json               one line of JSON for each result, exact, with its certificate\n"
     "                       where it has one\n"
@@ -50,9 +52,11 @@ static bool take_option(const struct args *args, int option, void *out)
     return true;
 }
 
-static void print_json(const struct pair_result *result)
+/* ---- Results of pairs ------------------------------------------------------------------------ */
+
+static void print_pair_json(const struct fmb_client_pair_result *result)
 {
-    const struct outcome outcome = {.error = report_refusal(result),
+    const struct outcome outcome = {.error = result->status == FMB_OK ? NULL : result->text,
                                     .answer = result->answer,
                                     .certificate = result->certificate};
     printf("{\"utime\": %" PRId64 ", \"client_id\": %" PRId64 ", \"sequence_number\": %" PRId64
@@ -64,34 +68,101 @@ static void print_json(const struct pair_result *result)
     puts("}");
 }
 
-static void print_text(const struct pair_result *result, struct report_columns *columns)
+/* With what each line begins. */
+static void print_head(int64_t client_id, int64_t sequence_number, int64_t compute_ns)
 {
-    printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  %4" PRId64 " %4" PRId64 "  ", result->client_id,
-           result->sequence_number, 1e-3 * (double) result->compute_ns, result->body_id[0],
-           result->body_id[1]);
+    printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  ", client_id, sequence_number,
+           1e-3 * (double) compute_ns);
+}
+
+static void print_pair_text(const struct fmb_client_pair_result *result,
+                            struct report_columns *columns)
+{
+    print_head(result->client_id, result->sequence_number, result->compute_ns);
+    printf("%4" PRId64 " %4" PRId64 "  ", result->body_id[0], result->body_id[1]);
     if (result->status == FMB_OK)
         report_answer_text(stdout, result->dim, &result->answer, columns);
     else
-        printf("not decided: %s", report_refusal(result));
+        printf("not decided: %s", result->text);
     putchar('\n');
 }
 
-static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+/* ---- Results of scenes ----------------------------------------------------------------------- */
+
+static void print_scene_json(const struct fmb_client_scene_result *result)
 {
-    struct watch *watch = user;
-    struct pair_result result;
-    (void) channel;
-    if (wire_read_pair_result(buffer->data, buffer->data_size, &result)) {
-        watch->malformed++;
+    printf("{\"utime\": %" PRId64 ", \"client_id\": %" PRId64 ", \"sequence_number\": %" PRId64
+           ", \"server_id\": %" PRId64 ", \"compute_ns\": %" PRId64 ", \"lost\": %" PRId64 ", ",
+           result->utime, result->client_id, result->sequence_number, result->server_id,
+           result->compute_ns, result->lost);
+    if (result->status != FMB_OK) {
+        fputs("\"error\": ", stdout);
+        report_string_json(stdout, result->text);
+        puts("}");
         return;
     }
-    if (watch->options->json)
-        print_json(&result);
-    else
-        print_text(&result, &watch->columns);
+    printf("\"end_pair\": %" PRId64 ", \"overlapping\": %" PRId64 ", \"touching\": %" PRId64,
+           result->end_pair, result->overlapping, result->touching);
+    if (!result->names_pairs)
+        printf(", \"separated\": %" PRId64 ", \"undecided\": %" PRId64, result->separated,
+               result->undecided);
+    puts("}");
+}
+
+static void print_scene_text(const struct fmb_client_scene_result *result)
+{
+    print_head(result->client_id, result->sequence_number, result->compute_ns);
+    if (result->status != FMB_OK) {
+        printf("not decided: %s\n", result->text);
+        return;
+    }
+    printf("up to pair %" PRId64 ": %" PRId64 " overlapping, %" PRId64 " touching",
+           result->end_pair, result->overlapping, result->touching);
+    if (!result->names_pairs)
+        printf(", %" PRId64 " separated", result->separated);
+    if (result->undecided > 0)
+        printf(", %" PRId64 " not decided", result->undecided);
+    putchar('\n');
+}
+
+/* ---- The run --------------------------------------------------------------------------------- */
+
+static void count(struct watch *watch)
+{
     watch->seen++;
     if (fflush(stdout) != 0 || watch->seen == watch->options->count)
         watch->enough = true;
+}
+
+static void on_pair(void *user, const struct fmb_client_pair_result *result)
+{
+    struct watch *watch = user;
+    if (watch->enough)
+        return;
+    if (watch->options->json)
+        print_pair_json(result);
+    else
+        print_pair_text(result, &watch->columns);
+    count(watch);
+}
+
+static void on_scene(void *user, const struct fmb_client_scene_result *result)
+{
+    struct watch *watch = user;
+    if (watch->enough)
+        return;
+    if (watch->options->json)
+        print_scene_json(result);
+    else
+        print_scene_text(result);
+    count(watch);
+}
+
+static void on_malformed(void *user, const char *what)
+{
+    struct watch *watch = user;
+    (void) what;
+    watch->malformed++;
 }
 
 static int end_of_watch(const struct watch *watch, enum listen_end end)
@@ -108,11 +179,13 @@ int cmd_watch(int argc, char **argv)
     struct args args = {"watch", usage, own_options, take_option, .takes_file = false};
     struct options options = {.count = 0};
     struct watch watch = {.options = &options, .columns = report_columns()};
+    const struct fmb_client_watcher watcher = {
+        .pair = on_pair, .scene = on_scene, .malformed = on_malformed, .user = &watch};
     struct listener listener;
     int code = args_parse(&args, argc, argv, &options);
     if (code != ARGS_RUN)
         return code;
-    if (!listen_open(&args.bus, WIRE_PAIR_RESULT, on_result, &watch, &listener))
+    if (!listen_open(&args.bus, &watcher, &listener))
         return ARGS_FAILED;
     enum listen_end end = listen_until(&listener, &watch.enough, -1);
     listen_close(&listener);

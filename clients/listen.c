@@ -1,7 +1,7 @@
 #include "listen.h"
 
-#include "bus.h"
 #include "clock.h"
+#include "complain.h"
 #include "signals.h"
 
 #include <errno.h>
@@ -10,27 +10,19 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Results may come in bursts faster than they are printed. */
-enum { QUEUE_CAPACITY = 10000 };
-
-static bool subscribe(const struct args_bus *bus, const char *name, lcm_msg_handler_t handler,
-                      void *user, lcm_t *lcm)
-{
-    char channel[BUS_CHANNEL_MAX];
-    bus_channel(channel, bus->prefix, name);
-    if (bus_subscribe(lcm, channel, handler, user, QUEUE_CAPACITY))
-        return true;
-    fprintf(stderr, "fmb: cannot listen to %s on %s\n", channel, args_bus_name(bus));
-    return false;
-}
-
 /* The signals come last: until the bus is open they simply end the process. */
-bool listen_open(const struct args_bus *bus, const char *name, lcm_msg_handler_t handler,
-                 void *user, struct listener *out)
+bool listen_open(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
+                 struct listener *out)
 {
+    const struct fmb_client_options options = {.url = bus->url, .prefix = bus->prefix};
+    char why[FMB_CLIENT_WHY_MAX];
     out->signals = -1;
-    out->lcm = bus_open("fmb", bus->url, NULL);
-    if (out->lcm && subscribe(bus, name, handler, user, out->lcm)) {
+    out->client = fmb_client_open(&options, why, sizeof why);
+    if (!out->client) {
+        complain(why);
+    } else if (fmb_client_watch(out->client, watcher) != FMB_OK) {
+        fprintf(stderr, "fmb: cannot listen on %s\n", args_bus_name(bus));
+    } else {
         out->signals = signals_open();
         if (out->signals >= 0)
             return true;
@@ -42,8 +34,7 @@ bool listen_open(const struct args_bus *bus, const char *name, lcm_msg_handler_t
 
 void listen_close(struct listener *listener)
 {
-    if (listener->lcm)
-        lcm_destroy(listener->lcm);
+    fmb_client_close(listener->client);
     if (listener->signals >= 0)
         close(listener->signals);
 }
@@ -58,7 +49,7 @@ static int time_left_ms(int64_t end)
 enum listen_end listen_until(struct listener *listener, const bool *enough, double timeout)
 {
     int64_t end = timeout < 0 ? 0 : clock_ns() + (int64_t) (1e9 * timeout);
-    struct pollfd source[2] = {{.fd = lcm_get_fileno(listener->lcm), .events = POLLIN},
+    struct pollfd source[2] = {{.fd = fmb_client_fileno(listener->client), .events = POLLIN},
                                {.fd = listener->signals, .events = POLLIN}};
     while (!*enough) {
         int ready = poll(source, 2, timeout < 0 ? -1 : time_left_ms(end));
@@ -68,7 +59,7 @@ enum listen_end listen_until(struct listener *listener, const bool *enough, doub
             return LISTEN_TIMEOUT;
         if (ready > 0 && source[1].revents)
             return LISTEN_SIGNAL;
-        if (ready < 0 || lcm_handle(listener->lcm) < 0) {
+        if (ready < 0 || fmb_client_handle(listener->client, 0) < 0) {
             fprintf(stderr, "fmb: the bus has failed: %s\n", strerror(errno));
             return LISTEN_FAILED;
         }

@@ -64,10 +64,6 @@ struct report_text report_text(FILE *out, bool box);
  * "error": ... Used wherever answers are printed as JSON; the pair is not looked at. */
 void report_answer_json(FILE *out, int dim, const struct outcome *outcome);
 
-/* Why the service gave no answer in this result; NULL where it gave one. */
-struct pair_result;
-const char *report_refusal(const struct pair_result *result);
-
 /* text as a JSON string with its quotes; bytes that are not printable ASCII as \u00XX. */
 void report_string_json(FILE *out, const char *text);
 

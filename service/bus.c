@@ -16,7 +16,8 @@ enum { DEFAULT_PORT = 7667 };
 
 static const char scheme[] = "udpm://";
 
-enum { URL_MAX = 512 };
+/* Of a URL, and how much of it is told. */
+enum { URL_MAX = 512, URL_SHOWN = 400 };
 
 /* Asked for where the URL names no receive buffer: holds some 60 of the largest datagrams, or
  * thousands of pair queries. */
@@ -97,14 +98,14 @@ static int route_error(const struct sockaddr_in *group)
     return error;
 }
 
-static bool check_route(const char *program, const char *url)
+static bool check_route(const char *url, char why[BUS_WHY_MAX])
 {
     struct sockaddr_in group;
     switch (parse_group(url, &group)) {
     case GROUP_OF_OTHERS: return true;
     case GROUP_WITHOUT_PORT:
-        fprintf(stderr, "%s: the LCM bus %s has no port: write udpm://GROUP:%d\n", program, url,
-                DEFAULT_PORT);
+        snprintf(why, BUS_WHY_MAX, "the LCM bus %.*s has no port: write udpm://GROUP:%d", URL_SHOWN,
+                 url, DEFAULT_PORT);
         return false;
     case GROUP_GOOD: break;
     }
@@ -113,10 +114,10 @@ static bool check_route(const char *program, const char *url)
         return true;
     char text[INET_ADDRSTRLEN];
     inet_ntop(AF_INET, &group.sin_addr, text, sizeof text);
-    fprintf(stderr,
-            "%s: no route to the multicast group %s (%s); to keep the bus on this host, run:\n"
-            "%s:   sudo ip link set lo up multicast on && sudo ip route add 224.0.0.0/4 dev lo\n",
-            program, text, strerror(error), program);
+    snprintf(why, BUS_WHY_MAX,
+             "no route to the multicast group %s (%s); to keep the bus on this host, run:\n"
+             "  sudo ip link set lo up multicast on && sudo ip route add 224.0.0.0/4 dev lo",
+             text, strerror(error));
     return false;
 }
 
@@ -135,24 +136,25 @@ static void complete_url(const char *url, char out[URL_MAX])
         snprintf(out, URL_MAX, "%s", url);
 }
 
-lcm_t *bus_open(const char *program, const char *url, long *receive_buffer)
+lcm_t *bus_open_or_why(const char *url, long *receive_buffer, char why[BUS_WHY_MAX])
 {
     char full[URL_MAX];
     complete_url(url, full);
     long asked = parse_receive_buffer(full);
     if (receive_buffer)
         *receive_buffer = asked > 0 ? receive_buffer_granted(asked) : 0;
-    if (!check_route(program, full))
+    if (!check_route(full, why))
         return NULL;
 
     lcm_t *lcm = lcm_create(full);
     if (!lcm) {
-        fprintf(stderr, "%s: cannot open the LCM bus %s\n", program, full);
+        snprintf(why, BUS_WHY_MAX, "cannot open the LCM bus %.*s", URL_SHOWN, full);
         return NULL;
     }
     if (lcm_get_fileno(lcm) < 0) { /* tcpq without a server; udpm that does not hear itself */
-        fprintf(stderr, "%s: nothing comes through the LCM bus %s: no server, or a firewall?\n",
-                program, full);
+        snprintf(why, BUS_WHY_MAX,
+                 "nothing comes through the LCM bus %.*s: no server, or a firewall?", URL_SHOWN,
+                 full);
         lcm_destroy(lcm);
         return NULL;
     }

@@ -13,12 +13,18 @@ enum { BUS_PREFIX_MAX = 32 };
 bool bus_prefix_ok(const char *prefix);
 void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name);
 
+/* Room for why a bus cannot be opened: one or two lines without the last end of line. */
+enum { BUS_WHY_MAX = 512 };
+
 /* On input: url, or NULL for LCM_DEFAULT_URL or, without that, the usual multicast group on
  * this host alone (ttl=0) with as large a receive buffer as the system grants.
- * On output: the bus, to be destroyed by the caller with lcm_destroy(); or NULL after lines on
- * stderr that begin with program and say what is wrong and what to run. Where the multicast
- * group has no route, these are two lines and LCM's own are not provoked.
+ * On output: the bus, to be destroyed by the caller with lcm_destroy(); or NULL, and why says what
+ * is wrong and what to run. Where the multicast group has no route, LCM's own lines on stderr are
+ * not provoked.
  * *receive_buffer (may be NULL): bytes that the system grants the socket; 0: not known. */
+lcm_t *bus_open_or_why(const char *url, long *receive_buffer, char why[BUS_WHY_MAX]);
+
+/* The same for a program, which says why on stderr, in lines that begin with its name. */
 lcm_t *bus_open(const char *program, const char *url, long *receive_buffer);
 
 /* Subscribes, with room for this many messages to wait; beyond it LCM drops the newest without a

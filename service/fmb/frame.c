@@ -8,17 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-int fmb_component_count(int dim, int shape)
-{
-    bool known_dim = dim == 2 || dim == 3;
-    switch (shape) {
-    case FMB_CUBOID:
-    case FMB_TETRAHEDRON: return known_dim ? dim : 0;
-    case FMB_FACE: return dim == 3 ? 2 : 0;
-    }
-    return 0;
-}
-
 static bool all_finite(const double *numbers, size_t count)
 {
     for (size_t i = 0; i < count; i++)

@@ -1,3 +1,5 @@
+/* What can be said of numbers alone. In an object of its own in libfmb and in libfmb-client, so
+ * that a program can link either or both. */
 #include "fmb.h"
 
 const char *fmb_status_text(int status)
@@ -19,6 +21,17 @@ const char *fmb_shape_name(int shape)
     case FMB_FACE: return "face";
     }
     return NULL;
+}
+
+int fmb_component_count(int dim, int shape)
+{
+    bool known_dim = dim == 2 || dim == 3;
+    switch (shape) {
+    case FMB_CUBOID:
+    case FMB_TETRAHEDRON: return known_dim ? dim : 0;
+    case FMB_FACE: return dim == 3 ? 2 : 0;
+    }
+    return 0;
 }
 
 const char *fmb_verdict_name(int verdict)

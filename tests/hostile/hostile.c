@@ -338,3 +338,25 @@ size_t hostile_lie(const void *query, size_t size, char *certificate,
     int written = fmb_msgs_pair_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
     return written < 0 ? 0 : (size_t) written;
 }
+
+size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTILE_BYTES_MAX])
+{
+    fmb_msgs_scene_query_t asked;
+    char detail[] = "";
+    uint8_t verdict[] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING};
+    int16_t pair[] = {0, 1};
+    if (fmb_msgs_scene_query_t_decode(query, 0, (int) size, &asked) < 0)
+        return 0;
+    fmb_msgs_scene_result_t result = {.client_id = asked.client_id,
+                                      .sequence_number = asked.sequence_number,
+                                      .detail = detail,
+                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
+                                      .end_pair = asked.num_frames * (asked.num_frames - 1) / 2,
+                                      .num_verdicts = 1,
+                                      .verdicts = verdict,
+                                      .num_indices = 2,
+                                      .indices = pair};
+    fmb_msgs_scene_query_t_decode_cleanup(&asked);
+    int written = fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
+    return written < 0 ? 0 : (size_t) written;
+}

@@ -28,4 +28,7 @@ size_t hostile_flood(const char *type, long long client_id, long long sequence_n
 size_t hostile_lie(const void *query, size_t size, char *certificate,
                    unsigned char out[HOSTILE_BYTES_MAX]);
 
+/* The same to a good scene_query that asks for all pairs: the first one overlaps, no other does. */
+size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTILE_BYTES_MAX]);
+
 #endif

@@ -5,7 +5,7 @@
  * poke flood TYPE CLIENT SECONDS: publishes good queries, pair_query or scene_query, of this client
  * as fast as it can, and prints how many there were.
  * poke lie CERTIFICATE: a service that says of every pair, with this certificate, that it
- * overlaps; until it is ended. */
+ * overlaps, and of the first pair of every scene; until it is ended. */
 #include "hostile.h"
 
 #include <lcm/lcm.h>
@@ -68,10 +68,21 @@ static void on_query(const lcm_recv_buf_t *buffer, const char *channel, void *us
         lcm_publish(liar->lcm, "FMB_PAIR_RESULT", bytes, (unsigned) size);
 }
 
+static void on_scene_query(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct liar *liar = user;
+    unsigned char bytes[HOSTILE_BYTES_MAX];
+    size_t size = hostile_lie_scene(buffer->data, buffer->data_size, bytes);
+    (void) channel;
+    if (size > 0)
+        lcm_publish(liar->lcm, "FMB_SCENE_RESULT", bytes, (unsigned) size);
+}
+
 static int lie(lcm_t *lcm, char *certificate)
 {
     struct liar liar = {.lcm = lcm, .certificate = certificate};
     lcm_subscribe(lcm, "FMB_PAIR_QUERY", on_query, &liar);
+    lcm_subscribe(lcm, "FMB_SCENE_QUERY", on_scene_query, &liar);
     while (lcm_handle(lcm) == 0)
         continue;
     return 1;

@@ -158,7 +158,7 @@ grid_scene() {
         started="$started $!"
     done
     sleep 0.5
-    [ "$(status_of received)" -gt 100 ]
+    [ "$(status_of pairs)" -gt 100 ]
     kill -TERM "$fmbd"
     wait_until_gone() { ! kill -0 "$fmbd" 2> /dev/null; }
     wait_until wait_until_gone
@@ -214,6 +214,7 @@ grid_scene() {
         sent=$((sent + $("$FMB_BUILD/poke" FMB_SCENE_QUERY $type)))
         scenes_to_watch=$((scenes_to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
         to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_PAIR_RESULT $type)))
+        to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
         "$FMB_BUILD/poke" FMB_STATUS $type
     done
     [ "$sent" -gt 4000 ]
@@ -221,7 +222,7 @@ grid_scene() {
     [ "$(grep -c malformed "$fmbd_log")" -lt 20 ]
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
-    wait_until grep -q '[a-z]ed\|touching' "$BATS_TEST_TMPDIR/watch"
+    wait_until grep -q 'up to pair 3: [0-9]* overlapping, [0-9]* touching' "$BATS_TEST_TMPDIR/watch"
     kill -INT $watch
     wait $watch
     # Whether it looks at scenes or not.
@@ -237,7 +238,7 @@ grid_scene() {
     random_scene 2 4 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --prefix TWO_ "$BATS_TEST_TMPDIR/scene.json"
     [ "$("$FMB" status --prefix ONE_ --json | jq .received)" = 0 ]
-    [ "$("$FMB" status --prefix TWO_ --json | jq .received)" = 6 ]
+    [ "$("$FMB" status --prefix TWO_ --json | jq .pairs)" = 6 ]
     run "$FMB" query --timeout 0.1 --retries 0 "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
     stop_fmbd
@@ -251,6 +252,9 @@ grid_scene() {
     "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
     [ "$(status_of bodies)" = 1 ]
+    [ "$(status_of evictions)" = 19 ]
+    "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
     [ "$(status_of evictions)" -gt 100 ]
     stop_fmbd
 }
@@ -260,12 +264,17 @@ grid_scene() {
     random_scene 2 5 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
-    [ "$(status_of received)" = 20 ]
+    [ "$(status_of received)" = 2 ]
+    [ "$(status_of scenes)" = 2 ]
     [ "$(status_of pairs)" = 20 ]
     [ "$(status_of bodies)" = 5 ]
     [ "$(status_of capacity)" = 500 ]
     [ "$(status_of misses)" = 5 ]
-    [ "$(status_of hits)" = 35 ]
+    [ "$(status_of hits)" = 5 ]
+    "$FMB" query --certificate "$BATS_TEST_TMPDIR/scene.json"
+    [ "$(status_of received)" = 12 ]
+    [ "$(status_of scenes)" = 2 ]
+    [ "$(status_of pairs)" = 30 ]
     [ "$(status_of malformed)" = 0 ]
     "$FMB" status --json | jq -e '.received == .answered + .unsent and .answered == ([.results[]] | add)'
     run "$FMB" status

@@ -1,0 +1,216 @@
+#include "part.h"
+
+#include "wire.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void part_answers_clear(struct part_answers *answers)
+{
+    free(answers->found);
+    free(answers->certificate);
+    memset(answers, 0, sizeof *answers);
+}
+
+void part_answers_refuse(struct part_answers *answers, int status, const char *text)
+{
+    answers->status = status;
+    snprintf(answers->text, sizeof answers->text, "%s",
+             text && *text ? text : fmb_client_status_text(status));
+}
+
+/* Eight bytes a number. */
+static size_t contact_bytes(const struct fmb_client_scene *scene)
+{
+    const size_t times = scene->want & FMB_CLIENT_WANT_TIMES ? 2 : 0;
+    const size_t box = scene->want & FMB_CLIENT_WANT_BOX ? 2 * FMB_DIM_MAX : 0;
+    return 8 * (times + box);
+}
+
+size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene)
+{
+    if (part->alone) /* a certificate of usual length */
+        return WIRE_BYTES_MAX;
+    const size_t named = part->which == QUERY_PAIRS_LISTED ? 0 : WIRE_PAIR_BYTES;
+    const size_t bytes = WIRE_SCENE_RESULT_BYTES + 8 * (size_t) part->frame_count +
+                         (size_t) part->total * (1 + named + contact_bytes(scene));
+    return bytes < QUERY_BYTES_MAX ? bytes : QUERY_BYTES_MAX;
+}
+
+int32_t part_pairs_before(const struct part *part, int32_t a)
+{
+    const int32_t n = part->frame_count;
+    if (part->which == QUERY_PAIRS_ACROSS)
+        return a * (n - part->split);
+    return a * n - a * (a + 1) / 2;
+}
+
+/* ---- What a result says ---- */
+
+/* A result of a scene against the part that it answers. */
+struct taking {
+    const struct part *part;
+    const struct fmb_client_scene *scene;
+    const struct scene_result *result;
+    int32_t first; /* pair that the result begins with */
+};
+
+static bool is_contact(int verdict)
+{
+    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
+}
+
+/* The number of the pair of a verdict; -1: the result names what was not asked. */
+static int32_t number_of(const struct taking *taking, int32_t k)
+{
+    const struct part *part = taking->part;
+    if (part->which == QUERY_PAIRS_LISTED)
+        return taking->first + k;
+    const unsigned frames = (unsigned) part->frame_count, split = (unsigned) part->split;
+    const unsigned a = taking->result->pair[k][0], b = taking->result->pair[k][1];
+    const bool across = part->which == QUERY_PAIRS_ACROSS;
+    const unsigned partners = across ? split : a + 1;
+    if (a >= (across ? split : frames) || b < partners || b >= frames)
+        return -1;
+    return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
+}
+
+static bool moves(const struct taking *taking, unsigned frame)
+{
+    return taking->scene->frames[taking->part->frame[frame]].moving;
+}
+
+static bool any_moves(const struct taking *taking)
+{
+    for (int32_t i = 0; i < taking->part->frame_count; i++)
+        if (moves(taking, (unsigned) i))
+            return true;
+    return false;
+}
+
+static bool pair_moves(const struct taking *taking, int32_t k)
+{
+    const struct part *part = taking->part;
+    if (part->which != QUERY_PAIRS_LISTED)
+        return moves(taking, taking->result->pair[k][0]) ||
+               moves(taking, taking->result->pair[k][1]);
+    const uint16_t *pair = part->pair[taking->first + k];
+    return moves(taking, pair[0]) || moves(taking, pair[1]);
+}
+
+/* Each pair that is named was asked, comes once, in order, and is a contact. */
+static bool fits_named(const struct taking *taking)
+{
+    const struct scene_result *result = taking->result;
+    int32_t before = taking->first - 1;
+    if (result->contact_count != result->verdict_count ||
+        result->names_pairs != (result->verdict_count > 0))
+        return false;
+    for (int32_t k = 0; k < result->verdict_count; k++) {
+        const int32_t number = number_of(taking, k);
+        if (number <= before || number >= result->end_pair)
+            return false;
+        before = number;
+    }
+    return true;
+}
+
+/* An interval for each contact of a pair that moves, where wanted, and for no other. */
+static bool fits_times(const struct taking *taking)
+{
+    const struct scene_result *result = taking->result;
+    const bool wanted = taking->scene->want & FMB_CLIENT_WANT_TIMES && any_moves(taking);
+    int32_t contact = 0;
+    if (result->has_times != (wanted && result->contact_count > 0))
+        return false;
+    for (int32_t k = 0; result->has_times && k < result->verdict_count; k++)
+        if (is_contact(result->verdict[k]) &&
+            isnan(result->times[2 * contact++]) == pair_moves(taking, k))
+            return false;
+    return true;
+}
+
+static bool fits(const struct taking *taking)
+{
+    const struct scene_result *result = taking->result;
+    const struct part *part = taking->part;
+    const bool listed = part->which == QUERY_PAIRS_LISTED;
+    if (result->end_pair <= taking->first || result->end_pair > part->total)
+        return false;
+    if (result->has_boxes && (!(taking->scene->want & FMB_CLIENT_WANT_BOX) ||
+                              result->dim != taking->scene->frames[0].dim))
+        return false;
+    if (listed &&
+        (result->names_pairs || result->verdict_count != result->end_pair - taking->first))
+        return false;
+    return (listed || fits_named(taking)) && fits_times(taking);
+}
+
+static bool make_room(struct part_answers *answers, size_t more)
+{
+    if (answers->count + more <= answers->room)
+        return true;
+    size_t room = 2 * answers->room;
+    if (room < answers->count + more)
+        room = answers->count + more;
+    struct part_found *found = realloc(answers->found, room * sizeof *found);
+    if (!found)
+        return false;
+    answers->found = found;
+    answers->room = room;
+    return true;
+}
+
+/* Of the contact with this number among the contacts. */
+static void fill_contact(const struct scene_result *result, int32_t contact, struct fmb_answer *out)
+{
+    const int dim = result->dim;
+    if (result->has_times && !isnan(result->times[2 * contact])) {
+        out->has_contact = true;
+        memcpy(out->contact, &result->times[2 * contact], sizeof out->contact);
+    }
+    out->has_box = result->has_boxes;
+    for (int i = 0; i < 2 * dim && result->has_boxes; i++)
+        out->box[i / dim][i % dim] = result->boxes[2 * dim * contact + i];
+}
+
+enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
+                                const struct scene_result *result, struct part_answers *answers)
+{
+    const struct taking taking = {part, scene, result, answers->answered};
+    int32_t contact = 0;
+    if (!fits(&taking))
+        return PART_NONSENSE;
+    size_t found = 0;
+    for (int32_t k = 0; k < result->verdict_count; k++)
+        found += result->verdict[k] != FMB_SEPARATED;
+    if (!make_room(answers, found))
+        return PART_NO_MEMORY;
+    for (int32_t k = 0; k < result->verdict_count; k++) {
+        if (result->verdict[k] == FMB_SEPARATED)
+            continue;
+        struct part_found *out = &answers->found[answers->count++];
+        *out = (struct part_found){.number = number_of(&taking, k),
+                                   .answer.verdict = (enum fmb_verdict) result->verdict[k]};
+        if (is_contact(result->verdict[k]))
+            fill_contact(result, contact++, &out->answer);
+    }
+    answers->answered = result->end_pair;
+    return PART_TAKEN;
+}
+
+enum part_taken part_take_pair(const struct fmb_client_scene *scene,
+                               const struct pair_result *result, struct part_answers *answers)
+{
+    if (result->answer.has_box && result->dim != scene->frames[0].dim)
+        return PART_NONSENSE;
+    if (!make_room(answers, 1))
+        return PART_NO_MEMORY;
+    if (result->certificate && !(answers->certificate = strdup(result->certificate)))
+        return PART_NO_MEMORY;
+    answers->found[answers->count++] = (struct part_found){.answer = result->answer};
+    answers->answered = 1;
+    return PART_TAKEN;
+}
