@@ -28,7 +28,7 @@ load service
     for case in tests/cases/*.json; do
         scene=$BATS_TEST_TMPDIR/scene.json
         jq -c .scene "$case" > "$scene"
-        for method in exact fmb sat; do
+        for method in certified exact fmb sat; do
             local_code=0 bus_code=0
             "$FMB" query --box --json --local --method $method "$scene" > "$BATS_TEST_TMPDIR/local" || local_code=$?
             "$FMB" query --box --json --method $method "$scene" > "$BATS_TEST_TMPDIR/bus" || bus_code=$?
@@ -120,6 +120,23 @@ grid_scene() {
     [[ ${lines[2]} == *"  1  2  not decided: the certificate is too long for a message: ask with --local" ]]
 }
 
+@test "watch shows what passes of scenes, in JSON" {
+    start_fmbd
+    "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+    watch=$!
+    started="$started $watch"
+    grid_scene 3 1 > "$BATS_TEST_TMPDIR/scene.json"
+    asked() {
+        "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+        ! kill -0 $watch 2> /dev/null
+    }
+    wait_until asked
+    [ "$(jq -c '[.end_pair, .overlapping, .touching]' "$BATS_TEST_TMPDIR/watch")" = \
+        "$(jq -c '[.pairs[].verdict] | [length, (map(select(. == "overlapping")) | length), (map(select(. == "touching")) | length)]' "$BATS_TEST_TMPDIR/bus")" ]
+    [ "$(jq .lost "$BATS_TEST_TMPDIR/watch")" = 0 ]
+    stop_fmbd
+}
+
 @test "watch shows the certificates that pass, in JSON" {
     start_fmbd
     "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
@@ -132,6 +149,31 @@ grid_scene() {
     }
     wait_until asked
     [ "$(jq .certificate "$BATS_TEST_TMPDIR/watch")" = "$(jq '.pairs[0].certificate' "$BATS_TEST_TMPDIR/bus")" ]
+    stop_fmbd
+}
+
+@test "pairs listed, in any order and more than once, give the answers of --local" {
+    start_fmbd
+    for dim in 2 3; do
+        random_scene $dim 60 | jq -c '.pairs = [range(3000) | [. % 60 + 1, (. * 7 + (. / 60 | floor)) % 60 + 1] | select(.[0] != .[1])]' > "$BATS_TEST_TMPDIR/scene.json"
+        for options in '' --box '--method sat' '--method exact'; do
+            local_code=0 bus_code=0
+            "$FMB" query --json --local $options "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local" || local_code=$?
+            "$FMB" query --json $options "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" || bus_code=$?
+            [ $local_code = $bus_code ]
+            [ "$(jq '.pairs | length' "$BATS_TEST_TMPDIR/bus")" -gt 2900 ]
+            cmp "$BATS_TEST_TMPDIR/bus" "$BATS_TEST_TMPDIR/local"
+        done
+    done
+    stop_fmbd
+}
+
+@test "a scene of more bodies than a datagram has room for gives the answers of --local" {
+    start_fmbd
+    random_scene 3 700 | jq -c '.bodies |= map(.origin |= map(. * 4))' > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    [ "$(status_of pairs)" = 244650 ]
     stop_fmbd
 }
 
@@ -152,7 +194,7 @@ grid_scene() {
 
 @test "SIGTERM under load ends it well, and at once" {
     start_fmbd
-    random_scene 3 300 > "$BATS_TEST_TMPDIR/scene.json"
+    random_scene 3 900 > "$BATS_TEST_TMPDIR/scene.json"
     for client in 1 2; do
         "$FMB" query --box --json --timeout 0.2 --retries 0 "$BATS_TEST_TMPDIR/scene.json" > /dev/null 2>&1 3>&- &
         started="$started $!"
@@ -178,7 +220,7 @@ grid_scene() {
 }
 
 @test "a service that dies and comes back costs no answer" {
-    random_scene 3 120 > "$BATS_TEST_TMPDIR/scene.json"
+    random_scene 3 400 > "$BATS_TEST_TMPDIR/scene.json"
     start_fmbd
     "$FMB" query --json --box --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
     client=$!

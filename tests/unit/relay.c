@@ -160,7 +160,9 @@ void relay_draw(struct fmb_client_frame *out, size_t count, int dim, double size
         memset(frame, 0, sizeof *frame);
         frame->body_id = first_id ? first_id + (int64_t) i : 0;
         frame->dim = dim;
-        frame->shape = 1 + (int) draw(&seed, 0, dim);
+        frame->shape = draw(&seed, 0, 1) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON;
+        if (dim == 3 && i % 20 == 7) /* few: they are slow to decide */
+            frame->shape = FMB_FACE;
         frame->moving = draw(&seed, 0, 1) < 0.5;
         const int numbers = fmb_component_count(dim, frame->shape) * dim;
         for (int k = 0; k < numbers; k++)

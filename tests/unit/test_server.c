@@ -1,6 +1,4 @@
-/* The service through memq://, and the client's asking code against it: one process, one
- * thread, no network. */
-#include "ask.h"
+/* The service through memq://: one process, one thread, no network. */
 #include "hostile.h"
 #include "server.h"
 #include "wire.h"
@@ -200,144 +198,6 @@ static void test_damage_is_counted(void **state)
     assert_int_equal(bus.results, 1);
 }
 
-/* ---- Asking ---------------------------------------------------------------------------- */
-
-/* A client's own bus, in the same thread: what is published there is carried over to the service's
- * bus, and the results back. */
-static void carry_query(const lcm_recv_buf_t *buffer, const char *channel, void *user)
-{
-    (void) user;
-    lcm_publish(bus.lcm, channel, buffer->data, buffer->data_size);
-    settle();
-}
-
-static void carry_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
-{
-    lcm_t *client = user;
-    lcm_publish(client, channel, buffer->data, buffer->data_size);
-}
-
-static lcm_t *client_bus(void)
-{
-    lcm_t *client = lcm_create("memq://");
-    lcm_subscribe(client, "T_FMB_.*_QUERY", carry_query, NULL);
-    lcm_subscribe(bus.lcm, "T_FMB_.*_RESULT", carry_result, client);
-    return client;
-}
-
-enum { ASKED = 500 };
-
-struct asking {
-    int next, answered;
-    struct pair_query query[ASKED];
-};
-
-static bool next_query(void *user, struct pair_query *out)
-{
-    struct asking *asking = user;
-    if (asking->next == ASKED)
-        return false;
-    struct pair_query *query = &asking->query[asking->next++];
-    memcpy(out->frame, query->frame, sizeof out->frame);
-    out->duration = query->duration;
-    return true;
-}
-
-/* Each answer is that of the query in its turn, to the bit, as decided here. */
-static void check_answer(void *user, const struct pair_result *result)
-{
-    struct asking *asking = user;
-    const struct pair_query *query = &asking->query[asking->answered++];
-    struct fmb_body body[2];
-    struct fmb_frame frame[2];
-    struct fmb_answer answer;
-    assert_non_null(result);
-    for (int f = 0; f < 2; f++) {
-        const struct query_frame *of = &query->frame[f];
-        assert_int_equal(fmb_body_make(of->dim, of->shape, of->components.number,
-                                       (size_t) of->components.count, &body[f]),
-                         FMB_OK);
-        frame[f] = (struct fmb_frame){.body = &body[f], .moving = of->velocity.count > 0};
-        memcpy(frame[f].origin, of->origin.number, sizeof frame[f].origin);
-        memcpy(frame[f].velocity, of->velocity.number, sizeof frame[f].velocity);
-    }
-    struct fmb_pair pair = {.a = frame[0], .b = frame[1], .duration = query->duration};
-    assert_int_equal(fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &answer), FMB_OK);
-    assert_int_equal(result->status, FMB_OK);
-    assert_memory_equal(&answer, &result->answer, sizeof answer);
-    char certificate[1000];
-    size_t length;
-    assert_int_equal(fmb_certificate(&pair, certificate, sizeof certificate, &length), FMB_OK);
-    assert_string_equal(result->certificate, certificate);
-}
-
-static void fill(struct asking *asking)
-{
-    srand(7);
-    for (int i = 0; i < ASKED; i++) {
-        struct pair_query *query = &asking->query[i];
-        int dim = rand() % 2 + 2;
-        query->duration = rand() % 3 / 2.0;
-        for (int f = 0; f < 2; f++) {
-            struct query_frame *frame = &query->frame[f];
-            frame->body_id = rand() % 150; /* more than the cache holds; 0 too */
-            frame->shape = rand() % dim + 1;
-            frame->dim = frame->origin.count = dim;
-            frame->components.count = dim * fmb_component_count(dim, frame->shape);
-            frame->velocity.count = rand() % 2 * dim;
-            for (int k = 0; k < frame->components.count; k++)
-                frame->components.number[k] = rand() % 5 - 2 + rand() % 2 * 0.1;
-            for (int k = 0; k < dim; k++)
-                frame->origin.number[k] = rand() % 3 - 1;
-            for (int k = 0; k < frame->velocity.count; k++)
-                frame->velocity.number[k] = rand() % 5 - 2;
-        }
-    }
-}
-
-static void test_asking_gets_the_library_s_answers(void **state)
-{
-    (void) state;
-    static struct asking asking;
-    const struct ask_options options = {.prefix = "T_",
-                                        .want = QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE,
-                                        .timeout = 5,
-                                        .retries = 0};
-    fill(&asking);
-    lcm_t *client = client_bus();
-    struct ask *ask = ask_open(client, &options);
-    assert_non_null(ask);
-    ask_all(ask, next_query, check_answer, &asking);
-    assert_int_equal(asking.answered, ASKED);
-    assert_int_equal(ask_counts(ask).answered, ASKED);
-    assert_int_equal(ask_counts(ask).repeated, 0);
-    ask_close(ask);
-    lcm_destroy(client);
-    assert_int_equal(status_now().pairs, ASKED);
-    assert_true(status_now().evictions > 0);
-}
-
-static void count_silence(void *user, const struct pair_result *result)
-{
-    struct asking *asking = user;
-    assert_null(result);
-    asking->answered++;
-}
-
-static void test_asking_nobody_ends(void **state)
-{
-    (void) state;
-    static struct asking asking;
-    const struct ask_options options = {.prefix = "NOBODY_", .timeout = 0.01, .retries = 1};
-    fill(&asking);
-    asking.next = ASKED - 3;
-    struct ask *ask = ask_open(bus.lcm, &options);
-    ask_all(ask, next_query, count_silence, &asking);
-    assert_int_equal(asking.answered, 3);
-    assert_true(ask_is_silent(ask));
-    ask_close(ask);
-}
-
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -347,8 +207,6 @@ int main(void)
         TEST(test_certificates_are_given_where_wanted),
         TEST(test_status_counts),
         TEST(test_damage_is_counted),
-        TEST(test_asking_gets_the_library_s_answers),
-        TEST(test_asking_nobody_ends),
     };
     return cmocka_run_group_tests_name("server", tests, NULL, NULL);
 }

@@ -1,0 +1,66 @@
+# The libraries as their users meet them: installed, found by pkg-config, linked.
+
+load service
+
+setup() {
+    root=$BATS_TEST_TMPDIR/root
+    options=()
+    case $FMB_BUILD in
+    *asan*) options+=(MODE=asan) flags='-fsanitize=address,undefined' ;;
+    *) flags= ;;
+    esac
+    case $FMB_BUILD in *-clang) options+=(CC=clang) ;; esac
+    compiler=$(case $FMB_BUILD in *-clang) echo clang ;; *) echo gcc ;; esac)
+    # What was built is installed as it is.
+    make -s -o all "${options[@]}" install PREFIX="$root"
+    export PKG_CONFIG_PATH=$root/lib/pkgconfig
+}
+
+@test "the example asks a scene: compiled against what is installed, with neither libfmb nor GMP" {
+    $compiler -std=c99 -Wall -Wextra -Werror $flags clients/examples/ask_scene.c \
+        $(pkg-config --static --cflags --libs fmb-client) -o "$BATS_TEST_TMPDIR/ask_scene"
+    [ -z "$(ldd "$BATS_TEST_TMPDIR/ask_scene" | grep gmp)" ]
+    start_fmbd
+    run "$BATS_TEST_TMPDIR/ask_scene"
+    [ "$status" = 0 ]
+    [ "$output" = "1 and 2: touching
+1 and 3: touching
+1 and 4: touching from 1 s
+3 and 4: overlapping from 0.5 s" ]
+    stop_fmbd
+}
+
+@test "a program that uses both libraries links them in either order, as C and as C++" {
+    cat > "$BATS_TEST_TMPDIR/both.c" << 'END'
+#include <fmb_client.h>
+#include <string.h>
+int main(void)
+{
+    struct fmb_body body;
+    const double edges[] = {1, 0, 0, 1};
+    char why[FMB_CLIENT_WHY_MAX];
+    struct fmb_client_options options;
+    memset(&options, 0, sizeof options);
+    options.prefix = "not a prefix";
+    return fmb_body_make(2, FMB_CUBOID, edges, 4, &body) != FMB_OK ||
+           fmb_client_open(&options, why, sizeof why) != NULL || strlen(why) == 0 ||
+           strcmp(fmb_client_status_text(FMB_BUSY), fmb_status_text(FMB_BUSY)) != 0;
+}
+END
+    for order in 'fmb fmb-client' 'fmb-client fmb'; do
+        libraries=$(for name in $order; do pkg-config --static --libs $name; done)
+        $compiler -std=c17 -Wall -Wextra -Werror $flags "$BATS_TEST_TMPDIR/both.c" \
+            $(pkg-config --cflags fmb-client) $libraries -o "$BATS_TEST_TMPDIR/both"
+        "$BATS_TEST_TMPDIR/both"
+    done
+    $compiler -x c++ -fsyntax-only -Wall -Wextra -Werror "$BATS_TEST_TMPDIR/both.c" \
+        $(pkg-config --cflags fmb-client) || ! command -v g++
+}
+
+@test "the client's library shows its own names alone" {
+    nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
+    grep -qx fmb_client_ask "$BATS_TEST_TMPDIR/names"
+    grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
+    [ -z "$(grep -v '^fmb_\|asan' "$BATS_TEST_TMPDIR/names")" ]
+    [ -z "$(grep fmb_msgs "$BATS_TEST_TMPDIR/names")" ]
+}
