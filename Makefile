@@ -87,7 +87,7 @@ asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted\
-	$(B)/bench/bench
+	$(B)/bench/bench $(B)/soak-asker $(B)/soak-memory $(B)/soak-relay
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -356,6 +356,28 @@ validate: $(B)/validate
 
 accuracy: $(B)/accuracy
 	$< --json $<.json
+
+# Clients that know the answers, and a service to which bad things are done; ten minutes, or more
+# with SECONDS= for each trial.
+.PHONY: soak
+soak: all $(filter %/soak-asker %/soak-memory %/soak-relay %/poke %/poison,$(test_programs))
+	tests/soak/soak.sh $(B) $(SECONDS)
+
+$(B)/soak-asker: $(O)/tests/soak/asker.o $(O)/service/clock.o $(B)/libfmb-client.a $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -pthread -o $@ $^ -llcm -lgmp -lm
+
+$(B)/soak-memory: $(O)/tests/soak/memory.o $(bus_objects) $(message_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+
+$(B)/soak-relay: $(O)/tests/soak/relay.o
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^
+
+$(O)/tests/soak/%.o: tests/soak/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) -pthread -Iservice -Iservice/fmb -Iclients/lib -I$(GEN)
 
 # ---- Benchmark -------------------------------------------------------------------------------
 

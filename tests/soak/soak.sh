@@ -77,6 +77,17 @@ ask() {
     "$build/soak-asker" --seconds "$seconds" "$@"
 }
 
+# One datagram in a hundred is lost, one in a hundred overtaken: by the kernel, where it can.
+lose_in_kernel() {
+    tc qdisc add dev lo root netem delay 200us reorder 99% loss 1% 2> /dev/null
+}
+
+lose_in_relay() {
+    start "$build/soak-relay" 7667 7668 1
+    LCM_DEFAULT_URL='udpm://239.255.76.67:7668?ttl=0'
+    export LCM_DEFAULT_URL
+}
+
 run_trial() {
     start_fmbd
     case $trial in
@@ -86,10 +97,7 @@ run_trial() {
     killed) start every 1 kill_worker; ask --clients 4 --pairs 40 ;;
     poisoned) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
     hostile) start every 0 damage; ask --clients 4 --pairs 40 ;;
-    lossy)
-        tc qdisc add dev lo root netem delay 200us reorder 99% loss 1% 2> /dev/null || return 77
-        ask --clients 4 --pairs 40
-        ;;
+    lossy) lose_in_kernel || lose_in_relay; ask --clients 4 --pairs 40 ;;
     ids) "$build/soak-memory" ids "$(worker)" "$ids" ;;
     channels) "$build/soak-memory" channels "$(worker)" "$channels" ;;
     esac
@@ -101,6 +109,7 @@ if [ -n "$trial" ]; then
     trap 'exit 1' HUP INT TERM
     run_trial
     code=$?
+    unset LCM_DEFAULT_URL
     "$build/fmb" status --json > "$out/$trial.status" 2> /dev/null
     kill "$fmbd"
     wait "$fmbd" || code=1
@@ -113,13 +122,11 @@ for trial in $trials; do
     printf '%-9s ' "$trial"
     "$build/netns" "$0" "$build" "$seconds" "$trial" > "$out/$trial.json" 2> "$out/$trial.err"
     code=$?
-    case $code in
-    0) cat "$out/$trial.json" ;;
-    77) echo 'skipped: this system cannot' ;;
-    *)
+    if [ $code = 0 ]; then
+        cat "$out/$trial.json"
+    else
         worst=1
         echo "FAILED: $(cat "$out/$trial.json" "$out/$trial.err")"
-        ;;
-    esac
+    fi
 done
 exit $worst

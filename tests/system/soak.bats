@@ -1,0 +1,59 @@
+# The soak's trials, two seconds each: 'make soak' runs them for a minute.
+
+: "${FMB_BUILD:=build}"
+
+# trial NAME: what it prints is in $report.
+trial() {
+    mkdir -p "$FMB_BUILD/soak"
+    report=$(timeout 120 tests/soak/soak.sh "$FMB_BUILD" 2 "$1" 3>&-)
+    echo "$report"
+}
+
+status_was() {
+    jq -e "$2" "$FMB_BUILD/soak/$1.status"
+}
+
+@test "no answer is lost or wrong, to pairs and to scenes" {
+    trial pairs
+    status_was pairs '.pairs > 100 and .scenes == 0 and .restarts == 0'
+    trial scenes
+    status_was scenes '.scenes > 10'
+}
+
+@test "no answer is lost or wrong with sixteen clients at once" {
+    trial crowd
+    jq -e '.clients == 16 and .queries >= 16' <<< "$report"
+}
+
+@test "no answer is lost or wrong while workers are killed" {
+    trial killed
+    status_was killed '.restarts >= 2'
+}
+
+@test "no answer is lost or wrong while packets crash LCM" {
+    trial poisoned
+    status_was poisoned '.restarts >= 2'
+}
+
+@test "no answer is lost or wrong among damaged messages" {
+    trial hostile
+    status_was hostile '.malformed > 1000 and .restarts == 0'
+}
+
+@test "no answer is lost or wrong where one datagram in a hundred is lost and one overtaken" {
+    trial lossy
+    jq -e '.asked_again > 0' <<< "$report"
+}
+
+# resident_kb: at the start, then after each tenth. Sanitizers keep what was freed.
+@test "new bodies without end take no memory" {
+    case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
+    FMB_SOAK_IDS=200000 trial ids
+    jq -e '.good and (.resident_kb | length) == 11 and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"
+}
+
+@test "channels of others take what LCM itself keeps of them" {
+    case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
+    FMB_SOAK_CHANNELS=10000 trial channels
+    jq -e '.good and .resident_kb[10] - .resident_kb[1] < 10000 * 0.2' <<< "$report"
+}
