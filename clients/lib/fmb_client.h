@@ -77,7 +77,7 @@ enum { FMB_CLIENT_WHY_MAX = 512 };
 /* On input: options, which are copied, or NULL; room for size bytes in why (NULL if size is 0).
  * On output: a client with a random id, to be closed by the caller; or NULL, and why not: the bus
  * cannot be opened (and what to run where there is no route), a wrong option, no memory.
- * It takes a little over 10 MB, most of which is touched by large scenes only. */
+ * It takes some 13 MB of addresses, most of which are touched by large scenes only. */
 struct fmb_client *fmb_client_open(const struct fmb_client_options *options, char *why,
                                    size_t size);
 void fmb_client_close(struct fmb_client *client); /* may be NULL */

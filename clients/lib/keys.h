@@ -4,8 +4,8 @@
 
 #include "query.h"
 
-/* Bodies that are remembered; a power of two. One that has the place of another takes it. */
-enum { KEYS_MAX = 1 << 15 };
+/* Bodies that are remembered. One that has the place of another takes it. */
+enum { KEYS_BITS = 15, KEYS_MAX = 1 << KEYS_BITS };
 
 struct keys_entry {
     int64_t body_id, server_id, key;

@@ -51,6 +51,7 @@ static void on_query(const lcm_recv_buf_t *buffer, const char *channel, void *us
 {
     struct relay *relay = user;
     relay->queries++;
+    relay->bytes += buffer->data_size;
     assert_true(buffer->data_size <= QUERY_BYTES_MAX);
     if (relay->before)
         relay->before(relay);

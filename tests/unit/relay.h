@@ -10,7 +10,8 @@
 struct relay {
     lcm_t *service, *client;
     struct server *server;
-    int queries; /* that the client sent */
+    int queries;  /* that the client sent */
+    size_t bytes; /* of them */
     /* Every so many; 0: none. */
     int lose_query, lose_result, double_result, delay_result, busy;
     bool deaf; /* no query arrives */

@@ -204,6 +204,28 @@ static void test_the_time_for_all_ends_it(void **state)
     relay_close(&relay);
 }
 
+/* What is under way at once fits into a usual receive buffer: two of the largest datagrams, or many
+ * small ones. */
+static void test_what_is_under_way_is_limited(void **state)
+{
+    (void) state;
+    struct fmb_client_scene scene = all_pairs();
+    for (int small = 0; small < 2; small++) {
+        struct relay relay = {.deaf = true};
+        relay_open(&relay, 10);
+        struct fmb_client *client = relay_client(&relay, 1000, 1);
+        if (small)
+            scene = listed();
+        scene.want = small ? FMB_CLIENT_WANT_CERTIFICATE : 0;
+        scene.within = 0.05;
+        ask(client, &scene);
+        assert_true(small ? relay.queries > 30 && relay.queries <= 64 : relay.queries == 2);
+        assert_true(relay.bytes <= (small ? 20000 : 130000));
+        fmb_client_close(client);
+        relay_close(&relay);
+    }
+}
+
 /* ---- Lies ---- */
 
 static void too_far(struct scene_result *result, int turn)
@@ -429,6 +451,38 @@ static void test_steps_of_one_pair_end(void **state)
     relay_close(&relay);
 }
 
+static void for_ever(struct scene_result *result, int turn)
+{
+    (void) turn;
+    result->compute_ns = INT64_MAX;
+}
+
+static void in_no_time(struct scene_result *result, int turn)
+{
+    result->compute_ns = -turn;
+}
+
+/* So many pairs are asked at once as are decided soon. */
+static void test_slow_services_are_asked_less_at_once(void **state)
+{
+    (void) state;
+    struct relay relay = {.lie = for_ever};
+    relay_open(&relay, 2000);
+    struct fmb_client *client = relay_client(&relay, 5, 1);
+    const struct fmb_client_scene scene = listed();
+    relay_ask(client, &scene);
+    int before = relay.queries;
+    relay_ask(client, &scene);
+    assert_int_equal(relay.queries - before, 2000 / 16);
+    relay.lie = in_no_time;
+    relay_ask(client, &scene);
+    before = relay.queries;
+    relay_ask(client, &scene);
+    assert_int_equal(relay.queries - before, 1);
+    fmb_client_close(client);
+    relay_close(&relay);
+}
+
 /* A service that never knows a key: one that was sent none is not asked for ever. */
 static void unknown_body(struct scene_result *result, int turn)
 {
@@ -614,9 +668,11 @@ int main(void)
         cmocka_unit_test(test_nobody_there_costs_the_time_of_one_query),
         cmocka_unit_test(test_the_rest_has_no_answer),
         cmocka_unit_test(test_the_time_for_all_ends_it),
+        cmocka_unit_test(test_what_is_under_way_is_limited),
         cmocka_unit_test(test_lies_are_no_answers),
         cmocka_unit_test(test_the_truth_after_lies_is_taken),
         cmocka_unit_test(test_steps_of_one_pair_end),
+        cmocka_unit_test(test_slow_services_are_asked_less_at_once),
         cmocka_unit_test(test_unknown_bodies_for_ever_are_a_refusal),
         cmocka_unit_test(test_no_call_within_a_callback),
         cmocka_unit_test(test_watching),
