@@ -3,9 +3,9 @@
 #   make deps demo          installs what building needs, then lets the service answer a scene
 #   make deps-test test     installs what the tests need, then runs them
 #
-# Others: all, examples, tests (builds them), test-fast, validate, accuracy, bench, report, headers,
-# format, format-check, install, clean; deps-bench and deps-report install what is only good for
-# these.
+# Others: all, examples, tests (builds them), test-fast, validate, accuracy, soak, bench, bench-bus,
+# report, headers, format, format-check, install, clean; deps-bench and deps-report install what is
+# only good for these.
 # MODE=release|debug|asan. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
@@ -86,8 +86,9 @@ asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
-test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted\
-	$(B)/bench/bench $(B)/soak-asker $(B)/soak-memory $(B)/soak-relay
+test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
+	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/soak-asker $(B)/soak-memory \
+	$(B)/soak-relay
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -418,12 +419,36 @@ bench: $(B)/bench/bench
 deps-bench:
 	$(call install_packages,libccd-dev pkg-config)
 
+# The bus: fmbd against an echo that does nothing, in a network of their own.
+bus_bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/echo.c,$(wildcard tests/bus/*.c))) \
+	$(addprefix $(O)/tests/bench/,json.o machine.o scene.o stopwatch.o)
+
+$(B)/bus/bench-bus: $(bus_bench_objects) $(campaign_objects) $(server_objects) $(bus_objects) \
+		$(message_objects) $(lib_objects) | $(B)/bus/echo $(B)/fmbd
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -pthread -o $@ $(filter %.o,$^) -llcm -lgmp -lm
+
+$(B)/bus/echo: $(O)/tests/bus/echo.o $(O)/service/bus.o
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm
+
+$(O)/tests/bus/%.o: tests/bus/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign -Itests/bench
+
+# Minutes; what it measured is in bus/report.json then.
+.PHONY: bench-bus
+bench-bus: $(B)/bus/bench-bus $(B)/netns
+	$(B)/netns $< --json $(B)/bus/report.json
+
 # ---- Report ----------------------------------------------------------------------------------
 
-# One page of what 'make bench' and 'make accuracy' measured; it runs neither.
+# One page of what 'make bench' and 'make accuracy' measured, and 'make bench-bus' if it did; it runs
+# none of them.
 .PHONY: report deps-report
 report:
-	tests/report/report.sh $(B)/bench/report.json $(B)/accuracy.json $(B)/report
+	tests/report/report.sh $(B)/bench/report.json $(B)/accuracy.json $(B)/report \
+		$(B)/bus/report.json
 
 report_packages := jq
 deps-report:
@@ -434,12 +459,13 @@ deps-report:
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h tests/oracle/*.h \
-	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h)
+	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/%,$<),-Itests/oracle -Itests/campaign) \
+	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/% tests/bus/%,$<),\
+		-Itests/oracle -Itests/campaign -Itests/bench) \
 		-Iservice -Iservice/fmb -Iclients -Iclients/lib -I$(GEN) -fsyntax-only -x c $<
 	@touch $@
 

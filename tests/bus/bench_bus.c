@@ -1,0 +1,206 @@
+/* The benchmark of the bus: pairs, scenes and the heartbeat beside a bare LCM echo of as many
+ * bytes, with what it takes to decide apart from what the bus takes. */
+#include "bus_bench.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "duel.h"
+#include "fmb.h"
+#include "machine.h"
+#include "options.h"
+
+bool bus_bench_wants(const struct bus_bench *bench, const char *section)
+{
+    return !bench->section || strcmp(bench->section, section) == 0;
+}
+
+/* What was started ends with this program. */
+void bus_bench_fail(const char *what)
+{
+    fprintf(stderr, "bench-bus: %s\n", what);
+    exit(EXIT_FAILURE);
+}
+
+bool bus_bench_begin(struct bus_bench *bench, int cores)
+{
+    bench->service.lcm = bench->echo.lcm = NULL;
+    bench->parties.service = bench->parties.echo = -1;
+    if (!parties_place(cores, &bench->placement)) {
+        fprintf(stderr, "bench-bus: %d cores: not to be had\n", cores);
+        return false;
+    }
+    if (parties_start(&bench->placement, &bench->parties) &&
+        line_open(bench->parties.service_url, false, &bench->service) &&
+        line_open(bench->parties.echo_url, true, &bench->echo))
+        return true;
+    fprintf(stderr, "bench-bus: fmbd or the echo does not answer. %s", parties_log());
+    return false;
+}
+
+void bus_bench_end(struct bus_bench *bench)
+{
+    line_close(&bench->service);
+    line_close(&bench->echo);
+    parties_stop(&bench->parties);
+}
+
+void bus_bench_put(struct json *json, const char *key, struct spread spread)
+{
+    json_open(json, key, '{');
+    json_number(json, "median", spread.median);
+    json_number(json, "low", spread.low);
+    json_number(json, "high", spread.high);
+    json_close(json, '}');
+}
+
+/* ---- Sections ---- */
+
+/* A section on one core and on two, with the programs started anew for each. False: it was not to
+ * be had. On a machine of one core the second is left out. */
+static bool run_on(struct bus_bench *bench, int cores, void (*run)(struct bus_bench *))
+{
+    const bool begun = bus_bench_begin(bench, cores);
+    if (begun)
+        run(bench);
+    bus_bench_end(bench);
+    return begun;
+}
+
+static int most_cores(void)
+{
+    struct placement placement;
+    return parties_place(2, &placement) ? 2 : 1;
+}
+
+static bool run_trips(struct bus_bench *bench, const char *section, void (*run)(struct bus_bench *))
+{
+    bool good = true;
+    if (!bus_bench_wants(bench, section))
+        return true;
+    json_open(&bench->json, section, '[');
+    for (int cores = 1; cores <= most_cores() && good; cores++) {
+        printf("\nRound trips of %s, client and service on %s; microseconds.\n\n", section,
+               cores == 1 ? "one core" : "two cores");
+        duel_print_head();
+        good = run_on(bench, cores, run);
+    }
+    json_close(&bench->json, ']');
+    return good;
+}
+
+static bool run_section(struct bus_bench *bench, const char *section, char bracket,
+                        const char *title, void (*run)(struct bus_bench *))
+{
+    if (!bus_bench_wants(bench, section))
+        return true;
+    printf("\n%s\n\n", title);
+    json_open(&bench->json, section, bracket);
+    const bool good = run_on(bench, most_cores(), run);
+    json_close(&bench->json, bracket == '[' ? ']' : '}');
+    return good;
+}
+
+static bool run_sections(struct bus_bench *bench)
+{
+    return run_trips(bench, "pairs", trips_pairs) && run_trips(bench, "scenes", trips_scenes) &&
+           run_section(bench, "flow", '[',
+                       "Pairs a second from bus to bus, scenes by key; MB/s both ways; engine: its "
+                       "batch of the\nsame pairs, million pairs/s on one core.",
+                       flow_run) &&
+           run_section(bench, "oneway", '[',
+                       "The highest rate at which three tries of three lose nothing.",
+                       oneway_run) &&
+           run_section(bench, "status", '{', "The heartbeat, once a second.", heartbeat_run);
+}
+
+/* ---- Around them ---- */
+
+static const char *network(void)
+{
+    const char *netns = getenv("FMB_NETNS");
+    return netns && strcmp(netns, "own") == 0 ? "a network namespace of its own"
+                                              : "this host's network, a random port, ttl=0";
+}
+
+/* The same buffers for all: what the system grants, as fmbd asks for it. */
+static void put_head(const struct bus_bench *bench, struct json *json)
+{
+    char cpu[MACHINE_TEXT_MAX];
+    json_number(json, "bus", 1);
+    json_text(json, "version", fmb_version());
+    json_open(json, "machine", '{');
+    json_text(json, "cpu", machine_cpu(cpu));
+    json_number(json, "cores", machine_cores());
+    json_text(json, "compiler", machine_compiler());
+    json_text(json, "network", network());
+    json_number(json, "receive_buffer", (double) bench->service.receive_buffer);
+    json_close(json, '}');
+    json_open(json, "settings", '{');
+    json_number(json, "blocks", bench->blocks);
+    json_number(json, "trips", bench->trips);
+    json_number(json, "scene_trips", bench->scene_trips);
+    json_number(json, "seed", (double) bench->seed);
+    json_bool(json, "quick", bench->quick);
+    json_close(json, '}');
+    json_number(json, "lost", bench->lost);
+}
+
+static bool write_json(const struct bus_bench *bench, const char *text, const char *path)
+{
+    struct json json = {fopen(path, "w"), false};
+    if (!json.out)
+        return false;
+    fputc('{', json.out);
+    put_head(bench, &json);
+    fputs(text, json.out);
+    fputs("}\n", json.out);
+    const bool failed = ferror(json.out);
+    return fclose(json.out) == 0 && !failed;
+}
+
+static void print_head(const struct bus_bench *bench)
+{
+    char cpu[MACHINE_TEXT_MAX];
+    printf("%s, %d cores, %s; on %s.\n", machine_cpu(cpu), machine_cores(), machine_compiler(),
+           network());
+    printf(
+        "Medians of %d blocks of %d round trips (scenes: fewer), quartiles in brackets; fmbd and "
+        "the\necho in turns, with datagrams of the same sizes.\n",
+        bench->blocks, bench->trips);
+}
+
+static void print_tail(const struct bus_bench *bench)
+{
+    printf(
+        "\nReceive buffers: %ld bytes granted. Blocks that lost something and were left out: "
+        "%d.\n",
+        bench->service.receive_buffer, bench->lost);
+}
+
+int main(int argc, char **argv)
+{
+    static struct bus_bench bench;
+    const char *path;
+    char *text = NULL;
+    size_t length = 0;
+    const int outcome = bus_options(argc, argv, &bench, &path);
+    if (outcome != OPTIONS_RUN)
+        return outcome;
+    bench.json = (struct json){open_memstream(&text, &length), true};
+    if (!bench.json.out) {
+        perror("bench-bus");
+        return EXIT_FAILURE;
+    }
+    print_head(&bench);
+    const bool run = run_sections(&bench);
+    print_tail(&bench);
+    const bool complete = fclose(bench.json.out) == 0 && run;
+    const bool written = complete && (!path || write_json(&bench, text, path));
+    if (run && !written)
+        fprintf(stderr, "bench-bus: %s: %s\n", path ? path : "JSON", strerror(errno));
+    free(text);
+    return written ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,47 @@
+/* The sections of the benchmark of the bus. Each prints a table for people and writes its part of
+ * the JSON. */
+#ifndef BUS_BENCH_H
+#define BUS_BENCH_H
+
+#include "json.h"
+#include "line.h"
+#include "parties.h"
+#include "stopwatch.h"
+
+struct bus_bench {
+    int blocks;      /* of each side of a comparison */
+    int trips;       /* of pairs, a block */
+    int scene_trips; /* of scenes, a block */
+    double seconds;  /* of each try of a rate */
+    uint64_t seed;
+    bool quick;
+    const char *section; /* NULL: all */
+    struct json json;
+    int lost; /* round trips that did not come back, in all */
+    /* Meanwhile: */
+    struct placement placement;
+    struct parties parties;
+    struct line service, echo;
+};
+
+bool bus_bench_wants(const struct bus_bench *bench, const char *section);
+
+/* Both programs run there, and answer. False: they do not, which has been said; what was started is
+ * ended by the other, which may be called twice. */
+bool bus_bench_begin(struct bus_bench *bench, int cores);
+void bus_bench_end(struct bus_bench *bench);
+
+/* What cannot be gone on with: a line on stderr, and the end. */
+void bus_bench_fail(const char *what);
+
+/* Sections. On input: both programs run, on one core or two. */
+void trips_pairs(struct bus_bench *bench);
+void trips_scenes(struct bus_bench *bench);
+void flow_run(struct bus_bench *bench);
+void oneway_run(struct bus_bench *bench);
+void heartbeat_run(struct bus_bench *bench);
+
+/* "key": {median, low, high}. */
+void bus_bench_put(struct json *json, const char *key, struct spread spread);
+
+#endif

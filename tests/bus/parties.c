@@ -1,0 +1,142 @@
+#define _GNU_SOURCE
+#include "parties.h"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "random_id.h"
+
+enum { PATH_LENGTH_MAX = 4096 };
+
+static cpu_set_t allowed;
+static bool allowed_known;
+
+/* The first one and the last one that the program was started with. */
+bool parties_place(int cores, struct placement *out)
+{
+    if (!allowed_known)
+        allowed_known = sched_getaffinity(0, sizeof allowed, &allowed) == 0;
+    int first = -1, last = -1;
+    for (int cpu = 0; cpu < CPU_SETSIZE; cpu++)
+        if (allowed_known && CPU_ISSET(cpu, &allowed)) {
+            first = first < 0 ? cpu : first;
+            last = cpu;
+        }
+    *out = (struct placement){cores, last, cores == 1 ? last : first};
+    return last >= 0 && (cores == 1 || first < last);
+}
+
+static bool pin(int cpu)
+{
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(cpu, &one);
+    return sched_setaffinity(0, sizeof one, &one) == 0;
+}
+
+/* build/bus/bench-bus and "../fmbd" give build/bus/../fmbd. */
+static bool beside(const char *name, char path[PATH_LENGTH_MAX])
+{
+    const ssize_t length = readlink("/proc/self/exe", path, PATH_LENGTH_MAX - 1);
+    if (length < 0)
+        return false;
+    path[length] = '\0';
+    char *slash = strrchr(path, '/');
+    const size_t room = PATH_LENGTH_MAX - (size_t) (slash + 1 - path);
+    return (size_t) snprintf(slash + 1, room, "%s", name) < room;
+}
+
+static void say_into(const char *log)
+{
+    char path[PATH_LENGTH_MAX];
+    const int fd = beside(log, path) ? open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666) : -1;
+    if (fd >= 0)
+        dup2(fd, STDERR_FILENO);
+}
+
+/* In the child. Whoever has started it may have ended before the system was told that it is to end
+ * then. */
+static void become(int cpu, pid_t parent, const char *program, char *const *arguments)
+{
+    char path[PATH_LENGTH_MAX], log[64];
+    snprintf(log, sizeof log, "%s.log",
+             strrchr(program, '/') ? strrchr(program, '/') + 1 : program);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() == parent && pin(cpu) && beside(program, path)) {
+        say_into(log);
+        execv(path, arguments);
+    }
+    perror(program);
+    _exit(127);
+}
+
+static pid_t start(int cpu, const char *program, char *const *arguments)
+{
+    const pid_t parent = getpid(), child = fork();
+    if (child == 0)
+        become(cpu, parent, program, arguments);
+    if (child < 0)
+        perror("bench-bus: fork");
+    return child;
+}
+
+bool parties_start(const struct placement *placement, struct parties *out)
+{
+    const int port = 20000 + (int) (random_id() % 20000) * 2;
+    char service[] = "fmbd", url_option[] = "--lcm-url", echo[] = "echo";
+    snprintf(out->service_url, sizeof out->service_url, "udpm://239.255.76.67:%d?ttl=0", port);
+    snprintf(out->echo_url, sizeof out->echo_url, "udpm://239.255.76.67:%d?ttl=0", port + 1);
+    out->service = out->echo = -1;
+    if (!pin(placement->client_cpu)) {
+        perror("bench-bus: tying it to a CPU");
+        return false;
+    }
+    fflush(NULL);
+    out->service = start(placement->service_cpu, "../fmbd",
+                         (char *[]){service, url_option, out->service_url, NULL});
+    out->echo = start(placement->service_cpu, "echo", (char *[]){echo, out->echo_url, NULL});
+    return out->service > 0 && out->echo > 0;
+}
+
+/* Two seconds are enough to end by itself. */
+static void end(pid_t process)
+{
+    const struct timespec step = {0, 10000000};
+    kill(process, SIGTERM);
+    for (int i = 0; i < 200 && waitpid(process, NULL, WNOHANG) == 0; i++)
+        nanosleep(&step, NULL);
+    if (kill(process, 0) != 0)
+        return;
+    kill(process, SIGKILL);
+    waitpid(process, NULL, 0);
+}
+
+void parties_stop(struct parties *parties)
+{
+    if (parties->service > 0)
+        end(parties->service);
+    if (parties->echo > 0)
+        end(parties->echo);
+    parties->service = parties->echo = -1;
+}
+
+const char *parties_log(void)
+{
+    static char line[512];
+    char path[PATH_LENGTH_MAX];
+    line[0] = '\0';
+    FILE *log = beside("fmbd.log", path) ? fopen(path, "r") : NULL;
+    while (log && fgets(line, sizeof line, log))
+        ;
+    if (log)
+        fclose(log);
+    return line;
+}

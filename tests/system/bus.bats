@@ -1,0 +1,106 @@
+# The benchmark of the bus, in small: it runs, what it writes is complete, and nothing of it stays
+# behind. Nothing here is about time.
+
+setup() {
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    FMB_BUILD=${FMB_BUILD:-build}
+    BENCH=$FMB_BUILD/bus/bench-bus
+    JSON=$BATS_TEST_TMPDIR/report.json
+}
+
+# Processes that run the programs of this build, in this network namespace: none but the test's own
+# are there.
+left_behind() {
+    for process in /proc/[0-9]*; do
+        [ "$(readlink "$process/ns/net")" = "$(readlink /proc/self/ns/net)" ] || continue
+        case $(readlink "$process/exe") in
+        */fmbd | */bus/echo | */bus/bench-bus) echo "$process" ;;
+        esac
+    done 2> /dev/null
+}
+
+# nothing_left: within some seconds.
+nothing_left() {
+    for _ in $(seq 100); do
+        [ -z "$(left_behind)" ] && return
+        sleep 0.05
+    done
+    left_behind
+    return 1
+}
+
+@test "bench-bus --quick measures every section, and fits together" {
+    timeout 300 "$BENCH" --quick --json "$JSON" > "$BATS_TEST_TMPDIR/table" 3>&-
+    nothing_left
+    cores=$(jq '[.pairs[].cores] | max' "$JSON")
+    [ "$cores" = "$(($(nproc) < 2 ? 1 : 2))" ]
+    # Three forms of a pair, and of scenes of two sizes, on each number of cores.
+    jq -e --argjson cores "$cores" '(.pairs | length == 3 * $cores) and
+                                    (.scenes | length == 6 * $cores)' "$JSON"
+    jq -e '(.machine.receive_buffer > 0) and (.flow | length == 15) and (.oneway | length == 6)' "$JSON"
+    # By key is smaller than whole; new bodies are told their keys as held ones are.
+    jq -e 'all(.pairs[] | select(.form == "by key"); .query_bytes == 184) and
+           all(.pairs[] | select(.form != "by key"); .query_bytes == 328)' "$JSON"
+    jq -e 'all(.scenes[]; .pairs == 200 and .query_bytes <= 65000 and
+               .query_bytes == 68 + 4 * .pairs + .bodies * (if .form == "by key" then 56 else 128 end))' "$JSON"
+    jq -e 'all((.pairs + .scenes)[] | .service, .echo;
+               .p50_us.median > 0 and .p50_us.median <= .p99_us.median and
+               .p99_us.median <= .max_us.median and .p50_us.low <= .p50_us.high)' "$JSON"
+    jq -e 'all((.pairs + .scenes)[]; .ratio_p50.median > 0 and .ratio_p99.median > 0 and
+               .compute_us.median > 0 and .compute_us.median < .service.p50_us.high)' "$JSON"
+}
+
+@test "the flow asks as many pairs as fit, half of them in contact" {
+    timeout 120 "$BENCH" --quick --section flow --json "$JSON" > "$BATS_TEST_TMPDIR/table" 3>&-
+    nothing_left
+    jq -e 'all(.flow[]; .query_bytes <= 65000 and .result_bytes <= 65000 and
+               .pairs_per_second.median > 0 and .echo_bytes_per_second.median > 0)' "$JSON"
+    # A frame more or a pair more has no room, in the query or in the result.
+    jq -e 'all(.flow[]; .query_bytes > 64990 or .result_bytes > 64500)' "$JSON"
+    jq -e '[.flow[] | select(.contacts)] | length == 12 and
+           all(.contacts > 0.4 and .contacts < 0.6 and .engine_pairs_per_second.median > 0)' "$JSON"
+}
+
+@test "rates and the heartbeat" {
+    timeout 120 "$BENCH" --quick --section oneway --json "$JSON" > "$BATS_TEST_TMPDIR/table" 3>&-
+    jq -e '[.oneway[] | [.what, .receiver]] | unique | length == 6' "$JSON"
+    jq -e 'all(.oneway[]; (.rate > 0 or .rate_that_lost > 0) and
+               (.bytes_per_second - .rate * .bytes | fabs) <= 1e-6 * .bytes_per_second)' "$JSON"
+    timeout 120 "$BENCH" --quick --section status --json "$JSON" > "$BATS_TEST_TMPDIR/table" 3>&-
+    nothing_left
+    jq -e '.status | .bytes > 200 and .bytes < 1400 and .publish_us.median > 0 and
+                     .bare_publish_us.median > 0' "$JSON"
+    jq -e 'has("pairs") | not' "$JSON"
+}
+
+@test "the report is made of what it writes" {
+    timeout 120 "$BENCH" --quick --section pairs --json "$JSON" > "$BATS_TEST_TMPDIR/table" 3>&-
+    tests/report/report.sh tests/report/fixture/bench.json tests/report/fixture/accuracy.json \
+        "$BATS_TEST_TMPDIR/report" "$JSON"
+    grep -q 'pair, whole, new bodies' "$BATS_TEST_TMPDIR/report/index.html"
+}
+
+@test "what it has started ends with it, on a signal and when it is killed" {
+    for signal in INT TERM KILL; do
+        # A shell's background job ignores SIGINT; env gives it back.
+        env --default-signal=INT "$BENCH" > "$BATS_TEST_TMPDIR/table" 3>&- &
+        bench=$!
+        for _ in $(seq 100); do
+            [ "$(left_behind | wc -l)" -ge 3 ] && break
+            sleep 0.05
+        done
+        [ "$(left_behind | wc -l)" -ge 3 ]
+        kill -$signal $bench
+        wait $bench || true
+        nothing_left
+    done
+}
+
+@test "bench-bus says what is wrong with an option" {
+    run "$BENCH" --section nowhere
+    [ "$status" = 2 ]
+    run "$BENCH" --quick more
+    [ "$status" = 2 ]
+    run "$BENCH" --help
+    [ "$status" = 0 ]
+}
