@@ -1,16 +1,17 @@
-# The report: a page and a picture from two small reports that tests/report/fixture/ holds.
+# The report: a page and a picture from small reports that tests/report/fixture/ holds.
 
 setup() {
     cd "$BATS_TEST_DIRNAME/../report" || return
     OUT=$BATS_TEST_TMPDIR/out
     BENCH=fixture/bench.json
     ACCURACY=fixture/accuracy.json
+    BUS=fixture/bus.json
 }
 
 bats_require_minimum_version 1.5.0
 
 report() {
-    run --separate-stderr ./report.sh "$BENCH" "$ACCURACY" "$OUT"
+    run --separate-stderr ./report.sh "$BENCH" "$ACCURACY" "$OUT" "$BUS"
 }
 
 # ended CODE: as the last run did.
@@ -115,10 +116,10 @@ well_formed() {
         has "$OUT/speed-error.svg" "mark $method"
         has "$OUT/speed-error.svg" "$method"
     done
-    for id in wrong-and-slow families boxes kinds article more growth numbers; do
+    for id in wrong-and-slow families boxes kinds article more growth bus numbers; do
         has "$OUT/index.html" "<section id=$id>"
     done
-    for target in 'make accuracy' 'make bench' 'make report'; do
+    for target in 'make accuracy' 'make bench' 'make bench-bus' 'make report'; do
         has "$OUT/index.html" "$target"
     done
     has "$OUT/index.html" 'Example &amp; Co &lt;2 cores&gt;'
@@ -166,6 +167,42 @@ well_formed() {
     ended 0
     has "$OUT/index.html" '<section id=kinds>'
     has_none "$OUT/index.html" '<section id=(article|more|growth)>'
+}
+
+@test "the bus: every row that was measured, and its numbers" {
+    report
+    ended 0
+    sed -n '/^<section id=bus>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/bus.html"
+    [ "$(grep -c '^<tr>' "$BATS_TEST_TMPDIR/bus.html")" = \
+        "$(jq '[.pairs, .scenes, .flow, .oneway | length] | add' "$BUS")" ]
+    has "$BATS_TEST_TMPDIR/bus.html" '60 of 500 round trips each'
+    has "$BATS_TEST_TMPDIR/bus.html" '1 block lost something'
+    has "$BATS_TEST_TMPDIR/bus.html" 'a network &lt;of its own&gt;'
+    jq -e '.pairs[0] | .query_bytes == 328 and .result_bytes == 126 and
+           (.ratio_p50.median * 100 | round) == 117' "$BUS"
+    has "$BATS_TEST_TMPDIR/bus.html" '<td class=w>pair, whole</td><td class=w>one core</td><td>328</td><td>126</td>'
+    has "$BATS_TEST_TMPDIR/bus.html" '<td>1.17 <small>'
+    has "$BATS_TEST_TMPDIR/bus.html" '13,000 lost 17 of 3,900'
+    has "$BATS_TEST_TMPDIR/bus.html" "$(jq .status.bytes "$BUS") bytes together"
+}
+
+@test "a bus that was not measured is left out, one section alone is enough, a broken report is refused" {
+    BUS=$BATS_TEST_TMPDIR/none.json
+    report
+    ended 0
+    has_none "$OUT/index.html" '<section id=bus>'
+    run ./report.sh "$BENCH" "$ACCURACY" "$OUT"
+    [ "$status" = 0 ]
+    BUS=$BATS_TEST_TMPDIR/bus.json
+    jq 'del(.scenes, .flow, .oneway, .status)' fixture/bus.json > "$BUS"
+    report
+    ended 0
+    has "$OUT/index.html" 'Round trips of pairs'
+    has_none "$OUT/index.html" 'Round trips of scenes|The heartbeat'
+    head -c 500 fixture/bus.json > "$BUS"
+    report
+    ended 1
+    said "report.sh: $BUS is no report: 'make bench-bus' makes it anew"
 }
 
 @test "a noisy machine, another machine and another version are said" {

@@ -1,5 +1,5 @@
-# The page: build/report/index.html. Named arguments: $bench and $accuracy, lists of one report
-# each; $page_css and $picture_css, texts.
+# The page: build/report/index.html. Named arguments: $bench, $accuracy and $bus, lists of one
+# report each (the last may be empty); $page_css and $picture_css, texts.
 include "text";
 include "picture";
 include "data";
@@ -9,6 +9,7 @@ include "families";
 include "kinds";
 include "growth";
 include "measured";
+include "bus";
 include "numbers";
 
 # ---- 1. What was measured, and where ----
@@ -68,7 +69,7 @@ def facts($bench; $sums):
 
 def again:
     "<p>To run it again:</p>\n<pre>make accuracy   # most of an hour\n"
-    + "make bench\nmake report</pre>\n";
+    + "make bench\nmake bench-bus\nmake report</pre>\n";
 
 # ---- The parts, in their order: [id, title, text] ----
 
@@ -118,7 +119,7 @@ def growth_part:
          + "asked at once." | paragraph)
         + growth_pictures + (growth_table | details("Numbers")) end;
 
-def parts($bench; $sums; $accuracy):
+def parts($bench; $sums; $accuracy; $bus):
     [ ["wrong-and-slow", "How wrong, how slow", ($sums | main_part)],
       ["families", "Every family of pairs", ($sums | families_part)],
       ["boxes", "The box: how tight, at what cost", ($sums | boxes_part + boxes_rows_part)],
@@ -126,12 +127,13 @@ def parts($bench; $sums; $accuracy):
       ["article", "Beside the article’s Table 1", ($bench | article_part)],
       ["more", "What else was measured", ($bench | others_part)],
       ["growth", "Growth", ($bench | growth_part)],
+      ["bus", "The bus", ($bus | bus_part)],
       ["numbers", "All numbers", ({$accuracy, $sums} | numbers_part)] ]
     | map(select(.[2] != ""));
 
-def page($bench; $accuracy; $css):
+def page($bench; $accuracy; $bus; $css):
     ($accuracy | sum_up) as $sums
-    | parts($bench; $sums; $accuracy) as $parts
+    | parts($bench; $sums; $accuracy; $bus) as $parts
     | "<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n"
       + "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n"
       + "<title>FMB: how right, and how fast</title>\n<style>\n\($css)</style>\n</head>\n"
