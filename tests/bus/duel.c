@@ -84,8 +84,10 @@ static void ask_once(struct bus_bench *bench, struct datagram *query)
     guard_begin(block_seconds);
     const double ns = line_round_trip(&bench->service, query);
     guard_end();
-    if (isnan(ns) || bench->service.status != FMB_OK)
-        bus_bench_fail("a query was not answered, or refused");
+    if (isnan(ns))
+        bus_bench_fail("a query was not answered");
+    if (bench->service.status != FMB_OK)
+        bus_bench_fail(fmb_status_text(bench->service.status));
 }
 
 /* Who begins changes with each pair of blocks. A pair of which one lost something is left out. */
