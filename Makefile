@@ -428,7 +428,7 @@ $(B)/bus/bench-bus: $(bus_bench_objects) $(campaign_objects) $(server_objects) $
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $(filter %.o,$^) -llcm -lgmp -lm
 
-$(B)/bus/echo: $(O)/tests/bus/echo.o $(O)/service/bus.o
+$(B)/bus/echo: $(O)/tests/bus/echo.o $(addprefix $(O)/service/,bus.o bus_open.o)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
 

@@ -25,15 +25,15 @@ static const struct {
     /* Room for the queries that wait, in pages: 4,096 pairs (16 MB), and 256 of the largest scenes
      * (17 MB), or more smaller ones. */
     size_t chunks;
+    /* Messages that LCM keeps until they are drained, in memory of its own; beyond this many it
+     * drops the newest, which the sequence numbers tell. Of scenes that is 33 MB at most. */
+    int lcm_queue;
 } kinds[KINDS] = {
-    [PAIRS] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, wire_read_pair_header, 4096},
-    [SCENES] = {WIRE_SCENE_QUERY, WIRE_SCENE_RESULT, wire_read_scene_header, 4352},
+    [PAIRS] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, wire_read_pair_header, 4096, 4096},
+    [SCENES] = {WIRE_SCENE_QUERY, WIRE_SCENE_RESULT, wire_read_scene_header, 4352, 512},
 };
 
 enum {
-    /* Messages that LCM keeps for each channel until they are drained; beyond this many it drops
-     * the newest, which the sequence numbers tell. */
-    LCM_QUEUE = 4096,
     /* Messages drained before something is answered: a flood must not keep the service from it. */
     DRAINED_MAX = 256,
     /* Pairs answered before the bus is looked at again: as many. To refuse one takes no less time
@@ -383,7 +383,7 @@ static bool open_intake(struct server *server, enum kind kind, const struct serv
     if (!intake->queue)
         return false;
     intake->subscription =
-        bus_subscribe(server->lcm, intake->query_channel, on_query, intake, LCM_QUEUE);
+        bus_subscribe(server->lcm, intake->query_channel, on_query, intake, kinds[kind].lcm_queue);
     return intake->subscription != NULL;
 }
 
