@@ -29,6 +29,15 @@ nothing_left() {
     return 1
 }
 
+# all_there: the benchmark, fmbd and the echo run, within some seconds.
+all_there() {
+    for _ in $(seq 200); do
+        [ "$(left_behind | wc -l)" -ge 3 ] && return
+        sleep 0.05
+    done
+    return 1
+}
+
 @test "bench-bus --quick measures every section, and fits together" {
     timeout 300 "$BENCH" --quick --json "$JSON" > "$BATS_TEST_TMPDIR/table" 3>&-
     nothing_left
@@ -85,11 +94,7 @@ nothing_left() {
         # A shell's background job ignores SIGINT; env gives it back.
         env --default-signal=INT "$BENCH" > "$BATS_TEST_TMPDIR/table" 3>&- &
         bench=$!
-        for _ in $(seq 100); do
-            [ "$(left_behind | wc -l)" -ge 3 ] && break
-            sleep 0.05
-        done
-        [ "$(left_behind | wc -l)" -ge 3 ]
+        all_there
         kill -$signal $bench
         wait $bench || true
         nothing_left
