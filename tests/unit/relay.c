@@ -106,8 +106,9 @@ static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *u
 static struct server *start(struct relay *relay, size_t bodies)
 {
     static int64_t id = 100;
+    id++;
     const struct server_options options = {
-        .prefix = "", .bodies = bodies, .server_id = ++id, .first_key = 100000 * id, .seed = 7};
+        .prefix = "", .bodies = bodies, .server_id = id, .first_key = 100000 * id, .seed = 7};
     struct server *server = server_create(relay->service, &options);
     assert_non_null(server);
     return server;
