@@ -50,7 +50,7 @@ start_log() {
     started="${started-} $!"
     # It does not say when it listens: it does once it has seen something.
     seen_by_log() {
-        "$FMB" query --timeout 0.1 --retries 0 clients/demo/cube.json > /dev/null 2>&1 || true
+        "$FMB" query --certificate --timeout 0.1 --retries 0 clients/demo/cube.json > /dev/null 2>&1 || true # asked as a pair
         queries_at_least 1
     }
     wait_until seen_by_log
