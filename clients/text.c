@@ -80,11 +80,18 @@ static enum scan_result scan_on(struct text *text)
 }
 
 /* Editors put one at the beginning of a file; JSON has none. The byte that was refused is the first
- * of three. */
-static bool is_byte_order_mark(const struct text *text)
+ * of three; the others may be still to come, and are waited for while it looks like one. */
+static bool is_byte_order_mark(struct text *text)
 {
-    const char *refused = text->bytes + text->scanned - 1;
-    return text->used - text->scanned >= 2 && memcmp(refused, "\xef\xbb\xbf", 3) == 0;
+    static const char mark[] = "\xef\xbb\xbf";
+    text->begin = text->scanned - 1;
+    for (size_t i = 0; i < 3; i++) {
+        if (text->begin + i == text->used && read_more(text) <= 0)
+            return false;
+        if (text->bytes[text->begin + i] != mark[i])
+            return false;
+    }
+    return true;
 }
 
 static enum text_outcome bad(struct text *text)
