@@ -3,17 +3,17 @@
 #   make deps demo          installs what building needs, then lets the service answer a scene
 #   make deps-test test     installs what the tests need, then runs them
 #
-# Others: all, examples, tests (builds them), test-fast, validate, accuracy, soak, bench, bench-bus,
-# report, headers, format, format-check, install, clean; deps-bench and deps-report install what is
-# only good for these.
-# MODE=release|debug|asan. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
+# Others: all, examples, tests (builds them), test-fast, validate, accuracy, soak, fuzz, fuzz-afl,
+# fuzz-merge, bench, bench-bus, report, headers, format, format-check, install, clean; deps-fuzz,
+# deps-bench and deps-report install what is only good for these.
+# MODE=release|debug|asan|fuzz. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
 VERSION := 0.1.0
 MODE ?= release
 OPENMP ?=
 ifeq ($(origin CC),default)
-CC := gcc
+CC := $(if $(filter fuzz,$(MODE)),clang,gcc)
 endif
 CFLAGS ?=
 CPPFLAGS ?=
@@ -35,10 +35,13 @@ mode_flags_release := -O2 -g1 -DNDEBUG
 mode_flags_debug := -O0 -g3
 mode_flags_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all \
 	-fno-omit-frame-pointer
+mode_flags_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined \
+	-fno-sanitize-recover=all -fno-omit-frame-pointer
 ifeq ($(mode_flags_$(MODE)),)
-$(error MODE is release, debug or asan)
+$(error MODE is release, debug, asan or fuzz)
 endif
 mode_link_asan := -fsanitize=address,undefined
+mode_link_fuzz := $(mode_link_asan)
 
 # -ffp-contract=off: the same bits on every machine.
 flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -g \
@@ -163,10 +166,10 @@ $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Itests/hostile
 
-# lcm-gen's own code is not ours to warn about.
+# lcm-gen's own code is not ours to warn about, nor that its decoders copy no bytes to NULL.
 $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -w
+	$(compile) -w -fno-sanitize=nonnull-attribute
 
 $(foreach m,$(message_names),$(GEN)/fmb_msgs_$(m).c $(GEN)/fmb_msgs_$(m).h) &: \
 		$(message_names:%=msgs/%.lcm)
@@ -309,8 +312,69 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 		-Itests/oracle $(if $(filter $*,$(family_tests) pair_draw),-Itests/campaign),\
 		-Iservice -Iclients -Iclients/lib -Itests/hostile -I$(GEN)))
 
+# ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
+
+fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json
+replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
+fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair.o results_scene.o \
+	model.o)
+fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
+
+# Comparisons of numbers deep in the engine are not what inputs should be made for.
+ifeq ($(MODE),fuzz)
+$(lib_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
+endif
+
+# Of all objects those that a target needs: what stands before it on a command line replaces one.
+$(O)/fuzz_parts.a: $(fuzz_objects) $(hostile_objects) $(server_objects) $(client_objects) \
+		$(bus_objects) $(message_objects) $(lib_objects)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+fuzz_libraries := -lcjson -llcm -lgmp -lm
+.SECONDEXPANSION:
+$(fuzz_targets:%=$(B)/tests/test_fuzz_%): $(B)/tests/test_fuzz_%: $(O)/tests/fuzz/replay.o \
+		$(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(O)/fuzz_parts.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ $(fuzz_libraries)
+
+# The compiler links the fuzzer that it brings: libFuzzer, or AFL++'s.
+fuzzers := $(fuzz_targets:%=$(B)/fuzz_%)
+$(fuzzers): $(B)/fuzz_%: $(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(O)/fuzz_parts.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
+
+# Each file of planted/ breaks one thing of the service or the client, and is named for the target
+# that must find it, with a dash and more where there are several.
+fuzz_plants := $(patsubst tests/fuzz/planted/%.c,%,$(wildcard tests/fuzz/planted/*.c))
+planted_fuzzers := $(fuzz_plants:%=$(B)/planted/%)
+$(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
+		$(O)/tests/fuzz/$$(firstword $$(subst -, ,$$*)).o \
+		$$(fuzz_pieces_$$(firstword $$(subst -, ,$$*))) $(O)/fuzz_parts.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
+
+$(B)/fuzz_seeds: $(O)/tests/fuzz/seeds.o $(O)/fuzz_parts.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ $(fuzz_libraries)
+
+$(O)/tests/fuzz/%.o: tests/fuzz/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) -Iservice -Iservice/fmb -Iclients -Itests/fuzz -Itests/hostile -I$(GEN)
+
+.PHONY: fuzzers fuzz fuzz-afl fuzz-merge deps-fuzz
+fuzzers: $(fuzzers) $(planted_fuzzers) $(B)/fuzz_seeds
+
+fuzz fuzz-afl fuzz-merge:
+	tests/fuzz/fuzz.sh $@
+
+deps-fuzz:
+	$(call install_packages,$(fuzz_packages))
+
+# ---- Running the tests ----
+
 .PHONY: tests test test-fast check
-tests: all examples $(test_programs) $(unit_tests)
+tests: all examples $(test_programs) $(unit_tests) $(replayers)
 
 # The script builds what it tests: release, asan with gcc and with clang, and release with OPENMP=1.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
@@ -459,7 +523,7 @@ deps-report:
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h tests/oracle/*.h \
-	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h)
+	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
@@ -509,6 +573,8 @@ build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev
 test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
 	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2
 
+fuzz_packages := $(build_packages) clang libclang-rt-14-dev llvm afl++
+
 as_root = $$([ $$(id -u) = 0 ] || echo sudo)
 define install_packages
 	@command -v apt-get > /dev/null || { \
@@ -530,7 +596,7 @@ deps-test:
 
 # In 'make deps demo' the packages come first, and in 'make clean all' the cleaning, whatever
 # -j says.
-ifneq ($(filter deps deps-test deps-report clean,$(MAKECMDGOALS)),)
+ifneq ($(filter deps deps-test deps-fuzz deps-report clean,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 

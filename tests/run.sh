@@ -112,15 +112,22 @@ if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan tests
     build MODE=asan CC=clang tests
     build OPENMP=1 $threads/tests/test_engine_batch
+    build MODE=fuzz fuzzers
     builds="build build/asan build/asan-clang $threads"
 fi
+# Fuzzers have a suite of their own.
+all() {
+    list "$@"
+    [ -n "${FMB_FAST-}" ] || echo "bats build/fuzz-clang fuzz/fuzz.bats"
+}
+
 # Until it has ended, a suite has failed.
 # shellcheck disable=SC2086
-list $builds | while read -r kind build what; do
+all $builds | while read -r kind build what; do
     echo "0 1 0" > "$log/$(name_of "$kind" "$build" "$what").count"
 done
 # shellcheck disable=SC2086
-list $builds | xargs -d '\n' -n 1 -P "$(nproc)" "$self" --suite
+all $builds | xargs -d '\n' -n 1 -P "$(nproc)" "$self" --suite
 
 awk '{ p += $1; f += $2; s += $3 }
     END {

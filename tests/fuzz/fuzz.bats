@@ -1,0 +1,71 @@
+# Each fuzz target finds what planted/ has for it, from its corpus, and finds nothing in as many runs
+# of what is not planted.
+
+setup() {
+    BUILD=${FMB_BUILD:-build/fuzz-clang}
+    cd "$BATS_TEST_DIRNAME/../.." || return
+}
+
+# fuzz PROGRAM TARGET RUNS
+fuzz() {
+    local options=(-use_value_profile=1)
+    case $2 in answer | scene_json) options=(-entropic=0 -use_counters=0) ;; esac
+    [ ! -f "tests/fuzz/$2.dict" ] || options+=("-dict=tests/fuzz/$2.dict")
+    mkdir -p "$BATS_TEST_TMPDIR/new"
+    run "$BUILD/$1" "${options[@]}" -seed=1 -runs="$3" -max_len=1024 -print_final_stats=1 \
+        -artifact_prefix="$BATS_TEST_TMPDIR/" "$BATS_TEST_TMPDIR/new" "tests/fuzz/corpus/$2"
+}
+
+# finds PLANT TEXT: the text is what says that it was found, and nothing else was.
+finds() {
+    local target=${1%%-*} runs
+    fuzz "planted/$1" "$target" 500000
+    echo "$output" | grep -vE 'NEW|REDUCE|pulse' | tail -n 30
+    [ "$status" != 0 ]
+    [[ $output == *"$2"* ]]
+    runs=$(echo "$output" | sed -n 's/^stat::number_of_executed_units: *//p')
+    echo "found by run $runs"
+    rm -r "$BATS_TEST_TMPDIR/new"
+    fuzz "fuzz_$target" "$target" "$runs"
+    [ "$status" = 0 ]
+}
+
+@test "pair_query finds a number too many" {
+    finds pair_query "AddressSanitizer: global-buffer-overflow"
+}
+
+@test "pair_result finds a certificate that is not printable" {
+    finds pair_result "check_decoder(&result, accepted, bytes, size, &whole) == accepted"
+}
+
+@test "scene_query finds a negative count" {
+    finds scene_query "layout_fits(LAYOUT_SCENE_QUERY"
+}
+
+@test "scene_result finds an index of no frame" {
+    finds scene_result "check_decoder(&result, accepted, bytes, size, &whole) == accepted"
+}
+
+@test "status finds a string without an end" {
+    finds status "layout_fits(LAYOUT_STATUS"
+}
+
+@test "answer finds a body that is taken for another" {
+    finds answer "this does not hold: "
+}
+
+@test "answer finds a pair of a scene that is left out" {
+    finds answer-scene "n < result->verdict_count"
+}
+
+@test "scene_json finds a number that is not finite" {
+    finds scene_json "is_body(&scene->body[i], scene->dim)"
+}
+
+@test "every plant is looked for" {
+    local plant
+    for plant in tests/fuzz/planted/*.c; do
+        plant=${plant##*/}
+        grep -q "finds ${plant%.c} " tests/fuzz/fuzz.bats
+    done
+}

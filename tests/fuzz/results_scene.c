@@ -1,0 +1,172 @@
+#include "results.h"
+
+#include "layout.h"
+#include "same.h"
+
+#include "fmb_msgs_pair_result_t.h"
+#include "fmb_msgs_scene_query_t.h"
+#include "fmb_msgs_scene_result_t.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* ---- What wire.h says of results, asked of the decoder's message ---- */
+
+enum { TOUCHING = FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING };
+enum { OVERLAPPING = FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING };
+
+static int64_t contacts_of(const fmb_msgs_scene_result_t *message)
+{
+    int64_t count = 0;
+    for (int32_t i = 0; i < message->num_verdicts; i++)
+        count += message->verdicts[i] == TOUCHING || message->verdicts[i] == OVERLAPPING;
+    return count;
+}
+
+static bool are_verdicts(const fmb_msgs_scene_result_t *message)
+{
+    bool good = message->num_verdicts == 0 || message->status == 0;
+    for (int32_t i = 0; i < message->num_verdicts && good; i++)
+        good = message->verdicts[i] <= OVERLAPPING;
+    return good && message->num_verdicts <= QUERY_VERDICTS_MAX;
+}
+
+static bool are_names(const fmb_msgs_scene_result_t *message)
+{
+    const int64_t count = message->num_indices;
+    bool good = count == 0 ||
+                (count == 2 * (int64_t) message->num_verdicts && count <= 2 * QUERY_FOUND_MAX);
+    int32_t before = -1; /* the pair before as one number */
+    for (int32_t i = 0; i < count / 2 && good; i++) {
+        const int16_t a = message->indices[2 * i], b = message->indices[2 * i + 1];
+        const int32_t here = a * QUERY_FRAMES_MAX + b;
+        good = 0 <= a && a < b && b < QUERY_FRAMES_MAX && before < here &&
+               message->verdicts[i] >= TOUCHING;
+        before = here;
+    }
+    return good;
+}
+
+/* Both NaN: none. */
+static bool are_times(const fmb_msgs_scene_result_t *message, int64_t contacts)
+{
+    const int64_t count = message->num_times;
+    bool good = count == 0 || (count == 2 * contacts && count <= QUERY_NUMBERS_MAX);
+    for (int32_t i = 0; i < count && good; i += 2) {
+        const double first = message->times[i], last = message->times[i + 1];
+        const bool none = first != first && last != last;
+        good = none || (first >= 0 && last >= first && last <= DBL_MAX);
+    }
+    return good;
+}
+
+static bool are_boxes(const fmb_msgs_scene_result_t *message, int64_t contacts)
+{
+    const int64_t count = message->num_boxes;
+    const int32_t dim = count == 4 * contacts ? 2 : 3;
+    bool good = count == 0 || (count == 2 * dim * contacts && count <= QUERY_NUMBERS_MAX);
+    for (int32_t box = 0; box < count && good; box += 2 * dim)
+        for (int32_t axis = 0; axis < dim; axis++)
+            good = good && message->boxes[box + axis] <= message->boxes[box + dim + axis];
+    return good;
+}
+
+static bool is_result(const fmb_msgs_scene_result_t *message)
+{
+    const int64_t contacts = contacts_of(message);
+    return message->num_keys <= QUERY_FRAMES_MAX && message->end_pair >= 0 &&
+           are_verdicts(message) && are_names(message) && are_times(message, contacts) &&
+           are_boxes(message, contacts);
+}
+
+/* ---- The same fields ---- */
+
+static bool same_header(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+{
+    return result->utime == message->utime && result->client_id == message->client_id &&
+           result->sequence_number == message->sequence_number &&
+           result->server_id == message->server_id && result->status == message->status &&
+           result->method == message->method && result->lost == message->lost &&
+           result->end_pair == message->end_pair && result->compute_ns == message->compute_ns;
+}
+
+static bool same_keys(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+{
+    bool same = result->key_count == message->num_keys;
+    for (int32_t i = 0; i < message->num_keys && same; i++)
+        same = result->key[i] == message->keys[i];
+    return same;
+}
+
+static bool same_verdicts(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+{
+    bool same = result->verdict_count == message->num_verdicts &&
+                result->names_pairs == (message->num_indices > 0);
+    for (int32_t i = 0; i < message->num_verdicts && same; i++)
+        same = result->verdict[i] == message->verdicts[i];
+    for (int32_t i = 0; i < message->num_indices && same; i++)
+        same = result->pair[i / 2][i % 2] == (unsigned) message->indices[i];
+    return same;
+}
+
+static bool same_contacts(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+{
+    const int32_t boxes = message->num_boxes;
+    const int64_t contacts = contacts_of(message);
+    return result->contact_count == contacts && result->has_times == (message->num_times > 0) &&
+           same_doubles(result->times, message->times, (size_t) message->num_times) &&
+           result->has_boxes == (boxes > 0) &&
+           result->dim == (boxes == 0              ? 0
+                           : boxes == 4 * contacts ? 2
+                                                   : 3) &&
+           same_doubles(result->boxes, message->boxes, (size_t) boxes);
+}
+
+/* ---- Reading ---- */
+
+/* What the reader should have said. *whole where it accepts: with a detail that is as it came. */
+static bool check_decoder(const struct scene_result *result, bool accepted, const uint8_t *bytes,
+                          size_t size, bool *whole)
+{
+    fmb_msgs_scene_result_t message;
+    if (!layout_fits(LAYOUT_SCENE_RESULT, __fmb_msgs_scene_result_t_get_hash(), bytes, size))
+        return false;
+    FUZZ_CHECK(fmb_msgs_scene_result_t_decode(bytes, 0, (int) size, &message) == (int) size);
+    const bool good = is_result(&message);
+    if (accepted) {
+        FUZZ_CHECK(same_header(result, &message));
+        FUZZ_CHECK(same_text(result->detail, sizeof result->detail, message.detail, whole));
+        FUZZ_CHECK(same_keys(result, &message));
+        FUZZ_CHECK(same_verdicts(result, &message));
+        FUZZ_CHECK(same_contacts(result, &message));
+    }
+    SAME_ENCODED(fmb_msgs_scene_result_t, message, bytes, size);
+    return good;
+}
+
+static void check_writer(const struct scene_result *result, bool whole, const uint8_t *bytes,
+                         size_t size)
+{
+    static unsigned char written[QUERY_BYTES_MAX], again[QUERY_BYTES_MAX];
+    static struct scene_result read;
+    if (size > QUERY_BYTES_MAX)
+        return;
+    const size_t count = wire_write_scene_result(result, written);
+    if (whole)
+        same_bytes(written, count, bytes, size);
+    FUZZ_CHECK(!wire_read_scene_result(written, (uint32_t) count, &read));
+    same_bytes(again, wire_write_scene_result(&read, again), written, count);
+}
+
+const struct scene_result *results_read_scene(const uint8_t *data, size_t size)
+{
+    static struct scene_result result;
+    bool whole = false;
+    uint8_t *bytes = fuzz_copy(data, size);
+    const bool accepted = !wire_read_scene_result(bytes, (uint32_t) size, &result);
+    FUZZ_CHECK(check_decoder(&result, accepted, bytes, size, &whole) == accepted);
+    if (accepted)
+        check_writer(&result, whole, bytes, size);
+    free(bytes);
+    return accepted ? &result : NULL;
+}

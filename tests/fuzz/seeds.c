@@ -1,0 +1,365 @@
+/* Writes what fuzzing begins with into FOLDER/TARGET/: good messages of every type, each with
+ * something in it that the others lack, and short talks with the service. Texts of scenes there are
+ * enough in the tree. */
+#include "fuzz.h"
+#include "hostile.h"
+#include "wire.h"
+
+#include "fmb_msgs_pair_query_t.h"
+#include "fmb_msgs_status_t.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *folder;
+
+static void write_seed(const char *target, const char *name, const unsigned char *bytes,
+                       size_t size)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, target);
+    mkdir(path, 0777); /* it may be there */
+    snprintf(path, sizeof path, "%s/%s/%s", folder, target, name);
+    FILE *file = fopen(path, "wb");
+    if (!file || fwrite(bytes, 1, size, file) != size || fclose(file) != 0) {
+        perror(path);
+        exit(1);
+    }
+}
+
+/* ---- Frames ---- */
+
+/* [dim] */
+static const double edges[][FMB_COMPONENTS_MAX] = {
+    [2] = {1, 0, 0, 1},
+    [3] = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+};
+
+/* At x = y = z = at; moves along x where speed is not 0. */
+static struct query_frame frame(int64_t id, int shape, int dim, double at, double speed)
+{
+    struct query_frame out = {.body_id = id, .shape = shape, .dim = dim};
+    out.origin.count = dim;
+    out.components.count = fmb_component_count(dim, shape) * dim;
+    out.velocity.count = speed != 0 ? dim : 0;
+    memcpy(out.components.number, edges[dim], (size_t) out.components.count * sizeof(double));
+    for (int axis = 0; axis < dim; axis++)
+        out.origin.number[axis] = at;
+    out.velocity.number[0] = speed;
+    return out;
+}
+
+static struct query_frame by_key(struct query_frame frame, int64_t key)
+{
+    frame.key = key;
+    frame.components = (struct query_numbers){0};
+    return frame;
+}
+
+/* ---- Pair queries ---- */
+
+static struct pair_query pair(struct query_frame a, struct query_frame b, int32_t method,
+                              int32_t want)
+{
+    static int64_t asked;
+    return (struct pair_query){.utime = 1,
+                               .client_id = 2,
+                               .sequence_number = ++asked,
+                               .duration = 1,
+                               .method = method,
+                               .want = want,
+                               .frame = {a, b}};
+}
+
+enum { BOX = QUERY_WANT_BOX, CERTIFICATE = QUERY_WANT_CERTIFICATE, TIMES = QUERY_WANT_TIMES };
+
+static const struct {
+    const char *name;
+    int shape[2], dim;
+    double at, speed;
+    int32_t method, want;
+} pairs[] = {
+    {"cubes", {FMB_CUBOID, FMB_CUBOID}, 3, 0.5, 0, 0, 0},
+    {"touching", {FMB_CUBOID, FMB_TETRAHEDRON}, 3, 1, 0, 0, BOX},
+    {"moving", {FMB_TETRAHEDRON, FMB_TETRAHEDRON}, 3, 0.25, -2, 4, BOX | CERTIFICATE},
+    {"faces", {FMB_FACE, FMB_FACE}, 3, 0, 0, 1, BOX | CERTIFICATE},
+    {"plate", {FMB_FACE, FMB_CUBOID}, 3, -0.5, 3, 0, BOX},
+    {"apart", {FMB_CUBOID, FMB_CUBOID}, 3, 5, 0, 2, BOX},
+    {"squares", {FMB_CUBOID, FMB_CUBOID}, 2, 0.5, 1, 3, 0},
+    {"triangles", {FMB_TETRAHEDRON, FMB_TETRAHEDRON}, 2, 0.5, 0, 0, BOX | CERTIFICATE},
+};
+enum { PAIR_COUNT = sizeof pairs / sizeof *pairs };
+
+static struct pair_query pair_number(size_t i)
+{
+    return pair(frame(1, pairs[i].shape[0], pairs[i].dim, 0, 0),
+                frame(2, pairs[i].shape[1], pairs[i].dim, pairs[i].at, pairs[i].speed),
+                pairs[i].method, pairs[i].want);
+}
+
+/* Lists that no frame has. */
+static void write_long_lists(void)
+{
+    static double many[40];
+    unsigned char bytes[HOSTILE_BYTES_MAX];
+    fmb_msgs_frame_t a = {.dim = 12,
+                          .origin = many,
+                          .num_components = 9,
+                          .components = many,
+                          .num_velocity = 9,
+                          .velocity = many};
+    fmb_msgs_pair_query_t message = {.a = a};
+    const int size = fmb_msgs_pair_query_t_encode(bytes, 0, sizeof bytes, &message);
+    write_seed("pair_query", "long-lists", bytes, (size_t) size);
+}
+
+static void write_pair_queries(void)
+{
+    unsigned char bytes[HOSTILE_BYTES_MAX];
+    write_seed("pair_query", "good", bytes, hostile_good("pair_query", bytes));
+    write_long_lists();
+    for (size_t i = 0; i < PAIR_COUNT; i++) {
+        const struct pair_query query = pair_number(i);
+        write_seed("pair_query", pairs[i].name, bytes, wire_write_pair_query(&query, bytes));
+    }
+}
+
+/* ---- Pair results ---- */
+
+static void write_pair_result(const char *name, const struct pair_result *result)
+{
+    static unsigned char bytes[WIRE_RESULT_BYTES_MAX];
+    write_seed("pair_result", name, bytes, wire_write_pair_result(result, bytes));
+}
+
+static void write_pair_results(void)
+{
+    unsigned char bytes[HOSTILE_BYTES_MAX];
+    write_seed("pair_result", "good", bytes, hostile_good("pair_result", bytes));
+    struct pair_result result = {.utime = 1, .client_id = 2, .method = 4, .dim = 2};
+    result.answer.verdict = FMB_OVERLAPPING;
+    result.answer.has_box = result.answer.has_contact = true;
+    result.answer.contact[1] = 0.5;
+    result.answer.box[1][0] = HUGE_VAL;
+    write_pair_result("box-2d", &result);
+    result.answer.has_contact = false;
+    result.certificate = "overlapping at 0 (1/2 1/3)";
+    write_pair_result("certificate", &result);
+    result = (struct pair_result){.status = FMB_BAD_ID, .detail = "client_id: not from 0"};
+    write_pair_result("refused", &result);
+    memset(result.detail, 'a', sizeof result.detail - 1);
+    result.detail[7] = '\n';
+    write_pair_result("long-detail", &result);
+}
+
+/* ---- Scene queries ---- */
+
+static const struct scene_query *scene(int frames, int32_t which, int32_t want)
+{
+    static struct scene_query query;
+    static int64_t asked = 100;
+    const int dim = frames % 2 ? 2 : 3;
+    memset(&query, 0, sizeof query);
+    query.client_id = 2;
+    query.sequence_number = ++asked;
+    query.duration = 1;
+    query.which = which;
+    query.want = want;
+    query.frame_count = frames;
+    query.split = which == QUERY_PAIRS_ACROSS ? frames / 2 : 0;
+    for (int i = 0; i < frames; i++)
+        query.frame[i] = frame(i, 1 + i % dim, dim, i * 0.5, i % 3 == 2);
+    query.index_count = which == QUERY_PAIRS_LISTED && frames > 0 ? 2 * (frames - 1) : 0;
+    for (int i = 0; i < query.index_count / 2; i++) {
+        query.pair[i][0] = (unsigned) i;
+        query.pair[i][1] = (unsigned) i + 1;
+    }
+    return &query;
+}
+
+static void write_scene_query(const char *name, const struct scene_query *query)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    write_seed("scene_query", name, bytes, wire_write_scene_query(query, bytes));
+}
+
+static void write_scene_queries(void)
+{
+    write_scene_query("empty", scene(0, QUERY_PAIRS_ALL, 0));
+    write_scene_query("listed", scene(4, QUERY_PAIRS_LISTED, BOX | TIMES));
+    write_scene_query("all", scene(5, QUERY_PAIRS_ALL, BOX));
+    write_scene_query("across", scene(6, QUERY_PAIRS_ACROSS, TIMES));
+    struct scene_query *query = fuzz_room(sizeof *query);
+    *query = *scene(1351, QUERY_PAIRS_ALL, 0);
+    for (int i = 0; i < query->frame_count; i++)
+        query->frame[i] = by_key(frame(i, FMB_CUBOID, 2, 0, 0), i + 1);
+    write_scene_query("many-frames", query);
+    query->which = QUERY_PAIRS_LISTED;
+    query->frame_count = 2;
+    query->index_count = 2000;
+    for (int i = 0; i < query->index_count; i++)
+        query->pair[i / 2][i % 2] = (unsigned) -i;
+    write_scene_query("many-pairs", query);
+    free(query);
+}
+
+/* ---- Scene results ---- */
+
+static void write_scene_result(const char *name, const struct scene_result *result)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    write_seed("scene_result", name, bytes, wire_write_scene_result(result, bytes));
+}
+
+static void write_scene_results(void)
+{
+    static struct scene_result result = {.client_id = 2, .method = 4, .end_pair = 9};
+    write_scene_result("empty", &result);
+    result.verdict_count = 4;
+    for (int i = 0; i < result.verdict_count; i++)
+        result.verdict[i] = (unsigned char) i;
+    result.contact_count = 2;
+    result.has_times = true;
+    result.times[0] = result.times[1] = NAN;
+    write_scene_result("listed", &result);
+    result.names_pairs = result.has_boxes = true;
+    result.dim = 2;
+    result.pair[2][1] = QUERY_FRAMES_MAX - 1;
+    write_scene_result("named-2d", &result);
+    result.dim = 3;
+    result.key_count = 5;
+    write_scene_result("named-3d", &result);
+    result.verdict_count = 3000;
+    memset(result.verdict, 0, sizeof result.verdict);
+    result.names_pairs = result.has_boxes = result.has_times = false;
+    result.contact_count = 0;
+    write_scene_result("many", &result);
+    result.verdict_count = 0;
+    result.status = FMB_UNKNOWN_BODY;
+    strcpy(result.detail, "frames: keys that are not held");
+    write_scene_result("refused", &result);
+}
+
+/* ---- Heartbeats ---- */
+
+static void write_statuses(void)
+{
+    unsigned char bytes[HOSTILE_BYTES_MAX];
+    write_seed("status", "good", bytes, hostile_good("status", bytes));
+    struct wire_status status = {.utime = 1, .server_id = 99, .version = "0.1.0", .waiting = 3};
+    write_seed("status", "ours", bytes, wire_write_status(&status, bytes));
+    char version[] = "10.20.30-with-a-long-name-that-goes-on\tand-on";
+    int64_t many[40] = {3, 2, 1};
+    fmb_msgs_status_t message = {
+        .version = version, .num_results = 40, .results = many, .num_more = 9, .more = many};
+    const int size = fmb_msgs_status_t_encode(bytes, 0, sizeof bytes, &message);
+    write_seed("status", "newer", bytes, (size_t) size);
+}
+
+/* ---- Talks ---- */
+
+static struct {
+    unsigned char bytes[16384];
+    size_t size;
+} talk;
+
+static void say(const unsigned char *bytes, size_t size)
+{
+    talk.bytes[talk.size++] = (unsigned char) (size >> 8);
+    talk.bytes[talk.size++] = (unsigned char) size;
+    memcpy(talk.bytes + talk.size, bytes, size);
+    talk.size += size;
+}
+
+static void say_pair(struct pair_query query)
+{
+    unsigned char bytes[WIRE_BYTES_MAX];
+    say(bytes, wire_write_pair_query(&query, bytes));
+}
+
+static void say_scene(const struct scene_query *query)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    say(bytes, wire_write_scene_query(query, bytes));
+}
+
+static void end_talk(const char *name)
+{
+    write_seed("answer", name, talk.bytes, talk.size);
+    talk.size = 0;
+}
+
+/* The first key is 500. */
+static void write_talks_about_keys(void)
+{
+    const struct query_frame cube = frame(1, FMB_CUBOID, 3, 0, 0);
+    const struct query_frame other = frame(2, FMB_TETRAHEDRON, 3, 0.5, 1);
+    say_pair(pair(cube, other, 0, BOX));
+    say_pair(pair(by_key(cube, 500), by_key(other, 501), 0, BOX | CERTIFICATE));
+    end_talk("keys");
+    struct query_frame larger = cube;
+    larger.components.number[0] = 2;
+    say_pair(pair(cube, other, 0, 0));
+    say_pair(pair(larger, other, 0, 0));
+    say_pair(pair(by_key(cube, 500), other, 0, 0));
+    end_talk("replaced");
+    say_pair(pair(cube, other, 0, 0));
+    say_pair(pair(frame(3, FMB_CUBOID, 3, 0, 0), frame(4, FMB_FACE, 3, 0, 0), 0, 0));
+    say_pair(pair(by_key(cube, 500), by_key(other, 501), 0, 0));
+    end_talk("evicted");
+}
+
+static void write_talks_about_scenes(void)
+{
+    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    static const char *const names[][2] = {
+        {"listed", "listed-2d"}, {"all", "all-2d"}, {"across", "across-2d"}};
+    for (int i = 0; i < 3; i++) {
+        say_pair(pair_number(0));
+        say_scene(scene(4, which[i], BOX | TIMES));
+        end_talk(names[i][0]);
+        say_scene(scene(5, which[i], TIMES));
+        say_pair(pair(by_key(frame(1, FMB_TETRAHEDRON, 2, 0, 0), 500),
+                      by_key(frame(2, FMB_CUBOID, 2, 0, 0), 501), 0, 0));
+        end_talk(names[i][1]);
+    }
+    struct scene_query *query = fuzz_room(sizeof *query);
+    *query = *scene(4, QUERY_PAIRS_LISTED, BOX);
+    say_scene(query);
+    query->method = 2;
+    query->first_pair = 1;
+    for (int i = 1; i < 4; i++)
+        query->frame[i] = by_key(query->frame[i], 499 + i);
+    say_scene(query);
+    end_talk("scene-keys");
+    free(query);
+}
+
+static void write_talks(void)
+{
+    for (size_t i = 0; i < PAIR_COUNT; i++) {
+        say_pair(pair_number(i));
+        end_talk(pairs[i].name);
+    }
+    write_talks_about_keys();
+    write_talks_about_scenes();
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+        return 2;
+    }
+    folder = argv[1];
+    write_pair_queries();
+    write_pair_results();
+    write_scene_queries();
+    write_scene_results();
+    write_statuses();
+    write_talks();
+    return 0;
+}
