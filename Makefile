@@ -81,7 +81,7 @@ message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
 wire_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
 	wire_status.o bus.o clock.o random_id.o)
 bus_objects := $(wire_objects) $(addprefix $(O)/service/,bus_open.o say.o signals.o)
-supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
+supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o filter.o)
 server_objects := $(addprefix $(O)/service/,server.o answer_pair.o answer_scene.o scene_pairs.o \
 	check.o bodies.o cache.o queue.o senders.o histogram.o malformed.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))

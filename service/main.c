@@ -31,6 +31,10 @@ static const char usage[] =
     "                      (udpm://239.255.76.67:7667?ttl=0)\n"
     "  -p, --prefix P      put P in front of the channels' names: for a second service\n"
     "  -b, --bodies N      keep the inverse matrices of N bodies (default %d, 1 to %d)\n"
+    "  -u, --unfiltered    let LCM see all that comes to its port. Without it the kernel drops "
+    "what\n"
+    "                      is not for this service before LCM reads it: results, channels of\n"
+    "                      others, and the pieces of large messages that can crash LCM\n"
     "  -h, --help          print this\n"
     "  -V, --version       print the version\n"
     "\n"
@@ -64,13 +68,17 @@ static bool parse_bodies(const char *text, size_t *out)
 static int parse_options(int argc, char **argv, struct worker_options *out)
 {
     static const struct option long_options[] = {
-        {"lcm-url", required_argument, NULL, 'l'}, {"prefix", required_argument, NULL, 'p'},
-        {"bodies", required_argument, NULL, 'b'},  {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, 'V'},       {0},
+        {"lcm-url", required_argument, NULL, 'l'},
+        {"prefix", required_argument, NULL, 'p'},
+        {"bodies", required_argument, NULL, 'b'},
+        {"unfiltered", no_argument, NULL, 'u'},
+        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, 'V'},
+        {0},
     };
     *out = (struct worker_options){.prefix = "", .bodies = DEFAULT_BODIES};
     int option;
-    while ((option = getopt_long(argc, argv, ":l:p:b:hV", long_options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, ":l:p:b:uhV", long_options, NULL)) != -1) {
         switch (option) {
         case 'l': out->lcm_url = optarg; break;
         case 'p':
@@ -82,6 +90,7 @@ static int parse_options(int argc, char **argv, struct worker_options *out)
             if (!parse_bodies(optarg, &out->bodies))
                 return wrong_bodies(optarg);
             break;
+        case 'u': out->unfiltered = true; break;
         case 'h': printf(usage, DEFAULT_BODIES, CACHE_BODIES_MAX); return EXIT_SUCCESS;
         case 'V': printf("fmbd %s\n", fmb_version()); return EXIT_SUCCESS;
         case ':': return wrong_option("option", argv[optind - 1], "a value after it");

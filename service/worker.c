@@ -1,6 +1,7 @@
 #include "worker.h"
 
 #include "bus.h"
+#include "filter.h"
 #include "fmb/fmb.h"
 #include "random_id.h"
 #include "say.h"
@@ -13,6 +14,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /* Serves until a signal comes; returns the exit code. */
@@ -62,6 +64,18 @@ static void say_ready(const struct server *server, const struct server_options *
             options->bodies, options->receive_buffer, options->server_id);
 }
 
+/* What is not for this service is kept from LCM, where the bus is UDP. Without that it works too.
+ */
+static void keep_out_others(const struct server *server)
+{
+    const char *channels[] = {server_query_channel(server, SERVER_PAIRS),
+                              server_query_channel(server, SERVER_SCENES),
+                              server_status_channel(server)};
+    if (filter_attach(channels, sizeof channels / sizeof *channels) < 0 && say_now())
+        fprintf(stderr, "fmbd: the system takes no socket filter (%s): packets can crash workers\n",
+                strerror(errno));
+}
+
 static int serve_until_signal(lcm_t *lcm, struct server *server,
                               const struct server_options *options, int ready)
 {
@@ -90,6 +104,8 @@ int worker_run(const void *worker_options, int64_t restarts, int ready)
         return EXIT_FAILURE;
     int code = EXIT_FAILURE;
     struct server *server = server_create(lcm, &server_options);
+    if (server && !options->unfiltered)
+        keep_out_others(server);
     if (server)
         code = serve_until_signal(lcm, server, &server_options, ready);
     else

@@ -3,6 +3,7 @@
 #ifndef WORKER_H
 #define WORKER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,6 +11,7 @@ struct worker_options {
     const char *lcm_url; /* NULL: see bus_open() */
     const char *prefix;  /* of the channels, "" for none */
     size_t bodies;       /* capacity of the cache */
+    bool unfiltered;     /* LCM gets to see all that comes: filter.h */
 };
 
 /* A job for supervisor_run(). On input: options, a struct worker_options. On output: EXIT_SUCCESS

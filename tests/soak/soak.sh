@@ -15,7 +15,7 @@ scene_rate=${FMB_SCENE_RATE:-0}
 ids=${FMB_SOAK_IDS:-10000000}
 channels=${FMB_SOAK_CHANNELS:-300000}
 
-trials='pairs scenes crowd killed poisoned hostile lossy ids channels'
+trials='pairs scenes crowd killed poisoned crashed hostile lossy ids channels filtered'
 
 log=$out/$trial.log
 started=
@@ -31,8 +31,9 @@ stop_all() {
     wait 2> /dev/null
 }
 
+# start_fmbd [OPTIONS]
 start_fmbd() {
-    "$build/fmbd" 2> "$out/$trial.fmbd" &
+    "$build/fmbd" "$@" 2> "$out/$trial.fmbd" &
     fmbd=$!
     tries=100
     until grep -q ready "$out/$trial.fmbd"; do
@@ -89,21 +90,25 @@ lose_in_relay() {
 }
 
 run_trial() {
-    start_fmbd
+    case $trial in
+    crashed | channels) start_fmbd --unfiltered ;;
+    *) start_fmbd ;;
+    esac
     case $trial in
     pairs) ask --rate "$pair_rate" --clients 4 ;;
     scenes) ask --rate "$scene_rate" --clients 2 --pairs 900 ;;
     crowd) ask --clients 16 --pairs 40 ;;
     killed) start every 1 kill_worker; ask --clients 4 --pairs 40 ;;
-    poisoned) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
+    poisoned | crashed) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
     hostile) start every 0 damage; ask --clients 4 --pairs 40 ;;
     lossy) lose_in_kernel || lose_in_relay; ask --clients 4 --pairs 40 ;;
     ids) "$build/soak-memory" ids "$(worker)" "$ids" ;;
-    channels) "$build/soak-memory" channels "$(worker)" "$channels" ;;
+    channels | filtered) "$build/soak-memory" channels "$(worker)" "$channels" ;;
     esac
 }
 
-# Inside of a network of its own.
+# Inside of a network of its own. Packets that crash LCM, and channels of others, come to a service
+# that filters them (poisoned, filtered) and to one that does not (crashed, channels).
 if [ -n "$trial" ]; then
     trap stop_all EXIT
     trap 'exit 1' HUP INT TERM

@@ -30,9 +30,14 @@ status_was() {
     status_was killed '.restarts >= 2'
 }
 
-@test "no answer is lost or wrong while packets crash LCM" {
+@test "no answer is lost or wrong, and no worker, where packets come that crash LCM" {
     trial poisoned
-    status_was poisoned '.restarts >= 2'
+    status_was poisoned '.restarts == 0'
+}
+
+@test "no answer is lost or wrong where they do crash it" {
+    trial crashed
+    status_was crashed '.restarts >= 2'
 }
 
 @test "no answer is lost or wrong among damaged messages" {
@@ -52,8 +57,10 @@ status_was() {
     jq -e '.good and (.resident_kb | length) == 11 and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"
 }
 
-@test "channels of others take what LCM itself keeps of them" {
+@test "channels of others take what LCM itself keeps of them, and nothing where they are filtered" {
     case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
     FMB_SOAK_CHANNELS=10000 trial channels
     jq -e '.good and .resident_kb[10] - .resident_kb[1] < 10000 * 0.2' <<< "$report"
+    FMB_SOAK_CHANNELS=10000 trial filtered
+    jq -e '.good and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"
 }

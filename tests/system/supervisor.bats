@@ -72,8 +72,23 @@ log_event() {
     stop_fmbd
 }
 
-@test "packets that crash LCM cost a worker each, and no more" {
-    start_fmbd
+@test "packets that crash LCM do not reach it, whatever the prefix" {
+    for prefix in '' P a-prefix_of_thirty-two_characters; do
+        start_fmbd --prefix "$prefix"
+        random_scene 3 4 > "$BATS_TEST_TMPDIR/scene.json"
+        for poison in wrap short; do
+            "$FMB_BUILD/poison" $poison "${prefix}FMB_PAIR_QUERY"
+            "$FMB_BUILD/poison" $poison "${prefix}FMB_STATUS"
+        done
+        "$FMB" query --prefix "$prefix" "$BATS_TEST_TMPDIR/scene.json"
+        "$FMB" query --prefix "$prefix" --certificate "$BATS_TEST_TMPDIR/scene.json"
+        [ "$("$FMB" status --prefix "$prefix" --json | jq .restarts)" = 0 ]
+        stop_fmbd
+    done
+}
+
+@test "packets that crash LCM, where they reach it, cost a worker each, and no more" {
+    start_fmbd --unfiltered
     random_scene 3 4 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local"
     restarts=0
