@@ -73,7 +73,7 @@ log_event() {
 }
 
 @test "packets that crash LCM do not reach it, whatever the prefix" {
-    for prefix in '' P a-prefix_of_thirty-two_characters; do
+    for prefix in '' P a_prefix_of_thirty-two_character; do
         start_fmbd --prefix "$prefix"
         random_scene 3 4 > "$BATS_TEST_TMPDIR/scene.json"
         for poison in wrap short; do
