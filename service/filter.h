@@ -1,10 +1,10 @@
 /* What of the network LCM gets to see.
  *
- * LCM reads every datagram that comes to its port: messages of all channels, this process's own ones
- * too, and pieces of larger messages, which can crash it (its reader believes their offsets) and
- * of whose channels it remembers each name for ever. The kernel can be asked to pass on to a socket
- * no more than is wanted: whole messages, in one datagram, on the channels that are subscribed
- * to. Then none of this costs time or memory, and such pieces cannot harm.
+ * LCM reads every datagram that comes to its port: messages of all channels, this process's own
+ * ones too, and pieces of larger messages, which can crash it (its reader believes their offsets)
+ * and of whose channels it remembers each name for ever. The kernel can be asked to pass on to a
+ * socket no more than is wanted: whole messages, in one datagram, on the channels that are
+ * subscribed to. Then none of this costs time or memory, and such pieces cannot harm.
  *
  * LCM's short message, after 8 bytes of UDP header: "LC02", a sequence number of 4 bytes, the
  * channel's name and a 0, the payload. */
