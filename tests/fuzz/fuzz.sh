@@ -36,15 +36,12 @@ options_of() {
     [ ! -f "tests/fuzz/$1.dict" ] || echo "-dict=tests/fuzz/$1.dict"
 }
 
-# Whole traces of each block of memory take long.
-export ASAN_OPTIONS=malloc_context_size=3
-
-# libfuzzer TARGET OPTIONS...
+# libfuzzer TARGET OPTIONS... Whole traces of where each block of memory was taken cost too much.
 libfuzzer() {
     target=$1
     shift
     # shellcheck disable=SC2046
-    nice "build/fuzz-clang/fuzz_$target" -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
+    ASAN_OPTIONS=malloc_context_size=3 nice "build/fuzz-clang/fuzz_$target" -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
         $(options_of "$target") "$@"
 }
 
@@ -95,14 +92,21 @@ fuzz_one() {
         "$found" "$(count_files "$out/corpus/$1" '*')" "$(most_of "$1" cov:)" > "$out/log/$1.said"
 }
 
+# Executions of a target that runs.
+so_far() {
+    case $verb in
+    --afl) afl_stat "$1" execs_done ;;
+    *) sed -n 's/^#\([0-9]*\).*/\1/p' "$out/log/$1" | tail -n 1 ;;
+    esac
+}
+
 # While they run: what each is at.
 progress() {
     while kill -0 "$1" 2> /dev/null; do
         sleep 10
         for target in $targets; do
             [ -f "$out/log/$target" ] && [ ! -f "$out/log/$target.said" ] &&
-                printf ' %s %s' "$target" \
-                    "$(grouped "$(sed -n 's/^#\([0-9]*\).*/\1/p' "$out/log/$target" | tail -n 1)")"
+                printf ' %s %s' "$target" "$(grouped "$(so_far "$target")")"
         done | sed "s/^/so far:/;s/\$/$([ -t 2 ] && printf '\\x1b[K\\r')/" >&2
         [ -t 2 ] || echo >&2
     done
@@ -110,11 +114,13 @@ progress() {
 
 # each VERB: side by side, then what they said; exit code 1 if anything was found.
 each() {
+    verb=$1
     rm -rf "$out/log" "$out/findings"
     mkdir -p "$out/log" "$out/findings"
-    echo "$targets" | tr ' ' '\n' | xargs -n 1 -P "$(nproc)" "$self" "$1" &
-    trap 'kill $!' INT TERM
-    progress $!
+    echo "$targets" | tr ' ' '\n' | xargs -n 1 -P "$(nproc)" "$self" "$verb" &
+    pid=$!
+    trap 'kill $pid 2> /dev/null; exit 130' INT TERM
+    progress $pid
     wait
     found=0
     for target in $targets; do
@@ -149,11 +155,13 @@ afl_one() {
     AFL_NO_UI=1 AFL_SKIP_CPUFREQ=1 AFL_NO_AFFINITY=1 AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES=1 \
         nice afl-fuzz -V "$seconds" -m none -t 5000 $dictionary -i "tests/fuzz/corpus/$target" \
         -o "$out/afl/$target" "$afl/fuzz_$target" > "$out/log/$target" 2>&1
-    found=$(($(afl_stat "$target" saved_crashes || echo 1) + $(afl_stat "$target" saved_hangs)))
-    cp "$out/afl/$target"/default/crashes/id* "$out/afl/$target"/default/hangs/id* \
-        "$out/findings/" 2> /dev/null
+    crashes=$(afl_stat "$target" saved_crashes) hangs=$(afl_stat "$target" saved_hangs)
+    for found in "$out/afl/$target"/default/crashes/id* "$out/afl/$target"/default/hangs/id*; do
+        [ -f "$found" ] && cp "$found" "$out/findings/$target-${found##*/}"
+    done
     say "$target" "$(grouped "$(afl_stat "$target" execs_done)")" $(($(date +%s) - begun)) \
-        "${found:-1}" "$(afl_stat "$target" corpus_count)" "$(afl_stat "$target" edges_found)" \
+        $((${crashes:-1} + ${hangs:-0})) "$(afl_stat "$target" corpus_count)" \
+        "$(afl_stat "$target" edges_found)" \
         > "$out/log/$target.said"
 }
 
