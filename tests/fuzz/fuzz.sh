@@ -36,12 +36,14 @@ options_of() {
     [ ! -f "tests/fuzz/$1.dict" ] || echo "-dict=tests/fuzz/$1.dict"
 }
 
-# libfuzzer TARGET OPTIONS... Whole traces of where each block of memory was taken cost too much.
+# libfuzzer TARGET OPTIONS... Whole traces of where each block of memory was taken cost too much. A
+# process may be stopped for minutes, which makes no input slow: only what hangs is found by time.
 libfuzzer() {
     target=$1
     shift
     # shellcheck disable=SC2046
-    ASAN_OPTIONS=malloc_context_size=3 nice "build/fuzz-clang/fuzz_$target" -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
+    ASAN_OPTIONS=malloc_context_size=3 nice "build/fuzz-clang/fuzz_$target" -timeout=1200 -report_slow_units=1200 \
+        -rss_limit_mb=4096 -print_final_stats=1 \
         $(options_of "$target") "$@"
 }
 
