@@ -113,14 +113,14 @@ asks_again() {
     need "$1"
     start_log
     start_fmbd
-    kill -STOP "$fmbd"
+    kill -STOP "$(worker_of "$fmbd")"
     local before client
     before=$(queries)
     ask "$1" 0.8 100 > "$BATS_TEST_TMPDIR/answers" 3>&- &
     client=$!
     started="$started $client"
     wait_until queries_at_least $((before + 3))
-    kill -CONT "$fmbd"
+    kill -CONT "$(worker_of "$fmbd")"
     wait $client
     expected 0.8 | cmp - "$BATS_TEST_TMPDIR/answers"
     [ "$(status_of repeated)" -ge 2 ]
@@ -141,7 +141,7 @@ asks_again() {
     need lua
     start_log
     start_fmbd
-    kill -STOP "$fmbd"
+    kill -STOP "$(worker_of "$fmbd")"
     clients=
     durations='0.7 0.8 0.9'
     languages=lua
@@ -156,7 +156,7 @@ asks_again() {
         done
     done
     for type in pair_query pair_result status; do "$FMB_BUILD/poke" FMB_PAIR_RESULT $type; done
-    kill -CONT "$fmbd"
+    kill -CONT "$(worker_of "$fmbd")"
     for client in $clients; do wait "$client"; done
     for language in $languages; do
         for duration in $durations; do

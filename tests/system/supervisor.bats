@@ -5,11 +5,6 @@ load service
 # A sanitizer ends what crashes with a report and exit code 1; so it is a signal there too.
 export ASAN_OPTIONS=abort_on_error=1
 
-# The worker of a supervisor; nothing where there is none.
-worker_of() {
-    grep -l "^PPid:[[:space:]]*$1\$" /proc/[0-9]*/status 2> /dev/null | cut -d/ -f3
-}
-
 # Of a zombie nothing is left but a number.
 alive() {
     grep -qs '^State:[[:space:]]*[^ZX]' "/proc/$1/status"
