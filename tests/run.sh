@@ -3,8 +3,8 @@
 #
 #   N passed, N failed[, N skipped]
 #
-# Exit code 0 only if none failed. With FMB_FAST set: the release build alone, and smaller
-# samples. Needs what 'make deps-test' installs. The output of each suite stays in
+# Exit code 0 only if none failed. With FMB_FAST set: the release build alone, smaller samples, and
+# without the suites that take long. Needs what 'make deps-test' installs. The output of each suite stays in
 # build/tests.log/.
 set -u
 cd "$(dirname "$0")/.." || exit
@@ -12,6 +12,12 @@ cd "$(dirname "$0")/.." || exit
 self=tests/run.sh
 log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
+
+# Where sanitizers would find nothing: other languages, what is installed, what is measured.
+unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report.bats'
+# Where one of them is enough.
+sanitized_once='system/soak.bats system/fairness.bats system/supervisor.bats'
+slow='system/examples.bats system/soak.bats system/fairness.bats system/supervisor.bats'
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
@@ -49,6 +55,7 @@ name_of() {
 one() {
     kind=$1 build=$2 what=$3
     out=$log/$(name_of "$kind" "$build" "$what")
+    begin=$(date +%s)
     run_suite "$kind" "$build" "$what" > "$out.tap" 2> "$out.err" < /dev/null
     code=$?
     if [ "$kind" = netns ] && [ $code = 77 ]; then
@@ -59,7 +66,7 @@ one() {
     echo "$counts" > "$out.count"
     # shellcheck disable=SC2086
     set -- $counts
-    printf '%-12s %-34s %4d passed' "$(basename "$build")" "$what" "$1"
+    printf '%-12s %-34s %4d s %4d passed' "$(basename "$build")" "$what" $(($(date +%s) - begin)) "$1"
     [ "$2" = 0 ] || printf ', %d failed' "$2"
     [ "$3" = 0 ] || printf ', %d skipped' "$3"
     echo
@@ -92,13 +99,35 @@ list_units() {
     done
 }
 
+# is_one_of FILE LIST
+is_one_of() {
+    case " $2 " in *" $1 "*) ;; *) return 1 ;; esac
+}
+
+# wants BUILD FILE: whether the suite runs on this build.
+wants() {
+    [ -n "${FMB_FAST-}" ] && is_one_of "$2" "$slow" && return 1
+    case $1 in
+    *asan-clang) ! is_one_of "$2" "$unsanitized $sanitized_once" ;;
+    *asan) ! is_one_of "$2" "$unsanitized" ;;
+    esac
+}
+
+# list_bats KIND BUILD FOLDER
+list_bats() {
+    for file in tests/"$3"/*.bats; do
+        file=$3/$(basename "$file")
+        if wants "$2" "$file"; then echo "$1 $2 $file"; fi
+    done
+}
+
 # Of a build with threads only the one suite that uses them was built.
 list() {
     for build in "$@"; do
         list_units "$build"
         [ "$build" = "$threads" ] && continue
-        for file in tests/system/*.bats; do echo "netns $build system/$(basename "$file")"; done
-        for file in tests/cli/*.bats; do echo "bats $build cli/$(basename "$file")"; done
+        list_bats netns "$build" system
+        list_bats bats "$build" cli
     done
 }
 

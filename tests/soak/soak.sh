@@ -26,9 +26,10 @@ start() {
 }
 
 stop_all() {
-    # shellcheck disable=SC2086
-    kill $started 2> /dev/null
-    wait 2> /dev/null
+    for pid in $started; do
+        kill "$pid" && wait "$pid"
+    done 2> /dev/null
+    started=
 }
 
 # start_fmbd [OPTIONS]
@@ -114,6 +115,7 @@ if [ -n "$trial" ]; then
     trap 'exit 1' HUP INT TERM
     run_trial
     code=$?
+    stop_all
     unset LCM_DEFAULT_URL
     "$build/fmb" status --json > "$out/$trial.status" 2> /dev/null
     kill "$fmbd"
