@@ -305,12 +305,18 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -I$(GEN)
 
+# Tests of the engine see it and the oracle, those of scenes the service too, all others no oracle.
+engine_views := $(engine_tests) $(internal_tests) slab_truth pair_draw
+scene_views := $(scene_tests) scene_truth
+family_views := $(family_tests) $(scene_views) pair_draw
+unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views)),-Itests/oracle) \
+	$(if $(filter $1,$(family_views)),-Itests/campaign) \
+	$(if $(filter $1,$(engine_views)),,-Iservice) \
+	$(if $(filter $1,$(engine_views) $(scene_views)),,\
+		-Iclients -Iclients/lib -Itests/hostile -I$(GEN))
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice/fmb $(if $(filter $*,$(scene_tests) scene_truth),\
-		-Iservice -Itests/oracle -Itests/campaign,$(if $(filter $*,$(engine_tests) $(internal_tests) slab_truth pair_draw),\
-		-Itests/oracle $(if $(filter $*,$(family_tests) pair_draw),-Itests/campaign),\
-		-Iservice -Iclients -Iclients/lib -Itests/hostile -I$(GEN)))
+	$(compile) $(call unit_sees,$*)
 
 # ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
 
