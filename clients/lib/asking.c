@@ -284,6 +284,7 @@ static void ask_in_silence(struct fmb_client *client, struct asking_slot *slot)
         return;
     }
     client->asking.probing = true;
+    client->asking.probe_at = clock_ns() + ns_per_s;
     ask(client, slot);
     slot->tries = 0;
 }
@@ -326,8 +327,10 @@ static bool fill_window(struct fmb_client *client, struct cut *cut)
     return true;
 }
 
+/* A probe among them is no longer waited for. */
 static void give_up_all(struct asking *asking, int status)
 {
+    asking->probing = false;
     for (uint64_t part = asking->oldest; part < asking->next; part++)
         if (!slot_of(asking, part)->done)
             refuse(asking, slot_of(asking, part), status, NULL);
@@ -340,7 +343,6 @@ static void fall_silent(struct fmb_client *client)
     if (!asking->silent)
         client->counts.outages++;
     asking->silent = true;
-    asking->probing = false;
     asking->probe_at = clock_ns() + ns_per_s;
 }
 
@@ -409,6 +411,8 @@ static void begin(struct fmb_client *client, const struct fmb_client_scene *scen
     asking->until = clock_ns() + (int64_t) (within * (double) ns_per_s);
 }
 
+/* Once the oldest part is done, it is delivered before others are looked after: the caller may take
+ * long over the answers, and those to others may have come and wait to be read meanwhile. */
 void asking_run(struct fmb_client *client, const struct fmb_client_scene *scene, struct cut *cut,
                 struct order *order)
 {
@@ -419,8 +423,10 @@ void asking_run(struct fmb_client *client, const struct fmb_client_scene *scene,
         more = more && fill_window(client, cut);
         deliver(asking, order);
         if (asking->oldest < asking->next) {
-            client_listen(client, time_to_wait_ms(asking), &slot_of(asking, asking->oldest)->done);
-            look_after_window(client);
+            const bool *oldest_done = &slot_of(asking, asking->oldest)->done;
+            client_listen(client, time_to_wait_ms(asking), oldest_done);
+            if (!*oldest_done)
+                look_after_window(client);
         } else if (!more) {
             break;
         }

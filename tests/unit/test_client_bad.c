@@ -204,6 +204,59 @@ static void test_the_time_for_all_ends_it(void **state)
     relay_close(&relay);
 }
 
+/* The time ends while it is found out whether the service is back: the others are given up too, and
+ * no second probe goes out within the second. */
+static void test_the_time_for_all_ends_a_probe(void **state)
+{
+    (void) state;
+    struct relay relay = {.deaf = true};
+    relay_open(&relay, 2000);
+    struct fmb_client *client = relay_client(&relay, 0.5, 1);
+    struct fmb_client_scene scene = listed();
+    assert_int_equal(ask(client, &scene).none[-FMB_CLIENT_NOBODY], 2000);
+    const int asked = relay.queries;
+    wait_for_probe();
+    scene.within = 0.02;
+    assert_int_equal(ask(client, &scene).none[-FMB_CLIENT_LATE], 2000);
+    assert_int_equal(relay.queries, asked + 1);
+    scene.within = 0;
+    assert_int_equal(ask(client, &scene).none[-FMB_CLIENT_NOBODY], 2000);
+    assert_int_equal(relay.queries, asked + 1);
+    wait_for_probe();
+    relay.deaf = false;
+    relay_ask(client, &scene);
+    fmb_client_close(client);
+    relay_close(&relay);
+}
+
+/* Longer over the first answers than the service is waited for. */
+static void check_slowly(void *user, const struct fmb_client_answer *answer)
+{
+    const struct relay_truth *truth = user;
+    if (truth->told < 8)
+        nanosleep(&(struct timespec){0, 120000000}, NULL);
+    relay_check(user, answer);
+}
+
+static void test_who_is_slow_to_take_answers_gets_them_all(void **state)
+{
+    (void) state;
+    struct relay relay = {.deaf = false};
+    struct relay_truth truth;
+    relay_open(&relay, 2000);
+    struct fmb_client *client = relay_client(&relay, 0.1, 4);
+    struct fmb_client_scene scene = listed();
+    scene.pair_count = 200;
+    scene.want = ALL_WANTS | FMB_CLIENT_WANT_CERTIFICATE;
+    relay_truth_make(&scene, &truth);
+    assert_int_equal(fmb_client_ask(client, &scene, check_slowly, &truth), FMB_OK);
+    assert_int_equal(truth.failed, 0);
+    assert_int_equal(truth.told, 200);
+    relay_truth_clear(&truth);
+    fmb_client_close(client);
+    relay_close(&relay);
+}
+
 /* What is under way at once fits into a usual receive buffer: two of the largest datagrams, or many
  * small ones. */
 static void test_what_is_under_way_is_limited(void **state)
@@ -669,6 +722,8 @@ int main(void)
         cmocka_unit_test(test_nobody_there_costs_the_time_of_one_query),
         cmocka_unit_test(test_the_rest_has_no_answer),
         cmocka_unit_test(test_the_time_for_all_ends_it),
+        cmocka_unit_test(test_the_time_for_all_ends_a_probe),
+        cmocka_unit_test(test_who_is_slow_to_take_answers_gets_them_all),
         cmocka_unit_test(test_what_is_under_way_is_limited),
         cmocka_unit_test(test_lies_are_no_answers),
         cmocka_unit_test(test_the_truth_after_lies_is_taken),
