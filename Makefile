@@ -227,6 +227,8 @@ comma := ,
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 
+$(B)/tests/test_filter: $(O)/service/filter.o
+
 client_tests := $(filter test_client_%,$(unit_names))
 $(client_tests:%=$(B)/tests/%): $(O)/tests/unit/relay.o
 

@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <linux/filter.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -16,7 +15,6 @@ enum {
     MAGIC_AT = 8, /* behind the UDP header */
     CHANNEL_AT = MAGIC_AT + 8,
     CHANNEL_MAX = 64,
-    FDS_MAX = 256, /* this process opens a dozen */
     /* For the magic number, and for each byte of a name at most a load and a comparison. */
     CODE_MAX = 4 + FILTER_CHANNELS_MAX * (2 * CHANNEL_MAX + 1) + 1
 };
@@ -80,15 +78,21 @@ static bool is_udp(int fd)
            getsockname(fd, (struct sockaddr *) &own, &own_size) == 0 && own.ss_family == AF_INET;
 }
 
-int filter_attach(const char *const *channels, int count)
+void filter_note_others(struct filter_others *out)
+{
+    for (int fd = 0; fd < FILTER_FDS_MAX; fd++)
+        out->udp[fd] = is_udp(fd);
+}
+
+int filter_attach(const struct filter_others *others, const char *const *channels, int count)
 {
     struct code code;
     assert(count >= 1 && count <= FILTER_CHANNELS_MAX);
     write_code(&code, channels, count);
     const struct sock_fprog program = {.len = (unsigned short) code.count, .filter = code.at};
     int attached = 0;
-    for (int fd = 0; fd < FDS_MAX; fd++) {
-        if (!is_udp(fd))
+    for (int fd = 0; fd < FILTER_FDS_MAX; fd++) {
+        if (others->udp[fd] || !is_udp(fd))
             continue;
         if (setsockopt(fd, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) != 0)
             return -1;

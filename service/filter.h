@@ -11,10 +11,23 @@
 #ifndef FILTER_H
 #define FILTER_H
 
-/* To all UDP sockets of this process, those that LCM has opened when it was subscribed to.
- * On input: the names of count channels, from 1 to FILTER_CHANNELS_MAX.
- * On output: how many sockets were found and take only that; -1: one does not (errno). */
+#include <stdbool.h>
+
+/* Which descriptors are UDP sockets that are not LCM's: whoever started this process may have left
+ * it some of his own, and a filter on them would be on his too. LCM waits with select(), which
+ * knows so many descriptors. */
+enum { FILTER_FDS_MAX = 1024 };
+struct filter_others {
+    bool udp[FILTER_FDS_MAX];
+};
+
+/* Those that are open now: to be called before LCM opens its own. */
+void filter_note_others(struct filter_others *out);
+
+/* To all UDP sockets of this process but those, so to what LCM has opened when it was subscribed
+ * to. On input: the names of count channels, from 1 to FILTER_CHANNELS_MAX. On output: how many
+ * sockets were found and take only that; -1: one does not (errno). */
 enum { FILTER_CHANNELS_MAX = 8 };
-int filter_attach(const char *const *channels, int count);
+int filter_attach(const struct filter_others *others, const char *const *channels, int count);
 
 #endif

@@ -66,12 +66,12 @@ static void say_ready(const struct server *server, const struct server_options *
 
 /* What is not for this service is kept from LCM, where the bus is UDP. Without that it works too.
  */
-static void keep_out_others(const struct server *server)
+static void keep_out_others(const struct server *server, const struct filter_others *others)
 {
     const char *channels[] = {server_query_channel(server, SERVER_PAIRS),
                               server_query_channel(server, SERVER_SCENES),
                               server_status_channel(server)};
-    if (filter_attach(channels, sizeof channels / sizeof *channels) < 0 && say_now())
+    if (filter_attach(others, channels, sizeof channels / sizeof *channels) < 0 && say_now())
         fprintf(stderr, "fmbd: the system takes no socket filter (%s): packets can crash workers\n",
                 strerror(errno));
 }
@@ -99,13 +99,15 @@ int worker_run(const void *worker_options, int64_t restarts, int ready)
         .first_key = (random_id() + 1) / 2,
         .seed = (uint64_t) random_id() << 32 ^ (uint64_t) random_id(),
         .restarts = restarts};
+    struct filter_others others;
+    filter_note_others(&others);
     lcm_t *lcm = bus_open("fmbd", options->lcm_url, &server_options.receive_buffer);
     if (!lcm)
         return EXIT_FAILURE;
     int code = EXIT_FAILURE;
     struct server *server = server_create(lcm, &server_options);
     if (server && !options->unfiltered)
-        keep_out_others(server);
+        keep_out_others(server, &others);
     if (server)
         code = serve_until_signal(lcm, server, &server_options, ready);
     else
