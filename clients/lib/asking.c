@@ -227,7 +227,7 @@ void asking_take_pair(struct fmb_client *client, const struct pair_result *resul
     if (!slot)
         return;
     if (result->status == FMB_OK)
-        taken = part_take_pair(client->asking.scene, result, &slot->answers);
+        taken = part_take_pair(&slot->part, client->asking.scene, result, &slot->answers);
     if (taken == PART_NONSENSE) {
         client->counts.malformed++;
         return;

@@ -64,8 +64,11 @@ struct _lcm_t; /* lcm_t of lcm/lcm.h */
 
 /* Those that are 0 have the default. */
 struct fmb_client_options {
-    const char *url;    /* of the bus; NULL: LCM_DEFAULT_URL, or this host alone */
-    struct _lcm_t *lcm; /* one that is open already; url is not looked at then. Not owned */
+    const char *url; /* of the bus; NULL: LCM_DEFAULT_URL, or this host alone */
+    /* One that is open already; url is not looked at then. Not owned. Asking and handling handle
+     * what comes on it for others too: so never from a handler of any of its messages, and clients
+     * that share one are for one thread at a time together. */
+    struct _lcm_t *lcm;
     const char *prefix; /* of the service's channels */
     double timeout;     /* seconds until a query is sent again; 0: 0.5 */
     int tries;          /* how often a query is sent before it is given up; 0: 6 */

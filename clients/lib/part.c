@@ -201,10 +201,27 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
     return PART_TAKEN;
 }
 
-enum part_taken part_take_pair(const struct fmb_client_scene *scene,
+/* An interval of a contact of a pair that moves alone; a box of a contact, and a certificate, where
+ * they were wanted. */
+static bool fits_pair(const struct part *part, const struct fmb_client_scene *scene,
+                      const struct pair_result *result)
+{
+    const struct fmb_answer *answer = &result->answer;
+    const bool contact = is_contact((int) answer->verdict);
+    const bool moving =
+        scene->frames[part->frame[0]].moving || scene->frames[part->frame[1]].moving;
+    if (answer->has_contact && !(contact && moving))
+        return false;
+    if (answer->has_box &&
+        !(contact && scene->want & FMB_CLIENT_WANT_BOX && result->dim == scene->frames[0].dim))
+        return false;
+    return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;
+}
+
+enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers)
 {
-    if (result->answer.has_box && result->dim != scene->frames[0].dim)
+    if (!fits_pair(part, scene, result))
         return PART_NONSENSE;
     if (!make_room(answers, 1))
         return PART_NO_MEMORY;

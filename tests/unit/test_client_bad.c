@@ -1,5 +1,6 @@
 /* The client library over a bus that loses, repeats and delays, with a service that is busy, gone,
  * slow, or lies. */
+#include "asking.h"
 #include "clock.h"
 #include "hostile.h"
 #include "relay.h"
@@ -456,6 +457,47 @@ static void test_lies_are_no_answers(void **state)
         }
 }
 
+/* Of a pair asked alone: which of interval, box and certificate are there, and whether that fits.
+ */
+static const struct {
+    enum fmb_verdict verdict;
+    bool moving, contact, box, certificate;
+    unsigned want;
+    bool good;
+} pair_lies[] = {
+    {FMB_TOUCHING, true, true, true, true, 3, true},
+    {FMB_OVERLAPPING, false, false, true, true, 3, true},
+    {FMB_SEPARATED, true, false, false, true, 3, true},
+    {FMB_SEPARATED, true, true, false, false, 0, false},
+    {FMB_OVERLAPPING, false, true, false, false, 0, false},
+    {FMB_SEPARATED, false, false, true, false, 1, false},
+    {FMB_OVERLAPPING, false, false, true, false, 2, false},
+    {FMB_OVERLAPPING, false, false, false, true, 1, false},
+};
+
+static void test_of_a_pair_nothing_is_taken_that_was_not_asked(void **state)
+{
+    (void) state;
+    static const struct part part = {.alone = true, .frame_count = 2, .frame = {0, 1}, .total = 1};
+    struct fmb_client_scene scene = listed();
+    for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
+        struct part_answers answers = {0};
+        const struct pair_result result = {
+            .dim = 3,
+            .answer = {.verdict = pair_lies[i].verdict,
+                       .has_contact = pair_lies[i].contact,
+                       .has_box = pair_lies[i].box},
+            .certificate = pair_lies[i].certificate ? "proof" : NULL};
+        frame[0].moving = false;
+        frame[1].moving = pair_lies[i].moving;
+        scene.want = pair_lies[i].want;
+        assert_int_equal(part_take_pair(&part, &scene, &result, &answers),
+                         pair_lies[i].good ? PART_TAKEN : PART_NONSENSE);
+        assert_int_equal(answers.answered, pair_lies[i].good);
+        part_answers_clear(&answers);
+    }
+}
+
 /* Once the truth comes, it is taken: a lie costs a time-out. */
 static void lies_at_first(struct scene_result *result, int turn)
 {
@@ -726,6 +768,7 @@ int main(void)
         cmocka_unit_test(test_who_is_slow_to_take_answers_gets_them_all),
         cmocka_unit_test(test_what_is_under_way_is_limited),
         cmocka_unit_test(test_lies_are_no_answers),
+        cmocka_unit_test(test_of_a_pair_nothing_is_taken_that_was_not_asked),
         cmocka_unit_test(test_the_truth_after_lies_is_taken),
         cmocka_unit_test(test_steps_of_one_pair_end),
         cmocka_unit_test(test_slow_services_are_asked_less_at_once),
