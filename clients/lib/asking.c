@@ -187,6 +187,12 @@ static void learn(struct fmb_client *client, unsigned frame, int64_t server_id, 
     keys_learn(&client->keys, server_id, &whole, key);
 }
 
+/* A service that was busy, say, has not looked at the bodies. */
+static bool tells_keys(int32_t status)
+{
+    return status == FMB_OK || status == FMB_UNKNOWN_BODY;
+}
+
 /* Those of a refusal tell which frames have to be sent whole. */
 static void learn_scene(struct fmb_client *client, const struct asking_slot *slot,
                         const struct scene_result *result)
@@ -226,13 +232,15 @@ void asking_take_pair(struct fmb_client *client, const struct pair_result *resul
     enum part_taken taken = PART_TAKEN;
     if (!slot)
         return;
-    if (result->status == FMB_OK)
+    if (result->status < FMB_OK) /* those are the library's own */
+        taken = PART_NONSENSE;
+    else if (result->status == FMB_OK)
         taken = part_take_pair(&slot->part, client->asking.scene, result, &slot->answers);
     if (taken == PART_NONSENSE) {
         client->counts.malformed++;
         return;
     }
-    for (int f = 0; f < 2; f++)
+    for (int f = 0; f < 2 && tells_keys(result->status); f++)
         learn(client, slot->part.frame[f], result->server_id, result->key[f]);
     if (take_status(client, slot, result->status, result->detail))
         take(client, slot, taken);
@@ -245,7 +253,8 @@ void asking_take_scene(struct fmb_client *client, const struct scene_result *res
     if (!slot)
         return;
     const int32_t before = slot->answers.answered;
-    if (result->key_count != 0 && result->key_count != slot->part.frame_count)
+    if (result->status < FMB_OK ||
+        (result->key_count != 0 && result->key_count != slot->part.frame_count))
         taken = PART_NONSENSE;
     else if (result->status == FMB_OK)
         taken = part_take_scene(&slot->part, client->asking.scene, result, &slot->answers);
@@ -253,7 +262,8 @@ void asking_take_scene(struct fmb_client *client, const struct scene_result *res
         client->counts.malformed++;
         return;
     }
-    learn_scene(client, slot, result);
+    if (tells_keys(result->status))
+        learn_scene(client, slot, result);
     if (result->status == FMB_OK && taken == PART_TAKEN && slot->part.which == QUERY_PAIRS_LISTED)
         learn_time(client, slot->answers.answered - before, result->compute_ns);
     if (take_status(client, slot, result->status, result->detail))
