@@ -227,7 +227,12 @@ static void write_scene_results(void)
     write_scene_result("listed", &result);
     result.names_pairs = result.has_boxes = true;
     result.dim = 2;
-    result.pair[2][1] = QUERY_FRAMES_MAX - 1;
+    result.contact_count = result.verdict_count;
+    for (int i = 0; i < result.verdict_count; i++) {
+        result.verdict[i] = FMB_TOUCHING;
+        result.pair[i][0] = (unsigned) i;
+        result.pair[i][1] = (unsigned) (QUERY_FRAMES_MAX - result.verdict_count + i);
+    }
     write_scene_result("named-2d", &result);
     result.dim = 3;
     result.key_count = 5;
@@ -306,6 +311,11 @@ static void write_talks_about_keys(void)
     say_pair(pair(larger, other, 0, 0));
     say_pair(pair(by_key(cube, 500), other, 0, 0));
     end_talk("replaced");
+    struct query_frame mirrored = cube;
+    mirrored.components.number[8] = -1;
+    say_pair(pair(cube, other, 0, BOX));
+    say_pair(pair(mirrored, other, 0, BOX));
+    end_talk("mirrored");
     say_pair(pair(cube, other, 0, 0));
     say_pair(pair(frame(3, FMB_CUBOID, 3, 0, 0), frame(4, FMB_FACE, 3, 0, 0), 0, 0));
     say_pair(pair(by_key(cube, 500), by_key(other, 501), 0, 0));
