@@ -91,7 +91,7 @@ programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/soak-asker $(B)/soak-memory \
-	$(B)/soak-relay
+	$(B)/soak-rate $(B)/soak-relay
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -430,17 +430,18 @@ validate: $(B)/validate
 accuracy: $(B)/accuracy
 	$< --json $<.json
 
-# Clients that know the answers, and a service to which bad things are done; ten minutes, or more
-# with SECONDS= for each trial.
+# Clients that know the answers, and a service to which bad things are done; some ten minutes, a
+# minute for each trial or SECONDS=.
 .PHONY: soak
-soak: all $(filter %/soak-asker %/soak-memory %/soak-relay %/poke %/poison,$(test_programs))
+soak: all $(filter $(B)/soak-% %/poke %/poison,$(test_programs))
 	tests/soak/soak.sh $(B) $(SECONDS)
 
 $(B)/soak-asker: $(O)/tests/soak/asker.o $(O)/service/clock.o $(B)/libfmb-client.a $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $^ -llcm -lgmp -lm
 
-$(B)/soak-memory: $(O)/tests/soak/memory.o $(bus_objects) $(message_objects) $(B)/libfmb.a
+$(B)/soak-memory $(B)/soak-rate: $(B)/soak-%: $(O)/tests/soak/%.o $(bus_objects) $(message_objects) \
+		$(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
 

@@ -14,6 +14,8 @@ status_was() {
 }
 
 @test "no answer is lost or wrong, to pairs and to scenes" {
+    FMB_SOAK_RATE=1000 trial rate
+    jq -e '.queries > 1000' <<< "$report"
     trial pairs
     status_was pairs '.pairs > 100 and .scenes == 0 and .restarts == 0'
     trial scenes

@@ -1,0 +1,188 @@
+/* A client that asks pairs at a given rate, whether they are answered or not, and asks again what
+ * is not: is none lost, and none wrong? The bus is that of LCM_DEFAULT_URL.
+ *
+ * soak-rate RATE SECONDS: RATE queries a second. Prints a line of JSON. Exit code 0: each got its
+ * answer, and each answer was that of libfmb, bit for bit. */
+#include "bus.h"
+#include "clock.h"
+#include "random_id.h"
+#include "wire.h"
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    QUESTIONS = 1000, /* different ones */
+    WINDOW = 1 << 16, /* queries that may be under way; a power of two */
+    SEQUENCE_AT = 24, /* of a query's bytes */
+    LCM_QUEUE = 30000
+};
+
+static const int64_t ask_again_ns = 100000000, give_up_ns = 10000000000;
+
+struct question {
+    size_t size;
+    unsigned char bytes[WIRE_BYTES_MAX];
+    struct fmb_answer answer;
+};
+
+struct under_way {
+    int64_t number; /* 0: free */
+    int64_t first_ns, last_ns;
+};
+
+struct soak {
+    lcm_t *lcm;
+    int64_t client_id;
+    struct question question[QUESTIONS];
+    struct under_way under_way[WINDOW]; /* [number % WINDOW] */
+    int64_t oldest, next;               /* numbers under way, or answered among them */
+    int64_t asked_again, wrong, unanswered, late, longest_ns;
+};
+
+/* ---- Questions ---- */
+
+static double grid(int size)
+{
+    return rand() % (2 * size + 1) - size;
+}
+
+/* Boxes and tetrahedra with corners on a grid, and between: they often touch. */
+static void draw_frame(struct query_frame *frame, int64_t id)
+{
+    *frame = (struct query_frame){.body_id = id, .shape = 1 + rand() % 2, .dim = 3};
+    frame->origin = (struct query_numbers){3, {grid(2), grid(2) + rand() % 2 * 0.1, grid(2)}};
+    frame->components.count = 9;
+    for (int i = 0; i < 3; i++)
+        frame->components.number[4 * i] = 1 + rand() % 3;
+}
+
+static struct fmb_frame placed(const struct query_frame *frame, struct fmb_body *body)
+{
+    fmb_body_make(3, frame->shape, frame->components.number, 9, body);
+    struct fmb_frame out = {.body = body};
+    memcpy(out.origin, frame->origin.number, sizeof out.origin);
+    return out;
+}
+
+static void draw(struct soak *soak)
+{
+    for (int i = 0; i < QUESTIONS; i++) {
+        struct question *question = &soak->question[i];
+        struct pair_query query = {
+            .client_id = soak->client_id, .duration = 1, .want = QUERY_WANT_BOX};
+        struct fmb_body body[2];
+        for (int f = 0; f < 2; f++)
+            draw_frame(&query.frame[f], 1 + 2 * i + f);
+        const struct fmb_pair pair = {placed(&query.frame[0], &body[0]),
+                                      placed(&query.frame[1], &body[1]), 1};
+        fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &question->answer);
+        question->size = wire_write_pair_query(&query, question->bytes);
+    }
+}
+
+/* ---- Asking ---- */
+
+static void send_query(struct soak *soak, struct under_way *slot, int64_t now)
+{
+    struct question *question = &soak->question[slot->number % QUESTIONS];
+    for (int i = 0; i < 8; i++)
+        question->bytes[SEQUENCE_AT + i] =
+            (unsigned char) ((uint64_t) slot->number >> (56 - 8 * i));
+    slot->last_ns = now;
+    lcm_publish(soak->lcm, WIRE_PAIR_QUERY, question->bytes, (unsigned) question->size);
+}
+
+static void ask(struct soak *soak, int64_t now)
+{
+    struct under_way *slot = &soak->under_way[soak->next % WINDOW];
+    *slot = (struct under_way){.number = soak->next++, .first_ns = now};
+    send_query(soak, slot, now);
+}
+
+static bool same(const struct fmb_answer *x, const struct fmb_answer *y)
+{
+    return x->verdict == y->verdict && x->has_contact == y->has_contact &&
+           x->has_box == y->has_box && memcmp(x->box, y->box, sizeof x->box) == 0;
+}
+
+static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct soak *soak = user;
+    struct pair_result result;
+    (void) channel;
+    if (wire_read_pair_result(buffer->data, buffer->data_size, &result) ||
+        result.client_id != soak->client_id)
+        return;
+    struct under_way *slot = &soak->under_way[(uint64_t) result.sequence_number % WINDOW];
+    if (slot->number != result.sequence_number || result.status == FMB_BUSY)
+        return; /* answered before, or to be asked again */
+    const int64_t took = clock_ns() - slot->first_ns;
+    soak->longest_ns = took > soak->longest_ns ? took : soak->longest_ns;
+    soak->wrong += result.status != FMB_OK ||
+                   !same(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
+    slot->number = 0;
+}
+
+/* Those that have waited long go out again; numbers are in the order of their first time. */
+static void look_after(struct soak *soak, int64_t now)
+{
+    while (soak->oldest < soak->next && soak->under_way[soak->oldest % WINDOW].number == 0)
+        soak->oldest++;
+    for (int64_t number = soak->oldest; number < soak->next; number++) {
+        struct under_way *slot = &soak->under_way[number % WINDOW];
+        if (now - slot->first_ns < ask_again_ns && slot->number)
+            return;
+        if (slot->number == 0 || now - slot->last_ns < ask_again_ns)
+            continue;
+        soak->asked_again++;
+        send_query(soak, slot, now);
+    }
+}
+
+/* What is left after the last question is waited for. */
+static void run(struct soak *soak, double rate, double seconds)
+{
+    const int64_t begin = clock_ns(), end = begin + (int64_t) (1e9 * seconds);
+    int64_t now, looked_ns = 0;
+    soak->oldest = soak->next = 1;
+    while ((now = clock_ns()) < end + give_up_ns && (now < end || soak->oldest < soak->next)) {
+        const int64_t due = 1 + (int64_t) (rate * 1e-9 * (double) (now - begin));
+        if (now < end && soak->next < due && soak->next - soak->oldest < WINDOW)
+            ask(soak, now);
+        while (lcm_handle_timeout(soak->lcm, 0) > 0)
+            continue;
+        if (now - looked_ns < 1000000)
+            continue;
+        look_after(soak, now);
+        looked_ns = now;
+    }
+    soak->unanswered = soak->next - soak->oldest;
+    soak->late = (int64_t) (rate * seconds) - (soak->next - 1);
+}
+
+int main(int argc, char **argv)
+{
+    static struct soak soak;
+    const double rate = argc == 3 ? atof(argv[1]) : 0, seconds = argc == 3 ? atof(argv[2]) : 0;
+    if (!(rate >= 1 && rate <= 1e6 && seconds > 0 && seconds <= 86400)) {
+        fputs("usage: soak-rate RATE SECONDS\n", stderr);
+        return 2;
+    }
+    soak.lcm = bus_open("soak-rate", NULL, NULL);
+    if (!soak.lcm || !bus_subscribe(soak.lcm, WIRE_PAIR_RESULT, on_result, &soak, LCM_QUEUE))
+        return EXIT_FAILURE;
+    soak.client_id = random_id();
+    draw(&soak);
+    run(&soak, rate, seconds);
+    printf("{\"rate\": %.0f, \"seconds\": %.0f, \"queries\": %" PRId64
+           ", \"not_sent_in_time\": %" PRId64 ", \"unanswered\": %" PRId64 ", \"wrong\": %" PRId64
+           ", \"asked_again\": %" PRId64 ", \"longest_ms\": %.1f}\n",
+           rate, seconds, soak.next - 1, soak.late > 0 ? soak.late : 0, soak.unanswered, soak.wrong,
+           soak.asked_again, 1e-6 * (double) soak.longest_ns);
+    lcm_destroy(soak.lcm);
+    return soak.next > 1 && soak.unanswered == 0 && soak.wrong == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
