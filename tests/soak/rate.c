@@ -21,7 +21,7 @@ enum {
     LCM_QUEUE = 30000
 };
 
-static const int64_t ask_again_ns = 100000000, give_up_ns = 10000000000;
+static const int64_t ask_again_ns = 500000000, give_up_ns = 10000000000;
 
 struct question {
     size_t size;

@@ -10,7 +10,7 @@ trial=${3-}
 out=$build/soak
 # Pair queries a second: of a machine of two cores 80 % of what the bare echo takes without loss is
 # some 50,000 (make bench-bus).
-rate=${FMB_SOAK_RATE:-10000}
+rate=${FMB_SOAK_RATE:-25000}
 ids=${FMB_SOAK_IDS:-10000000}
 channels=${FMB_SOAK_CHANNELS:-300000}
 
