@@ -9,6 +9,7 @@
  * each query got its answers, and each answer was that of libfmb, bit for bit. */
 #include "clock.h"
 #include "fmb_client.h"
+#include "same.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -103,14 +104,6 @@ static void draw(struct asker *asker)
 
 /* ---- Answers ---- */
 
-/* Number by number: the bytes between them mean nothing. */
-static bool same(const struct fmb_answer *x, const struct fmb_answer *y)
-{
-    return x->verdict == y->verdict && x->has_contact == y->has_contact &&
-           x->has_box == y->has_box && memcmp(x->contact, y->contact, sizeof x->contact) == 0 &&
-           memcmp(x->box, y->box, sizeof x->box) == 0;
-}
-
 static void take(void *user, const struct fmb_client_answer *answer)
 {
     struct asker *asker = user;
@@ -119,7 +112,7 @@ static void take(void *user, const struct fmb_client_answer *answer)
     if (answer->status != FMB_OK)
         asker->unanswered++;
     else if (answer->a != pair[0] || answer->b != pair[1] ||
-             !same(&answer->answer, &asker->answers[k]))
+             !same_answer(&answer->answer, &asker->answers[k]))
         asker->wrong++;
 }
 

@@ -6,6 +6,7 @@
 #include "bus.h"
 #include "clock.h"
 #include "random_id.h"
+#include "same.h"
 #include "wire.h"
 
 #include <inttypes.h>
@@ -103,12 +104,6 @@ static void ask(struct soak *soak, int64_t now)
     send_query(soak, slot, now);
 }
 
-static bool same(const struct fmb_answer *x, const struct fmb_answer *y)
-{
-    return x->verdict == y->verdict && x->has_contact == y->has_contact &&
-           x->has_box == y->has_box && memcmp(x->box, y->box, sizeof x->box) == 0;
-}
-
 static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
 {
     struct soak *soak = user;
@@ -123,7 +118,7 @@ static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *u
     const int64_t took = clock_ns() - slot->first_ns;
     soak->longest_ns = took > soak->longest_ns ? took : soak->longest_ns;
     soak->wrong += result.status != FMB_OK ||
-                   !same(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
+                   !same_answer(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
     slot->number = 0;
 }
 

@@ -96,7 +96,7 @@ run_trial() {
     esac
     case $trial in
     rate) "$build/soak-rate" "$rate" "$seconds" ;;
-    pairs) ask --clients 4 ;;
+    pairs) ask --clients 8 ;;
     scenes) ask --clients 2 --pairs 900 ;;
     crowd) ask --clients 16 --pairs 40 ;;
     killed) start every 1 kill_worker; ask --clients 4 --pairs 40 ;;
