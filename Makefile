@@ -532,7 +532,7 @@ deps-report:
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h tests/oracle/*.h \
-	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h)
+	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
