@@ -82,9 +82,11 @@ wire_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire
 	wire_status.o bus.o clock.o random_id.o)
 bus_objects := $(wire_objects) $(addprefix $(O)/service/,bus_open.o say.o signals.o)
 supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o filter.o)
-server_objects := $(addprefix $(O)/service/,server.o answer_pair.o answer_scene.o scene_pairs.o \
-	check.o bodies.o cache.o queue.o senders.o histogram.o malformed.o)
-client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c)))
+answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_pairs.o check.o \
+	bodies.o cache.o histogram.o)
+server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
+client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
+	clients/log/*.c clients/replay/*.c)))
 asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
@@ -117,9 +119,9 @@ $(B)/fmbd: $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_obj
 		$(message_objects) $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
 
-# What is on the bus the command sees through the library alone.
-$(B)/fmb: $(O)/clients/fmb.o $(client_objects) $(O)/service/clock.o $(O)/service/signals.o \
-		$(B)/libfmb-client.a $(B)/libfmb.a
+# It asks the bus through the library alone; logs it reads, answers and plays itself.
+$(B)/fmb: $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
+		$(O)/service/senders.o $(message_objects) $(B)/libfmb-client.a $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 $(B)/arm: $(O)/clients/demo/arm.o
@@ -154,13 +156,15 @@ $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iservice -I$(GEN)
 
+clients_see := -Iclients -Iclients/lib -Iclients/log -Iclients/replay -Iservice -Iservice/fmb
+
 $(O)/clients/lib/%.o: clients/lib/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iclients/lib -Iservice -Iservice/fmb -I$(GEN)
 
 $(O)/clients/%.o: clients/%.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile) -Iclients -Iclients/lib -Iservice -Iservice/fmb
+	$(compile) $(clients_see)
 
 $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -315,7 +319,7 @@ unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views)),-Ites
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
 	$(if $(filter $1,$(engine_views)),,-Iservice) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\
-		-Iclients -Iclients/lib -Itests/hostile -I$(GEN))
+		$(clients_see) -Itests/hostile -I$(GEN))
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(call unit_sees,$*)
@@ -368,7 +372,7 @@ $(B)/fuzz_seeds: $(O)/tests/fuzz/seeds.o $(O)/fuzz_parts.a
 
 $(O)/tests/fuzz/%.o: tests/fuzz/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice -Iservice/fmb -Iclients -Itests/fuzz -Itests/hostile -I$(GEN)
+	$(compile) $(clients_see) -Itests/fuzz -Itests/hostile -I$(GEN)
 
 .PHONY: fuzzers fuzz fuzz-afl fuzz-merge deps-fuzz
 fuzzers: $(fuzzers) $(planted_fuzzers) $(B)/fuzz_seeds
@@ -531,7 +535,8 @@ deps-report:
 
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
-headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h tests/oracle/*.h \
+headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
+	clients/replay/*.h tests/oracle/*.h \
 	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
@@ -539,7 +544,7 @@ $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/% tests/bus/%,$<),\
 		-Itests/oracle -Itests/campaign -Itests/bench) \
-		-Iservice -Iservice/fmb -Iclients -Iclients/lib -I$(GEN) -fsyntax-only -x c $<
+		$(clients_see) -I$(GEN) -fsyntax-only -x c $<
 	@touch $@
 
 .PHONY: format format-check

@@ -98,14 +98,16 @@ static bool take_option(struct args *args, int option, char **argv, void *out, b
 }
 
 /* What stands behind the options. */
-static bool take_operands(struct args *args, int count, char **operand)
+static bool take_operands(struct args *args, int count, char **operands)
 {
-    if (!args->takes_file && count > 0)
-        return args_error(args, "unknown argument '%s'", operand[0]);
-    if (count > 1)
-        return args_error(args, "expected one FILE, found '%s' too", operand[1]);
-    if (count > 0 && strcmp(operand[0], "-") != 0)
-        args->file = operand[0];
+    args->operands = operands;
+    args->operand_count = count;
+    if (!args->operand && count > 0)
+        return args_error(args, "unknown argument '%s'", operands[0]);
+    if (count > args->operands_max && args->operands_max == 1)
+        return args_error(args, "expected one %s, found '%s' too", args->operand, operands[1]);
+    if (count > args->operands_max)
+        return args_error(args, "expected at most %d %ss", args->operands_max, args->operand);
     return true;
 }
 
@@ -116,7 +118,6 @@ int args_parse(struct args *args, int argc, char **argv, void *out)
     int option, index = 0;
     join_options(args->options, options);
     args->bus = (struct args_bus){.prefix = ""};
-    args->file = NULL;
     optind = 1;
     opterr = 0;
     while ((option = getopt_long(argc, argv, ":l:p:h", options, &index)) != -1) {

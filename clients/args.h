@@ -26,18 +26,20 @@ struct args;
 /* Takes one of the command's own options, whose value is optarg. False: after an error. */
 typedef bool args_take(const struct args *args, int option, void *out);
 
-enum { ARGS_OPTIONS_MAX = 12 };
+enum { ARGS_OPTIONS_MAX = 24 };
 
 struct args {
     const char *command;          /* its name */
     const char *usage;            /* what --help prints */
     const struct option *options; /* its own, all long, at most ARGS_OPTIONS_MAX; ends with 0s */
     args_take *take;
-    bool takes_file;
+    const char *operand; /* what may stand behind the options, for people: "FILE"; NULL: nothing */
+    int operands_max;
 
     /* Filled in by args_parse(). */
     struct args_bus bus;
-    const char *file;   /* NULL: none was given, or "-" */
+    char **operands; /* [operand_count] */
+    int operand_count;
     const char *option; /* for take: the name of the long option */
 };
 

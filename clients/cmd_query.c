@@ -208,15 +208,17 @@ static int write_picture(const struct svg *svg, const char *name)
     return ARGS_ANSWERED;
 }
 
-static int run_query(const struct options *options, const struct args *args, int fd)
+/* file: NULL for standard input. */
+static int run_query(const struct options *options, const struct args_bus *bus, const char *file,
+                     int fd)
 {
     struct report_json json = report_json(stdout);
     struct report_text text = report_text(stdout, options->question.box);
     struct svg *svg = options->svg ? svg_open() : NULL;
     struct run run = {
         .options = options,
-        .bus_options = &args->bus,
-        .input_name = args->file ? args->file : "standard input",
+        .bus_options = bus,
+        .input_name = file ? file : "standard input",
         .report = {options->json ? &json.report : &text.report, svg ? svg_report(svg) : NULL}};
     int code = answer_scenes(&run, fd);
     if (run.bus)
@@ -232,18 +234,21 @@ static int run_query(const struct options *options, const struct args *args, int
 
 int cmd_query(int argc, char **argv)
 {
-    struct args args = {"query", usage, own_options, take_option, .takes_file = true};
+    struct args args = {"query",          usage, own_options, take_option, .operand = "FILE",
+                        .operands_max = 1};
     struct options options = {.timeout = 0.5, .retries = 5};
     int code = args_parse(&args, argc, argv, &options);
     if (code != ARGS_RUN)
         return code;
-    int fd = args.file ? open(args.file, O_RDONLY) : STDIN_FILENO;
+    const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
+    const char *file = named ? args.operands[0] : NULL;
+    int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;
     if (fd < 0) {
-        file_error(args.file);
+        file_error(file);
         return ARGS_USAGE;
     }
-    code = run_query(&options, &args, fd);
-    if (args.file)
+    code = run_query(&options, &args.bus, file, fd);
+    if (file)
         close(fd);
     return code;
 }

@@ -165,7 +165,7 @@ static int print_heartbeat(const struct options *options, const struct fmb_clien
 
 int cmd_status(int argc, char **argv)
 {
-    struct args args = {"status", usage, own_options, take_option, .takes_file = false};
+    struct args args = {"status", usage, own_options, take_option, .operand = NULL};
     struct options options = {.timeout = 3};
     struct listener listener;
     struct heartbeat heartbeat = {.heard = false};

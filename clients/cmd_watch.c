@@ -176,7 +176,7 @@ static int end_of_watch(const struct watch *watch, enum listen_end end)
 
 int cmd_watch(int argc, char **argv)
 {
-    struct args args = {"watch", usage, own_options, take_option, .takes_file = false};
+    struct args args = {"watch", usage, own_options, take_option, .operand = NULL};
     struct options options = {.count = 0};
     struct watch watch = {.options = &options, .columns = report_columns()};
     const struct fmb_client_watcher watcher = {

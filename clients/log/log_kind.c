@@ -1,0 +1,29 @@
+#include "log_kind.h"
+
+#include "bus.h"
+#include "wire.h"
+
+#include <string.h>
+
+_Static_assert(sizeof((struct log_channels *) 0)->name[0] == BUS_CHANNEL_MAX, "LCM's limit");
+
+struct log_channels log_channels(const char *prefix)
+{
+    static const char *const name[LOG_OTHER] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, WIRE_SCENE_QUERY,
+                                                WIRE_SCENE_RESULT, WIRE_STATUS};
+    struct log_channels channels;
+    for (int kind = 0; kind < LOG_OTHER; kind++) {
+        bus_channel(channels.name[kind], prefix, name[kind]);
+        channels.length[kind] = strlen(channels.name[kind]);
+    }
+    return channels;
+}
+
+enum log_kind log_kind_of(const struct log_channels *channels, const struct log_event *event)
+{
+    for (int kind = 0; kind < LOG_OTHER; kind++)
+        if (event->channel_length == channels->length[kind] &&
+            memcmp(event->channel, channels->name[kind], event->channel_length) == 0)
+            return (enum log_kind) kind;
+    return LOG_OTHER;
+}
