@@ -12,10 +12,10 @@
  * checksum, and nothing at the beginning or the end of the file.
  *
  * An event is believed where its lengths stay within the file and the next event, or the end of the
- * file, stands just behind it. Where that is not so, the reader looks for the next event that is
- * believed: what lies between is damage, and told with its place. An event whose lengths end before
- * that one is good all the same: what follows it is the damage. So no byte of a file is neither in
- * an event nor in a damage.
+ * file, stands just behind it; or where at least no other event begins inside of it: then what
+ * stands behind it is the damage. What lies between two events that are believed is damage, and
+ * told with its place. So no byte of a file is neither in an event nor in a damage, and what was
+ * written into an event that is believed, whole logs too, is not taken for one.
  *
  * Reads on and on in one buffer of fixed size, whatever the size of the file and of its events, in
  * a time that grows as the size of the file. Knows nothing of what messages say. */
@@ -65,7 +65,8 @@ void log_close(struct log_reader *reader); /* may be NULL */
 /* Size of the file when it was opened; what was written since is not read. */
 int64_t log_size(const struct log_reader *reader);
 
-/* FAILED: the file cannot be read, errno says why; there will be nothing more. */
+/* FAILED: the file cannot be read, errno says why (ENODATA: it has become shorter); there will be
+ * nothing more. */
 enum log_outcome { LOG_EVENT, LOG_DAMAGE, LOG_END, LOG_FAILED };
 
 /* On output: EVENT: *event, whose pointers are good until the next call; DAMAGE: *damage. */
