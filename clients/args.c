@@ -62,6 +62,28 @@ static void join_options(const struct option *own,
     memcpy(out + count, common_options, sizeof common_options);
 }
 
+/* Of the options that have one, the letters, as getopt wants them. */
+enum { LETTERS_MAX = 2 * (ARGS_OPTIONS_MAX + COMMON_OPTIONS) + 2 };
+static void list_letters(const struct option *options, char out[LETTERS_MAX])
+{
+    *out++ = ':';
+    for (; options->name; options++) {
+        if (options->val < ' ')
+            continue;
+        *out++ = (char) options->val;
+        if (options->has_arg == required_argument)
+            *out++ = ':';
+    }
+    *out = '\0';
+}
+
+static const char *name_of(const struct option *options, int value)
+{
+    while (options->name && options->val != value)
+        options++;
+    return options->name;
+}
+
 /* After an option of '?' or ':' from getopt_long(). A long option stands in argv[optind - 1]; of
  * short ones, which may share a word, getopt keeps the letter. */
 static bool refuse(const struct args *args, int option, char **argv)
@@ -114,14 +136,16 @@ static bool take_operands(struct args *args, int count, char **operands)
 int args_parse(struct args *args, int argc, char **argv, void *out)
 {
     struct option options[ARGS_OPTIONS_MAX + COMMON_OPTIONS];
+    char letters[LETTERS_MAX];
     bool help = false;
-    int option, index = 0;
+    int option;
     join_options(args->options, options);
+    list_letters(options, letters);
     args->bus = (struct args_bus){.prefix = ""};
     optind = 1;
     opterr = 0;
-    while ((option = getopt_long(argc, argv, ":l:p:h", options, &index)) != -1) {
-        args->option = options[index].name;
+    while ((option = getopt_long(argc, argv, letters, options, NULL)) != -1) {
+        args->option = name_of(options, option);
         if (!take_option(args, option, argv, out, &help))
             return ARGS_USAGE;
     }

@@ -29,9 +29,11 @@ typedef bool args_take(const struct args *args, int option, void *out);
 enum { ARGS_OPTIONS_MAX = 24 };
 
 struct args {
-    const char *command;          /* its name */
-    const char *usage;            /* what --help prints */
-    const struct option *options; /* its own, all long, at most ARGS_OPTIONS_MAX; ends with 0s */
+    const char *command; /* its name */
+    const char *usage;   /* what --help prints */
+    /* Its own, all long, at most ARGS_OPTIONS_MAX; ends with 0s. A value that is a letter is the
+     * short option; others are from 1 to 31. */
+    const struct option *options;
     args_take *take;
     const char *operand; /* what may stand behind the options, for people: "FILE"; NULL: nothing */
     int operands_max;

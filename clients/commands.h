@@ -5,5 +5,6 @@
 int cmd_query(int argc, char **argv);
 int cmd_watch(int argc, char **argv);
 int cmd_status(int argc, char **argv);
+int cmd_replay(int argc, char **argv);
 
 #endif

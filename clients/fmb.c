@@ -19,6 +19,7 @@ static const struct command commands[] = {
     {"query", "decide the pairs of a scene, on the bus or here (--local)", cmd_query},
     {"watch", "print the results that pass on the bus", cmd_watch},
     {"status", "print how the service is doing", cmd_status},
+    {"replay", "answer the queries of a log again, and compare", cmd_replay},
     {"help", "help on a command: fmb help query", cmd_help},
 };
 

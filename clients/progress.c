@@ -17,25 +17,47 @@ struct progress progress_begin(uint64_t total)
     return (struct progress){.enabled = enabled, .total = total, .started_at = clock_ns()};
 }
 
+struct progress progress_begin_bytes(uint64_t total)
+{
+    struct progress progress = progress_begin(total);
+    progress.bytes = true;
+    return progress;
+}
+
 static void show(struct progress *progress)
 {
     char done[NUMBER_TEXT_MAX], total[NUMBER_TEXT_MAX];
-    fprintf(stderr, "\rfmb: %s of %s pairs", number_grouped((int64_t) progress->done, done),
-            number_grouped((int64_t) progress->total, total));
+    if (progress->bytes)
+        fprintf(stderr, "\rfmb: %.1f of %.1f MB", 1e-6 * (double) progress->done,
+                1e-6 * (double) progress->total);
+    else
+        fprintf(stderr, "\rfmb: %s of %s pairs", number_grouped((int64_t) progress->done, done),
+                number_grouped((int64_t) progress->total, total));
     fflush(stderr);
     progress->shown = true;
 }
 
-void progress_step(struct progress *progress)
+static void show_if_due(struct progress *progress)
 {
-    progress->done++;
-    if (!progress->enabled || progress->done % STEPS != 0)
-        return;
     int64_t time = clock_ns();
     if (time - progress->started_at < first_after_ns || time - progress->shown_at < every_ns)
         return;
     progress->shown_at = time;
     show(progress);
+}
+
+void progress_step(struct progress *progress)
+{
+    progress->done++;
+    if (progress->enabled && progress->done % STEPS == 0)
+        show_if_due(progress);
+}
+
+void progress_to(struct progress *progress, uint64_t done)
+{
+    progress->done = done;
+    if (progress->enabled)
+        show_if_due(progress);
 }
 
 void progress_end(struct progress *progress)

@@ -1,5 +1,7 @@
 #include "cursor.h"
 
+#include "big_endian.h"
+
 #include <string.h>
 
 static const char too_short[] = "shorter than its fields";
@@ -39,25 +41,9 @@ static bool take(struct cursor *cursor, uint64_t size, const unsigned char **byt
     return true;
 }
 
-/* The shifts are one instruction to a compiler that sees them. */
-static uint16_t uint16_at(const unsigned char *b)
-{
-    return (uint16_t) (b[0] << 8 | b[1]);
-}
-
-static uint32_t uint32_at(const unsigned char *b)
-{
-    return (uint32_t) b[0] << 24 | (uint32_t) b[1] << 16 | (uint32_t) b[2] << 8 | b[3];
-}
-
-static uint64_t uint64_at(const unsigned char *b)
-{
-    return (uint64_t) uint32_at(b) << 32 | uint32_at(b + 4);
-}
-
 static double double_at(const unsigned char *b)
 {
-    const uint64_t bits = uint64_at(b);
+    const uint64_t bits = big_endian_64(b);
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
@@ -66,13 +52,13 @@ static double double_at(const unsigned char *b)
 int64_t cursor_int64(struct cursor *cursor)
 {
     const unsigned char *bytes;
-    return take(cursor, 8, &bytes) ? (int64_t) uint64_at(bytes) : 0;
+    return take(cursor, 8, &bytes) ? (int64_t) big_endian_64(bytes) : 0;
 }
 
 int32_t cursor_int32(struct cursor *cursor)
 {
     const unsigned char *bytes;
-    return take(cursor, 4, &bytes) ? (int32_t) uint32_at(bytes) : 0;
+    return take(cursor, 4, &bytes) ? (int32_t) big_endian_32(bytes) : 0;
 }
 
 double cursor_double(struct cursor *cursor)
@@ -119,7 +105,7 @@ int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max)
     int kept;
     const int32_t count = take_list(cursor, 8, max, &bytes, &kept);
     for (int i = 0; i < kept; i++)
-        out[i] = (int64_t) uint64_at(bytes + 8 * i);
+        out[i] = (int64_t) big_endian_64(bytes + 8 * i);
     return count;
 }
 
@@ -129,7 +115,7 @@ int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max)
     int kept;
     const int32_t count = take_list(cursor, 2, max, &bytes, &kept);
     for (int i = 0; i < kept; i++)
-        out[i] = (unsigned) (int16_t) uint16_at(bytes + 2 * i);
+        out[i] = (unsigned) (int16_t) big_endian_16(bytes + 2 * i);
     return count;
 }
 

@@ -81,9 +81,14 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
 const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scene_result *out);
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
 
-/* The header alone of what says that it is a query of the type; the rest is not looked at. */
+/* The header alone of what says that it is a query, or a result, of the type; the rest is not
+ * looked at. */
 const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out);
 const char *wire_read_scene_header(const void *bytes, uint32_t size, struct query_header *out);
+const char *wire_read_pair_result_header(const void *bytes, uint32_t size,
+                                         struct query_header *out);
+const char *wire_read_scene_result_header(const void *bytes, uint32_t size,
+                                          struct query_header *out);
 
 /* Writers: return how many bytes of out were used. */
 size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[WIRE_BYTES_MAX]);

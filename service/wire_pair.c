@@ -34,6 +34,11 @@ const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query
     return wire_read_header(bytes, size, __fmb_msgs_pair_query_t_get_hash(), out);
 }
 
+const char *wire_read_pair_result_header(const void *bytes, uint32_t size, struct query_header *out)
+{
+    return wire_read_header(bytes, size, __fmb_msgs_pair_result_t_get_hash(), out);
+}
+
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_query_t_get_hash());

@@ -38,6 +38,12 @@ static int32_t read_frames(struct cursor *cursor, struct query_frame *out)
     return count;
 }
 
+const char *wire_read_scene_result_header(const void *bytes, uint32_t size,
+                                          struct query_header *out)
+{
+    return wire_read_header(bytes, size, __fmb_msgs_scene_result_t_get_hash(), out);
+}
+
 const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_query_t_get_hash());

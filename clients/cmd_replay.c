@@ -1,0 +1,342 @@
+/* fmb replay: the queries of a log, answered again. */
+#include "commands.h"
+
+#include "allocate.h"
+#include "args.h"
+#include "cache.h"
+#include "input.h"
+#include "progress.h"
+#include "replay_jobs.h"
+#include "replay_json.h"
+#include "replay_junit.h"
+#include "replay_text.h"
+#include "temporary.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: fmb replay [OPTIONS] LOG...\n"
+    "\n"
+    "Answers every query of one or more LCM event logs again, in this process, and compares with\n"
+    "the results recorded there: verdicts, intervals, boxes and certificates have to be the same\n"
+    "bits. Queries and results belong together by client id and sequence number, wherever they\n"
+    "stand. Several logs are taken as one, in the order given, as rotation wrote them. Frames\n"
+    "that came by key get the components that the log tells for the key.\n"
+    "\n"
+    "  --golden FILE        compare with the results in FILE, not with those recorded\n"
+    "  --write-golden FILE  write the results, as an event log, to compare with later\n"
+    "  --force              FILE may be there already\n"
+    "  --tolerance T        numbers need not be the same bits: ends of intervals may differ by T\n"
+    "                       times the duration, ends of boxes by T times the largest coordinate;\n"
+    "                       certificates are not compared. For logs of other versions\n"
+    "  --from S, --to S     only queries of this time of the log, in seconds since its first\n"
+    "                       event, from S on and before S; the rest is read for what these need\n"
+    "  -j, --jobs N         on N cores, each with a part of the bytes\n"
+    "  --bodies N           bodies that are kept, as fmbd --bodies (65536)\n"
+    "  --json               one line of JSON in place of the text\n"
+    "  --junit FILE         write JUnit XML as well, for CI systems\n"
+    "  --html FILE          write a page that shows what happened\n"
+    "  --limit N            tell N differences, and only count the others (1000)\n"
+    "  -p, --prefix P       the service's channels begin with P\n"
+    "  -h, --help\n"
+    "\n"
+    "Results of the moment are counted apart, not compared: that the service was busy, or did\n"
+    "not hold a body, then; or that the log does not have the components of a key. Times are\n"
+    "not compared; microseconds taken to decide are shown, then and now.\n"
+    "\n"
+    "Exit codes: 0 all the same, 1 something is different, 2 unusable: a log cannot be read or\n"
+    "is damaged (which is told with its offset; 'fmb log cut' copies what can be read), a\n"
+    "message of the service's channels cannot be read, or there is nothing to compare.\n";
+
+struct options {
+    struct replay_options replay;
+    long jobs, bodies, limit;
+    bool json;
+    const char *junit, *html;
+};
+
+enum { GOLDEN = 1, WRITE_GOLDEN, FORCE, TOLERANCE, FROM, TO, BODIES, JSON, JUNIT, HTML, LIMIT };
+
+static const struct option own_options[] = {
+    {"golden", required_argument, NULL, GOLDEN},
+    {"write-golden", required_argument, NULL, WRITE_GOLDEN},
+    {"force", no_argument, NULL, FORCE},
+    {"tolerance", required_argument, NULL, TOLERANCE},
+    {"from", required_argument, NULL, FROM},
+    {"to", required_argument, NULL, TO},
+    {"jobs", required_argument, NULL, 'j'},
+    {"bodies", required_argument, NULL, BODIES},
+    {"json", no_argument, NULL, JSON},
+    {"junit", required_argument, NULL, JUNIT},
+    {"html", required_argument, NULL, HTML},
+    {"limit", required_argument, NULL, LIMIT},
+    {NULL, 0, NULL, 0},
+};
+
+static bool take_option(const struct args *args, int option, void *out)
+{
+    struct options *options = out;
+    struct replay_options *replay = &options->replay;
+    switch (option) {
+    case GOLDEN: replay->golden = optarg; break;
+    case WRITE_GOLDEN: replay->write_golden = optarg; break;
+    case FORCE: replay->force = true; break;
+    case TOLERANCE: return args_number(args, 0, 1, &replay->compare.tolerance);
+    case FROM: return args_number(args, 0, 1e12, &replay->from);
+    case TO: return args_number(args, 0, 1e12, &replay->to);
+    case 'j': return args_integer(args, 1, REPLAY_JOBS_MAX, &options->jobs);
+    case BODIES: return args_integer(args, 1, CACHE_BODIES_MAX, &options->bodies);
+    case JSON: options->json = true; break;
+    case JUNIT: options->junit = optarg; break;
+    case HTML: options->html = optarg; break;
+    case LIMIT: return args_integer(args, 0, INT32_MAX, &options->limit);
+    }
+    return true;
+}
+
+/* ---- While it goes ---- */
+
+/* Complaints of one kind that are printed; the rest is counted. */
+enum { COMPLAINTS_MAX = 20 };
+
+struct run {
+    const struct options *options;
+    struct progress progress;
+    int64_t first_utime;
+    int64_t told, untold; /* differences */
+    int64_t complaints;
+    struct replay_json json;
+    FILE *found; /* for JUnit; NULL: not wanted */
+};
+
+static const char *log_name(const struct run *run, int log)
+{
+    return run->options->replay.log[log];
+}
+
+static void on_found(void *user, const struct found *found)
+{
+    struct run *run = user;
+    const struct options *options = run->options;
+    if (run->told >= options->limit) {
+        run->untold++;
+        return;
+    }
+    run->told++;
+    progress_end(&run->progress);
+    const char *log = log_name(run, found->place.log);
+    char line[REPLAY_LINE_MAX];
+    if (options->json) {
+        replay_json_found(&run->json, found, log, run->first_utime);
+    } else {
+        replay_line(found, options->replay.log_count > 1 ? log : NULL, run->first_utime, line);
+        puts(line);
+    }
+    if (run->found)
+        found_write(run->found, found);
+}
+
+/* Whether one more may be printed. */
+static bool complains(struct run *run)
+{
+    progress_end(&run->progress);
+    return run->complaints++ < COMPLAINTS_MAX;
+}
+
+static void on_unreadable(void *user, const struct match_place *place, const char *channel,
+                          const char *what)
+{
+    struct run *run = user;
+    if (complains(run))
+        fprintf(stderr, "fmb: %s: event %" PRId64 " (offset %" PRId64 "): %s: %s\n",
+                log_name(run, place->log), place->number, place->offset, channel, what);
+}
+
+static void on_damage(void *user, int log, const struct log_damage *damage)
+{
+    struct run *run = user;
+    if (complains(run))
+        fprintf(stderr, "fmb: %s: offset %" PRId64 ": %" PRId64 " bytes: %s\n", log_name(run, log),
+                damage->offset, damage->length, damage->what);
+}
+
+static void on_progress(void *user, int64_t bytes)
+{
+    struct run *run = user;
+    progress_to(&run->progress, (uint64_t) bytes);
+}
+
+/* ---- Before and after ---- */
+
+/* When the logs begin. */
+static int64_t first_utime(const struct replay_options *options)
+{
+    char why[LOG_WHY_MAX];
+    struct input input;
+    struct log_event event = {.utime = 0};
+    struct log_damage damage;
+    enum log_outcome outcome;
+    if (!input_open(&input, options->log, options->log_count, why))
+        return 0;
+    while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
+        continue;
+    input_close(&input);
+    return outcome == LOG_EVENT ? event.utime : 0;
+}
+
+/* False: it has been said. */
+static bool close_written(FILE *file, const char *path)
+{
+    const bool good = !ferror(file);
+    if (fclose(file) == 0 && good)
+        return true;
+    fprintf(stderr, "fmb: %s: %s\n", path, strerror(errno));
+    return false;
+}
+
+static bool write_junit(const struct run *run, const struct tally *tally)
+{
+    const struct options *options = run->options;
+    FILE *file = fopen(options->junit, "w");
+    if (!file) {
+        fprintf(stderr, "fmb: %s: %s\n", options->junit, strerror(errno));
+        return false;
+    }
+    replay_junit(file, &options->replay, run->found, tally, run->first_utime);
+    return close_written(file, options->junit);
+}
+
+static bool write_page(const struct options *options)
+{
+    FILE *file = fopen(options->html, "w");
+    if (!file) {
+        fprintf(stderr, "fmb: %s: %s\n", options->html, strerror(errno));
+        return false;
+    }
+    page_write(options->replay.page, file);
+    return close_written(file, options->html);
+}
+
+/* Why nothing was compared, for people; NULL: something was, or nothing had to be. */
+static const char *why_nothing(const struct options *options, const struct tally *all)
+{
+    const bool in_part = options->replay.from > 0 || isfinite(options->replay.to);
+    if (tally_queries(all) == 0)
+        return in_part ? NULL : "there are no queries of this service";
+    if (tally_compared(all) > 0 || options->replay.write_golden)
+        return NULL;
+    return "there are no results to compare with";
+}
+
+/* The exit code, of a replay that went well as such. */
+static int code_of(const struct options *options, const struct tally *all)
+{
+    const char *nothing = why_nothing(options, all);
+    if (tally_outcome(all, REPLAY_DIFFERENT) > 0)
+        return ARGS_FAILED;
+    if (nothing)
+        fprintf(stderr,
+                "fmb: %s: neither the same nor different; --prefix chooses the service, --golden\n"
+                "FILE the results, --write-golden FILE writes some\n",
+                nothing);
+    return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
+}
+
+static void tell_rest(const struct run *run)
+{
+    if (run->complaints > COMPLAINTS_MAX)
+        fprintf(stderr, "fmb: and %" PRId64 " more that could not be read\n",
+                run->complaints - COMPLAINTS_MAX);
+    if (run->untold > 0 && !run->options->json)
+        printf("and %" PRId64 " more differences (--limit)\n", run->untold);
+}
+
+static void tell_all(struct run *run, const struct tally *all, int code)
+{
+    tell_rest(run);
+    if (run->options->json)
+        replay_json_end(&run->json, all, run->untold, code);
+    else
+        replay_text_summary(stdout, all);
+}
+
+/* ---- The run ---- */
+
+static int replay(struct run *run, int64_t size, struct tally *tally)
+{
+    const struct options *options = run->options;
+    const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
+    struct tally all = {.events = 0};
+    run->progress = progress_begin_bytes((uint64_t) size);
+    if (options->json)
+        run->json = replay_json_begin(stdout);
+    bool good = replay_jobs(&options->replay, (int) options->jobs, size, &sink, tally);
+    progress_end(&run->progress);
+    for (int log = 0; log < options->replay.log_count; log++)
+        tally_add(&all, &tally[log]);
+    int code = good ? code_of(options, &all) : ARGS_USAGE;
+    if (options->junit && !write_junit(run, tally))
+        code = ARGS_USAGE;
+    if (options->html && !write_page(options))
+        code = ARGS_USAGE;
+    tell_all(run, &all, code);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        perror("fmb: standard output");
+        code = ARGS_USAGE;
+    }
+    return code;
+}
+
+static int run_replay(struct options *options)
+{
+    struct run run = {.options = options};
+    const int64_t size = replay_size(&options->replay);
+    if (size < 0)
+        return ARGS_USAGE;
+    if (options->junit && !(run.found = temporary_open())) {
+        perror("fmb: a temporary file");
+        return ARGS_USAGE;
+    }
+    if (options->html && !(options->replay.page = page_open(options->replay.log[0])))
+        allocate_failed();
+    run.first_utime = first_utime(&options->replay);
+    struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
+    const int code = replay(&run, size, tally);
+    free(tally);
+    page_close(options->replay.page);
+    if (run.found)
+        fclose(run.found);
+    return code;
+}
+
+static bool check_options(const struct args *args, const struct options *options)
+{
+    if (args->operand_count == 0)
+        return args_error(args, "expected a LOG");
+    if (options->jobs > 1 && (options->html || options->replay.write_golden))
+        return args_error(args, "--jobs does not go with --html and --write-golden");
+    return true;
+}
+
+int cmd_replay(int argc, char **argv)
+{
+    struct args args = {
+        "replay", usage, own_options, take_option, .operand = "LOG", .operands_max = 4096};
+    struct options options = {
+        .replay = {.to = INFINITY}, .jobs = 1, .bodies = 65536, .limit = 1000};
+    const int code = args_parse(&args, argc, argv, &options);
+    if (code != ARGS_RUN)
+        return code;
+    if (!check_options(&args, &options))
+        return ARGS_USAGE;
+    options.replay.log = args.operands;
+    options.replay.log_count = args.operand_count;
+    options.replay.prefix = args.bus.prefix;
+    options.replay.bodies = (size_t) options.bodies;
+    return run_replay(&options);
+}

@@ -1,0 +1,333 @@
+#include "compare.h"
+
+#include "big_endian.h"
+#include "scene_pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *difference_name(enum difference_kind kind)
+{
+    static const char *const name[DIFFERENT_KINDS] = {
+        [DIFFERENT_STATUS] = "status",           [DIFFERENT_VERDICT] = "verdict",
+        [DIFFERENT_INTERVAL] = "interval",       [DIFFERENT_BOX] = "box",
+        [DIFFERENT_CERTIFICATE] = "certificate",
+    };
+    return name[kind];
+}
+
+/* ---- Numbers ---- */
+
+static bool same_bits(const double *a, const double *b, int count)
+{
+    return memcmp(a, b, (size_t) count * sizeof *a) == 0;
+}
+
+/* Where the difference of two numbers is infinite, or none since both are infinite or no numbers,
+ * they are not near. */
+static bool near(const double *a, const double *b, int count, double limit)
+{
+    for (int i = 0; i < count; i++)
+        if (!same_bits(&a[i], &b[i], 1) && !(fabs(a[i] - b[i]) <= limit))
+            return false;
+    return true;
+}
+
+/* Of all ends that are finite. */
+static double largest(const struct fmb_answer *a, const struct fmb_answer *b, int dim)
+{
+    double most = 0;
+    for (int side = 0; side < 2; side++)
+        for (int axis = 0; axis < dim; axis++) {
+            const double of_a = fabs(a->box[side][axis]), of_b = fabs(b->box[side][axis]);
+            most = isfinite(of_a) ? fmax(most, of_a) : most;
+            most = isfinite(of_b) ? fmax(most, of_b) : most;
+        }
+    return most;
+}
+
+/* ---- Answers ---- */
+
+static bool same_intervals(const struct compare_options *options, double duration,
+                           const struct fmb_answer *a, const struct fmb_answer *b)
+{
+    if (a->has_contact != b->has_contact)
+        return false;
+    return !a->has_contact || same_bits(a->contact, b->contact, 2) ||
+           near(a->contact, b->contact, 2, options->tolerance * duration);
+}
+
+static bool same_boxes(const struct compare_options *options, int dim, const struct fmb_answer *a,
+                       const struct fmb_answer *b)
+{
+    if (a->has_box != b->has_box)
+        return false;
+    const double limit = options->tolerance > 0 ? options->tolerance * largest(a, b, dim) : 0;
+    for (int side = 0; side < 2 && a->has_box; side++)
+        if (!same_bits(a->box[side], b->box[side], dim) &&
+            !near(a->box[side], b->box[side], dim, limit))
+            return false;
+    return true;
+}
+
+static bool same_certificates(const struct compare_options *options, const char *a, const char *b)
+{
+    if (options->tolerance > 0 || a == b)
+        return true;
+    return a && b && strcmp(a, b) == 0;
+}
+
+/* What the two sides differ in first. False: in nothing. */
+static bool find_difference(const struct compare_options *options, double duration,
+                            struct difference *out)
+{
+    const struct fmb_answer *then = &out->then.answer, *now = &out->now.answer;
+    if (out->then.status != out->now.status)
+        out->kind = DIFFERENT_STATUS;
+    else if (then->verdict != now->verdict)
+        out->kind = DIFFERENT_VERDICT;
+    else if (!same_intervals(options, duration, then, now))
+        out->kind = DIFFERENT_INTERVAL;
+    else if (!same_boxes(options, out->dim, then, now))
+        out->kind = DIFFERENT_BOX;
+    else if (!same_certificates(options, out->then.certificate, out->now.certificate))
+        out->kind = DIFFERENT_CERTIFICATE;
+    else
+        return false;
+    return true;
+}
+
+static bool is_of_the_moment(int32_t status)
+{
+    return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
+}
+
+/* Of two statuses, one of which is of the moment. */
+static enum replay_outcome moment(int32_t then, int32_t now)
+{
+    return then == FMB_BUSY || now == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNKNOWN;
+}
+
+static int dim_of(const struct query_frame *frame)
+{
+    return frame->dim == 2 ? 2 : 3;
+}
+
+/* ---- Pairs ---- */
+
+static struct difference_side side_of_pair(const struct pair_result *result)
+{
+    return (struct difference_side){
+        .status = result->status, .answer = result->answer, .certificate = result->certificate};
+}
+
+enum replay_outcome compare_pairs(const struct compare_options *options,
+                                  const struct pair_query *query, const struct pair_result *then,
+                                  const struct pair_result *now, difference_sink *sink, void *user)
+{
+    if (is_of_the_moment(then->status) || is_of_the_moment(now->status))
+        return moment(then->status, now->status);
+    struct difference difference = {.body_id = {query->frame[0].body_id, query->frame[1].body_id},
+                                    .frame = {0, 1},
+                                    .dim = dim_of(&query->frame[0]),
+                                    .then = side_of_pair(then),
+                                    .now = side_of_pair(now)};
+    if (!find_difference(options, query->duration, &difference))
+        return REPLAY_SAME;
+    sink(user, &difference);
+    return REPLAY_DIFFERENT;
+}
+
+/* ---- Scenes ---- */
+
+/* A walk over the answers of a result. */
+struct walk {
+    const struct scene_query *query;
+    const struct scene_result *result;
+    int32_t next;    /* of verdicts */
+    int32_t contact; /* of times and boxes */
+};
+
+static bool is_contact(unsigned char verdict)
+{
+    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
+}
+
+/* Where the walk is: the number of the pair among all that are asked; past all at the end. */
+static int32_t number_at(const struct walk *walk)
+{
+    if (walk->next >= walk->result->verdict_count)
+        return INT32_MAX;
+    if (!walk->result->names_pairs)
+        return walk->query->first_pair + walk->next;
+    return scene_pairs_number(walk->query, walk->result->pair, (size_t) walk->next);
+}
+
+/* The answer there, and on to the next one. */
+static struct fmb_answer take(struct walk *walk)
+{
+    const struct scene_result *result = walk->result;
+    struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[walk->next++]};
+    if (!is_contact((unsigned char) answer.verdict))
+        return answer;
+    const double *times = &result->times[2 * (size_t) walk->contact];
+    const double *box = &result->boxes[2 * (size_t) result->dim * (size_t) walk->contact];
+    walk->contact++;
+    answer.has_contact = result->has_times && !isnan(times[0]);
+    answer.has_box = result->has_boxes;
+    if (answer.has_contact)
+        memcpy(answer.contact, times, sizeof answer.contact);
+    for (int i = 0; i < 2 * result->dim && answer.has_box; i++)
+        answer.box[i / result->dim][i % result->dim] = box[i];
+    return answer;
+}
+
+/* The answer to the pair of this number: what the result names, or separated. */
+static struct fmb_answer answer_to(struct walk *walk, int32_t number)
+{
+    if (number_at(walk) == number)
+        return take(walk);
+    return (struct fmb_answer){.verdict = FMB_SEPARATED};
+}
+
+/* The frames of the pair where the walk is. */
+static const unsigned *frames_at(const struct walk *walk)
+{
+    return walk->result->names_pairs ? walk->result->pair[walk->next]
+                                     : walk->query->pair[number_at(walk)];
+}
+
+static struct difference begin_difference(const struct scene_query *query, const unsigned frame[2])
+{
+    struct difference difference = {.dim = dim_of(&query->frame[0])};
+    for (int f = 0; f < 2; f++) {
+        difference.frame[f] = frame[f];
+        if (frame[f] < (unsigned) query->frame_count && frame[f] < QUERY_FRAMES_MAX)
+            difference.body_id[f] = query->frame[frame[f]].body_id;
+    }
+    return difference;
+}
+
+static bool compare_answers(const struct compare_options *options, struct walk *then,
+                            struct walk *now, int32_t end, difference_sink *sink, void *user)
+{
+    bool same = true;
+    for (;;) {
+        const int32_t next_then = number_at(then), next_now = number_at(now);
+        const int32_t number = next_then < next_now ? next_then : next_now;
+        if (number >= end)
+            return same;
+        struct difference difference =
+            begin_difference(now->query, frames_at(next_then == number ? then : now));
+        difference.then.answer = answer_to(then, number);
+        difference.now.answer = answer_to(now, number);
+        if (!find_difference(options, now->query->duration, &difference))
+            continue;
+        sink(user, &difference);
+        same = false;
+    }
+}
+
+/* Whether what is there of the result are answers to this query: only then may it be walked. Of a
+ * result that was answered here, it is. */
+static bool goes_with(const struct scene_query *query, const struct scene_result *result)
+{
+    const bool names = query->which != QUERY_PAIRS_LISTED;
+    if (result->end_pair < query->first_pair || result->end_pair > scene_pairs_total(query))
+        return false;
+    if (!names)
+        return (!result->names_pairs || result->verdict_count == 0) &&
+               result->verdict_count == result->end_pair - query->first_pair;
+    int32_t before = query->first_pair - 1;
+    for (int32_t i = 0; i < result->verdict_count; i++) {
+        const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
+        if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->frame_count)
+            return false;
+        if (query->which == QUERY_PAIRS_ACROSS &&
+            (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
+            return false;
+        const int32_t number = scene_pairs_number(query, result->pair, (size_t) i);
+        if (number <= before || number >= result->end_pair)
+            return false;
+        before = number;
+    }
+    return true;
+}
+
+static enum replay_outcome differ_as_a_whole(const struct scene_result *then,
+                                             const struct scene_result *now, difference_sink *sink,
+                                             void *user)
+{
+    const struct difference difference = {.kind = DIFFERENT_STATUS,
+                                          .whole = true,
+                                          .dim = 3,
+                                          .then = {.status = then->status},
+                                          .now = {.status = now->status}};
+    sink(user, &difference);
+    return REPLAY_DIFFERENT;
+}
+
+enum replay_outcome compare_scenes(const struct compare_options *options,
+                                   const struct scene_query *query, const struct scene_result *then,
+                                   const struct scene_result *now, difference_sink *sink,
+                                   void *user)
+{
+    if (is_of_the_moment(then->status) || is_of_the_moment(now->status))
+        return moment(then->status, now->status);
+    if (then->status != now->status)
+        return differ_as_a_whole(then, now, sink, user);
+    if (now->status != FMB_OK)
+        return REPLAY_SAME;
+    if (!goes_with(query, then) || !goes_with(query, now))
+        return differ_as_a_whole(then, now, sink, user);
+    struct walk walk_then = {.query = query, .result = then};
+    struct walk walk_now = {.query = query, .result = now};
+    const int32_t end = then->end_pair < now->end_pair ? then->end_pair : now->end_pair;
+    const bool same = compare_answers(options, &walk_then, &walk_now, end, sink, user);
+    return same ? REPLAY_SAME : REPLAY_DIFFERENT;
+}
+
+/* ---- Bytes ----
+ *
+ * Both types begin with the fingerprint and what is echoed (8 bytes each: utime, client id,
+ * sequence number), then the server id, and end with compute_ns. */
+
+enum { IDS_END = 32, SERVER_END = 40, COMPUTE_BYTES = 8 };
+
+/* Pairs: the ids of the bodies, their keys, and all that is compared. */
+enum { BODIES_END = SERVER_END + 16, KEYS_END = BODIES_END + 16 };
+
+/* Scenes: status, an empty detail where that is OK, and method; lost; the number of keys, and the
+ * keys; and all that is compared. */
+enum { METHOD_END = SERVER_END + 4 + 5 + 4, LOST_END = METHOD_END + 8, COUNT_END = LOST_END + 4 };
+
+static bool same_piece(const unsigned char *a, const unsigned char *b, size_t begin, size_t end)
+{
+    return memcmp(a + begin, b + begin, end - begin) == 0;
+}
+
+static bool same_pair_bytes(const unsigned char *then, const unsigned char *now, size_t size)
+{
+    return size >= KEYS_END + COMPUTE_BYTES && same_piece(then, now, 0, IDS_END) &&
+           same_piece(then, now, SERVER_END, BODIES_END) &&
+           same_piece(then, now, KEYS_END, size - COMPUTE_BYTES);
+}
+
+static bool same_scene_bytes(const unsigned char *then, const unsigned char *now, size_t size)
+{
+    if (size < COUNT_END + COMPUTE_BYTES || !same_piece(then, now, 0, IDS_END) ||
+        !same_piece(then, now, SERVER_END, METHOD_END) ||
+        big_endian_32(now + SERVER_END) != FMB_OK || !same_piece(then, now, LOST_END, COUNT_END))
+        return false;
+    const size_t keys_end = COUNT_END + 8 * (size_t) big_endian_32(now + LOST_END);
+    return same_piece(then, now, keys_end, size - COMPUTE_BYTES);
+}
+
+bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t then_size,
+                        const unsigned char *now, size_t now_size)
+{
+    if (then_size != now_size)
+        return false;
+    return kind == LOG_PAIR_QUERY ? same_pair_bytes(then, now, now_size)
+                                  : same_scene_bytes(then, now, now_size);
+}

@@ -1,0 +1,34 @@
+/* The latest queries, or results, of a log: so many bytes of them, found by their ids. */
+#ifndef RECENT_H
+#define RECENT_H
+
+#include "match.h"
+
+struct recent_item {
+    struct match_item item; /* its bytes are copies */
+    bool matched;           /* for the user of this */
+    /* Of recent.c. */
+    uint32_t bucket, next, length;
+};
+
+struct recent;
+
+/* Keeps so many bytes, at least several times the longest item. On an item that has to go for
+ * others calls gone, which must not call back. Never NULL. */
+struct recent *recent_open(size_t bytes, void (*gone)(void *user, const struct recent_item *item),
+                           void *user);
+void recent_close(struct recent *recent); /* may be NULL; gone is not called */
+
+/* Returns the copy, which is good until it goes. */
+struct recent_item *recent_put(struct recent *recent, const struct match_item *item);
+
+/* Those of this kind with these ids, utime included, from the oldest to the newest: the first, and
+ * the next behind it. NULL: no more. */
+struct recent_item *recent_first(const struct recent *recent, enum log_kind kind,
+                                 const struct query_header *ids);
+struct recent_item *recent_next(const struct recent *recent, const struct recent_item *item);
+
+/* Lets all go. */
+void recent_flush(struct recent *recent);
+
+#endif

@@ -1,0 +1,459 @@
+#include "replay.h"
+
+#include "allocate.h"
+#include "answer_now.h"
+#include "input.h"
+#include "learn.h"
+#include "log_write.h"
+#include "temporary.h"
+#include "wire.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Components by key that are kept: four times as many as a service keeps bodies by default, some 40
+ * MB. */
+enum { KNOWN_BODIES = 1 << 18 };
+
+/* Bytes between two words of progress. */
+enum { PROGRESS_BYTES = 1 << 20 };
+
+struct replay {
+    const struct replay_options *options;
+    struct replay_part part;
+    const struct replay_sink *sink;
+    struct tally *tally; /* [log_count] */
+    struct log_channels channels;
+    struct input input;
+    struct log_reader *golden;     /* NULL: none */
+    struct log_writer *new_golden; /* NULL: none */
+    struct known_bodies *known;
+    struct learner *learner;
+    struct answer_now *now;
+    struct judge *judge;
+    /* With the results recorded; and where there is a golden, with those of that, else NULL. */
+    struct match *recorded, *compared;
+    /* Places of queries that came by keys which nothing before them explains: they are asked once
+     * more at the end, when all of the log is known. NULL: none so far. */
+    FILE *later;
+    int64_t first_utime, at, told;
+    bool started, failed;
+};
+
+/* Says what cannot be read or written; the rest goes on. */
+static void fail(struct replay *replay, const char *what)
+{
+    if (!replay->failed)
+        fprintf(stderr, "fmb: %s: %s\n", what, strerror(errno));
+    replay->failed = true;
+}
+
+static struct tally_channel *channel_of(struct replay *replay, const struct match_item *item)
+{
+    return &replay->tally[item->place.log].channel[tally_channel_of(item->kind)];
+}
+
+/* ---- What is brought together ---- */
+
+static void on_recorded(void *user, const struct match_item *query, const struct match_item *result)
+{
+    struct replay *replay = user;
+    learn(replay->learner, query, result);
+    if (!replay->compared)
+        judge_both(replay->judge, query, result);
+}
+
+static void on_query_alone(void *user, const struct match_item *query)
+{
+    struct replay *replay = user;
+    if (!replay->compared)
+        judge_query_alone(replay->judge, query);
+}
+
+static void on_result_alone(void *user, const struct match_item *result)
+{
+    struct replay *replay = user;
+    if (!replay->compared)
+        judge_result_alone(replay->judge, result);
+}
+
+static void on_golden(void *user, const struct match_item *query, const struct match_item *result)
+{
+    judge_both(((struct replay *) user)->judge, query, result);
+}
+
+static void on_query_not_in_golden(void *user, const struct match_item *query)
+{
+    judge_query_alone(((struct replay *) user)->judge, query);
+}
+
+static void on_golden_alone(void *user, const struct match_item *result)
+{
+    judge_result_alone(((struct replay *) user)->judge, result);
+}
+
+static void match_all(struct replay *replay, const struct match_item *query)
+{
+    match_query(replay->recorded, query);
+    if (replay->compared)
+        match_query(replay->compared, query);
+}
+
+/* ---- Messages ---- */
+
+static bool is_query(enum log_kind kind)
+{
+    return kind == LOG_PAIR_QUERY || kind == LOG_SCENE_QUERY;
+}
+
+/* What of a message says whose it is. The item's kind is that of the query. */
+static const char *read_ids(enum log_kind kind, const struct log_event *event,
+                            struct match_item *out)
+{
+    out->bytes = event->data;
+    out->size = (uint32_t) event->kept;
+    out->kind =
+        kind == LOG_PAIR_QUERY || kind == LOG_PAIR_RESULT ? LOG_PAIR_QUERY : LOG_SCENE_QUERY;
+    if (event->kept < event->size)
+        return "longer than any message of this type";
+    switch (kind) {
+    case LOG_PAIR_QUERY: return wire_read_pair_header(out->bytes, out->size, &out->ids);
+    case LOG_PAIR_RESULT: return wire_read_pair_result_header(out->bytes, out->size, &out->ids);
+    case LOG_SCENE_QUERY: return wire_read_scene_header(out->bytes, out->size, &out->ids);
+    default: return wire_read_scene_result_header(out->bytes, out->size, &out->ids);
+    }
+}
+
+static void refuse(struct replay *replay, enum log_kind kind, const struct match_item *item,
+                   const char *error)
+{
+    channel_of(replay, item)->unreadable[is_query(kind) ? 0 : 1]++;
+    replay->sink->unreadable(replay->sink->user, &item->place, replay->channels.name[kind], error);
+}
+
+static void ask_later(struct replay *replay, const struct match_place *place)
+{
+    if (!replay->later)
+        replay->later = temporary_open();
+    if (!replay->later || fwrite(place, sizeof *place, 1, replay->later) != 1)
+        fail(replay, "a temporary file");
+}
+
+static void count_answer(struct replay *replay, const struct match_item *query,
+                         const struct answered_now *answered)
+{
+    channel_of(replay, query)->queries++;
+    channel_of(replay, query)->pairs += answered->pairs;
+    if (answered->status == FMB_OK)
+        histogram_add(&replay->tally[query->place.log].now, answered->compute_ns);
+}
+
+static void write_golden(struct replay *replay, const struct match_item *query)
+{
+    const int kind = query->kind == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
+    if (replay->new_golden &&
+        !log_append(replay->new_golden, query->place.utime, replay->channels.name[kind],
+                    replay->channels.length[kind], query->more, query->more_size))
+        fail(replay, replay->options->write_golden);
+}
+
+/* last: there is nothing more to be learned of keys. */
+static void answer(struct replay *replay, struct match_item *query, bool last)
+{
+    struct answered_now answered;
+    const enum answer_now_outcome outcome =
+        answer_now(replay->now, query->kind, query->bytes, query->size, &answered);
+    if (outcome == ANSWER_NOW_UNREADABLE) {
+        refuse(replay, query->kind, query, answered.error);
+    } else if (outcome == ANSWER_NOW_WITHOUT_BODY && !last) {
+        ask_later(replay, &query->place);
+    } else {
+        query->more = answered.bytes;
+        query->more_size = (uint32_t) answered.size;
+        count_answer(replay, query, &answered);
+        write_golden(replay, query);
+        match_all(replay, query);
+    }
+}
+
+/* ---- The golden: results in the order of their queries ---- */
+
+static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event,
+                        bool mine)
+{
+    struct match_item item = {
+        .place = {.mine = mine, .number = event->number, .utime = event->utime}};
+    const char *error = read_ids(kind, event, &item);
+    if (error) {
+        fprintf(stderr, "fmb: %s: offset %" PRId64 ": %s\n", replay->options->golden, event->offset,
+                error);
+        replay->failed = true;
+        return;
+    }
+    channel_of(replay, &item)->results += mine;
+    match_result(replay->compared, &item);
+}
+
+/* The next one. False: there is none. */
+static bool pull_golden(struct replay *replay, bool mine)
+{
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
+    while ((outcome = log_next(replay->golden, &event, &damage)) == LOG_EVENT ||
+           outcome == LOG_DAMAGE) {
+        const enum log_kind kind =
+            outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
+        if (kind == LOG_PAIR_RESULT || kind == LOG_SCENE_RESULT) {
+            take_golden(replay, kind, &event, mine);
+            return true;
+        }
+        if (outcome == LOG_DAMAGE) {
+            fprintf(stderr, "fmb: %s: offset %" PRId64 ": %s\n", replay->options->golden,
+                    damage.offset, damage.what);
+            replay->failed = true;
+        }
+    }
+    if (outcome == LOG_FAILED)
+        fail(replay, replay->options->golden);
+    return false;
+}
+
+/* ---- Events ---- */
+
+static bool in_time(const struct replay *replay, int64_t utime)
+{
+    const double seconds = 1e-6 * ((double) utime - (double) replay->first_utime);
+    return seconds >= replay->options->from && seconds < replay->options->to;
+}
+
+/* Whether what begins there in the log that is being read is of the part. */
+static bool in_part(const struct replay *replay, int64_t offset)
+{
+    const int64_t at = replay->input.begin[replay->input.log] + offset;
+    return at >= replay->part.begin && at < replay->part.end;
+}
+
+static struct match_place place_of(const struct replay *replay, const struct log_event *event)
+{
+    return (struct match_place){
+        .log = replay->input.log,
+        .mine = in_part(replay, event->offset) && in_time(replay, event->utime),
+        .number = event->number,
+        .offset = event->offset,
+        .utime = event->utime};
+}
+
+static void take_query(struct replay *replay, struct match_item *query)
+{
+    if (query->place.mine)
+        answer(replay, query, false);
+    else
+        match_all(replay, query);
+    if (replay->golden)
+        pull_golden(replay, query->place.mine);
+}
+
+static void take_result(struct replay *replay, const struct match_item *result)
+{
+    channel_of(replay, result)->results += result->place.mine && !replay->golden;
+    match_result(replay->recorded, result);
+}
+
+static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
+{
+    struct match_item item = {.place = place_of(replay, event)};
+    const char *error = read_ids(kind, event, &item);
+    if (error && item.place.mine)
+        refuse(replay, kind, &item, error);
+    if (error)
+        return;
+    if (is_query(kind))
+        take_query(replay, &item);
+    else
+        take_result(replay, &item);
+}
+
+static void take_event(struct replay *replay, const struct log_event *event)
+{
+    const enum log_kind kind = log_kind_of(&replay->channels, event);
+    struct tally *tally = &replay->tally[replay->input.log];
+    if (!replay->started)
+        replay->first_utime = event->utime;
+    replay->started = true;
+    if (in_part(replay, event->offset)) {
+        tally->events++;
+        tally->bytes += event->length;
+        tally->statuses += kind == LOG_STATUS;
+        tally->other_events += kind == LOG_OTHER;
+    }
+    if (kind < LOG_STATUS)
+        take_message(replay, kind, event);
+    replay->at = replay->input.begin[replay->input.log] + event->offset + event->length;
+}
+
+static void take_damage(struct replay *replay, const struct log_damage *damage)
+{
+    struct tally *tally = &replay->tally[replay->input.log];
+    if (in_part(replay, damage->offset)) {
+        tally->damages++;
+        tally->damaged_bytes += damage->length;
+        tally->bytes += damage->length;
+        replay->sink->damage(replay->sink->user, replay->input.log, damage);
+    }
+    replay->at = replay->input.begin[replay->input.log] + damage->offset + damage->length;
+}
+
+/* ---- The run ---- */
+
+static bool open_goldens(struct replay *replay)
+{
+    const struct replay_options *options = replay->options;
+    char why[LOG_WHY_MAX];
+    if (options->golden && !(replay->golden = log_open(options->golden, why))) {
+        fprintf(stderr, "fmb: %s\n", why);
+        return false;
+    }
+    if (options->write_golden &&
+        !(replay->new_golden = log_create(options->write_golden, options->force))) {
+        log_write_complain(options->write_golden, errno);
+        return false;
+    }
+    return true;
+}
+
+static bool open_replay(struct replay *replay)
+{
+    const struct replay_options *options = replay->options;
+    const struct match_sink recorded = {on_recorded, on_query_alone, on_result_alone, replay};
+    const struct match_sink golden = {on_golden, on_query_not_in_golden, on_golden_alone, replay};
+    char why[LOG_WHY_MAX];
+    if (!input_open(&replay->input, options->log, options->log_count, why)) {
+        fprintf(stderr, "fmb: %s\n", why);
+        return false;
+    }
+    if (!open_goldens(replay))
+        return false;
+    replay->channels = log_channels(options->prefix);
+    replay->known = known_bodies_create(KNOWN_BODIES);
+    replay->learner = learner_open(replay->known);
+    replay->now = answer_now_open(options->bodies, replay->known);
+    replay->recorded = match_open(&recorded);
+    replay->compared = options->golden ? match_open(&golden) : NULL;
+    const struct judge_options judging = {options->compare, options->log,  replay->sink,
+                                          replay->tally,    options->page, replay->known};
+    replay->judge = judge_open(&judging);
+    return true;
+}
+
+static void close_replay(struct replay *replay)
+{
+    judge_close(replay->judge);
+    match_close(replay->compared);
+    match_close(replay->recorded);
+    answer_now_close(replay->now);
+    learner_close(replay->learner);
+    known_bodies_destroy(replay->known);
+    if (replay->later)
+        fclose(replay->later);
+    log_close(replay->golden);
+    input_close(&replay->input);
+    const int error = log_finish(replay->new_golden);
+    if (!error)
+        return;
+    log_write_complain(replay->options->write_golden, error);
+    replay->failed = true;
+}
+
+static void tell_progress(struct replay *replay)
+{
+    if (replay->at - replay->told < PROGRESS_BYTES)
+        return;
+    replay->told = replay->at;
+    replay->sink->progress(replay->sink->user, replay->at);
+}
+
+/* Nothing of the part waits for what comes behind it. */
+static bool is_done(const struct replay *replay)
+{
+    return replay->at >= replay->part.end && !replay->later &&
+           match_open_count(replay->recorded) == 0 &&
+           (!replay->compared || match_open_count(replay->compared) == 0);
+}
+
+static void read_logs(struct replay *replay)
+{
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
+    while ((outcome = input_next(&replay->input, &event, &damage)) == LOG_EVENT ||
+           outcome == LOG_DAMAGE) {
+        if (outcome == LOG_EVENT)
+            take_event(replay, &event);
+        else
+            take_damage(replay, &damage);
+        tell_progress(replay);
+        if (is_done(replay))
+            return;
+    }
+    if (outcome == LOG_FAILED)
+        fail(replay, replay->options->log[replay->input.log]);
+}
+
+static void ask_again(struct replay *replay)
+{
+    struct match_place place;
+    struct log_event event;
+    if (!replay->later)
+        return;
+    rewind(replay->later);
+    while (fread(&place, sizeof place, 1, replay->later) == 1) {
+        struct match_item query = {.place = place};
+        if (input_again(&replay->input, place.log, place.offset, &event) &&
+            !read_ids(log_kind_of(&replay->channels, &event), &event, &query))
+            answer(replay, &query, true);
+        else
+            fail(replay, replay->options->log[place.log]);
+    }
+    if (ferror(replay->later))
+        fail(replay, "a temporary file");
+}
+
+static void finish(struct replay *replay)
+{
+    ask_again(replay);
+    const bool all = replay->part.begin == 0 && replay->part.end == input_size(&replay->input);
+    while (replay->golden && pull_golden(replay, all))
+        continue;
+    if (!match_finish(replay->recorded) || (replay->compared && !match_finish(replay->compared)))
+        fail(replay, "a temporary file");
+}
+
+bool replay_run(const struct replay_options *options, struct replay_part part,
+                const struct replay_sink *sink, struct tally *tally)
+{
+    struct replay replay = {.options = options, .part = part, .sink = sink, .tally = tally};
+    if (open_replay(&replay)) {
+        read_logs(&replay);
+        finish(&replay);
+    } else {
+        replay.failed = true;
+    }
+    close_replay(&replay);
+    return !replay.failed;
+}
+
+int64_t replay_size(const struct replay_options *options)
+{
+    struct input input;
+    char why[LOG_WHY_MAX];
+    if (!input_open(&input, options->log, options->log_count, why)) {
+        fprintf(stderr, "fmb: %s\n", why);
+        return -1;
+    }
+    const int64_t size = input_size(&input);
+    input_close(&input);
+    return size;
+}

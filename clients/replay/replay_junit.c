@@ -1,0 +1,113 @@
+#include "replay_junit.h"
+
+#include "replay_text.h"
+#include "wire.h"
+
+#include <inttypes.h>
+
+/* Lines that stand in a failed case. */
+enum { LINES_MAX = 100 };
+
+static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
+
+/* As the text of an element, or of an attribute in double quotes. What XML cannot hold becomes '?'.
+ */
+static void write_xml(FILE *out, const char *text)
+{
+    for (; *text; text++)
+        switch (*text) {
+        case '&': fputs("&amp;", out); break;
+        case '<': fputs("&lt;", out); break;
+        case '>': fputs("&gt;", out); break;
+        case '"': fputs("&quot;", out); break;
+        default: putc((unsigned char) *text < ' ' && *text != '\n' ? '?' : *text, out);
+        }
+}
+
+static void begin_case(FILE *out, const char *log, const char *name)
+{
+    fputs("    <testcase classname=\"", out);
+    write_xml(out, log);
+    fprintf(out, "\" name=\"%s\">\n", name);
+}
+
+static void write_lines(FILE *out, FILE *found_file, int log, int channel, int64_t first_utime)
+{
+    struct found found;
+    struct found_text text;
+    char line[REPLAY_LINE_MAX];
+    int lines = 0;
+    rewind(found_file);
+    while (lines < LINES_MAX && found_read(found_file, &found, &text)) {
+        if (found.place.log != log || tally_channel_of(found.kind) != channel)
+            continue;
+        replay_line(&found, NULL, first_utime, line);
+        write_xml(out, line);
+        putc('\n', out);
+        lines++;
+    }
+}
+
+static int64_t differences_of(const struct tally_channel *channel)
+{
+    int64_t sum = 0;
+    for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
+        sum += channel->differences[kind];
+    return sum;
+}
+
+static void write_channel(FILE *out, const char *log, int index, int channel_index, FILE *found,
+                          const struct tally_channel *channel, int64_t first_utime)
+{
+    begin_case(out, log, channel_name[channel_index]);
+    if (channel->outcome[REPLAY_DIFFERENT] > 0) {
+        fprintf(out,
+                "      <failure message=\"%" PRId64 " of %" PRId64
+                " queries are answered differently, in %" PRId64 " pairs\">",
+                channel->outcome[REPLAY_DIFFERENT], channel->queries, differences_of(channel));
+        write_lines(out, found, index, channel_index, first_utime);
+        fputs("</failure>\n", out);
+    }
+    fprintf(out,
+            "      <system-out>%" PRId64 " queries: %" PRId64 " same, %" PRId64
+            " different, %" PRId64 " busy, %" PRId64 " unknown body, %" PRId64
+            " without result</system-out>\n    </testcase>\n",
+            channel->queries, channel->outcome[REPLAY_SAME], channel->outcome[REPLAY_DIFFERENT],
+            channel->outcome[REPLAY_BUSY], channel->outcome[REPLAY_UNKNOWN],
+            channel->outcome[REPLAY_ALONE]);
+}
+
+static bool is_whole(const struct tally *tally)
+{
+    return tally->damages == 0 && tally_unreadable(tally) == 0;
+}
+
+static void write_log(FILE *out, const char *log, int index, FILE *found, const struct tally *tally,
+                      int64_t first_utime)
+{
+    int failures = 0;
+    for (int i = 0; i < TALLY_CHANNELS; i++)
+        failures += tally->channel[i].outcome[REPLAY_DIFFERENT] > 0;
+    fputs("  <testsuite name=\"", out);
+    write_xml(out, log);
+    fprintf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n", TALLY_CHANNELS + 1, failures,
+            !is_whole(tally));
+    for (int i = 0; i < TALLY_CHANNELS; i++)
+        write_channel(out, log, index, i, found, &tally->channel[i], first_utime);
+    begin_case(out, log, "the log is whole");
+    if (!is_whole(tally))
+        fprintf(out,
+                "      <error message=\"%" PRId64 " damaged places, %" PRId64
+                " messages that cannot be read\"/>\n",
+                tally->damages, tally_unreadable(tally));
+    fputs("    </testcase>\n  </testsuite>\n", out);
+}
+
+void replay_junit(FILE *out, const struct replay_options *options, FILE *found,
+                  const struct tally *tally, int64_t first_utime)
+{
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"fmb replay\">\n", out);
+    for (int i = 0; i < options->log_count; i++)
+        write_log(out, options->log[i], i, found, &tally[i], first_utime);
+    fputs("</testsuites>\n", out);
+}

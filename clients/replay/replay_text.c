@@ -1,0 +1,153 @@
+#include "replay_text.h"
+
+#include "number.h"
+#include "wire.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- One difference ---- */
+
+static void interval_text(const struct fmb_answer *answer, char text[REPLAY_SIDE_MAX])
+{
+    char ends[2][NUMBER_TEXT_MAX];
+    if (answer->has_contact)
+        snprintf(text, REPLAY_SIDE_MAX, "%s to %s s", number_exact(answer->contact[0], ends[0]),
+                 number_exact(answer->contact[1], ends[1]));
+    else
+        strcpy(text, "none");
+}
+
+static void box_text(const struct fmb_answer *answer, int dim, char text[REPLAY_SIDE_MAX])
+{
+    static const char axis_name[] = "xyz";
+    char ends[2][NUMBER_TEXT_MAX];
+    size_t used = 0;
+    strcpy(text, "none");
+    for (int axis = 0; axis < dim && answer->has_box; axis++)
+        used +=
+            (size_t) snprintf(text + used, REPLAY_SIDE_MAX - used, "%s%c %s..%s", axis ? "  " : "",
+                              axis_name[axis], number_exact(answer->box[0][axis], ends[0]),
+                              number_exact(answer->box[1][axis], ends[1]));
+}
+
+static void status_text(const struct difference_side *side, char text[REPLAY_SIDE_MAX])
+{
+    const char *verdict = fmb_verdict_name((int) side->answer.verdict);
+    const char *said = side->status == FMB_OK ? "decided" : fmb_status_text(side->status);
+    snprintf(text, REPLAY_SIDE_MAX, "%s", side->status == FMB_OK && verdict ? verdict : said);
+}
+
+void replay_side_text(const struct difference *difference, const struct difference_side *side,
+                      char text[REPLAY_SIDE_MAX])
+{
+    const char *verdict = fmb_verdict_name((int) side->answer.verdict);
+    switch (difference->kind) {
+    case DIFFERENT_INTERVAL: interval_text(&side->answer, text); break;
+    case DIFFERENT_BOX: box_text(&side->answer, difference->dim, text); break;
+    case DIFFERENT_CERTIFICATE:
+        snprintf(text, REPLAY_SIDE_MAX, "%.200s", side->certificate ? side->certificate : "none");
+        break;
+    case DIFFERENT_VERDICT:
+        snprintf(text, REPLAY_SIDE_MAX, "%s", verdict ? verdict : "not decided");
+        break;
+    default: status_text(side, text); break;
+    }
+}
+
+void replay_line(const struct found *found, const char *log, int64_t first_utime,
+                 char line[REPLAY_LINE_MAX])
+{
+    const struct difference *difference = &found->difference;
+    char then[REPLAY_SIDE_MAX], now[REPLAY_SIDE_MAX], bodies[64] = "the scene";
+    replay_side_text(difference, &difference->then, then);
+    replay_side_text(difference, &difference->now, now);
+    if (!difference->whole)
+        snprintf(bodies, sizeof bodies, "bodies %" PRId64 " %" PRId64, difference->body_id[0],
+                 difference->body_id[1]);
+    snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
+             log ? log : "", log ? ": " : "", found->place.number,
+             1e-6 * ((double) found->place.utime - (double) first_utime), bodies,
+             difference_name(difference->kind), then, now);
+}
+
+/* ---- Counts ---- */
+
+static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
+
+static void print_row(FILE *out, const char *name, const struct tally_channel *channel)
+{
+    const int64_t count[] = {channel->queries,
+                             channel->pairs,
+                             channel->outcome[REPLAY_SAME],
+                             channel->outcome[REPLAY_DIFFERENT],
+                             channel->outcome[REPLAY_BUSY],
+                             channel->outcome[REPLAY_UNKNOWN],
+                             channel->outcome[REPLAY_ALONE],
+                             channel->unreadable[0] + channel->unreadable[1]};
+    fprintf(out, "%-16s", name);
+    for (size_t i = 0; i < sizeof count / sizeof *count; i++) {
+        char text[NUMBER_TEXT_MAX];
+        fprintf(out, " %12s", number_grouped(count[i], text));
+    }
+    putc('\n', out);
+}
+
+static void print_channels(FILE *out, const struct tally *tally)
+{
+    fprintf(out, "%-16s %12s %12s %12s %12s %12s %12s %12s %12s\n", "", "queries", "pairs", "same",
+            "different", "busy", "unknown body", "no result", "unreadable");
+    for (int i = 0; i < TALLY_CHANNELS; i++)
+        print_row(out, channel_name[i], &tally->channel[i]);
+}
+
+static void print_kinds(FILE *out, const struct tally *tally)
+{
+    const char *before = "different in: ";
+    for (int kind = 0; kind < DIFFERENT_KINDS; kind++) {
+        const int64_t count = tally->channel[TALLY_PAIRS].differences[kind] +
+                              tally->channel[TALLY_SCENES].differences[kind];
+        char text[NUMBER_TEXT_MAX];
+        if (count == 0)
+            continue;
+        fprintf(out, "%s%s %s", before, number_grouped(count, text),
+                difference_name((enum difference_kind) kind));
+        before = ", ";
+    }
+    if (before[0] == ',')
+        putc('\n', out);
+}
+
+static void print_times(FILE *out, const char *name, const struct histogram *times)
+{
+    if (times->count > 0)
+        fprintf(out, "%-16s %12.1f %12.1f %12.1f\n", name,
+                1e-3 * (double) histogram_quantile(times, 0.5),
+                1e-3 * (double) histogram_quantile(times, 0.99), 1e-3 * (double) times->max);
+}
+
+static void print_log(FILE *out, const struct tally *tally)
+{
+    char events[NUMBER_TEXT_MAX], alone[NUMBER_TEXT_MAX], other[NUMBER_TEXT_MAX];
+    const int64_t results_alone =
+        tally->channel[TALLY_PAIRS].results_alone + tally->channel[TALLY_SCENES].results_alone;
+    fprintf(out,
+            "%s events, %.1f MB; %s on other channels; %s results of queries that are not here",
+            number_grouped(tally->events, events), 1e-6 * (double) tally->bytes,
+            number_grouped(tally->other_events, other), number_grouped(results_alone, alone));
+    if (tally->damages > 0)
+        fprintf(out, "; %" PRId64 " damaged places, %" PRId64 " bytes", tally->damages,
+                tally->damaged_bytes);
+    putc('\n', out);
+}
+
+void replay_text_summary(FILE *out, const struct tally *tally)
+{
+    print_channels(out, tally);
+    print_kinds(out, tally);
+    fprintf(out, "%-16s %12s %12s %12s\n", "microseconds", "p50", "p99", "max");
+    print_times(out, "then", &tally->then);
+    print_times(out, "now", &tally->now);
+    print_log(out, tally);
+}

@@ -1,0 +1,229 @@
+#include "spill.h"
+
+#include "allocate.h"
+#include "temporary.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of each side so many files, by a hash of the ids: of one at a time the ids are in memory. */
+enum { PARTS = 64 };
+
+struct spill {
+    FILE *file[SPILL_SIDES][PARTS]; /* NULL: nothing there */
+    int error;                      /* errno of the first failure; 0: none */
+};
+
+struct spill *spill_open(void)
+{
+    return allocate(1, sizeof(struct spill));
+}
+
+void spill_close(struct spill *spill)
+{
+    for (int side = 0; spill && side < SPILL_SIDES; side++)
+        for (int part = 0; part < PARTS; part++)
+            if (spill->file[side][part])
+                fclose(spill->file[side][part]);
+    free(spill);
+}
+
+/* Keeps the first. Always false. */
+static bool fail(struct spill *spill)
+{
+    if (!spill->error)
+        spill->error = errno ? errno : EIO;
+    return false;
+}
+
+/* Without utime, which may differ. */
+static int part_of(const struct match_item *item)
+{
+    const uint64_t mixed = query_id_mix(item->ids.client_id + item->kind);
+    return (int) (query_id_mix((int64_t) mixed ^ item->ids.sequence_number) >> 40) % PARTS;
+}
+
+void spill_put(struct spill *spill, enum spill_side side, const struct match_item *item)
+{
+    FILE **file = &spill->file[side][part_of(item)];
+    if (!*file && !(*file = temporary_open())) {
+        fail(spill);
+        return;
+    }
+    if (fwrite(item, sizeof *item, 1, *file) != 1 ||
+        (item->size > 0 && fwrite(item->bytes, item->size, 1, *file) != 1) ||
+        (item->more_size > 0 && fwrite(item->more, item->more_size, 1, *file) != 1))
+        fail(spill);
+}
+
+/* ---- Joining ---- */
+
+/* Where a query of the part stands in its file. */
+struct entry {
+    struct query_header ids;
+    enum log_kind kind;
+    bool matched;
+    size_t number; /* in the order of the file */
+    off_t at;
+};
+
+struct joining {
+    struct spill *spill;
+    const struct match_sink *sink;
+    struct entry *entry; /* [count], by kind, ids and number */
+    size_t count, room;
+    unsigned char *buffer[SPILL_SIDES]; /* [2 * LOG_DATA_MAX] */
+};
+
+/* The next item of a file; its bytes are in the buffer. False at the end, and after a failure. */
+static bool read_item(struct spill *spill, FILE *file, unsigned char *buffer,
+                      struct match_item *out)
+{
+    if (fread(out, sizeof *out, 1, file) != 1)
+        return ferror(file) ? fail(spill) : false;
+    const size_t size = (size_t) out->size + out->more_size;
+    if (size > 0 && fread(buffer, size, 1, file) != 1)
+        return fail(spill);
+    out->bytes = buffer;
+    out->more = buffer + out->size;
+    return true;
+}
+
+#define COMPARE(a, b) ((a) < (b) ? -1 : (a) > (b))
+
+static int compare_ids(const struct entry *a, enum log_kind kind, const struct query_header *ids)
+{
+    int order = COMPARE(a->kind, kind);
+    if (!order)
+        order = COMPARE(a->ids.client_id, ids->client_id);
+    return order ? order : COMPARE(a->ids.sequence_number, ids->sequence_number);
+}
+
+static int compare_entries(const void *left, const void *right)
+{
+    const struct entry *a = left, *b = right;
+    const int order = compare_ids(a, b->kind, &b->ids);
+    return order ? order : COMPARE(a->number, b->number);
+}
+
+static void list_queries(struct joining *joining, FILE *file)
+{
+    struct match_item item;
+    joining->count = 0;
+    rewind(file);
+    for (off_t at = 0; read_item(joining->spill, file, joining->buffer[SPILL_QUERIES], &item);
+         at = ftello(file)) {
+        joining->entry = allocate_room(joining->entry, &joining->room, joining->count + 1,
+                                       sizeof *joining->entry);
+        joining->entry[joining->count] =
+            (struct entry){.ids = item.ids, .kind = item.kind, .number = joining->count, .at = at};
+        joining->count++;
+    }
+    if (joining->count > 0)
+        qsort(joining->entry, joining->count, sizeof *joining->entry, compare_entries);
+}
+
+/* The first entry that is not before the ids. */
+static size_t lower_bound(const struct joining *joining, const struct match_item *item)
+{
+    size_t low = 0, high = joining->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_ids(&joining->entry[middle], item->kind, &item->ids) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* How well a query goes with a result: the more the better. */
+static int fitness(const struct entry *entry, const struct match_item *result)
+{
+    return 2 * !entry->matched + (entry->ids.utime == result->ids.utime);
+}
+
+/* Clients that give all their queries the same ids make no long search: of so many one is chosen.
+ */
+enum { CHOICES_MAX = 1000 };
+
+static struct entry *choose(const struct joining *joining, const struct match_item *result)
+{
+    struct entry *best = NULL;
+    const size_t first = lower_bound(joining, result);
+    for (size_t i = first; i < joining->count && i < first + CHOICES_MAX; i++) {
+        struct entry *entry = &joining->entry[i];
+        if (compare_ids(entry, result->kind, &result->ids) != 0)
+            break;
+        if (!best || fitness(entry, result) > fitness(best, result) ||
+            (best->matched && entry->matched))
+            best = entry;
+    }
+    return best;
+}
+
+static void join_results(struct joining *joining, FILE *queries, FILE *results)
+{
+    struct match_item query, result;
+    rewind(results);
+    while (read_item(joining->spill, results, joining->buffer[SPILL_RESULTS], &result)) {
+        struct entry *entry = choose(joining, &result);
+        if (!entry) {
+            joining->sink->result_alone(joining->sink->user, &result);
+        } else if (fseeko(queries, entry->at, SEEK_SET) == 0 &&
+                   read_item(joining->spill, queries, joining->buffer[SPILL_QUERIES], &query)) {
+            entry->matched = true;
+            joining->sink->both(joining->sink->user, &query, &result);
+        } else {
+            fail(joining->spill);
+        }
+    }
+}
+
+static int compare_numbers(const void *left, const void *right)
+{
+    const struct entry *a = left, *b = right;
+    return COMPARE(a->number, b->number);
+}
+
+static void tell_alone(struct joining *joining, FILE *queries)
+{
+    struct match_item query;
+    if (joining->count > 0)
+        qsort(joining->entry, joining->count, sizeof *joining->entry, compare_numbers);
+    rewind(queries);
+    for (size_t i = 0; i < joining->count; i++)
+        if (!read_item(joining->spill, queries, joining->buffer[SPILL_QUERIES], &query))
+            return;
+        else if (!joining->entry[i].matched)
+            joining->sink->query_alone(joining->sink->user, &query);
+}
+
+static void join_part(struct joining *joining, int part)
+{
+    FILE *queries = joining->spill->file[SPILL_QUERIES][part];
+    FILE *results = joining->spill->file[SPILL_RESULTS][part];
+    joining->count = 0;
+    if (queries)
+        list_queries(joining, queries);
+    if (results)
+        join_results(joining, queries, results);
+    if (queries)
+        tell_alone(joining, queries);
+}
+
+bool spill_join(struct spill *spill, const struct match_sink *sink)
+{
+    struct joining joining = {.spill = spill, .sink = sink};
+    for (int side = 0; side < SPILL_SIDES; side++)
+        joining.buffer[side] = allocate(2 * LOG_DATA_MAX, 1);
+    for (int part = 0; part < PARTS && !spill->error; part++)
+        join_part(&joining, part);
+    for (int side = 0; side < SPILL_SIDES; side++)
+        free(joining.buffer[side]);
+    free(joining.entry);
+    errno = spill->error;
+    return !spill->error;
+}
