@@ -259,10 +259,26 @@ static void append_contact(struct scene_result *result, const struct scene_work 
             work->box[k][i / result->dim][i % result->dim];
 }
 
+/* As many of the block's answers as there is room for, where a verdict is all that there is of a
+ * pair; returns their number. Most scenes ask for no more. */
+static size_t append_verdicts(struct scene_result *result, const struct scene_work *work,
+                              size_t count, long *room)
+{
+    const size_t kept = *room < (long) count ? (size_t) (*room > 0 ? *room : 0) : count;
+    memcpy(result->verdict + result->verdict_count, work->verdict, kept);
+    for (size_t k = 0; k < kept; k++)
+        result->contact_count += is_contact(work->verdict[k]);
+    result->verdict_count += (int32_t) kept;
+    *room -= (long) count;
+    return kept;
+}
+
 /* As many of the block's answers as there is room for; returns their number. */
 static size_t append(struct scene_result *result, const struct scene_work *work,
                      const unsigned (*pair)[2], size_t count, long *room)
 {
+    if (!result->names_pairs && !result->has_times && !result->has_boxes)
+        return append_verdicts(result, work, count, room);
     for (size_t k = 0; k < count; k++) {
         const unsigned char verdict = work->verdict[k];
         if (result->names_pairs && !is_contact(verdict))
