@@ -3,36 +3,41 @@
 #include "allocate.h"
 #include "check.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Linked by index as in the service's cache: entry 0 holds nothing; it closes the ring of use, with
- * the newest on one side and the oldest on the other, and ends the chains of the buckets. */
-enum { NONE = 0, ENDS = 0 };
+/* Linked by index; 0 ends the chains of the buckets. Who goes for another is found by a hand that
+ * walks round: it spares those that were used since it came by, once. So to use a body touches its
+ * own slot alone, not its neighbours in some order: most logs ask of it for every frame. */
+enum { NONE = 0 };
 
-struct entry {
-    struct known_body body;
-    uint32_t next;         /* in the bucket */
-    uint32_t newer, older; /* in the order of use */
+struct slot {
+    int64_t body_id, key;
+    uint32_t next; /* in the bucket */
+    bool used;     /* since the hand came by */
 };
 
 struct known_bodies {
-    size_t capacity, used;
+    uint32_t capacity, count, hand;
     uint32_t mask;
-    uint32_t *bucket;    /* [mask + 1] */
-    struct entry *entry; /* [capacity + 1] */
+    uint32_t *bucket;        /* [mask + 1]: first slot of each */
+    struct slot *slot;       /* [capacity + 1] */
+    struct known_body *body; /* [capacity + 1] */
 };
 
 struct known_bodies *known_bodies_create(size_t capacity)
 {
     struct known_bodies *known = allocate(1, sizeof *known);
     uint32_t buckets = 2;
+    assert(capacity >= 1 && capacity < UINT32_MAX / 2);
     while (buckets < capacity)
         buckets *= 2;
-    known->capacity = capacity;
+    known->capacity = (uint32_t) capacity;
     known->mask = buckets - 1;
     known->bucket = allocate(buckets, sizeof *known->bucket);
-    known->entry = allocate(capacity + 1, sizeof *known->entry);
+    known->slot = allocate(capacity + 1, sizeof *known->slot);
+    known->body = allocate(capacity + 1, sizeof *known->body);
     return known;
 }
 
@@ -41,74 +46,65 @@ void known_bodies_destroy(struct known_bodies *known)
     if (!known)
         return;
     free(known->bucket);
-    free(known->entry);
+    free(known->slot);
+    free(known->body);
     free(known);
 }
 
 /* A log may hold any ids: both numbers are mixed, so that no arithmetic pattern fills one bucket.
  */
-static uint32_t *bucket_of(struct known_bodies *known, int64_t body_id, int64_t key)
+static uint32_t *bucket_of(const struct known_bodies *known, int64_t body_id, int64_t key)
 {
     const uint64_t mixed = query_id_mix(body_id ^ (int64_t) query_id_mix(key));
     return &known->bucket[(uint32_t) (mixed >> 32) & known->mask];
 }
 
-static uint32_t find(struct known_bodies *known, int64_t body_id, int64_t key)
+static uint32_t find(const struct known_bodies *known, int64_t body_id, int64_t key)
 {
-    uint32_t e = *bucket_of(known, body_id, key);
-    while (e != NONE &&
-           (known->entry[e].body.body_id != body_id || known->entry[e].body.key != key))
-        e = known->entry[e].next;
-    return e;
+    uint32_t s = *bucket_of(known, body_id, key);
+    while (s != NONE && (known->slot[s].body_id != body_id || known->slot[s].key != key))
+        s = known->slot[s].next;
+    return s;
 }
 
-static void unlink_use(struct known_bodies *known, uint32_t e)
+static void unlink_slot(struct known_bodies *known, uint32_t s)
 {
-    const uint32_t newer = known->entry[e].newer, older = known->entry[e].older;
-    known->entry[newer].older = older;
-    known->entry[older].newer = newer;
+    uint32_t *link = bucket_of(known, known->slot[s].body_id, known->slot[s].key);
+    while (*link != s)
+        link = &known->slot[*link].next;
+    *link = known->slot[s].next;
 }
 
-static void link_newest(struct known_bodies *known, uint32_t e)
+static uint32_t free_slot(struct known_bodies *known)
 {
-    const uint32_t newest = known->entry[ENDS].older;
-    known->entry[e].newer = ENDS;
-    known->entry[e].older = newest;
-    known->entry[newest].newer = e;
-    known->entry[ENDS].older = e;
-}
-
-static uint32_t evict_oldest(struct known_bodies *known)
-{
-    const uint32_t e = known->entry[ENDS].newer;
-    const struct known_body *body = &known->entry[e].body;
-    uint32_t *link = bucket_of(known, body->body_id, body->key);
-    while (*link != e)
-        link = &known->entry[*link].next;
-    *link = known->entry[e].next;
-    unlink_use(known, e);
-    return e;
+    if (known->count < known->capacity)
+        return ++known->count;
+    for (;;) {
+        known->hand = known->hand % known->capacity + 1;
+        if (!known->slot[known->hand].used)
+            break;
+        known->slot[known->hand].used = false;
+    }
+    unlink_slot(known, known->hand);
+    return known->hand;
 }
 
 static uint32_t insert(struct known_bodies *known, int64_t body_id, int64_t key)
 {
-    const uint32_t e =
-        known->used < known->capacity ? (uint32_t) ++known->used : evict_oldest(known);
+    const uint32_t s = free_slot(known);
     uint32_t *bucket = bucket_of(known, body_id, key);
-    known->entry[e].next = *bucket;
-    *bucket = e;
-    link_newest(known, e);
-    return e;
+    known->slot[s] = (struct slot){.body_id = body_id, .key = key, .next = *bucket};
+    *bucket = s;
+    return s;
 }
 
 struct known_body *known_bodies_find(struct known_bodies *known, int64_t body_id, int64_t key)
 {
-    const uint32_t e = find(known, body_id, key);
-    if (e == NONE)
+    const uint32_t s = find(known, body_id, key);
+    if (s == NONE)
         return NULL;
-    unlink_use(known, e);
-    link_newest(known, e);
-    return &known->entry[e].body;
+    known->slot[s].used = true;
+    return &known->body[s];
 }
 
 bool known_bodies_has(struct known_bodies *known, int64_t body_id, int64_t key, int64_t server_id)
@@ -133,7 +129,7 @@ struct known_body *known_bodies_learn(struct known_bodies *known, const struct q
         return NULL;
     struct known_body *body = known_bodies_find(known, frame->body_id, key);
     if (!body)
-        body = &known->entry[insert(known, frame->body_id, key)].body;
+        body = &known->body[insert(known, frame->body_id, key)];
     *body = (struct known_body){.body_id = frame->body_id,
                                 .key = key,
                                 .server_id = server_id,
