@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 /* Of both what the second cache of most machines holds, and far more than is ever under way. */
-enum { RECENT_BYTES = 8 << 20 };
+enum { RECENT_BYTES = 4 << 20 };
 
 /* Clients that give all their queries the same ids make no long search. */
 enum { CHOICES_MAX = 1000 };
