@@ -93,7 +93,7 @@ programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/soak-asker $(B)/soak-memory \
-	$(B)/soak-rate $(B)/soak-relay
+	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -456,6 +456,20 @@ $(B)/soak-relay: $(O)/tests/soak/relay.o
 $(O)/tests/soak/%.o: tests/soak/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -pthread -Iservice -Iservice/fmb -Iclients/lib -I$(GEN)
+
+# ---- Logs: what a service was asked, and answered, for fmb replay ----------------------------
+
+logs_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/logs/*.c)) \
+	$(filter-out %/referee.o,$(oracle_objects)) $(family_objects:%/pair_draw.o=)
+
+$(B)/logs/generate: $(logs_objects) $(answer_objects) $(wire_objects) $(O)/service/senders.o \
+		$(message_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+
+$(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign
 
 # ---- Benchmark -------------------------------------------------------------------------------
 

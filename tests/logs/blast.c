@@ -1,0 +1,171 @@
+#include "blast.h"
+
+#include "asker.h"
+#include "parts.h"
+
+#include <stdlib.h>
+
+_Static_assert((int) BLAST_BODIES <= (int) ASKER_BODIES_MAX, "one asker knows them all");
+
+/* Where they are, so that some half of their pairs meet. */
+static const double component_most = 1, origin_most = 1.25, velocity_most = 1;
+
+struct blasting {
+    const struct blast *blast;
+    struct tape *tape;
+    struct instance instance;
+    struct asker asker;
+    struct draw draw;
+    struct solid solid[BLAST_BODIES]; /* body 1 first; where they are changes from query to query */
+    struct scene_query scene;
+    struct scene_result scene_result;
+};
+
+static void draw_vector(struct draw *draw, int dim, double most, double *out)
+{
+    for (int axis = 0; axis < dim; axis++)
+        out[axis] = draw_uniform(draw, -most, most);
+}
+
+static struct solid draw_solid(struct draw *draw, int dim, int shape)
+{
+    struct solid solid = {.dim = dim, .shape = (enum fmb_shape) shape};
+    for (int i = 0; i < solid_count(&solid); i++)
+        draw_vector(draw, dim, component_most, solid.component[i]);
+    return solid;
+}
+
+static struct blasting *begin(struct tape *tape, const struct blast *blast)
+{
+    const struct instance_options options = {
+        .prefix = "", .server_id = 2002, .first_key = 7000000000, .bodies = 2 * BLAST_BODIES};
+    struct blasting *blasting = calloc(1, sizeof *blasting);
+    if (!blasting)
+        return NULL;
+    blasting->blast = blast;
+    blasting->tape = tape;
+    blasting->draw.state = blast->seed;
+    if (!instance_open(&blasting->instance, tape, &options)) {
+        free(blasting);
+        return NULL;
+    }
+    blasting->asker = (struct asker){.instance = &blasting->instance, .client_id = 271828182845904};
+    return blasting;
+}
+
+static void end(struct blasting *blasting)
+{
+    instance_close(&blasting->instance);
+    free(blasting);
+}
+
+/* ---- Pairs ---- */
+
+/* All that differ in dimension, motion or naming. -1 or 0: either. */
+static bool choose(struct draw *draw, int option, bool either)
+{
+    return either ? draw_coin(draw) : option;
+}
+
+/* The bodies of 2D come first, so many. */
+enum { BODIES_2D = BLAST_BODIES / 2 };
+
+static void draw_bodies(struct blasting *blasting)
+{
+    for (int i = 0; i < BLAST_BODIES; i++) {
+        const int dim = i < BODIES_2D ? 2 : 3;
+        const int shape =
+            draw_int(&blasting->draw, FMB_CUBOID, dim == 2 ? FMB_TETRAHEDRON : FMB_FACE);
+        blasting->solid[i] = draw_solid(&blasting->draw, dim, shape);
+    }
+}
+
+/* A body at a new place. */
+static void draw_frame(struct blasting *blasting, int i, bool moving, struct query_frame *out)
+{
+    struct solid *solid = &blasting->solid[i];
+    draw_vector(&blasting->draw, solid->dim, origin_most, solid->origin);
+    solid->moving = moving;
+    if (moving)
+        draw_vector(&blasting->draw, solid->dim, velocity_most, solid->velocity);
+    part_frame(solid, i + 1, out);
+}
+
+static void draw_pair(struct blasting *blasting, struct pair_query *query)
+{
+    const struct blast *blast = blasting->blast;
+    struct draw *draw = &blasting->draw;
+    const bool flat = choose(draw, blast->dim == 2, blast->dim == 0);
+    const bool moving = choose(draw, blast->moving, blast->moving < 0);
+    const int first = flat ? 0 : BODIES_2D, last = flat ? BODIES_2D - 1 : BLAST_BODIES - 1;
+    const int movers = moving ? draw_int(draw, 1, 3) : 0;
+    for (int f = 0; f < 2; f++)
+        draw_frame(blasting, draw_int(draw, first, last), movers >> f & 1, &query->frame[f]);
+}
+
+bool blast_pairs(struct tape *tape, const struct blast *blast)
+{
+    struct blasting *blasting = begin(tape, blast);
+    if (!blasting)
+        return false;
+    draw_bodies(blasting);
+    for (int64_t n = 0; n < blast->count; n++) {
+        struct pair_query query = {.duration = 1, .want = blast->want};
+        struct pair_result result;
+        draw_pair(blasting, &query);
+        if (!choose(&blasting->draw, blast->by_key, blast->by_key < 0))
+            for (int f = 0; f < 2; f++)
+                asker_forget(&blasting->asker, query.frame[f].body_id);
+        asker_pair(&blasting->asker, &query, &result);
+    }
+    end(blasting);
+    return true;
+}
+
+/* ---- Scenes ---- */
+
+/* Both from one draw: the high half chooses one frame, the low half one of the others. */
+static void draw_pairs(struct draw *draw, int32_t count, struct scene_query *out)
+{
+    out->index_count = 2 * count;
+    for (int32_t i = 0; i < count; i++) {
+        const uint64_t bits = draw_bits(draw);
+        const unsigned a = (unsigned) ((bits >> 32) * BLAST_FRAMES >> 32);
+        const unsigned b = (unsigned) ((bits & 0xffffffff) * (BLAST_FRAMES - 1) >> 32);
+        out->pair[i][0] = a;
+        out->pair[i][1] = b + (b >= a);
+    }
+}
+
+/* With as many pairs as there is room for behind the frames, which go by key after the first time.
+ */
+static void ask_scene(struct blasting *blasting)
+{
+    struct scene_query *query = &blasting->scene;
+    size_t room = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
+    for (int i = 0; i < BLAST_FRAMES; i++) {
+        struct query_frame *frame = &query->frame[i];
+        draw_frame(blasting, i, false, frame);
+        if (blasting->asker.key[frame->body_id])
+            frame->components.count = 0;
+        room -= wire_frame_bytes(frame);
+    }
+    draw_pairs(&blasting->draw, (int32_t) (room / WIRE_PAIR_BYTES), query);
+    asker_scene(&blasting->asker, query, &blasting->scene_result);
+}
+
+bool blast_scenes(struct tape *tape, const struct blast *blast)
+{
+    struct blasting *blasting = begin(tape, blast);
+    if (!blasting)
+        return false;
+    for (int i = 0; i < BLAST_FRAMES; i++)
+        blasting->solid[i] = draw_solid(&blasting->draw, 3, i % 2 ? FMB_TETRAHEDRON : FMB_CUBOID);
+    blasting->scene.duration = 1;
+    blasting->scene.which = QUERY_PAIRS_LISTED;
+    blasting->scene.frame_count = BLAST_FRAMES;
+    for (int64_t n = 0; n < blast->count; n++)
+        ask_scene(blasting);
+    end(blasting);
+    return true;
+}

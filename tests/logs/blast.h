@@ -1,0 +1,32 @@
+/* Logs of any size, for benchmarks: as many different queries as wanted, with their results,
+ * written as they come. */
+#ifndef BLAST_H
+#define BLAST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tape.h"
+
+struct blast {
+    int64_t count; /* queries */
+    uint64_t seed;
+    int dim;    /* 2 or 3; 0: both */
+    int moving; /* 0, or 1; -1: both */
+    int by_key; /* bodies that have a key go by key: 0, or 1; -1: one time in two. (A body that has
+                   none yet goes whole.) */
+    int32_t want; /* QUERY_WANT_ bits, of pairs */
+};
+
+/* Pairs of BLAST_BODIES bodies of all shapes, drawn anew for each query, each body at a place of
+ * its own; some half of them in contact. All of the options count. */
+enum { BLAST_BODIES = 8192 };
+bool blast_pairs(struct tape *tape, const struct blast *blast);
+
+/* Scenes of BLAST_FRAMES bodies in 3D, one half cuboids and one half tetrahedra, at rest, by key,
+ * with as many pairs listed as a datagram has room for, verdicts alone. The first one tells the
+ * bodies, and has fewer pairs. Of the options count and seed. */
+enum { BLAST_FRAMES = 100 };
+bool blast_scenes(struct tape *tape, const struct blast *blast);
+
+#endif

@@ -1,0 +1,155 @@
+#include "instance.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const names[INSTANCE_CHANNELS] = {
+    WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, WIRE_SCENE_QUERY, WIRE_SCENE_RESULT, WIRE_STATUS};
+
+/* From one query to the next, and from a query to its result. */
+enum { QUERY_US = 60, RESULT_US = 45 };
+
+bool instance_open(struct instance *instance, struct tape *tape,
+                   const struct instance_options *options)
+{
+    *instance = (struct instance){.tape = tape, .result_after_us = RESULT_US};
+    instance->answerer.server_id = instance->status.server_id = options->server_id;
+    instance->draw.state = (uint64_t) options->server_id;
+    snprintf(instance->status.version, sizeof instance->status.version, "0.1.0");
+    for (int i = 0; i < INSTANCE_CHANNELS; i++)
+        bus_channel(instance->channel[i], options->prefix, names[i]);
+    instance->answerer.cache = cache_create(options->bodies, options->first_key);
+    if (instance->answerer.cache && answer_prepare(&instance->answerer))
+        return true;
+    instance_close(instance);
+    return false;
+}
+
+void instance_close(struct instance *instance)
+{
+    answer_release(&instance->answerer);
+    cache_destroy(instance->answerer.cache);
+}
+
+/* ---- What goes onto the tape ---- */
+
+static void put(struct instance *instance, enum instance_channel channel, int64_t utime,
+                const unsigned char *bytes, size_t size)
+{
+    tape_put(instance->tape, utime, instance->channel[channel], bytes, size);
+}
+
+static void put_pair_query(struct instance *instance, struct pair_query *query)
+{
+    unsigned char bytes[WIRE_BYTES_MAX];
+    query->utime = tape_utime(instance->tape);
+    put(instance, INSTANCE_PAIR_QUERY, query->utime, bytes, wire_write_pair_query(query, bytes));
+    tape_pass(instance->tape, QUERY_US);
+}
+
+static void put_scene_query(struct instance *instance, struct scene_query *query)
+{
+    unsigned char bytes[QUERY_BYTES_MAX];
+    query->utime = tape_utime(instance->tape);
+    put(instance, INSTANCE_SCENE_QUERY, query->utime, bytes, wire_write_scene_query(query, bytes));
+    tape_pass(instance->tape, QUERY_US);
+}
+
+/* What every result adds to the heartbeat. */
+static void count(struct instance *instance, int32_t status, int64_t pairs)
+{
+    instance->status.received++;
+    instance->status.answered++;
+    instance->status.results[status]++;
+    instance->status.pairs += pairs;
+}
+
+static void put_pair_result(struct instance *instance, const struct pair_result *result)
+{
+    unsigned char bytes[WIRE_RESULT_BYTES_MAX];
+    count(instance, result->status, result->status == FMB_OK);
+    put(instance, INSTANCE_PAIR_RESULT, result->utime + instance->result_after_us, bytes,
+        wire_write_pair_result(result, bytes));
+}
+
+static void put_scene_result(struct instance *instance, const struct scene_query *query,
+                             struct scene_result *result)
+{
+    unsigned char bytes[QUERY_BYTES_MAX];
+    result->lost = senders_gaps(&instance->senders, result->client_id);
+    instance->status.scenes++;
+    count(instance, result->status,
+          result->status == FMB_OK ? result->end_pair - query->first_pair : 0);
+    put(instance, INSTANCE_SCENE_RESULT, result->utime + instance->result_after_us, bytes,
+        wire_write_scene_result(result, bytes));
+}
+
+/* ---- Asking ---- */
+
+static void note(struct instance *instance, int64_t client_id, int64_t sequence_number)
+{
+    if (query_id_ok(client_id) && query_id_ok(sequence_number))
+        senders_note(&instance->senders, client_id, sequence_number);
+}
+
+void instance_ask_pair(struct instance *instance, struct pair_query *query,
+                       struct pair_result *result)
+{
+    put_pair_query(instance, query);
+    note(instance, query->client_id, query->sequence_number);
+    answer_pair(&instance->answerer, query, result);
+    result->compute_ns = draw_int(&instance->draw, 300, 5000);
+    put_pair_result(instance, result);
+}
+
+void instance_ask_scene(struct instance *instance, struct scene_query *query,
+                        struct scene_result *result)
+{
+    put_scene_query(instance, query);
+    note(instance, query->client_id, query->sequence_number);
+    answer_scene(&instance->answerer, query, result);
+    result->compute_ns = 4000 + 40 * result->verdict_count + draw_int(&instance->draw, 0, 3000);
+    put_scene_result(instance, query, result);
+}
+
+void instance_turn_away_pair(struct instance *instance, struct pair_query *query)
+{
+    struct pair_result result;
+    put_pair_query(instance, query);
+    note(instance, query->client_id, query->sequence_number);
+    answer_pair_refused(&instance->answerer, query, FMB_BUSY, &result);
+    put_pair_result(instance, &result);
+}
+
+void instance_turn_away_scene(struct instance *instance, struct scene_query *query)
+{
+    static struct scene_result result;
+    put_scene_query(instance, query);
+    note(instance, query->client_id, query->sequence_number);
+    const struct query_header header = {query->utime, query->client_id, query->sequence_number};
+    answer_scene_refused(&instance->answerer, &header, FMB_BUSY, &result);
+    put_scene_result(instance, query, &result);
+}
+
+void instance_miss_pair(struct instance *instance, struct pair_query *query)
+{
+    put_pair_query(instance, query);
+}
+
+void instance_beat(struct instance *instance)
+{
+    unsigned char bytes[WIRE_BYTES_MAX];
+    struct wire_status *status = &instance->status;
+    const struct cache_counts cache = cache_counts(instance->answerer.cache);
+    status->utime = tape_utime(instance->tape);
+    status->uptime_us = status->utime - TAPE_BEGIN_UTIME;
+    status->sequence_gaps = instance->senders.gaps;
+    status->repeated = instance->senders.repeated;
+    status->bodies = cache.bodies;
+    status->capacity = cache.capacity;
+    status->hits = cache.hits;
+    status->misses = cache.misses;
+    status->replacements = cache.replacements;
+    status->evictions = cache.evictions;
+    put(instance, INSTANCE_STATUS, status->utime, bytes, wire_write_status(status, bytes));
+}

@@ -1,0 +1,21 @@
+/* The kinds of logs, each in a file of its own: what is asked in it, from the beginning of a tape
+ * to its end. */
+#ifndef KINDS_H
+#define KINDS_H
+
+#include "tape.h"
+
+#include <stdbool.h>
+
+/* False: out of memory. */
+typedef bool kind_function(struct tape *tape);
+
+kind_function kind_arm;
+
+struct kind {
+    const char *name;
+    const char *summary; /* one line, for people */
+    kind_function *run;
+};
+
+#endif
