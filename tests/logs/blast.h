@@ -10,6 +10,8 @@
 
 struct blast {
     int64_t count; /* queries */
+    /* Of all that is drawn, the ids of service and client and the first key among it: so logs of
+     * several seeds, one behind the other, are a log too. */
     uint64_t seed;
     int dim;    /* 2 or 3; 0: both */
     int moving; /* 0, or 1; -1: both */
