@@ -91,10 +91,12 @@ static struct meeting meet_somehow(struct draw *draw, const struct cell *cell)
     return meeting;
 }
 
-/* 1e-3 to 1e-16. */
+/* 1e-3 to 1e-16. Not by pow(), whose last bit is the machine's. */
 static double draw_little(struct draw *draw)
 {
-    return pow(10, -draw_int(draw, 3, 16));
+    static const double little[] = {1e-3,  1e-4,  1e-5,  1e-6,  1e-7,  1e-8,  1e-9,
+                                    1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16};
+    return little[draw_int(draw, 0, COUNT(little) - 1)];
 }
 
 /* Leaves it touching, or moves it apart or together by ulps or a little of the size. */

@@ -103,7 +103,8 @@ void points_and_segments(struct draw *draw, const struct family *family, const s
                          struct question *out)
 {
     (void) family;
-    draw_flat(draw, cell, draw_int(draw, 0, 1), draw_int(draw, 0, 1), out);
+    const int rank_b = draw_int(draw, 0, 1), rank_a = draw_int(draw, 0, 1);
+    draw_flat(draw, cell, rank_a, rank_b, out);
 }
 
 /* One axis is the same for all points of both, at one time or always. */

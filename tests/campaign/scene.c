@@ -178,7 +178,8 @@ void decimal_grid(struct draw *draw, const struct family *family, const struct c
 /* A plate around 0: thin along one axis, up to 10 along the others, a little askew. */
 static void draw_plate(struct draw *draw, int thin, struct solid *plate)
 {
-    const double thickness = pow(10, -draw_int(draw, 3, 6));
+    static const double thicknesses[] = {1e-3, 1e-4, 1e-5, 1e-6};
+    const double thickness = thicknesses[draw_int(draw, 0, 3)];
     for (int i = 0; i < plate->dim; i++)
         for (int axis = 0; axis < plate->dim; axis++)
             plate->component[i][axis] =

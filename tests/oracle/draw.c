@@ -59,7 +59,9 @@ double draw_uniform(struct draw *draw, double least, double most)
 
 double draw_log(struct draw *draw, int least, int most)
 {
-    double size = ldexp(draw_uniform(draw, 1, 2), draw_int(draw, least, most));
+    const int exponent =
+        draw_int(draw, least, most); /* first: compilers order arguments as they like */
+    const double size = ldexp(draw_uniform(draw, 1, 2), exponent);
     return draw_coin(draw) ? size : -size;
 }
 
