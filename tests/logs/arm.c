@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { STEPS = 40, STEP_US = 10000, LINKS = 3, STILL = 7, PARTS = STILL + LINKS };
+enum { STEPS = 28, STEP_US = 10000, LINKS = 3, STILL = 7, PARTS = STILL + LINKS };
 
 static const double step_s = 0.01;
 
@@ -60,7 +60,7 @@ static const double length[LINKS] = {0.5, 0.4375, 0.1875}, width[LINKS] = {0.11,
 /* It comes from the side of the puck. */
 static struct pose first_pose(void)
 {
-    return (struct pose){turn_by(-0.375), {turn_by(0.46875), turn_by(-0.25), turn_by(-0.75)}};
+    return (struct pose){turn_by(-0.25), {turn_by(0.40625), turn_by(-0.28125), turn_by(-0.75)}};
 }
 
 /* It swings round, and down to the parts. */
@@ -68,7 +68,7 @@ static struct pose next_pose(const struct pose *pose)
 {
     struct pose next = {.waist = turn_and(pose->waist, turn_by(0x1p-6))};
     for (int i = 0; i < LINKS; i++)
-        next.pitch[i] = turn_and(pose->pitch[i], turn_by(-0x1p-10));
+        next.pitch[i] = turn_and(pose->pitch[i], turn_by(-0x1p-9));
     return next;
 }
 

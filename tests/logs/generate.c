@@ -20,6 +20,11 @@ enum { MADE = 0, FAILED = 1, USAGE = 2 };
 
 static const struct kind kinds[] = {
     {"arm", "a robot arm that swings past a table with parts on it", kind_arm},
+    {"stack", "towers that fall and come to rest, all pairs of them", kind_stack},
+    {"crowd", "a crowd in the plane, asked across, listed and all at once", kind_crowd},
+    {"hard-2d", "the campaigns' hard pairs in 2D", kind_hard_plane},
+    {"hard-3d", "the campaigns' hard pairs in 3D, at rest", kind_hard_space},
+    {"hard-3d-moving", "the campaigns' hard pairs in 3D, moving", kind_hard_moving},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -106,7 +111,7 @@ static bool take(int option, char **argv, struct options *out)
 static int list(void)
 {
     for (int i = 0; i < KINDS; i++)
-        printf("%-8s  %s\n", kinds[i].name, kinds[i].summary);
+        printf("%-14s  %s\n", kinds[i].name, kinds[i].summary);
     return MADE;
 }
 

@@ -10,7 +10,7 @@
 /* False: out of memory. */
 typedef bool kind_function(struct tape *tape);
 
-kind_function kind_arm;
+kind_function kind_arm, kind_stack, kind_crowd, kind_hard_plane, kind_hard_space, kind_hard_moving;
 
 struct kind {
     const char *name;

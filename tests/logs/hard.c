@@ -1,0 +1,147 @@
+/* Pairs that are hard for a reason: of each family of the campaigns one for each cell that it has.
+ * At rest those of a family are listed in one scene, with boxes; what moves is asked pair by pair,
+ * since windows differ, and some once more, by key and the other way round. Methods, certificates
+ * and boxes are drawn. */
+#include "kinds.h"
+
+#include "asker.h"
+#include "family.h"
+#include "parts.h"
+
+static const uint64_t seed = 20240101;
+
+struct hard {
+    struct asker asker;
+    struct draw draw; /* how to ask */
+    int64_t body_id;  /* the last one given */
+    struct scene_query scene;
+    struct scene_result scene_result;
+};
+
+static struct question draw_question(const struct family *family, const struct cell *cell)
+{
+    struct draw draw = cell_draw(seed, family->name, cell, 0);
+    struct question question;
+    family_draw(family, cell, &draw, &question);
+    return question;
+}
+
+/* The service's own choice more often than any other one: see pair_query_t.lcm. */
+static int32_t draw_method(struct draw *draw)
+{
+    static const int32_t methods[] = {0, 0, 4, 1, 2, 3};
+    return methods[draw_int(draw, 0, 5)];
+}
+
+/* ---- One by one ---- */
+
+static void ask_again(struct hard *hard, const struct pair_query *query)
+{
+    struct pair_query swapped = *query;
+    struct pair_result result;
+    swapped.frame[0] = query->frame[1];
+    swapped.frame[1] = query->frame[0];
+    asker_pair(&hard->asker, &swapped, &result);
+}
+
+static void ask_pair(struct hard *hard, const struct question *question)
+{
+    struct draw *draw = &hard->draw;
+    struct pair_query query = {.duration = question->duration, .method = draw_method(draw)};
+    struct pair_result result;
+    const bool again = draw_int(draw, 0, 7) == 0;
+    if (draw_coin(draw))
+        query.want |= QUERY_WANT_BOX;
+    if (draw_int(draw, 0, 3) == 0)
+        query.want |= QUERY_WANT_CERTIFICATE;
+    part_frame(&question->a, again ? ++hard->body_id : 0, &query.frame[0]);
+    part_frame(&question->b, again ? ++hard->body_id : 0, &query.frame[1]);
+    asker_pair(&hard->asker, &query, &result);
+    if (again)
+        ask_again(hard, &query);
+}
+
+/* ---- Scenes ---- */
+
+static void append_pair(struct scene_query *query, const struct question *question)
+{
+    const unsigned first = (unsigned) query->frame_count;
+    unsigned *pair = query->pair[query->index_count / 2];
+    part_frame(&question->a, 0, &query->frame[first]);
+    part_frame(&question->b, 0, &query->frame[first + 1]);
+    pair[0] = first;
+    pair[1] = first + 1;
+    query->frame_count += 2;
+    query->index_count += 2;
+}
+
+static void ask_scene(struct hard *hard)
+{
+    if (hard->scene.frame_count > 0)
+        asker_scene(&hard->asker, &hard->scene, &hard->scene_result);
+}
+
+static void begin_scene(struct hard *hard)
+{
+    struct scene_query *query = &hard->scene;
+    query->duration = 1;
+    query->which = QUERY_PAIRS_LISTED;
+    query->method = draw_method(&hard->draw);
+    query->want = QUERY_WANT_BOX;
+    query->frame_count = query->index_count = 0;
+}
+
+/* ---- All ---- */
+
+static void ask_family(struct hard *hard, const struct family *family, int dim, bool moving)
+{
+    struct cell cells[CELL_WITH_FACES];
+    const int count = family_cells(family, cells);
+    begin_scene(hard);
+    for (int i = 0; i < count; i++) {
+        if (cells[i].dim != dim || cells[i].moving != moving)
+            continue;
+        const struct question question = draw_question(family, &cells[i]);
+        if (moving)
+            ask_pair(hard, &question);
+        else
+            append_pair(&hard->scene, &question);
+    }
+    ask_scene(hard);
+}
+
+static bool ask_families(struct tape *tape, int dim, int motions)
+{
+    const struct instance_options options = {
+        .prefix = "", .server_id = 2718281828, .first_key = 1 + 100000 * dim, .bodies = 1024};
+    static struct hard hard;
+    struct instance instance;
+    if (!instance_open(&instance, tape, &options))
+        return false;
+    hard = (struct hard){
+        .asker = {.instance = &instance, .client_id = QUERY_ID_MAX, .next_number = 1000},
+        .draw = {seed}};
+    for (int moving = 0; moving < 2; moving++)
+        for (size_t i = 0; family_at(i) && motions >> moving & 1; i++)
+            ask_family(&hard, family_at(i), dim, moving);
+    instance_beat(&instance);
+    instance_close(&instance);
+    return true;
+}
+
+enum { AT_REST = 1, MOVING = 2 };
+
+bool kind_hard_plane(struct tape *tape)
+{
+    return ask_families(tape, 2, AT_REST | MOVING);
+}
+
+bool kind_hard_space(struct tape *tape)
+{
+    return ask_families(tape, 3, AT_REST);
+}
+
+bool kind_hard_moving(struct tape *tape)
+{
+    return ask_families(tape, 3, MOVING);
+}
