@@ -4,8 +4,8 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Others: all, examples, tests (builds them), test-fast, validate, accuracy, soak, fuzz, fuzz-afl,
-# fuzz-merge, bench, bench-bus, report, headers, format, format-check, install, clean; deps-fuzz,
-# deps-bench and deps-report install what is only good for these.
+# fuzz-merge, bench, bench-bus, report, logs, goldens, headers, format, format-check, install, clean;
+# deps-fuzz, deps-bench and deps-report install what is only good for these.
 # MODE=release|debug|asan|fuzz. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
@@ -68,6 +68,8 @@ run_alone_sets := $(if $(x86),sse2 avx2,plain)
 run_verdicts := $(run_sets:%=$(O)/run/%.o)
 run_times := $(run_sets:%=$(O)/run/times_%.o)
 run_boxes := $(run_sets:%=$(O)/run/boxes_%.o)
+# What other machines take for pairs alone, for the programs of tests that take nothing else.
+alone_plain := $(addprefix $(O)/run/,alone_plain.o times_alone_plain.o boxes_alone_plain.o)
 alone_verdicts := $(run_alone_sets:%=$(O)/run/alone_%.o)
 alone_times := $(run_alone_sets:%=$(O)/run/times_alone_%.o)
 alone_boxes := $(run_alone_sets:%=$(O)/run/boxes_alone_%.o)
@@ -90,10 +92,12 @@ client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard 
 asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
+capped_sets := plain $(if $(x86),sse2 avx2)
+capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/soak-asker $(B)/soak-memory \
-	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate
+	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -115,13 +119,15 @@ $(B)/libfmb.a: $(lib_objects)
 $(B)/libfmb-client.a: $(asking_objects) $(wire_objects) $(message_objects) $(names)
 	$(call archive,fmb_client_*)
 
-$(B)/fmbd: $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
-		$(message_objects) $(B)/libfmb.a
+fmbd_objects := $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
+	$(message_objects)
+$(B)/fmbd: $(fmbd_objects) $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
 
 # It asks the bus through the library alone; logs it reads, answers and plays itself.
-$(B)/fmb: $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
-		$(O)/service/senders.o $(message_objects) $(B)/libfmb-client.a $(B)/libfmb.a
+fmb_objects := $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
+	$(O)/service/senders.o $(message_objects)
+$(B)/fmb: $(fmb_objects) $(B)/libfmb-client.a $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 $(B)/arm: $(O)/clients/demo/arm.o
@@ -145,11 +151,11 @@ $(run_times): $(O)/run/times_%.o: service/fmb/run.c $(O)/settings
 	$(compile_run) $(run_flags_$*) -DRUN_TIMES
 $(run_boxes): $(O)/run/boxes_%.o: service/fmb/run.c $(O)/settings
 	$(compile_run) $(run_flags_$*) -DRUN_BOXES
-$(alone_verdicts): $(O)/run/alone_%.o: service/fmb/alone.c $(O)/settings
+$(sort $(alone_verdicts) $(O)/run/alone_plain.o): $(O)/run/alone_%.o: service/fmb/alone.c $(O)/settings
 	$(compile_run) $(run_alone_$*) -DRUN_ALONE -ffp-contract=fast
-$(alone_times): $(O)/run/times_alone_%.o: service/fmb/alone.c $(O)/settings
+$(sort $(alone_times) $(O)/run/times_alone_plain.o): $(O)/run/times_alone_%.o: service/fmb/alone.c $(O)/settings
 	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_TIMES
-$(alone_boxes): $(O)/run/boxes_alone_%.o: service/fmb/alone.c $(O)/settings
+$(sort $(alone_boxes) $(O)/run/boxes_alone_plain.o): $(O)/run/boxes_alone_%.o: service/fmb/alone.c $(O)/settings
 	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_BOXES
 
 $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
@@ -459,13 +465,50 @@ $(O)/tests/soak/%.o: tests/soak/%.c $(O)/settings | $(message_headers)
 
 # ---- Logs: what a service was asked, and answered, for fmb replay ----------------------------
 
-logs_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/logs/*.c)) \
-	$(filter-out %/referee.o,$(oracle_objects)) $(family_objects:%/pair_draw.o=)
+logs_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/logs/*.c)) $(addprefix \
+	$(O)/tests/campaign/,cell.o contact.o family.o meet.o meeting.o odd.o scene.o solids.o) \
+	$(addprefix $(O)/tests/oracle/,draw.o question.o) $(answer_objects) $(wire_objects) \
+	$(O)/service/senders.o $(message_objects)
 
-$(B)/logs/generate: $(logs_objects) $(answer_objects) $(wire_objects) $(O)/service/senders.o \
-		$(message_objects) $(B)/libfmb.a
+$(B)/logs/generate: $(logs_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+
+# The programs with a library that takes no more of the machine than its name says: nothing else of
+# them differs. On a machine that has less, they take less.
+capped_most_plain := 1
+capped_most_sse2 := 2
+capped_most_avx2 := 3
+
+$(capped_sets:%=$(O)/capped/%.o): $(O)/capped/%.o: service/fmb/instructions.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -DINSTRUCTIONS_MOST=$(capped_most_$*)
+
+$(B)/capped/libfmb-plain.a: $(alone_plain)
+$(capped_sets:%=$(B)/capped/libfmb-%.a): $(B)/capped/libfmb-%.a: $(O)/capped/%.o \
+		$(filter-out %/instructions.o $(alone_plain),$(lib_objects))
+	$(call archive,fmb_*)
+
+$(capped_sets:%=$(B)/capped/fmbd-%): $(B)/capped/fmbd-%: $(fmbd_objects) $(B)/capped/libfmb-%.a
+	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+
+$(capped_sets:%=$(B)/capped/fmb-%): $(B)/capped/fmb-%: $(fmb_objects) $(B)/libfmb-client.a \
+		$(B)/capped/libfmb-%.a
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+
+$(capped_sets:%=$(B)/capped/generate-%): $(B)/capped/generate-%: $(logs_objects) \
+		$(B)/capped/libfmb-%.a
+	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+
+# What the set is, made anew: the logs, and the results that they are compared with. Neither changes
+# by itself: tests/cli/logs.bats sees to it that this changes nothing.
+.PHONY: logs goldens
+logs: $(B)/logs/generate
+	for kind in $$($< --list | cut -d ' ' -f 1); do $< $$kind tests/logs/$$kind.log || exit; done
+
+goldens: $(B)/fmb
+	for log in tests/logs/*.log; do \
+		$< replay $$log --write-golden $${log%.log}.golden > /dev/null || exit; done
 
 $(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings
 	@mkdir -p $(@D)
