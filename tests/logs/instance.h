@@ -1,6 +1,6 @@
 /* An instance of the service, in process: what it is asked and what it answers goes onto a tape, as
- * a logger on its bus would have seen both. The answers are those of answer_pair() and
- * answer_scene(); only the time that they took is made up. */
+ * a logger on its bus would have seen both. It reads queries from the bytes that are on the tape,
+ * and answers with answer_pair() and answer_scene(); only the time that this took is made up. */
 #ifndef INSTANCE_H
 #define INSTANCE_H
 
@@ -30,6 +30,7 @@ struct instance {
     struct senders senders;
     struct wire_status status; /* what it counts for its heartbeat */
     struct draw draw;          /* for the times that answers are said to have taken */
+    struct scene_query *heard; /* owned: the scene that is being answered */
     char channel[INSTANCE_CHANNELS][BUS_CHANNEL_MAX];
     /* On the tape a result stands so long after its query; or before it, as where two threads of a
      * logger took them in turns. */
@@ -58,6 +59,14 @@ void instance_ask_scene(struct instance *instance, struct scene_query *query,
 /* The same for a service that has no room for it: nobody looks at the query. */
 void instance_turn_away_pair(struct instance *instance, struct pair_query *query);
 void instance_turn_away_scene(struct instance *instance, struct scene_query *query);
+
+/* Bytes that come on the channel of queries of scenes, of pairs; they need not be any. The service
+ * answers what can be read of them, and refuses what is too long. On output: false, there is no
+ * result. */
+bool instance_hear_pair(struct instance *instance, const unsigned char *bytes, size_t size,
+                        struct pair_result *result);
+bool instance_hear_scene(struct instance *instance, const unsigned char *bytes, size_t size,
+                         struct scene_result *result);
 
 /* A query that nobody hears: it stands on the tape, and has no result. */
 void instance_miss_pair(struct instance *instance, struct pair_query *query);
