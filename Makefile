@@ -97,7 +97,8 @@ capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/soak-asker $(B)/soak-memory \
-	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(capped_programs)
+	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(B)/logs/tell \
+	$(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -465,7 +466,7 @@ $(O)/tests/soak/%.o: tests/soak/%.c $(O)/settings | $(message_headers)
 
 # ---- Logs: what a service was asked, and answered, for fmb replay ----------------------------
 
-logs_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/logs/*.c)) $(addprefix \
+logs_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/tell.c,$(wildcard tests/logs/*.c))) $(addprefix \
 	$(O)/tests/campaign/,cell.o contact.o family.o meet.o meeting.o odd.o scene.o solids.o) \
 	$(addprefix $(O)/tests/oracle/,draw.o question.o) $(answer_objects) $(wire_objects) \
 	$(O)/service/senders.o $(message_objects)
@@ -473,6 +474,11 @@ logs_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/logs/*.c)) $(addprefix 
 $(B)/logs/generate: $(logs_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+
+# Shares nothing with what is tested but the message types.
+$(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm
 
 # The programs with a library that takes no more of the machine than its name says: nothing else of
 # them differs. On a machine that has less, they take less.
@@ -510,9 +516,9 @@ goldens: $(B)/fmb
 	for log in tests/logs/*.log; do \
 		$< replay $$log --write-golden $${log%.log}.golden > /dev/null || exit; done
 
-$(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings
+$(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign
+	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign -I$(GEN)
 
 # ---- Benchmark -------------------------------------------------------------------------------
 
@@ -594,12 +600,13 @@ deps-report:
 sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
 	clients/replay/*.h tests/oracle/*.h \
-	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h)
+	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h \
+	tests/logs/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/% tests/bus/%,$<),\
+	$(CC) $(flags) $(if $(filter tests/campaign/% tests/bench/% tests/bus/% tests/logs/%,$<),\
 		-Itests/oracle -Itests/campaign -Itests/bench) \
 		$(clients_see) -I$(GEN) -fsyntax-only -x c $<
 	@touch $@

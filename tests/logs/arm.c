@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { STEPS = 28, STEP_US = 10000, LINKS = 3, STILL = 7, PARTS = STILL + LINKS };
+enum { STEPS = 24, STEP_US = 10000, LINKS = 3, STILL = 7, PARTS = STILL + LINKS };
 
 static const double step_s = 0.01;
 

@@ -8,7 +8,7 @@
 _Static_assert((int) BLAST_BODIES <= (int) ASKER_BODIES_MAX, "one asker knows them all");
 
 /* Where they are, so that some half of their pairs meet. */
-static const double component_most = 1, origin_most = 1.25, velocity_most = 1;
+static const double component_most = 1, origin_most = 0.5, velocity_most = 1;
 
 struct blasting {
     const struct blast *blast;

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-enum { STEPS = 4, STEP_US = 10000, WALKERS = 100, STANDING = 40, BODIES = WALKERS + STANDING };
+enum { STEPS = 2, STEP_US = 10000, WALKERS = 100, STANDING = 40, BODIES = WALKERS + STANDING };
 
 static const double step_s = 0.01, field = 2, speed = 60; /* metres, and per second: in a hurry */
 

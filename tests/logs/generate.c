@@ -2,8 +2,9 @@
  *
  *   generate KIND FILE              a log of the kind; the same bytes on every machine
  *   generate --list                 the kinds, one a line
- *   generate --blast pairs N FILE   N pairs asked, with their results
- *   generate --blast scenes N FILE  N scenes of some 14,800 listed pairs each
+ *   generate --instructions         the instruction sets that this program knows and its machine
+ * has generate --blast pairs N FILE   N pairs asked, with their results generate --blast scenes N
+ * FILE  N scenes of some 14,800 listed pairs each
  *
  * Exit codes: 0 made, 1 not, 2 wrong options. */
 #include "blast.h"
@@ -25,13 +26,18 @@ static const struct kind kinds[] = {
     {"hard-2d", "the campaigns' hard pairs in 2D", kind_hard_plane},
     {"hard-3d", "the campaigns' hard pairs in 3D, at rest", kind_hard_space},
     {"hard-3d-moving", "the campaigns' hard pairs in 3D, moving", kind_hard_moving},
+    {"refused", "queries refused for every reason, and numbers at the ends of the doubles",
+     kind_refused},
+    {"clients", "several clients, and a service that is busy, forgets and is started anew",
+     kind_clients},
+    {"foreign", "a bus with others on it, and a logger that began late", kind_foreign},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static const char usage[] =
     "usage: generate KIND FILE\n"
     "       generate --blast pairs|scenes N [OPTIONS] FILE\n"
-    "       generate --list | --help\n"
+    "       generate --list | --instructions | --help\n"
     "\n"
     "Writes an event log of LCM: queries of a kind, with the results that the\n"
     "service gives. The same bytes on every machine.\n"
@@ -45,14 +51,29 @@ static const char usage[] =
     "  --by-key        pairs by key, as soon as there is one\n"
     "  --box           pairs with boxes\n"
     "  --certificate   pairs with certificates\n"
-    "  --list          prints the kinds\n";
+    "  --list          prints the kinds\n"
+    "  --instructions  prints the instruction sets that this program knows and\n"
+    "                  this machine has, the best one last\n";
 
 struct options {
     const char *what; /* of a blast; NULL: none */
     struct blast blast;
 };
 
-enum { BLAST = 1, SEED, DIM, STATIC, MOVING, WHOLE, BY_KEY, BOX, CERTIFICATE, LIST, HELP };
+enum {
+    BLAST = 1,
+    SEED,
+    DIM,
+    STATIC,
+    MOVING,
+    WHOLE,
+    BY_KEY,
+    BOX,
+    CERTIFICATE,
+    LIST,
+    INSTRUCTIONS,
+    HELP
+};
 
 static const struct option long_options[] = {{"blast", required_argument, NULL, BLAST},
                                              {"seed", required_argument, NULL, SEED},
@@ -64,6 +85,7 @@ static const struct option long_options[] = {{"blast", required_argument, NULL, 
                                              {"box", no_argument, NULL, BOX},
                                              {"certificate", no_argument, NULL, CERTIFICATE},
                                              {"list", no_argument, NULL, LIST},
+                                             {"instructions", no_argument, NULL, INSTRUCTIONS},
                                              {"help", no_argument, NULL, HELP},
                                              {0}};
 
@@ -112,6 +134,14 @@ static int list(void)
 {
     for (int i = 0; i < KINDS; i++)
         printf("%-14s  %s\n", kinds[i].name, kinds[i].summary);
+    return MADE;
+}
+
+static int tell_instructions(void)
+{
+    for (int set = FMB_PLAIN; set <= FMB_AVX512; set++)
+        if (fmb_instructions_supported(set))
+            printf("%s\n", fmb_instructions_name(set));
     return MADE;
 }
 
@@ -177,6 +207,8 @@ int main(int argc, char **argv)
         }
         if (option == LIST)
             return list();
+        if (option == INSTRUCTIONS)
+            return tell_instructions();
         if (!take(option, argv, &options))
             return USAGE;
     }

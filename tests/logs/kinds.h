@@ -11,6 +11,7 @@
 typedef bool kind_function(struct tape *tape);
 
 kind_function kind_arm, kind_stack, kind_crowd, kind_hard_plane, kind_hard_space, kind_hard_moving;
+kind_function kind_refused, kind_clients, kind_foreign;
 
 struct kind {
     const char *name;

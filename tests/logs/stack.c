@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = 28, STEP_US = 10000, TOWERS = 3, LEVELS = 5, BODIES = 1 + TOWERS * LEVELS };
+enum { STEPS = 24, STEP_US = 10000, TOWERS = 3, LEVELS = 5, BODIES = 1 + TOWERS * LEVELS };
 
 /* Bodies by number; their ids are one more. */
 enum tower { SQUARE, DECIMAL, LEANING };

@@ -20,6 +20,7 @@ struct tape {
     int64_t utime;
     struct event *event; /* [count], that are not yet written */
     size_t count, room;
+    size_t put; /* events so far, dropped ones too */
     bool failed;
 };
 
@@ -84,13 +85,13 @@ static bool make_room(struct tape *tape)
 static bool keep_event(struct tape *tape, int64_t utime, const char *channel,
                        const unsigned char *bytes, size_t size)
 {
-    unsigned char *copy = make_room(tape) ? malloc(size) : NULL;
+    unsigned char *copy = make_room(tape) ? malloc(size + 1) : NULL; /* + 1: of none too */
     if (!copy || strlen(channel) >= CHANNEL_MAX) {
         free(copy);
         return false;
     }
     struct event *event = &tape->event[tape->count];
-    *event = (struct event){.utime = utime, .place = tape->count, .size = size, .bytes = copy};
+    *event = (struct event){.utime = utime, .place = tape->put++, .size = size, .bytes = copy};
     strcpy(event->channel, channel);
     memcpy(copy, bytes, size);
     tape->count++;
@@ -104,6 +105,18 @@ void tape_put(struct tape *tape, int64_t utime, const char *channel, const unsig
         write_event(tape, utime, channel, bytes, size);
     else if (!keep_event(tape, utime, channel, bytes, size))
         tape->failed = true;
+}
+
+void tape_begin_late(struct tape *tape)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < tape->count; i++) {
+        if (tape->event[i].utime < tape->utime)
+            free(tape->event[i].bytes);
+        else
+            tape->event[kept++] = tape->event[i];
+    }
+    tape->count = kept;
 }
 
 /* No two are equal. */

@@ -31,6 +31,9 @@ int64_t tape_utime(const struct tape *tape);
 void tape_pass(struct tape *tape, int64_t us);
 void tape_reach(struct tape *tape, int64_t us);
 
+/* The log begins only now: what was put of before is dropped. Of a tape IN_ORDER. */
+void tape_begin_late(struct tape *tape);
+
 /* Puts an event of this time, which need not be now. Copies what it is given. */
 void tape_put(struct tape *tape, int64_t utime, const char *channel, const unsigned char *bytes,
               size_t size);

@@ -1,0 +1,150 @@
+# The logs of the regression set: made here again to the byte, whatever compiler and instruction set,
+# they are good event logs of LCM, and hold what they are there for.
+
+load ../logs/set
+
+setup() {
+    GENERATE=$FMB_BUILD/logs/generate
+    TELL=$FMB_BUILD/logs/tell
+    cd "$BATS_TEST_DIRNAME/../.." || return
+}
+
+# makes_the_set GENERATE: what is committed.
+makes_the_set() {
+    for log in tests/logs/*.log; do
+        "$1" "$(name_of "$log")" "$BATS_TEST_TMPDIR/made.log"
+        cmp "$BATS_TEST_TMPDIR/made.log" "$log"
+    done
+}
+
+# All events of the whole set, as lines of JSON.
+tell_all() {
+    for log in tests/logs/*.log; do "$TELL" "$log"; done
+}
+
+# capped_at SET BEST...: the sets that a capped program knows, the last one first.
+capped_at() {
+    need_set "$1"
+    "$FMB_BUILD/capped/generate-$1" --instructions > "$BATS_TEST_TMPDIR/sets"
+    shift
+    [ "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/sets")" = "$* " ]
+}
+
+@test "each kind of log is here, and no others" {
+    "$GENERATE" --list | cut -d ' ' -f 1 | sort > "$BATS_TEST_TMPDIR/kinds"
+    for log in tests/logs/*.log; do name_of "$log"; done | sort | cmp - "$BATS_TEST_TMPDIR/kinds"
+}
+
+@test "the generator makes the logs that are here" {
+    makes_the_set "$GENERATE"
+}
+
+@test "with plain C alone it makes them too" {
+    capped_at plain plain
+    makes_the_set "$FMB_BUILD/capped/generate-plain"
+}
+
+@test "with SSE2 it makes them too" {
+    capped_at sse2 plain sse2
+    makes_the_set "$FMB_BUILD/capped/generate-sse2"
+}
+
+@test "with AVX2 it makes them too" {
+    capped_at avx2 plain sse2 avx2
+    makes_the_set "$FMB_BUILD/capped/generate-avx2"
+}
+
+@test "LCM's own reader reads each to its end, and each event that lcm-gen should decode" {
+    for log in tests/logs/*.log; do
+        "$TELL" "$log" > "$BATS_TEST_TMPDIR/events"
+        jq -es '[.[].event] == [range(length)] and ([.[].utime] | . == sort)' "$BATS_TEST_TMPDIR/events"
+        jq -es '[.[] | select(.channel | endswith("_RESULT"))] | length > 0 and all(has("status"))' \
+            "$BATS_TEST_TMPDIR/events"
+    done
+}
+
+@test "the set holds all verdicts, methods and statuses, of pairs and of scenes" {
+    tell_all > "$BATS_TEST_TMPDIR/events"
+    pairs='select(.channel == "FMB_PAIR_RESULT")'
+    scenes='select(.channel == "FMB_SCENE_RESULT")'
+    unique() { jq -cs "[.[] | $1] | unique" "$BATS_TEST_TMPDIR/events"; }
+    [ "$(unique "$pairs.verdicts[]")" = '[0,1,2,3]' ]
+    [ "$(unique "$scenes.verdicts[]")" = '[0,1,2,3]' ]
+    [ "$(unique "$pairs.method")" = '[0,1,2,3,4]' ]
+    [ "$(unique "$scenes.method")" = '[0,1,2,3,4]' ]
+    # All but NOT_SUPPORTED, which no service gives.
+    [ "$(unique 'select(.status).status')" = '[0,1,2,3,4,5,6,7,8,9,10,11,12,13,15]' ]
+    [ "$(unique "$pairs | select(.certificate > 0) | .verdicts[]")" = '[1,2,3]' ]
+    [ "$(unique "$pairs | select(.boxes > 0) | .boxes")" = '[4,6]' ]
+    [ "$(unique "$scenes | select(.times > 0 and .boxes > 0) | .status")" = '[0]' ]
+}
+
+@test "results come late, early and not at all; a service starts anew, and says what was lost" {
+    "$TELL" tests/logs/foreign.log > "$BATS_TEST_TMPDIR/events"
+    jq -es 'any(.[]; .channel == "LAB_FMB_PAIR_RESULT")' "$BATS_TEST_TMPDIR/events"
+    [ "$(jq -s '[.[].channel] | unique | length' "$BATS_TEST_TMPDIR/events")" -gt 12 ]
+    # The first of all is the result of a query from before.
+    [ "$(head -n 1 "$BATS_TEST_TMPDIR/events" | jq -r .channel)" = FMB_PAIR_RESULT ]
+
+    "$TELL" tests/logs/clients.log > "$BATS_TEST_TMPDIR/events"
+    jq -es '[.[] | .server // empty] | unique | length == 3' "$BATS_TEST_TMPDIR/events"
+    jq -es 'any(.[]; .lost > 0)' "$BATS_TEST_TMPDIR/events"
+    # One answered thrice, one turned away twice and then answered.
+    jq -es '[.[] | select(.channel == "FMB_PAIR_RESULT" and .server == 500)]
+        | group_by([.client, .number]) | map(map(.status)) | unique
+        | contains([[0,0,0]]) and contains([[2,2,0]])' "$BATS_TEST_TMPDIR/events"
+}
+
+@test "where there was no room, the answer goes on from there" {
+    "$TELL" tests/logs/crowd.log > "$BATS_TEST_TMPDIR/events"
+    # Full to the last contact, which takes 53 bytes.
+    jq -es 'any(.[]; .size > 64700 and .size <= 65000)' "$BATS_TEST_TMPDIR/events"
+    jq -es '[.[] | .end // empty] | (map(select(. == 9730)) | length == 1) and (max == 9730)
+        and any(. > 0 and . < 9730 and . > 4000)' "$BATS_TEST_TMPDIR/events"
+}
+
+@test "a blast has as many queries as wanted, all of them answered" {
+    "$GENERATE" --blast pairs 300 --box "$BATS_TEST_TMPDIR/blast.log"
+    "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
+    jq -es '[.[] | select(.status == 0)] | length == 300
+        and ([.[].verdicts[0]] | unique == [1, 3])
+        and ([.[].boxes] | unique == [0, 4, 6])' "$BATS_TEST_TMPDIR/events"
+    jq -es 'length == 600' "$BATS_TEST_TMPDIR/events"
+
+    "$GENERATE" --blast scenes 2 "$BATS_TEST_TMPDIR/blast.log"
+    "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
+    jq -es '[.[] | select(.status == 0) | .verdicts] | length == 2 and (.[1] | length == 14833)
+        and ([.[1][] | select(. == 3)] | length > 3000 and length < 12000)' "$BATS_TEST_TMPDIR/events"
+    jq -es 'all(.[]; .channel != "FMB_SCENE_QUERY" or .size > 64900)' "$BATS_TEST_TMPDIR/events"
+}
+
+@test "a blast is what was wanted: in one dimension, at rest, whole" {
+    "$GENERATE" --blast pairs 50 --dim 2 --static --whole "$BATS_TEST_TMPDIR/blast.log"
+    "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
+    # 48 bytes, and of each frame 32 and 2 + 4 numbers.
+    jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | unique == [208]' "$BATS_TEST_TMPDIR/events"
+    "$GENERATE" --blast pairs 50 --dim 3 --moving --whole --seed 2 "$BATS_TEST_TMPDIR/other.log"
+    "$TELL" "$BATS_TEST_TMPDIR/other.log" > "$BATS_TEST_TMPDIR/events"
+    jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | min > 270' "$BATS_TEST_TMPDIR/events"
+    # One behind the other they are a log, and nobody is in both.
+    cat "$BATS_TEST_TMPDIR/blast.log" "$BATS_TEST_TMPDIR/other.log" > "$BATS_TEST_TMPDIR/both.log"
+    "$TELL" "$BATS_TEST_TMPDIR/both.log" > "$BATS_TEST_TMPDIR/events"
+    jq -es '[.[] | .client // empty] | length == 100 and (unique | length == 2)' "$BATS_TEST_TMPDIR/events"
+}
+
+@test "what cannot be made is said" {
+    for options in '' arm 'nothing FILE' '--blast pears 1 FILE' '--blast pairs 0 FILE' \
+        '--blast pairs 1x FILE' '--dim 4 arm FILE' '--what arm FILE' '--blast pairs 1'; do
+        # shellcheck disable=SC2086
+        run "$GENERATE" $options
+        [ "$status" = 2 ]
+        [ -n "$output" ]
+    done
+    [ ! -e FILE ]
+    run "$GENERATE" arm /nowhere/arm.log
+    [ "$status" = 1 ]
+    [[ "$output" == *'No such file or directory'* ]]
+    run "$GENERATE" crowd /dev/full
+    [ "$status" = 1 ]
+    [[ "$output" == *'cannot be written in full'* ]]
+}

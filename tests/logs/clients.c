@@ -1,0 +1,216 @@
+/* Clients as a service has them: several at once, whose numbers and bodies run into each other; one
+ * that asks again; a service that is busy, forgets bodies, and is started anew. */
+#include "kinds.h"
+
+#include "asker.h"
+#include "parts.h"
+
+#include <string.h>
+
+enum { CLIENTS = 3, BODIES = 12, STEPS = 8, STEP_US = 10000 };
+
+struct clients {
+    struct tape *tape;
+    struct instance instance[3]; /* one life of the service after the other */
+    struct asker asker[CLIENTS];
+    struct scene_query scene;
+    struct scene_result scene_result;
+};
+
+/* ---- What they ask about ---- */
+
+/* Box or corner number n of a row, as a client's publisher has it: they differ from one to the next
+ * in size, and share their ids. */
+static struct solid body(int client, int n, int step)
+{
+    const double size[3] = {1 + 0.125 * client, 1, 1};
+    const double origin[3] = {n, 0.0625 * step, 0.1 * client};
+    struct solid solid = n % 3 ? part_box(3, origin, size) : part_corner(3, origin, size);
+    solid.moving = n % 2;
+    solid.velocity[1] = n % 4 == 1 ? 6.25 : -6.25;
+    return solid;
+}
+
+/* Publishers whose ids are their own. */
+static int64_t id_of(int client, int n)
+{
+    return 1 + 100 * client + n;
+}
+
+static struct pair_query pair_of(int client, int step, int a, int b)
+{
+    struct pair_query query = {.duration = 0.01, .want = step % 2 ? QUERY_WANT_BOX : 0};
+    const struct solid solid[2] = {body(client, a, step), body(client, b, step)};
+    part_frame(&solid[0], id_of(client, a), &query.frame[0]);
+    part_frame(&solid[1], id_of(client, b), &query.frame[1]);
+    return query;
+}
+
+static void set_scene(int client, int step, struct scene_query *query)
+{
+    query->duration = 0.01;
+    query->which = QUERY_PAIRS_ALL;
+    query->want = QUERY_WANT_TIMES;
+    query->frame_count = BODIES;
+    query->index_count = query->split = query->first_pair = 0;
+    for (int n = 0; n < BODIES; n++) {
+        const struct solid solid = body(client, n, step);
+        part_frame(&solid, id_of(client, n), &query->frame[n]);
+    }
+}
+
+static void ask_pair(struct clients *clients, int client, int step)
+{
+    struct pair_query query = pair_of(client, step, step % BODIES, (step + 1) % BODIES);
+    struct pair_result result;
+    asker_pair(&clients->asker[client], &query, &result);
+}
+
+static void ask_scene(struct clients *clients, int client, int step)
+{
+    set_scene(client, step, &clients->scene);
+    asker_scene(&clients->asker[client], &clients->scene, &clients->scene_result);
+}
+
+/* ---- What happens ---- */
+
+/* They count alike, and results come when the next ones have asked. */
+static void ask_in_turns(struct clients *clients, struct instance *instance)
+{
+    instance->result_after_us = 400;
+    for (int step = 0; step < STEPS; step++) {
+        tape_reach(clients->tape, (int64_t) step * STEP_US);
+        for (int client = 0; client < CLIENTS; client++)
+            ask_pair(clients, client, step);
+        ask_scene(clients, step % CLIENTS, step);
+    }
+    instance->result_after_us = 45;
+}
+
+/* The same number again, the same query: once by key, and once whole. */
+static void ask_again(struct clients *clients, struct instance *instance, bool whole)
+{
+    struct pair_query query = pair_of(0, 1, 1, 2);
+    struct pair_result result;
+    if (whole)
+        for (int n = 1; n <= 2; n++)
+            asker_forget(&clients->asker[0], id_of(0, n));
+    asker_pair(&clients->asker[0], &query, &result);
+    for (int i = 0; i < 2; i++)
+        instance_ask_pair(instance, &query, &result);
+}
+
+/* Until there is room: the same number again. */
+static void be_turned_away(struct clients *clients, struct instance *instance)
+{
+    struct pair_query query = pair_of(1, 3, 3, 4);
+    struct pair_result result;
+    query.client_id = clients->asker[1].client_id;
+    query.sequence_number = clients->asker[1].next_number++;
+    for (int i = 0; i < 2; i++)
+        instance_turn_away_pair(instance, &query);
+    instance_ask_pair(instance, &query, &result);
+
+    set_scene(2, 3, &clients->scene);
+    clients->scene.client_id = clients->asker[2].client_id;
+    clients->scene.sequence_number = clients->asker[2].next_number++;
+    instance_turn_away_scene(instance, &clients->scene);
+    instance_ask_scene(instance, &clients->scene, &clients->scene_result);
+}
+
+/* Never heard on the way; then some that the logger did not see either. */
+static void get_lost(struct clients *clients, struct instance *instance)
+{
+    struct pair_query query = pair_of(0, 2, 5, 6);
+    query.client_id = clients->asker[0].client_id;
+    query.sequence_number = clients->asker[0].next_number++;
+    instance_miss_pair(instance, &query);
+    clients->asker[0].next_number += 7;
+    ask_scene(clients, 0, 2);
+}
+
+/* Client 1 publishes bodies with the ids of client 0: the keys that it was told are dead. Each
+ * asks, and finds the other one's in its place. */
+static void replace_bodies(struct clients *clients)
+{
+    for (int step = 0; step < 3; step++)
+        for (int client = 0; client < 2; client++) {
+            struct pair_query query = pair_of(0, step, 7, 8);
+            struct pair_result result;
+            query.frame[0].components.number[0] = 2 + client;
+            asker_pair(&clients->asker[client], &query, &result);
+        }
+}
+
+static bool start(struct clients *clients, int life, size_t bodies)
+{
+    const struct instance_options options = {.prefix = "",
+                                             .server_id = 500 + life,
+                                             .first_key = 1000000 * (int64_t) (3 - life),
+                                             .bodies = bodies};
+    if (!instance_open(&clients->instance[life], clients->tape, &options))
+        return false;
+    for (int client = 0; client < CLIENTS; client++)
+        clients->asker[client].instance = &clients->instance[life];
+    return true;
+}
+
+static void stop(struct clients *clients, int life)
+{
+    instance_beat(&clients->instance[life]);
+    instance_close(&clients->instance[life]);
+}
+
+static void live_first(struct clients *clients)
+{
+    struct instance *instance = &clients->instance[0];
+    ask_in_turns(clients, instance);
+    ask_again(clients, instance, false);
+    ask_again(clients, instance, true);
+    be_turned_away(clients, instance);
+    get_lost(clients, instance);
+    replace_bodies(clients);
+}
+
+/* Keys of the first life are unknown; what is whole is told anew. */
+static void live_again(struct clients *clients)
+{
+    for (int client = 0; client < CLIENTS; client++) {
+        ask_scene(clients, client, 5);
+        ask_pair(clients, client, 5);
+    }
+}
+
+/* With room for so few bodies that clients drive out each other's. */
+static void live_in_want(struct clients *clients)
+{
+    for (int step = 0; step < 4; step++)
+        for (int client = 0; client < CLIENTS; client++)
+            ask_pair(clients, client, step);
+}
+
+static bool live(struct clients *clients)
+{
+    static const struct {
+        size_t bodies;
+        void (*happens)(struct clients *clients);
+    } lives[] = {{256, live_first}, {256, live_again}, {3, live_in_want}};
+    for (int life = 0; life < 3; life++) {
+        tape_reach(clients->tape, life * INT64_C(1000000));
+        if (!start(clients, life, lives[life].bodies))
+            return false;
+        lives[life].happens(clients);
+        stop(clients, life);
+    }
+    return true;
+}
+
+bool kind_clients(struct tape *tape)
+{
+    static struct clients clients;
+    memset(&clients, 0, sizeof clients);
+    clients.tape = tape;
+    for (int client = 0; client < CLIENTS; client++)
+        clients.asker[client] = (struct asker){.client_id = 8000 + client, .next_number = 5};
+    return live(&clients);
+}

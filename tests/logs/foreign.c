@@ -1,0 +1,173 @@
+/* A bus on which others are too, and a logger that began late: results stand hundreds of events
+ * behind their queries, or before them; keys were told before the log began; another instance of
+ * the service answers the same numbers on channels with a prefix; and what others publish on
+ * channels whose names look alike, or in a format that is none of the service's. */
+#include "kinds.h"
+
+#include "asker.h"
+#include "parts.h"
+
+#include <string.h>
+
+/* Keys are told within so many rounds, twice as many as there are bodies. */
+enum { ROUNDS = 44, ROUND_US = 10000, BODIES = 10, TELLING = 20, OTHERS = 7 };
+
+struct foreign {
+    struct tape *tape;
+    struct instance here, there;
+    struct asker asker, lab;
+    struct draw draw;
+};
+
+/* ---- What others publish ---- */
+
+static const char *const others[] = {
+    "POSE",
+    "CAMERA_FRONT",
+    "FMB_PAIR_QUERY_",
+    "FMB_PAIR_QUER",
+    "xFMB_PAIR_QUERY",
+    "FMB_PAIR_RESULTS",
+    "LAB_FMB_PAIR_QUER",
+    "fmb_pair_query",
+    "FMB",
+    "A_CHANNEL_OF_SIXTY_THREE_CHARACTERS_WHICH_IS_ALL_THAT_LCM_TAKES",
+};
+enum { OTHER_CHANNELS = sizeof others / sizeof *others };
+
+static void publish_other(struct foreign *foreign)
+{
+    unsigned char bytes[40];
+    const int size = draw_int(&foreign->draw, 0, (int) sizeof bytes);
+    for (int i = 0; i < size; i++)
+        bytes[i] = (unsigned char) draw_bits(&foreign->draw);
+    tape_put(foreign->tape, tape_utime(foreign->tape),
+             others[draw_int(&foreign->draw, 0, OTHER_CHANNELS - 1)], bytes, (size_t) size);
+    tape_pass(foreign->tape, 200);
+}
+
+/* A message of another type; and a query that is cut off, one with more behind it, and one that
+ * says that it has more numbers than there are bytes. None is one that can be read. */
+static void publish_malformed(struct foreign *foreign)
+{
+    struct pair_query query = {.client_id = 5, .sequence_number = 5, .duration = 1};
+    struct pair_result result;
+    unsigned char bytes[WIRE_BYTES_MAX] = {0};
+    const struct solid box = part_box(2, (double[]){0, 0, 0}, (double[]){1, 1, 0});
+    part_frame(&box, 0, &query.frame[0]);
+    part_frame(&box, 0, &query.frame[1]);
+    const size_t size = wire_write_pair_query(&query, bytes);
+    instance_hear_pair(&foreign->here, bytes, size - 1, &result);
+    instance_hear_pair(&foreign->here, bytes, size + 1, &result);
+    instance_hear_pair(&foreign->here, bytes, 0, &result);
+    bytes[7] ^= 1; /* of the fingerprint */
+    instance_hear_pair(&foreign->here, bytes, size, &result);
+    bytes[7] ^= 1;
+    memset(bytes + 68, 0x7f, 4); /* how many numbers the first origin has */
+    instance_hear_pair(&foreign->here, bytes, size, &result);
+}
+
+/* ---- What is asked ---- */
+
+/* Bodies in a row, every other one of which moves. */
+static struct pair_query pair_of(int round, int a, int b)
+{
+    struct pair_query query = {.duration = 0.01, .want = QUERY_WANT_BOX};
+    for (int f = 0; f < 2; f++) {
+        const int n = f ? b : a;
+        const double origin[3] = {0.6 * n, 0.1 * (round % 7), 0};
+        struct solid solid = part_box(2, origin, (double[]){0.5 + 0.0625 * (n % 4), 1, 0});
+        solid.moving = n % 2;
+        solid.velocity[0] = n % 4 == 1 ? 20 : -20;
+        part_frame(&solid, n + 1, &query.frame[f]);
+    }
+    return query;
+}
+
+/* The same numbers of the same client, here and there, about different pairs. */
+static void ask_both(struct foreign *foreign, int round)
+{
+    const int n = round % BODIES, next = (n + 1) % BODIES, other = (n + 3) % BODIES;
+    struct pair_query here = pair_of(round, n, next), there = pair_of(round, next, other);
+    struct pair_result result;
+    asker_pair(&foreign->asker, &here, &result);
+    asker_pair(&foreign->lab, &there, &result);
+}
+
+/* While keys are told, soon after; then in turns: so late that some hundreds of events are between;
+ * before the query; a little late. */
+static int64_t delay_of(int round)
+{
+    static const int64_t delays[] = {333000, -150, 45, 2500};
+    return round < TELLING ? 45 : delays[round % 4];
+}
+
+static void run_round(struct foreign *foreign, int round)
+{
+    tape_reach(foreign->tape, (int64_t) (round + 1) * ROUND_US);
+    foreign->here.result_after_us = delay_of(round);
+    foreign->there.result_after_us = delay_of(round + 1);
+    ask_both(foreign, round);
+    for (int i = 0; i < OTHERS; i++)
+        publish_other(foreign);
+    if (round % 10 == 9) {
+        instance_beat(&foreign->here);
+        instance_beat(&foreign->there);
+    }
+    if (round == ROUNDS / 2)
+        publish_malformed(foreign);
+}
+
+/* Bodies 0 to 2 are told, and of the last query only the result comes while the logger runs. What
+ * is by such a key nobody can tell from the log, until their publisher sends them whole again. */
+static void run_before_the_log(struct foreign *foreign)
+{
+    for (int n = 0; n < 2; n++) {
+        struct pair_query query = pair_of(n, n, n + 1);
+        struct pair_result result;
+        foreign->here.result_after_us = n ? 5000 : 45;
+        asker_pair(&foreign->asker, &query, &result);
+    }
+    tape_begin_late(foreign->tape);
+}
+
+static void run(struct foreign *foreign)
+{
+    run_before_the_log(foreign);
+    for (int round = 0; round < ROUNDS; round++) {
+        if (round == BODIES)
+            for (int n = 0; n < 3; n++)
+                asker_forget(&foreign->asker, n + 1);
+        run_round(foreign, round);
+    }
+}
+
+static bool open_both(struct foreign *foreign)
+{
+    const struct instance_options here = {
+        .prefix = "", .server_id = 31, .first_key = 9000, .bodies = 64};
+    const struct instance_options there = {
+        .prefix = "LAB_", .server_id = 32, .first_key = 9005, .bodies = 64};
+    if (!instance_open(&foreign->here, foreign->tape, &here))
+        return false;
+    if (instance_open(&foreign->there, foreign->tape, &there))
+        return true;
+    instance_close(&foreign->here);
+    return false;
+}
+
+bool kind_foreign(struct tape *tape)
+{
+    static struct foreign foreign;
+    memset(&foreign, 0, sizeof foreign);
+    foreign.tape = tape;
+    foreign.draw.state = 5;
+    foreign.asker = (struct asker){.instance = &foreign.here, .client_id = 60};
+    foreign.lab = (struct asker){.instance = &foreign.there, .client_id = 60, .next_number = 2};
+    if (!open_both(&foreign))
+        return false;
+    run(&foreign);
+    instance_close(&foreign.here);
+    instance_close(&foreign.there);
+    return true;
+}

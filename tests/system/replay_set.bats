@@ -1,0 +1,41 @@
+# The regression set through the service: fmbd, with every instruction set, answers the queries of
+# each log as the log has them answered.
+
+load service
+load ../logs/set
+
+# replays_the_set FMBD
+replays_the_set() {
+    FMBD=$1
+    start_fmbd
+    for log in "$LOGS"/*.log; do
+        "$FMB" replay --bus "$log" > "$BATS_TEST_TMPDIR/said" 2>&1 ||
+            { echo "$1: fmb replay --bus $log:"; cat "$BATS_TEST_TMPDIR/said"; return 1; }
+    done
+    stop_fmbd
+}
+
+@test "the service answers as it did" {
+    replays_the_set "$FMB_BUILD/fmbd"
+}
+
+@test "the service answers as it did with plain C alone" {
+    replays_the_set "$FMB_BUILD/capped/fmbd-plain"
+}
+
+@test "the service answers as it did with SSE2" {
+    need_set sse2
+    replays_the_set "$FMB_BUILD/capped/fmbd-sse2"
+}
+
+@test "the service answers as it did with AVX2" {
+    need_set avx2
+    replays_the_set "$FMB_BUILD/capped/fmbd-avx2"
+}
+
+@test "with a prefix, what an instance with a prefix was asked" {
+    FMBD=$FMB_BUILD/fmbd
+    start_fmbd --prefix LAB_
+    "$FMB" replay --bus --prefix LAB_ "$LOGS/foreign.log"
+    stop_fmbd
+}
