@@ -74,7 +74,8 @@ static void ask_scene(struct clients *clients, int client, int step)
 
 /* ---- What happens ---- */
 
-/* They count alike, and results come when the next ones have asked. */
+/* They count alike, and results come when the next ones have asked; nobody asks by a key before it
+ * is told. */
 static void ask_in_turns(struct clients *clients, struct instance *instance)
 {
     instance->result_after_us = 400;
@@ -82,6 +83,7 @@ static void ask_in_turns(struct clients *clients, struct instance *instance)
         tape_reach(clients->tape, (int64_t) step * STEP_US);
         for (int client = 0; client < CLIENTS; client++)
             ask_pair(clients, client, step);
+        tape_pass(clients->tape, STEP_US / 2);
         ask_scene(clients, step % CLIENTS, step);
     }
     instance->result_after_us = 45;
