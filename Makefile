@@ -514,7 +514,7 @@ logs: $(B)/logs/generate
 
 goldens: $(B)/fmb
 	for log in tests/logs/*.log; do \
-		$< replay $$log --write-golden $${log%.log}.golden > /dev/null || exit; done
+		$< replay --write-golden $${log%.log}.golden $$log > /dev/null || exit; done
 
 $(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)

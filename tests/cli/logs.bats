@@ -22,7 +22,7 @@ tell_all() {
     for log in tests/logs/*.log; do "$TELL" "$log"; done
 }
 
-# capped_at SET BEST...: the sets that a capped program knows, the last one first.
+# capped_at SET KNOWN...: the sets that the program capped at SET knows, the best one last.
 capped_at() {
     need_set "$1"
     "$FMB_BUILD/capped/generate-$1" --instructions > "$BATS_TEST_TMPDIR/sets"
