@@ -16,3 +16,9 @@ need_set() {
 name_of() {
     basename "$1" .log
 }
+
+# code_of LOG: what a replay in which all is the same exits with. Of the foreign log some messages
+# cannot be read, and a replay has to say so.
+code_of() {
+    if [ "$(name_of "$1")" = foreign ]; then echo 2; else echo 0; fi
+}

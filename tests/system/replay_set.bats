@@ -9,8 +9,10 @@ replays_the_set() {
     FMBD=$1
     start_fmbd
     for log in "$LOGS"/*.log; do
-        "$FMB" replay --bus "$log" > "$BATS_TEST_TMPDIR/said" 2>&1 ||
-            { echo "$1: fmb replay --bus $log:"; cat "$BATS_TEST_TMPDIR/said"; return 1; }
+        code=0
+        "$FMB" replay --bus "$log" > "$BATS_TEST_TMPDIR/said" 2>&1 || code=$?
+        [ $code = "$(code_of "$log")" ] ||
+            { echo "$1: fmb replay --bus $log: $code"; cat "$BATS_TEST_TMPDIR/said"; return 1; }
     done
     stop_fmbd
 }
