@@ -1,9 +1,5 @@
 #include "cursor.h"
 
-#include "big_endian.h"
-
-#include <string.h>
-
 static const char too_short[] = "shorter than its fields";
 
 struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint)
@@ -29,16 +25,10 @@ void cursor_fail(struct cursor *cursor, const char *error)
         cursor->error = error;
 }
 
-static bool take(struct cursor *cursor, uint64_t size, const unsigned char **bytes)
+const unsigned char *cursor_too_short(struct cursor *cursor)
 {
-    if (size > cursor->left)
-        cursor_fail(cursor, too_short);
-    if (cursor->error)
-        return false;
-    *bytes = cursor->at;
-    cursor->at += size;
-    cursor->left -= size;
-    return true;
+    cursor_fail(cursor, too_short);
+    return NULL;
 }
 
 static double double_at(const unsigned char *b)
@@ -47,24 +37,6 @@ static double double_at(const unsigned char *b)
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
-}
-
-int64_t cursor_int64(struct cursor *cursor)
-{
-    const unsigned char *bytes;
-    return take(cursor, 8, &bytes) ? (int64_t) big_endian_64(bytes) : 0;
-}
-
-int32_t cursor_int32(struct cursor *cursor)
-{
-    const unsigned char *bytes;
-    return take(cursor, 4, &bytes) ? (int32_t) big_endian_32(bytes) : 0;
-}
-
-double cursor_double(struct cursor *cursor)
-{
-    const unsigned char *bytes;
-    return take(cursor, 8, &bytes) ? double_at(bytes) : 0;
 }
 
 int32_t cursor_count(struct cursor *cursor, uint64_t size)
@@ -83,9 +55,8 @@ static int32_t take_list(struct cursor *cursor, uint64_t size, int max, const un
                          int *kept)
 {
     int32_t count = cursor_count(cursor, size);
-    *kept = 0;
-    if (take(cursor, (uint64_t) count * size, bytes))
-        *kept = count < max ? count : max;
+    *bytes = cursor_take(cursor, (uint64_t) count * size);
+    *kept = !*bytes ? 0 : count < max ? count : max;
     return count;
 }
 
@@ -132,8 +103,8 @@ int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max)
 size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes)
 {
     int32_t size = cursor_count(cursor, 1);
-    const unsigned char *at;
-    if (!take(cursor, (uint64_t) size, &at))
+    const unsigned char *at = cursor_take(cursor, (uint64_t) size);
+    if (!at)
         return 0;
     if (size == 0 || memchr(at, 0, (size_t) size) != at + size - 1) {
         cursor->error = "string without an end, or with two";

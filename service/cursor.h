@@ -1,12 +1,17 @@
 /* A walk over bytes that nobody vouches for, in LCM's encoding: big-endian, no padding. Sizes are
  * of 64 bits, so that no count can make them wrap. The first error ends the walk: everything
- * read after it is 0. */
+ * read after it is 0.
+ *
+ * Numbers are inline: a replay reads tens of millions of them a second. */
 #ifndef CURSOR_H
 #define CURSOR_H
+
+#include "big_endian.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 struct cursor {
     const unsigned char *at;
@@ -24,9 +29,39 @@ const char *cursor_end(const struct cursor *cursor);
 /* An error of the caller's finding; the first one stays. */
 void cursor_fail(struct cursor *cursor, const char *error);
 
-int64_t cursor_int64(struct cursor *cursor);
-int32_t cursor_int32(struct cursor *cursor);
-double cursor_double(struct cursor *cursor);
+/* The error where there are fewer bytes than asked for, or one came before. Always NULL. */
+const unsigned char *cursor_too_short(struct cursor *cursor);
+
+/* The next so many bytes; NULL after an error. */
+static inline const unsigned char *cursor_take(struct cursor *cursor, uint64_t size)
+{
+    const unsigned char *bytes = cursor->at;
+    if (size > cursor->left || cursor->error)
+        return cursor_too_short(cursor);
+    cursor->at += size;
+    cursor->left -= size;
+    return bytes;
+}
+
+static inline int64_t cursor_int64(struct cursor *cursor)
+{
+    const unsigned char *bytes = cursor_take(cursor, 8);
+    return bytes ? (int64_t) big_endian_64(bytes) : 0;
+}
+
+static inline int32_t cursor_int32(struct cursor *cursor)
+{
+    const unsigned char *bytes = cursor_take(cursor, 4);
+    return bytes ? (int32_t) big_endian_32(bytes) : 0;
+}
+
+static inline double cursor_double(struct cursor *cursor)
+{
+    const uint64_t bits = (uint64_t) cursor_int64(cursor); /* 0 is the double 0 */
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
 
 /* A count of things of at least size bytes each: they are there, or it is an error, and 0. */
 int32_t cursor_count(struct cursor *cursor, uint64_t size);
