@@ -17,26 +17,28 @@ enum { NONE = 0, ENDS = 0 };
  * takes memory as bodies come. */
 enum { TOUCHED_MAX = 64 << 20, PAGE = 4096 };
 
+/* Apart from its body: each use of a body changes its neighbours in the order of use, and these are
+ * anywhere; entries are small and lie together. */
 struct entry {
     int64_t id, key;
     int32_t next;         /* in the bucket */
     int32_t newer, older; /* in the order of use */
-    struct fmb_body body;
 };
 
 struct cache {
     int64_t next_key;
     uint64_t multiplier; /* odd, random */
     int bucket_shift;
-    int32_t *bucket; /* [2^(64 - bucket_shift)]: first entry of each */
-    struct entry *entry;
+    int32_t *bucket;       /* [2^(64 - bucket_shift)]: first entry of each */
+    struct entry *entry;   /* [capacity + 1] */
+    struct fmb_body *body; /* [capacity + 1] */
     struct cache_counts counts;
 };
 
 static void touch_pages(void *memory, size_t size)
 {
     volatile char *page = memory;
-    for (size_t at = 0; at < size && size <= TOUCHED_MAX; at += PAGE)
+    for (size_t at = 0; at < size; at += PAGE)
         page[at] = 0;
 }
 
@@ -49,10 +51,12 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
     const size_t entries = capacity + 1, buckets = (size_t) 1 << bucket_bits;
     struct cache *cache = malloc(sizeof *cache);
     struct entry *entry = malloc(entries * sizeof *entry);
+    struct fmb_body *body = malloc(entries * sizeof *body);
     int32_t *bucket = calloc(buckets, sizeof *bucket);
-    if (!cache || !entry || !bucket) {
+    if (!cache || !entry || !body || !bucket) {
         free(cache);
         free(entry);
+        free(body);
         free(bucket);
         return NULL;
     }
@@ -61,9 +65,15 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
                             .bucket_shift = 64 - bucket_bits,
                             .bucket = bucket,
                             .entry = entry,
+                            .body = body,
                             .counts = {.capacity = (int64_t) capacity}};
-    touch_pages(entry, entries * sizeof *entry);
-    touch_pages(bucket, buckets * sizeof *bucket);
+    const size_t sizes[] = {entries * sizeof *entry, entries * sizeof *body,
+                            buckets * sizeof *bucket};
+    if (sizes[0] + sizes[1] + sizes[2] <= TOUCHED_MAX) {
+        touch_pages(entry, sizes[0]);
+        touch_pages(body, sizes[1]);
+        touch_pages(bucket, sizes[2]);
+    }
     entry[ENDS].newer = entry[ENDS].older = ENDS;
     return cache;
 }
@@ -74,6 +84,7 @@ void cache_destroy(struct cache *cache)
         return;
     free(cache->bucket);
     free(cache->entry);
+    free(cache->body);
     free(cache);
 }
 
@@ -156,7 +167,7 @@ const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int 
                                   const double *components, int64_t *key)
 {
     int32_t e = find(cache, id);
-    if (e != NONE && same_body(&cache->entry[e].body, dim, shape, components)) {
+    if (e != NONE && same_body(&cache->body[e], dim, shape, components)) {
         cache->counts.hits++;
     } else {
         cache->counts.misses++;
@@ -164,27 +175,26 @@ const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int 
             e = insert(cache, id);
         else
             cache->counts.replacements++;
-        struct entry *entry = &cache->entry[e];
         size_t count = (size_t) (fmb_component_count(dim, shape) * dim);
-        enum fmb_status status = fmb_body_make(dim, shape, components, count, &entry->body);
+        enum fmb_status status = fmb_body_make(dim, shape, components, count, &cache->body[e]);
         assert(status == FMB_OK);
         (void) status;
-        entry->key = cache->next_key++;
+        cache->entry[e].key = cache->next_key++;
     }
     touch(cache, e);
     *key = cache->entry[e].key;
-    return &cache->entry[e].body;
+    return &cache->body[e];
 }
 
 const struct fmb_body *cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape)
 {
     int32_t e = find(cache, id);
-    if (e == NONE || cache->entry[e].key != key || cache->entry[e].body.dim != dim ||
-        (int) cache->entry[e].body.shape != shape)
+    if (e == NONE || cache->entry[e].key != key || cache->body[e].dim != dim ||
+        (int) cache->body[e].shape != shape)
         return NULL;
     cache->counts.hits++;
     touch(cache, e);
-    return &cache->entry[e].body;
+    return &cache->body[e];
 }
 
 struct cache_counts cache_counts(const struct cache *cache)
