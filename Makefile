@@ -4,8 +4,9 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Others: all, examples, tests (builds them), test-fast, validate, accuracy, soak, fuzz, fuzz-afl,
-# fuzz-merge, bench, bench-bus, report, logs, goldens, headers, format, format-check, install, clean;
-# deps-fuzz, deps-bench and deps-report install what is only good for these.
+# fuzz-merge, bench, bench-bus, bench-replay, report, logs, goldens, headers, format,
+# format-check, install, clean; deps-fuzz, deps-bench and deps-report install what is only good for
+# these.
 # MODE=release|debug|asan|fuzz. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
 # CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
 
@@ -96,7 +97,7 @@ capped_sets := plain $(if $(x86),sse2 avx2)
 capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
-	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/soak-asker $(B)/soak-memory \
+	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker $(B)/soak-memory \
 	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(B)/logs/tell \
 	$(capped_programs)
 
@@ -581,6 +582,28 @@ $(O)/tests/bus/%.o: tests/bus/%.c $(O)/settings | $(message_headers)
 .PHONY: bench-bus
 bench-bus: $(B)/bus/bench-bus $(B)/netns
 	$(B)/netns $< --json $(B)/bus/report.json
+
+# Logs: replayed, and described, beside the batch alone and beside cat. Some minutes, and some
+# hundred megabytes in build/replay/.
+$(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
+		$(addprefix $(O)/tests/bench/,machine.o stopwatch.o) $(client_objects) \
+		$(answer_objects) $(bus_objects) $(message_objects) $(asking_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+
+$(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) $(clients_see) -Itests/bench
+
+bench_logs := $(addprefix $(B)/replay/,scenes.log pairs.log pairs-whole.log pairs-by-key.log)
+$(B)/replay/%.log: $(B)/logs/generate
+	@mkdir -p $(@D)
+	$< --blast $(firstword $(subst -, ,$*)) $(if $(filter scenes,$*),400,500000) \
+		$(patsubst pairs-%,--%,$(filter pairs-%,$*)) $@
+
+.PHONY: bench-replay
+bench-replay: $(B)/replay/bench-replay $(B)/fmb $(bench_logs)
+	$< $(B)/fmb $(bench_logs)
 
 # ---- Report ----------------------------------------------------------------------------------
 

@@ -1,0 +1,266 @@
+/* How fast logs are gone through, beside what they cannot be faster than:
+ *
+ *   scenes  fmb replay of a log of scenes, in pairs a second, beside fmb_decide_batch() alone on
+ * the same pairs, whose frames have been prepared before; pairs   fmb replay of a log of pair
+ * queries, in queries a second; info    fmb log info, in bytes a second, beside cat of the same
+ * file to /dev/null.
+ *
+ * In turns, on one core; CPU time of the thread or, of programs, of the child, reading included
+ * (from memory: the logs have been read once before). Medians. */
+#include "allocate.h"
+#include "answer.h"
+#include "bodies.h"
+#include "check.h"
+#include "input.h"
+#include "learn.h"
+#include "machine.h"
+#include "replay.h"
+#include "stopwatch.h"
+#include "wire.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { ROUNDS = 15, SCENES_MAX = 400, BODIES = 65536 };
+
+static _Noreturn void fail(const char *what)
+{
+    fprintf(stderr, "bench-replay: %s\n", what);
+    exit(1);
+}
+
+/* ---- The batch alone ---- */
+
+/* A scene of the log, ready for the batch. */
+struct scene {
+    struct fmb_prepared *frame; /* owned */
+    unsigned (*pair)[2];        /* owned */
+    size_t frame_count, pair_count;
+    double duration;
+};
+
+struct scenes {
+    struct scene scene[SCENES_MAX];
+    int count;
+    int64_t pairs;
+    unsigned char verdict[QUERY_PAIRS_MAX];
+};
+
+static void prepare(const struct query_frame *frame, struct fmb_prepared *out)
+{
+    struct fmb_body body;
+    if (fmb_body_make(frame->dim, frame->shape, frame->components.number,
+                      (size_t) frame->components.count, &body) != FMB_OK)
+        fail("a frame of the log is none");
+    const struct fmb_frame placed = bodies_place(frame, &body);
+    fmb_prepare(&placed, out);
+}
+
+static void keep_scene(struct scenes *scenes, struct known_bodies *known, struct scene_query *query)
+{
+    struct scene *scene = &scenes->scene[scenes->count++];
+    scene->frame_count = (size_t) query->frame_count;
+    scene->pair_count = (size_t) query->index_count / 2;
+    scene->duration = query->duration;
+    scene->frame = aligned_alloc(64, scene->frame_count * sizeof *scene->frame);
+    scene->pair = malloc(scene->pair_count * sizeof *scene->pair);
+    if (!scene->frame || !scene->pair)
+        fail("no memory");
+    memcpy(scene->pair, query->pair, scene->pair_count * sizeof *scene->pair);
+    for (size_t i = 0; i < scene->frame_count; i++) {
+        if (check_by_key(&query->frame[i]) && !known_bodies_complete(known, &query->frame[i]))
+            fail("a key that the log does not tell");
+        prepare(&query->frame[i], &scene->frame[i]);
+    }
+    scenes->pairs += (int64_t) scene->pair_count;
+}
+
+/* Of a log whose results stand behind their queries. */
+static void read_scenes(char *path, struct scenes *scenes)
+{
+    static struct scene_query query;
+    static unsigned char bytes[LOG_DATA_MAX];
+    const struct log_channels channels = log_channels("");
+    struct known_bodies *known = known_bodies_create(BODIES);
+    struct learner *learner = learner_open(known);
+    struct match_item asked = {.kind = LOG_SCENE_QUERY, .bytes = bytes}, told = asked;
+    struct input input;
+    struct log_event event;
+    struct log_damage damage;
+    char why[LOG_WHY_MAX];
+    if (!input_open(&input, &path, 1, why))
+        fail(why);
+    while (scenes->count < SCENES_MAX && input_next(&input, &event, &damage) == LOG_EVENT) {
+        if (log_kind_of(&channels, &event) == LOG_SCENE_QUERY) {
+            memcpy(bytes, event.data, event.kept);
+            asked.size = (uint32_t) event.kept;
+        } else if (log_kind_of(&channels, &event) == LOG_SCENE_RESULT) {
+            told.bytes = event.data;
+            told.size = (uint32_t) event.kept;
+            learn(learner, &asked, &told);
+            if (!wire_read_scene_query(bytes, asked.size, &query) && query.index_count > 0)
+                keep_scene(scenes, known, &query);
+        }
+    }
+    input_close(&input);
+    learner_close(learner);
+    known_bodies_destroy(known);
+}
+
+static double batch_ns(struct scenes *scenes)
+{
+    const double begin = stopwatch_now();
+    for (int i = 0; i < scenes->count; i++) {
+        const struct scene *scene = &scenes->scene[i];
+        const struct fmb_batch batch = {.frames = scene->frame,
+                                        .frame_count = scene->frame_count,
+                                        .pairs = (const unsigned(*)[2]) scene->pair,
+                                        .pair_count = scene->pair_count,
+                                        .duration = scene->duration,
+                                        .verdicts = scenes->verdict};
+        if (fmb_decide_batch(&batch) != FMB_OK)
+            fail("the batch refused");
+    }
+    return stopwatch_now() - begin;
+}
+
+/* ---- Replay ---- */
+
+static void no_found(void *user, const struct found *found)
+{
+    (void) user;
+    (void) found;
+    fail("a difference");
+}
+
+static void no_unreadable(void *user, const struct match_place *place, const char *channel,
+                          const char *what)
+{
+    (void) user;
+    (void) place;
+    (void) channel;
+    fail(what);
+}
+
+static void no_damage(void *user, int log, const struct log_damage *damage)
+{
+    (void) user;
+    (void) log;
+    fail(damage->what);
+}
+
+static void no_progress(void *user, int64_t bytes)
+{
+    (void) user;
+    (void) bytes;
+}
+
+static double replay_ns(char *path, struct tally *tally)
+{
+    const struct replay_sink sink = {no_found, no_unreadable, no_damage, no_progress, NULL};
+    const struct replay_options options = {
+        .log = &path, .log_count = 1, .prefix = "", .to = INFINITY, .bodies = BODIES};
+    const int64_t size = replay_size(&options);
+    memset(tally, 0, sizeof *tally);
+    const double begin = stopwatch_now();
+    if (!replay_run(&options, (struct replay_part){0, size}, &sink, tally))
+        fail("the replay failed");
+    const double took = stopwatch_now() - begin;
+    if (tally_compared(tally) != tally_queries(tally))
+        fail("not all was compared");
+    return took;
+}
+
+/* ---- Programs ---- */
+
+static double child_ns(const char *const *arguments)
+{
+    struct rusage before, after;
+    int status;
+    getrusage(RUSAGE_CHILDREN, &before);
+    const pid_t pid = fork();
+    if (pid == 0) {
+        const int null = open("/dev/null", O_WRONLY);
+        dup2(null, STDOUT_FILENO);
+        execvp(arguments[0], (char *const *) arguments);
+        _exit(127);
+    }
+    if (pid < 0 || waitpid(pid, &status, 0) != pid || !WIFEXITED(status) ||
+        WEXITSTATUS(status) != 0)
+        fail(arguments[0]);
+    getrusage(RUSAGE_CHILDREN, &after);
+    return 1e9 * (double) (after.ru_utime.tv_sec - before.ru_utime.tv_sec + after.ru_stime.tv_sec -
+                           before.ru_stime.tv_sec) +
+           1e3 * (double) (after.ru_utime.tv_usec - before.ru_utime.tv_usec +
+                           after.ru_stime.tv_usec - before.ru_stime.tv_usec);
+}
+
+/* ---- The benchmark ---- */
+
+static void bench_scenes(char *path)
+{
+    static struct scenes scenes;
+    static struct tally tally;
+    double batch[ROUNDS], replay[ROUNDS], ratio[ROUNDS];
+    read_scenes(path, &scenes);
+    for (int round = 0; round < ROUNDS; round++) {
+        batch[round] = batch_ns(&scenes) / (double) scenes.pairs;
+        replay[round] = replay_ns(path, &tally);
+        replay[round] /= (double) (tally.channel[TALLY_SCENES].pairs);
+        ratio[round] = batch[round] / replay[round];
+    }
+    printf("scenes  %8.1f million pairs a second   batch alone %8.1f   ratio %.2f\n",
+           1e3 / spread_of(replay, ROUNDS).median, 1e3 / spread_of(batch, ROUNDS).median,
+           spread_of(ratio, ROUNDS).median);
+}
+
+static void bench_pairs(char *path)
+{
+    static struct tally tally;
+    double replay[ROUNDS];
+    for (int round = 0; round < ROUNDS; round++)
+        replay[round] = replay_ns(path, &tally) / (double) tally_queries(&tally);
+    const struct spread spread = spread_of(replay, ROUNDS);
+    printf("pairs   %8.3f million queries a second (%.0f ns; quartiles %.0f, %.0f)   %s\n",
+           1e3 / spread.median, spread.median, spread.low, spread.high, path);
+}
+
+static void bench_info(const char *fmb, const char *path)
+{
+    const char *info[] = {fmb, "log", "info", path, NULL}, *cat[] = {"cat", path, NULL};
+    double of_info[ROUNDS], of_cat[ROUNDS], ratio[ROUNDS];
+    const int fd = open(path, O_RDONLY);
+    const double size = (double) lseek(fd, 0, SEEK_END);
+    close(fd);
+    for (int round = 0; round < ROUNDS; round++) {
+        of_info[round] = child_ns(info) / size;
+        of_cat[round] = child_ns(cat) / size;
+        ratio[round] = of_cat[round] / of_info[round];
+    }
+    printf("info    %8.2f GB a second   cat %8.2f   ratio %.2f   %s\n",
+           1 / spread_of(of_info, ROUNDS).median, 1 / spread_of(of_cat, ROUNDS).median,
+           spread_of(ratio, ROUNDS).median, path);
+}
+
+int main(int argc, char **argv)
+{
+    char cpu[MACHINE_TEXT_MAX];
+    if (argc < 4) {
+        fprintf(stderr, "usage: bench-replay FMB SCENES.LOG PAIRS.LOG...\n");
+        return 2;
+    }
+    stopwatch_pin();
+    printf("%s, %s\n", machine_cpu(cpu), machine_compiler());
+    bench_scenes(argv[2]);
+    for (int i = 3; i < argc; i++)
+        bench_pairs(argv[i]);
+    for (int i = 2; i < argc; i++)
+        bench_info(argv[1], argv[i]);
+    return 0;
+}
