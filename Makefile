@@ -244,6 +244,11 @@ $(B)/tests/test_filter: $(O)/service/filter.o
 client_tests := $(filter test_client_%,$(unit_names))
 $(client_tests:%=$(B)/tests/%): $(O)/tests/unit/relay.o
 
+log_tests := $(filter test_log_%,$(unit_names))
+$(log_tests:%=$(B)/tests/%): $(O)/tests/unit/log_bytes.o
+# Counts what is read.
+wraps_test_log_read := -Wl,--wrap=pread64
+
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
@@ -309,7 +314,7 @@ $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
 		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
+	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
 
 $(O)/tests/oracle/%.o: tests/oracle/%.c $(O)/settings
 	@mkdir -p $(@D)

@@ -258,27 +258,25 @@ static int64_t next_believed(struct log_reader *reader, int64_t offset)
 
 /* ---- One after the other --------------------------------------------------------------------- */
 
-static bool all_zero(const unsigned char *bytes, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (bytes[i] != 0)
-            return false;
-    return true;
-}
-
 static const char cut_off[] = "the last event is cut off";
 
 /* Of what is no event that is believed. On input: count bytes, a header, or less at the end of the
  * file. */
 static const char *what_is_wrong(const unsigned char *header, size_t count)
 {
-    if (all_zero(header, count))
-        return "zeros";
     if (memcmp(header, sync_word, count < SYNC_BYTES ? count : SYNC_BYTES) != 0)
         return "no event";
     if (count == LOG_HEADER_BYTES && !lengths_can_be(lengths_at(header)))
         return "an event with impossible lengths";
     return cut_off;
+}
+
+static int64_t count_zeros(const unsigned char *bytes, size_t count)
+{
+    size_t zeros = 0;
+    while (zeros < count && bytes[zeros] == 0)
+        zeros++;
+    return (int64_t) zeros;
 }
 
 static enum log_outcome failed(const struct log_reader *reader)
@@ -324,14 +322,17 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
     const size_t count = (size_t) least(LOG_HEADER_BYTES, reader->size - offset);
     if (!hold(reader, offset, count))
         return failed(reader);
-    const char *what = what_is_wrong(held(reader, offset), count);
-    const int64_t next = next_believed(reader, offset);
+    damage->what = what_is_wrong(held(reader, offset), count);
+    const int64_t zeros = count_zeros(held(reader, offset), count);
+    reader->at = next_believed(reader, offset);
     if (reader->error)
         return failed(reader);
-    if (what == cut_off && next < reader->size)
-        what = "an event that is cut off, or has wrong lengths";
-    *damage = (struct log_damage){offset, next - offset, what};
-    reader->at = next;
+    damage->offset = offset;
+    damage->length = reader->at - offset;
+    if (zeros >= least(LOG_HEADER_BYTES, damage->length))
+        damage->what = "zeros";
+    else if (damage->what == cut_off && reader->at < reader->size)
+        damage->what = "an event that is cut off, or has wrong lengths";
     return LOG_DAMAGE;
 }
 

@@ -1,0 +1,732 @@
+/* Good logs, every way to break small ones, and logs that would make a reader slow. */
+#include "log_bytes.h"
+#include "log_read.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <lcm/lcm.h>
+
+#include <cmocka.h>
+
+/* ---- What the reader reads with ----------------------------------------------------------------
+ */
+
+static struct {
+    int64_t calls, bytes; /* so far */
+    size_t piece;         /* no more at once; 0: as much as there is */
+    int error;            /* errno of all that follow; 0: none */
+    bool interrupted;     /* every other call is, before it has read */
+} reads;
+
+ssize_t __real_pread64(int fd, void *out, size_t count, off_t offset);
+ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset);
+
+ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
+{
+    reads.calls++;
+    if (reads.error || (reads.interrupted && reads.calls % 2)) {
+        errno = reads.error ? reads.error : EINTR;
+        return -1;
+    }
+    if (reads.piece > 0 && count > reads.piece)
+        count = reads.piece;
+    const ssize_t got = __real_pread64(fd, out, count, offset);
+    if (got > 0)
+        reads.bytes += got;
+    return got;
+}
+
+/* ---- What is read ------------------------------------------------------------------------------
+ */
+
+enum { TOLD_MAX = 64 };
+
+/* All that was told of a small log. */
+struct told {
+    size_t count;
+    struct {
+        const char *damage; /* NULL: an event */
+        int64_t offset, length;
+    } item[TOLD_MAX];
+};
+
+static struct log_reader *open_bytes(const void *bytes, size_t size)
+{
+    char why[LOG_WHY_MAX];
+    struct log_reader *reader = log_open(log_bytes_file(bytes, size), why);
+    assert_non_null(reader);
+    assert_int_equal(log_size(reader), size);
+    return reader;
+}
+
+/* Each event is checked against the bytes at its place. */
+static void check_event(const struct log_event *event, const unsigned char *bytes)
+{
+    const unsigned char *name = bytes + event->offset + LOG_HEADER_BYTES;
+    assert_int_equal(event->length, LOG_HEADER_BYTES + event->channel_length + event->size);
+    assert_true(event->channel_length >= 1 && event->channel_length < LOG_CHANNEL_MAX);
+    assert_memory_equal(event->channel, name, event->channel_length);
+    assert_int_equal(event->channel[event->channel_length], 0);
+    assert_int_equal(event->kept, event->size < LOG_DATA_MAX ? event->size : LOG_DATA_MAX);
+    assert_memory_equal(event->data, name + event->channel_length, event->kept);
+}
+
+/* From where the reader is to the end; what is told is one behind the other, nothing left out. */
+static struct told read_on(struct log_reader *reader, int64_t at, const unsigned char *bytes)
+{
+    struct told told = {0};
+    struct log_event event;
+    struct log_damage damage = {0};
+    enum log_outcome outcome;
+    while ((outcome = log_next(reader, &event, &damage)) != LOG_END) {
+        assert_true(told.count < TOLD_MAX && (outcome == LOG_EVENT || outcome == LOG_DAMAGE));
+        const bool good = outcome == LOG_EVENT;
+        if (good)
+            check_event(&event, bytes);
+        told.item[told.count].damage = good ? NULL : damage.what;
+        told.item[told.count].offset = good ? event.offset : damage.offset;
+        told.item[told.count].length = good ? event.length : damage.length;
+        assert_int_equal(told.item[told.count].offset, at);
+        assert_true(told.item[told.count].length > 0);
+        at += told.item[told.count++].length;
+    }
+    assert_int_equal(at, log_size(reader));
+    assert_int_equal(log_next(reader, &event, &damage), LOG_END);
+    return told;
+}
+
+static struct told read_bytes(const unsigned char *bytes, size_t size)
+{
+    struct log_reader *reader = open_bytes(bytes, size);
+    const struct told told = read_on(reader, 0, bytes);
+    log_close(reader);
+    return told;
+}
+
+static bool tells(const struct told *told, size_t begin, size_t end)
+{
+    for (size_t i = 0; i < told->count; i++)
+        if (told->item[i].offset == (int64_t) begin)
+            return !told->item[i].damage && told->item[i].length == (int64_t) (end - begin);
+    return false;
+}
+
+static void expect_damage(const struct told *told, size_t i, size_t begin, size_t end,
+                          const char *what)
+{
+    assert_true(i < told->count && told->item[i].damage);
+    assert_string_equal(told->item[i].damage, what);
+    assert_int_equal(told->item[i].offset, begin);
+    assert_int_equal(told->item[i].length, end - begin);
+}
+
+/* ---- Good logs ---------------------------------------------------------------------------------
+ */
+
+static struct log_bytes whole, inner;
+static unsigned char noise[3 * LOG_DATA_MAX];
+
+static void make_noise(unsigned seed)
+{
+    srand(seed);
+    for (size_t i = 0; i < sizeof noise; i++)
+        noise[i] = (unsigned char) (rand() >> 8);
+}
+
+/* Five events, of different lengths. */
+static void make_small(void)
+{
+    whole.size = whole.count = 0;
+    log_bytes_event(&whole, 10, "A", "", 0);
+    log_bytes_event(&whole, 20, "CHANNEL", "\xed\xa1\xda\x01, but impossible lengths", 28);
+    log_bytes_event(&whole, 20, "B", "12345", 5);
+    log_bytes_event(&whole, -1, "SOMEWHAT_LONGER", "\xed\xed\xa1\xed\xa1\xda", 6);
+    log_bytes_event(&whole, 30, "C", "\0\0\0", 3);
+}
+
+static void test_an_empty_file_is_a_log_of_no_events(void **state)
+{
+    (void) state;
+    assert_int_equal(read_bytes(noise, 0).count, 0);
+}
+
+static void test_an_event_is_what_was_written(void **state)
+{
+    (void) state;
+    struct log_event event;
+    struct log_damage damage;
+    whole.size = whole.count = 0;
+    log_bytes_header(&whole, INT64_MIN + 5, -7, 9, 3);
+    log_bytes_add(&whole, "a\0b\n\x1b\xff xy123", 12);
+    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
+    assert_int_equal(event.offset, 0);
+    assert_int_equal(event.length, whole.size);
+    assert_int_equal(event.number, INT64_MIN + 5);
+    assert_int_equal(event.utime, -7);
+    assert_int_equal(event.channel_length, 9);
+    assert_memory_equal(event.channel, "a\0b\n\x1b\xff xy", 10);
+    assert_int_equal(event.size, 3);
+    assert_memory_equal(event.data, "123", 3);
+    assert_int_equal(log_next(reader, &event, &damage), LOG_END);
+    log_close(reader);
+}
+
+/* Names and data as long as can be, and around what is kept. */
+static void test_the_longest(void **state)
+{
+    (void) state;
+    static const size_t sizes[] = {0, LOG_DATA_MAX - 1, LOG_DATA_MAX, LOG_DATA_MAX + 1,
+                                   sizeof noise};
+    static const int names[] = {1, 63, 64, 65, LOG_CHANNEL_MAX - 1};
+    char name[LOG_CHANNEL_MAX] = "";
+    make_noise(1);
+    whole.size = whole.count = 0;
+    for (int n = 0; n < 5; n++) {
+        memset(name, 'a' + n, (size_t) names[n]);
+        for (int s = 0; s < 5; s++)
+            log_bytes_event(&whole, s, name, noise, sizes[s]);
+    }
+    const struct told told = read_bytes(whole.bytes, whole.size);
+    assert_int_equal(told.count, 25);
+    for (size_t i = 0; i < told.count; i++)
+        assert_null(told.item[i].damage);
+}
+
+/* Mostly small ones, some with all that a datagram holds, some with more. */
+static size_t draw_size(void)
+{
+    const int kind = rand() % 16;
+    return (size_t) rand() % (kind == 0 ? sizeof noise : kind == 1 ? LOG_DATA_MAX : 500);
+}
+
+static void write_with_lcm(const char *path, int count)
+{
+    char name[64];
+    lcm_eventlog_t *log = lcm_eventlog_create(path, "w");
+    assert_non_null(log);
+    for (int i = 0; i < count; i++) {
+        const size_t size = draw_size();
+        const int length = snprintf(name, sizeof name, "CHANNEL_%.*s", rand() % 40,
+                                    "0123456789012345678901234567890123456789");
+        lcm_eventlog_event_t event = {.timestamp = rand(),
+                                      .channellen = length,
+                                      .datalen = (int32_t) size,
+                                      .channel = name,
+                                      .data = noise + rand() % (sizeof noise - size)};
+        assert_int_equal(lcm_eventlog_write_event(log, &event), 0);
+    }
+    lcm_eventlog_destroy(log);
+}
+
+static void expect_same(const struct log_event *event, const lcm_eventlog_event_t *theirs)
+{
+    assert_non_null(theirs);
+    assert_int_equal(event->number, theirs->eventnum);
+    assert_int_equal(event->utime, theirs->timestamp);
+    assert_int_equal(event->channel_length, theirs->channellen);
+    assert_string_equal(event->channel, theirs->channel);
+    assert_int_equal(event->size, theirs->datalen);
+    assert_memory_equal(event->data, theirs->data, event->kept);
+}
+
+/* Of a log of several buffers, read in pieces of any size and by calls that are interrupted, all is
+ * as LCM's own reader has it. */
+static void test_lcm_reads_the_same(void **state)
+{
+    (void) state;
+    struct log_event event;
+    struct log_damage damage;
+    char why[LOG_WHY_MAX];
+    const char *path = log_bytes_file("", 0);
+    make_noise(2);
+    write_with_lcm(path, 1000);
+    for (size_t piece = 0; piece < 100000; piece = 5 * piece + 777) {
+        lcm_eventlog_t *log = lcm_eventlog_create(path, "r");
+        struct log_reader *reader = log_open(path, why);
+        reads.piece = piece;
+        reads.interrupted = piece > 0;
+        while (log_next(reader, &event, &damage) == LOG_EVENT) {
+            lcm_eventlog_event_t *theirs = lcm_eventlog_read_next_event(log);
+            expect_same(&event, theirs);
+            lcm_eventlog_free_event(theirs);
+        }
+        assert_int_equal(event.number, 999);
+        assert_int_equal(log_next(reader, &event, &damage), LOG_END);
+        assert_null(lcm_eventlog_read_next_event(log));
+        lcm_eventlog_destroy(log);
+        log_close(reader);
+    }
+    reads.piece = 0;
+    reads.interrupted = false;
+}
+
+/* ---- Small logs, broken in every way -----------------------------------------------------------
+ */
+
+static void test_every_truncation(void **state)
+{
+    (void) state;
+    make_small();
+    for (size_t size = 0; size < whole.size; size++) {
+        const struct told told = read_bytes(whole.bytes, size);
+        size_t events = 0;
+        while (whole.end[events] <= size)
+            assert_true(tells(&told, whole.begin[events], whole.end[events])), events++;
+        const bool cut = size > whole.begin[events];
+        assert_int_equal(told.count, events + cut);
+        if (cut)
+            expect_damage(&told, events, whole.begin[events], size, "the last event is cut off");
+    }
+}
+
+static bool touches(size_t byte, size_t event)
+{
+    return whole.begin[event] <= byte && byte < whole.end[event];
+}
+
+static const unsigned char flips[] = {0x01, 0x04, 0x08, 0x40, 0x80, 0xff};
+enum { FLIPS = sizeof flips };
+
+/* Where a number, a time, a name or data differ, nothing is damaged that a reader could see. */
+static bool is_structure(size_t byte, size_t event)
+{
+    const size_t at = byte - whole.begin[event];
+    return at < 4 || (at >= 20 && at < LOG_HEADER_BYTES);
+}
+
+static void test_every_damaged_byte(void **state)
+{
+    (void) state;
+    make_small();
+    for (size_t byte = 0; byte < whole.size; byte++)
+        for (int flip = 0; flip < FLIPS; flip++) {
+            whole.bytes[byte] ^= flips[flip];
+            const struct told told = read_bytes(whole.bytes, whole.size);
+            for (size_t i = 0; i < whole.count; i++)
+                assert_true((touches(byte, i) && is_structure(byte, i)) ||
+                            tells(&told, whole.begin[i], whole.end[i]));
+            whole.bytes[byte] ^= flips[flip];
+        }
+}
+
+static void flip_two(size_t one, size_t two, unsigned char first, unsigned char second)
+{
+    whole.bytes[one] ^= first;
+    whole.bytes[two] ^= second;
+}
+
+static void test_every_two_damaged_bytes(void **state)
+{
+    (void) state;
+    const size_t step = getenv("FMB_FAST") ? 3 : 1;
+    make_small();
+    for (size_t one = 0; one < whole.size; one++)
+        for (size_t two = one + 1; two < whole.size; two += step) {
+            const unsigned char first = flips[one % FLIPS], second = flips[(one + two) % FLIPS];
+            flip_two(one, two, first, second);
+            const struct told told = read_bytes(whole.bytes, whole.size);
+            flip_two(one, two, first, second);
+            for (size_t i = 0; i < whole.count; i++)
+                assert_true(touches(one, i) || touches(two, i) ||
+                            tells(&told, whole.begin[i], whole.end[i]));
+        }
+}
+
+/* Any bytes between any two events, also such as begin like one. */
+static void test_garbage_everywhere(void **state)
+{
+    (void) state;
+    static const struct {
+        const char *bytes;
+        size_t size;
+        const char *what;
+    } garbage[] = {
+        {"x", 1, "no event"},
+        {"no event, but many bytes that stand where one should", 52, "no event"},
+        {"\0", 1, "zeros"},
+        {"\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 30, "zeros"},
+        {"\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 30, "no event"},
+        {"\xed\xa1\xda\x01, but impossible lengths", 28, "an event with impossible lengths"},
+        {"\xed\xa1\xda\x01, but impossible lengths, and more", 38,
+         "an event with impossible lengths"},
+        {"\xed\xed\xa1\xda", 4, "no event"},
+    };
+    const size_t kinds = sizeof garbage / sizeof *garbage;
+    make_small();
+    for (size_t g = 0; g < kinds; g++)
+        for (size_t place = 0; place <= whole.count; place++) {
+            const size_t at = place < whole.count ? whole.begin[place] : whole.size;
+            inner.size = 0;
+            log_bytes_add(&inner, whole.bytes, at);
+            log_bytes_add(&inner, garbage[g].bytes, garbage[g].size);
+            log_bytes_add(&inner, whole.bytes + at, whole.size - at);
+            const struct told told = read_bytes(inner.bytes, inner.size);
+            assert_int_equal(told.count, whole.count + 1);
+            expect_damage(&told, place, at, at + garbage[g].size, garbage[g].what);
+        }
+}
+
+/* Between all events too, where none is followed by another. */
+static void test_garbage_between_all(void **state)
+{
+    (void) state;
+    whole.size = whole.count = 0;
+    for (int i = 0; i < 9; i++) {
+        log_bytes_event(&whole, i, "CHANNEL", "data", 4);
+        log_bytes_add(&whole, "?", 1);
+    }
+    const struct told told = read_bytes(whole.bytes, whole.size);
+    assert_int_equal(told.count, 18);
+    for (size_t i = 0; i < 9; i++) {
+        assert_true(tells(&told, whole.begin[i], whole.end[i]));
+        expect_damage(&told, 2 * i + 1, whole.end[i], whole.end[i] + 1, "no event");
+    }
+}
+
+/* ---- Lengths that lie --------------------------------------------------------------------------
+ */
+
+static const char wrong[] = "an event that is cut off, or has wrong lengths";
+static const char impossible[] = "an event with impossible lengths";
+
+static void test_lengths_that_lie(void **state)
+{
+    (void) state;
+    static const struct {
+        uint32_t channel, data;
+        const char *what, *what_last;
+    } lies[] = {
+        {0, 5, impossible, impossible},
+        {LOG_CHANNEL_MAX, 5, impossible, impossible},
+        {0x80000000, 5, impossible, impossible},
+        {0xffffffff, 5, impossible, impossible},
+        {5, 0x80000000, impossible, impossible},
+        {5, 0xffffffff, impossible, impossible},
+        {0x7fffffff, 5, impossible, impossible},
+        {5, 0x7fffffff, wrong, "the last event is cut off"},
+        {5, 100000, wrong, "the last event is cut off"},
+        {5, 60, wrong, "the last event is cut off"}, /* into the event behind the next */
+        {40, 5, wrong, "the last event is cut off"},
+        {5, 6, wrong, "the last event is cut off"}, /* one byte too far */
+    };
+    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
+        for (int last = 0; last < 2; last++) {
+            make_small();
+            const size_t at = whole.size, begun = whole.count;
+            log_bytes_header(&whole, 5, 40, lies[i].channel, lies[i].data);
+            log_bytes_add(&whole, "D1234five!", 10);
+            const size_t end = whole.size;
+            for (int more = 0; !last && more < 3; more++)
+                log_bytes_event(&whole, 50, "E", "data", 4);
+            const struct told told = read_bytes(whole.bytes, whole.size);
+            assert_int_equal(told.count, begun + (last ? 1 : 4));
+            expect_damage(&told, begun, at, end, last ? lies[i].what_last : lies[i].what);
+        }
+}
+
+/* An event whose data is shorter than it says, and another log behind it: as when a recorder was
+ * killed and began anew in the same file. */
+static void test_a_log_behind_a_log_that_was_cut_off(void **state)
+{
+    (void) state;
+    make_small();
+    for (size_t size = whole.begin[4] + 1; size < whole.end[4]; size++) {
+        inner.size = 0;
+        log_bytes_add(&inner, whole.bytes, size);
+        log_bytes_add(&inner, whole.bytes, whole.size);
+        const struct told told = read_bytes(inner.bytes, inner.size);
+        assert_int_equal(told.count, 10);
+        expect_damage(&told, 4, whole.begin[4], size, told.item[4].damage);
+    }
+}
+
+/* Whole logs in the data of events, the last one too, are data. */
+static void test_a_log_in_a_message(void **state)
+{
+    (void) state;
+    make_small();
+    inner = whole;
+    whole.size = whole.count = 0;
+    for (int i = 0; i < 4; i++) {
+        log_bytes_event(&whole, i, "LOGS", inner.bytes, inner.size);
+        log_bytes_event(&whole, i, "OTHERS", "1", 1);
+        log_bytes_event(&whole, i, "LOGS", inner.bytes, inner.size);
+    }
+    struct told told = read_bytes(whole.bytes, whole.size);
+    assert_int_equal(told.count, 12);
+    for (size_t i = 0; i < 12; i++)
+        assert_true(tells(&told, whole.begin[i], whole.end[i]));
+    for (size_t size = whole.end[9] + 1; size < whole.end[10]; size++) {
+        told = read_bytes(whole.bytes, size);
+        assert_int_equal(told.count, 11);
+        expect_damage(&told, 10, whole.begin[10], size, "the last event is cut off");
+    }
+}
+
+/* ---- Large files, and hostile ones -------------------------------------------------------------
+ */
+
+static void test_a_hole_of_ten_gigabytes(void **state)
+{
+    (void) state;
+    const off_t size = INT64_C(10) << 30;
+    struct log_event event;
+    struct log_damage damage;
+    char why[LOG_WHY_MAX];
+    make_small();
+    const char *path = log_bytes_file(whole.bytes, whole.size);
+    if (ftruncate(log_bytes_descriptor(), size) != 0)
+        skip(); /* no such large files here */
+    assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, size), whole.size);
+    struct log_reader *reader = log_open(path, why);
+    memset(&reads, 0, sizeof reads);
+    for (int i = 0; i < 11; i++)
+        assert_int_equal(log_next(reader, &event, &damage), i == 5 ? LOG_DAMAGE : LOG_EVENT);
+    assert_int_equal(log_next(reader, &event, &damage), LOG_END);
+    assert_int_equal(damage.offset, whole.size);
+    assert_int_equal(damage.length, size - (off_t) whole.size);
+    assert_string_equal(damage.what, "zeros");
+    assert_int_equal(event.offset, size + (off_t) whole.begin[4]);
+    assert_in_range(reads.bytes, 1, 2 << 20);
+    log_close(reader);
+}
+
+/* A unit again and again, to the largest file here. */
+static void fill_with(void (*unit)(void))
+{
+    whole.size = whole.count = 0;
+    while (whole.size < LOG_BYTES_MAX - 2000)
+        unit();
+}
+
+static void long_lie(void)
+{
+    log_bytes_header(&whole, 0, 0, 1, 1 << 20);
+}
+
+static void lies_into_the_buffer(void)
+{
+    log_bytes_header(&whole, 0, 0, 1, 200000);
+    log_bytes_header(&whole, 0, 0, 1, 2);
+    log_bytes_add(&whole, "abc", 3);
+}
+
+static void sync_words(void)
+{
+    log_bytes_add(&whole, "\xed\xa1\xda\x01", 4);
+}
+
+static void first_bytes(void)
+{
+    log_bytes_add(&whole, "\xed\xed\xed\xed\xed\xed\xed\xed", 8);
+}
+
+/* Each possible place is within the header before it. */
+static void nested_headers(void)
+{
+    log_bytes_add(&whole, "\xed\xa1\xda\x01\xed\xa1\xda\x01\0\0\0\1", 12);
+    log_bytes_add(&whole, "\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1", 20);
+}
+
+static void garbage_behind(void)
+{
+    log_bytes_header(&whole, 0, 0, 1, 1000);
+    log_bytes_add(&whole, noise, 1002);
+}
+
+/* What is read is a few times the file, in calls that are as many as there are headers at most. */
+static void test_work_grows_with_the_size_alone(void **state)
+{
+    (void) state;
+    static void (*const units[])(void) = {long_lie,    lies_into_the_buffer, sync_words,
+                                          first_bytes, nested_headers,       garbage_behind};
+    struct log_event event;
+    struct log_damage damage;
+    make_noise(3);
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        fill_with(units[i]);
+        struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+        memset(&reads, 0, sizeof reads);
+        int64_t at = 0;
+        for (;;) {
+            const enum log_outcome outcome = log_next(reader, &event, &damage);
+            if (outcome == LOG_END)
+                break;
+            assert_true(outcome != LOG_FAILED);
+            at += outcome == LOG_EVENT ? event.length : damage.length;
+        }
+        assert_int_equal(at, whole.size);
+        assert_in_range(reads.bytes, whole.size, 3 * whole.size);
+        assert_in_range(reads.calls, 1, whole.size / 14);
+        log_close(reader);
+    }
+}
+
+/* ---- Seeking -----------------------------------------------------------------------------------
+ */
+
+/* From each byte of a log that is damaged in several places, what is read is what was read from
+ * there on, or from the next event. */
+static void test_seeking_finds_what_reading_found(void **state)
+{
+    (void) state;
+    make_small();
+    log_bytes_header(&whole, 5, 40, 5, 1000); /* into the next */
+    log_bytes_add(&whole, "D1234five!", 10);
+    for (int i = 0; i < 5; i++) {
+        log_bytes_event(&whole, i, "CHANNEL", "data", 4);
+        log_bytes_add(&whole, "??\0", (size_t) i % 4);
+    }
+    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    const struct told all = read_on(reader, 0, whole.bytes);
+    for (size_t offset = whole.size + 1; offset-- > 0;) {
+        size_t next = 0;
+        while (next < all.count &&
+               (all.item[next].damage || all.item[next].offset < (int64_t) offset))
+            next++;
+        const int64_t at = next < all.count ? all.item[next].offset : (int64_t) whole.size;
+        log_seek(reader, (int64_t) offset);
+        const struct told told = read_on(reader, at, whole.bytes);
+        assert_int_equal(told.count, all.count - next);
+    }
+    log_close(reader);
+}
+
+static void test_seeking_in_a_log_of_many_buffers(void **state)
+{
+    (void) state;
+    struct log_event event;
+    struct log_damage damage;
+    make_noise(4);
+    whole.size = whole.count = 0;
+    while (whole.size < LOG_BYTES_MAX - sizeof noise - 100)
+        log_bytes_event(&whole, (int64_t) whole.count, "CHANNEL", noise, draw_size());
+    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    for (int i = 0; i < 2000; i++) {
+        const size_t index = (size_t) rand() % whole.count;
+        log_seek(reader, (int64_t) whole.begin[index]);
+        for (size_t n = index; n < index + 3 && n < whole.count; n++) {
+            assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
+            assert_int_equal(event.offset, whole.begin[n]);
+            check_event(&event, whole.bytes);
+        }
+    }
+    log_close(reader);
+}
+
+/* ---- Files that change, and that cannot be read ------------------------------------------------
+ */
+
+static void test_what_is_written_later_is_not_read(void **state)
+{
+    (void) state;
+    make_small();
+    struct log_reader *reader = open_bytes(whole.bytes, whole.begin[2]);
+    assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, 0), whole.size);
+    assert_int_equal(read_on(reader, 0, whole.bytes).count, 2);
+    log_close(reader);
+}
+
+static void expect_failed(struct log_reader *reader, int error)
+{
+    struct log_event event;
+    struct log_damage damage;
+    for (int i = 0; i < 3; i++) {
+        errno = 0;
+        assert_int_equal(log_next(reader, &event, &damage), LOG_FAILED);
+        assert_int_equal(errno, error);
+    }
+}
+
+static void test_a_file_that_becomes_shorter(void **state)
+{
+    (void) state;
+    struct log_event event;
+    struct log_damage damage;
+    make_noise(5);
+    whole.size = whole.count = 0;
+    for (int i = 0; i < 10; i++)
+        log_bytes_event(&whole, i, "CHANNEL", noise, LOG_DATA_MAX);
+    for (size_t left = 0; left < whole.size; left += 99991) {
+        struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+        assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
+        assert_int_equal(ftruncate(log_bytes_descriptor(), (off_t) left), 0);
+        int events = 1;
+        while (events < 10 && log_next(reader, &event, &damage) == LOG_EVENT)
+            check_event(&event, whole.bytes), events++;
+        assert_in_range(events, 1, 9);
+        expect_failed(reader, ENODATA);
+        log_close(reader);
+    }
+}
+
+static void test_a_file_that_cannot_be_read(void **state)
+{
+    (void) state;
+    make_small();
+    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    reads.error = EIO;
+    expect_failed(reader, EIO);
+    reads.error = 0;
+    expect_failed(reader, EIO);
+    log_close(reader);
+}
+
+static void expect_refused(const char *path, const char *reason)
+{
+    char why[LOG_WHY_MAX] = "";
+    assert_null(log_open(path, why));
+    assert_string_equal(why, reason);
+}
+
+static void test_what_is_no_file(void **state)
+{
+    (void) state;
+    char folder[] = "/tmp/fmb-test-XXXXXX", pipe[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(pipe, sizeof pipe, "%s/pipe", folder);
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    expect_refused(pipe, "no regular file");
+    expect_refused(folder, "no regular file");
+    expect_refused("/dev/zero", "no regular file");
+    unlink(pipe);
+    expect_refused(pipe, strerror(ENOENT));
+    rmdir(folder);
+    log_close(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_an_empty_file_is_a_log_of_no_events),
+        cmocka_unit_test(test_an_event_is_what_was_written),
+        cmocka_unit_test(test_the_longest),
+        cmocka_unit_test(test_lcm_reads_the_same),
+        cmocka_unit_test(test_every_truncation),
+        cmocka_unit_test(test_every_damaged_byte),
+        cmocka_unit_test(test_every_two_damaged_bytes),
+        cmocka_unit_test(test_garbage_everywhere),
+        cmocka_unit_test(test_garbage_between_all),
+        cmocka_unit_test(test_lengths_that_lie),
+        cmocka_unit_test(test_a_log_behind_a_log_that_was_cut_off),
+        cmocka_unit_test(test_a_log_in_a_message),
+        cmocka_unit_test(test_a_hole_of_ten_gigabytes),
+        cmocka_unit_test(test_work_grows_with_the_size_alone),
+        cmocka_unit_test(test_seeking_finds_what_reading_found),
+        cmocka_unit_test(test_seeking_in_a_log_of_many_buffers),
+        cmocka_unit_test(test_what_is_written_later_is_not_read),
+        cmocka_unit_test(test_a_file_that_becomes_shorter),
+        cmocka_unit_test(test_a_file_that_cannot_be_read),
+        cmocka_unit_test(test_what_is_no_file),
+    };
+    return cmocka_run_group_tests_name("log_read", tests, NULL, NULL);
+}
