@@ -339,11 +339,12 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 
 # ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
 
-fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json
+fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json event_log
 replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
 fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair.o results_scene.o \
 	model.o)
 fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
+fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
 
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),fuzz)
@@ -370,12 +371,13 @@ $(fuzzers): $(B)/fuzz_%: $(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(O)/fuzz_parts
 	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
 
 # Each file of planted/ breaks one thing of the service or the client, and is named for the target
-# that must find it, with a dash and more where there are several.
+# that must find it, with a dash and more where there are several. One of them breaks the pieces.
 fuzz_plants := $(patsubst tests/fuzz/planted/%.c,%,$(wildcard tests/fuzz/planted/*.c))
 planted_fuzzers := $(fuzz_plants:%=$(B)/planted/%)
 $(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
 		$(O)/tests/fuzz/$$(firstword $$(subst -, ,$$*)).o \
-		$$(fuzz_pieces_$$(firstword $$(subst -, ,$$*))) $(O)/fuzz_parts.a
+		$$(filter-out $(fuzz_pieces_event_log),$$(fuzz_pieces_$$(firstword $$(subst -, ,$$*)))) \
+		$(O)/fuzz_parts.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
 

@@ -184,13 +184,14 @@ static bool is_followed(struct log_reader *reader, int64_t end)
 
 /* ---- Searches. They end at once, and find nothing, after an error ---------------------------- */
 
-/* The first place from the offset on that is no hole. */
-static int64_t skip_hole(const struct log_reader *reader, int64_t offset)
+/* The first place from the offset on that is no hole, or the last one: that is read in any case,
+ * and tells whether the file has become shorter. */
+static int64_t skip_hole(const struct log_reader *reader, int64_t offset, int64_t last)
 {
     const off_t data = lseek(reader->fd, (off_t) offset, SEEK_DATA);
     if (data >= 0)
-        return data < reader->size ? data : reader->size;
-    return errno == ENXIO ? reader->size : offset; /* only holes; or it is not known */
+        return least(data, last);
+    return errno == ENXIO ? last : offset; /* only holes; or it is not known */
 }
 
 /* The first sync word that begins before the end, or the end. On input: bytes to read behind that.
@@ -211,8 +212,8 @@ static int64_t search(struct log_reader *reader, int64_t offset)
     const int64_t last = reader->size - LOG_HEADER_BYTES;
     while (offset <= last) {
         if (!is_held(reader, offset, LOG_HEADER_BYTES)) {
-            offset = skip_hole(reader, offset);
-            if (offset > last || !fill(reader, offset))
+            offset = skip_hole(reader, offset, last);
+            if (!fill(reader, offset))
                 break;
         }
         const unsigned char *bytes = held(reader, offset);

@@ -62,6 +62,10 @@ finds() {
     finds scene_json "is_body(&scene->body[i], scene->dim)"
 }
 
+@test "event_log finds an event that is overlooked" {
+    finds event_log "this does not hold: "
+}
+
 @test "every plant is looked for" {
     local plant
     for plant in tests/fuzz/planted/*.c; do

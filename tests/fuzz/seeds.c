@@ -1,6 +1,6 @@
 /* Writes what fuzzing begins with into FOLDER/TARGET/: good messages of every type, each with
- * something in it that the others lack, and short talks with the service. Texts of scenes there are
- * enough in the tree. */
+ * something in it that the others lack, short talks with the service, and logs. Texts of scenes
+ * there are enough in the tree. */
 #include "fuzz.h"
 #include "hostile.h"
 #include "wire.h"
@@ -358,6 +358,82 @@ static void write_talks(void)
     write_talks_about_scenes();
 }
 
+/* ---- Logs, as large as log_pieces.h makes it worth while ---- */
+
+static struct {
+    unsigned char bytes[1024];
+    size_t size;
+} file;
+
+static void log_bytes(const void *bytes, size_t size)
+{
+    memcpy(file.bytes + file.size, bytes, size);
+    file.size += size;
+}
+
+/* Of lengths below 256. */
+static void log_header(unsigned char channel, unsigned char data)
+{
+    const unsigned char header[28] = {
+        0xed, 0xa1, 0xda, 0x01, [11] = 1, [19] = 2, [23] = channel, [27] = data};
+    log_bytes(header, sizeof header);
+}
+
+static void log_event(const char *channel, unsigned char size)
+{
+    const char data[255] = "data";
+    log_header((unsigned char) strlen(channel), size);
+    log_bytes(channel, strlen(channel));
+    log_bytes(data, size);
+}
+
+static void end_log(const char *name)
+{
+    write_seed("event_log", name, file.bytes, file.size);
+    file.size = 0;
+}
+
+static void write_broken_logs(void)
+{
+    log_event("A", 4);
+    log_bytes("garbage", 7);
+    log_event("B", 5);
+    log_bytes("garbage that takes more than what is kept, and another line", 59);
+    log_event("C", 6);
+    end_log("garbage");
+    log_event("A", 4);
+    log_header(1, 99);
+    log_event("B", 4);
+    log_header(0, 4);
+    log_event("C", 4);
+    log_header(1, 5);
+    end_log("lies");
+    static const char hole[200];
+    log_event("A", 4);
+    log_bytes(hole, sizeof hole);
+    log_event("B", 4);
+    end_log("hole");
+}
+
+static void write_logs(void)
+{
+    end_log("empty");
+    log_event("A", 0);
+    log_event("LONGEST", 16);
+    log_event("KEPT", 17);
+    log_event("MORE", 100);
+    log_event("LAST", 1);
+    end_log("good");
+    log_header(1, 1 + 2 * 33);
+    log_bytes("A", 1);
+    log_event("B", 4);
+    log_event("C", 4);
+    log_bytes("x", 1);
+    log_event("D", 4);
+    end_log("nested");
+    write_broken_logs();
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -371,5 +447,6 @@ int main(int argc, char **argv)
     write_scene_results();
     write_statuses();
     write_talks();
+    write_logs();
     return 0;
 }
