@@ -83,7 +83,7 @@ message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
 wire_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
 	wire_status.o bus.o clock.o random_id.o)
-bus_objects := $(wire_objects) $(addprefix $(O)/service/,bus_open.o say.o signals.o)
+bus_objects := $(wire_objects) $(addprefix $(O)/service/,wire_type.o bus_open.o say.o signals.o)
 supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o filter.o)
 answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_pairs.o check.o \
 	bodies.o cache.o histogram.o)

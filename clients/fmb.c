@@ -20,6 +20,7 @@ static const struct command commands[] = {
     {"watch", "print the results that pass on the bus", cmd_watch},
     {"status", "print how the service is doing", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
+    {"log", "look into event logs, as lcm-logger writes them", cmd_log},
     {"help", "help on a command: fmb help query", cmd_help},
 };
 

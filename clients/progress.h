@@ -8,8 +8,8 @@
 struct progress {
     bool shown; /* something stands on the line */
     bool enabled;
-    bool bytes; /* else pairs */
-    uint64_t done, total;
+    const char *unit; /* "pairs" */
+    uint64_t steps, done, total;
     int64_t started_at, shown_at; /* clock_ns() */
 };
 
@@ -17,13 +17,12 @@ struct progress {
  * themselves show how far it is. */
 struct progress progress_begin(uint64_t total);
 
-/* The same for a work that is measured in bytes. */
+/* Of a file, whose bytes are counted. Standard output may be a terminal too: nothing is printed
+ * before the end. */
 struct progress progress_begin_bytes(uint64_t total);
 
-/* One more is done. Shows after the first second, then a few times a second. */
+/* One more is done; or so many are now. Shows after the first second, then a few times a second. */
 void progress_step(struct progress *progress);
-
-/* So many are done; likewise. To be called now and then. */
 void progress_to(struct progress *progress, uint64_t done);
 
 /* Clears the line. */

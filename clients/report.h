@@ -66,6 +66,7 @@ void report_answer_json(FILE *out, int dim, const struct outcome *outcome);
 
 /* text as a JSON string with its quotes; bytes that are not printable ASCII as \u00XX. */
 void report_string_json(FILE *out, const char *text);
+void report_bytes_json(FILE *out, const char *bytes, size_t count);
 
 /* Verdict, contact and box for people, in columns, without the end of the line:
  *

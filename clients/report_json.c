@@ -3,17 +3,24 @@
 #include "number.h"
 
 #include <inttypes.h>
+#include <string.h>
+
+void report_bytes_json(FILE *out, const char *bytes, size_t count)
+{
+    putc('"', out);
+    for (size_t i = 0; i < count; i++) {
+        const unsigned char byte = (unsigned char) bytes[i];
+        if (byte < 0x20 || byte >= 0x7f)
+            fprintf(out, "\\u%04x", byte);
+        else
+            fprintf(out, byte == '"' || byte == '\\' ? "\\%c" : "%c", byte);
+    }
+    putc('"', out);
+}
 
 void report_string_json(FILE *out, const char *text)
 {
-    putc('"', out);
-    for (const unsigned char *at = (const unsigned char *) text; *at; at++) {
-        if (*at < 0x20 || *at >= 0x7f)
-            fprintf(out, "\\u%04x", *at);
-        else
-            fprintf(out, *at == '"' || *at == '\\' ? "\\%c" : "%c", *at);
-    }
-    putc('"', out);
+    report_bytes_json(out, text, strlen(text));
 }
 
 static void write_vector(FILE *out, const double *numbers, int count)

@@ -18,7 +18,7 @@
 enum { KNOWN_BODIES = 1 << 18 };
 
 /* Bytes between two words of progress. */
-enum { PROGRESS_BYTES = 1 << 20 };
+enum { PROGRESS_BYTES = 1 << 16 };
 
 struct replay {
     const struct replay_options *options;

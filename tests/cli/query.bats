@@ -410,7 +410,7 @@ all_pairs() {
     ended 0
     said ''
     [ "${lines[0]}" = 'usage: fmb COMMAND [OPTIONS]' ]
-    for command in query watch status help; do
+    for command in query watch status log help; do
         grep -q "^  $command " <<< "$output"
     done
     run --separate-stderr "$FMB" help

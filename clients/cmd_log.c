@@ -1,0 +1,56 @@
+/* fmb log: commands of its own for event logs. A table of them, and what is said about them. */
+#include "commands.h"
+
+#include "args.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct command {
+    const char *name;
+    const char *help;
+    int (*run)(int argc, char **argv);
+};
+
+static const struct command commands[] = {
+    {"info", "what is in a log, and whether all of it is whole", cmd_log_info},
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static void print_help(FILE *out)
+{
+    fputs(
+        "usage: fmb log COMMAND [OPTIONS] LOG...\n"
+        "\n"
+        "Looks into event logs, as lcm-logger and LCM's file provider write them. Logs may be\n"
+        "damaged: what is whole is read, and what is not is told with its place.\n"
+        "\n"
+        "Commands:\n",
+        out);
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        fprintf(out, "  %-8s  %s\n", commands[i].name, commands[i].help);
+    fputs("\n'fmb log COMMAND --help' says more.\n", out);
+}
+
+static bool is_help(const char *word)
+{
+    return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
+}
+
+int cmd_log(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_help(stderr);
+        return ARGS_USAGE;
+    }
+    if (is_help(argv[1])) {
+        print_help(stdout);
+        return ARGS_ANSWERED;
+    }
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(commands[i].name, argv[1]) == 0)
+            return commands[i].run(argc - 1, argv + 1);
+    fprintf(stderr, "fmb log: unknown command '%s'\nTry 'fmb log --help'.\n", argv[1]);
+    return ARGS_USAGE;
+}

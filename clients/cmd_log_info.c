@@ -1,0 +1,128 @@
+/* fmb log info: what is in event logs. */
+#include "commands.h"
+
+#include "args.h"
+#include "log_info.h"
+#include "log_info_report.h"
+#include "progress.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: fmb log info [OPTIONS] LOG...\n"
+    "\n"
+    "Reads event logs and prints for each: its size, the time it covers, its channels with the\n"
+    "types of their messages, how many there are and how large, and each place that is damaged.\n"
+    "A type that is none of the service's is printed as the fingerprint that its messages begin\n"
+    "with.\n"
+    "\n"
+    "  --json               one line of JSON for each log, with all times in microseconds\n"
+    "  -h, --help\n"
+    "\n"
+    "Exit codes: 0 all logs are whole, 1 one is damaged: what could be read is printed, 2 wrong\n"
+    "usage, or a log that cannot be read, or is none.\n";
+
+struct options {
+    bool json;
+};
+
+enum { JSON = 1 };
+
+static const struct option own_options[] = {
+    {"json", no_argument, NULL, JSON},
+    {NULL, 0, NULL, 0},
+};
+
+static bool take_option(const struct args *args, int option, void *out)
+{
+    struct options *options = out;
+    (void) args;
+    options->json = options->json || option == JSON;
+    return true;
+}
+
+/* On output: NULL, or why it could not be read to its end. */
+static const char *read_all(struct log_reader *reader, struct log_info *info)
+{
+    struct progress progress = progress_begin_bytes((uint64_t) log_size(reader));
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
+    while ((outcome = log_next(reader, &event, &damage)) < LOG_END) {
+        if (outcome == LOG_EVENT)
+            log_info_event(info, &event);
+        else
+            log_info_damage(info, &damage);
+        progress_to(&progress, (uint64_t) (outcome == LOG_EVENT ? event.offset : damage.offset));
+    }
+    const int error = errno;
+    progress_end(&progress);
+    log_info_end(info);
+    if (outcome == LOG_END)
+        return NULL;
+    return error == ENODATA ? "it has become shorter" : strerror(error);
+}
+
+static int complain_of(const char *path, const char *why)
+{
+    fflush(stdout);
+    fprintf(stderr, "fmb: %s: %s\n", path, why);
+    return ARGS_USAGE;
+}
+
+static int report_log(const struct options *options, const char *path, struct log_reader *reader,
+                      struct log_info *info)
+{
+    struct log_report report = {.path = path, .size = log_size(reader), .info = info};
+    report.error = read_all(reader, info);
+    if (!report.error && info->all.events == 0 && report.size > 0)
+        return complain_of(path, "no event log: there is no event in it");
+    if (options->json)
+        log_report_json(stdout, &report);
+    else
+        log_report_text(stdout, &report);
+    if (report.error)
+        return complain_of(path, report.error);
+    return info->damages > 0 ? ARGS_FAILED : ARGS_ANSWERED;
+}
+
+static int open_and_report(const struct options *options, const char *path)
+{
+    char why[LOG_WHY_MAX];
+    struct log_reader *reader = log_open(path, why);
+    if (!reader)
+        return complain_of(path, why);
+    struct log_info *info = log_info_open();
+    const int code = report_log(options, path, reader, info);
+    log_info_close(info);
+    log_close(reader);
+    return code;
+}
+
+int cmd_log_info(int argc, char **argv)
+{
+    struct args args = {
+        "log info", usage, own_options, take_option, .operand = "LOG", .operands_max = INT_MAX};
+    struct options options = {.json = false};
+    int code = args_parse(&args, argc, argv, &options);
+    if (code != ARGS_RUN)
+        return code;
+    if (args.operand_count == 0) {
+        args_error(&args, "expected a LOG");
+        return ARGS_USAGE;
+    }
+    code = ARGS_ANSWERED;
+    for (int i = 0; i < args.operand_count; i++) {
+        if (i > 0 && !options.json)
+            putchar('\n');
+        const int one = open_and_report(&options, args.operands[i]);
+        code = one > code ? one : code;
+    }
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return code;
+    perror("fmb: standard output");
+    return code > ARGS_FAILED ? code : ARGS_FAILED;
+}

@@ -1,0 +1,277 @@
+#include "log_info_report.h"
+
+#include "cursor.h"
+#include "number.h"
+#include "report.h"
+#include "wire_type.h"
+
+#include <inttypes.h>
+#include <string.h>
+#include <time.h>
+
+enum { MICROSECONDS = 1000000 };
+
+/* Without overflow, whatever the times. */
+static uint64_t span_of(const struct log_tally *tally)
+{
+    return (uint64_t) tally->end - (uint64_t) tally->begin;
+}
+
+/* Events a second; the first one is there when time begins. */
+static double rate_of(const struct log_tally *tally)
+{
+    return (double) (tally->events - 1) / (1e-6 * (double) span_of(tally));
+}
+
+enum { TYPE_TEXT_MAX = 32 };
+
+/* NULL: there is none. */
+static const char *type_text(struct log_type type, char text[TYPE_TEXT_MAX])
+{
+    const char *name = type.known ? wire_type_name(type.fingerprint) : NULL;
+    if (!type.known || name)
+        return name;
+    snprintf(text, TYPE_TEXT_MAX, "0x%016" PRIx64, (uint64_t) type.fingerprint);
+    return text;
+}
+
+/* ---- For people ------------------------------------------------------------------------------ */
+
+enum { CHANNEL, TYPE, EVENTS, BYTES, LEAST, MOST, FIRST, LAST, COLUMNS };
+
+/* Names of channels that take more are cut; LCM's own, of at most 63 characters, are not. */
+enum { CELL_MAX = 63 + sizeof "\\x00..." };
+
+struct line {
+    char cell[COLUMNS][CELL_MAX];
+};
+
+/* What is not printable as \xNN, and so a backslash too. */
+static void write_channel(const struct log_row *row, char out[CELL_MAX])
+{
+    size_t used = 0, i = 0;
+    for (; i < row->channel_length && used + strlen("\\x00...") < CELL_MAX; i++) {
+        const unsigned char byte = (unsigned char) row->channel[i];
+        const bool plain = cursor_is_printable(byte) && byte != '\\';
+        used += (size_t) sprintf(out + used, plain ? "%c" : "\\x%02x", byte);
+    }
+    strcpy(out + used, i < row->channel_length ? "..." : "");
+}
+
+/* "956.022 s" behind the beginning of the log. */
+static void write_seconds(int64_t begin, int64_t utime, char out[CELL_MAX])
+{
+    const uint64_t span = (uint64_t) utime - (uint64_t) begin;
+    snprintf(out, CELL_MAX, "%" PRIu64 ".%03" PRIu64 " s", span / MICROSECONDS,
+             span % MICROSECONDS / 1000);
+}
+
+static void write_tally(const struct log_tally *tally, int64_t begin, struct line *out)
+{
+    number_grouped(tally->events, out->cell[EVENTS]);
+    number_grouped(tally->bytes, out->cell[BYTES]);
+    number_grouped((int64_t) tally->least, out->cell[LEAST]);
+    number_grouped((int64_t) tally->most, out->cell[MOST]);
+    write_seconds(begin, tally->begin, out->cell[FIRST]);
+    write_seconds(begin, tally->end, out->cell[LAST]);
+}
+
+enum { HEADING = -1 };
+
+/* HEADING, then the rows, then the others. On output: false behind the last one. */
+static bool make_line(const struct log_info *info, int number, struct line *out)
+{
+    static const struct line heading = {
+        {"channel", "type", "events", "bytes", "least", "most", "first", "last"}};
+    char text[TYPE_TEXT_MAX];
+    if (number == HEADING) {
+        *out = heading;
+    } else if (number < (int) info->row_count) {
+        const struct log_row *row = &info->row[number];
+        const char *type = type_text(row->type, text);
+        write_channel(row, out->cell[CHANNEL]);
+        strcpy(out->cell[TYPE], type ? type : "(too short)");
+        write_tally(&row->tally, info->all.begin, out);
+    } else {
+        strcpy(out->cell[CHANNEL], "(all others)");
+        strcpy(out->cell[TYPE], "");
+        write_tally(&info->others, info->all.begin, out);
+        return number == (int) info->row_count && info->others.events > 0;
+    }
+    return true;
+}
+
+static void print_channels(FILE *out, const struct log_info *info)
+{
+    struct line line;
+    int width[COLUMNS] = {0};
+    for (int i = HEADING; make_line(info, i, &line); i++)
+        for (int column = 0; column < COLUMNS; column++)
+            if ((int) strlen(line.cell[column]) > width[column])
+                width[column] = (int) strlen(line.cell[column]);
+    for (int i = HEADING; make_line(info, i, &line); i++) {
+        for (int column = 0; column < COLUMNS; column++)
+            fprintf(out, "  %*s", column <= TYPE ? -width[column] : width[column],
+                    line.cell[column]);
+        putc('\n', out);
+    }
+    if (info->others.events > 0)
+        fprintf(out, "  (of all others there is no room to count each: these are the first %d)\n",
+                LOG_INFO_ROWS_MAX);
+}
+
+static void print_time(FILE *out, const char *name, int64_t utime)
+{
+    char text[64];
+    struct tm parts;
+    const time_t seconds = (time_t) (utime / MICROSECONDS - (utime % MICROSECONDS < 0));
+    const int64_t part = utime % MICROSECONDS + (utime % MICROSECONDS < 0 ? MICROSECONDS : 0);
+    if (!gmtime_r(&seconds, &parts) || strftime(text, sizeof text, "%F %T", &parts) == 0)
+        snprintf(text, sizeof text, "%" PRId64 " s since 1970", (int64_t) seconds);
+    fprintf(out, "  %-5s %s.%06" PRId64 " UTC\n", name, text, part);
+}
+
+/* "1 event", "2,500 events". */
+static void print_count(FILE *out, int64_t count, const char *one)
+{
+    char text[NUMBER_TEXT_MAX];
+    fprintf(out, "%s %s%s", number_grouped(count, text), one, count == 1 ? "" : "s");
+}
+
+static void print_rate(FILE *out, double rate)
+{
+    char text[NUMBER_TEXT_MAX];
+    const bool large = rate >= 1000 && rate < 1e15;
+    fprintf(out, ", %s events a second",
+            large ? number_grouped((int64_t) rate, text) : number_short(rate, text));
+}
+
+static void print_span(FILE *out, const struct log_info *info)
+{
+    const uint64_t span = span_of(&info->all);
+    print_time(out, "from", info->all.begin);
+    print_time(out, "to", info->all.end);
+    fprintf(out, "  %" PRIu64 ".%06" PRIu64 " s", span / MICROSECONDS, span % MICROSECONDS);
+    if (span > 0)
+        print_rate(out, rate_of(&info->all));
+    if (info->backward > 0) {
+        fputs("; time goes back ", out);
+        print_count(out, info->backward, "time");
+    }
+    putc('\n', out);
+}
+
+enum { DAMAGE_LINES = 20 };
+
+static void print_damage(FILE *out, const struct log_info *info)
+{
+    char offset[NUMBER_TEXT_MAX];
+    fputs("  damage: ", out);
+    print_count(out, info->damages, "place");
+    fputs(", ", out);
+    print_count(out, info->damaged, "byte");
+    putc('\n', out);
+    for (int64_t i = 0; i < info->damages && i < DAMAGE_LINES; i++) {
+        fprintf(out, "    at %s, ", number_grouped(info->damage[i].offset, offset));
+        print_count(out, info->damage[i].length, "byte");
+        fprintf(out, ": %s\n", info->damage[i].what);
+    }
+    if (info->damages > DAMAGE_LINES)
+        fprintf(out, "    and %s more\n", number_grouped(info->damages - DAMAGE_LINES, offset));
+}
+
+void log_report_text(FILE *out, const struct log_report *report)
+{
+    const struct log_info *info = report->info;
+    fprintf(out, "%s: ", report->path);
+    if (report->size == 0) {
+        fputs("empty, a log of no events\n", out);
+        return;
+    }
+    print_count(out, report->size, "byte");
+    fputs(", ", out);
+    print_count(out, info->all.events, "event");
+    putc('\n', out);
+    if (info->all.events > 0) {
+        print_span(out, info);
+        print_channels(out, info);
+    }
+    if (info->damages > 0)
+        print_damage(out, info);
+    else
+        fputs("  no damage\n", out);
+}
+
+/* ---- For programs ---------------------------------------------------------------------------- */
+
+static void write_times(FILE *out, const struct log_tally *tally)
+{
+    if (tally->events > 0)
+        fprintf(out, ", \"begin\": %" PRId64 ", \"end\": %" PRId64, tally->begin, tally->end);
+    else
+        fputs(", \"begin\": null, \"end\": null", out);
+}
+
+static void write_counts(FILE *out, const struct log_tally *tally)
+{
+    fprintf(out, "\"events\": %" PRId64 ", \"bytes\": %" PRId64 ", \"least\": %zu, \"most\": %zu",
+            tally->events, tally->bytes, tally->least, tally->most);
+    write_times(out, tally);
+}
+
+static void write_row(FILE *out, const struct log_row *row)
+{
+    char text[TYPE_TEXT_MAX];
+    const char *type = type_text(row->type, text);
+    fputs("{\"channel\": ", out);
+    report_bytes_json(out, row->channel, row->channel_length);
+    fprintf(out, type ? ", \"type\": \"%s\", " : ", \"type\": null, ", type);
+    write_counts(out, &row->tally);
+    putc('}', out);
+}
+
+static void write_channels(FILE *out, const struct log_info *info)
+{
+    fputs(", \"channels\": [", out);
+    for (unsigned i = 0; i < info->row_count; i++) {
+        fputs(i ? ", " : "", out);
+        write_row(out, &info->row[i]);
+    }
+    putc(']', out);
+    if (info->others.events == 0)
+        return;
+    fputs(", \"others\": {", out);
+    write_counts(out, &info->others);
+    putc('}', out);
+}
+
+static void write_damage(FILE *out, const struct log_info *info)
+{
+    fprintf(out, ", \"damage\": {\"places\": %" PRId64 ", \"bytes\": %" PRId64 ", \"first\": [",
+            info->damages, info->damaged);
+    for (int64_t i = 0; i < info->damages && i < LOG_INFO_DAMAGES_MAX; i++)
+        fprintf(out, "%s{\"offset\": %" PRId64 ", \"length\": %" PRId64 ", \"what\": \"%s\"}",
+                i ? ", " : "", info->damage[i].offset, info->damage[i].length,
+                info->damage[i].what);
+    fputs("]}", out);
+}
+
+void log_report_json(FILE *out, const struct log_report *report)
+{
+    const struct log_tally *all = &report->info->all;
+    char rate[NUMBER_TEXT_MAX];
+    fputs("{\"log\": ", out);
+    report_string_json(out, report->path);
+    fprintf(out, ", \"size\": %" PRId64 ", \"events\": %" PRId64 ", \"bytes\": %" PRId64,
+            report->size, all->events, all->bytes);
+    write_times(out, all);
+    fprintf(out, ", \"rate\": %s, \"backward\": %" PRId64,
+            span_of(all) > 0 ? number_exact(rate_of(all), rate) : "null", report->info->backward);
+    write_channels(out, report->info);
+    write_damage(out, report->info);
+    if (report->error) {
+        fputs(", \"error\": ", out);
+        report_string_json(out, report->error);
+    }
+    fputs("}\n", out);
+}

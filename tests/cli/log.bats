@@ -1,0 +1,317 @@
+# fmb log: what event logs are said to hold, good ones and broken ones; exit codes.
+
+setup() {
+    FMB=${FMB_BUILD:-build}/fmb
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    log=$BATS_TEST_TMPDIR/a.log
+    pair_query=1704231dbc74a72c
+    status=98458447f1c5ee86
+}
+
+bats_require_minimum_version 1.5.0
+
+# bytes HEX
+bytes() {
+    # shellcheck disable=SC2059
+    printf "$(sed 's/../\\x&/g' <<< "$1")"
+}
+
+# hex TEXT: the bytes of what printf makes of it.
+hex() {
+    # shellcheck disable=SC2059
+    printf "$1" | od -An -v -tx1 | tr -d ' \n'
+}
+
+# event UTIME CHANNEL HEX: as it stands in a log; the data begins with the type's fingerprint.
+event() {
+    local name
+    name=$(hex "$2")
+    bytes "$(printf 'eda1da01%016x%016x%08x%08x' 7 "$1" $((${#name} / 2)) $((${#3} / 2)))$name$3"
+}
+
+# Three events in two seconds and a quarter.
+good() {
+    event 1700000000000000 FMB_PAIR_QUERY ${pair_query}00112233
+    event 1700000002250000 FMB_PAIR_QUERY ${pair_query}0011
+    event 1700000001000001 FMB_STATUS $status
+}
+
+info() {
+    run --separate-stderr "$FMB" log info "$@"
+}
+
+# field FILTER: of the JSON.
+field() {
+    jq -c "$1" <<< "$output"
+}
+
+is() {
+    [ "$output" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $output"
+        return 1
+    }
+}
+
+said() {
+    [ "$stderr" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status"
+        return 1
+    }
+}
+
+# ---- Good logs -------------------------------------------------------------------------------
+
+@test "a log, for people" {
+    good > "$log"
+    info "$log"
+    ended 0
+    said ''
+    is "$log: 152 bytes, 3 events
+  from  2023-11-14 22:13:20.000000 UTC
+  to    2023-11-14 22:13:22.250000 UTC
+  2.250000 s, 0.888889 events a second; time goes back 1 time
+  channel         type                   events  bytes  least  most    first     last
+  FMB_PAIR_QUERY  fmb_msgs.pair_query_t       2     22     10    12  0.000 s  2.250 s
+  FMB_STATUS      fmb_msgs.status_t           1      8      8     8  1.000 s  1.000 s
+  no damage"
+}
+
+@test "a log, for programs" {
+    good > "$log"
+    info --json "$log"
+    ended 0
+    said ''
+    is "{\"log\": \"$log\", \"size\": 152, \"events\": 3, \"bytes\": 30, \"begin\": 1700000000000000, \"end\": 1700000002250000, \"rate\": 0.8888888888888888, \"backward\": 1, \"channels\": [{\"channel\": \"FMB_PAIR_QUERY\", \"type\": \"fmb_msgs.pair_query_t\", \"events\": 2, \"bytes\": 22, \"least\": 10, \"most\": 12, \"begin\": 1700000000000000, \"end\": 1700000002250000}, {\"channel\": \"FMB_STATUS\", \"type\": \"fmb_msgs.status_t\", \"events\": 1, \"bytes\": 8, \"least\": 8, \"most\": 8, \"begin\": 1700000001000001, \"end\": 1700000001000001}], \"damage\": {\"places\": 0, \"bytes\": 0, \"first\": []}}"
+}
+
+@test "all types of the service, and others by their fingerprint" {
+    for type in 9265058e7e235b03 $pair_query eb1e69337997c3dc 52891e4394056640 c3b42b0975213c58 \
+        $status 0123456789abcdef 00; do
+        event 1 A $type
+    done > "$log"
+    info --json "$log"
+    ended 0
+    [ "$(field '[.channels[] | .type] | sort')" = '[null,"0x0123456789abcdef","fmb_msgs.frame_t","fmb_msgs.pair_query_t","fmb_msgs.pair_result_t","fmb_msgs.scene_query_t","fmb_msgs.scene_result_t","fmb_msgs.status_t"]' ]
+    info "$log"
+    [[ $output == *"  A        0x0123456789abcdef            1      8      8     8  0.000 s  0.000 s"* ]]
+    [[ $output == *"  A        (too short)                   1      1      1     1  0.000 s  0.000 s"* ]]
+}
+
+@test "an empty file is a log" {
+    : > "$log"
+    info "$log"
+    ended 0
+    is "$log: empty, a log of no events"
+    info --json "$log"
+    ended 0
+    is "{\"log\": \"$log\", \"size\": 0, \"events\": 0, \"bytes\": 0, \"begin\": null, \"end\": null, \"rate\": null, \"backward\": 0, \"channels\": [], \"damage\": {\"places\": 0, \"bytes\": 0, \"first\": []}}"
+}
+
+@test "one event takes no time" {
+    event -1 A '' > "$log"
+    info --json "$log"
+    ended 0
+    [ "$(field '[.begin, .end, .rate, .events, .channels[0].least]')" = '[-1,-1,null,1,0]' ]
+    info "$log"
+    [[ $output == *"  from  1969-12-31 23:59:59.999999 UTC"* ]]
+    [[ $output == *"  0.000000 s
+"* ]]
+}
+
+@test "times may be any" {
+    event -9223372036854775808 A '' > "$log"
+    event 9223372036854775807 A '' >> "$log"
+    info "$log"
+    ended 0
+    [[ $output == *"  18446744073709.551615 s, "* ]]
+    info --json "$log"
+    [[ $output == *'"begin": -9223372036854775808, "end": 9223372036854775807'* ]]
+}
+
+@test "names of channels do nothing to a terminal, and are told apart" {
+    event 1 '\e[2J\e]0;x\a' '' > "$log"
+    event 1 'a\0b"\\' '' >> "$log"
+    event 1 '\xff\xc3\xa4' '' >> "$log"
+    event 1 "$(printf '%0999d' 0)" '' >> "$log"
+    event 1 "$(printf '%063d' 1)" '' >> "$log"
+    info "$log"
+    ended 0
+    # shellcheck disable=SC1003
+    [[ $output == *'  \x1b[2J\x1b]0;x\x07 '* && $output == *'  a\x00b"\x5c '* ]]
+    [[ $output == *'  \xff\xc3\xa4 '* && $output == *"  $(printf '%064d' 0)... "* && $output == *"  $(printf '%063d' 1) "* ]] || {
+        echo "$output"
+        return 1
+    }
+    [ -z "$(tr -d '\n -~' <<< "$output")" ]
+    info --json "$log"
+    [ "$(field '[.channels[].channel | length]')" = '[10,999,63,5,3]' ]
+    [ "$(field '.channels[3].channel')" = '"a\u0000b\"\\"' ]
+    [ -z "$(tr -d '\n -~' <<< "$output")" ]
+}
+
+@test "several logs, one after the other; the worst gives the exit code" {
+    good > "$log"
+    head -c 100 "$log" > "$BATS_TEST_TMPDIR/b.log"
+    info --json "$log" "$log"
+    ended 0
+    [ "${#lines[@]}" = 2 ]
+    info "$log" "$BATS_TEST_TMPDIR/b.log" "$log"
+    ended 1
+    [ "$(grep -c 'bytes, . event' <<< "$output")" = 3 ]
+    info "$log" "$BATS_TEST_TMPDIR/none.log" "$BATS_TEST_TMPDIR/b.log"
+    ended 2
+    [ "$(grep -c 'bytes, . event' <<< "$output")" = 2 ]
+    said "fmb: $BATS_TEST_TMPDIR/none.log: No such file or directory"
+}
+
+@test "what LCM writes is read" {
+    LCM_DEFAULT_URL="file://$log?mode=w" run "$FMB" query clients/demo/cube.json --timeout 0.01 --retries 1
+    info --json "$log"
+    ended 0
+    [ "$(field '[.channels[] | [.channel, .type, .events]]')" = \
+        '[["FMB_SCENE_QUERY","fmb_msgs.scene_query_t",2]]' ]
+}
+
+# ---- Damage ----------------------------------------------------------------------------------
+
+@test "damage is told with its place, and what is good is read" {
+    { good && printf 'garbage' && good && event 1 A 001122 | head -c 30; } > "$log"
+    info "$log"
+    ended 1
+    said ''
+    [[ $output == "$log: 341 bytes, 6 events"* ]]
+    [[ $output == *"
+  damage: 2 places, 37 bytes
+    at 152, 7 bytes: no event
+    at 311, 30 bytes: the last event is cut off" ]]
+    info --json "$log"
+    ended 1
+    [ "$(field '[.events, .damage]')" = '[6,{"places":2,"bytes":37,"first":[{"offset":152,"length":7,"what":"no event"},{"offset":311,"length":30,"what":"the last event is cut off"}]}]' ]
+}
+
+@test "of many damages the first are told, and how many there are" {
+    good > "$BATS_TEST_TMPDIR/good"
+    for _ in $(seq 25); do cat "$BATS_TEST_TMPDIR/good" && printf '?'; done > "$log"
+    info "$log"
+    ended 1
+    [[ $output == *"
+  damage: 25 places, 25 bytes
+    at 152, 1 byte: no event
+"* ]]
+    [ "$(grep -c '^    at ' <<< "$output")" = 20 ]
+    [[ $output == *"    and 5 more" ]]
+    info --json "$log"
+    [ "$(field '[.damage.places, (.damage.first | length)]')" = '[25,25]' ]
+}
+
+@test "every truncation of a log is read as far as it goes" {
+    good > "$BATS_TEST_TMPDIR/good"
+    # size, exit code, events
+    while read -r size code events; do
+        head -c "$size" "$BATS_TEST_TMPDIR/good" > "$log"
+        info --json "$log"
+        ended "$code"
+        [ "$code" = 2 ] || [ "$(field .events)" = "$events" ]
+    done <<< "0 0 0
+1 2 -
+28 2 -
+53 2 -
+54 0 1
+55 1 1
+105 1 1
+106 0 2
+107 1 2
+151 1 2
+152 0 3"
+}
+
+@test "a hole of ten gigabytes is passed over" {
+    good > "$log"
+    truncate -s 10G "$log" || skip 'no such large files here'
+    good >> "$log"
+    info --json "$log"
+    ended 1
+    [ "$(field '[.size, .events, .damage.first]')" = \
+        '[10737418392,6,[{"offset":152,"length":10737418088,"what":"zeros"}]]' ]
+}
+
+@test "what is no log is refused" {
+    info README.md
+    ended 2
+    is ''
+    said 'fmb: README.md: no event log: there is no event in it'
+    info tests
+    ended 2
+    said 'fmb: tests: no regular file'
+    mkfifo "$BATS_TEST_TMPDIR/pipe"
+    info "$BATS_TEST_TMPDIR/pipe"
+    ended 2
+    said "fmb: $BATS_TEST_TMPDIR/pipe: no regular file"
+}
+
+@test "more channels than are counted are summed" {
+    for i in $(seq 4100); do
+        printf '\xed\xa1\xda\x01'
+        printf '\0%.0s' $(seq 19)
+        printf '\4\0\0\0\0%04d' "$i"
+    done > "$log"
+    info --json "$log"
+    ended 0
+    [ "$(field '[.events, (.channels | length), .others.events]')" = '[4100,4096,4]' ]
+    info "$log"
+    [[ $output == *"  (all others) "*"the first 4096)"* ]]
+}
+
+# ---- The command -----------------------------------------------------------------------------
+
+@test "output that cannot be written is a failure" {
+    [ -w /dev/full ] || skip 'no /dev/full'
+    good > "$log"
+    run bash -c '"$1" log info "$2" > /dev/full' - "$FMB" "$log"
+    ended 1
+    is 'fmb: standard output: No space left on device'
+}
+
+@test "help" {
+    run --separate-stderr "$FMB" log --help
+    ended 0
+    [[ $output == 'usage: fmb log COMMAND'*'  info '* ]]
+    said ''
+    help=$output
+    run --separate-stderr "$FMB" log -h
+    is "$help"
+    run --separate-stderr "$FMB" help log
+    ended 0
+    is "$help"
+    run --separate-stderr "$FMB" log
+    ended 2
+    said "$help"
+    run --separate-stderr "$FMB" log info --help
+    ended 0
+    [[ $output == 'usage: fmb log info'*'--json'* ]]
+    said ''
+}
+
+@test "wrong usage" {
+    run "$FMB" log frobnicate
+    ended 2
+    is "fmb log: unknown command 'frobnicate'
+Try 'fmb log --help'."
+    run "$FMB" log info
+    ended 2
+    is "fmb log info: expected a LOG
+Try 'fmb log info --help'."
+    run "$FMB" log info --frobnicate x
+    ended 2
+    is "fmb log info: unknown option '--frobnicate'
+Try 'fmb log info --help'."
+}
