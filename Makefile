@@ -89,7 +89,7 @@ answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_p
 	bodies.o cache.o histogram.o)
 server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
-	clients/log/*.c clients/replay/*.c)))
+	clients/log/*.c clients/replay/*.c))) $(O)/page/template.o
 asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
@@ -97,9 +97,9 @@ capped_sets := plain $(if $(x86),sse2 avx2)
 capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
-	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker $(B)/soak-memory \
-	$(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(B)/logs/tell \
-	$(capped_programs)
+	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
+	$(B)/soak-memory $(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(B)/logs/tell \
+	$(B)/make-page $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -177,6 +177,32 @@ $(O)/clients/%.o: clients/%.c $(O)/settings
 $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Itests/hostile
+
+# The page of a replay without its data: its text, style and scripts in one, and then numbers of C. Its
+# policy lets nothing run but what has the hash of all between the tags, line ends included.
+page_source := clients/replay/page/
+page_scripts := $(addprefix $(page_source),numbers.js data.js dom.js clock.js world.js timeline.js \
+	stage.js window.js panel.js main.js)
+page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
+	basenc --base16 -d | base64)
+build/page/page.html: $(page_source)page.html $(page_source)page.css $(page_scripts) Makefile
+	@mkdir -p $(@D)
+	@! grep -n -e '</' -e '<!--' $(page_scripts) $(page_source)page.css
+	@cat $(page_scripts) > $(@D)/scripts
+	sed -e "s|@SCRIPT_HASH@|$(call page_hash,$(@D)/scripts)|" \
+		-e "s|@STYLE_HASH@|$(call page_hash,$(page_source)page.css)|" \
+		-e '/^@STYLE@$$/{r $(page_source)page.css' -e 'd;}' \
+		-e '/^@SCRIPT@$$/{r $(@D)/scripts' -e 'd;}' $< > $@
+	@[ "$$(grep -c '@[A-Z_]*@' $@)" = 1 ] # @DATA@
+
+build/page/template.c: build/page/page.html
+	@{ echo '#include "page_template.h"'; echo 'const unsigned char page_template[] = {'; \
+		od -An -v -tu1 $< | sed 's/ *\([0-9]\{1,\}\)/\1,/g'; echo '};'; \
+		echo 'const size_t page_template_size = sizeof page_template;'; } > $@
+
+$(O)/page/template.o: build/page/template.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Iclients/replay
 
 # lcm-gen's own code is not ours to warn about, nor that its decoders copy no bytes to NULL.
 $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
@@ -256,6 +282,15 @@ $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 $(B)/poison: $(O)/tests/system/poison.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^
+
+$(B)/make-page: $(O)/tests/page/make_page.o $(O)/tests/page/teller.o $(client_objects) $(asking_objects) \
+		$(answer_objects) $(bus_objects) $(O)/service/senders.o $(message_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+
+$(O)/tests/page/%.o: tests/page/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) $(clients_see)
 
 # Tests of the engine link neither LCM nor the service.
 $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objects) $(B)/libfmb.a
@@ -632,7 +667,7 @@ sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
 	clients/replay/*.h tests/oracle/*.h \
 	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h \
-	tests/logs/*.h)
+	tests/logs/*.h tests/page/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
@@ -680,7 +715,7 @@ clean:
 
 build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev
 test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
-	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2
+	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium
 
 fuzz_packages := $(build_packages) clang libclang-rt-14-dev llvm afl++
 

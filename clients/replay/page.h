@@ -8,9 +8,20 @@
 
 #include <stdio.h>
 
+/* What is kept: so many queries and bytes of what the page holds; beyond them so many more queries
+ * with differences, and bytes. A query is kept whole, so that it may be somewhat more, up to a
+ * megabyte. Of one query PAGE_PAIRS_MAX pairs (page_event.h). */
+enum {
+    PAGE_EVENTS_MAX = 5000,
+    PAGE_BYTES_MAX = 32 << 20,
+    PAGE_DIFFERENCES_MAX = 1000,
+    PAGE_DIFFERENCES_BYTES_MAX = 16 << 20
+};
+
 struct page;
 
-/* NULL: out of memory. title: what the logs are called, copied. */
+/* Where there is no memory, the program ends (allocate.h). title: what the logs are called,
+ * copied. */
 struct page *page_open(const char *title);
 void page_close(struct page *page); /* may be NULL */
 

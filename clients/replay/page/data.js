@@ -1,0 +1,295 @@
+/* The data of the page, and what is made of them once: events in the order of time, rows of pairs. */
+
+const data = JSON.parse(document.getElementById("data").textContent);
+
+/* By the numbers of the messages; where there is no verdict, none. */
+const VERDICTS = ["not decided", "separated", "touching", "overlapping"];
+const NO_VERDICT = -1, SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
+
+/* enum replay_outcome. */
+const SAME = 0, DIFFERENT = 1, BUSY = 2, UNKNOWN = 3, ALONE = 4;
+const OUTCOMES = ["same", "different", "busy", "unknown", "without result"];
+const OUTCOME_SAID = [
+    "The result is the one that was recorded.",
+    "The result is another one than the one that was recorded.",
+    "The service was busy then: there is no answer to compare.",
+    "A key was not held then, or stands for components that are not in the log: there is nothing "
+        + "to compare.",
+    "No result was recorded: there is nothing to compare.",
+];
+
+const WANT_BOX = 1, WANT_CERTIFICATE = 2, WANT_TIMES = 4;
+const KIND_PAIR = 0, KIND_LISTED = 1, KIND_ALL = 2, KIND_ACROSS = 3;
+
+function verdictName(verdict) {
+    return verdict < 0 ? "no answer" : VERDICTS[verdict];
+}
+
+/* ---- Events ---- */
+
+/* In the order of time; of the same time, as they came. Raw events get a few members more: at, the
+ * place in this list, and seconds, since the first of all queries. */
+const events = data.events.slice().sort((a, b) => Number(a.t) - Number(b.t));
+events.forEach((event, at) => {
+    event.at = at;
+    event.seconds = (Number(event.t) - Number(data.span[0])) / 1e6;
+});
+
+const differing = events.filter((event) => event.is === DIFFERENT);
+
+/* Of what page_event.h calls then and now of a pair. */
+function verdictOf(side) {
+    return side === null ? NO_VERDICT : typeof side === "number" ? side : side[0];
+}
+
+/* [first, last], or null. */
+function timesOf(side) {
+    return Array.isArray(side) && side[1] !== null ? [side[1], side[2]] : null;
+}
+
+/* [lower ends, upper ends], or null. */
+function boxOf(side) {
+    if (!Array.isArray(side) || side.length <= 3)
+        return null;
+    const dim = (side.length - 3) / 2;
+    return [side.slice(3, 3 + dim), side.slice(3 + dim)];
+}
+
+function bodyOf(event, index) {
+    return index < event.frames.length ? String(event.frames[index][0]) : "?";
+}
+
+function bodyName(id) {
+    return id === "0" ? "anonymous" : id;
+}
+
+/* The pairs of an event: bodies, then and now. It is the replay that says whether anything differs
+ * at all: it may think nothing of a last bit. */
+function pairsOf(event) {
+    return event.pairs.map(([a, b, then, now], index) => {
+        const given = now !== undefined;
+        return {
+            index, a, b, then, now: given ? now : then, ids: [bodyOf(event, a), bodyOf(event, b)],
+            differs: given && event.is === DIFFERENT && then !== null && now !== null,
+        };
+    });
+}
+
+/* The result that is shown: what was not answered again, as it was. Null where there is none. */
+function answerOf(event) {
+    return [event.now, event.then].find((result) => result && result.status === 0) ?? null;
+}
+
+/* Worst first. */
+function worstOf(event) {
+    let worst = NO_VERDICT;
+    for (const [, , then, now] of event.pairs)
+        worst = Math.max(worst, verdictOf(now ?? then));
+    const answer = answerOf(event);
+    if (worst < SEPARATED && answer && answer.count && answer.count[SEPARATED] > 0)
+        worst = SEPARATED;
+    return worst;
+}
+
+/* The components of a frame, its origin and its velocity (null: none); or why there are none. */
+function framesOf(event) {
+    return event.frames.map(([id, shape, ...numbers], index) => {
+        const frame = { index, id: String(id), shape: null, why: "" };
+        if (shape === -1)
+            frame.why = `it came by key ${numbers[0]}, and its components are not in the log`;
+        else if (shape === -2)
+            frame.why = "its numbers make no frame";
+        if (shape < 0)
+            return frame;
+        frame.shape = data.shapes[shape];
+        frame.origin = numbers.slice(0, frame.shape.dim);
+        frame.velocity = numbers.length > frame.shape.dim ? numbers.slice(frame.shape.dim) : null;
+        return frame;
+    });
+}
+
+/* ---- Rows: the pairs of bodies ---- */
+
+function isBelow(a, b) {
+    const difference = Number(a) - Number(b);
+    return difference < 0 || (difference === 0 && a < b);
+}
+
+function rowKey(ids) {
+    return isBelow(ids[0], ids[1]) ? `${ids[0]} ${ids[1]}` : `${ids[1]} ${ids[0]}`;
+}
+
+/* at: events, by their place in the list; verdict: of each; differs: those of them that differ. */
+function makeRow(key) {
+    return { key, ids: key.split(" "), at: [], verdict: [], differs: [], contacts: 0, filled: false };
+}
+
+function addMark(row, at, verdict, differs) {
+    const last = row.at.length - 1;
+    if (row.at[last] === at) { /* several frames of the same bodies */
+        row.verdict[last] = Math.max(row.verdict[last], verdict);
+    } else {
+        row.at.push(at);
+        row.verdict.push(verdict);
+    }
+    if (differs && row.differs[row.differs.length - 1] !== at)
+        row.differs.push(at);
+    row.contacts += verdict >= TOUCHING ? 1 : 0;
+}
+
+/* Whether an event differs for this pair: as a whole, where no pair of it does. */
+function addEvent(rows, event) {
+    const pairs = pairsOf(event);
+    const whole = event.is === DIFFERENT && !pairs.some((pair) => pair.differs);
+    for (const pair of pairs) {
+        const key = rowKey(pair.ids);
+        if (!rows.has(key))
+            rows.set(key, makeRow(key));
+        addMark(rows.get(key), event.at, verdictOf(pair.now ?? pair.then), pair.differs || whole);
+    }
+    if (event.kind === KIND_PAIR && pairs.length === 0) { /* refused */
+        const key = rowKey([bodyOf(event, 0), bodyOf(event, 1)]);
+        if (!rows.has(key))
+            rows.set(key, makeRow(key));
+        addMark(rows.get(key), event.at, NO_VERDICT, whole);
+    }
+}
+
+function rowRank(row) {
+    return row.differs.length > 0 ? 0 : row.contacts > 0 ? 1 : 2;
+}
+
+function compareRows(a, b) {
+    const rank = rowRank(a) - rowRank(b);
+    if (rank !== 0 || a.key === b.key)
+        return rank;
+    const first = a.ids[0] === b.ids[0] ? 1 : 0;
+    return isBelow(a.ids[first], b.ids[first]) ? -1 : 1;
+}
+
+/* Those with differences first, then those that meet at some time. */
+function makeRows() {
+    const rows = new Map();
+    events.forEach((event) => addEvent(rows, event));
+    return [...rows.values()].sort(compareRows);
+}
+
+const rows = makeRows();
+const rowOf = new Map(rows.map((row) => [row.key, row]));
+
+/* Every query, whatever it asks. */
+function makeAllRow() {
+    const row = { ...makeRow("all"), filled: true };
+    for (const event of events)
+        addMark(row, event.at, worstOf(event), event.is === DIFFERENT);
+    return row;
+}
+
+const allRow = makeAllRow();
+
+/* The number of a pair of all or across among those that are asked. */
+function pairNumber(event, a, b) {
+    const n = event.frames.length;
+    return event.kind === KIND_ACROSS
+        ? a * (n - event.split) + b - event.split : a * n - a * (a + 1) / 2 + b - (a + 1);
+}
+
+/* Of all and across, pairs that are not named are separated where the result came so far. */
+function isSeparated(event, ids) {
+    const answer = answerOf(event);
+    if (event.kind < KIND_ALL || !answer || event.more)
+        return false;
+    event.places = event.places
+        ?? new Map(event.frames.map((frame, index) => [String(frame[0]), index]).reverse());
+    let [a, b] = ids.map((id) => event.places.get(id));
+    if (a === undefined || b === undefined || a === b)
+        return false;
+    [a, b] = a < b ? [a, b] : [b, a];
+    if (event.kind === KIND_ACROSS && (a >= event.split || b < event.split))
+        return false;
+    const number = pairNumber(event, a, b);
+    return number >= event.first && number < answer.end;
+}
+
+/* Puts in where the pair is separated without being named. Done for rows that are shown. */
+function fillRow(row) {
+    if (row.filled)
+        return row;
+    const named = new Map(row.at.map((at, index) => [at, row.verdict[index]]));
+    row.at = [];
+    row.verdict = [];
+    for (const event of events) {
+        if (!named.has(event.at) && !isSeparated(event, row.ids))
+            continue;
+        row.at.push(event.at);
+        row.verdict.push(named.get(event.at) ?? SEPARATED);
+    }
+    row.filled = true;
+    return row;
+}
+
+/* Where at is in the row, or would be put in. */
+function lowerBound(list, value) {
+    let low = 0, high = list.length;
+    while (low < high) {
+        const middle = (low + high) >> 1;
+        if (list[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* ---- What differs, in words ---- */
+
+function boxTexts(then, now) {
+    const axes = [];
+    for (let axis = 0; axis < then[0].length; axis++) {
+        const ends = [then, now].map((box) => [box[0][axis], box[1][axis]]);
+        if (ends[0][0] !== ends[1][0] || ends[0][1] !== ends[1][1])
+            axes.push([`box ${"xyz"[axis]}`, ...intervalTexts(ends[0], ends[1])]);
+    }
+    return axes;
+}
+
+/* [what, then, now] of each thing in which the two sides differ. */
+function sideDifferences(then, now) {
+    const found = [], verdicts = [verdictOf(then), verdictOf(now)];
+    if (verdicts[0] !== verdicts[1])
+        found.push(["verdict", verdictName(verdicts[0]), verdictName(verdicts[1])]);
+    if (Math.min(...verdicts) < TOUCHING) /* there is neither interval nor box to compare */
+        return found;
+    const times = [timesOf(then), timesOf(now)], boxes = [boxOf(then), boxOf(now)];
+    if (times[0] && times[1]) {
+        if (times[0][0] !== times[1][0] || times[0][1] !== times[1][1])
+            found.push(["interval, s", ...intervalTexts(times[0], times[1])]);
+    } else if (times[0] || times[1]) {
+        found.push(["interval, s", ...times.map((of) => of ? intervalText(...of) : "none")]);
+    }
+    if (boxes[0] && boxes[1] && boxes[0][0].length === boxes[1][0].length)
+        found.push(...boxTexts(boxes[0], boxes[1]));
+    else if (boxes[0] || boxes[1])
+        found.push(["box", boxes[0] ? "one" : "none", boxes[1] ? "one" : "none"]);
+    return found;
+}
+
+function statusText(result) {
+    return !result ? "no result" : result.status === 0 ? "ok" : result.says;
+}
+
+/* The same of an event as a whole: what is not of a pair. */
+function wholeDifferences(event) {
+    const found = [], { then, now } = event;
+    if (event.is !== DIFFERENT)
+        return found;
+    if (statusText(then) !== statusText(now))
+        found.push(["status", statusText(then), statusText(now)]);
+    if (then && now && then.method !== now.method && then.status === 0 && now.status === 0)
+        found.push(["method", then.method, now.method]);
+    if (then && now && then.end !== now.end)
+        found.push(["answered up to pair", grouped(then.end), grouped(now.end)]);
+    if (event.certificate)
+        found.push(["certificate", "another one", "another one"]);
+    return found;
+}

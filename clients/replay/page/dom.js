@@ -1,0 +1,77 @@
+/* Elements. Text is always text: nothing of the data is read as HTML. */
+
+const SVG = "http://www.w3.org/2000/svg";
+
+function find(id) {
+    return document.getElementById(id);
+}
+
+function fill(element, properties, children) {
+    for (const [name, value] of Object.entries(properties)) {
+        if (name.startsWith("on"))
+            element.addEventListener(name.slice(2), value);
+        else if (value !== null && value !== undefined && value !== false)
+            element.setAttribute(name, value === true ? "" : value);
+    }
+    element.append(...children.filter((child) => child !== null && child !== undefined));
+    return element;
+}
+
+/* make("p", {class: "dim", onclick: function}, "text", element, ...) */
+function make(name, properties = {}, ...children) {
+    return fill(document.createElement(name), properties, children);
+}
+
+function draw(name, properties = {}, ...children) {
+    return fill(document.createElementNS(SVG, name), properties, children);
+}
+
+function show(element, ...children) {
+    element.replaceChildren(...children.filter((child) => child !== null && child !== undefined));
+}
+
+/* A coloured mark with the verdict's name. */
+function verdictChip(verdict) {
+    const kind = verdict < SEPARATED ? "none" : VERDICTS[verdict];
+    return make("span", { class: `verdict ${kind}` }, verdictName(verdict));
+}
+
+/* "then -> now", both as chips where they differ. */
+function verdictChips(then, now) {
+    if (then === now)
+        return [verdictChip(now)];
+    return [verdictChip(then), make("span", { class: "arrow", "aria-label": "then, now" }, "→"),
+        verdictChip(now)];
+}
+
+/* begin(event) is called where a drag begins, and what it returns at each step; wherever the pointer
+ * goes meanwhile. begin may return nothing. */
+function listenToDrags(element, begin) {
+    element.addEventListener("pointerdown", (first) => {
+        const go = begin(first);
+        if (!go)
+            return;
+        const end = () => {
+            removeEventListener("pointermove", go);
+            removeEventListener("pointerup", end);
+            removeEventListener("pointercancel", end);
+        };
+        addEventListener("pointermove", go);
+        addEventListener("pointerup", end);
+        addEventListener("pointercancel", end);
+    });
+}
+
+/* Calls the function once before the next picture, however often it was asked for. */
+function onceAFrame(work) {
+    let waiting = false;
+    return () => {
+        if (waiting)
+            return;
+        waiting = true;
+        requestAnimationFrame(() => {
+            waiting = false;
+            work();
+        });
+    };
+}

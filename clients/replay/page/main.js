@@ -1,0 +1,174 @@
+/* What is chosen: a query, a row of the timeline and a pair of the query; and the keys. */
+
+const chosen = { at: -1, row: null, pair: -1 };
+
+/* The row of the pair that is looked at: the one that was clicked, or of the chosen pair. */
+function focusRow() {
+    if (chosen.row && chosen.row !== allRow)
+        return chosen.row;
+    const pair = chosenPair() ?? (stage.event?.kind === KIND_PAIR ? stage.pairs[0] : null);
+    return pair ? rowOf.get(rowKey(pair.ids)) : null;
+}
+
+/* The rows of all pairs that the chosen query names. */
+function isNamedRow(row) {
+    return chosen.at >= 0 && row !== undefined && chosen.keys.has(row.key);
+}
+
+function chosenPair() {
+    return chosen.pair >= 0 ? stage.pairs[chosen.pair] : null;
+}
+
+/* Of several pairs the one of the row, else the first that differs: it is what is looked for. */
+function pairToShow(event, row) {
+    const pairs = pairsOf(event);
+    if (event.kind === KIND_PAIR || pairs.length === 0)
+        return -1;
+    const found = pairs.find((pair) => row && row !== allRow ? rowKey(pair.ids) === row.key : pair.differs);
+    return found ? found.index : -1;
+}
+
+/* The address names the query, so that it can be sent to somebody. Some browsers refuse to change
+ * it often: then it stays behind. */
+function setAddress(event) {
+    const name = data.logs.length > 1 ? `${event.log}:${event.n}` : String(event.n);
+    try {
+        history.replaceState(null, "", `#${name}`);
+    } catch (refused) {
+        console.info(refused.message);
+    }
+}
+
+function eventOfAddress() {
+    const [, log, number] = /^#(?:(\d+):)?(\d+)$/.exec(location.hash) ?? [];
+    return number === undefined ? null
+        : events.find((event) => String(event.n) === number && event.log === Number(log ?? 0));
+}
+
+function announce(event) {
+    find("announce").textContent = `query ${event.n} at ${timeText(event.seconds)} s: `
+        + `${verdictName(worstOf(event))}, ${OUTCOMES[event.is]}`;
+}
+
+/* row: of the timeline, or null. */
+function choose(at, row) {
+    const event = events[at];
+    chosen.at = at;
+    chosen.row = row;
+    chosen.keys = new Set(pairsOf(event).map((pair) => rowKey(pair.ids)));
+    chosen.pair = pairToShow(event, row);
+    setScene(event);
+    fillEvent(event);
+    markDifference();
+    seeEvent(at);
+    redrawTimeline();
+    setAddress(event);
+    announce(event);
+    find("fit-pair").disabled = !chosenPair();
+}
+
+function choosePair(index) {
+    chosen.pair = index;
+    chosen.row = null;
+    find("fit-pair").disabled = !chosenPair();
+    drawBands();
+    redrawStage();
+    redrawTimeline();
+    fillPairs(stage.event);
+}
+
+/* ---- Steps ---- */
+
+/* Through the queries of the row, or of the rows that the filter leaves, or all. */
+function stepList(inRow) {
+    const row = focusRow();
+    if (inRow && row)
+        return fillRow(row).at;
+    if (timeline.filter.length === 0)
+        return allRow.at;
+    const found = new Set(rows.filter(matches).flatMap((of) => of.at));
+    return [...found].sort((a, b) => a - b);
+}
+
+function stepTo(list, forward, row) {
+    const i = forward ? list.findIndex((at) => at > chosen.at) : list.findLastIndex((at) => at < chosen.at);
+    if (i >= 0)
+        choose(list[i], row);
+}
+
+function step(forward, inRow) {
+    stepTo(stepList(inRow), forward, inRow ? chosen.row : null);
+}
+
+function stepDifference(forward) {
+    const list = differing.map((event) => event.at);
+    const before = chosen.at;
+    stepTo(list, forward, null);
+    if (chosen.at === before && list.length > 0) /* around */
+        choose(forward ? list[0] : list[list.length - 1], null);
+}
+
+const KEYS = {
+    ArrowLeft: (key) => step(false, key.shiftKey),
+    ArrowRight: (key) => step(true, key.shiftKey),
+    d: () => stepDifference(true),
+    D: () => stepDifference(false),
+    "+": () => zoomMiddle(1 / 2),
+    "-": () => zoomMiddle(2),
+    0: () => setView(...wholeView()),
+    " ": togglePlaying,
+    Escape: () => choosePair(-1),
+};
+
+/* Fields keep their keys, a button its space, and the page where nothing is to be played. */
+function onKey(key) {
+    const own = key.target.closest("input, select, textarea")
+        || (key.key === " " && (key.target.closest("button, summary") || find("window").hidden));
+    if (own || key.ctrlKey || key.metaKey || key.altKey || events.length === 0 || !Object.hasOwn(KEYS, key.key))
+        return;
+    key.preventDefault();
+    KEYS[key.key](key);
+}
+
+/* ---- The beginning ---- */
+
+function listenToSteps() {
+    document.addEventListener("keydown", onKey);
+    find("previous").addEventListener("click", (click) => step(false, click.shiftKey));
+    find("next").addEventListener("click", (click) => step(true, click.shiftKey));
+    find("previous-difference").addEventListener("click", () => stepDifference(false));
+    find("next-difference").addEventListener("click", () => stepDifference(true));
+    find("more-differences").addEventListener("click", () => {
+        panel.differences += DIFFERENCES_MORE;
+        fillDifferences();
+    });
+    addEventListener("hashchange", () => {
+        const event = eventOfAddress();
+        if (event && event.at !== chosen.at)
+            choose(event.at, null);
+    });
+}
+
+/* At first the query of the address, else the first difference, else the first contact. */
+function firstEvent() {
+    return eventOfAddress() ?? differing[0] ?? events.find((event) => worstOf(event) >= TOUCHING) ?? events[0];
+}
+
+function start() {
+    fillHeader();
+    fillLegends();
+    fillDifferences();
+    const none = events.length === 0;
+    for (const id of ["timeline", "bottom"])
+        find(id).hidden = none;
+    for (const id of ["previous-difference", "next-difference"])
+        find(id).disabled = differing.length === 0;
+    if (none)
+        return;
+    startTimeline();
+    startStage();
+    listenToSteps();
+    choose(firstEvent().at, null);
+}
+
+start();

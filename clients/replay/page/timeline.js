@@ -1,0 +1,494 @@
+/* The timeline: an overview of the whole, an axis, a row for each pair of bodies.
+ *
+ * In a row the verdict of a query holds until the next query of the row; where that is long in
+ * coming, the bar ends. The verdicts differ in height, not in colour alone. */
+
+const ROW = 26, OVERVIEW = 20, AXIS_TOP = 34, ROWS_TOP = 62; /* pixels */
+const EDGE = 12;                 /* left and right of the first and the last query */
+const BAR_HEIGHT = { [-1]: 4, 0: 4, 1: 8, 2: 14, 3: 20 };
+const SHORTEST_BAR = 3, DOT_ROOM = 9, FLAG_ROOM = 13;
+const PAUSE_OF_ROW = 6;          /* the median step of the row: a longer one ends a bar */
+const ROWS_FIRST = 8, ROWS_MORE = 40;
+const SHORTEST_VIEW = 2e-5;      /* seconds */
+const WHEEL_ZOOM = 0.0015;       /* a notch of 100 pixels: some 15 % */
+
+const clock = makeClock(events.map((event) => event.seconds));
+const places = events.map((event) => clock.at(event.seconds));
+
+const timeline = {
+    from: 0, to: 1,              /* places on the clock's line */
+    width: 600,                  /* pixels */
+    shown: ROWS_FIRST, filter: [], rows: [],
+};
+
+function wholeView() {
+    return [0, clock.length > 0 ? clock.length : 1];
+}
+
+function innerWidth() {
+    return Math.max(timeline.width - 2 * EDGE, 1);
+}
+
+function toX(place) {
+    return EDGE + (place - timeline.from) / (timeline.to - timeline.from) * innerWidth();
+}
+
+function toPlace(x) {
+    return timeline.from + (x - EDGE) / innerWidth() * (timeline.to - timeline.from);
+}
+
+/* ---- What is to be seen ---- */
+
+function setView(from, to) {
+    const [first, last] = wholeView();
+    const length = clamp(to - from, Math.min(SHORTEST_VIEW, last - first), last - first);
+    const middle = (from + to) / 2;
+    timeline.from = clamp(middle - length / 2, first, last - length);
+    timeline.to = timeline.from + length;
+    redrawTimeline();
+}
+
+function zoomAround(place, factor) {
+    setView(place - (place - timeline.from) * factor, place + (timeline.to - place) * factor);
+}
+
+/* Moves the view as far as it takes to see the event. */
+function seeEvent(at) {
+    const length = timeline.to - timeline.from, place = places[at], room = length * 0.08;
+    if (place < timeline.from + room)
+        setView(place - room, place - room + length);
+    else if (place > timeline.to - room)
+        setView(place + room - length, place + room);
+}
+
+function matches(row) {
+    const wanted = timeline.filter;
+    return wanted.length < 2 ? wanted.length === 0 || row.ids.includes(wanted[0])
+        : row.key === rowKey(wanted);
+}
+
+/* ---- Bars ---- */
+
+/* How long the last bar before a pause is, and what is a pause. */
+function rowSteps(row) {
+    if (row.usual === undefined)
+        row.usual = median(row.at.slice(1).map((at, i) => places[at] - places[row.at[i]]));
+    return row.usual;
+}
+
+/* From where on differences alone were kept. */
+const leftOutPlace = data.left_out.every((count) => count === 0)
+    ? Infinity : clock.at((Number(data.left_span[0]) - Number(data.span[0])) / 1e6);
+
+/* The place where the bar of the row's query number i ends: not in what was left out. */
+function barEnd(row, i) {
+    const usual = rowSteps(row), begin = places[row.at[i]];
+    const cut = begin < leftOutPlace ? leftOutPlace : Infinity;
+    if (i + 1 < row.at.length && places[row.at[i + 1]] - begin <= PAUSE_OF_ROW * usual)
+        return Math.min(places[row.at[i + 1]], cut);
+    return Math.min(begin + Math.min(usual, clock.length / 100), cut);
+}
+
+/* The first and the last query of the row that may be seen. */
+function visibleRange(row) {
+    const from = lowerBound(row.at, lowerBound(places, timeline.from));
+    const to = lowerBound(row.at, lowerBound(places, timeline.to + 1e-12));
+    return [Math.max(from - 1, 0), Math.min(to + 1, row.at.length)];
+}
+
+/* Runs of the same verdict, in pixels. Of what would be narrower than a pixel and a half, the worst
+ * verdict is drawn. */
+function runsOf(row) {
+    const runs = [], [begin, end] = visibleRange(row);
+    for (let i = begin; i < end; i++) {
+        const run = {
+            from: toX(places[row.at[i]]), to: toX(barEnd(row, i)), verdict: row.verdict[i],
+            at: row.at[i], count: 1,
+        };
+        const last = runs[runs.length - 1];
+        const joined = last && run.from <= last.to + 0.01;
+        if (joined && last.verdict === run.verdict) {
+            last.to = Math.max(run.to, last.to);
+            last.count++;
+        } else if (last && last.to - last.from < 1.5 && run.from < last.from + 1.5) {
+            if (run.verdict > last.verdict)
+                last.at = run.at;
+            last.verdict = Math.max(last.verdict, run.verdict);
+            last.to = Math.max(run.to, last.to);
+            last.count++;
+        } else {
+            runs.push(run);
+        }
+    }
+    return runs;
+}
+
+function drawRun(run, middle) {
+    const height = BAR_HEIGHT[run.verdict];
+    const from = clamp(run.from, -SHORTEST_BAR, timeline.width);
+    const to = clamp(run.to, 0, timeline.width + SHORTEST_BAR);
+    const kind = run.verdict < SEPARATED ? "none" : VERDICTS[run.verdict];
+    return draw("rect", {
+        class: `run ${kind}`, x: from.toFixed(2), y: middle - height / 2, rx: 1.5, height,
+        width: Math.max(to - from, SHORTEST_BAR).toFixed(2), "data-at": run.at,
+    }, draw("title", {}, `${verdictName(run.verdict)}, ${counted(run.count, "query", "queries")}`
+        + ` from ${timeText(events[run.at].seconds)} s`));
+}
+
+/* The queries themselves, where there is room for them. */
+function drawDots(row, middle) {
+    const [begin, end] = visibleRange(row);
+    if ((end - begin) * DOT_ROOM > timeline.width)
+        return [];
+    return row.at.slice(begin, end).map((at) => draw("circle",
+        { class: "dot", cx: toX(places[at]).toFixed(2), cy: middle, r: 1.6 }));
+}
+
+/* Differences; where they are too close, one flag says how many. */
+function flagsOf(row) {
+    const flags = [];
+    for (const at of row.differs) {
+        const x = toX(places[at]), last = flags[flags.length - 1];
+        if (x < -FLAG_ROOM || x > timeline.width + FLAG_ROOM)
+            continue;
+        if (last && x - last.x < (last.count > 1 ? 2 : 1) * FLAG_ROOM)
+            last.count++;
+        else
+            flags.push({ x, at, count: 1 });
+    }
+    return flags;
+}
+
+function drawFlag(flag, row, middle) {
+    const many = flag.count > 1, width = many ? 15 + 6.5 * String(flag.count).length : 13;
+    const said = `${counted(flag.count, "difference", "differences")}, bodies `
+        + `${row.ids.map(bodyName).join(" and ")}, from ${timeText(events[flag.at].seconds)} s`;
+    return draw("g", {
+        class: "flag", role: "button", tabindex: 0, "aria-label": said, "data-at": flag.at,
+        transform: `translate(${flag.x.toFixed(2)} ${middle})`,
+    }, draw("path", { class: "pole", d: "M0 -12V12" }),
+        draw("rect", { x: -0.75, y: -12.5, width, height: 13, rx: 2.5 }),
+        draw("text", { x: 5.7, y: -2.2 }, "≠"),
+        many ? draw("text", { class: "many", x: 12, y: -2.4 }, String(flag.count)) : null,
+        draw("title", {}, said));
+}
+
+function drawRow(row, number) {
+    const top = ROWS_TOP + number * ROW, middle = top + ROW / 2;
+    return draw("g", { class: `row${row === focusRow() ? " chosen" : ""}`, "data-row": row.key },
+        draw("rect", { class: "lane", x: 0, y: top, width: timeline.width, height: ROW }),
+        ...runsOf(row).map((run) => drawRun(run, middle)), ...drawDots(row, middle),
+        ...flagsOf(row).map((flag) => drawFlag(flag, row, middle)));
+}
+
+/* ---- Axis and overview ---- */
+
+/* Between two breaks the axis is true. */
+function segments() {
+    const [, last] = wholeView();
+    let from = -Infinity;
+    const list = clock.breaks.map((fold) => {
+        const segment = [from, fold.place];
+        from = fold.place + fold.width;
+        return segment;
+    });
+    list.push([from, Infinity]);
+    return list.map(([a, b]) => [Math.max(a, timeline.from), Math.min(b, timeline.to, last + 1)])
+        .filter(([a, b]) => a <= b);
+}
+
+function ticks() {
+    const step = niceStep((timeline.to - timeline.from) / Math.max(innerWidth() / 95, 2));
+    const list = [];
+    for (const [from, to] of segments()) {
+        const first = Math.ceil(clock.time(from) / step - 1e-9);
+        for (let k = first; k * step <= clock.time(to) + step * 1e-9 && k < first + 100; k++)
+            list.push({ x: toX(clock.at(k * step)), text: secondsText(k * step, step) });
+    }
+    return list.filter((tick) => tick.x > 4 && tick.x < timeline.width - 4);
+}
+
+/* Where its text would stand, that of the cursor or of a break does; or it would be cut. */
+function hasNoText(tick) {
+    return tick.x > timeline.width - 22
+        || (chosen.at >= 0 && Math.abs(toX(places[chosen.at]) - tick.x) < 55)
+        || clock.breaks.some((fold) => Math.abs(toX(fold.place + fold.width / 2) - tick.x) < 48);
+}
+
+function drawTick(tick, bottom, last) {
+    return draw("g", { class: "tick" },
+        draw("path", { d: `M${tick.x.toFixed(1)} ${AXIS_TOP + 18}V${bottom}` }),
+        hasNoText(tick) ? null
+            : draw("text", { x: tick.x.toFixed(1), y: AXIS_TOP + 12 }, tick.text + (last ? " s" : "")));
+}
+
+function drawBreak(fold, bottom) {
+    const x = toX(fold.place), width = toX(fold.place + fold.width) - x;
+    if (x > timeline.width || x + width < 0)
+        return null;
+    return draw("g", { class: "fold" },
+        draw("rect", { x: x.toFixed(1), y: AXIS_TOP + 2, width: width.toFixed(1), height: bottom - AXIS_TOP - 2 }),
+        draw("text", { x: (x + width / 2).toFixed(1), y: AXIS_TOP + 12 }, `⋯ ${durationText(fold.seconds)}`),
+        draw("title", {}, `${durationText(fold.seconds)} without queries`));
+}
+
+function drawLeftOut(bottom) {
+    if (leftOutPlace === Infinity)
+        return null;
+    const x = clamp(toX(leftOutPlace), 0, timeline.width);
+    return draw("g", { class: "left-out" },
+        draw("rect", { x: x.toFixed(1), y: ROWS_TOP, width: (timeline.width - x).toFixed(1), height: bottom - ROWS_TOP }),
+        draw("title", {}, "not shown from here on, but for differences"));
+}
+
+/* The whole, in columns of two pixels, each with its worst verdict. */
+function overviewColumns(xOf) {
+    const width = 2, columns = new Map();
+    allRow.at.forEach((at, i) => {
+        const last = Math.max(xOf(barEnd(allRow, i)) - 0.01, xOf(places[at]));
+        for (let x = Math.floor(xOf(places[at]) / width); x <= last / width; x++)
+            columns.set(x, Math.max(columns.get(x) ?? NO_VERDICT, allRow.verdict[i]));
+    });
+    return [...columns].map(([x, verdict]) => {
+        const height = BAR_HEIGHT[verdict] * 0.75;
+        return draw("rect", {
+            class: verdict < SEPARATED ? "none" : VERDICTS[verdict], x: x * width,
+            y: OVERVIEW - 2 - height, width, height,
+        });
+    });
+}
+
+function drawOverview() {
+    const [first, last] = wholeView();
+    const xOf = (place) => EDGE + (place - first) / (last - first) * innerWidth();
+    const flags = [...new Set(allRow.differs.map((at) => Math.floor(xOf(places[at]) / 3)))]
+        .map((x) => draw("path", { class: "mark", d: `M${x * 3 - 3.5} 0h7l-3.5 6Z` }));
+    const whole = timeline.to - timeline.from > (last - first) * 0.999;
+    const brush = draw("rect", {
+        class: `brush${whole ? " whole" : ""}`, x: xOf(timeline.from).toFixed(1), y: 0.5,
+        width: Math.max(xOf(timeline.to) - xOf(timeline.from), 2).toFixed(1), height: OVERVIEW - 1,
+    });
+    return draw("g", { id: "overview" }, draw("rect",
+        { class: "ground", x: 0, y: 0, width: timeline.width, height: OVERVIEW, rx: 3 }),
+        ...overviewColumns(xOf), brush, ...flags);
+}
+
+function drawCursor(bottom) {
+    if (chosen.at < 0)
+        return null;
+    const x = toX(places[chosen.at]);
+    if (x < 0 || x > timeline.width)
+        return null;
+    const text = `${timeText(events[chosen.at].seconds)} s`, half = 3.6 * text.length + 5;
+    const middle = clamp(x, half, timeline.width - half);
+    return draw("g", { class: "cursor" },
+        draw("path", { d: `M${x.toFixed(2)} ${AXIS_TOP + 17}V${bottom}` }),
+        draw("rect", { x: (middle - half).toFixed(1), y: AXIS_TOP - 1, width: 2 * half, height: 18, rx: 4 }),
+        draw("text", { x: middle.toFixed(1), y: AXIS_TOP + 12 }, text));
+}
+
+/* ---- Labels ---- */
+
+function rowSaid(row) {
+    if (row === allRow)
+        return "all queries: go to the next one";
+    return `bodies ${row.ids.map(bodyName).join(" and ")}: `
+        + `${counted(row.differs.length, "difference", "differences")}, in contact in `
+        + `${grouped(row.contacts)} of ${counted(row.at.length, "query", "queries")}`
+        + "; go to the next of these";
+}
+
+function makeLabel(row) {
+    const name = row === allRow ? "all queries" : row.ids.map(bodyName).join(" – ");
+    return make("button", {
+        class: "label", "data-row": row.key,
+        title: rowSaid(row), "aria-label": rowSaid(row), onclick: () => stepInRow(row),
+    }, make("span", { class: "name" }, name),
+        row.differs.length ? make("span", { class: "badge" }, `≠ ${grouped(row.differs.length)}`) : null);
+}
+
+/* The next query of the row that is worth a look: a difference or a contact, else any. */
+function stepInRow(row) {
+    const worth = row.at.filter((at, i) => row.verdict[i] >= TOUCHING || row.differs.includes(at));
+    const list = row === allRow || worth.length === 0 ? row.at : worth;
+    const next = list.find((at) => at > chosen.at) ?? list[0];
+    if (next !== undefined)
+        choose(next, row);
+}
+
+/* ---- The whole ---- */
+
+function listRows() {
+    const found = rows.filter(matches);
+    timeline.rows = [allRow, ...found.slice(0, timeline.shown)];
+    timeline.rows.forEach(fillRow);
+    const more = found.length - timeline.shown, button = find("more-rows");
+    button.hidden = more <= 0;
+    button.textContent = `show ${grouped(Math.min(more, ROWS_MORE))} more of ${counted(found.length, "pair", "pairs")}`;
+    find("rows-said").textContent = timeline.filter.length === 0 ? ""
+        : found.length === 0 ? "no pair with it" : counted(found.length, "pair", "pairs");
+    show(find("row-labels"), ...timeline.rows.map(makeLabel));
+}
+
+function markLabels() {
+    const focus = focusRow();
+    for (const label of find("row-labels").children) {
+        const row = rowOf.get(label.dataset.row);
+        label.classList.toggle("named", isNamedRow(row));
+        label.classList.toggle("chosen", row !== undefined && row === focus);
+    }
+}
+
+/* The flag that has the focus is made anew: it is to have it again. */
+function focusedFlag() {
+    const flag = document.activeElement?.closest(".flag"), row = flag?.closest(".row").dataset.row;
+    return flag ? `[data-row="${row}"] .flag[data-at="${flag.dataset.at}"]` : "none";
+}
+
+function drawTimeline() {
+    const plot = find("plot"), focused = focusedFlag();
+    timeline.width = Math.max(plot.parentNode.clientWidth - find("row-labels").offsetWidth, 120);
+    const bottom = ROWS_TOP + timeline.rows.length * ROW;
+    plot.setAttribute("width", timeline.width);
+    plot.setAttribute("height", bottom + 2);
+    const marks = ticks();
+    show(plot, drawOverview(),
+        ...marks.map((tick, i) => drawTick(tick, bottom, i === marks.length - 1)),
+        draw("g", { id: "lanes" }, ...timeline.rows.map(drawRow)), drawLeftOut(bottom),
+        ...clock.breaks.map((fold) => drawBreak(fold, bottom)), drawCursor(bottom));
+    markLabels();
+    find("plot").querySelector(focused)?.focus();
+}
+
+const redrawTimeline = onceAFrame(drawTimeline);
+
+/* ---- Mouse and keyboard ---- */
+
+/* The query of the row that is meant at x: a difference that is near, else the one whose bar is
+ * there, else the nearest. */
+function eventAt(row, x) {
+    let best = -1, distance = Infinity;
+    for (const at of row.differs) {
+        const away = Math.abs(toX(places[at]) - x);
+        if (away < Math.min(distance, 5))
+            [best, distance] = [at, away];
+    }
+    if (best >= 0 || row.at.length === 0)
+        return best;
+    const i = clamp(lowerBound(row.at, lowerBound(places, toPlace(x + 1))) - 1, 0, row.at.length - 1);
+    const next = Math.min(i + 1, row.at.length - 1);
+    const isIn = toX(barEnd(row, i)) + SHORTEST_BAR >= x;
+    const nearer = Math.abs(toX(places[row.at[next]]) - x) < Math.abs(toX(barEnd(row, i)) - x);
+    return row.at[!isIn && nearer ? next : i];
+}
+
+function plotPoint(mouse) {
+    const box = find("plot").getBoundingClientRect();
+    return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
+}
+
+/* A run stands for several queries where they are narrow: the worst of them is meant. */
+function clickPlot(mouse) {
+    const flag = mouse.target.closest(".flag"), lane = mouse.target.closest(".row");
+    const row = lane && (rowOf.get(lane.dataset.row) ?? allRow);
+    if (flag) {
+        choose(Number(flag.dataset.at), row);
+    } else if (row) {
+        const run = mouse.target.closest(".run");
+        const narrow = run && Number(run.getAttribute("width")) <= SHORTEST_BAR;
+        const at = narrow ? Number(run.dataset.at) : eventAt(row, plotPoint(mouse).x);
+        if (at >= 0)
+            choose(at, row);
+    }
+}
+
+/* In the overview the view goes where the pointer is; elsewhere it is dragged along. */
+function dragTo(begin, point) {
+    const [first, last] = wholeView(), length = begin.to - begin.from;
+    if (begin.y < OVERVIEW + 4) {
+        const middle = first + (point.x - EDGE) / innerWidth() * (last - first);
+        setView(middle - length / 2, middle + length / 2);
+    } else {
+        const moved = (begin.x - point.x) / innerWidth() * length;
+        setView(begin.from + moved, begin.to + moved);
+    }
+}
+
+function listenToDrag(plot) {
+    let dragged = false;
+    listenToDrags(plot, (mouse) => {
+        const begin = { ...plotPoint(mouse), from: timeline.from, to: timeline.to };
+        dragged = false;
+        return (moved) => {
+            const point = plotPoint(moved);
+            dragged = dragged || Math.abs(point.x - begin.x) >= 4;
+            if (dragged)
+                dragTo(begin, point);
+        };
+    });
+    plot.addEventListener("click", (mouse) => {
+        const point = plotPoint(mouse);
+        if (dragged)
+            return;
+        if (point.y < OVERVIEW + 4)
+            dragTo({ ...point, from: timeline.from, to: timeline.to }, point);
+        else
+            clickPlot(mouse);
+    });
+}
+
+function listenToPlot() {
+    const plot = find("plot");
+    listenToDrag(plot);
+    plot.addEventListener("wheel", (wheel) => {
+        wheel.preventDefault();
+        const length = timeline.to - timeline.from;
+        if (Math.abs(wheel.deltaX) > Math.abs(wheel.deltaY))
+            setView(timeline.from + wheel.deltaX / innerWidth() * length,
+                timeline.to + wheel.deltaX / innerWidth() * length);
+        else
+            zoomAround(toPlace(plotPoint(wheel).x), Math.exp(clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM));
+    }, { passive: false });
+    plot.addEventListener("keydown", (key) => {
+        const flag = key.target.closest(".flag");
+        if (flag && (key.key === "Enter" || key.key === " ")) {
+            key.preventDefault();
+            key.stopPropagation();
+            choose(Number(flag.dataset.at), rowOf.get(flag.closest(".row").dataset.row) ?? allRow);
+        }
+    });
+}
+
+function setFilter(text) {
+    const words = text.trim().split(/[\s,–-]+/).filter((word) => word !== "");
+    timeline.filter = words.slice(0, 2).map((word) => word === "anonymous" ? "0" : word);
+    timeline.shown = ROWS_FIRST;
+    listRows();
+    redrawTimeline();
+}
+
+function zoomMiddle(factor) {
+    const inView = chosen.at >= 0 && places[chosen.at] >= timeline.from && places[chosen.at] <= timeline.to;
+    zoomAround(inView ? places[chosen.at] : (timeline.from + timeline.to) / 2, factor);
+}
+
+function listenToBar() {
+    find("zoom-in").addEventListener("click", () => zoomMiddle(1 / 2));
+    find("zoom-out").addEventListener("click", () => zoomMiddle(2));
+    find("zoom-all").addEventListener("click", () => setView(...wholeView()));
+    find("filter").addEventListener("input", (input) => setFilter(input.target.value));
+    find("more-rows").addEventListener("click", () => {
+        timeline.shown += ROWS_MORE;
+        listRows();
+        redrawTimeline();
+    });
+}
+
+function startTimeline() {
+    [timeline.from, timeline.to] = wholeView();
+    listenToPlot();
+    listenToBar();
+    listRows();
+    new ResizeObserver(redrawTimeline).observe(find("rows"));
+    drawTimeline();
+}

@@ -1,0 +1,240 @@
+/* Frames and boxes as points to be drawn.
+ *
+ * Numbers may have any size. So everything is taken relative to the first frame's origin and scaled
+ * by a power of two, such that all sums lie between -1 and 1: both are exact, or nearly so, and
+ * neither is infinite. What lies farther out, infinite ends of boxes too, is cut. */
+
+const CUT = 8;
+
+/* Corner k of a cuboid: bit i of k tells whether component i is added. Corner 0 of a simplex is the
+ * origin, corner i + 1 the end of component i. */
+const CUBOID_3D = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+const CUBOID_2D = [[0, 1, 3, 2]];
+const TETRAHEDRON = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 2, 3]];
+const TRIANGLE = [[0, 1, 2]];
+const CUBOID = 1, FACE = 3;
+
+function facesOf(shape) {
+    const solid = shape.dim === 3 && shape.shape !== FACE;
+    if (shape.shape === CUBOID)
+        return solid ? CUBOID_3D : CUBOID_2D;
+    return solid ? TETRAHEDRON : TRIANGLE;
+}
+
+function finite(value) {
+    return value === Infinity ? Number.MAX_VALUE : value === -Infinity ? -Number.MAX_VALUE : value;
+}
+
+/* ---- Units ---- */
+
+function largestOf(frames, T, origin) {
+    let largest = 0;
+    const add = (value) => {
+        largest = Math.max(largest, Math.abs(finite(value)));
+    };
+    for (const frame of frames) {
+        frame.origin.forEach((value, axis) => add(value - origin[axis]));
+        frame.shape.c.forEach(add);
+        (frame.velocity ?? []).forEach((value) => add(value * T));
+    }
+    return largest;
+}
+
+/* 2^power as two factors, of which none is infinite or 0. */
+function factors(power) {
+    const half = Math.trunc(power / 2);
+    return [2 ** half, 2 ** (power - half)];
+}
+
+/* Of the drawable frames of an event. A sum of five numbers, none larger than the largest, is
+ * smaller than 1. */
+function makeUnits(dim, frames, T) {
+    const origin = frames[0].origin, largest = largestOf(frames, T, origin);
+    const power = largest > 0 ? -Math.floor(Math.log2(largest)) - 4 : 0;
+    return { dim, origin, power, factor: factors(power) };
+}
+
+/* A length. */
+function scaled(units, value) {
+    return clamp(finite(value) * units.factor[0] * units.factor[1], -CUT, CUT);
+}
+
+/* A coordinate. */
+function placed(units, value, axis) {
+    const difference = value - units.origin[axis];
+    if (Number.isFinite(difference))
+        return scaled(units, difference);
+    return scaled(units, value) - scaled(units, units.origin[axis]);
+}
+
+/* Back to a length of the world; may be infinite or 0 where the units are that large or small. */
+function unscaled(units, value) {
+    return value / units.factor[0] / units.factor[1];
+}
+
+/* ---- Outlines ---- */
+
+function cornerAdds(shape, corner, component) {
+    return shape.shape === CUBOID ? (corner >> component) & 1 : corner === component + 1;
+}
+
+function middleOf(points) {
+    return [0, 1, 2].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
+}
+
+/* corners: [x, y, z]; z is 0 in 2D. */
+function outlineOf(units, frame, time) {
+    const { shape } = frame, count = shape.c.length / shape.dim, corners = [];
+    const number = shape.shape === CUBOID ? 1 << count : count + 1;
+    for (let k = 0; k < number; k++) {
+        const corner = [0, 0, 0];
+        for (let axis = 0; axis < shape.dim; axis++) {
+            let at = placed(units, frame.origin[axis], axis);
+            for (let i = 0; i < count; i++)
+                at += cornerAdds(shape, k, i) ? scaled(units, shape.c[i * shape.dim + axis]) : 0;
+            at += frame.velocity && time > 0 ? scaled(units, frame.velocity[axis] * time) : 0;
+            corner[axis] = clamp(at, -CUT, CUT);
+        }
+        corners.push(corner);
+    }
+    return { corners, faces: facesOf(shape), middle: middleOf(corners) };
+}
+
+/* An end is null where it is infinite, and a word where it is no number. */
+function boxEnd(units, value, axis, sign) {
+    return typeof value === "number" ? placed(units, value, axis) : sign * CUT;
+}
+
+function outlineOfBox(units, box) {
+    const corners = [];
+    for (let k = 0; k < 1 << units.dim; k++) {
+        const corner = [0, 0, 0];
+        for (let axis = 0; axis < units.dim; axis++) {
+            const high = (k >> axis) & 1;
+            corner[axis] = clamp(boxEnd(units, box[high][axis], axis, high ? 1 : -1), -CUT, CUT);
+        }
+        corners.push(corner);
+    }
+    return { corners, faces: units.dim === 3 ? CUBOID_3D : CUBOID_2D, middle: middleOf(corners) };
+}
+
+/* ---- Bounds: of many points, those that are farthest in some direction ---- */
+
+/* Whole numbers from -2 to 2, without multiples: the axes and 92 others. */
+const DIRECTIONS = [];
+for (let k = 0; k < 125; k++) {
+    const direction = [k % 5 - 2, Math.floor(k / 5) % 5 - 2, Math.floor(k / 25) - 2];
+    if (direction.some((part) => Math.abs(part) === 1))
+        DIRECTIONS.push(direction);
+}
+
+function boundsOfPoints(points) {
+    const far = DIRECTIONS.map(() => -Infinity), extreme = DIRECTIONS.map(() => null);
+    for (const point of points) {
+        DIRECTIONS.forEach((direction, k) => {
+            const way = dot(point, direction);
+            if (way > far[k])
+                [far[k], extreme[k]] = [way, point];
+        });
+    }
+    const kept = [...new Set(extreme)], along = (axis) => kept.map((point) => point[axis]);
+    return {
+        points: kept, low: [0, 1, 2].map((axis) => Math.min(...along(axis))),
+        high: [0, 1, 2].map((axis) => Math.max(...along(axis))),
+    };
+}
+
+/* Of the frames, one at least, over the window. */
+function boundsOf(units, frames, T) {
+    return boundsOfPoints(frames.flatMap((frame) => [...outlineOf(units, frame, 0).corners,
+        ...(frame.velocity && T > 0 ? outlineOf(units, frame, T).corners : [])]));
+}
+
+function extent(bounds) {
+    return Math.max(...[0, 1, 2].map((axis) => bounds.high[axis] - bounds.low[axis]));
+}
+
+/* ---- Projection ---- */
+
+/* Where the viewer stands at first: in front, to the right and above. */
+const OBLIQUE = { azimuth: -1.012, elevation: 0.419 };
+const VIEWS = {
+    oblique: OBLIQUE,
+    x: { azimuth: 0, elevation: 0 },
+    y: { azimuth: -Math.PI / 2, elevation: 0 },
+    z: { azimuth: -Math.PI / 2, elevation: Math.PI / 2 },
+};
+
+/* Where light comes from; of length 1. */
+const LIGHT = [0.36, -0.48, 0.8];
+
+/* Right, up, and towards the viewer, of directions in unit coordinates. */
+function turn(dim, azimuth, elevation) {
+    if (dim === 2)
+        return (p) => [p[0], p[1], 0];
+    const ca = Math.cos(azimuth), sa = Math.sin(azimuth);
+    const ce = Math.cos(elevation), se = Math.sin(elevation);
+    return (p) => {
+        const forward = ca * p[0] + sa * p[1];
+        return [-sa * p[0] + ca * p[1], ce * p[2] - se * forward, ce * forward + se * p[2]];
+    };
+}
+
+function minus(a, b) {
+    return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
+function cross(a, b) {
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function dot(a, b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* How much a face looks up to the light: 0 to 1. */
+function lightOf(a, b, c) {
+    const normal = cross(minus(b, a), minus(c, a)), length = Math.hypot(...normal);
+    return length > 0 ? Math.abs(dot(normal, LIGHT)) / length : 0.5;
+}
+
+/* ---- Clipping: what lies far outside of the picture is not given to the canvas ---- */
+
+/* Of a polygon the part on one side: keep(point) >= 0. */
+function clipSide(points, keep) {
+    const kept = [];
+    points.forEach((point, i) => {
+        const before = points[(i + points.length - 1) % points.length];
+        const a = keep(before), b = keep(point);
+        if ((a < 0) !== (b < 0)) {
+            const part = a / (a - b);
+            kept.push([before[0] + part * (point[0] - before[0]), before[1] + part * (point[1] - before[1])]);
+        }
+        if (b >= 0)
+            kept.push(point);
+    });
+    return kept;
+}
+
+const CLIP_MARGIN = 40; /* pixels */
+
+function clipPolygon(points, width, height) {
+    const inside = points.every(([x, y]) => x > -CLIP_MARGIN && x < width + CLIP_MARGIN
+        && y > -CLIP_MARGIN && y < height + CLIP_MARGIN);
+    if (inside)
+        return points;
+    let kept = clipSide(points, (p) => p[0] + CLIP_MARGIN);
+    kept = clipSide(kept, (p) => width + CLIP_MARGIN - p[0]);
+    kept = clipSide(kept, (p) => p[1] + CLIP_MARGIN);
+    return clipSide(kept, (p) => height + CLIP_MARGIN - p[1]);
+}
+
+function isInside(points, x, y) {
+    let inside = false;
+    points.forEach(([ax, ay], i) => {
+        const [bx, by] = points[(i + 1) % points.length];
+        if ((ay > y) !== (by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax)
+            inside = !inside;
+    });
+    return inside;
+}
