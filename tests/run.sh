@@ -14,7 +14,7 @@ log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
 
 # Where sanitizers would find nothing: other languages, what is installed, what is measured.
-unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report.bats'
+unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report.bats cli/page.bats'
 # Where one of them is enough.
 sanitized_once='system/soak.bats system/fairness.bats system/supervisor.bats'
 slow="$sanitized_once system/examples.bats system/bus.bats"

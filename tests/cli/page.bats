@@ -1,0 +1,196 @@
+# The page of a replay: what it holds, and what a browser shows of it. Chromium opens it, clicks and
+# presses keys in it (tests/page/drive.js); without Chromium these tests are skipped.
+
+bats_require_minimum_version 1.5.0
+
+# as_chromium COLOURS PART: opens the driver; stops when it has found all. Nothing leaves the machine:
+# no name is known.
+as_chromium() {
+    local log=$BATS_FILE_TMPDIR/$1.log pid
+    : > "$log"
+    timeout 120 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-sync \
+        --disable-background-networking --disable-component-update --disable-extensions \
+        --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir="$BATS_FILE_TMPDIR/$1" \
+        --allow-file-access-from-files --enable-logging=stderr --v=0 --remote-debugging-port=0 \
+        --window-size=1500,1200 --blink-settings="preferredColorScheme=$2" \
+        "file://$BATS_FILE_TMPDIR/drive.html#$1" > "$log" 2>&1 < /dev/null 3>&- &
+    pid=$!
+    for _ in $(seq 1000); do
+        if grep -aq ' END"' "$log" || ! kill -0 $pid 2> /dev/null; then break; fi
+        sleep 0.1
+    done
+    kill $pid 2> /dev/null || true
+    wait $pid || true
+    sed -n 's/.*"FOUND \(.*\) END", source: .*/\1/p' "$log" > "$BATS_FILE_TMPDIR/$1.json"
+    # What the pages themselves have to say: errors, refusals.
+    grep -a 'CONSOLE:.*source: file:' "$log" | grep -av 'source: [^ ]*drive\.js' > "$BATS_FILE_TMPDIR/$1.console" || true
+}
+
+setup_file() {
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    for page in mixed arm many crowd empty; do
+        "${FMB_BUILD:-build}/make-page" $page > "$BATS_FILE_TMPDIR/$page.html"
+    done
+    cp tests/page/drive.html tests/page/drive.js "$BATS_FILE_TMPDIR"
+    cd "$BATS_FILE_TMPDIR" || return
+    sed 's/^start();$/start(); start;/' arm.html > changed.html
+    sed 's/^"pairs":.*/"pairs":[/' arm.html > cut.html
+    command -v chromium > /dev/null || return 0
+    as_chromium light 1 &
+    light=$!
+    as_chromium dark 0
+    wait $light
+}
+
+setup() {
+    cd "$BATS_FILE_TMPDIR" || return
+}
+
+# found PART FILTER: jq has to say true of what was found.
+found() {
+    command -v chromium > /dev/null || skip 'there is no chromium'
+    jq -e "$2" "$1.json" > /dev/null || {
+        echo "not so: $2"
+        jq -c "${2%%[^.a-zA-Z]*}" "$1.json" | head -c 3000
+        [ -s "$1.json" ] || tail -n 20 "$1.log"
+        return 1
+    }
+}
+
+data() {
+    sed -n '/^<script type="application\/json"/,/^<\/script>/p' "$1" | sed '1d;$d'
+}
+
+# hash_of FILE ELEMENT: of all between the tags, as a policy names it.
+hash_of() {
+    { echo; sed -n "/^<$2>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
+        tr a-f A-F | basenc --base16 -d | base64
+}
+
+# ---- What it holds ---------------------------------------------------------------------------
+
+@test "one file that refers to nothing else" {
+    for page in mixed arm many crowd empty; do
+        data $page.html | jq -e '.events | type == "array"' > /dev/null
+        sed '/^<script type="application\/json"/,/^<\/script>/d' $page.html > rest
+        [ "$(grep -c '<script>' rest)" = 1 ]
+        [ "$(tail -n 1 rest)" = '</html>' ]
+        run grep -noE '(src|href|action)="[^#"]*[^#",:a-z]|@import|url\(| on[a-z]+="|style="' rest
+        [ "$status" = 1 ]
+        run grep -noE 'https?://[^ "]*' rest
+        [ "$(echo "$output" | sed 's/^[0-9]*://' | sort -u)" = 'http://www.w3.org/2000/svg' ]
+    done
+}
+
+@test "its policy lets its own script and style run, and nothing else" {
+    policy=$(grep -o 'Content-Security-Policy" content="[^"]*"' arm.html)
+    [[ $policy == *"default-src 'none'; script-src 'sha256-$(hash_of arm.html script)'; style-src 'sha256-$(hash_of arm.html style)'; img-src data:;"* ]]
+}
+
+@test "hostile strings end neither script nor page" {
+    [ "$(grep -c '</script>' mixed.html)" = 2 ]
+    [ "$(grep -c '<!--' mixed.html)" = 0 ]
+    data mixed.html | jq -e '.title | startswith("</title></script><script>throw")'
+    data mixed.html | jq -e '.logs == ["drive.log", "other ä </script>.log"]'
+}
+
+# ---- In a browser ----------------------------------------------------------------------------
+
+@test "it opens, and nothing goes wrong in it" {
+    found light '.done and .error == null'
+    [ ! -s light.console ] || {
+        cat light.console
+        return 1
+    }
+    found light '.opened | .scripts == 2 and .bold == 0 and .resources == 0
+        and (.title | startswith("Replay: </title></script>"))
+        and .counts == ["54", "48", "3", "1", "1", "1"]'
+}
+
+@test "what goes wrong in a page is seen" {
+    found dark '.done'
+    grep -q 'Executing inline script violates.*source: .*changed.html' dark.console
+    grep -q 'Uncaught SyntaxError.*source: .*cut.html' dark.console
+}
+
+@test "it may not reach the network, nor run what is not its own" {
+    found dark '.refused.directives == ["connect-src", "img-src", "script-src-attr"]'
+    found dark '.refused.title | startswith("Replay: ")'
+}
+
+@test "rows: those with differences first, then those that meet" {
+    found light '.opened.labels[1:6] == ["anonymous – anonymous", "anonymous – 32", "3 – 4", "1 – 2", "7 – 8"]'
+    found light '.filled == ["separated", "overlapping"]'
+}
+
+@test "a click on a mark shows the query there, in two dimensions" {
+    found light '.clicked | .pair == ["1 – 2"] and .verdict == ["overlapping"] and .scene == "Scene, 2D"
+        and .lane == ["1 2"] and .hash == "#0:31" and .query == "Query 31"'
+    found light '.clicked | .drawn > 10000 and .red > 3000 and .violet > 300'
+    found light '.moved.sum != .clicked.sum and .zoomed.red > 1.5 * .moved.red'
+}
+
+@test "what is pointed at is named" {
+    found light '.pointed == ["body 1, parallelogram: overlapping", "body 2, triangle: overlapping"]'
+}
+
+@test "the arrows lead from query to query" {
+    found light '.right.query == "Query 33" and .left.query == "Query 31"'
+}
+
+@test "a known difference is found by key, by its flag and in the list" {
+    found light '.opened.flags == 2 and .opened.listed == 3'
+    found light '.opened.chosen | .query == "Query 65" and .outcome == "≠ different"'
+    found light '[.next, .flag] | all(.query == "Query 65" and .outcome == "≠ different"
+        and .verdict == ["touching", "overlapping"] and .pair == ["≠3 – 4"])'
+    found light '.next.changes | contains("verdicttouchingoverlapping")
+        and contains("0.357143 .. 0.6785710.357143 .. 1") and contains("box x0.428571 .. 0.9642860.428571 .. 1.5")'
+    found light '.next.words | contains("verdict touching → overlapping")'
+    found light '.around.query == "Query 103" and .listed.query == "Query 69"'
+}
+
+@test "three dimensions: turned, seen from above, at the end of the window; both boxes" {
+    found light '.space | .drawn > 10000 and .red > 3000 and .violet > 300 and .pink > 300'
+    found light '[.space, .turned, .above, .slid] | map(.sum) | unique | length == 4'
+    found light '.slid | .said == "1 s of 1 s" and .bands == 2 and .then == 1'
+}
+
+@test "a scene: its pairs, one of them chosen" {
+    found light '.scene | .pair == ["≠1 – 13", "≠2 – 11", "11 – 12", "12 – 13"] and .drawn > 10000'
+    found light '.other.pressed == ["11 – 12"] and .other.sum != .scene.sum and .near.red > .other.red'
+    found light '.playing == "❚❚"'
+}
+
+@test "numbers of all sizes are drawn, and no number is none" {
+    found light '.sizes | length == 18 and all(.bad == 0)'
+    found light '.sizes | map(select(.query != "Query 83") | .drawn) | min > 10000'
+    found light '.sizes[] | select(.query == "Query 83") | .drawn > 300' # of no size
+    found light '.many.bad == 0 and .crowd.bad == 0'
+}
+
+@test "what cannot be drawn is said" {
+    found light '.sizes[] | select(.query == "Query 97")
+        | .missing == ["not drawn: body 8: it came by key 4711, and its components are not in the log"]'
+    found light '.sizes[] | select(.query == "Query 99") | .missing == ["not drawn: body 7: its numbers make no frame"]'
+}
+
+@test "the filter, more rows, zooming" {
+    found light '.filtered.rows == ["all queries", "3 – 4"] and .filteredPair == .filtered.rows'
+    found light '.filteredNone == {rows: 1, said: "no pair with it"} and .more == [9, 19]'
+    found light '.zoom | .near and .dragged and .back'
+}
+
+@test "much: what is left out, a pause, a crowd, nothing" {
+    found light '.many | .counts[0] == "5,700" and .rows == 9 and .leftOut == 1
+        and .folds == ["24 h without queries"] and .more == "show 40 more of 90 pairs"'
+    found light '.many.note | startswith("699 queries are counted, but not shown, from 86474.985 to 86485.470 s.")
+        and contains("all of them are here")'
+    found light '.crowd | .drawn > 50000 and .rows == 30
+        and (.notes | contains("The answers are those of the pairs 0 to"))'
+    found light '.crowdMore == 230 and .empty == {said: "No query was replayed.", hidden: true}'
+}
+
+@test "dark where the reader likes it dark" {
+    found dark '.dark.ground == "rgb(20, 23, 27)" and .dark.drawn > 10000'
+    found dark '.dark.sum != 0'
+}

@@ -1,0 +1,287 @@
+/* Opens pages one after the other in a frame, does in each what a reader does, and writes what it
+ * found as JSON to the console. The page is another document, with a policy of its own, that knows
+ * nothing of this. */
+"use strict";
+
+const frame = document.getElementById("page");
+const found = {};
+let page, view;
+
+/* ---- Tools ---- */
+
+function drawn() {
+    return new Promise((done) => view.requestAnimationFrame(() => setTimeout(done)));
+}
+
+async function open(name) {
+    await new Promise((done) => {
+        frame.onload = done;
+        frame.src = name;
+    });
+    page = frame.contentDocument;
+    view = frame.contentWindow;
+    await drawn();
+}
+
+function one(selector) {
+    const element = page.querySelector(selector);
+    if (!element)
+        throw new Error(`there is no ${selector}`);
+    return element;
+}
+
+function all(selector) {
+    return [...page.querySelectorAll(selector)];
+}
+
+function text(selector) {
+    return one(selector).textContent;
+}
+
+/* Presses, moves if asked to, and lets go; x and y: parts of the element's size. */
+async function mouse(element, x = 0.5, y = 0.5, move = null) {
+    const box = element.getBoundingClientRect();
+    const at = { x: box.left + box.width * x, y: box.top + box.height * y };
+    const send = (type, Kind) => element.dispatchEvent(new Kind(type,
+        { bubbles: true, cancelable: true, clientX: at.x, clientY: at.y, button: 0, buttons: 1 }));
+    send("pointerdown", view.PointerEvent);
+    if (move) {
+        at.x += move[0];
+        at.y += move[1];
+        send("pointermove", view.PointerEvent);
+    }
+    send("pointerup", view.PointerEvent);
+    send("click", view.MouseEvent);
+    await drawn();
+}
+
+/* What is said of the bodies that the pointer finds on its ways across the scene. */
+async function point() {
+    const box = one("#stage").getBoundingClientRect(), said = new Set();
+    for (let k = 0; k < 1600; k++) {
+        one("#stage").dispatchEvent(new view.PointerEvent("pointermove", {
+            bubbles: true, clientX: box.left + box.width * (k % 40) / 40,
+            clientY: box.top + box.height * Math.floor(k / 40) / 40,
+        }));
+        if (!one("#pointed").hidden)
+            said.add(text("#pointed"));
+    }
+    await drawn();
+    return [...said].sort();
+}
+
+async function wheel(element, deltaY) {
+    const box = element.getBoundingClientRect();
+    element.dispatchEvent(new view.WheelEvent("wheel", {
+        bubbles: true, cancelable: true, deltaY,
+        clientX: box.left + box.width / 2, clientY: box.top + box.height / 2,
+    }));
+    await drawn();
+}
+
+async function press(key, shiftKey = false) {
+    page.body.dispatchEvent(new view.KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }));
+    await drawn();
+}
+
+async function type(selector, value, event = "input") {
+    one(selector).value = value;
+    one(selector).dispatchEvent(new view.Event(event, { bubbles: true }));
+    await drawn();
+}
+
+function pixels() {
+    const canvas = one("#stage");
+    return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+}
+
+/* How many pixels are drawn at all; how many are nearly of a colour; and a sum that another picture
+ * hardly has. */
+function picture() {
+    const data = pixels(), count = { drawn: 0, sum: 0, violet: 0, red: 0, pink: 0 };
+    const isNear = (i, red, green, blue) => data[i + 3] > 60 && Math.abs(data[i] - red) < 60
+        && Math.abs(data[i + 1] - green) < 60 && Math.abs(data[i + 2] - blue) < 60;
+    for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] === 0)
+            continue;
+        count.drawn++;
+        count.sum = (count.sum * 31 + data[i] + 2 * data[i + 1] + 3 * data[i + 2] + i) % 1000000007;
+        count.violet += isNear(i, 106, 22, 196) ? 1 : 0;
+        count.red += isNear(i, 228, 120, 112) ? 1 : 0;
+        count.pink += isNear(i, 196, 0, 111) ? 1 : 0;
+    }
+    return count;
+}
+
+/* What is said of the chosen query. */
+function chosen() {
+    return {
+        query: text("#event-head h2"), outcome: text("#event-head .outcome"),
+        pair: all("#event-pairs .pair").map((button) => button.textContent),
+        verdict: all("#event-pairs tbody tr:first-child .verdict").map((chip) => chip.textContent),
+        scene: text("#scene-title"), hash: view.location.hash,
+    };
+}
+
+/* What numbers become that are none. */
+function badNumbers() {
+    const shown = all("header, #notes, #top, #bottom").map((element) => element.outerHTML).join("");
+    return (shown.match(/NaN|Infinity|undefined|null|\[object/g) ?? []).length;
+}
+
+function marks(row, kind) {
+    return all(`.row[data-row="${row}"] ${kind}`);
+}
+
+/* ---- What is done ---- */
+
+async function mixed() {
+    await open("mixed.html");
+    found.opened = {
+        title: page.title, heading: text("#title"), counts: all(".count b").map((b) => b.textContent),
+        scripts: page.scripts.length, bold: all("dd b, .line b b").length, chosen: chosen(),
+        labels: all(".label .name").map((name) => name.textContent), flags: marks("3 4", ".flag").length,
+        listed: all(".difference").length, resources: view.performance.getEntriesByType("resource").length,
+    };
+    await mouse(marks("1 2", ".run.overlapping")[0], 0.5);
+    found.clicked = { ...chosen(), ...picture(), lane: all(".row.chosen").map((row) => row.dataset.row) };
+    found.pointed = await point();
+    await mouse(one("#stage"), 0.5, 0.5, [40, 30]);
+    found.moved = picture();
+    await wheel(one("#stage"), -300);
+    found.zoomed = picture();
+    await press("ArrowRight");
+    found.right = chosen();
+    await press("ArrowLeft");
+    found.left = chosen();
+}
+
+async function difference() {
+    await press("d");
+    found.next = { ...chosen(), changes: text("#event-differences"), words: text(".difference.chosen"), ...picture() };
+    await press("D");
+    found.around = chosen();
+    await mouse(marks("3 4", ".flag")[0], 0.4, 0.2);
+    found.flag = { ...chosen(), ...picture() };
+    await mouse(all(".difference")[1]);
+    found.listed = chosen();
+}
+
+async function space() {
+    await mouse(all(".difference")[0]);
+    found.space = picture();
+    await mouse(one("#stage"), 0.5, 0.5, [120, -50]);
+    found.turned = picture();
+    await mouse(one('#views [data-view="z"]'));
+    found.above = picture();
+    await mouse(one("#fit-all"));
+    await type("#moment", "1000");
+    found.slid = { ...picture(), said: text("#moment-said"), bands: all(".band").length, then: all(".band.then").length };
+}
+
+/* The queries from the first one on whose numbers are of all sizes, and what is drawn of each. */
+async function sizes() {
+    found.sizes = [];
+    await new Promise((done) => {
+        view.addEventListener("hashchange", done, { once: true });
+        view.location.hash = "#0:73";
+    });
+    await drawn();
+    for (let i = 0; i < 100; i++) {
+        const { drawn: count } = picture();
+        found.sizes.push({ ...chosen(), drawn: count, missing: all("#not-drawn li").map((li) => li.textContent), bad: badNumbers() });
+        const before = view.location.hash;
+        await press("ArrowRight");
+        if (view.location.hash === before)
+            break;
+    }
+}
+
+async function filter() {
+    await type("#filter", "3");
+    found.filtered = { rows: all(".label .name").map((name) => name.textContent), said: text("#rows-said") };
+    await type("#filter", "4 3");
+    found.filteredPair = all(".label .name").map((name) => name.textContent);
+    await type("#filter", "77777");
+    found.filteredNone = { rows: all(".label").length, said: text("#rows-said") };
+    await type("#filter", "");
+    const before = all(".label").length;
+    await mouse(one("#more-rows"));
+    found.more = [before, all(".label").length];
+}
+
+async function zoom() {
+    const runs = () => marks("all", ".run").map((run) => run.getAttribute("x")).join();
+    const before = runs();
+    await wheel(one("#plot"), -400);
+    const near = runs();
+    await mouse(one('.row[data-row="all"] .lane'), 0.5, 0.5, [-90, 0]);
+    const dragged = runs();
+    await press("0");
+    found.zoom = { near: near !== before, dragged: dragged !== near, back: runs() === before };
+}
+
+async function scene() {
+    await open("arm.html#75");
+    found.scene = { ...chosen(), ...picture(), notes: text("#event-pairs") };
+    await mouse(all("#event-pairs .pair")[2]);
+    found.other = { ...picture(), pressed: all('.pair[aria-pressed="true"]').map((button) => button.textContent) };
+    await mouse(one("#fit-pair"));
+    found.near = picture();
+    await mouse(one("#play"));
+    found.playing = text("#play");
+    await mouse(one("#play"));
+    /* A pair that is not named is separated: its row has more queries than name it. */
+    found.filled = marks("12 21", ".run").map((run) => run.classList[1]);
+}
+
+async function large() {
+    await open("many.html");
+    found.many = {
+        counts: all(".count b").map((b) => b.textContent), note: text("#notes"), folds: all(".fold title").map((title) => title.textContent),
+        leftOut: all(".left-out").length, rows: all(".label").length, more: text("#more-rows"), bad: badNumbers(),
+    };
+    await open("crowd.html");
+    found.crowd = { ...picture(), ...chosen(), rows: all("#event-pairs tbody tr").length, notes: text("#event-pairs"), bad: badNumbers() };
+    await mouse(all("#event-pairs button").pop());
+    found.crowdMore = all("#event-pairs tbody tr").length;
+    await open("empty.html");
+    found.empty = { said: text("#span"), hidden: one("#timeline").hidden };
+}
+
+/* Nothing may be fetched: tried in the page's own name. */
+async function network() {
+    await open("mixed.html");
+    const refused = [];
+    page.addEventListener("securitypolicyviolation", (event) => refused.push(event.effectiveDirective));
+    await view.fetch("drive.js").then(() => refused.push("fetched"), () => {});
+    const image = page.createElement("img");
+    image.src = "drive.js";
+    image.setAttribute("onclick", "document.title = 'ran'");
+    page.body.append(image);
+    image.click();
+    await new Promise((done) => setTimeout(done, 100));
+    found.refused = { directives: refused.sort(), title: page.title };
+}
+
+async function dark() {
+    await mouse(all(".difference")[0]);
+    found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
+}
+
+/* Pages that the test has broken: what goes wrong in them must be seen. */
+async function broken() {
+    await open("changed.html");
+    await open("cut.html");
+}
+
+async function drive(parts) {
+    for (const part of parts)
+        await part();
+    found.done = true;
+}
+
+const light = [mixed, difference, space, sizes, filter, zoom, scene, large];
+drive(location.hash === "#dark" ? [network, dark, broken] : light).catch((error) => {
+    found.error = String(error.stack ?? error);
+}).then(() => console.log(`FOUND ${JSON.stringify(found)} END`));
