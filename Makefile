@@ -181,8 +181,8 @@ $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 # The page of a replay without its data: its text, style and scripts in one, and then numbers of C. Its
 # policy lets nothing run but what has the hash of all between the tags, line ends included.
 page_source := clients/replay/page/
-page_scripts := $(addprefix $(page_source),numbers.js data.js dom.js clock.js world.js timeline.js \
-	stage.js window.js panel.js main.js)
+page_scripts := $(addprefix $(page_source),numbers.js data.js dom.js clock.js timeline.js \
+	world.js camera.js canvas.js stage.js window.js panel.js main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
 build/page/page.html: $(page_source)page.html $(page_source)page.css $(page_scripts) Makefile

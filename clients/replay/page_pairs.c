@@ -106,10 +106,10 @@ static struct page_side take(struct page_place *place)
     if (side.verdict < FMB_TOUCHING || place->contact >= result->contact_count)
         return side;
     const int32_t contact = place->contact++, dim = result->has_boxes ? result->dim : 0;
-    if (result->has_times)
-        memcpy(side.times, &result->times[2 * contact], sizeof side.times);
     /* NaN stands for a pair at rest: it has none. */
-    side.has_times = result->has_times && !isnan(side.times[0]);
+    side.has_times = result->has_times && !isnan(result->times[2 * contact]);
+    if (side.has_times)
+        memcpy(side.times, &result->times[2 * contact], sizeof side.times);
     side.dim = dim;
     for (int end = 0; end < 2; end++)
         for (int axis = 0; axis < dim; axis++)

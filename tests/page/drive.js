@@ -38,6 +38,10 @@ function text(selector) {
     return one(selector).textContent;
 }
 
+function texts(selector) {
+    return all(selector).map((element) => element.textContent);
+}
+
 /* Presses, moves if asked to, and lets go; x and y: parts of the element's size. */
 async function mouse(element, x = 0.5, y = 0.5, move = null) {
     const box = element.getBoundingClientRect();
@@ -80,7 +84,8 @@ async function wheel(element, deltaY) {
 }
 
 async function press(key, shiftKey = false) {
-    page.body.dispatchEvent(new view.KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }));
+    page.body.dispatchEvent(new view.KeyboardEvent("keydown",
+        { key, shiftKey, bubbles: true, cancelable: true }));
     await drawn();
 }
 
@@ -117,8 +122,8 @@ function picture() {
 function chosen() {
     return {
         query: text("#event-head h2"), outcome: text("#event-head .outcome"),
-        pair: all("#event-pairs .pair").map((button) => button.textContent),
-        verdict: all("#event-pairs tbody tr:first-child .verdict").map((chip) => chip.textContent),
+        pair: texts("#event-pairs .pair"),
+        verdict: texts("#event-pairs tbody tr:first-child .verdict"),
         scene: text("#scene-title"), hash: view.location.hash,
     };
 }
@@ -138,13 +143,15 @@ function marks(row, kind) {
 async function mixed() {
     await open("mixed.html");
     found.opened = {
-        title: page.title, heading: text("#title"), counts: all(".count b").map((b) => b.textContent),
-        scripts: page.scripts.length, bold: all("dd b, .line b b").length, chosen: chosen(),
-        labels: all(".label .name").map((name) => name.textContent), flags: marks("3 4", ".flag").length,
-        listed: all(".difference").length, resources: view.performance.getEntriesByType("resource").length,
+        title: page.title, counts: texts(".count b"), scripts: page.scripts.length,
+        bold: all("dd b, .line b b").length, chosen: chosen(), labels: texts(".label .name"),
+        flags: marks("3 4", ".flag").length, listed: all(".difference").length,
+        resources: view.performance.getEntriesByType("resource").length,
     };
     await mouse(marks("1 2", ".run.overlapping")[0], 0.5);
-    found.clicked = { ...chosen(), ...picture(), lane: all(".row.chosen").map((row) => row.dataset.row) };
+    found.clicked = {
+        ...chosen(), ...picture(), lane: all(".row.chosen").map((row) => row.dataset.row),
+    };
     found.pointed = await point();
     await mouse(one("#stage"), 0.5, 0.5, [40, 30]);
     found.moved = picture();
@@ -158,7 +165,9 @@ async function mixed() {
 
 async function difference() {
     await press("d");
-    found.next = { ...chosen(), changes: text("#event-differences"), words: text(".difference.chosen"), ...picture() };
+    found.next = {
+        ...chosen(), changes: text("#event-differences"), words: text(".difference.chosen"),
+    };
     await press("D");
     found.around = chosen();
     await mouse(marks("3 4", ".flag")[0], 0.4, 0.2);
@@ -176,7 +185,10 @@ async function space() {
     found.above = picture();
     await mouse(one("#fit-all"));
     await type("#moment", "1000");
-    found.slid = { ...picture(), said: text("#moment-said"), bands: all(".band").length, then: all(".band.then").length };
+    found.slid = {
+        ...picture(), said: text("#moment-said"), bands: all(".band").length,
+        then: all(".band.then").length,
+    };
 }
 
 /* The queries from the first one on whose numbers are of all sizes, and what is drawn of each. */
@@ -188,8 +200,9 @@ async function sizes() {
     });
     await drawn();
     for (let i = 0; i < 100; i++) {
-        const { drawn: count } = picture();
-        found.sizes.push({ ...chosen(), drawn: count, missing: all("#not-drawn li").map((li) => li.textContent), bad: badNumbers() });
+        found.sizes.push({
+            ...chosen(), drawn: picture().drawn, missing: texts("#not-drawn li"), bad: badNumbers(),
+        });
         const before = view.location.hash;
         await press("ArrowRight");
         if (view.location.hash === before)
@@ -199,9 +212,9 @@ async function sizes() {
 
 async function filter() {
     await type("#filter", "3");
-    found.filtered = { rows: all(".label .name").map((name) => name.textContent), said: text("#rows-said") };
+    found.filtered = { rows: texts(".label .name"), said: text("#rows-said") };
     await type("#filter", "4 3");
-    found.filteredPair = all(".label .name").map((name) => name.textContent);
+    found.filteredPair = texts(".label .name");
     await type("#filter", "77777");
     found.filteredNone = { rows: all(".label").length, said: text("#rows-said") };
     await type("#filter", "");
@@ -225,7 +238,7 @@ async function scene() {
     await open("arm.html#75");
     found.scene = { ...chosen(), ...picture(), notes: text("#event-pairs") };
     await mouse(all("#event-pairs .pair")[2]);
-    found.other = { ...picture(), pressed: all('.pair[aria-pressed="true"]').map((button) => button.textContent) };
+    found.other = { ...picture(), pressed: texts('.pair[aria-pressed="true"]') };
     await mouse(one("#fit-pair"));
     found.near = picture();
     await mouse(one("#play"));
@@ -238,11 +251,15 @@ async function scene() {
 async function large() {
     await open("many.html");
     found.many = {
-        counts: all(".count b").map((b) => b.textContent), note: text("#notes"), folds: all(".fold title").map((title) => title.textContent),
-        leftOut: all(".left-out").length, rows: all(".label").length, more: text("#more-rows"), bad: badNumbers(),
+        counts: texts(".count b"), note: text("#notes"), folds: texts(".fold title"),
+        leftOut: all(".left-out").length, rows: all(".label").length, more: text("#more-rows"),
+        bad: badNumbers(),
     };
     await open("crowd.html");
-    found.crowd = { ...picture(), ...chosen(), rows: all("#event-pairs tbody tr").length, notes: text("#event-pairs"), bad: badNumbers() };
+    found.crowd = {
+        ...picture(), rows: all("#event-pairs tbody tr").length, notes: text("#event-pairs"),
+        bad: badNumbers(),
+    };
     await mouse(all("#event-pairs button").pop());
     found.crowdMore = all("#event-pairs tbody tr").length;
     await open("empty.html");
@@ -253,7 +270,9 @@ async function large() {
 async function network() {
     await open("mixed.html");
     const refused = [];
-    page.addEventListener("securitypolicyviolation", (event) => refused.push(event.effectiveDirective));
+    page.addEventListener("securitypolicyviolation", (event) => {
+        refused.push(event.effectiveDirective);
+    });
     await view.fetch("drive.js").then(() => refused.push("fetched"), () => {});
     const image = page.createElement("img");
     image.src = "drive.js";

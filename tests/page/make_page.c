@@ -120,6 +120,16 @@ static void tell_sizes(struct teller *teller)
     tell_size(teller, 126, 2, 1, 1e300);
 }
 
+/* From one end of the doubles to the other, and beyond: no double holds how far they are apart. */
+static void tell_far(struct teller *teller)
+{
+    static const double low[] = {-1.7e308, 0, 0}, high[] = {1.7e308, 0, 0};
+    const struct pair_query query = pair_of(teller_solid(128, 3, FMB_CUBOID, 1.2e308, low),
+                                            teller_solid(129, 3, FMB_CUBOID, 1.2e308, high), 1);
+    teller_pair(teller, &query);
+    teller_wait(teller, 0.05);
+}
+
 /* What cannot be compared, or drawn. */
 static void tell_odd(struct teller *teller)
 {
@@ -179,6 +189,7 @@ static void tell_mixed(struct teller *teller)
     tell_plane(teller);
     tell_space(teller);
     tell_sizes(teller);
+    tell_far(teller);
     tell_odd(teller);
     tell_scene(teller, QUERY_PAIRS_LISTED);
     teller->spoil_scene = then_missed;

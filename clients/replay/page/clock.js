@@ -1,7 +1,8 @@
 /* The time of the log on a line, without its long pauses.
  *
- * Where queries come in bursts with long pauses between them, and would be dots on a true axis, each
- * pause is folded to a short break. Places on the line are in seconds too, but for the breaks. */
+ * Where queries come in bursts with long pauses between them, and would be dots on a true axis,
+ * each pause is folded to a short break. Places on the line are in seconds too, but for the
+ * breaks. */
 
 const PAUSE_PART = 1 / 20;  /* of the whole: shorter ones are not folded */
 const PAUSE_TIMES = 10;     /* the median step: steps as usual are none */

@@ -1,4 +1,5 @@
-/* The data of the page, and what is made of them once: events in the order of time, rows of pairs. */
+/* The data of the page, and what is made of them once: events in the order of time, rows of
+ * pairs. */
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
@@ -121,7 +122,9 @@ function rowKey(ids) {
 
 /* at: events, by their place in the list; verdict: of each; differs: those of them that differ. */
 function makeRow(key) {
-    return { key, ids: key.split(" "), at: [], verdict: [], differs: [], contacts: 0, filled: false };
+    return {
+        key, ids: key.split(" "), at: [], verdict: [], differs: [], contacts: 0, filled: false,
+    };
 }
 
 function addMark(row, at, verdict, differs) {

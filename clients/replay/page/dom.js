@@ -44,8 +44,8 @@ function verdictChips(then, now) {
         verdictChip(now)];
 }
 
-/* begin(event) is called where a drag begins, and what it returns at each step; wherever the pointer
- * goes meanwhile. begin may return nothing. */
+/* begin(event) is called where a drag begins, and what it returns at each step, wherever the pointer
+ * goes meanwhile. It may return nothing. */
 function listenToDrags(element, begin) {
     element.addEventListener("pointerdown", (first) => {
         const go = begin(first);

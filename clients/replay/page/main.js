@@ -24,7 +24,9 @@ function pairToShow(event, row) {
     const pairs = pairsOf(event);
     if (event.kind === KIND_PAIR || pairs.length === 0)
         return -1;
-    const found = pairs.find((pair) => row && row !== allRow ? rowKey(pair.ids) === row.key : pair.differs);
+    const isIt = row && row !== allRow ? (pair) => rowKey(pair.ids) === row.key
+        : (pair) => pair.differs;
+    const found = pairs.find(isIt);
     return found ? found.index : -1;
 }
 
@@ -91,9 +93,10 @@ function stepList(inRow) {
 }
 
 function stepTo(list, forward, row) {
-    const i = forward ? list.findIndex((at) => at > chosen.at) : list.findLastIndex((at) => at < chosen.at);
-    if (i >= 0)
-        choose(list[i], row);
+    const at = forward ? list.find((of) => of > chosen.at)
+        : list.findLast((of) => of < chosen.at);
+    if (at !== undefined)
+        choose(at, row);
 }
 
 function step(forward, inRow) {
@@ -124,7 +127,7 @@ const KEYS = {
 function onKey(key) {
     const own = key.target.closest("input, select, textarea")
         || (key.key === " " && (key.target.closest("button, summary") || find("window").hidden));
-    if (own || key.ctrlKey || key.metaKey || key.altKey || events.length === 0 || !Object.hasOwn(KEYS, key.key))
+    if (own || key.ctrlKey || key.metaKey || key.altKey || !Object.hasOwn(KEYS, key.key))
         return;
     key.preventDefault();
     KEYS[key.key](key);
@@ -151,7 +154,8 @@ function listenToSteps() {
 
 /* At first the query of the address, else the first difference, else the first contact. */
 function firstEvent() {
-    return eventOfAddress() ?? differing[0] ?? events.find((event) => worstOf(event) >= TOUCHING) ?? events[0];
+    return eventOfAddress() ?? differing[0]
+        ?? events.find((event) => worstOf(event) >= TOUCHING) ?? events[0];
 }
 
 function start() {

@@ -47,7 +47,8 @@ function endText(value, sign, count) {
 
 /* "0.25 .. 0.5" */
 function intervalText(low, high) {
-    const count = typeof low === "number" && typeof high === "number" ? endDigits(low, high) : DIGITS;
+    const isNumbers = typeof low === "number" && typeof high === "number";
+    const count = isNumbers ? endDigits(low, high) : DIGITS;
     return `${endText(low, -1, count)} .. ${endText(high, 1, count)}`;
 }
 
@@ -115,7 +116,7 @@ function tickText(value, step) {
     const size = Math.abs(value);
     if (size !== 0 && (size >= 1e6 || step < 1e-5)) {
         const count = clamp(Math.ceil(Math.log10(size / step)), 0, 15);
-        return value.toExponential(count).replace(/(\.\d*?)0+e/, "$1e").replace(".e", "e").replace("e+", "e");
+        return value.toExponential(count).replace(/(\.\d*?)0+e/, "$1e").replace(/\.?e\+?/, "e");
     }
     return (value + 0).toFixed(clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 9));
 }

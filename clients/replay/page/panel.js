@@ -40,9 +40,11 @@ function leftOutNote() {
     const differences = data.left_out[DIFFERENT];
     const kept = differing.length === 0 ? "" : ` Differences were kept longer: ${differences === 0
         ? "all of them are here." : `${grouped(differences)} are left out.`}`;
-    return note(make("b", {}, `${counted(count, "query is", "queries are")} counted, but not shown`),
-        `, from ${timeText(seconds[0])} to ${timeText(seconds[1])} s.${kept} Another page of a part of `
-        + "the log shows them: ", make("code", {}, "fmb replay --from ... --to ... --html FILE"), ".");
+    return note(
+        make("b", {}, `${counted(count, "query is", "queries are")} counted, but not shown`),
+        `, from ${timeText(seconds[0])} to ${timeText(seconds[1])} s.${kept} Another page, of a `
+            + "part of the log, shows them: ",
+        make("code", {}, "fmb replay --from ... --to ... --html FILE"), ".");
 }
 
 function fillHeader() {
@@ -51,8 +53,8 @@ function fillHeader() {
     show(find("title"), make("span", { class: "dim" }, "Replay "), data.title);
     find("span").textContent = total === 0 ? "No query was replayed."
         : total === 1 ? dateText(first)
-            : `${durationText((Number(last) - Number(first)) / 1e6)} from ${dateText(first)}; times below count `
-                + "from this first query";
+            : `${durationText((Number(last) - Number(first)) / 1e6)} from ${dateText(first)}; `
+                + "times below count from this first query";
     fillCounts();
     show(find("notes"), leftOutNote());
 }
@@ -94,7 +96,8 @@ const CHANGES_SHOWN = 3;
 function makeDifference(event) {
     const changes = changesOf(event), more = changes.length - CHANGES_SHOWN;
     const names = event.frames.slice(0, 2).map((frame) => bodyName(String(frame[0]))).join(" – ");
-    const subject = event.kind === KIND_PAIR ? names : counted(event.frames.length, "frame", "frames");
+    const subject = event.kind === KIND_PAIR ? names
+        : counted(event.frames.length, "frame", "frames");
     return make("li", {}, make("button", {
         class: "difference", "data-at": event.at, onclick: () => choose(event.at, null),
     }, make("span", { class: "line" }, make("i", { class: "flag-key" }, "≠"),
@@ -103,7 +106,8 @@ function makeDifference(event) {
         ...changes.slice(0, CHANGES_SHOWN).map(([of, found]) => make("span", { class: "line" },
             event.kind === KIND_PAIR ? null : make("span", { class: "of" }, of), wordsOf(found))),
         more > 0 ? make("span", { class: "line dim" }, `and ${grouped(more)} more`) : null,
-        changes.length === 0 ? make("span", { class: "line dim" }, "in what this page does not show") : null));
+        changes.length > 0 ? null
+            : make("span", { class: "line dim" }, "in what this page does not show")));
 }
 
 function fillDifferences() {
@@ -144,7 +148,8 @@ function kindText(event) {
 }
 
 function wantText(want) {
-    const names = [[WANT_BOX, "boxes"], [WANT_TIMES, "intervals"], [WANT_CERTIFICATE, "a certificate"]];
+    const names = [[WANT_BOX, "boxes"], [WANT_TIMES, "intervals"],
+        [WANT_CERTIFICATE, "a certificate"]];
     return ["verdicts", ...names.filter(([bit]) => want & bit).map(([, name]) => name)].join(", ");
 }
 
@@ -154,7 +159,8 @@ function fact(name, ...value) {
 
 function verdictCounts(result) {
     return [OVERLAPPING, TOUCHING, SEPARATED, 0].filter((verdict) => result.count[verdict] > 0)
-        .map((verdict) => `${grouped(result.count[verdict])} ${VERDICTS[verdict]}`).join(", ") || "no pair";
+        .map((verdict) => `${grouped(result.count[verdict])} ${VERDICTS[verdict]}`)
+        .join(", ") || "no pair";
 }
 
 /* side: of the pair, where the query asks for one. */
@@ -171,7 +177,8 @@ function fillFacts(event) {
     const window = event.T === null ? "of a length that is not finite" : `0 .. ${short(event.T)} s`;
     const log = data.logs.length > 1 ? fact("log", data.logs[event.log]) : [];
     show(find("event-facts"), make("dl", {}, ...log,
-        ...fact("at", `${timeText(event.seconds)} s, ${dateText(event.t)}, byte ${grouped(event.o)}`),
+        ...fact("at", `${timeText(event.seconds)} s, ${dateText(event.t)}, byte `
+            + grouped(event.o)),
         ...fact("asks", `${kindText(event)}; ${wantText(event.want)}; window ${window}`),
         ...fact("then", resultText(event.then, stage.pairs[0]?.then)),
         ...fact("now", resultText(event.now, stage.pairs[0]?.now))));
@@ -180,8 +187,16 @@ function fillFacts(event) {
 function fillHead(event) {
     const verdict = worstOf(event);
     show(find("event-head"), make("h2", {}, `Query ${event.n}`), verdictChip(verdict),
-        make("span", { class: `outcome ${event.is === DIFFERENT ? "different" : ""}`, title: OUTCOME_SAID[event.is] },
-            event.is === DIFFERENT ? "≠ different" : OUTCOMES[event.is]));
+        make("span", {
+            class: `outcome ${event.is === DIFFERENT ? "different" : ""}`,
+            title: OUTCOME_SAID[event.is],
+        }, event.is === DIFFERENT ? "≠ different" : OUTCOMES[event.is]));
+}
+
+function makeTable(kind, names, rowElements) {
+    const head = make("tr", {}, ...names.map((name) => make("th", {}, name)));
+    return make("div", { class: "scroll" }, make("table", { class: kind },
+        make("thead", {}, head), make("tbody", {}, ...rowElements)));
 }
 
 function fillEventDifferences(event) {
@@ -191,14 +206,14 @@ function fillEventDifferences(event) {
         return;
     }
     const changes = changesOf(event), shown = changes.slice(0, 20);
-    const cells = ([of, [what, then, now]]) => make("tr", {}, make("td", {}, of), make("td", {}, what),
-        make("td", { class: "then" }, then), make("td", {}, make("b", {}, now)));
-    const head = make("tr", {}, ...["", "differs in", "then", "now"].map((text) => make("th", {}, text)));
+    const cells = ([of, [what, then, now]]) => make("tr", {}, make("td", {}, of),
+        make("td", {}, what), make("td", { class: "then" }, then),
+        make("td", {}, make("b", {}, now)));
     show(find("event-differences"), shown.length === 0
         ? make("p", {}, "The results differ in what this page does not show.")
-        : make("div", { class: "scroll" }, make("table", { class: "changes" },
-            make("thead", {}, head), make("tbody", {}, ...shown.map(cells)))),
-        changes.length > shown.length ? make("p", { class: "dim" }, `and ${grouped(changes.length - shown.length)} more, below`) : null);
+        : makeTable("changes", ["", "differs in", "then", "now"], shown.map(cells)),
+        changes.length === shown.length ? null
+            : make("p", { class: "dim" }, `and ${grouped(changes.length - shown.length)} more`));
 }
 
 /* ---- The pairs ---- */
@@ -207,41 +222,59 @@ function fillEventDifferences(event) {
 function twice(then, now, differs) {
     if (!differs || then === now)
         return [now];
-    if (then === "–" || now === "–")
-        return [then === "–" ? make("b", {}, now) : make("span", { class: "then" }, `then ${then}`)];
-    return [make("span", { class: "then", title: "then" }, then), make("br"), make("b", { title: "now" }, now)];
+    if (then === "–")
+        return [make("b", {}, now)];
+    if (now === "–")
+        return [make("span", { class: "then" }, `then ${then}`)];
+    return [make("span", { class: "then", title: "then" }, then), make("br"),
+        make("b", { title: "now" }, now)];
+}
+
+/* Two intervals, of which one or both may be missing. */
+function bothTexts(intervals) {
+    return intervals[0] && intervals[1] ? intervalTexts(...intervals)
+        : intervals.map((of) => of ? intervalText(...of) : "–");
 }
 
 function timesCell(pair) {
-    const sides = [timesOf(pair.then), timesOf(pair.now)];
-    const texts = sides[0] && sides[1] ? intervalTexts(...sides) : sides.map((of) => of ? intervalText(...of) : "–");
+    const sides = [timesOf(pair.then), timesOf(pair.now)], texts = bothTexts(sides);
     const title = sides[1] ? `${intervalExact(...sides[1])} s` : null;
     return make("td", { class: "number", title }, ...twice(...texts, pair.differs));
 }
 
 /* An axis a line. */
 function boxCell(pair) {
-    const boxes = [boxOf(pair.then), boxOf(pair.now)], dim = (boxes[0] ?? boxes[1] ?? [[]])[0].length;
+    const boxes = [boxOf(pair.then), boxOf(pair.now)];
+    const dim = (boxes[0] ?? boxes[1] ?? [[]])[0].length;
     const lines = [...Array(dim).keys()].map((axis) => {
-        const ends = boxes.map((box) => box && axis < box[0].length ? [box[0][axis], box[1][axis]] : null);
-        const texts = ends[0] && ends[1] ? intervalTexts(...ends) : ends.map((of) => of ? intervalText(...of) : "–");
+        const ends = boxes.map((box) => box && axis < box[0].length
+            ? [box[0][axis], box[1][axis]] : null);
         return make("div", { class: "axis", title: ends[1] ? intervalExact(...ends[1]) : null },
-            make("span", { class: "dim" }, "xyz"[axis]), make("span", {}, ...twice(...texts, pair.differs)));
+            make("span", { class: "dim" }, "xyz"[axis]),
+            make("span", {}, ...twice(...bothTexts(ends), pair.differs)));
     });
     return make("td", { class: "number" }, ...(dim ? lines : ["–"]));
 }
 
+/* What was not answered then has nothing to be compared with. */
+function verdictsOf(pair) {
+    const { then } = stage.event, now = verdictOf(pair.now);
+    return then && then.status === 0 ? verdictChips(verdictOf(pair.then), now) : [verdictChip(now)];
+}
+
 function makePairRow(pair, has) {
-    const then = verdictOf(pair.then), now = verdictOf(pair.now);
-    const name = pair.ids.map(bodyName).join(" – ");
-    const unequal = stage.event.is !== ALONE && stage.event.then && stage.event.then.status === 0 && then !== now;
+    const name = pair.ids.map(bodyName).join(" – "), isChosen = chosen.pair === pair.index;
     const button = make("button", {
-        class: "pair", "aria-pressed": String(chosen.pair === pair.index), title: "show this pair in the scene",
-        onclick: () => choosePair(chosen.pair === pair.index ? -1 : pair.index),
-    }, pair.differs ? make("i", { class: "flag-key", "aria-label": "differs" }, "≠") : null, name);
-    return make("tr", { class: chosen.pair === pair.index ? "chosen" : "", "data-pair": pair.index },
-        make("td", {}, button), make("td", {}, ...(unequal ? verdictChips(then, now) : [verdictChip(now)])),
+        class: "pair", "aria-pressed": String(isChosen), title: "show this pair in the scene",
+        onclick: () => choosePair(isChosen ? -1 : pair.index),
+    }, pair.differs ? make("i", { class: "flag-key" }, "≠") : null, name);
+    return make("tr", { class: isChosen ? "chosen" : "", "data-pair": pair.index },
+        make("td", {}, button), make("td", {}, ...verdictsOf(pair)),
         has.times ? timesCell(pair) : null, has.boxes ? boxCell(pair) : null);
+}
+
+function dimNote(text) {
+    return make("p", { class: "dim" }, text);
 }
 
 function pairNotes(event, hidden) {
@@ -254,27 +287,25 @@ function pairNotes(event, hidden) {
             },
         }, `show ${grouped(Math.min(hidden, PAIRS_MORE))} more`));
     if (event.more)
-        notes.push(make("p", { class: "dim" }, `${counted(event.more, "pair more has an answer and is", "pairs more have answers and are")} `
-            + "not on this page. Those that differ come first, then those that meet."));
+        notes.push(dimNote(`${counted(event.more, "answer more is", "answers more are")} not on `
+            + "this page. Pairs that differ come first, then those that meet."));
     const answer = answerOf(event);
     if (answer && event.kind !== KIND_PAIR && (event.first > 0 || answer.end < event.total))
-        notes.push(make("p", { class: "dim" }, `The answers are those of the pairs ${grouped(event.first)} to `
+        notes.push(dimNote(`The answers are those of the pairs ${grouped(event.first)} to `
             + `${grouped(answer.end)} of the ${grouped(event.total)} that were asked.`));
     if (answer && event.kind >= KIND_ALL)
-        notes.push(make("p", { class: "dim" }, "All other pairs that were answered are separated."));
+        notes.push(dimNote("All other pairs that were answered are separated."));
     return notes;
 }
 
 function fillPairs(event) {
     const pairs = stage.pairs, shown = pairs.slice(0, panel.pairs);
     const sides = shown.flatMap((pair) => [pair.then, pair.now]);
-    const has = { times: sides.some((side) => timesOf(side)), boxes: sides.some((side) => boxOf(side)) };
+    const has = { times: sides.some(timesOf), boxes: sides.some(boxOf) };
     const names = ["pair", "verdict", ...(has.times ? ["in contact, s"] : []),
         ...(has.boxes ? ["box"] : [])];
-    show(find("event-pairs"), shown.length === 0 ? null : make("div", { class: "scroll" },
-        make("table", { class: "pairs" },
-            make("thead", {}, make("tr", {}, ...names.map((name) => make("th", {}, name)))),
-            make("tbody", {}, ...shown.map((pair) => makePairRow(pair, has))))),
+    show(find("event-pairs"), shown.length === 0 ? null
+        : makeTable("pairs", names, shown.map((pair) => makePairRow(pair, has))),
         ...pairNotes(event, pairs.length - shown.length));
 }
 
@@ -286,31 +317,32 @@ function vectorText(numbers) {
 
 function makeFrameRow(frame) {
     const exactly = (numbers) => numbers ? numbers.map(exact).join(", ") : null;
-    return make("tr", {}, make("td", {}, bodyName(frame.id)), make("td", {}, shapeName(frame.shape)),
+    return make("tr", {}, make("td", {}, bodyName(frame.id)),
+        make("td", {}, shapeName(frame.shape)),
         make("td", { class: "number", title: exactly(frame.origin) }, vectorText(frame.origin)),
-        make("td", { class: "number", title: exactly(frame.velocity) }, frame.velocity ? vectorText(frame.velocity) : "at rest"));
+        make("td", { class: "number", title: exactly(frame.velocity) },
+            frame.velocity ? vectorText(frame.velocity) : "at rest"));
 }
 
 function fillFrames() {
-    const known = stage.drawable, shown = known.slice(0, FRAMES_FIRST), left = known.length - shown.length;
-    const head = ["body", "shape", "origin", "velocity, 1/s"].map((name) => make("th", {}, name));
+    const known = stage.drawable, shown = known.slice(0, FRAMES_FIRST);
+    const names = ["body", "shape", "origin", "velocity, 1/s"], left = known.length - shown.length;
     show(find("event-frames"), known.length === 0 ? null : make("details", {},
         make("summary", {}, counted(known.length, "frame", "frames")),
-        make("div", { class: "scroll" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)),
-            make("tbody", {}, ...shown.map(makeFrameRow)))),
-        left > 0 ? make("p", { class: "dim" }, `and ${grouped(left)} more`) : null));
+        makeTable("frames", names, shown.map(makeFrameRow)),
+        left > 0 ? dimNote(`and ${grouped(left)} more`) : null));
 }
 
 /* ---- Below the scene ---- */
 
 function fillNotDrawn(event) {
     const missing = stage.frames.filter((frame) => !frame.shape), shown = missing.slice(0, 10);
-    const items = shown.map((frame) => make("li", {}, `not drawn: body ${bodyName(frame.id)}: ${frame.why}`));
+    const lines = shown.map((frame) => `not drawn: body ${bodyName(frame.id)}: ${frame.why}`);
     if (missing.length > shown.length)
-        items.push(make("li", {}, `and ${grouped(missing.length - shown.length)} more`));
+        lines.push(`and ${grouped(missing.length - shown.length)} more`);
     if (event.more_frames)
-        items.push(make("li", {}, `not drawn: ${grouped(event.more_frames)} frames beyond the most that a scene may have`));
-    show(find("not-drawn"), ...items);
+        lines.push(`not drawn: ${grouped(event.more_frames)} frames beyond the most of a scene`);
+    show(find("not-drawn"), ...lines.map((line) => make("li", {}, line)));
     find("stage-said").textContent = stage.drawable.length > 0 ? ""
         : event.frames.length === 0 ? "no frames" : "nothing that can be drawn";
 }

@@ -216,10 +216,11 @@ function hasNoText(tick) {
 }
 
 function drawTick(tick, bottom, last) {
+    const x = tick.x.toFixed(1);
     return draw("g", { class: "tick" },
-        draw("path", { d: `M${tick.x.toFixed(1)} ${AXIS_TOP + 18}V${bottom}` }),
+        draw("path", { d: `M${x} ${AXIS_TOP + 18}V${bottom}` }),
         hasNoText(tick) ? null
-            : draw("text", { x: tick.x.toFixed(1), y: AXIS_TOP + 12 }, tick.text + (last ? " s" : "")));
+            : draw("text", { x, y: AXIS_TOP + 12 }, tick.text + (last ? " s" : "")));
 }
 
 function drawBreak(fold, bottom) {
@@ -227,8 +228,9 @@ function drawBreak(fold, bottom) {
     if (x > timeline.width || x + width < 0)
         return null;
     return draw("g", { class: "fold" },
-        draw("rect", { x: x.toFixed(1), y: AXIS_TOP + 2, width: width.toFixed(1), height: bottom - AXIS_TOP - 2 }),
-        draw("text", { x: (x + width / 2).toFixed(1), y: AXIS_TOP + 12 }, `⋯ ${durationText(fold.seconds)}`),
+        draw("rect", { x: x.toFixed(1), y: AXIS_TOP + 2, width, height: bottom - AXIS_TOP - 2 }),
+        draw("text", { x: (x + width / 2).toFixed(1), y: AXIS_TOP + 12 },
+            `⋯ ${durationText(fold.seconds)}`),
         draw("title", {}, `${durationText(fold.seconds)} without queries`));
 }
 
@@ -237,7 +239,7 @@ function drawLeftOut(bottom) {
         return null;
     const x = clamp(toX(leftOutPlace), 0, timeline.width);
     return draw("g", { class: "left-out" },
-        draw("rect", { x: x.toFixed(1), y: ROWS_TOP, width: (timeline.width - x).toFixed(1), height: bottom - ROWS_TOP }),
+        draw("rect", { x, y: ROWS_TOP, width: timeline.width - x, height: bottom - ROWS_TOP }),
         draw("title", {}, "not shown from here on, but for differences"));
 }
 
@@ -283,7 +285,7 @@ function drawCursor(bottom) {
     const middle = clamp(x, half, timeline.width - half);
     return draw("g", { class: "cursor" },
         draw("path", { d: `M${x.toFixed(2)} ${AXIS_TOP + 17}V${bottom}` }),
-        draw("rect", { x: (middle - half).toFixed(1), y: AXIS_TOP - 1, width: 2 * half, height: 18, rx: 4 }),
+        draw("rect", { x: middle - half, y: AXIS_TOP - 1, width: 2 * half, height: 18, rx: 4 }),
         draw("text", { x: middle.toFixed(1), y: AXIS_TOP + 12 }, text));
 }
 
@@ -303,8 +305,8 @@ function makeLabel(row) {
     return make("button", {
         class: "label", "data-row": row.key,
         title: rowSaid(row), "aria-label": rowSaid(row), onclick: () => stepInRow(row),
-    }, make("span", { class: "name" }, name),
-        row.differs.length ? make("span", { class: "badge" }, `≠ ${grouped(row.differs.length)}`) : null);
+    }, make("span", { class: "name" }, name), row.differs.length === 0 ? null
+        : make("span", { class: "badge" }, `≠ ${grouped(row.differs.length)}`));
 }
 
 /* The next query of the row that is worth a look: a difference or a contact, else any. */
@@ -324,9 +326,10 @@ function listRows() {
     timeline.rows.forEach(fillRow);
     const more = found.length - timeline.shown, button = find("more-rows");
     button.hidden = more <= 0;
-    button.textContent = `show ${grouped(Math.min(more, ROWS_MORE))} more of ${counted(found.length, "pair", "pairs")}`;
+    const pairs = counted(found.length, "pair", "pairs");
+    button.textContent = `show ${grouped(Math.min(more, ROWS_MORE))} more of ${pairs}`;
     find("rows-said").textContent = timeline.filter.length === 0 ? ""
-        : found.length === 0 ? "no pair with it" : counted(found.length, "pair", "pairs");
+        : found.length === 0 ? "no pair with it" : pairs;
     show(find("row-labels"), ...timeline.rows.map(makeLabel));
 }
 
@@ -375,8 +378,9 @@ function eventAt(row, x) {
     }
     if (best >= 0 || row.at.length === 0)
         return best;
-    const i = clamp(lowerBound(row.at, lowerBound(places, toPlace(x + 1))) - 1, 0, row.at.length - 1);
-    const next = Math.min(i + 1, row.at.length - 1);
+    const last = row.at.length - 1;
+    const i = clamp(lowerBound(row.at, lowerBound(places, toPlace(x + 1))) - 1, 0, last);
+    const next = Math.min(i + 1, last);
     const isIn = toX(barEnd(row, i)) + SHORTEST_BAR >= x;
     const nearer = Math.abs(toX(places[row.at[next]]) - x) < Math.abs(toX(barEnd(row, i)) - x);
     return row.at[!isIn && nearer ? next : i];
@@ -437,17 +441,21 @@ function listenToDrag(plot) {
     });
 }
 
+/* Above 1 where the wheel is turned towards the reader. */
+function wheelFactor(wheel) {
+    return Math.exp(clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM);
+}
+
 function listenToPlot() {
     const plot = find("plot");
     listenToDrag(plot);
     plot.addEventListener("wheel", (wheel) => {
         wheel.preventDefault();
-        const length = timeline.to - timeline.from;
+        const by = wheel.deltaX / innerWidth() * (timeline.to - timeline.from);
         if (Math.abs(wheel.deltaX) > Math.abs(wheel.deltaY))
-            setView(timeline.from + wheel.deltaX / innerWidth() * length,
-                timeline.to + wheel.deltaX / innerWidth() * length);
+            setView(timeline.from + by, timeline.to + by);
         else
-            zoomAround(toPlace(plotPoint(wheel).x), Math.exp(clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM));
+            zoomAround(toPlace(plotPoint(wheel).x), wheelFactor(wheel));
     }, { passive: false });
     plot.addEventListener("keydown", (key) => {
         const flag = key.target.closest(".flag");
@@ -468,8 +476,8 @@ function setFilter(text) {
 }
 
 function zoomMiddle(factor) {
-    const inView = chosen.at >= 0 && places[chosen.at] >= timeline.from && places[chosen.at] <= timeline.to;
-    zoomAround(inView ? places[chosen.at] : (timeline.from + timeline.to) / 2, factor);
+    const place = places[chosen.at], inView = place >= timeline.from && place <= timeline.to;
+    zoomAround(inView ? place : (timeline.from + timeline.to) / 2, factor);
 }
 
 function listenToBar() {

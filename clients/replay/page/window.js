@@ -36,7 +36,8 @@ function bandsOf(event) {
             bands.push(makeBand(VERDICTS[verdictOf(of.now ?? of.then)], now, event.T,
                 `${name}: in contact ${intervalText(...now)} s`));
         if (then)
-            bands.push(makeBand("then", then, event.T, `${name}: then in contact ${intervalText(...then)} s`));
+            bands.push(makeBand("then", then, event.T,
+                `${name}: then in contact ${intervalText(...then)} s`));
     }
     return bands;
 }
@@ -120,9 +121,14 @@ function listenToStageDrag(canvas) {
         const { azimuth, elevation, camera } = stage, pans = mouse.shiftKey || mouse.button !== 0;
         const begin = camera && { ...stagePoint(mouse), pan: camera.pan, azimuth, elevation };
         point(null);
-        return begin && ((moved) => stage.camera === camera && dragStage(begin, stagePoint(moved), pans));
+        return begin && ((moved) => {
+            if (stage.camera === camera)
+                dragStage(begin, stagePoint(moved), pans);
+        });
     });
-    canvas.addEventListener("pointermove", (mouse) => point(mouse.buttons ? null : stagePoint(mouse)));
+    canvas.addEventListener("pointermove", (mouse) => {
+        point(mouse.buttons ? null : stagePoint(mouse));
+    });
     canvas.addEventListener("pointerleave", () => point(null));
     canvas.addEventListener("contextmenu", (mouse) => mouse.preventDefault());
 }
@@ -137,7 +143,8 @@ function point(at) {
     tip.hidden = index < 0;
     if (index >= 0) {
         const frame = stage.frames[index];
-        tip.textContent = `body ${bodyName(frame.id)}, ${shapeName(frame.shape)}: ${verdictName(stage.worst[index])}`;
+        tip.textContent = `body ${bodyName(frame.id)}, ${shapeName(frame.shape)}: `
+            + verdictName(stage.worst[index]);
         tip.style.left = `${clamp(at.x + 14, 0, stage.width - 200)}px`;
         tip.style.top = `${clamp(at.y + 14, 0, stage.height - 40)}px`;
     }
@@ -162,14 +169,16 @@ function startStage() {
         wheel.preventDefault();
         const { x, y } = stagePoint(wheel);
         if (stage.camera)
-            zoomStage(Math.exp(-clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM), x, y);
+            zoomStage(1 / wheelFactor(wheel), x, y);
     }, { passive: false });
     canvas.addEventListener("dblclick", fitAll);
     find("fit-all").addEventListener("click", fitAll);
     find("fit-pair").addEventListener("click", fitPair);
     for (const button of find("views").children)
         button.addEventListener("click", () => setDirection(button.dataset.view));
-    find("moment").addEventListener("input", (input) => setMoment(Number(input.target.value) / 1000));
+    find("moment").addEventListener("input", (input) => {
+        setMoment(Number(input.target.value) / 1000);
+    });
     find("play").addEventListener("click", togglePlaying);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
         readTheme();

@@ -8,7 +8,8 @@ const CUT = 8;
 
 /* Corner k of a cuboid: bit i of k tells whether component i is added. Corner 0 of a simplex is the
  * origin, corner i + 1 the end of component i. */
-const CUBOID_3D = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+const CUBOID_3D = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2],
+    [4, 5, 7, 6]];
 const CUBOID_2D = [[0, 1, 3, 2]];
 const TETRAHEDRON = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 2, 3]];
 const TRIANGLE = [[0, 1, 2]];
@@ -79,7 +80,8 @@ function cornerAdds(shape, corner, component) {
 }
 
 function middleOf(points) {
-    return [0, 1, 2].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
+    return [0, 1, 2].map((axis) => points.reduce((sum, point) => sum + point[axis], 0)
+        / points.length);
 }
 
 /* corners: [x, y, z]; z is 0 in 2D. */
@@ -208,7 +210,7 @@ function clipSide(points, keep) {
         const a = keep(before), b = keep(point);
         if ((a < 0) !== (b < 0)) {
             const part = a / (a - b);
-            kept.push([before[0] + part * (point[0] - before[0]), before[1] + part * (point[1] - before[1])]);
+            kept.push([0, 1].map((axis) => before[axis] + part * (point[axis] - before[axis])));
         }
         if (b >= 0)
             kept.push(point);
