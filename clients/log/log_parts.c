@@ -1,0 +1,172 @@
+#include "log_parts.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { DIGITS = 3, NUMBER_TEXT = 24 };
+
+char *log_parts_name(const char *path, long number)
+{
+    const size_t size = strlen(path) + NUMBER_TEXT;
+    char *name = malloc(size);
+    if (name)
+        snprintf(name, size, "%s.%0*ld", path, DIGITS, number);
+    return name;
+}
+
+/* ---- Files of an earlier recording ----------------------------------------------------------- */
+
+/* Whether a name is that of a part: base, a point, and as many digits or more. */
+static bool is_part(const char *name, const char *base)
+{
+    const size_t length = strlen(base);
+    if (strncmp(name, base, length) != 0 || name[length] != '.')
+        return false;
+    const char *digits = name + length + 1;
+    const size_t count = strspn(digits, "0123456789");
+    return count >= DIGITS && digits[count] == '\0';
+}
+
+/* A file in the folder of path; to be freed by the caller. */
+static char *beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash ? (size_t) (slash - path) + 1 : 0;
+    char *out = malloc(folder + strlen(name) + 1);
+    if (!out)
+        return NULL;
+    memcpy(out, path, folder);
+    strcpy(out + folder, name);
+    return out;
+}
+
+/* Of what is there already: removed, or an error. */
+static bool clear(struct log_parts *parts, const char *name)
+{
+    free(parts->name);
+    parts->name = beside(parts->options.path, name);
+    if (!parts->name)
+        return false;
+    errno = EEXIST;
+    return parts->options.force && unlink(parts->name) == 0;
+}
+
+static bool clear_all(struct log_parts *parts)
+{
+    const char *path = parts->options.path, *slash = strrchr(path, '/');
+    char *folder = beside(path, ".");
+    DIR *dir = folder ? opendir(folder) : NULL;
+    bool ok = dir != NULL;
+    free(folder);
+    for (struct dirent *entry; ok && (entry = readdir(dir));)
+        if (is_part(entry->d_name, slash ? slash + 1 : path))
+            ok = clear(parts, entry->d_name);
+    const int error = errno;
+    if (dir)
+        closedir(dir);
+    errno = error;
+    return ok;
+}
+
+/* ---- Writing --------------------------------------------------------------------------------- */
+
+static bool has_several(const struct log_parts *parts)
+{
+    return parts->options.part_bytes > 0;
+}
+
+static bool open_file(struct log_parts *parts)
+{
+    const char *path = parts->options.path;
+    free(parts->name);
+    parts->name = has_several(parts) ? log_parts_name(path, parts->number) : strdup(path);
+    if (parts->name)
+        parts->writer = log_create(parts->name, parts->options.force && !has_several(parts));
+    return parts->writer != NULL;
+}
+
+bool log_parts_open(const struct log_parts_options *options, struct log_parts *out)
+{
+    *out = (struct log_parts){.options = *options, .previous = -1};
+    return (!has_several(out) || clear_all(out)) && open_file(out);
+}
+
+static bool drop_oldest(struct log_parts *parts)
+{
+    char *oldest = log_parts_name(parts->options.path, parts->first);
+    const bool ok = oldest && (unlink(oldest) == 0 || errno == ENOENT);
+    free(oldest);
+    parts->first += ok;
+    return ok;
+}
+
+/* Closes the file, and is done with the one before it. */
+static int leave_file(struct log_parts *parts)
+{
+    int disk;
+    if (parts->writer)
+        log_flush(parts->writer); /* so that it is known how much the file has */
+    parts->finished = log_parts_written(parts);
+    const int error = log_finish_soon(parts->writer, &disk);
+    const int late = log_reach_disk(parts->previous);
+    parts->writer = NULL;
+    parts->previous = disk;
+    return error ? error : late;
+}
+
+/* On to the next file. An old one that cannot be removed is tried again with the next. */
+static bool turn_over(struct log_parts *parts)
+{
+    const int error = leave_file(parts);
+    if (error) {
+        errno = error;
+        return false;
+    }
+    parts->number++;
+    const long keep = parts->options.keep;
+    while (keep > 0 && parts->number - parts->first >= keep && drop_oldest(parts))
+        continue;
+    return open_file(parts);
+}
+
+static bool is_full(const struct log_parts *parts, int64_t more)
+{
+    const int64_t written = log_written(parts->writer);
+    return has_several(parts) && written > 0 && written + more > parts->options.part_bytes;
+}
+
+bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
+                      size_t channel_length, const void *data, size_t size)
+{
+    if (is_full(parts, log_event_bytes(channel_length, size)) && !turn_over(parts))
+        return false;
+    return log_append(parts->writer, utime, channel, channel_length, data, size);
+}
+
+bool log_parts_flush(struct log_parts *parts)
+{
+    return log_flush(parts->writer);
+}
+
+int64_t log_parts_written(const struct log_parts *parts)
+{
+    return parts->finished + (parts->writer ? log_written(parts->writer) : 0);
+}
+
+int log_parts_finish(struct log_parts *parts)
+{
+    const int error = leave_file(parts), late = log_reach_disk(parts->previous);
+    parts->previous = -1;
+    return error ? error : late;
+}
+
+void log_parts_close(struct log_parts *parts)
+{
+    log_parts_finish(parts);
+    free(parts->name);
+    parts->name = NULL;
+}
