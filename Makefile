@@ -98,8 +98,8 @@ capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-
 demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
-	$(B)/soak-memory $(B)/soak-rate $(B)/soak-relay $(B)/logs/generate $(B)/logs/tell \
-	$(B)/make-page $(capped_programs)
+	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-relay $(B)/logs/generate \
+	$(B)/logs/tell $(B)/make-page $(B)/events $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -128,7 +128,7 @@ $(B)/fmbd: $(fmbd_objects) $(B)/libfmb.a
 
 # It asks the bus through the library alone; logs it reads, answers and plays itself.
 fmb_objects := $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
-	$(O)/service/senders.o $(message_objects)
+	$(O)/service/senders.o $(O)/service/filter.o $(message_objects)
 $(B)/fmb: $(fmb_objects) $(B)/libfmb-client.a $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
 
@@ -279,6 +279,10 @@ $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
 
+$(B)/events: $(O)/tests/system/events.o
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm
+
 $(B)/poison: $(O)/tests/system/poison.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^
@@ -347,7 +351,8 @@ $(scene_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
-		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+		$(client_objects) $(O)/service/filter.o $(asking_objects) $(bus_objects) \
+		$(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
 
@@ -494,7 +499,7 @@ $(B)/soak-asker: $(O)/tests/soak/asker.o $(O)/service/clock.o $(B)/libfmb-client
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $^ -llcm -lgmp -lm
 
-$(B)/soak-memory $(B)/soak-rate: $(B)/soak-%: $(O)/tests/soak/%.o $(bus_objects) $(message_objects) \
+$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast: $(B)/soak-%: $(O)/tests/soak/%.o $(bus_objects) $(message_objects) \
 		$(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm

@@ -4,6 +4,7 @@
 
 int cmd_query(int argc, char **argv);
 int cmd_watch(int argc, char **argv);
+int cmd_record(int argc, char **argv);
 int cmd_status(int argc, char **argv);
 int cmd_replay(int argc, char **argv);
 int cmd_log(int argc, char **argv);

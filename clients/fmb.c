@@ -18,6 +18,7 @@ static int cmd_help(int argc, char **argv);
 static const struct command commands[] = {
     {"query", "decide the pairs of a scene, on the bus or here (--local)", cmd_query},
     {"watch", "print the results that pass on the bus", cmd_watch},
+    {"record", "write what passes on the bus to a log", cmd_record},
     {"status", "print how the service is doing", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
     {"log", "look into event logs, as lcm-logger writes them", cmd_log},

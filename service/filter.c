@@ -2,13 +2,16 @@
 
 #include <assert.h>
 #include <linux/filter.h>
-#include <stdint.h>
+#include <linux/sock_diag.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #ifndef SO_ATTACH_FILTER
 #define SO_ATTACH_FILTER 26 /* <asm/socket.h>; POSIX does not know it */
+#endif
+#ifndef SO_MEMINFO
+#define SO_MEMINFO 55
 #endif
 
 enum {
@@ -99,4 +102,20 @@ int filter_attach(const struct filter_others *others, const char *const *channel
         attached++;
     }
     return attached;
+}
+
+int64_t filter_dropped(const struct filter_others *others)
+{
+    int64_t dropped = -1;
+    for (int fd = 0; fd < FILTER_FDS_MAX; fd++) {
+        uint32_t info[SK_MEMINFO_VARS] = {0};
+        socklen_t size = sizeof info;
+        if (others->udp[fd] || !is_udp(fd))
+            continue;
+        if (getsockopt(fd, SOL_SOCKET, SO_MEMINFO, info, &size) != 0 ||
+            size <= SK_MEMINFO_DROPS * sizeof *info)
+            return -1;
+        dropped = (dropped < 0 ? 0 : dropped) + info[SK_MEMINFO_DROPS];
+    }
+    return dropped;
 }

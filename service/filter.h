@@ -12,6 +12,7 @@
 #define FILTER_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /* Which descriptors are UDP sockets that are not LCM's: whoever started this process may have left
  * it some of his own, and a filter on them would be on his too. LCM waits with select(), which
@@ -29,5 +30,10 @@ void filter_note_others(struct filter_others *out);
  * sockets were found and take only that; -1: one does not (errno). */
 enum { FILTER_CHANNELS_MAX = 8 };
 int filter_attach(const struct filter_others *others, const char *const *channels, int count);
+
+/* How many datagrams the system has thrown away at those sockets, since nobody had taken what came
+ * before; where a filter is attached, what it keeps out is among them. -1: no socket was found, or
+ * the system does not tell. */
+int64_t filter_dropped(const struct filter_others *others);
 
 #endif

@@ -4,6 +4,8 @@
  * many there were.
  * poke flood TYPE CLIENT SECONDS: publishes good queries, pair_query or scene_query, of this client
  * as fast as it can, and prints how many there were.
+ * poke numbers CLIENT NUMBER...: publishes good pair queries of this client with these sequence
+ * numbers.
  * poke lie CERTIFICATE: a service that says of every pair, with this certificate, that it
  * overlaps, and of the first pair of every scene; until it is ended. */
 #include "hostile.h"
@@ -53,6 +55,17 @@ static int flood(lcm_t *lcm, const char *type, long long client_id, long seconds
     return 0;
 }
 
+static int numbers(lcm_t *lcm, long long client_id, int count, char **number)
+{
+    int failed = 0;
+    for (int i = 0; i < count; i++) {
+        unsigned char bytes[HOSTILE_BYTES_MAX];
+        const size_t size = hostile_flood("pair_query", client_id, atoll(number[i]), bytes);
+        failed |= lcm_publish(lcm, "FMB_PAIR_QUERY", bytes, (unsigned) size);
+    }
+    return failed != 0;
+}
+
 struct liar {
     lcm_t *lcm;
     char *certificate;
@@ -91,10 +104,14 @@ static int lie(lcm_t *lcm, char *certificate)
 int main(int argc, char **argv)
 {
     const char *what = argc > 1 ? argv[1] : "";
-    const bool floods = strcmp(what, "flood") == 0;
-    if (argc != (floods ? 5 : 3)) {
-        fputs("usage: poke CHANNEL TYPE, poke flood TYPE CLIENT SECONDS, or poke lie CERTIFICATE\n",
-              stderr);
+    const bool floods = strcmp(what, "flood") == 0, counts = strcmp(what, "numbers") == 0;
+    if (counts ? argc < 4 : argc != (floods ? 5 : 3)) {
+        fputs(
+            "usage: poke CHANNEL TYPE\n"
+            "       poke flood TYPE CLIENT SECONDS\n"
+            "       poke numbers CLIENT NUMBER...\n"
+            "       poke lie CERTIFICATE\n",
+            stderr);
         return 2;
     }
     lcm_t *lcm = lcm_create(NULL);
@@ -103,6 +120,8 @@ int main(int argc, char **argv)
     int code;
     if (floods)
         code = flood(lcm, argv[2], atoll(argv[3]), atol(argv[4]));
+    else if (counts)
+        code = numbers(lcm, atoll(argv[2]), argc - 3, argv + 3);
     else
         code = strcmp(what, "lie") == 0 ? lie(lcm, argv[2]) : damage(lcm, what, argv[2]);
     lcm_destroy(lcm);
