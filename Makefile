@@ -83,13 +83,13 @@ message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
 wire_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
 	wire_status.o bus.o clock.o random_id.o)
-bus_objects := $(wire_objects) $(addprefix $(O)/service/,wire_type.o bus_open.o say.o signals.o)
-supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o filter.o)
+bus_objects := $(wire_objects) $(addprefix $(O)/service/,wire_type.o bus_open.o filter.o say.o signals.o)
+supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
 answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_pairs.o check.o \
 	bodies.o cache.o histogram.o)
 server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
-	clients/log/*.c clients/record/*.c clients/replay/*.c))) $(O)/page/template.o
+	clients/log/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) $(O)/page/template.o
 asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
@@ -128,7 +128,7 @@ $(B)/fmbd: $(fmbd_objects) $(B)/libfmb.a
 
 # It asks the bus through the library alone; logs it reads, answers and plays itself.
 fmb_objects := $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
-	$(O)/service/senders.o $(O)/service/filter.o $(message_objects)
+	$(O)/service/senders.o $(message_objects)
 $(B)/fmb: $(fmb_objects) $(B)/libfmb-client.a $(B)/libfmb.a
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
 
@@ -164,7 +164,7 @@ $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iservice -I$(GEN)
 
-clients_see := -Iclients -Iclients/lib -Iclients/log -Iclients/record -Iclients/replay -Iservice -Iservice/fmb
+clients_see := -Iclients -Iclients/lib -Iclients/log -Iclients/page -Iclients/record -Iclients/replay -Iservice -Iservice/fmb
 
 $(O)/clients/lib/%.o: clients/lib/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
@@ -180,7 +180,7 @@ $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 
 # The page of a replay without its data: its text, style and scripts in one, and then numbers of C. Its
 # policy lets nothing run but what has the hash of all between the tags, line ends included.
-page_source := clients/replay/page/
+page_source := clients/page/template/
 page_scripts := $(addprefix $(page_source),numbers.js data.js dom.js clock.js timeline.js \
 	world.js camera.js canvas.js stage.js window.js panel.js main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
@@ -202,7 +202,7 @@ build/page/template.c: build/page/page.html
 
 $(O)/page/template.o: build/page/template.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile) -Iclients/replay
+	$(compile) -Iclients/page
 
 # lcm-gen's own code is not ours to warn about, nor that its decoders copy no bytes to NULL.
 $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
@@ -264,8 +264,6 @@ scene_tests := test_answer_scene test_answer_clients
 comma := ,
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
-
-$(B)/tests/test_filter: $(O)/service/filter.o
 
 client_tests := $(filter test_client_%,$(unit_names))
 $(client_tests:%=$(B)/tests/%): $(O)/tests/unit/relay.o
@@ -351,8 +349,7 @@ $(scene_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene_tests)),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
-		$(client_objects) $(O)/service/filter.o $(asking_objects) $(bus_objects) \
-		$(message_objects) $(B)/libfmb.a
+		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
 
@@ -669,8 +666,8 @@ deps-report:
 
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
-headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h clients/record/*.h \
-	clients/replay/*.h tests/oracle/*.h \
+headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
+	clients/page/*.h clients/record/*.h clients/replay/*.h tests/oracle/*.h \
 	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h \
 	tests/logs/*.h tests/page/*.h)
 .PHONY: headers

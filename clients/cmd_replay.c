@@ -302,9 +302,9 @@ static int run_replay(struct options *options)
         perror("fmb: a temporary file");
         return ARGS_USAGE;
     }
-    if (options->html && !(options->replay.page = page_open(options->replay.log[0])))
-        allocate_failed();
     run.first_utime = first_utime(&options->replay);
+    if (options->html)
+        options->replay.page = page_open(options->replay.log[0], run.first_utime);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
     const int code = replay(&run, size, tally);
     free(tally);

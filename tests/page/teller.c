@@ -10,7 +10,7 @@ static const int64_t begin_utime = INT64_C(1714557600000000); /* 2024-05-01, 10:
 void teller_begin(struct teller *teller, const char *title)
 {
     memset(teller, 0, sizeof *teller);
-    teller->page = page_open(title);
+    teller->page = page_open(title, begin_utime);
     teller->answerer.cache = cache_create(4096, 1);
     if (!teller->page || !teller->answerer.cache || !answer_prepare(&teller->answerer))
         abort();

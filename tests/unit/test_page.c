@@ -18,6 +18,9 @@
 
 /* ---- Tools ----------------------------------------------------------------------------------- */
 
+/* 2024-05-01, 10:00 */
+#define BEGIN INT64_C(1714557600000000)
+
 static char *write_page(const struct page *page)
 {
     char *text = NULL;
@@ -132,7 +135,7 @@ static struct replayed of_pair(const struct pair_query *query, const struct pair
     return (struct replayed){.log = "a.log",
                              .event_number = 7,
                              .offset = 28,
-                             .utime = INT64_C(1714557600000000),
+                             .utime = BEGIN,
                              .outcome = outcome,
                              .pair = query,
                              .pair_then = then,
@@ -149,7 +152,7 @@ static struct replayed of_scene(const struct scene_query *query, const struct sc
 /* The data of a page that took this one in. */
 static cJSON *data_of_one(const struct replayed *replayed)
 {
-    struct page *page = page_open("one");
+    struct page *page = page_open("one", BEGIN);
     page_take(page, replayed);
     cJSON *data = data_of(page);
     page_close(page);
@@ -264,7 +267,7 @@ static void integers_that_doubles_lose_are_strings(void **state)
 
 static void an_empty_page_is_whole(void **state)
 {
-    struct page *page = page_open("</script><script>alert(1)</script><!--");
+    struct page *page = page_open("</script><script>alert(1)</script><!--", BEGIN);
     (void) state;
     cJSON *data = data_of(page);
     assert_string_equal(member(data, "title")->valuestring,
@@ -288,7 +291,7 @@ static void outcomes_are_counted_and_logs_named(void **state)
 {
     const struct pair_query query = pair_query(2);
     const struct pair_result result = overlapping();
-    struct page *page = page_open("many");
+    struct page *page = page_open("many", BEGIN);
     (void) state;
     for (int outcome = REPLAY_SAME; outcome <= REPLAY_ALONE; outcome++) {
         struct replayed replayed = of_pair(&query, &result, &result, (enum replay_outcome) outcome);
@@ -323,7 +326,7 @@ static void beyond_the_events_differences_alone_are_kept(void **state)
     const struct pair_query query = pair_query(2);
     const struct pair_result result = overlapping();
     struct replayed replayed = of_pair(&query, &result, &result, REPLAY_SAME);
-    struct page *page = page_open("many");
+    struct page *page = page_open("many", BEGIN);
     (void) state;
     for (int i = 0; i < PAGE_EVENTS_MAX + 10; i++, replayed.utime++)
         page_take(page, &replayed);
@@ -347,7 +350,7 @@ static void a_difference_that_is_kept_makes_no_room(void **state)
     const struct pair_query query = pair_query(2);
     const struct pair_result result = overlapping();
     struct replayed replayed = of_pair(&query, &result, &result, REPLAY_DIFFERENT);
-    struct page *page = page_open("many");
+    struct page *page = page_open("many", BEGIN);
     (void) state;
     for (int i = 0; i < PAGE_EVENTS_MAX + 1; i++)
         page_take(page, &replayed);
@@ -380,7 +383,7 @@ static void make_large_scene(int step)
 static void beyond_the_bytes_differences_alone_are_kept(void **state)
 {
     const int enough = 300;
-    struct page *page = page_open("large");
+    struct page *page = page_open("large", BEGIN);
     int64_t taken[] = {0, 0};
     (void) state;
     for (int outcome = REPLAY_SAME; outcome <= REPLAY_DIFFERENT; outcome++) {
@@ -407,7 +410,7 @@ static void beyond_the_bytes_differences_alone_are_kept(void **state)
 
 static void shapes_are_kept_once(void **state)
 {
-    struct page *page = page_open("rigid");
+    struct page *page = page_open("rigid", BEGIN);
     (void) state;
     for (int i = 0; i < 200; i++) {
         struct pair_query query = pair_query(2);

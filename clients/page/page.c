@@ -12,6 +12,7 @@ enum { OUTCOMES = REPLAY_ALONE + 1 };
 
 struct page {
     char *title;            /* owned */
+    int64_t begin;          /* of the logs, microseconds since 1970 */
     size_t log_count, room; /* paths of the logs, in the order of their first queries */
     char **log;             /* owned */
     struct page_json events;
@@ -32,10 +33,11 @@ static char *copy_text(const char *text)
     return memcpy(allocate(size, 1), text, size);
 }
 
-struct page *page_open(const char *title)
+struct page *page_open(const char *title, int64_t begin)
 {
     struct page *page = allocate(1, sizeof *page);
     page->title = copy_text(title);
+    page->begin = begin;
     return page;
 }
 
@@ -155,7 +157,9 @@ static struct page_json make_head(const struct page *page)
         page_json_raw(&json, i ? "," : "");
         page_json_string(&json, page->log[i]);
     }
-    add_counts(&json, "],\n\"count\":", page->count);
+    page_json_raw(&json, "],\n\"begin\":");
+    page_json_integer(&json, page->begin);
+    add_counts(&json, ",\n\"count\":", page->count);
     add_span(&json, ",\"span\":[", page->first, page->last);
     add_counts(&json, ",\n\"left_out\":", page->left_out);
     add_span(&json, ",\"left_span\":[", page->left_first, page->left_last);

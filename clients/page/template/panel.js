@@ -36,7 +36,7 @@ function leftOutNote() {
     const count = data.left_out.reduce((sum, of) => sum + of, 0);
     if (count === 0)
         return null;
-    const seconds = data.left_span.map((utime) => (Number(utime) - Number(data.span[0])) / 1e6);
+    const seconds = data.left_span.map((utime) => (Number(utime) - Number(data.begin)) / 1e6);
     const differences = data.left_out[DIFFERENT];
     const kept = differing.length === 0 ? "" : ` Differences were kept longer: ${differences === 0
         ? "all of them are here." : `${grouped(differences)} are left out.`}`;
@@ -54,7 +54,7 @@ function fillHeader() {
     find("span").textContent = total === 0 ? "No query was replayed."
         : total === 1 ? dateText(first)
             : `${durationText((Number(last) - Number(first)) / 1e6)} from ${dateText(first)}; `
-                + "times below count from this first query";
+                + `times below count from the beginning of the log, ${dateText(data.begin)}`;
     fillCounts();
     show(find("notes"), leftOutNote());
 }

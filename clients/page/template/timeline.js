@@ -78,7 +78,7 @@ function rowSteps(row) {
 
 /* From where on differences alone were kept. */
 const leftOutPlace = data.left_out.every((count) => count === 0)
-    ? Infinity : clock.at((Number(data.left_span[0]) - Number(data.span[0])) / 1e6);
+    ? Infinity : clock.at((Number(data.left_span[0]) - Number(data.begin)) / 1e6);
 
 /* The place where the bar of the row's query number i ends: not in what was left out. */
 function barEnd(row, i) {

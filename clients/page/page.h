@@ -21,8 +21,8 @@ enum {
 struct page;
 
 /* Where there is no memory, the program ends (allocate.h). title: what the logs are called,
- * copied. */
-struct page *page_open(const char *title);
+ * copied. begin: log time from which the page counts seconds, microseconds since 1970. */
+struct page *page_open(const char *title, int64_t begin);
 void page_close(struct page *page); /* may be NULL */
 
 /* Takes in one query and its answers; copies what it shows. Beyond a limit on events, pairs and

@@ -29,11 +29,11 @@ function verdictName(verdict) {
 /* ---- Events ---- */
 
 /* In the order of time; of the same time, as they came. Raw events get a few members more: at, the
- * place in this list, and seconds, since the first of all queries. */
+ * place in this list, and seconds, since the log began. */
 const events = data.events.slice().sort((a, b) => Number(a.t) - Number(b.t));
 events.forEach((event, at) => {
     event.at = at;
-    event.seconds = (Number(event.t) - Number(data.span[0])) / 1e6;
+    event.seconds = (Number(event.t) - Number(data.begin)) / 1e6;
 });
 
 const differing = events.filter((event) => event.is === DIFFERENT);
