@@ -9,9 +9,6 @@
 /* Of both what the second cache of most machines holds, and far more than is ever under way. */
 enum { RECENT_BYTES = 4 << 20 };
 
-/* Clients that give all their queries the same ids make no long search. */
-enum { CHOICES_MAX = 1000 };
-
 struct match {
     struct match_sink sink;
     struct recent *queries, *results;
@@ -26,11 +23,21 @@ static void query_gone(void *user, const struct recent_item *query)
         spill_put(match->spill, SPILL_QUERIES, &query->item);
 }
 
+/* One that nobody has waited for is that of a query with a result, come again, or of one that is no
+ * longer here. */
 static void result_gone(void *user, const struct recent_item *result)
 {
     struct match *match = user;
-    if (!result->matched)
-        spill_put(match->spill, SPILL_RESULTS, &result->item);
+    const struct match_item *item = &result->item;
+    if (result->matched)
+        return;
+    const struct recent_item *query = recent_matched(match->queries, item->kind, &item->ids);
+    if (!query) {
+        spill_put(match->spill, SPILL_RESULTS, item);
+        return;
+    }
+    match->open -= item->place.mine;
+    match->sink.both(match->sink.user, &query->item, item);
 }
 
 struct match *match_open(const struct match_sink *sink)
@@ -53,50 +60,33 @@ void match_close(struct match *match)
     free(match);
 }
 
-static void mark(struct match *match, struct recent_item *item)
+static void mark(struct match *match, struct recent *recent, struct recent_item *item)
 {
-    if (!item->matched && item->item.place.mine)
-        match->open--;
-    item->matched = true;
-}
-
-static void both(struct match *match, struct recent_item *query, const struct match_item *result)
-{
-    mark(match, query);
-    match->sink.both(match->sink.user, &query->item, result);
+    match->open -= item->item.place.mine;
+    recent_match(recent, item);
 }
 
 void match_query(struct match *match, const struct match_item *item)
 {
     struct recent_item *query = recent_put(match->queries, item);
-    struct recent_item *result = recent_first(match->results, item->kind, &item->ids);
+    struct recent_item *result = recent_unmatched(match->results, item->kind, &item->ids);
     match->open += item->place.mine;
-    for (int i = 0; result && i < CHOICES_MAX; i++, result = recent_next(match->results, result)) {
-        if (result->matched)
-            continue;
-        mark(match, result);
-        both(match, query, &result->item);
-    }
-}
-
-/* The oldest that has no result yet, else the newest. */
-static struct recent_item *choose(const struct match *match, const struct match_item *result)
-{
-    struct recent_item *best = recent_first(match->queries, result->kind, &result->ids);
-    for (int i = 0; best && best->matched && i < CHOICES_MAX; i++) {
-        struct recent_item *next = recent_next(match->queries, best);
-        if (!next)
-            break;
-        best = next;
-    }
-    return best;
+    if (!result)
+        return;
+    mark(match, match->results, result);
+    mark(match, match->queries, query);
+    match->sink.both(match->sink.user, &query->item, &result->item);
 }
 
 void match_result(struct match *match, const struct match_item *result)
 {
-    struct recent_item *query = choose(match, result);
+    struct recent_item *query = recent_unmatched(match->queries, result->kind, &result->ids);
+    if (query)
+        mark(match, match->queries, query);
+    else
+        query = recent_matched(match->queries, result->kind, &result->ids);
     if (query) {
-        both(match, query, result);
+        match->sink.both(match->sink.user, &query->item, result);
         return;
     }
     match->open += result->place.mine;
@@ -110,7 +100,7 @@ int64_t match_open_count(const struct match *match)
 
 bool match_finish(struct match *match)
 {
+    recent_flush(match->results); /* first: of queries that have one already they are told here */
     recent_flush(match->queries);
-    recent_flush(match->results);
     return spill_join(match->spill, &match->sink);
 }

@@ -1,6 +1,7 @@
 #include "recent.h"
 
 #include "allocate.h"
+#include "random_id.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -8,13 +9,20 @@
 
 /* Items lie one behind the other in a ring, each in one piece: where the next does not fit before
  * the end, the rest stays empty and it begins at 0. Links are places in units of UNIT bytes, plus
- * 1, so that 0 is none. A bucket holds its items in their order, so that the oldest of all is
- * always the first of its bucket. */
-enum { UNIT = 8, NONE = 0, BUCKETS = 1 << 16 };
+ * 1, so that 0 is none. A bucket holds its items in two chains: those that are not matched, in
+ * their order, and the others, with the one that was matched last in front. */
+enum { UNIT = 8, NONE = 0, BUCKET_BITS = 16, BUCKETS = 1 << BUCKET_BITS };
 
-struct bucket {
+struct chain {
     uint32_t first, last;
 };
+
+struct bucket {
+    struct chain chain[2]; /* [matched] */
+};
+
+/* Of a hash that a log cannot know: else it could have all its ids in one bucket. */
+enum { HASHED = 4 };
 
 struct recent {
     unsigned char *ring;
@@ -24,7 +32,8 @@ struct recent {
     size_t wrap;
     bool wraps;
     size_t count;
-    struct bucket *bucket; /* [BUCKETS] */
+    struct bucket *bucket;       /* [BUCKETS] */
+    uint64_t multiplier[HASHED]; /* random */
     void (*gone)(void *user, const struct recent_item *item);
     void *user;
 };
@@ -39,6 +48,8 @@ struct recent *recent_open(size_t bytes, void (*gone)(void *user, const struct r
                               .bucket = allocate(BUCKETS, sizeof *recent->bucket),
                               .gone = gone,
                               .user = user};
+    for (int i = 0; i < HASHED; i++)
+        recent->multiplier[i] = query_id_mix(random_id());
     return recent;
 }
 
@@ -56,22 +67,61 @@ static struct recent_item *item_of(const struct recent *recent, uint32_t link)
     return link == NONE ? NULL : (struct recent_item *) (recent->ring + (size_t) (link - 1) * UNIT);
 }
 
-static uint32_t bucket_of(enum log_kind kind, const struct query_header *ids)
+/* The upper bits of a sum of products: two sets of ids share a bucket by chance alone. */
+static uint32_t bucket_of(const struct recent *recent, enum log_kind kind,
+                          const struct query_header *ids)
 {
-    const uint64_t some = query_id_mix(ids->client_id + kind) ^ (uint64_t) ids->utime;
-    return (
-        uint32_t) (query_id_mix((int64_t) query_id_mix((int64_t) some) ^ ids->sequence_number) >>
-                   48);
+    const uint64_t part[HASHED] = {kind, (uint64_t) ids->client_id, (uint64_t) ids->utime,
+                                   (uint64_t) ids->sequence_number};
+    uint64_t sum = 0;
+    for (int i = 0; i < HASHED; i++)
+        sum += part[i] * recent->multiplier[i];
+    return (uint32_t) (sum >> (64 - BUCKET_BITS));
 }
+
+/* ---- Chains ---- */
+
+static struct chain *chain_of(const struct recent *recent, const struct recent_item *item)
+{
+    return &recent->bucket[item->bucket].chain[item->matched];
+}
+
+static uint32_t link_of(const struct recent *recent, const struct recent_item *item)
+{
+    return (uint32_t) ((size_t) ((const unsigned char *) item - recent->ring) / UNIT) + 1;
+}
+
+static void unlink_item(struct recent *recent, struct recent_item *item)
+{
+    struct chain *chain = chain_of(recent, item);
+    *(item->before ? &item_of(recent, item->before)->next : &chain->first) = item->next;
+    *(item->next ? &item_of(recent, item->next)->before : &chain->last) = item->before;
+}
+
+static void link_first(struct recent *recent, struct recent_item *item)
+{
+    struct chain *chain = chain_of(recent, item);
+    item->before = NONE;
+    item->next = chain->first;
+    *(item->next ? &item_of(recent, item->next)->before : &chain->last) = link_of(recent, item);
+    chain->first = link_of(recent, item);
+}
+
+static void link_last(struct recent *recent, struct recent_item *item)
+{
+    struct chain *chain = chain_of(recent, item);
+    item->next = NONE;
+    item->before = chain->last;
+    *(item->before ? &item_of(recent, item->before)->next : &chain->first) = link_of(recent, item);
+    chain->last = link_of(recent, item);
+}
+
+/* ---- The ring ---- */
 
 static void let_go(struct recent *recent)
 {
     struct recent_item *item = (struct recent_item *) (recent->ring + recent->begin);
-    struct bucket *bucket = &recent->bucket[item->bucket];
-    assert(item_of(recent, bucket->first) == item);
-    bucket->first = item->next;
-    if (item->next == NONE)
-        bucket->last = NONE;
+    unlink_item(recent, item);
     recent->gone(recent->user, item);
     recent->begin += item->length;
     recent->count--;
@@ -101,17 +151,6 @@ static bool find_place(struct recent *recent, size_t length, size_t *at)
     return true;
 }
 
-static void link_last(struct recent *recent, struct recent_item *item, size_t at)
-{
-    struct bucket *bucket = &recent->bucket[item->bucket];
-    const uint32_t link = (uint32_t) (at / UNIT) + 1;
-    if (bucket->last == NONE)
-        bucket->first = link;
-    else
-        item_of(recent, bucket->last)->next = link;
-    bucket->last = link;
-}
-
 struct recent_item *recent_put(struct recent *recent, const struct match_item *item)
 {
     const size_t bytes = sizeof(struct recent_item) + item->size + item->more_size;
@@ -124,36 +163,47 @@ struct recent_item *recent_put(struct recent *recent, const struct match_item *i
     recent->count++;
     struct recent_item *put = (struct recent_item *) (recent->ring + at);
     unsigned char *copy = (unsigned char *) (put + 1);
-    *put = (struct recent_item){
-        .item = *item, .bucket = bucket_of(item->kind, &item->ids), .length = (uint32_t) length};
+    *put = (struct recent_item){.item = *item,
+                                .bucket = bucket_of(recent, item->kind, &item->ids),
+                                .length = (uint32_t) length};
     put->item.bytes = memcpy(copy, item->bytes, item->size);
     put->item.more = copy + item->size;
     if (item->more_size > 0)
         memcpy(copy + item->size, item->more, item->more_size);
-    link_last(recent, put, at);
+    link_last(recent, put);
     return put;
 }
 
-static struct recent_item *same_from(const struct recent *recent, uint32_t link, enum log_kind kind,
+static struct recent_item *first_of(const struct recent *recent, bool matched, enum log_kind kind,
+                                    const struct query_header *ids)
+{
+    const struct bucket *bucket = &recent->bucket[bucket_of(recent, kind, ids)];
+    struct recent_item *item = item_of(recent, bucket->chain[matched].first);
+    while (item && !(item->item.kind == kind && item->item.ids.client_id == ids->client_id &&
+                     item->item.ids.sequence_number == ids->sequence_number &&
+                     item->item.ids.utime == ids->utime))
+        item = item_of(recent, item->next);
+    return item;
+}
+
+struct recent_item *recent_unmatched(const struct recent *recent, enum log_kind kind,
                                      const struct query_header *ids)
 {
-    for (struct recent_item *item; (item = item_of(recent, link)); link = item->next)
-        if (item->item.kind == kind && item->item.ids.client_id == ids->client_id &&
-            item->item.ids.sequence_number == ids->sequence_number &&
-            item->item.ids.utime == ids->utime)
-            return item;
-    return NULL;
+    return first_of(recent, false, kind, ids);
 }
 
-struct recent_item *recent_first(const struct recent *recent, enum log_kind kind,
-                                 const struct query_header *ids)
+struct recent_item *recent_matched(const struct recent *recent, enum log_kind kind,
+                                   const struct query_header *ids)
 {
-    return same_from(recent, recent->bucket[bucket_of(kind, ids)].first, kind, ids);
+    return first_of(recent, true, kind, ids);
 }
 
-struct recent_item *recent_next(const struct recent *recent, const struct recent_item *item)
+void recent_match(struct recent *recent, struct recent_item *item)
 {
-    return same_from(recent, item->next, item->item.kind, &item->item.ids);
+    assert(!item->matched);
+    unlink_item(recent, item);
+    item->matched = true;
+    link_first(recent, item);
 }
 
 void recent_flush(struct recent *recent)

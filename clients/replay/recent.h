@@ -6,9 +6,9 @@
 
 struct recent_item {
     struct match_item item; /* its bytes are copies */
-    bool matched;           /* for the user of this */
+    bool matched;           /* recent_match() was called for it */
     /* Of recent.c. */
-    uint32_t bucket, next, length;
+    uint32_t bucket, next, before, length;
 };
 
 struct recent;
@@ -22,11 +22,16 @@ void recent_close(struct recent *recent); /* may be NULL; gone is not called */
 /* Returns the copy, which is good until it goes. */
 struct recent_item *recent_put(struct recent *recent, const struct match_item *item);
 
-/* Those of this kind with these ids, utime included, from the oldest to the newest: the first, and
- * the next behind it. NULL: no more. */
-struct recent_item *recent_first(const struct recent *recent, enum log_kind kind,
-                                 const struct query_header *ids);
-struct recent_item *recent_next(const struct recent *recent, const struct recent_item *item);
+/* One of this kind with these ids, utime included; NULL: there is none. Of those that are not
+ * matched yet the oldest, of those that are the one that was matched last: either is found at once,
+ * however many have the same ids. */
+struct recent_item *recent_unmatched(const struct recent *recent, enum log_kind kind,
+                                     const struct query_header *ids);
+struct recent_item *recent_matched(const struct recent *recent, enum log_kind kind,
+                                   const struct query_header *ids);
+
+/* On input: one that is not matched yet. */
+void recent_match(struct recent *recent, struct recent_item *item);
 
 /* Lets all go. */
 void recent_flush(struct recent *recent);

@@ -41,7 +41,7 @@ static bool fail(struct spill *spill)
 /* Without utime, which may differ. */
 static int part_of(const struct match_item *item)
 {
-    const uint64_t mixed = query_id_mix(item->ids.client_id + item->kind);
+    const uint64_t mixed = query_id_mix(item->ids.client_id) + item->kind;
     return (int) (query_id_mix((int64_t) mixed ^ item->ids.sequence_number) >> 40) % PARTS;
 }
 
@@ -66,13 +66,14 @@ struct entry {
     enum log_kind kind;
     bool matched;
     size_t number; /* in the order of the file */
+    size_t next;   /* no entry from here to before that one is not matched; at first itself */
     off_t at;
 };
 
 struct joining {
     struct spill *spill;
     const struct match_sink *sink;
-    struct entry *entry; /* [count], by kind, ids and number */
+    struct entry *entry; /* [count], by kind, client id, sequence number, utime and number */
     size_t count, room;
     unsigned char *buffer[SPILL_SIDES]; /* [2 * LOG_DATA_MAX] */
 };
@@ -93,12 +94,25 @@ static bool read_item(struct spill *spill, FILE *file, unsigned char *buffer,
 
 #define COMPARE(a, b) ((a) < (b) ? -1 : (a) > (b))
 
-static int compare_ids(const struct entry *a, enum log_kind kind, const struct query_header *ids)
+/* Without utime; with it. */
+static int compare_group(const struct entry *a, enum log_kind kind, const struct query_header *ids)
 {
     int order = COMPARE(a->kind, kind);
     if (!order)
         order = COMPARE(a->ids.client_id, ids->client_id);
     return order ? order : COMPARE(a->ids.sequence_number, ids->sequence_number);
+}
+
+static int compare_ids(const struct entry *a, enum log_kind kind, const struct query_header *ids)
+{
+    const int order = compare_group(a, kind, ids);
+    return order ? order : COMPARE(a->ids.utime, ids->utime);
+}
+
+/* The whole group is before what it is asked for. */
+static int compare_past(const struct entry *a, enum log_kind kind, const struct query_header *ids)
+{
+    return compare_group(a, kind, ids) <= 0 ? -1 : 1;
 }
 
 static int compare_entries(const void *left, const void *right)
@@ -123,15 +137,19 @@ static void list_queries(struct joining *joining, FILE *file)
     }
     if (joining->count > 0)
         qsort(joining->entry, joining->count, sizeof *joining->entry, compare_entries);
+    for (size_t i = 0; i < joining->count; i++)
+        joining->entry[i].next = i;
 }
 
-/* The first entry that is not before the ids. */
-static size_t lower_bound(const struct joining *joining, const struct match_item *item)
+/* The first entry that is not before the ids, as compare has them. */
+static size_t lower_bound(const struct joining *joining, const struct match_item *item,
+                          int (*compare)(const struct entry *, enum log_kind,
+                                         const struct query_header *))
 {
     size_t low = 0, high = joining->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (compare_ids(&joining->entry[middle], item->kind, &item->ids) < 0)
+        if (compare(&joining->entry[middle], item->kind, &item->ids) < 0)
             low = middle + 1;
         else
             high = middle;
@@ -139,29 +157,39 @@ static size_t lower_bound(const struct joining *joining, const struct match_item
     return low;
 }
 
-/* How well a query goes with a result: the more the better. */
-static int fitness(const struct entry *entry, const struct match_item *result)
+/* The first entry from there on that is not matched, or the count. Each search shortens the way of
+ * those that come after it, so that many with the same ids take no longer than others. */
+static size_t next_unmatched(struct joining *joining, size_t i)
 {
-    return 2 * !entry->matched + (entry->ids.utime == result->ids.utime);
+    struct entry *entry = joining->entry;
+    while (i < joining->count && entry[i].matched) {
+        const size_t next = entry[i].next;
+        if (next < joining->count)
+            entry[i].next = entry[next].next;
+        i = next;
+    }
+    return i;
 }
 
-/* Clients that give all their queries the same ids make no long search: of so many one is chosen.
- */
-enum { CHOICES_MAX = 1000 };
-
-static struct entry *choose(const struct joining *joining, const struct match_item *result)
+static struct entry *choose(struct joining *joining, const struct match_item *result)
 {
-    struct entry *best = NULL;
-    const size_t first = lower_bound(joining, result);
-    for (size_t i = first; i < joining->count && i < first + CHOICES_MAX; i++) {
-        struct entry *entry = &joining->entry[i];
-        if (compare_ids(entry, result->kind, &result->ids) != 0)
-            break;
-        if (!best || fitness(entry, result) > fitness(best, result) ||
-            (best->matched && entry->matched))
-            best = entry;
-    }
-    return best;
+    struct entry *entry = joining->entry;
+    const size_t first = lower_bound(joining, result, compare_group);
+    if (first == joining->count || compare_group(&entry[first], result->kind, &result->ids) != 0)
+        return NULL;
+    size_t i = next_unmatched(joining, lower_bound(joining, result, compare_ids));
+    if (i < joining->count && compare_ids(&entry[i], result->kind, &result->ids) == 0)
+        return &entry[i];
+    i = next_unmatched(joining, first);
+    if (i < joining->count && compare_group(&entry[i], result->kind, &result->ids) == 0)
+        return &entry[i];
+    return &entry[lower_bound(joining, result, compare_past) - 1];
+}
+
+static void match_entry(struct joining *joining, struct entry *entry)
+{
+    entry->matched = true;
+    entry->next = (size_t) (entry - joining->entry) + 1;
 }
 
 static void join_results(struct joining *joining, FILE *queries, FILE *results)
@@ -174,7 +202,7 @@ static void join_results(struct joining *joining, FILE *queries, FILE *results)
             joining->sink->result_alone(joining->sink->user, &result);
         } else if (fseeko(queries, entry->at, SEEK_SET) == 0 &&
                    read_item(joining->spill, queries, joining->buffer[SPILL_QUERIES], &query)) {
-            entry->matched = true;
+            match_entry(joining, entry);
             joining->sink->both(joining->sink->user, &query, &result);
         } else {
             fail(joining->spill);

@@ -15,9 +15,9 @@ enum spill_side { SPILL_QUERIES, SPILL_RESULTS, SPILL_SIDES };
 /* What fails is told by spill_join(). */
 void spill_put(struct spill *spill, enum spill_side side, const struct match_item *item);
 
-/* Brings together what was put: a result goes to the query with the same kind, client id, sequence
- * number and utime that has none yet; else to such a one with another utime; else, if all have one,
- * to the last one. False: a file failed, and errno. */
+/* Brings together what was put: a result goes to the first query with the same kind, client id,
+ * sequence number and utime that has none yet; else to such a one with another utime; else, if all
+ * have one, to the last one, by utime. False: a file failed, and errno. */
 bool spill_join(struct spill *spill, const struct match_sink *sink);
 
 #endif
