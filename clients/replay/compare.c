@@ -24,9 +24,12 @@ static bool same_bits(const double *a, const double *b, int count)
 }
 
 /* Where the difference of two numbers is infinite, or none since both are infinite or no numbers,
- * they are not near. */
-static bool near(const double *a, const double *b, int count, double limit)
+ * they are not near; without a tolerance nor are 0 and -0, whose bits are not the same. */
+static bool near(const struct compare_options *options, const double *a, const double *b, int count,
+                 double limit)
 {
+    if (!(options->tolerance > 0))
+        return same_bits(a, b, count);
     for (int i = 0; i < count; i++)
         if (!same_bits(&a[i], &b[i], 1) && !(fabs(a[i] - b[i]) <= limit))
             return false;
@@ -53,8 +56,8 @@ static bool same_intervals(const struct compare_options *options, double duratio
 {
     if (a->has_contact != b->has_contact)
         return false;
-    return !a->has_contact || same_bits(a->contact, b->contact, 2) ||
-           near(a->contact, b->contact, 2, options->tolerance * duration);
+    return !a->has_contact ||
+           near(options, a->contact, b->contact, 2, options->tolerance * duration);
 }
 
 static bool same_boxes(const struct compare_options *options, int dim, const struct fmb_answer *a,
@@ -64,8 +67,7 @@ static bool same_boxes(const struct compare_options *options, int dim, const str
         return false;
     const double limit = options->tolerance > 0 ? options->tolerance * largest(a, b, dim) : 0;
     for (int side = 0; side < 2 && a->has_box; side++)
-        if (!same_bits(a->box[side], b->box[side], dim) &&
-            !near(a->box[side], b->box[side], dim, limit))
+        if (!near(options, a->box[side], b->box[side], dim, limit))
             return false;
     return true;
 }
@@ -115,10 +117,13 @@ static int dim_of(const struct query_frame *frame)
 
 /* ---- Pairs ---- */
 
-static struct difference_side side_of_pair(const struct pair_result *result)
+/* A box of another dimension than the query's is none. */
+static struct difference_side side_of_pair(const struct pair_result *result, int dim)
 {
-    return (struct difference_side){
+    struct difference_side side = {
         .status = result->status, .answer = result->answer, .certificate = result->certificate};
+    side.answer.has_box = side.answer.has_box && result->dim == dim;
+    return side;
 }
 
 enum replay_outcome compare_pairs(const struct compare_options *options,
@@ -127,11 +132,12 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
 {
     if (is_of_the_moment(then->status) || is_of_the_moment(now->status))
         return moment(then->status, now->status);
+    const int dim = dim_of(&query->frame[0]);
     struct difference difference = {.body_id = {query->frame[0].body_id, query->frame[1].body_id},
                                     .frame = {0, 1},
-                                    .dim = dim_of(&query->frame[0]),
-                                    .then = side_of_pair(then),
-                                    .now = side_of_pair(now)};
+                                    .dim = dim,
+                                    .then = side_of_pair(then, dim),
+                                    .now = side_of_pair(now, dim)};
     if (!find_difference(options, query->duration, &difference))
         return REPLAY_SAME;
     sink(user, &difference);
@@ -163,6 +169,15 @@ static int32_t number_at(const struct walk *walk)
     return scene_pairs_number(walk->query, walk->result->pair, (size_t) walk->next);
 }
 
+/* The box of a contact, if it is of the query's dimension. */
+static void take_box(const struct walk *walk, int32_t contact, struct fmb_answer *out)
+{
+    const int dim = walk->result->dim;
+    out->has_box = walk->result->has_boxes && dim == dim_of(&walk->query->frame[0]);
+    for (int i = 0; i < 2 * dim && out->has_box; i++)
+        out->box[i / dim][i % dim] = walk->result->boxes[2 * dim * contact + i];
+}
+
 /* The answer there, and on to the next one. */
 static struct fmb_answer take(struct walk *walk)
 {
@@ -170,15 +185,11 @@ static struct fmb_answer take(struct walk *walk)
     struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[walk->next++]};
     if (!is_contact((unsigned char) answer.verdict))
         return answer;
-    const double *times = &result->times[2 * (size_t) walk->contact];
-    const double *box = &result->boxes[2 * (size_t) result->dim * (size_t) walk->contact];
-    walk->contact++;
-    answer.has_contact = result->has_times && !isnan(times[0]);
-    answer.has_box = result->has_boxes;
-    if (answer.has_contact)
-        memcpy(answer.contact, times, sizeof answer.contact);
-    for (int i = 0; i < 2 * result->dim && answer.has_box; i++)
-        answer.box[i / result->dim][i % result->dim] = box[i];
+    const int32_t contact = walk->contact++;
+    answer.has_contact = result->has_times && !isnan(result->times[2 * contact]);
+    for (int end = 0; end < 2 && answer.has_contact; end++)
+        answer.contact[end] = result->times[2 * contact + end];
+    take_box(walk, contact, &answer);
     return answer;
 }
 
@@ -294,7 +305,7 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
 
 enum { IDS_END = 32, SERVER_END = 40, COMPUTE_BYTES = 8 };
 
-/* Pairs: the ids of the bodies, their keys, and all that is compared. */
+/* Pairs: the ids of the bodies, their keys, and all that is compared, the status first. */
 enum { BODIES_END = SERVER_END + 16, KEYS_END = BODIES_END + 16 };
 
 /* Scenes: status, an empty detail where that is OK, and method; lost; the number of keys, and the
@@ -308,8 +319,9 @@ static bool same_piece(const unsigned char *a, const unsigned char *b, size_t be
 
 static bool same_pair_bytes(const unsigned char *then, const unsigned char *now, size_t size)
 {
-    return size >= KEYS_END + COMPUTE_BYTES && same_piece(then, now, 0, IDS_END) &&
+    return size >= KEYS_END + 4 + COMPUTE_BYTES && same_piece(then, now, 0, IDS_END) &&
            same_piece(then, now, SERVER_END, BODIES_END) &&
+           !is_of_the_moment((int32_t) big_endian_32(now + KEYS_END)) &&
            same_piece(then, now, KEYS_END, size - COMPUTE_BYTES);
 }
 

@@ -1,0 +1,822 @@
+/* Two results of a query compared: every way in which they can differ, numbers at their ends,
+ * scenes against a naive model, results that lie; and that bytes which look the same are. */
+#include "compare.h"
+
+#include "answer.h"
+#include "wire.h"
+
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const struct compare_options exact = {.tolerance = 0};
+
+static struct answerer answerer;
+
+static uint64_t drawn;
+
+static uint64_t draw(uint64_t below)
+{
+    drawn = drawn * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (drawn >> 33) % below;
+}
+
+/* ---- What is told ---- */
+
+enum { TOLD_MAX = 20000 };
+
+static struct difference told[TOLD_MAX];
+static int told_count;
+
+static void on_difference(void *user, const struct difference *difference)
+{
+    (void) user;
+    assert_true(told_count < TOLD_MAX);
+    told[told_count++] = *difference;
+}
+
+static int set_up(void **state)
+{
+    (void) state;
+    drawn = 1;
+    answerer = (struct answerer){.cache = cache_create(2000, 500), .server_id = 99};
+    return answerer.cache && answer_prepare(&answerer) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void) state;
+    answer_release(&answerer);
+    cache_destroy(answerer.cache);
+    return 0;
+}
+
+/* ---- Pairs ---- */
+
+/* A unit cube or square at x = at, y = z = 0, which moves along x where speed is not 0. */
+static struct query_frame frame(int64_t id, int dim, double at, double speed)
+{
+    struct query_frame out = {.body_id = id, .shape = FMB_CUBOID, .dim = dim};
+    out.origin.count = dim;
+    out.origin.number[0] = at;
+    out.components.count = dim * dim;
+    for (int i = 0; i < dim; i++)
+        out.components.number[i * dim + i] = 1;
+    out.velocity.count = speed != 0 ? dim : 0;
+    out.velocity.number[0] = speed;
+    return out;
+}
+
+static struct pair_query pair(int dim, double at, double speed, int32_t want)
+{
+    return (struct pair_query){.utime = 3,
+                               .client_id = 4,
+                               .sequence_number = 5,
+                               .duration = 2,
+                               .want = want,
+                               .frame = {frame(11, dim, 0, 0), frame(12, dim, at, speed)}};
+}
+
+/* Certificates stay good: each has a copy. */
+static struct pair_result answer(const struct pair_query *query)
+{
+    static char certificate[64][QUERY_CERTIFICATE_MAX];
+    static int next;
+    struct pair_result result;
+    answer_pair(&answerer, query, &result);
+    if (result.certificate)
+        result.certificate = strcpy(certificate[next = (next + 1) % 64], result.certificate);
+    return result;
+}
+
+static enum replay_outcome compare_with(double tolerance, const struct pair_query *query,
+                                        const struct pair_result *then,
+                                        const struct pair_result *now)
+{
+    const struct compare_options options = {.tolerance = tolerance};
+    told_count = 0;
+    const enum replay_outcome outcome =
+        compare_pairs(&options, query, then, now, on_difference, NULL);
+    assert_int_equal(told_count, outcome == REPLAY_DIFFERENT);
+    return outcome;
+}
+
+static void expect_kind(double tolerance, const struct pair_query *query,
+                        const struct pair_result *then, const struct pair_result *now,
+                        enum difference_kind kind)
+{
+    assert_int_equal(compare_with(tolerance, query, then, now), REPLAY_DIFFERENT);
+    assert_int_equal(told[0].kind, kind);
+    assert_int_equal(told[0].body_id[0], 11);
+    assert_int_equal(told[0].body_id[1], 12);
+    assert_false(told[0].whole);
+    assert_int_equal(told[0].then.status, then->status);
+    assert_int_equal(told[0].now.status, now->status);
+}
+
+static void expect_same(double tolerance, const struct pair_query *query,
+                        const struct pair_result *then, const struct pair_result *now)
+{
+    assert_int_equal(compare_with(tolerance, query, then, now), REPLAY_SAME);
+}
+
+enum { BOX = QUERY_WANT_BOX, CERTIFICATE = QUERY_WANT_CERTIFICATE, TIMES = QUERY_WANT_TIMES };
+
+static void test_every_kind(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE);
+    const struct pair_result now = answer(&query);
+    (void) state;
+    assert_true(now.answer.has_box && now.answer.has_contact && now.certificate);
+    struct pair_result then = now;
+    expect_same(0, &query, &then, &now);
+    then.certificate = "none such";
+    expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
+    assert_string_equal(told[0].then.certificate, "none such");
+    then.certificate = NULL;
+    expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
+    expect_kind(0, &query, &now, &then, DIFFERENT_CERTIFICATE);
+    then.answer.box[1][2] = nextafter(then.answer.box[1][2], 9);
+    expect_kind(0, &query, &then, &now, DIFFERENT_BOX);
+    then.answer.has_box = false;
+    expect_kind(0, &query, &then, &now, DIFFERENT_BOX);
+    then.answer.contact[0] = nextafter(then.answer.contact[0], 9);
+    expect_kind(0, &query, &then, &now, DIFFERENT_INTERVAL);
+    then.answer.has_contact = false;
+    expect_kind(0, &query, &then, &now, DIFFERENT_INTERVAL);
+    then.answer.verdict = FMB_TOUCHING;
+    expect_kind(0, &query, &then, &now, DIFFERENT_VERDICT);
+    then = (struct pair_result){.status = FMB_BAD_ID};
+    expect_kind(0, &query, &then, &now, DIFFERENT_STATUS);
+    then.status = -7; /* of a service that lies */
+    expect_kind(0, &query, &then, &now, DIFFERENT_STATUS);
+}
+
+static void test_what_is_not_compared(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 1, BOX);
+    const struct pair_result now = answer(&query);
+    struct pair_result then = now;
+    (void) state;
+    then.server_id = then.utime = then.compute_ns = then.key[0] = then.key[1] = -1;
+    then.method = 77;
+    expect_same(0, &query, &then, &now);
+    const struct pair_result refused = {.status = FMB_BAD_ID, .detail = "client_id: this"};
+    then = refused;
+    strcpy(then.detail, "in other words");
+    expect_same(0, &query, &then, &refused);
+}
+
+static void test_statuses_of_the_moment(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 1, BOX);
+    const struct pair_result good = answer(&query);
+    const struct pair_result busy = {.status = FMB_BUSY}, unknown = {.status = FMB_UNKNOWN_BODY};
+    const struct pair_result bad = {.status = FMB_BAD_ID};
+    (void) state;
+    for (double tolerance = 0; tolerance < 1; tolerance += 0.5) {
+        assert_int_equal(compare_with(tolerance, &query, &busy, &good), REPLAY_BUSY);
+        assert_int_equal(compare_with(tolerance, &query, &busy, &bad), REPLAY_BUSY);
+        assert_int_equal(compare_with(tolerance, &query, &busy, &unknown), REPLAY_BUSY);
+        assert_int_equal(compare_with(tolerance, &query, &unknown, &good), REPLAY_UNKNOWN);
+        assert_int_equal(compare_with(tolerance, &query, &unknown, &unknown), REPLAY_UNKNOWN);
+        assert_int_equal(compare_with(tolerance, &query, &good, &unknown), REPLAY_UNKNOWN);
+        assert_int_equal(compare_with(tolerance, &query, &bad, &unknown), REPLAY_UNKNOWN);
+    }
+}
+
+/* ---- Numbers ---- */
+
+/* Of two results with one of these for an end: what they are with this tolerance. Durations are 2,
+ * and no number of the boxes is larger than these two but 1. */
+static const struct {
+    double tolerance, then, now;
+    bool interval, box; /* the same */
+} ends[] = {
+    {0, 0.0, -0.0, false, false},
+    {1e-300, 0.0, -0.0, true, true},
+    {0, 0x1p-1074, 0, false, false},
+    {0, 0x1p-1074, 0x1p-1073, false, false},
+    {1e-320, 0x1p-1074, 0, true, true}, /* subnormal limits */
+    {0x1p-1074, 0x1p-1074, 0, true, true},
+    {0x1p-1074, 0x1p-1072, 0, false, false},
+    {0.25, 1, 1.5, true, false}, /* 0.5 of 2 * 0.25, and of 1.5 * 0.25 */
+    {0.25, 1, 0x1.8000000000001p0, false, false},
+    {0.5, 1, 2, true, true},
+    {0.5, 1, 0x1.fffffffffffffp0, true, true},
+    {0.25, 3, 4, false, true},
+    {0.25, 3, 0x1.0000000000001p2, false, false},
+    {1e-12, DBL_MAX, 0x1.ffffffffffffep1023, false, true},
+    {1, DBL_MAX, -DBL_MAX, false, false}, /* the difference overflows */
+    {1, DBL_MAX, 0, false, true},
+    {1, HUGE_VAL, DBL_MAX, false, false},
+    {1, DBL_MAX, HUGE_VAL, false, false},
+    {1, HUGE_VAL, -HUGE_VAL, false, false},
+    {0, HUGE_VAL, HUGE_VAL, true, true},
+    {1, HUGE_VAL, HUGE_VAL, true, true},
+    {1, NAN, 1, false, false},
+    {1, 1, NAN, false, false},
+    {0, NAN, NAN, true, true}, /* the same bits */
+};
+
+static void test_ends_of_intervals(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 1, 0);
+    const struct pair_result good = answer(&query);
+    (void) state;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        for (int end = 0; end < 2; end++) {
+            struct pair_result then = good, now = good;
+            then.answer.contact[end] = ends[i].then;
+            now.answer.contact[end] = ends[i].now;
+            if (ends[i].interval)
+                expect_same(ends[i].tolerance, &query, &then, &now);
+            else
+                expect_kind(ends[i].tolerance, &query, &then, &now, DIFFERENT_INTERVAL);
+        }
+}
+
+static void set_box(struct pair_result *result, int side, int axis, double end)
+{
+    memset(result->answer.box, 0, sizeof result->answer.box);
+    result->answer.box[side][axis] = end;
+    if (fabs(end) < 1) /* something to measure by */
+        result->answer.box[1 - side][axis] = 1;
+}
+
+static void test_ends_of_boxes(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct pair_query query = pair(dim, 0.5, 0, BOX);
+        const struct pair_result good = answer(&query);
+        for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+            for (int at = 0; at < 2 * dim; at++) {
+                struct pair_result then = good, now = good;
+                set_box(&then, at / dim, at % dim, ends[i].then);
+                set_box(&now, at / dim, at % dim, ends[i].now);
+                then.answer.box[1 - at / dim][at % dim] = now.answer.box[1 - at / dim][at % dim];
+                if (ends[i].box)
+                    expect_same(ends[i].tolerance, &query, &then, &now);
+                else
+                    expect_kind(ends[i].tolerance, &query, &then, &now, DIFFERENT_BOX);
+            }
+    }
+}
+
+static void test_with_a_tolerance_certificates_may_differ(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 0, CERTIFICATE);
+    const struct pair_result now = answer(&query);
+    struct pair_result then = now;
+    (void) state;
+    then.certificate = NULL;
+    expect_same(1e-12, &query, &then, &now);
+    then.answer.verdict = FMB_TOUCHING; /* but nothing else that is not a number */
+    expect_kind(1, &query, &then, &now, DIFFERENT_VERDICT);
+    then = now;
+    then.answer.has_contact = true;
+    expect_kind(1, &query, &then, &now, DIFFERENT_INTERVAL);
+}
+
+/* A box of the other dimension is another box, though all numbers that both have be the same. */
+static void test_boxes_of_another_dimension(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct pair_query query = pair(dim, 0.5, 0, BOX);
+        struct pair_result now = answer(&query), then;
+        now.answer.box[0][2] = now.answer.box[1][2] = 0;
+        then = now;
+        then.dim = 5 - dim;
+        expect_kind(0, &query, &then, &now, DIFFERENT_BOX);
+        expect_kind(1, &query, &then, &now, DIFFERENT_BOX);
+    }
+}
+
+/* ---- Scenes: a model ---- */
+
+static struct scene_query scene;
+static struct scene_result then, now;
+
+/* One answer, as a scene's result has it. */
+struct plain {
+    bool there;
+    int verdict;
+    bool has_times, has_box;
+    double times[2], box[6];
+};
+
+enum { PAIRS_MAX = 20000 };
+
+static struct plain plain_then[PAIRS_MAX], plain_now[PAIRS_MAX];
+static unsigned asked[PAIRS_MAX][2];
+
+/* All pairs that are asked, in their order. */
+static int list_asked(void)
+{
+    int count = 0;
+    if (scene.which == QUERY_PAIRS_LISTED) {
+        for (; count < scene.index_count / 2; count++)
+            memcpy(asked[count], scene.pair[count], sizeof asked[count]);
+        return count;
+    }
+    for (int a = 0; a < scene.frame_count; a++)
+        for (int b = a + 1; b < scene.frame_count; b++)
+            if (scene.which == QUERY_PAIRS_ALL || (a < scene.split && b >= scene.split)) {
+                assert_true(count < PAIRS_MAX);
+                asked[count][0] = (unsigned) a;
+                asked[count++][1] = (unsigned) b;
+            }
+    return count;
+}
+
+static int number_of(const unsigned pair_of[2], int from, int count)
+{
+    while (from < count && (asked[from][0] != pair_of[0] || asked[from][1] != pair_of[1]))
+        from++;
+    return from;
+}
+
+static void put_plain(const struct scene_result *result, int i, int *contact, struct plain *out)
+{
+    *out = (struct plain){.there = true, .verdict = result->verdict[i]};
+    if (out->verdict < FMB_TOUCHING)
+        return;
+    const int at = (*contact)++;
+    if (result->has_times && !isnan(result->times[2 * at])) {
+        out->has_times = true;
+        memcpy(out->times, &result->times[2 * at], sizeof out->times);
+    }
+    if (result->has_boxes && result->dim == scene.frame[0].dim) {
+        out->has_box = true;
+        memcpy(out->box, &result->boxes[2 * result->dim * at],
+               2 * (size_t) result->dim * sizeof(double));
+    }
+}
+
+/* The answers of a result, by the number of their pair. False: it is none to this query. */
+static bool plain_of(const struct scene_result *result, int total, struct plain *out)
+{
+    const bool listed = scene.which == QUERY_PAIRS_LISTED;
+    int contact = 0, number = scene.first_pair - 1;
+    if (result->end_pair < scene.first_pair || result->end_pair > total)
+        return false;
+    if (listed &&
+        (result->names_pairs || result->verdict_count != result->end_pair - scene.first_pair))
+        return false;
+    if (!listed && !result->names_pairs && result->verdict_count > 0)
+        return false;
+    for (int i = 0; i < total; i++)
+        out[i] = (struct plain){.there = !listed && i >= scene.first_pair && i < result->end_pair,
+                                .verdict = FMB_SEPARATED};
+    for (int i = 0; i < result->verdict_count; i++) {
+        number = listed ? number + 1 : number_of(result->pair[i], number + 1, total);
+        if (number >= result->end_pair)
+            return false;
+        put_plain(result, i, &contact, &out[number]);
+    }
+    return true;
+}
+
+static bool same_plain(const struct plain *a, const struct plain *b)
+{
+    return a->verdict == b->verdict && a->has_times == b->has_times && a->has_box == b->has_box &&
+           memcmp(a->times, b->times, sizeof a->times) == 0 &&
+           memcmp(a->box, b->box, sizeof a->box) == 0;
+}
+
+/* What is told is what the model says. */
+static void check_differences(int total)
+{
+    int found = 0;
+    for (int i = 0; i < total; i++) {
+        if (!plain_then[i].there || !plain_now[i].there ||
+            same_plain(&plain_then[i], &plain_now[i]))
+            continue;
+        assert_true(found < told_count);
+        const struct difference *difference = &told[found++];
+        assert_false(difference->whole);
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(difference->frame[f], asked[i][f]);
+            assert_int_equal(difference->body_id[f], scene.frame[asked[i][f]].body_id);
+        }
+        assert_int_equal(difference->then.answer.verdict, plain_then[i].verdict);
+        assert_int_equal(difference->now.answer.verdict, plain_now[i].verdict);
+        if (plain_then[i].verdict != plain_now[i].verdict)
+            assert_int_equal(difference->kind, DIFFERENT_VERDICT);
+        else
+            assert_true(difference->kind == DIFFERENT_INTERVAL ||
+                        difference->kind == DIFFERENT_BOX);
+    }
+    assert_int_equal(found, told_count);
+}
+
+static enum replay_outcome compare(void)
+{
+    told_count = 0;
+    return compare_scenes(&exact, &scene, &then, &now, on_difference, NULL);
+}
+
+static void check_scene(void)
+{
+    const enum replay_outcome outcome = compare();
+    if (then.status == FMB_BUSY || then.status == FMB_UNKNOWN_BODY ||
+        now.status == FMB_UNKNOWN_BODY) {
+        assert_true(outcome == (then.status == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNKNOWN));
+        return;
+    }
+    assert_int_equal(outcome, told_count ? REPLAY_DIFFERENT : REPLAY_SAME);
+    const int total = now.status == FMB_OK ? list_asked() : 0;
+    if (then.status == FMB_OK && now.status == FMB_OK) {
+        assert_true(plain_of(&now, total, plain_now));
+        if (plain_of(&then, total, plain_then)) {
+            check_differences(total);
+            return;
+        }
+    } else if (then.status == now.status) {
+        assert_int_equal(told_count, 0);
+        return;
+    }
+    assert_int_equal(told_count, 1);
+    assert_true(told[0].whole);
+    assert_int_equal(told[0].kind, DIFFERENT_STATUS);
+}
+
+/* ---- Scenes: drawn ---- */
+
+static void draw_pairs(int frames)
+{
+    scene.split = scene.which == QUERY_PAIRS_ACROSS ? (int32_t) draw((uint64_t) frames + 1) : 0;
+    scene.index_count = 0;
+    if (scene.which == QUERY_PAIRS_LISTED && frames > 1)
+        for (int pairs = (int) draw(40); scene.index_count < 2 * pairs; scene.index_count += 2) {
+            unsigned *to = scene.pair[scene.index_count / 2];
+            to[0] = (unsigned) draw((uint64_t) frames);
+            to[1] = (to[0] + 1 + (unsigned) draw((uint64_t) frames - 1)) % (unsigned) frames;
+        }
+}
+
+/* In a row, some over each other: a good part of the pairs meets. */
+static void draw_scene(void)
+{
+    static const int32_t methods[] = {0, 0, 1, 4, 2, 3};
+    const int frames = (int) draw(9), dim = 2 + (int) draw(2);
+    memset(&scene, 0, sizeof scene);
+    scene.client_id = 4;
+    scene.duration = 1;
+    scene.want = (int32_t) (draw(2) * BOX | draw(2) * TIMES);
+    scene.which = (int32_t) draw(3);
+    scene.method = methods[draw(scene.which == QUERY_PAIRS_LISTED ? 6 : 4)];
+    scene.frame_count = frames;
+    for (int i = 0; i < frames; i++) {
+        scene.frame[i] = frame(draw(2) ? 20 + i : 0, dim, 0.25 * (double) draw(16),
+                               draw(2) ? 0.25 * (double) draw(5) : 0);
+        if (draw(8) == 0) /* flat: there are methods that cannot decide */
+            scene.frame[i].components.number[0] = 0;
+    }
+    draw_pairs(frames);
+    const int total = list_asked();
+    scene.first_pair = draw(3) ? 0 : (int32_t) draw((uint64_t) total + 1);
+}
+
+static unsigned char then_bytes[QUERY_BYTES_MAX], now_bytes[QUERY_BYTES_MAX];
+static size_t now_size;
+
+/* Both as they come from the wire. */
+static void answer_now(void)
+{
+    answer_scene(&answerer, &scene, &now);
+    now_size = wire_write_scene_result(&now, now_bytes);
+    memcpy(then_bytes, now_bytes, now_size);
+    assert_null(wire_read_scene_result(now_bytes, (uint32_t) now_size, &now));
+    then = now;
+}
+
+static void cut(struct scene_result *result, int32_t end)
+{
+    if (end >= result->end_pair)
+        return;
+    int contacts = 0, kept = 0;
+    for (; kept < result->verdict_count; kept++) {
+        const int number = result->names_pairs ? number_of(result->pair[kept], 0, PAIRS_MAX - 1)
+                                               : scene.first_pair + kept;
+        if (number >= end)
+            break;
+        contacts += result->verdict[kept] >= FMB_TOUCHING;
+    }
+    result->end_pair = end;
+    result->verdict_count = kept;
+    result->contact_count = contacts;
+}
+
+/* Of the answers one, so that the reader might take it. */
+static void change_one(struct scene_result *result)
+{
+    const int at = result->verdict_count ? (int) draw((uint64_t) result->verdict_count) : 0;
+    const int contact = result->contact_count ? (int) draw((uint64_t) result->contact_count) : -1;
+    switch (draw(4)) {
+    case 0:
+        if (result->verdict_count > 0 && result->verdict[at] >= FMB_TOUCHING)
+            result->verdict[at] ^= FMB_TOUCHING ^ FMB_OVERLAPPING;
+        break;
+    case 1:
+        if (contact >= 0 && result->has_times)
+            result->times[2 * contact + 1] += 0.5;
+        break;
+    case 2:
+        if (contact >= 0 && result->has_boxes)
+            result->boxes[2 * result->dim * contact + result->dim] += 0.5;
+        break;
+    default: result->has_boxes = false;
+    }
+}
+
+/* A named one, as if it had not been found. */
+static void drop_one(struct scene_result *result)
+{
+    if (!result->names_pairs || result->verdict_count == 0)
+        return;
+    const size_t count = (size_t) result->verdict_count, at = draw(count),
+                 dim = (size_t) result->dim;
+    const size_t after = count - at - 1;
+    memmove(&result->verdict[at], &result->verdict[at + 1], after);
+    memmove(&result->pair[at], &result->pair[at + 1], after * sizeof result->pair[0]);
+    memmove(&result->times[2 * at], &result->times[2 * at + 2], 2 * after * sizeof(double));
+    memmove(&result->boxes[2 * dim * at], &result->boxes[2 * dim * (at + 1)],
+            2 * dim * after * sizeof(double));
+    result->verdict_count--;
+    result->contact_count--;
+}
+
+/* What was written and read again, exact to the byte. */
+static bool through_the_wire(struct scene_result *result)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    const size_t size = wire_write_scene_result(result, bytes);
+    return !wire_read_scene_result(bytes, (uint32_t) size, result);
+}
+
+static void test_scenes_against_the_model(void **state)
+{
+    int different = 0, same = 0, shorter = 0;
+    (void) state;
+    for (int round = 0; round < 20000; round++) {
+        draw_scene();
+        answer_now();
+        check_scene();
+        assert_int_equal(told_count, 0);
+        const int32_t span = now.end_pair - scene.first_pair;
+        for (uint64_t changes = draw(4); changes > 0; changes--)
+            (draw(3) ? change_one : drop_one)(&then);
+        if (span > 0 && draw(3) == 0)
+            cut(&then, scene.first_pair + (int32_t) draw((uint64_t) span + 1));
+        if (span > 0 && draw(3) == 0)
+            cut(&now, scene.first_pair + (int32_t) draw((uint64_t) span + 1));
+        if (!through_the_wire(&then) || !through_the_wire(&now))
+            continue;
+        check_scene();
+        different += told_count > 0;
+        same += told_count == 0;
+        shorter += then.end_pair != now.end_pair;
+    }
+    assert_in_range(different, 2000, 20000);
+    assert_in_range(same, 2000, 20000);
+    assert_in_range(shorter, 500, 20000);
+}
+
+/* ---- Results that are not of the query ---- */
+
+/* Any result beside any query. */
+static void test_results_of_other_queries(void **state)
+{
+    static struct scene_result kept[40];
+    int count = 0, whole = 0, walked = 0;
+    (void) state;
+    for (int round = 0; round < 4000; round++) {
+        draw_scene();
+        answer_now();
+        for (int i = 0; i < count; i++) {
+            then = kept[i];
+            check_scene();
+            whole += told_count > 0 && told[0].whole;
+            walked += told_count == 0 || !told[0].whole;
+        }
+        if (round % 100 == 0)
+            kept[count++] = now;
+    }
+    assert_in_range(whole, 10000, 200000);
+    assert_in_range(walked, 1000, 200000);
+}
+
+/* Each byte of a result changed in several ways: what can still be read. */
+static void test_results_changed_byte_by_byte(void **state)
+{
+    int read = 0;
+    (void) state;
+    for (int round = 0; round < 150; round++) {
+        draw_scene();
+        answer_now();
+        for (size_t at = 0; at < now_size; at++)
+            for (int way = 0; way < 3; way++) {
+                memcpy(then_bytes, now_bytes, now_size);
+                then_bytes[at] ^= (unsigned char) (way ? 1 + draw(255) : 1);
+                if (wire_read_scene_result(then_bytes, (uint32_t) now_size, &then))
+                    continue;
+                check_scene();
+                read++;
+            }
+    }
+    assert_in_range(read, 10000, 1000000);
+}
+
+static void expect_whole(void)
+{
+    assert_int_equal(compare(), REPLAY_DIFFERENT);
+    assert_int_equal(told_count, 1);
+    assert_true(told[0].whole);
+    assert_int_equal(told[0].kind, DIFFERENT_STATUS);
+}
+
+/* As many pairs as a message has room for, all of them in contact, and nothing else said. */
+static void test_the_most_pairs(void **state)
+{
+    (void) state;
+    memset(&scene, 0, sizeof scene);
+    scene.duration = 1;
+    scene.frame_count = 2;
+    for (int i = 0; i < 2; i++)
+        scene.frame[i] = frame(0, 2, 0, 0);
+    const int pairs = (QUERY_BYTES_MAX - 400) / 4;
+    scene.index_count = 2 * pairs;
+    for (int i = 0; i < pairs; i++)
+        scene.pair[i][1] = 1;
+    answer_now();
+    assert_int_equal(now.verdict_count, pairs);
+    check_scene();
+    assert_int_equal(told_count, 0);
+    memset(then.verdict, FMB_TOUCHING, (size_t) pairs);
+    check_scene();
+    assert_int_equal(told_count, pairs);
+    then.end_pair = pairs + 1;
+    expect_whole();
+    then.end_pair = INT32_MAX;
+    expect_whole();
+}
+
+/* Indices of a scene with the most frames, and beyond it. */
+static void test_the_most_frames(void **state)
+{
+    (void) state;
+    for (int which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++) {
+        memset(&scene, 0, sizeof scene);
+        scene.duration = 1;
+        scene.which = which;
+        scene.split = which == QUERY_PAIRS_ACROSS ? 700 : 0;
+        scene.frame_count = QUERY_FRAMES_MAX;
+        for (int i = 0; i < QUERY_FRAMES_MAX; i++)
+            scene.frame[i] = frame(i + 1, 2, 10 * i, 0);
+        answer_now();
+        assert_int_equal(now.verdict_count, 0);
+        then.names_pairs = true;
+        then.verdict_count = then.contact_count = 1;
+        then.verdict[0] = FMB_TOUCHING;
+        then.pair[0][0] = 699;
+        then.pair[0][1] = QUERY_FRAMES_MAX - 1;
+        assert_int_equal(compare(), REPLAY_DIFFERENT);
+        assert_int_equal(told_count, 1);
+        assert_int_equal(told[0].frame[0], 699);
+        assert_int_equal(told[0].body_id[1], QUERY_FRAMES_MAX);
+        assert_int_equal(told[0].now.answer.verdict, FMB_SEPARATED);
+        then.pair[0][1] = QUERY_FRAMES_MAX;
+        expect_whole();
+        then.pair[0][1] = UINT32_MAX;
+        expect_whole();
+        then.pair[0][0] = UINT32_MAX - 1;
+        expect_whole();
+        then.end_pair = -1;
+        expect_whole();
+    }
+}
+
+/* ---- Bytes that look the same ---- */
+
+/* From blocks that end where they end. */
+static bool looks_same(enum log_kind kind, const unsigned char *a, const unsigned char *b,
+                       size_t size)
+{
+    unsigned char *copy[2] = {malloc(size ? size : 1), malloc(size ? size : 1)};
+    memcpy(copy[0], a, size);
+    memcpy(copy[1], b, size);
+    const bool same = compare_bytes_same(kind, copy[0], size, copy[1], size);
+    free(copy[0]);
+    free(copy[1]);
+    return same;
+}
+
+static void test_scenes_whose_bytes_are_the_same(void **state)
+{
+    int same = 0;
+    (void) state;
+    for (int round = 0; round < 300; round++) {
+        draw_scene();
+        if (draw(4) == 0 && scene.frame_count > 0) { /* refused in many ways */
+            scene.frame[0].key = draw(2) ? 77 : -1;
+            scene.frame[0].components.count = draw(2) ? 0 : scene.frame[0].components.count;
+        }
+        answer_now();
+        for (size_t at = 0; at < now_size; at++) {
+            memcpy(then_bytes, now_bytes, now_size);
+            then_bytes[at] ^= (unsigned char) (1 + draw(255));
+            if (!looks_same(LOG_SCENE_QUERY, then_bytes, now_bytes, now_size))
+                continue;
+            same++;
+            assert_null(wire_read_scene_result(then_bytes, (uint32_t) now_size, &then));
+            assert_int_equal(compare(), REPLAY_SAME);
+        }
+        for (size_t size = 0; size < now_size; size++)
+            assert_false(compare_bytes_same(LOG_SCENE_QUERY, now_bytes, size, now_bytes, now_size));
+    }
+    assert_in_range(same, 2000, 100000); /* server id, lost, keys, time taken */
+}
+
+static struct pair_query drawn_pair(void)
+{
+    static const int32_t methods[] = {0, 1, 2, 3, 4, 99};
+    struct pair_query query = pair(2 + (int) draw(2), 0.25 * (double) draw(8),
+                                   draw(2) ? 0.25 * (double) draw(9) - 1 : 0, (int32_t) draw(4));
+    query.method = methods[draw(6)];
+    if (draw(4) == 0) {
+        query.frame[draw(2)].key = 77;
+        query.frame[draw(2)].components.count = 0;
+    }
+    if (draw(8) == 0)
+        query.duration = -1;
+    return query;
+}
+
+static void test_pairs_whose_bytes_are_the_same(void **state)
+{
+    static unsigned char a[WIRE_RESULT_BYTES_MAX], b[WIRE_RESULT_BYTES_MAX];
+    int same = 0, unknown = 0;
+    (void) state;
+    for (int round = 0; round < 1000; round++) {
+        const struct pair_query query = drawn_pair();
+        const struct pair_result result = answer(&query);
+        const size_t size = wire_write_pair_result(&result, b);
+        unknown += result.status == FMB_UNKNOWN_BODY;
+        for (size_t at = 0; at < size; at++) {
+            struct pair_result read;
+            memcpy(a, b, size);
+            a[at] ^= (unsigned char) (1 + draw(255));
+            if (!looks_same(LOG_PAIR_QUERY, a, b, size))
+                continue;
+            same++;
+            assert_null(wire_read_pair_result(a, (uint32_t) size, &read));
+            expect_same(0, &query, &read, &result);
+        }
+        assert_int_equal(looks_same(LOG_PAIR_QUERY, b, b, size),
+                         compare_with(0, &query, &result, &result) == REPLAY_SAME);
+        for (size_t shorter = 0; shorter < size; shorter++)
+            assert_false(compare_bytes_same(LOG_PAIR_QUERY, b, shorter, b, size));
+    }
+    assert_in_range(same, 10000, 100000);
+    assert_in_range(unknown, 50, 1000);
+}
+
+static void test_names(void **state)
+{
+    (void) state;
+    for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
+        assert_true(strlen(difference_name((enum difference_kind) kind)) > 2);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(test_##name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(every_kind),
+        TEST(what_is_not_compared),
+        TEST(statuses_of_the_moment),
+        TEST(ends_of_intervals),
+        TEST(ends_of_boxes),
+        TEST(with_a_tolerance_certificates_may_differ),
+        TEST(boxes_of_another_dimension),
+        TEST(scenes_against_the_model),
+        TEST(results_of_other_queries),
+        TEST(results_changed_byte_by_byte),
+        TEST(the_most_pairs),
+        TEST(the_most_frames),
+        TEST(scenes_whose_bytes_are_the_same),
+        TEST(pairs_whose_bytes_are_the_same),
+        TEST(names),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
