@@ -82,7 +82,7 @@ static bool translate(struct answer_now *now, struct query_frame *frame, int64_t
 {
     take_claim(now, frame);
     *key_then = 0;
-    if (!check_by_key(frame))
+    if (!check_by_key(frame) || !query_id_ok(frame->key)) /* that is no key is refused as such */
         return true;
     *key_then = frame->key;
     struct known_body *known = known_bodies_find(now->known, frame->body_id, frame->key);
@@ -101,7 +101,8 @@ static bool translate_all(struct answer_now *now, struct query_frame *frame, int
 }
 
 /* For when the cache has lost some of them since: those of other publishers, with the same ids, may
- * have come between. */
+ * have come between. What was known for the first frames may have had to go for those that claim.
+ */
 static void keep_all(struct answer_now *now, struct query_frame *frame, int32_t count)
 {
     for (int32_t i = 0; i < count; i++) {
@@ -109,12 +110,28 @@ static void keep_all(struct answer_now *now, struct query_frame *frame, int32_t 
             continue;
         struct known_body *known =
             known_bodies_find(now->known, frame[i].body_id, now->key_then[i]);
+        if (!known)
+            continue;
         keep(now, known);
         frame[i].key = known->key_now;
     }
 }
 
 /* ---- Pairs ---- */
+
+/* Of one that is longer than any log's reader keeps, the header has to do. */
+static const char *read_pair(const unsigned char *bytes, size_t size, struct pair_query *out)
+{
+    struct query_header header;
+    const char *error;
+    if (size < LOG_DATA_MAX)
+        return wire_read_pair_query(bytes, (uint32_t) size, out);
+    error = wire_read_pair_header(bytes, (uint32_t) size, &header);
+    *out = (struct pair_query){.utime = header.utime,
+                               .client_id = header.client_id,
+                               .sequence_number = header.sequence_number};
+    return error;
+}
 
 static void ask_pair(struct answer_now *now, struct answered_now *out)
 {
@@ -131,7 +148,7 @@ static enum answer_now_outcome answer_pair_now(struct answer_now *now, const uns
 {
     struct pair_query *query = &now->query.pair;
     bool known = true;
-    if ((out->error = wire_read_pair_query(bytes, (uint32_t) size, query)))
+    if ((out->error = read_pair(bytes, size, query)))
         return ANSWER_NOW_UNREADABLE;
     if (size > QUERY_BYTES_MAX) {
         answer_pair_refused(&now->answerer, query, FMB_OVER_LIMIT, &now->result.pair);
@@ -159,25 +176,34 @@ static void ask_scene(struct answer_now *now, struct answered_now *out)
     out->pairs = result->status == FMB_OK ? result->end_pair - now->query.scene.first_pair : 0;
 }
 
+/* As the service, which looks at the header alone. */
+static enum answer_now_outcome refuse_scene_now(struct answer_now *now, const unsigned char *bytes,
+                                                size_t size, struct answered_now *out)
+{
+    struct query_header header;
+    if ((out->error = wire_read_scene_header(bytes, (uint32_t) size, &header)))
+        return ANSWER_NOW_UNREADABLE;
+    answer_scene_refused(&now->answerer, &header, FMB_OVER_LIMIT, &now->result.scene);
+    out->status = FMB_OVER_LIMIT;
+    out->size = wire_write_scene_result(&now->result.scene, now->bytes);
+    return ANSWER_NOW_DONE;
+}
+
 static enum answer_now_outcome answer_scene_now(struct answer_now *now, const unsigned char *bytes,
                                                 size_t size, struct answered_now *out)
 {
     struct scene_query *query = &now->query.scene;
-    bool known = true;
+    if (size > QUERY_BYTES_MAX)
+        return refuse_scene_now(now, bytes, size, out);
     if ((out->error = wire_read_scene_query(bytes, (uint32_t) size, query)))
         return ANSWER_NOW_UNREADABLE;
-    if (size > QUERY_BYTES_MAX) {
-        const struct query_header header = {query->utime, query->client_id, query->sequence_number};
-        answer_scene_refused(&now->answerer, &header, FMB_OVER_LIMIT, &now->result.scene);
-    } else {
-        const int32_t count =
-            query->frame_count < QUERY_FRAMES_MAX ? query->frame_count : QUERY_FRAMES_MAX;
-        known = translate_all(now, query->frame, count);
+    const int32_t count =
+        query->frame_count < QUERY_FRAMES_MAX ? query->frame_count : QUERY_FRAMES_MAX;
+    const bool known = translate_all(now, query->frame, count);
+    ask_scene(now, out);
+    if (known && now->result.scene.status == FMB_UNKNOWN_BODY) {
+        keep_all(now, query->frame, count);
         ask_scene(now, out);
-        if (known && now->result.scene.status == FMB_UNKNOWN_BODY) {
-            keep_all(now, query->frame, count);
-            ask_scene(now, out);
-        }
     }
     out->status = now->result.scene.status;
     out->size = wire_write_scene_result(&now->result.scene, now->bytes);

@@ -31,7 +31,8 @@ struct answered_now {
     const char *error;
 };
 
-/* On input: a query's bytes as they stand in the log; kind PAIR_QUERY or SCENE_QUERY. */
+/* On input: a query's bytes as they stand in the log, of more than LOG_DATA_MAX the first so many;
+ * kind PAIR_QUERY or SCENE_QUERY. */
 enum answer_now_outcome answer_now(struct answer_now *now, enum log_kind kind,
                                    const unsigned char *bytes, size_t size,
                                    struct answered_now *out);

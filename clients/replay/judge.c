@@ -7,6 +7,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct judge {
     struct judge_options options;
@@ -45,19 +46,35 @@ static struct tally_channel *channel_of(const struct judge *judge, const struct 
 
 /* ---- Messages ---- */
 
+/* Of a query that is longer than a datagram nobody reads more than the header. */
+static void read_header(struct judge *judge, const struct match_item *query)
+{
+    memset(&judge->query, 0, sizeof judge->query);
+    if (query->kind == LOG_PAIR_QUERY) {
+        judge->query.pair.utime = query->ids.utime;
+        judge->query.pair.client_id = query->ids.client_id;
+        judge->query.pair.sequence_number = query->ids.sequence_number;
+    } else {
+        judge->query.scene.utime = query->ids.utime;
+        judge->query.scene.client_id = query->ids.client_id;
+        judge->query.scene.sequence_number = query->ids.sequence_number;
+    }
+}
+
 /* The query, and what it was answered now: both have been read, or written, here before. */
 static void read_query(struct judge *judge, const struct match_item *query)
 {
-    const char *error;
-    if (query->kind == LOG_PAIR_QUERY) {
+    const char *error = NULL;
+    if (query->size > QUERY_BYTES_MAX)
+        read_header(judge, query);
+    else if (query->kind == LOG_PAIR_QUERY)
         error = wire_read_pair_query(query->bytes, query->size, &judge->query.pair);
-        if (!error)
-            error = wire_read_pair_result(query->more, query->more_size, &judge->now.pair);
-    } else {
+    else
         error = wire_read_scene_query(query->bytes, query->size, &judge->query.scene);
-        if (!error)
-            error = wire_read_scene_result(query->more, query->more_size, &judge->now.scene);
-    }
+    if (!error)
+        error = query->kind == LOG_PAIR_QUERY
+                    ? wire_read_pair_result(query->more, query->more_size, &judge->now.pair)
+                    : wire_read_scene_result(query->more, query->more_size, &judge->now.scene);
     assert(!error);
     (void) error;
 }

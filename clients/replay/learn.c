@@ -68,7 +68,7 @@ static bool scene_tells_keys(const struct match_item *result)
 static void learn_frame(struct learner *learner, const struct query_frame *frame, int64_t key,
                         int64_t server_id)
 {
-    if (!check_by_key(frame) && key != 0 &&
+    if (!check_by_key(frame) && key != 0 && query_id_ok(key) &&
         !known_bodies_has(learner->known, frame->body_id, key, server_id))
         known_bodies_learn(learner->known, frame, key, server_id);
 }
