@@ -273,6 +273,8 @@ $(log_tests:%=$(B)/tests/%): $(O)/tests/unit/log_bytes.o
 # Counts what is read.
 wraps_test_log_read := -Wl,--wrap=pread64
 
+$(B)/tests/test_replay_run: $(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
+
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm

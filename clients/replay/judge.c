@@ -79,7 +79,7 @@ static void read_query(struct judge *judge, const struct match_item *query)
     (void) error;
 }
 
-static const char *read_result(struct judge *judge, const struct match_item *result)
+const char *judge_read_result(struct judge *judge, const struct match_item *result)
 {
     return result->kind == LOG_PAIR_QUERY
                ? wire_read_pair_result(result->bytes, result->size, &judge->then.pair)
@@ -173,7 +173,7 @@ static enum replay_outcome judge_bytes(struct judge *judge, const struct match_i
         count_time(judge, query, result);
         return REPLAY_SAME;
     }
-    const char *error = read_result(judge, result);
+    const char *error = judge_read_result(judge, result);
     if (error) {
         refuse_result(judge, result, error);
         return REPLAY_ALONE;
@@ -209,7 +209,7 @@ void judge_result_alone(struct judge *judge, const struct match_item *result)
 {
     if (!result->place.mine)
         return;
-    const char *error = read_result(judge, result);
+    const char *error = judge_read_result(judge, result);
     if (error)
         refuse_result(judge, result, error);
     else

@@ -38,6 +38,9 @@ struct judge;
 struct judge *judge_open(const struct judge_options *options);
 void judge_close(struct judge *judge); /* may be NULL */
 
+/* Whether a result can be read: NULL, or why not. */
+const char *judge_read_result(struct judge *judge, const struct match_item *result);
+
 /* Queries have what was answered now in more. What is not mine is not counted. */
 void judge_both(struct judge *judge, const struct match_item *query,
                 const struct match_item *result);

@@ -19,7 +19,9 @@ struct match {
 static void query_gone(void *user, const struct recent_item *query)
 {
     struct match *match = user;
-    if (!query->matched)
+    if (query->matched)
+        match->open -= query->item.place.mine;
+    else
         spill_put(match->spill, SPILL_QUERIES, &query->item);
 }
 
@@ -60,12 +62,6 @@ void match_close(struct match *match)
     free(match);
 }
 
-static void mark(struct match *match, struct recent *recent, struct recent_item *item)
-{
-    match->open -= item->item.place.mine;
-    recent_match(recent, item);
-}
-
 void match_query(struct match *match, const struct match_item *item)
 {
     struct recent_item *query = recent_put(match->queries, item);
@@ -73,8 +69,9 @@ void match_query(struct match *match, const struct match_item *item)
     match->open += item->place.mine;
     if (!result)
         return;
-    mark(match, match->results, result);
-    mark(match, match->queries, query);
+    match->open -= result->item.place.mine;
+    recent_match(match->results, result);
+    recent_match(match->queries, query);
     match->sink.both(match->sink.user, &query->item, &result->item);
 }
 
@@ -82,7 +79,7 @@ void match_result(struct match *match, const struct match_item *result)
 {
     struct recent_item *query = recent_unmatched(match->queries, result->kind, &result->ids);
     if (query)
-        mark(match, match->queries, query);
+        recent_match(match->queries, query);
     else
         query = recent_matched(match->queries, result->kind, &result->ids);
     if (query) {

@@ -50,7 +50,8 @@ void match_close(struct match *match); /* may be NULL */
 void match_query(struct match *match, const struct match_item *query);
 void match_result(struct match *match, const struct match_item *result);
 
-/* How many of the user's own (place.mine) have found no partner yet. */
+/* Of how many of the user's own (place.mine) something may still be told before the end: those that
+ * have found no partner, and queries in memory, since results may come again. */
 int64_t match_open_count(const struct match *match);
 
 /* The end of the log. False: a temporary file could not be written or read, errno says why, and not

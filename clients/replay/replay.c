@@ -36,8 +36,10 @@ struct replay {
     /* With the results recorded; and where there is a golden, with those of that, else NULL. */
     struct match *recorded, *compared;
     /* Places of queries that came by keys which nothing before them explains: they are asked once
-     * more at the end, when all of the log is known. NULL: none so far. */
+     * more at the end, when all of the log is known, and brought together with their results there.
+     * Until then they have no answer (more). NULL: none so far. */
     FILE *later;
+    struct match *late;
     int64_t first_utime, at, told;
     bool started, failed;
 };
@@ -57,18 +59,32 @@ static struct tally_channel *channel_of(struct replay *replay, const struct matc
 
 /* ---- What is brought together ---- */
 
+static bool is_put_off(const struct match_item *query)
+{
+    return query->place.mine && query->more_size == 0;
+}
+
+static void settle(struct replay *replay, const struct match_item *query,
+                   const struct match_item *result)
+{
+    if (is_put_off(query))
+        match_result(replay->late, result);
+    else
+        judge_both(replay->judge, query, result);
+}
+
 static void on_recorded(void *user, const struct match_item *query, const struct match_item *result)
 {
     struct replay *replay = user;
     learn(replay->learner, query, result);
     if (!replay->compared)
-        judge_both(replay->judge, query, result);
+        settle(replay, query, result);
 }
 
 static void on_query_alone(void *user, const struct match_item *query)
 {
     struct replay *replay = user;
-    if (!replay->compared)
+    if (!replay->compared && !is_put_off(query))
         judge_query_alone(replay->judge, query);
 }
 
@@ -79,17 +95,18 @@ static void on_result_alone(void *user, const struct match_item *result)
         judge_result_alone(replay->judge, result);
 }
 
-static void on_golden(void *user, const struct match_item *query, const struct match_item *result)
+static void on_compared(void *user, const struct match_item *query, const struct match_item *result)
 {
-    judge_both(((struct replay *) user)->judge, query, result);
+    settle(user, query, result);
 }
 
-static void on_query_not_in_golden(void *user, const struct match_item *query)
+static void on_query_without(void *user, const struct match_item *query)
 {
-    judge_query_alone(((struct replay *) user)->judge, query);
+    if (!is_put_off(query))
+        judge_query_alone(((struct replay *) user)->judge, query);
 }
 
-static void on_golden_alone(void *user, const struct match_item *result)
+static void on_result_without(void *user, const struct match_item *result)
 {
     judge_result_alone(((struct replay *) user)->judge, result);
 }
@@ -135,6 +152,9 @@ static void refuse(struct replay *replay, enum log_kind kind, const struct match
 
 static void ask_later(struct replay *replay, const struct match_place *place)
 {
+    const struct match_sink late = {on_compared, on_query_without, on_result_without, replay};
+    if (!replay->late)
+        replay->late = match_open(&late);
     if (!replay->later)
         replay->later = temporary_open();
     if (!replay->later || fwrite(place, sizeof *place, 1, replay->later) != 1)
@@ -159,45 +179,60 @@ static void write_golden(struct replay *replay, const struct match_item *query)
         fail(replay, replay->options->write_golden);
 }
 
-/* last: there is nothing more to be learned of keys. */
-static void answer(struct replay *replay, struct match_item *query, bool last)
+static void take_answer(struct replay *replay, struct match_item *query,
+                        const struct answered_now *answered)
 {
-    struct answered_now answered;
-    const enum answer_now_outcome outcome =
-        answer_now(replay->now, query->kind, query->bytes, query->size, &answered);
-    if (outcome == ANSWER_NOW_UNREADABLE) {
-        refuse(replay, query->kind, query, answered.error);
-    } else if (outcome == ANSWER_NOW_WITHOUT_BODY && !last) {
-        ask_later(replay, &query->place);
-    } else {
-        query->more = answered.bytes;
-        query->more_size = (uint32_t) answered.size;
-        count_answer(replay, query, &answered);
-        write_golden(replay, query);
-        match_all(replay, query);
-    }
+    query->more = answered->bytes;
+    query->more_size = (uint32_t) answered->size;
+    count_answer(replay, query, answered);
+    write_golden(replay, query);
 }
 
-/* ---- The golden: results in the order of their queries ---- */
+/* A query that cannot be read has a result all the same, perhaps, which is not to be compared. */
+static void answer(struct replay *replay, struct match_item *query)
+{
+    struct answered_now answered;
+    switch (answer_now(replay->now, query->kind, query->bytes, query->size, &answered)) {
+    case ANSWER_NOW_UNREADABLE:
+        refuse(replay, query->kind, query, answered.error);
+        query->place.mine = false;
+        break;
+    case ANSWER_NOW_WITHOUT_BODY: ask_later(replay, &query->place); break;
+    case ANSWER_NOW_DONE: take_answer(replay, query, &answered); break;
+    }
+    match_all(replay, query);
+}
+
+/* ---- The golden: results in the order of their queries ----
+ *
+ * Of several parts each reads it, and tells of its own queries' results what cannot be read. */
+
+static void fail_golden(struct replay *replay, int64_t offset, const char *what, bool own)
+{
+    if (own)
+        fprintf(stderr, "fmb: %s: offset %" PRId64 ": %s\n", replay->options->golden, offset, what);
+    replay->failed = replay->failed || own;
+}
 
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event,
-                        bool mine)
+                        bool mine, bool own)
 {
     struct match_item item = {
-        .place = {.mine = mine, .number = event->number, .utime = event->utime}};
+        .place = {
+            .mine = mine, .number = event->number, .offset = event->offset, .utime = event->utime}};
     const char *error = read_ids(kind, event, &item);
+    if (!error)
+        error = judge_read_result(replay->judge, &item);
     if (error) {
-        fprintf(stderr, "fmb: %s: offset %" PRId64 ": %s\n", replay->options->golden, event->offset,
-                error);
-        replay->failed = true;
+        fail_golden(replay, event->offset, error, own);
         return;
     }
     channel_of(replay, &item)->results += mine;
     match_result(replay->compared, &item);
 }
 
-/* The next one. False: there is none. */
-static bool pull_golden(struct replay *replay, bool mine)
+/* The next one. False: there is none. own: of a query of this part; mine: of one that counts. */
+static bool pull_golden(struct replay *replay, bool mine, bool own)
 {
     struct log_event event;
     struct log_damage damage;
@@ -207,14 +242,11 @@ static bool pull_golden(struct replay *replay, bool mine)
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
         if (kind == LOG_PAIR_RESULT || kind == LOG_SCENE_RESULT) {
-            take_golden(replay, kind, &event, mine);
+            take_golden(replay, kind, &event, mine, own);
             return true;
         }
-        if (outcome == LOG_DAMAGE) {
-            fprintf(stderr, "fmb: %s: offset %" PRId64 ": %s\n", replay->options->golden,
-                    damage.offset, damage.what);
-            replay->failed = true;
-        }
+        if (outcome == LOG_DAMAGE)
+            fail_golden(replay, damage.offset, damage.what, own);
     }
     if (outcome == LOG_FAILED)
         fail(replay, replay->options->golden);
@@ -248,12 +280,13 @@ static struct match_place place_of(const struct replay *replay, const struct log
 
 static void take_query(struct replay *replay, struct match_item *query)
 {
-    if (query->place.mine)
-        answer(replay, query, false);
+    const bool mine = query->place.mine;
+    if (mine)
+        answer(replay, query);
     else
         match_all(replay, query);
     if (replay->golden)
-        pull_golden(replay, query->place.mine);
+        pull_golden(replay, mine, in_part(replay, query->place.offset));
 }
 
 static void take_result(struct replay *replay, const struct match_item *result)
@@ -328,7 +361,7 @@ static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
     const struct match_sink recorded = {on_recorded, on_query_alone, on_result_alone, replay};
-    const struct match_sink golden = {on_golden, on_query_not_in_golden, on_golden_alone, replay};
+    const struct match_sink golden = {on_compared, on_query_without, on_result_without, replay};
     char why[LOG_WHY_MAX];
     if (!input_open(&replay->input, options->log, options->log_count, why)) {
         fprintf(stderr, "fmb: %s\n", why);
@@ -351,6 +384,7 @@ static bool open_replay(struct replay *replay)
 static void close_replay(struct replay *replay)
 {
     judge_close(replay->judge);
+    match_close(replay->late);
     match_close(replay->compared);
     match_close(replay->recorded);
     answer_now_close(replay->now);
@@ -379,8 +413,7 @@ static void tell_progress(struct replay *replay)
 static bool is_done(const struct replay *replay)
 {
     return replay->at >= replay->part.end && !replay->later &&
-           match_open_count(replay->recorded) == 0 &&
-           (!replay->compared || match_open_count(replay->compared) == 0);
+           match_open_count(replay->compared ? replay->compared : replay->recorded) == 0;
 }
 
 static void read_logs(struct replay *replay)
@@ -402,32 +435,55 @@ static void read_logs(struct replay *replay)
         fail(replay, replay->options->log[replay->input.log]);
 }
 
-static void ask_again(struct replay *replay)
+static void ask_again(struct replay *replay, const struct match_place *place)
+{
+    struct match_item query = {.place = *place};
+    struct log_event event;
+    struct answered_now answered;
+    errno = 0;
+    if (!input_again(&replay->input, place->log, place->offset, &event) ||
+        read_ids(log_kind_of(&replay->channels, &event), &event, &query) ||
+        answer_now(replay->now, query.kind, query.bytes, query.size, &answered) ==
+            ANSWER_NOW_UNREADABLE) {
+        errno = errno ? errno : EIO; /* it was there before */
+        fail(replay, replay->options->log[place->log]);
+        return;
+    }
+    take_answer(replay, &query, &answered);
+    match_query(replay->late, &query);
+}
+
+static void ask_all_again(struct replay *replay)
 {
     struct match_place place;
-    struct log_event event;
     if (!replay->later)
         return;
-    rewind(replay->later);
-    while (fread(&place, sizeof place, 1, replay->later) == 1) {
-        struct match_item query = {.place = place};
-        if (input_again(&replay->input, place.log, place.offset, &event) &&
-            !read_ids(log_kind_of(&replay->channels, &event), &event, &query))
-            answer(replay, &query, true);
-        else
-            fail(replay, replay->options->log[place.log]);
-    }
-    if (ferror(replay->later))
+    bool good = fflush(replay->later) == 0 && fseeko(replay->later, 0, SEEK_SET) == 0;
+    while (good && fread(&place, sizeof place, 1, replay->later) == 1)
+        ask_again(replay, &place);
+    if (!good || ferror(replay->later))
         fail(replay, "a temporary file");
 }
 
+/* What it still waits for may stand behind what has been read of the golden; the last part counts
+ * what nobody waits for. */
+static void read_golden(struct replay *replay)
+{
+    const bool last = replay->part.end == input_size(&replay->input);
+    while (replay->golden && (last || !is_done(replay)) && pull_golden(replay, last, last))
+        continue;
+}
+
+/* All that is known is known before those that were put off are asked. */
 static void finish(struct replay *replay)
 {
-    ask_again(replay);
-    const bool all = replay->part.begin == 0 && replay->part.end == input_size(&replay->input);
-    while (replay->golden && pull_golden(replay, all))
-        continue;
+    read_golden(replay);
+    if (is_done(replay)) /* what is left is of others */
+        return;
     if (!match_finish(replay->recorded) || (replay->compared && !match_finish(replay->compared)))
+        fail(replay, "a temporary file");
+    ask_all_again(replay);
+    if (replay->late && !match_finish(replay->late))
         fail(replay, "a temporary file");
 }
 

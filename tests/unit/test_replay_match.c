@@ -353,23 +353,40 @@ static int64_t open_after(struct match *match, int64_t i)
     return match_open_count(match);
 }
 
-static void test_counts_what_is_mine_and_alone(void **state)
+static void test_counts_what_is_mine_and_may_be_told_of(void **state)
 {
     (void) state;
     add_query(1, 1, 5);
     add_query(1, 2, 5)->place.mine = false;
     add_result(1, 2, 5);
-    add_result(1, 1, 5)->place.mine = false;
+    add_result(1, 1, 5)->place.mine = false; /* there may be another one */
     add_result(1, 3, 5);
     add_result(1, 4, 5)->place.mine = false;
     add_query(1, 4, 5);
     add_query(1, 3, 5)->place.mine = false;
     struct match *match = match_open(&sink);
-    static const int64_t open[] = {1, 1, 1, 0, 1, 1, 1, 0};
-    for (int64_t i = 0; i < stream.count; i++)
+    static const int64_t open[] = {1, 1, 1, 1, 2, 2, 3, 2};
+    for (int64_t i = 0; i < 8; i++)
         assert_int_equal(open_after(match, i), open[i]);
+    for (int i = 0; i < 300; i++) { /* what pushes them out of memory */
+        struct match_item *query = add_query(2, i, 5);
+        query->size = LOG_DATA_MAX;
+        query->place.mine = false;
+        give(match, stream.count - 1);
+    }
+    assert_int_equal(match_open_count(match), 0);
+    add_query(1, 5, 5);
+    assert_int_equal(open_after(match, stream.count - 1), 1);
+    for (int i = 0; i < 300; i++) {
+        struct match_item *query = add_query(2, i, 5);
+        query->size = LOG_DATA_MAX;
+        query->place.mine = false;
+        give(match, stream.count - 1);
+    }
+    assert_int_equal(match_open_count(match), 1);
     assert_true(match_finish(match));
     match_close(match);
+    check_fates();
 }
 
 /* ---- Many, far apart ---- */
@@ -677,7 +694,7 @@ int main(void)
         TEST(utime_chooses),
         TEST(any_ids),
         TEST(of_nothing),
-        TEST(counts_what_is_mine_and_alone),
+        TEST(counts_what_is_mine_and_may_be_told_of),
         TEST(delays_beyond_what_is_in_memory),
         TEST(the_longest),
         TEST(the_same_ids_one_by_one),

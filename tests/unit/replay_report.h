@@ -1,0 +1,30 @@
+/* Replays that run in this process, and their reports compared: of one part, or of several as
+ * replay_jobs() adds them up. */
+#ifndef REPLAY_REPORT_H
+#define REPLAY_REPORT_H
+
+#include "replay.h"
+
+struct replay_report {
+    bool good;           /* as replay_run() */
+    struct tally tally;  /* of all logs */
+    struct found *found; /* owned, [found_count], by the places of their queries; no certificates */
+    int64_t found_count, found_room;
+    int64_t unreadable, damages, damaged_bytes; /* as they were told */
+};
+
+/* On input: boundary[parts + 1]. To be freed. */
+struct replay_report replay_report_of(const struct replay_options *options, const int64_t *boundary,
+                                      int parts);
+/* All in as many parts of the same size. */
+struct replay_report replay_report_in(const struct replay_options *options, int parts);
+void replay_report_free(struct replay_report *report);
+
+/* What is not the same in two reports but for the times taken now, static; NULL: nothing. */
+const char *replay_report_differ(const struct replay_report *a, const struct replay_report *b);
+
+/* What does not add up in a report of all of the logs; NULL: all does. once: no query has more
+ * results than one. */
+const char *replay_report_odd(const struct replay_report *report, int64_t size, bool once);
+
+#endif
