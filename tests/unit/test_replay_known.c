@@ -119,42 +119,53 @@ static void test_another_shape_is_not_completed(void **state)
     known_bodies_destroy(known);
 }
 
-/* The model: the one used last first. */
+/* The model: a list that is searched from its beginning, and a hand that goes round in it and
+ * spares once those that were used since it came by. */
 enum { MODEL_MAX = 64 };
 
-struct model {
-    int count, capacity;
-    struct {
-        int64_t id, key, server_id;
-        double edge;
-    } body[MODEL_MAX];
+struct model_body {
+    int64_t id, key, server_id;
+    double edge;
+    bool used;
 };
 
-static int model_find(struct model *model, int64_t id, int64_t key)
+struct model {
+    int count, capacity, hand;
+    struct model_body body[MODEL_MAX];
+};
+
+/* NULL: it is not there. */
+static struct model_body *model_find(struct model *model, int64_t id, int64_t key)
 {
     for (int i = 0; i < model->count; i++)
         if (model->body[i].id == id && model->body[i].key == key) {
-            const __typeof__(model->body[0]) found = model->body[i];
-            memmove(&model->body[1], &model->body[0], (size_t) i * sizeof found);
-            model->body[0] = found;
-            return 0;
+            model->body[i].used = true;
+            return &model->body[i];
         }
-    return -1;
+    return NULL;
+}
+
+static struct model_body *model_room(struct model *model)
+{
+    if (model->count < model->capacity)
+        return &model->body[model->count++];
+    while (model->body[model->hand].used) {
+        model->body[model->hand].used = false;
+        model->hand = (model->hand + 1) % model->capacity;
+    }
+    struct model_body *room = &model->body[model->hand];
+    model->hand = (model->hand + 1) % model->capacity;
+    return room;
 }
 
 static void model_learn(struct model *model, int64_t id, int64_t key, int64_t server_id,
                         double edge)
 {
-    if (model_find(model, id, key) < 0) {
-        if (model->count < model->capacity)
-            model->count++;
-        memmove(&model->body[1], &model->body[0],
-                (size_t) (model->count - 1) * sizeof model->body[0]);
-    }
-    model->body[0].id = id;
-    model->body[0].key = key;
-    model->body[0].server_id = server_id;
-    model->body[0].edge = edge;
+    struct model_body *body = model_find(model, id, key);
+    const bool used = body != NULL;
+    if (!body)
+        body = model_room(model);
+    *body = (struct model_body){id, key, server_id, edge, used};
 }
 
 static void check_one(struct known_bodies *known, struct model *model)
@@ -162,19 +173,21 @@ static void check_one(struct known_bodies *known, struct model *model)
     const int64_t id = 1 + (int64_t) draw(7), key = (int64_t) draw(5) - 2;
     const int64_t server_id = (int64_t) draw(3);
     const struct query_frame cube = frame(id, 1 + (double) draw(3));
+    const struct model_body *body;
     switch (draw(3)) {
     case 0:
         known_bodies_learn(known, &cube, key, server_id);
         model_learn(model, id, key, server_id, cube.components.number[0]);
         break;
     case 1:
-        if (model_find(model, id, key) == 0)
-            expect_known(known, id, key, model->body[0].edge);
+        if ((body = model_find(model, id, key)))
+            expect_known(known, id, key, body->edge);
         else
             assert_null(known_bodies_find(known, id, key));
         break;
     default: {
-        const bool has = model_find(model, id, key) == 0 && model->body[0].server_id == server_id;
+        body = model_find(model, id, key);
+        const bool has = body && body->server_id == server_id;
         assert_int_equal(known_bodies_has(known, id, key, server_id), has);
     }
     }
