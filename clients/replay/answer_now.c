@@ -161,6 +161,7 @@ static enum answer_now_outcome answer_pair_now(struct answer_now *now, const uns
         }
     }
     out->status = now->result.pair.status;
+    now->result.pair.compute_ns = out->compute_ns;
     out->size = wire_write_pair_result(&now->result.pair, now->bytes);
     return known ? ANSWER_NOW_DONE : ANSWER_NOW_WITHOUT_BODY;
 }
@@ -206,6 +207,7 @@ static enum answer_now_outcome answer_scene_now(struct answer_now *now, const un
         ask_scene(now, out);
     }
     out->status = now->result.scene.status;
+    now->result.scene.compute_ns = out->compute_ns;
     out->size = wire_write_scene_result(&now->result.scene, now->bytes);
     return known ? ANSWER_NOW_DONE : ANSWER_NOW_WITHOUT_BODY;
 }

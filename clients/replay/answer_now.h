@@ -22,8 +22,7 @@ enum answer_now_outcome {
 };
 
 struct answered_now {
-    /* Of the result, as the service would send it; good until the next call. compute_ns is 0 in it.
-     */
+    /* Of the result, as the service would send it; good until the next call. */
     const unsigned char *bytes;
     size_t size;
     int64_t compute_ns, pairs; /* taken, and decided */

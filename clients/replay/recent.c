@@ -11,7 +11,7 @@
  * the end, the rest stays empty and it begins at 0. Links are places in units of UNIT bytes, plus
  * 1, so that 0 is none. A bucket holds its items in two chains: those that are not matched, in
  * their order, and the others, with the one that was matched last in front. */
-enum { UNIT = 8, NONE = 0, BUCKET_BITS = 16, BUCKETS = 1 << BUCKET_BITS };
+enum { UNIT = 8, NONE = 0, BUCKET_BITS = 13, BUCKETS = 1 << BUCKET_BITS };
 
 struct chain {
     uint32_t first, last;
