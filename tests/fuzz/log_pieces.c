@@ -67,7 +67,7 @@ static int describe(struct stat *out)
     return 0;
 }
 
-#define LOG_BUFFER_BYTES PIECES_BUFFER_BYTES
+#define LOG_BUFFER_BYTES ((size_t) PIECES_BUFFER_BYTES)
 #define LOG_CHANNEL_MAX PIECES_CHANNEL_MAX
 #define LOG_DATA_MAX PIECES_DATA_MAX
 #define open(path, flags) ((void) (path), 0)

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 /* In place of LOG_CHANNEL_MAX and LOG_DATA_MAX, and of the reader's buffer. */
-enum { PIECES_CHANNEL_MAX = 8, PIECES_DATA_MAX = 16, PIECES_BUFFER_BYTES = 64 };
+enum { PIECES_CHANNEL_MAX = 8, PIECES_DATA_MAX = 16, PIECES_BUFFER_BYTES = 96 };
 
 /* Zeros from a multiple of it on, so many, are a hole of the file. */
 enum { PIECES_BLOCK = 8 };

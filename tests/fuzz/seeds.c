@@ -402,9 +402,17 @@ static void write_broken_logs(void)
     log_event("C", 6);
     end_log("garbage");
     log_event("A", 4);
+    log_header(1, 20); /* within the buffer */
+    log_event("B", 0);
     log_header(1, 99);
     log_event("B", 4);
     log_header(0, 4);
+    log_event("C", 4);
+    log_header(8, 4);
+    log_bytes("TOO_LONGdata", 12);
+    log_event("C", 4);
+    log_header(1, 5);
+    file.bytes[file.size - 4] = 0x80; /* a negative size */
     log_event("C", 4);
     log_header(1, 5);
     end_log("lies");
@@ -424,6 +432,14 @@ static void write_logs(void)
     log_event("MORE", 100);
     log_event("LAST", 1);
     end_log("good");
+    for (unsigned char size = 0; size < 17; size++) /* at all places of the buffer */
+        log_event(&"CHANNEL"[size % 7], size);
+    end_log("sizes");
+    for (unsigned char size = 0; size < 17; size++) {
+        log_event(&"CHANNEL"[size % 7], size);
+        log_bytes("garbage that goes on", 1 + 3 * size % 20);
+    }
+    end_log("damages");
     log_header(1, 1 + 2 * 33);
     log_bytes("A", 1);
     log_event("B", 4);
