@@ -116,8 +116,7 @@ static void print_channels(FILE *out, const struct log_info *info)
         putc('\n', out);
     }
     if (info->others.events > 0)
-        fprintf(out, "  (of all others there is no room to count each: these are the first %d)\n",
-                LOG_INFO_ROWS_MAX);
+        fprintf(out, "  (only the first %d are counted each for itself)\n", LOG_INFO_ROWS_MAX);
 }
 
 static void print_time(FILE *out, const char *name, int64_t utime)
@@ -198,7 +197,9 @@ void log_report_text(FILE *out, const struct log_report *report)
     }
     if (info->damages > 0)
         print_damage(out, info);
-    else
+    if (report->error)
+        fprintf(out, "  not read to its end: %s\n", report->error);
+    else if (info->damages == 0)
         fputs("  no damage\n", out);
 }
 

@@ -194,8 +194,7 @@ static int64_t skip_hole(const struct log_reader *reader, int64_t offset, int64_
     return errno == ENXIO ? last : offset; /* only holes; or it is not known */
 }
 
-/* The first sync word that begins before the end, or the end. On input: bytes to read behind that.
- */
+/* The first sync word that begins before the end, or the end; there are bytes to read behind it. */
 static const unsigned char *find_sync(const unsigned char *bytes, const unsigned char *end)
 {
     while (bytes < end && (bytes = memchr(bytes, sync_word[0], (size_t) (end - bytes)))) {

@@ -268,7 +268,9 @@ ended() {
     ended 0
     [ "$(field '[.events, (.channels | length), .others.events]')" = '[4100,4096,4]' ]
     info "$log"
-    [[ $output == *"  (all others) "*"the first 4096)"* ]]
+    [[ $output == *"  (all others) "*"
+  (only the first 4096 are counted each for itself)
+"* ]]
 }
 
 # ---- The command -----------------------------------------------------------------------------

@@ -16,8 +16,7 @@
 
 #include <cmocka.h>
 
-/* ---- What the reader reads with ----------------------------------------------------------------
- */
+/* ---- What the reader reads with -------------------------------------------------------------- */
 
 static struct {
     int64_t calls, bytes; /* so far */
@@ -44,8 +43,7 @@ ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
     return got;
 }
 
-/* ---- What is read ------------------------------------------------------------------------------
- */
+/* ---- What is read ---------------------------------------------------------------------------- */
 
 enum { TOLD_MAX = 64 };
 
@@ -128,8 +126,7 @@ static void expect_damage(const struct told *told, size_t i, size_t begin, size_
     assert_int_equal(told->item[i].length, end - begin);
 }
 
-/* ---- Good logs ---------------------------------------------------------------------------------
- */
+/* ---- Good logs ------------------------------------------------------------------------------- */
 
 static struct log_bytes whole, inner;
 static unsigned char noise[3 * LOG_DATA_MAX];
@@ -269,8 +266,7 @@ static void test_lcm_reads_the_same(void **state)
     reads.interrupted = false;
 }
 
-/* ---- Small logs, broken in every way -----------------------------------------------------------
- */
+/* ---- Small logs, broken in every way --------------------------------------------------------- */
 
 static void test_every_truncation(void **state)
 {
@@ -392,8 +388,7 @@ static void test_garbage_between_all(void **state)
     }
 }
 
-/* ---- Lengths that lie --------------------------------------------------------------------------
- */
+/* ---- Lengths that lie ------------------------------------------------------------------------ */
 
 static const char wrong[] = "an event that is cut off, or has wrong lengths";
 static const char impossible[] = "an event with impossible lengths";
@@ -472,8 +467,7 @@ static void test_a_log_in_a_message(void **state)
     }
 }
 
-/* ---- Large files, and hostile ones -------------------------------------------------------------
- */
+/* ---- Large files, and hostile ones ----------------------------------------------------------- */
 
 static const off_t large = INT64_C(10) << 30;
 
@@ -624,8 +618,7 @@ static void test_work_grows_with_the_size_alone(void **state)
     }
 }
 
-/* ---- Seeking -----------------------------------------------------------------------------------
- */
+/* ---- Seeking --------------------------------------------------------------------------------- */
 
 /* From each byte of a log that is damaged in several places, what is read is what was read from
  * there on, or from the next event. */
@@ -676,8 +669,7 @@ static void test_seeking_in_a_log_of_many_buffers(void **state)
     log_close(reader);
 }
 
-/* ---- Files that change, and that cannot be read ------------------------------------------------
- */
+/* ---- Files that change, and that cannot be read ---------------------------------------------- */
 
 static void test_what_is_written_later_is_not_read(void **state)
 {
