@@ -21,7 +21,7 @@
  *
  * Bytes are read by the buffer, from a place on that is asked for; only those 4 alone, where they
  * are not in it. Going forward, it is filled again where less than 28 bytes are left of it in a
- * search, or less than what is kept of an event, 67 kB of 128: each filling is mostly new. A search
+ * search, or less than what is kept of an event, 67 kB of 256: each filling is mostly new. A search
  * may leave behind an event that is to be told, for which the buffer is filled again: but of two
  * searches that do so, one after the other, the second ends a buffer behind the beginning of the
  * first. So what is read in all is a small multiple of the file, hostile files included.
@@ -41,7 +41,7 @@
 
 /* With 128 KiB to 1 MiB reading is as quick. */
 #ifndef LOG_BUFFER_BYTES
-#define LOG_BUFFER_BYTES (128 * 1024)
+#define LOG_BUFFER_BYTES (256 * 1024)
 #endif
 
 enum { SYNC_BYTES = 4, KEPT_MAX = LOG_HEADER_BYTES + LOG_CHANNEL_MAX + LOG_DATA_MAX };
