@@ -56,8 +56,9 @@ void answer_now_close(struct answer_now *now)
 /* ---- Keys ----
  *
  * A key of the log becomes the key that this cache has for the same components. A frame that has
- * both says what its key stands for (fmb log cut writes such), and counts as one by key, as it once
- * was: the result has as much room then. */
+ * both, key and components (fmb log cut writes such), counts as one by key, as it once was: the
+ * result has as much room then. But what its key stands for is for results to say: whoever sends
+ * components may send any key beside them. */
 
 static void keep(struct answer_now *now, struct known_body *known)
 {
@@ -65,27 +66,36 @@ static void keep(struct answer_now *now, struct known_body *known)
                known->components.number, &known->key_now);
 }
 
-static void take_claim(struct answer_now *now, struct query_frame *frame)
+/* The key under which the components of a frame that has both are known here: one that no other
+ * frame has. 0: the frame is no such one. */
+static int64_t claim(struct answer_now *now, struct query_frame *frame)
 {
-    const struct known_body *known;
-    if (frame->key == 0 || frame->components.count == 0)
-        return;
-    known = known_bodies_find(now->known, frame->body_id, frame->key);
+    const int64_t key = -frame->key;
+    if (frame->key <= 0 || frame->components.count == 0)
+        return 0;
+    const struct known_body *known = known_bodies_find(now->known, frame->body_id, key);
+    if (!known || !known_bodies_same(known, frame))
+        known = known_bodies_learn(now->known, frame, key, 0);
     if (!known)
-        known = known_bodies_learn(now->known, frame, frame->key, 0);
-    if (known && known_bodies_same(known, frame))
-        frame->components.count = 0;
+        return 0;
+    frame->components.count = 0;
+    return key;
+}
+
+/* 0: it is whole, or has a key that cannot be one and is refused. */
+static int64_t key_of(struct answer_now *now, struct query_frame *frame)
+{
+    const int64_t claimed = claim(now, frame);
+    return claimed || !check_by_key(frame) || !query_id_ok(frame->key) ? claimed : frame->key;
 }
 
 /* Returns whether the key is known, if it is there. */
 static bool translate(struct answer_now *now, struct query_frame *frame, int64_t *key_then)
 {
-    take_claim(now, frame);
-    *key_then = 0;
-    if (!check_by_key(frame) || !query_id_ok(frame->key)) /* that is no key is refused as such */
+    *key_then = key_of(now, frame);
+    if (*key_then == 0)
         return true;
-    *key_then = frame->key;
-    struct known_body *known = known_bodies_find(now->known, frame->body_id, frame->key);
+    struct known_body *known = known_bodies_find(now->known, frame->body_id, *key_then);
     if (known && known->key_now == 0)
         keep(now, known);
     frame->key = known ? known->key_now : no_key;

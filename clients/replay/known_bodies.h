@@ -12,7 +12,7 @@
 
 struct known_body {
     int64_t body_id, key;
-    int64_t server_id;  /* who told the key; 0: a frame that had both, components and key */
+    int64_t server_id;  /* who told the key; 0: nobody */
     int64_t key_now;    /* for the user of this: 0 where it was just learned */
     int32_t dim, shape; /* as the frame said, which may be anything */
     struct query_numbers components;

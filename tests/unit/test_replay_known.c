@@ -415,34 +415,62 @@ static void test_a_key_is_what_it_stood_for(void **state)
     known_bodies_destroy(known);
 }
 
-/* The first frame that had a key and components said what the key is; what comes later has its own.
- */
-static void test_claims(void **state)
+/* A frame that has both, key and components, is what its components say, and says nothing of others
+ * with the key: whoever sends components may send any key beside them. */
+static void test_frames_that_have_both(void **state)
 {
     (void) state;
     struct known_bodies *known = known_bodies_create(10);
     struct answer_now *now = answer_now_open(10, known);
-    struct query_frame both = frame(7, 2);
-    both.key = 300;
-    assert_int_equal(verdict(now, both), FMB_TOUCHING);
-    assert_int_equal(verdict(now, by_key(7, 300)), FMB_TOUCHING);
-    both = frame(7, 3);
-    both.key = 300;
-    assert_int_equal(verdict(now, both), FMB_OVERLAPPING);
-    assert_int_equal(verdict(now, by_key(7, 300)), FMB_TOUCHING);
-    const struct query_frame cube = frame(7, 1); /* a result says what it is: that counts */
+    for (int round = 0; round < 2; round++)
+        for (int edge = 1; edge <= 3; edge++) {
+            struct query_frame both = frame(7, edge);
+            both.key = 300;
+            assert_int_equal(verdict(now, both), edge);
+        }
+    assert_null(known_bodies_find(known, 7, 300));
+    ask(now, pair(frame(1000, 1), by_key(7, 300)), ANSWER_NOW_WITHOUT_BODY);
+    const struct query_frame cube = frame(7, 3); /* a result says what it is */
     known_bodies_learn(known, &cube, 300, 99);
-    assert_int_equal(verdict(now, by_key(7, 300)), FMB_SEPARATED);
-    both = frame(7, 2);
-    both.key = 300;
-    assert_int_equal(verdict(now, both), FMB_TOUCHING);
-    assert_int_equal(verdict(now, by_key(7, 300)), FMB_SEPARATED);
+    for (int edge = 1; edge <= 3; edge++) {
+        struct query_frame both = frame(7, edge);
+        both.key = 300;
+        assert_int_equal(verdict(now, both), edge);
+        assert_int_equal(verdict(now, by_key(7, 300)), FMB_OVERLAPPING);
+    }
+    answer_now_close(now);
+    known_bodies_destroy(known);
+}
+
+/* It counts as one by key: a scene's result tells no keys, and has room for more. */
+static void test_scenes_of_frames_that_have_both(void **state)
+{
+    static struct scene_query scene;
+    static struct scene_result result;
+    (void) state;
+    struct known_bodies *known = known_bodies_create(10);
+    struct answer_now *now = answer_now_open(10, known);
+    scene.frame_count = 3;
+    scene.which = QUERY_PAIRS_ALL;
+    for (int whole = 0; whole < 2; whole++) {
+        struct answered_now out;
+        for (int i = 0; i < 3; i++) {
+            scene.frame[i] = frame(i + 1, 1);
+            scene.frame[i].key = whole && i == 1 ? 0 : 300 + i;
+        }
+        const size_t size = wire_write_scene_query(&scene, query_bytes);
+        assert_int_equal(answer_now(now, LOG_SCENE_QUERY, query_bytes, size, &out),
+                         ANSWER_NOW_DONE);
+        assert_null(wire_read_scene_result(out.bytes, (uint32_t) out.size, &result));
+        assert_int_equal(result.key_count, whole ? 3 : 0);
+        assert_int_equal(result.verdict_count, 3);
+    }
     answer_now_close(now);
     known_bodies_destroy(known);
 }
 
 /* The list may have room for one body alone. */
-static void test_claims_where_there_is_no_room(void **state)
+static void test_frames_that_have_both_where_there_is_no_room(void **state)
 {
     (void) state;
     struct known_bodies *known = known_bodies_create(1);
@@ -556,8 +584,9 @@ int main(void)
         cmocka_unit_test(test_numbers_that_are_no_keys),
         cmocka_unit_test(test_learns_from_scenes),
         cmocka_unit_test(test_a_key_is_what_it_stood_for),
-        cmocka_unit_test(test_claims),
-        cmocka_unit_test(test_claims_where_there_is_no_room),
+        cmocka_unit_test(test_frames_that_have_both),
+        cmocka_unit_test(test_scenes_of_frames_that_have_both),
+        cmocka_unit_test(test_frames_that_have_both_where_there_is_no_room),
         cmocka_unit_test(test_keys_that_are_not_known),
         cmocka_unit_test(test_keys_that_cannot_be),
         cmocka_unit_test(test_more_than_a_datagram),

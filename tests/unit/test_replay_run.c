@@ -272,6 +272,30 @@ static void test_keys_that_are_told_beside_unknown_ones(void **state)
     }
 }
 
+/* A frame may have a key beside its components, as fmb log cut writes it: the result says whether
+ * that is what the key stands for. */
+static void test_keys_beside_components(void **state)
+{
+    (void) state;
+    struct query_frame both = frame(3, 2, 0);
+    both.key = 302;
+    log_both(0, pair(1, both, frame(2, 1, 2)));
+    for (int i = 2; i < 30; i++)
+        log_both(i, pair(i, by_key(3, 302, 0), frame(2, 1, i % 5)));
+    struct replay_report report = replay(true);
+    assert_int_equal(outcome(&report, REPLAY_SAME), 29);
+    replay_report_free(&report);
+    close_log();
+    both = frame(3, 1, 0); /* the key is of what it was before */
+    both.key = 302;
+    log_both(0, pair(1, both, frame(2, 1, 2)));
+    log_both(1, pair(2, by_key(3, 302, 0), frame(2, 1, 2)));
+    report = replay(true);
+    assert_int_equal(outcome(&report, REPLAY_SAME), 1);
+    assert_int_equal(outcome(&report, REPLAY_UNKNOWN), 1);
+    replay_report_free(&report);
+}
+
 /* The same query asked again, each time before its key is explained. */
 static void test_the_same_again_before_it_can_be_answered(void **state)
 {
@@ -744,6 +768,7 @@ int main(void)
         TEST(differences_are_where_they_are),
         TEST(keys_that_are_explained_later),
         TEST(keys_that_are_told_beside_unknown_ones),
+        TEST(keys_beside_components),
         TEST(the_same_again_before_it_can_be_answered),
         TEST(two_results),
         TEST(a_query_that_cannot_be_read),
