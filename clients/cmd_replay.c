@@ -26,7 +26,8 @@ static const char usage[] =
     "the results recorded there: verdicts, intervals, boxes and certificates have to be the same\n"
     "bits. Queries and results belong together by client id and sequence number, wherever they\n"
     "stand. Several logs are taken as one, in the order given, as rotation wrote them. Frames\n"
-    "that came by key get the components that the log tells for the key.\n"
+    "that came by key get the components that the log tells for the key. Definitions of keys,\n"
+    "which 'fmb log cut' writes into logs, are taken as such: nothing was asked there.\n"
     "\n"
     "  --golden FILE        compare with the results in FILE, not with those recorded\n"
     "  --write-golden FILE  write the results, as an event log, to compare with later\n"
@@ -328,7 +329,7 @@ int cmd_replay(int argc, char **argv)
     struct args args = {
         "replay", usage, own_options, take_option, .operand = "LOG", .operands_max = 4096};
     struct options options = {
-        .replay = {.to = INFINITY}, .jobs = 1, .bodies = 65536, .limit = 1000};
+        .replay = {.from = -INFINITY, .to = INFINITY}, .jobs = 1, .bodies = 65536, .limit = 1000};
     const int code = args_parse(&args, argc, argv, &options);
     if (code != ARGS_RUN)
         return code;

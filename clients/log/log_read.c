@@ -36,6 +36,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -382,6 +383,43 @@ void log_seek(struct log_reader *reader, int64_t offset)
 {
     reader->at = offset;
     reader->sought = true;
+}
+
+void log_rewind(struct log_reader *reader)
+{
+    reader->at = 0;
+    reader->sought = false;
+}
+
+/* ---- All data of an event -------------------------------------------------------------------- */
+
+/* How far behind the beginning of a page an event's data begin: files are mapped from there on. */
+static size_t behind_page(const struct log_event *event)
+{
+    const int64_t page = sysconf(_SC_PAGESIZE);
+    return (size_t) ((event->offset + event->length - (int64_t) event->size) % page);
+}
+
+const void *log_map(const struct log_reader *reader, const struct log_event *event)
+{
+    struct stat about;
+    const size_t before = behind_page(event);
+    const int64_t begin = event->offset + event->length - (int64_t) event->size - (int64_t) before;
+    if (fstat(reader->fd, &about) != 0)
+        return NULL;
+    if (about.st_size < event->offset + event->length) {
+        errno = ENODATA;
+        return NULL;
+    }
+    const unsigned char *bytes =
+        mmap(NULL, before + event->size, PROT_READ, MAP_PRIVATE, reader->fd, (off_t) begin);
+    return bytes == MAP_FAILED ? NULL : bytes + before;
+}
+
+void log_unmap(const void *data, const struct log_event *event)
+{
+    const size_t before = behind_page(event);
+    munmap((unsigned char *) (uintptr_t) data - before, before + event->size);
 }
 
 /* ---- Opening and closing --------------------------------------------------------------------- */

@@ -78,4 +78,13 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
  * the size. */
 void log_seek(struct log_reader *reader, int64_t offset);
 
+/* Begins anew: damage with which the file begins is told too. */
+void log_rewind(struct log_reader *reader);
+
+/* All data of an event that was read, also those beyond what is kept: the file itself, mapped, to
+ * be given back with log_unmap(). No memory is asked for, whatever the size. NULL: errno (ENODATA:
+ * the file has become shorter). */
+const void *log_map(const struct log_reader *reader, const struct log_event *event);
+void log_unmap(const void *data, const struct log_event *event);
+
 #endif

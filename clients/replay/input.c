@@ -2,7 +2,16 @@
 
 #include "allocate.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+static void say_which(const char *path, char why[LOG_WHY_MAX])
+{
+    char reason[LOG_WHY_MAX];
+    memcpy(reason, why, sizeof reason);
+    snprintf(why, LOG_WHY_MAX, "%.160s: %.90s", path, reason);
+}
 
 bool input_open(struct input *input, char *const *path, int count, char why[LOG_WHY_MAX])
 {
@@ -11,6 +20,7 @@ bool input_open(struct input *input, char *const *path, int count, char why[LOG_
     for (; input->count < count; input->count++) {
         struct log_reader *reader = log_open(path[input->count], why);
         if (!reader) {
+            say_which(path[input->count], why);
             input_close(input);
             return false;
         }
@@ -39,8 +49,14 @@ enum log_outcome input_next(struct input *input, struct log_event *event, struct
     enum log_outcome outcome;
     while ((outcome = log_next(input->reader[input->log], event, damage)) == LOG_END &&
            input->log + 1 < input->count)
-        log_seek(input->reader[++input->log], 0);
+        log_rewind(input->reader[++input->log]);
     return outcome;
+}
+
+void input_rewind(struct input *input)
+{
+    input->log = 0;
+    log_rewind(input->reader[0]);
 }
 
 bool input_again(struct input *input, int log, int64_t offset, struct log_event *event)

@@ -22,6 +22,9 @@ int64_t input_size(const struct input *input);
 enum log_outcome input_next(struct input *input, struct log_event *event,
                             struct log_damage *damage);
 
+/* Begins anew with the first log. */
+void input_rewind(struct input *input);
+
 /* An event that was read before. False: it is not there any more. Then goes on behind it. */
 bool input_again(struct input *input, int log, int64_t offset, struct log_event *event);
 

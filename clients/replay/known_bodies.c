@@ -133,10 +133,16 @@ struct known_body *known_bodies_find(struct known_bodies *known, int64_t body_id
     return s == NONE ? NULL : &known->body[s];
 }
 
-bool known_bodies_has(struct known_bodies *known, int64_t body_id, int64_t key, int64_t server_id)
+bool known_bodies_has(struct known_bodies *known, int64_t body_id, int64_t key, int64_t server_id,
+                      bool mine)
 {
     const uint32_t s = use(known, body_id, key);
-    return s != NONE && known->slot[s].server_id == server_id;
+    return s != NONE && known->slot[s].server_id == server_id && (!mine || known->body[s].mine);
+}
+
+bool known_bodies_half_full(const struct known_bodies *known)
+{
+    return known->count > known->capacity / 2;
 }
 
 /* A log may say anything. */

@@ -14,11 +14,15 @@ struct known_body {
     int64_t body_id, key;
     int64_t server_id;  /* who told the key; 0: nobody */
     int64_t key_now;    /* for the user of this: 0 where it was just learned */
+    bool mine;          /* likewise, false; learn.h sets it */
     int32_t dim, shape; /* as the frame said, which may be anything */
     struct query_numbers components;
 };
 
 struct known_bodies;
+
+/* Four times as many as a service keeps by default, some 40 MB. */
+enum { KNOWN_BODIES_USUAL = 1 << 18 };
 
 /* capacity from 1. Never NULL: ends the program where there is no memory. */
 struct known_bodies *known_bodies_create(size_t capacity);
@@ -27,8 +31,13 @@ void known_bodies_destroy(struct known_bodies *known); /* may be NULL */
 /* NULL: it is not known. Good until something is learned. */
 struct known_body *known_bodies_find(struct known_bodies *known, int64_t body_id, int64_t key);
 
-/* Whether all that a result of this service could tell of the body is known. */
-bool known_bodies_has(struct known_bodies *known, int64_t body_id, int64_t key, int64_t server_id);
+/* Whether all that a result of this service could tell of the body is known; mine: and that the
+ * user's own have told it. */
+bool known_bodies_has(struct known_bodies *known, int64_t body_id, int64_t key, int64_t server_id,
+                      bool mine);
+
+/* Whether more than half of the capacity is used. Until then nothing has gone for others. */
+bool known_bodies_half_full(const struct known_bodies *known);
 
 /* On input: a frame with a body id and components; what its key is, and who said so. Returns what
  * is known of it now. */

@@ -3,6 +3,7 @@
 #include "allocate.h"
 #include "big_endian.h"
 #include "check.h"
+#include "definition.h"
 #include "wire.h"
 
 #include <stdlib.h>
@@ -44,7 +45,8 @@ static int64_t int64_at(const unsigned char *b)
     return (int64_t) big_endian_64(b);
 }
 
-static bool pair_tells_news(const struct learner *learner, const struct match_item *result)
+static bool pair_tells_news(const struct learner *learner, const struct match_item *result,
+                            bool mine)
 {
     if (result->size < KEYS_END)
         return false;
@@ -52,7 +54,7 @@ static bool pair_tells_news(const struct learner *learner, const struct match_it
     for (int f = 0; f < 2; f++) {
         const int64_t body_id = int64_at(result->bytes + BODIES_AT + 8 * f);
         const int64_t key = int64_at(result->bytes + KEYS_AT + 8 * f);
-        if (key != 0 && !known_bodies_has(learner->known, body_id, key, server_id))
+        if (key != 0 && !known_bodies_has(learner->known, body_id, key, server_id, mine))
             return true;
     }
     return false;
@@ -65,12 +67,37 @@ static bool scene_tells_keys(const struct match_item *result)
 
 /* ---- Learning ---- */
 
-static void learn_frame(struct learner *learner, const struct query_frame *frame, int64_t key,
-                        int64_t server_id)
+/* Who told a key. */
+struct telling {
+    int64_t server_id;
+    bool mine;
+};
+
+/* Whether a frame that came whole has the very key that the result tells for it: then it says
+ * itself what its key stands for, as fmb log cut writes it, and the result adds nothing to that. */
+static bool claims(const struct query_frame *frame, int64_t key)
 {
-    if (!check_by_key(frame) && key != 0 && query_id_ok(key) &&
-        !known_bodies_has(learner->known, frame->body_id, key, server_id))
-        known_bodies_learn(learner->known, frame, key, server_id);
+    return frame->key == key;
+}
+
+/* What a service tells again it has told before: a key of its names the same components for ever.
+ * What is only claimed counts where nothing was told. */
+static void learn_frame(struct learner *learner, const struct query_frame *frame, int64_t key,
+                        struct telling telling)
+{
+    struct known_bodies *known = learner->known;
+    if (check_by_key(frame) || key == 0 || !query_id_ok(key) ||
+        known_bodies_has(known, frame->body_id, key, telling.server_id, telling.mine))
+        return;
+    struct known_body *body = known_bodies_find(known, frame->body_id, key);
+    const bool same = body && known_bodies_same(body, frame);
+    const bool mine = telling.mine || (same && body->mine);
+    if (!body || (body->server_id != telling.server_id && !claims(frame, key)))
+        body = known_bodies_learn(known, frame, key, claims(frame, key) ? 0 : telling.server_id);
+    else if (!same)
+        return;
+    if (body)
+        body->mine = mine;
 }
 
 static void learn_pair(struct learner *learner, const struct match_item *query_item,
@@ -78,13 +105,15 @@ static void learn_pair(struct learner *learner, const struct match_item *query_i
 {
     struct pair_query *query = &learner->query.pair;
     struct pair_result *result = &learner->result.pair;
-    if (!pair_tells_news(learner, result_item) ||
+    const bool mine = query_item->place.mine && result_item->place.mine;
+    if (!pair_tells_news(learner, result_item, mine) ||
         wire_read_pair_query(query_item->bytes, query_item->size, query) ||
         wire_read_pair_result(result_item->bytes, result_item->size, result) ||
         result->status != FMB_OK)
         return;
+    const struct telling telling = {result->server_id, mine};
     for (int f = 0; f < 2; f++)
-        learn_frame(learner, &query->frame[f], result->key[f], result->server_id);
+        learn_frame(learner, &query->frame[f], result->key[f], telling);
 }
 
 static void learn_scene(struct learner *learner, const struct match_item *query_item,
@@ -97,11 +126,23 @@ static void learn_scene(struct learner *learner, const struct match_item *query_
         wire_read_scene_result(result_item->bytes, result_item->size, result) ||
         result->status != FMB_OK)
         return;
+    const struct telling telling = {result->server_id,
+                                    query_item->place.mine && result_item->place.mine};
     for (int32_t i = 0; i < query->frame_count && i < result->key_count; i++)
-        learn_frame(learner, &query->frame[i], result->key[i], result->server_id);
+        learn_frame(learner, &query->frame[i], result->key[i], telling);
 }
 
 void learn(struct learner *learner, const struct match_item *query, const struct match_item *result)
 {
     (query->kind == LOG_PAIR_QUERY ? learn_pair : learn_scene)(learner, query, result);
+}
+
+bool learn_definition(struct learner *learner, const struct match_item *item)
+{
+    struct scene_query *query = &learner->query.scene;
+    if (item->kind != LOG_SCENE_QUERY || item->ids.client_id != DEFINITION_CLIENT ||
+        wire_read_scene_query(item->bytes, item->size, query) || !definition_is(query))
+        return false;
+    definition_learn(query, learner->known, item->place.mine);
+    return true;
 }

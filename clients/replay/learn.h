@@ -11,8 +11,13 @@ struct learner;
 struct learner *learner_open(struct known_bodies *known);
 void learner_close(struct learner *learner); /* may be NULL */
 
-/* Bytes that are no messages teach nothing. */
+/* Bytes that are no messages teach nothing. A body is the user's own (known_body.mine) where a
+ * query and a result that both are (match_place.mine) have told it, or told again what others had.
+ */
 void learn(struct learner *learner, const struct match_item *query,
            const struct match_item *result);
+
+/* On output: true: the query is a definition (definition.h), and was learned. */
+bool learn_definition(struct learner *learner, const struct match_item *query);
 
 #endif

@@ -5,17 +5,13 @@
 #include "input.h"
 #include "learn.h"
 #include "log_write.h"
+#include "message.h"
 #include "temporary.h"
-#include "wire.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-/* Components by key that are kept: four times as many as a service keeps bodies by default, some 40
- * MB. */
-enum { KNOWN_BODIES = 1 << 18 };
 
 /* Bytes between two words of progress. */
 enum { PROGRESS_BYTES = 1 << 16 };
@@ -120,33 +116,10 @@ static void match_all(struct replay *replay, const struct match_item *query)
 
 /* ---- Messages ---- */
 
-static bool is_query(enum log_kind kind)
-{
-    return kind == LOG_PAIR_QUERY || kind == LOG_SCENE_QUERY;
-}
-
-/* What of a message says whose it is. The item's kind is that of the query. */
-static const char *read_ids(enum log_kind kind, const struct log_event *event,
-                            struct match_item *out)
-{
-    out->bytes = event->data;
-    out->size = (uint32_t) event->kept;
-    out->kind =
-        kind == LOG_PAIR_QUERY || kind == LOG_PAIR_RESULT ? LOG_PAIR_QUERY : LOG_SCENE_QUERY;
-    if (event->kept < event->size && !is_query(kind)) /* queries of any length get a result */
-        return "longer than any message of this type";
-    switch (kind) {
-    case LOG_PAIR_QUERY: return wire_read_pair_header(out->bytes, out->size, &out->ids);
-    case LOG_PAIR_RESULT: return wire_read_pair_result_header(out->bytes, out->size, &out->ids);
-    case LOG_SCENE_QUERY: return wire_read_scene_header(out->bytes, out->size, &out->ids);
-    default: return wire_read_scene_result_header(out->bytes, out->size, &out->ids);
-    }
-}
-
 static void refuse(struct replay *replay, enum log_kind kind, const struct match_item *item,
                    const char *error)
 {
-    channel_of(replay, item)->unreadable[is_query(kind) ? 0 : 1]++;
+    channel_of(replay, item)->unreadable[message_is_query(kind) ? 0 : 1]++;
     replay->sink->unreadable(replay->sink->user, &item->place, replay->channels.name[kind], error);
 }
 
@@ -225,7 +198,7 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
     struct match_item item = {
         .place = {
             .mine = mine, .number = event->number, .offset = event->offset, .utime = event->utime}};
-    const char *error = read_ids(kind, event, &item);
+    const char *error = message_read_ids(kind, event, &item);
     if (!error)
         error = judge_read_result(replay->judge, &item);
     if (error) {
@@ -246,7 +219,7 @@ static bool pull_golden(struct replay *replay, bool mine, bool own)
            outcome == LOG_DAMAGE) {
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
-        if (kind == LOG_PAIR_RESULT || kind == LOG_SCENE_RESULT) {
+        if (message_is_result(kind)) {
             take_golden(replay, kind, &event, mine, own);
             return true;
         }
@@ -285,6 +258,8 @@ static struct match_place place_of(const struct replay *replay, const struct log
 
 static void take_query(struct replay *replay, struct match_item *query)
 {
+    if (learn_definition(replay->learner, query))
+        return;
     const bool mine = query->place.mine;
     if (mine)
         answer(replay, query);
@@ -303,12 +278,12 @@ static void take_result(struct replay *replay, const struct match_item *result)
 static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
     struct match_item item = {.place = place_of(replay, event)};
-    const char *error = read_ids(kind, event, &item);
+    const char *error = message_read_ids(kind, event, &item);
     if (error && item.place.mine)
         refuse(replay, kind, &item, error);
     if (error)
         return;
-    if (is_query(kind))
+    if (message_is_query(kind))
         take_query(replay, &item);
     else
         take_result(replay, &item);
@@ -351,7 +326,7 @@ static bool open_goldens(struct replay *replay)
     const struct replay_options *options = replay->options;
     char why[LOG_WHY_MAX];
     if (options->golden && !(replay->golden = log_open(options->golden, why))) {
-        fprintf(stderr, "fmb: %s\n", why);
+        fprintf(stderr, "fmb: %s: %s\n", options->golden, why);
         return false;
     }
     if (options->write_golden &&
@@ -375,7 +350,7 @@ static bool open_replay(struct replay *replay)
     if (!open_goldens(replay))
         return false;
     replay->channels = log_channels(options->prefix);
-    replay->known = known_bodies_create(KNOWN_BODIES);
+    replay->known = known_bodies_create(KNOWN_BODIES_USUAL);
     replay->learner = learner_open(replay->known);
     replay->now = answer_now_open(options->bodies, replay->known);
     replay->recorded = match_open(&recorded);
@@ -447,7 +422,7 @@ static void ask_again(struct replay *replay, const struct match_place *place)
     struct answered_now answered;
     errno = 0;
     if (!input_again(&replay->input, place->log, place->offset, &event) ||
-        read_ids(log_kind_of(&replay->channels, &event), &event, &query) ||
+        message_read_ids(log_kind_of(&replay->channels, &event), &event, &query) ||
         answer_now(replay->now, query.kind, query.bytes, query.size, &answered) ==
             ANSWER_NOW_UNREADABLE) {
         errno = errno ? errno : EIO; /* it was there before */

@@ -70,15 +70,15 @@ static void test_learns_and_finds(void **state)
     expect_known(known, 7, 100, 1);
     assert_null(known_bodies_find(known, 7, 101));
     assert_null(known_bodies_find(known, 8, 100));
-    assert_true(known_bodies_has(known, 7, 100, 99));
-    assert_false(known_bodies_has(known, 7, 100, 98));
+    assert_true(known_bodies_has(known, 7, 100, 99, false));
+    assert_false(known_bodies_has(known, 7, 100, 98, false));
     known_bodies_find(known, 7, 100)->key_now = 5;
     cube = frame(7, 2); /* the same key, for something else: the later one counts */
     known_bodies_learn(known, &cube, 100, 98);
     expect_known(known, 7, 100, 2);
     assert_int_equal(known_bodies_find(known, 7, 100)->key_now, 0);
-    assert_true(known_bodies_has(known, 7, 100, 98));
-    assert_false(known_bodies_has(known, 7, 100, 99));
+    assert_true(known_bodies_has(known, 7, 100, 98, false));
+    assert_false(known_bodies_has(known, 7, 100, 99, false));
     known_bodies_destroy(known);
     known_bodies_destroy(NULL);
 }
@@ -188,7 +188,7 @@ static void check_one(struct known_bodies *known, struct model *model)
     default: {
         body = model_find(model, id, key);
         const bool has = body && body->server_id == server_id;
-        assert_int_equal(known_bodies_has(known, id, key, server_id), has);
+        assert_int_equal(known_bodies_has(known, id, key, server_id, false), has);
     }
     }
 }
