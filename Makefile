@@ -275,6 +275,11 @@ wraps_test_log_read := -Wl,--wrap=pread64
 
 $(B)/tests/test_replay_run: $(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
 
+world_tests := test_log_cut test_log_query
+$(world_tests:%=$(B)/tests/%): $(O)/tests/unit/log_world.o
+# Sees what becomes of each query.
+wraps_test_log_cut := $(addprefix -Wl$(comma)--wrap=,page_open page_take)
+
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm

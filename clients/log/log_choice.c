@@ -1,0 +1,108 @@
+#include "log_choice.h"
+
+#include "allocate.h"
+
+#include <math.h>
+#include <regex.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct log_channel_choice {
+    char *text; /* owned */
+    size_t length;
+    bool plain;    /* nothing in it means anything but itself */
+    regex_t regex; /* unless plain */
+};
+
+struct log_choice log_choice_all(void)
+{
+    return (struct log_choice){.from = -INFINITY, .to = INFINITY};
+}
+
+void log_choice_clear(struct log_choice *choice)
+{
+    for (size_t i = 0; i < choice->channel_count; i++) {
+        if (!choice->channel[i].plain)
+            regfree(&choice->channel[i].regex);
+        free(choice->channel[i].text);
+    }
+    free(choice->channel);
+    free(choice->body);
+    *choice = log_choice_all();
+}
+
+bool log_choice_add_channel(struct log_choice *choice, const char *text,
+                            char why[LOG_CHOICE_WHY_MAX])
+{
+    struct log_channel_choice channel = {.length = strlen(text),
+                                         .plain = text[strcspn(text, "^.[$()|*+?{\\")] == '\0'};
+    const int error = channel.plain ? 0 : regcomp(&channel.regex, text, REG_EXTENDED);
+    if (error) {
+        regerror(error, &channel.regex, why, LOG_CHOICE_WHY_MAX);
+        return false;
+    }
+    channel.text = allocate(channel.length + 1, 1);
+    memcpy(channel.text, text, channel.length);
+    choice->channel = allocate_room(choice->channel, &choice->channel_room,
+                                    choice->channel_count + 1, sizeof *choice->channel);
+    choice->channel[choice->channel_count++] = channel;
+    return true;
+}
+
+void log_choice_add_body(struct log_choice *choice, int64_t id)
+{
+    choice->body = allocate_room(choice->body, &choice->body_room, choice->body_count + 1,
+                                 sizeof *choice->body);
+    choice->body[choice->body_count++] = id;
+}
+
+bool log_choice_is_all(const struct log_choice *choice)
+{
+    return choice->from == -INFINITY && choice->to == INFINITY && choice->channel_count == 0 &&
+           choice->body_count == 0;
+}
+
+bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, int64_t utime)
+{
+    const double seconds = 1e-6 * ((double) utime - (double) first_utime);
+    return seconds >= choice->from && seconds < choice->to;
+}
+
+/* Of all matches that begin first POSIX takes the longest: if one is the whole name, that. Names
+ * with a 0 in them, which LCM has not, are matched by nothing. */
+static bool matches(const struct log_channel_choice *channel, const struct log_event *event)
+{
+    regmatch_t match;
+    if (channel->length == event->channel_length &&
+        memcmp(channel->text, event->channel, channel->length) == 0)
+        return true;
+    return !channel->plain && strlen(event->channel) == event->channel_length &&
+           regexec(&channel->regex, event->channel, 1, &match, 0) == 0 && match.rm_so == 0 &&
+           (size_t) match.rm_eo == event->channel_length;
+}
+
+bool log_choice_has_channel(const struct log_choice *choice, const struct log_event *event)
+{
+    for (size_t i = 0; i < choice->channel_count; i++)
+        if (matches(&choice->channel[i], event))
+            return true;
+    return choice->channel_count == 0;
+}
+
+static bool is_chosen(const struct log_choice *choice, int64_t id)
+{
+    for (size_t i = 0; i < choice->body_count; i++)
+        if (choice->body[i] == id)
+            return true;
+    return false;
+}
+
+bool log_choice_has_body(const struct log_choice *choice, const struct query_frame *frame,
+                         int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (is_chosen(choice, frame[i].body_id))
+            return true;
+    return choice->body_count == 0;
+}

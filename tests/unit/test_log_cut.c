@@ -1,0 +1,663 @@
+/* A replay of a cut says of each of its queries what a replay of the whole log says; and all that
+ * is not written back is the same bytes. */
+#include "log_cut.h"
+
+#include "any_query.h"
+#include "definition.h"
+#include "input.h"
+#include "log_world.h"
+#include "log_write.h"
+#include "message.h"
+#include "replay_jobs.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { EVENTS_MAX = 4000 };
+
+/* ---- Files ---- */
+
+enum { PATH_MAX_OF_TESTS = 128 };
+
+static char folder[100];
+
+static int make_folder(void **state)
+{
+    const char *temporary = getenv("TMPDIR");
+    (void) state;
+    snprintf(folder, sizeof folder, "%.80s/fmb_cut.XXXXXX", temporary ? temporary : "/tmp");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static char *path_of(const char *name, char path[PATH_MAX_OF_TESTS])
+{
+    snprintf(path, PATH_MAX_OF_TESTS, "%s/%s", folder, name);
+    return path;
+}
+
+static int remove_folder(void **state)
+{
+    static const char *const names[] = {"whole", "cut", "again", "first", "second"};
+    char path[PATH_MAX_OF_TESTS];
+    (void) state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        unlink(path_of(names[i], path));
+    return rmdir(folder);
+}
+
+/* ---- What a replay says of each query ---- */
+
+struct outcomes {
+    size_t count;
+    struct {
+        int64_t sequence_number; /* no two clients have the same */
+        enum replay_outcome outcome;
+    } query[EVENTS_MAX];
+};
+
+static struct outcomes *taken;
+
+struct page *__wrap_page_open(const char *title);
+void __wrap_page_take(struct page *page, const struct replayed *replayed);
+
+struct page *__wrap_page_open(const char *title)
+{
+    (void) title;
+    return (struct page *) &taken;
+}
+
+void __wrap_page_take(struct page *page, const struct replayed *replayed)
+{
+    (void) page;
+    assert_true(taken->count < EVENTS_MAX);
+    taken->query[taken->count].sequence_number =
+        replayed->pair ? replayed->pair->sequence_number : replayed->scene->sequence_number;
+    taken->query[taken->count++].outcome = replayed->outcome;
+}
+
+static void on_found(void *user, const struct found *found)
+{
+    (void) user;
+    (void) found;
+}
+
+static void on_unreadable(void *user, const struct match_place *place, const char *channel,
+                          const char *what)
+{
+    (void) user;
+    (void) place;
+    (void) channel;
+    (void) what;
+}
+
+static void on_damage(void *user, int log, const struct log_damage *damage)
+{
+    (void) user;
+    (void) log;
+    (void) damage;
+    fail_msg("a damaged log");
+}
+
+static void on_progress(void *user, int64_t bytes)
+{
+    (void) user;
+    (void) bytes;
+}
+
+static const struct replay_sink replay_sink = {on_found, on_unreadable, on_damage, on_progress,
+                                               NULL};
+
+static struct replay_options replay_of(char *const *log)
+{
+    return (struct replay_options){.log = log,
+                                   .log_count = 1,
+                                   .prefix = "",
+                                   .from = -INFINITY,
+                                   .to = INFINITY,
+                                   .bodies = 1000};
+}
+
+static void replay(char *log, struct outcomes *out)
+{
+    struct replay_options options = replay_of(&log);
+    struct tally tally = {.events = 0};
+    out->count = 0;
+    taken = out;
+    options.page = __wrap_page_open("");
+    const struct replay_part all = {0, replay_size(&options)};
+    assert_true(replay_run(&options, all, &replay_sink, &tally));
+}
+
+/* Queries of cuts that were the same, so far. */
+static int64_t compared, compared_in_parts;
+
+/* Of what: for people. */
+static char cut_name[200];
+
+/* Whether a query with this number had this outcome. */
+static bool has_outcome(const struct outcomes *outcomes, int64_t sequence_number,
+                        enum replay_outcome outcome)
+{
+    for (size_t i = 0; i < outcomes->count; i++)
+        if (outcomes->query[i].sequence_number == sequence_number &&
+            outcomes->query[i].outcome == outcome)
+            return true;
+    return false;
+}
+
+/* Where services tell the same keys for different components, as none does that starts to count at
+ * random: what is left out may have misled. */
+static bool keys_mislead;
+
+/* What a result tells fmb replay learns when it answers the query, and that may itself wait for a
+ * key: then the cut knows more. */
+static bool knows_more(const struct outcomes *whole, int64_t sequence_number,
+                       enum replay_outcome outcome)
+{
+    return outcome == REPLAY_SAME &&
+           (has_outcome(whole, sequence_number, REPLAY_UNKNOWN) ||
+            (keys_mislead && has_outcome(whole, sequence_number, REPLAY_DIFFERENT)));
+}
+
+/* Where a client asked the same again, the results may have gone to the one or the other. */
+static void assert_same_outcomes(const struct outcomes *whole, const struct outcomes *cut)
+{
+    for (size_t i = 0; i < cut->count; i++) {
+        const int64_t number = cut->query[i].sequence_number;
+        const enum replay_outcome outcome = cut->query[i].outcome;
+        if (!has_outcome(whole, number, outcome) && !knows_more(whole, number, outcome))
+            fail_msg("%s: query %ld was another one before than %d", cut_name, (long) number,
+                     (int) outcome);
+        compared += outcome == REPLAY_SAME;
+    }
+}
+
+/* Also where each of several processes has a part of the log, which may know more, as said above.
+ */
+static void assert_same_in_parts(char *log)
+{
+    const struct replay_options options = replay_of(&log);
+    const struct replay_part all = {0, replay_size(&options)};
+    struct tally one = {.events = 0}, parts = {.events = 0};
+    assert_true(replay_run(&options, all, &replay_sink, &one));
+    assert_true(replay_jobs(&options, 3, all.end, &replay_sink, &parts));
+    assert_true(tally_outcome(&parts, REPLAY_UNKNOWN) <= tally_outcome(&one, REPLAY_UNKNOWN));
+    assert_int_equal(tally_outcome(&parts, REPLAY_DIFFERENT),
+                     tally_outcome(&one, REPLAY_DIFFERENT));
+    assert_int_equal(tally_outcome(&parts, REPLAY_ALONE), tally_outcome(&one, REPLAY_ALONE));
+    compared_in_parts += tally_compared(&parts);
+}
+
+/* ---- What is in a cut ---- */
+
+/* Reads the logs, one behind the other. */
+struct reading {
+    struct input input;
+    struct log_event event;
+};
+
+static void open_reading(struct reading *reading, char *const *log, int count)
+{
+    char why[LOG_WHY_MAX];
+    assert_true(input_open(&reading->input, log, count, why));
+}
+
+static bool read_next(struct reading *reading)
+{
+    struct log_damage damage;
+    const enum log_outcome outcome = input_next(&reading->input, &reading->event, &damage);
+    assert_true(outcome == LOG_EVENT || outcome == LOG_END);
+    return outcome == LOG_EVENT;
+}
+
+static struct any_query whole_query, cut_query;
+static struct log_channels channels;
+
+static enum log_kind kind_of(const struct log_event *event)
+{
+    return log_kind_of(&channels, event);
+}
+
+static bool read_query(const struct log_event *event, struct any_query *out)
+{
+    return message_is_query(kind_of(event)) &&
+           !any_query_read(out, kind_of(event), event->data, event->kept);
+}
+
+/* Whether all but what is written back, components in place of none beside a key, is the same. */
+static bool is_rewritten(void)
+{
+    static unsigned char whole_bytes[QUERY_BYTES_MAX], cut_bytes[QUERY_BYTES_MAX];
+    int32_t count, cut_count;
+    const struct query_frame *whole = any_query_frames(&whole_query, &count);
+    struct query_frame *cut = any_query_frames(&cut_query, &cut_count);
+    assert_int_equal(count, cut_count);
+    for (int32_t i = 0; i < count; i++)
+        if (whole[i].components.count == 0 && whole[i].key != 0)
+            cut[i].components = whole[i].components;
+    const size_t size = any_query_write(&whole_query, whole_bytes);
+    return size == any_query_write(&cut_query, cut_bytes) &&
+           memcmp(whole_bytes, cut_bytes, size) == 0;
+}
+
+static bool is_same_event(const struct log_event *a, const struct log_event *b)
+{
+    assert_int_equal(a->utime, b->utime);
+    assert_string_equal(a->channel, b->channel);
+    return a->size == b->size && memcmp(a->data, b->data, a->kept) == 0;
+}
+
+static bool is_definition(const struct log_event *event)
+{
+    return kind_of(event) == LOG_SCENE_QUERY && read_query(event, &cut_query) &&
+           definition_is(&cut_query.scene);
+}
+
+static bool is_chosen(const struct log_choice *choice, const struct log_event *event)
+{
+    const bool in_time = log_choice_has_time(choice, LOG_WORLD_BEGIN, event->utime) &&
+                         log_choice_has_channel(choice, event);
+    int32_t count;
+    if (!read_query(event, &whole_query))
+        return in_time && choice->body_count == 0;
+    const struct query_frame *frame = any_query_frames(&whole_query, &count);
+    return in_time && log_choice_has_body(choice, frame, count);
+}
+
+/* What a cut has to hold is there, in its order, and nothing else but definitions; results are seen
+ * to by the outcomes of their queries. Returns how many queries are not the same bytes. */
+static int64_t assert_holds(char *log, char *cut, const struct log_choice *choice)
+{
+    struct reading whole, part;
+    int64_t rewritten = 0;
+    open_reading(&whole, &log, 1);
+    open_reading(&part, &cut, 1);
+    bool more = read_next(&part);
+    while (read_next(&whole)) {
+        while (more && is_definition(&part.event) && !is_definition(&whole.event))
+            more = read_next(&part);
+        const bool is_here = more && part.event.utime == whole.event.utime;
+        if (!message_is_result(kind_of(&whole.event)))
+            assert_int_equal(is_here, is_chosen(choice, &whole.event));
+        if (!is_here)
+            continue;
+        if (!is_same_event(&whole.event, &part.event)) {
+            assert_true(read_query(&whole.event, &whole_query));
+            assert_true(read_query(&part.event, &cut_query) && is_rewritten());
+            rewritten++;
+        }
+        more = read_next(&part);
+    }
+    assert_false(more);
+    input_close(&whole.input);
+    input_close(&part.input);
+    return rewritten;
+}
+
+/* ---- Cutting ---- */
+
+static void on_cut_damage(void *user, int log, const struct log_damage *damage)
+{
+    on_damage(user, log, damage);
+}
+
+static void on_cut_progress(void *user, int64_t bytes, int64_t of)
+{
+    (void) user;
+    assert_in_range(bytes, 0, of);
+}
+
+static struct log_cut_counts cut_logs(char *const *log, int count, const char *output,
+                                      const struct log_choice *choice)
+{
+    const struct log_cut_options options = {.log = log,
+                                            .log_count = count,
+                                            .prefix = "",
+                                            .output = output,
+                                            .force = true,
+                                            .choice = *choice};
+    const struct log_cut_sink sink = {on_cut_damage, on_cut_progress, NULL};
+    struct log_cut_counts counts;
+    assert_true(log_cut(&options, &sink, &counts));
+    return counts;
+}
+
+/* Cuts, and sees that all is as it was. whole: what a replay of the log says. */
+static struct log_cut_counts cut_and_check(char *log, char *cut, const struct log_choice *choice,
+                                           const struct outcomes *whole, struct outcomes *out)
+{
+    const struct log_cut_counts counts = cut_logs(&log, 1, cut, choice);
+    assert_int_equal(counts.queries, assert_holds(log, cut, choice));
+    replay(cut, out);
+    assert_same_outcomes(whole, out);
+    return counts;
+}
+
+/* ---- Small worlds ---- */
+
+static struct outcomes whole_outcomes, cut_outcomes, again_outcomes;
+
+/* What the cuts of the test had to do. */
+static struct log_cut_counts all;
+
+static void add_counts(const struct log_cut_counts *counts)
+{
+    all.queries += counts->queries;
+    all.frames += counts->frames;
+    all.definitions += counts->definitions;
+    all.unknown_frames += counts->unknown_frames;
+}
+
+static struct log_choice between(double from, double to)
+{
+    struct log_choice choice = log_choice_all();
+    choice.from = from;
+    choice.to = to;
+    return choice;
+}
+
+/* In seconds: there is an event each millisecond. */
+static double draw_time(struct log_world *world)
+{
+    return 1e-3 * world_draw(world, (int) world->count);
+}
+
+static struct log_choice draw_choice(struct log_world *world)
+{
+    static const char *const channel[] = {"FMB_(PAIR|SCENE)_.*|CAMERA", "FMB_SCENE_.*|.*RESULT",
+                                          "FMB_.*_RESULT"};
+    struct log_choice choice = log_choice_all();
+    char why[LOG_CHOICE_WHY_MAX];
+    if (world_draw(world, 4) > 0)
+        choice.from = draw_time(world);
+    if (world_draw(world, 4) > 1)
+        choice.to = choice.from == -INFINITY ? draw_time(world) : choice.from + draw_time(world);
+    for (int i = world_draw(world, 4) - 1; i > 0; i--)
+        log_choice_add_body(&choice, 1 + world_draw(world, 10));
+    if (world_draw(world, 4) == 0)
+        assert_true(log_choice_add_channel(&choice, channel[world_draw(world, 3)], why));
+    return choice;
+}
+
+static void name_cut(const struct log_world *world, const struct log_choice *choice)
+{
+    int used = snprintf(cut_name, sizeof cut_name, "seed %lu: from %g to %g",
+                        (unsigned long) world->seed, choice->from, choice->to);
+    for (size_t i = 0; i < choice->body_count; i++)
+        used += snprintf(cut_name + used, sizeof cut_name - (size_t) used, ", body %ld",
+                         (long) choice->body[i]);
+}
+
+/* A cut of the world's log, and a cut of that. */
+static void cut_twice(struct log_world *world, char *whole, bool in_parts)
+{
+    char cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
+    path_of("cut", cut);
+    path_of("again", again);
+    struct log_choice choice = draw_choice(world), narrower = draw_choice(world);
+    name_cut(world, &choice);
+    struct log_cut_counts counts =
+        cut_and_check(whole, cut, &choice, &whole_outcomes, &cut_outcomes);
+    add_counts(&counts);
+    if (in_parts && world_draw(world, 8) == 0)
+        assert_same_in_parts(cut);
+    /* Times count from the first event of the log that is cut. */
+    narrower.from = -INFINITY;
+    narrower.to = INFINITY;
+    counts = cut_logs(&(char *){cut}, 1, again, &narrower);
+    replay(again, &again_outcomes);
+    assert_same_outcomes(&cut_outcomes, &again_outcomes);
+    log_choice_clear(&choice);
+    log_choice_clear(&narrower);
+}
+
+/* options: of the world; its seed is the first of so many. */
+static void cut_worlds(struct world_options options, int count)
+{
+    char whole[PATH_MAX_OF_TESTS];
+    path_of("whole", whole);
+    channels = log_channels("");
+    keys_mislead = options.same_keys;
+    for (const uint64_t first = options.seed; options.seed < first + (uint64_t) count;
+         options.seed++) {
+        struct log_world world;
+        world_make(&options, &world);
+        world_write(&world, whole);
+        replay(whole, &whole_outcomes);
+        for (int i = 0; i < 12; i++)
+            cut_twice(&world, whole, options.once && !options.same_keys);
+        world_clear(&world);
+    }
+    keys_mislead = false;
+}
+
+enum { STEPS = 60 };
+
+static int worlds(void)
+{
+    return getenv("FMB_FAST") ? 2 : 6;
+}
+
+static void cuts_of_small_worlds(void **state)
+{
+    (void) state;
+    all = (struct log_cut_counts){.events = 0};
+    compared = compared_in_parts = 0;
+    cut_worlds((struct world_options){.seed = 1, .steps = STEPS, .once = true}, worlds());
+    assert_true(all.queries > 0 && all.frames > all.queries && all.unknown_frames > 0);
+    assert_true(compared > 0 && compared_in_parts > 0);
+}
+
+static void cuts_where_clients_ask_again(void **state)
+{
+    (void) state;
+    cut_worlds((struct world_options){.seed = 1, .steps = STEPS}, worlds());
+}
+
+/* In the second of these worlds a result goes with a key that has been written back, and that is
+ * another service's; in the third a query waits for one key while another one changes hands. */
+static void cuts_where_services_tell_the_same_keys(void **state)
+{
+    static const uint64_t seeds[] = {1, 33, 130};
+    (void) state;
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
+        cut_worlds(
+            (struct world_options){
+                .seed = seeds[i], .steps = STEPS, .once = true, .same_keys = true},
+            1);
+}
+
+static void all_is_copied_where_nothing_is_left_out(void **state)
+{
+    (void) state;
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
+    const struct world_options options = {.seed = 3, .steps = 100};
+    const struct log_choice choice = log_choice_all();
+    struct log_world world;
+    channels = log_channels("");
+    world_make(&options, &world);
+    world_write(&world, path_of("whole", whole));
+    replay(whole, &whole_outcomes);
+    const struct log_cut_counts counts =
+        cut_and_check(whole, path_of("cut", cut), &choice, &whole_outcomes, &cut_outcomes);
+    assert_int_equal(counts.kept_events, world.count);
+    assert_int_equal(counts.kept_bytes, counts.bytes);
+    assert_int_equal(counts.queries, 0);
+    world_clear(&world);
+}
+
+/* Of the parts of a log each has what the others have not: results go with their queries. */
+static void parts_are_the_whole(void **state)
+{
+    (void) state;
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
+    const struct world_options options = {.seed = 9, .steps = 100};
+    struct log_world world;
+    int64_t events = 0;
+    channels = log_channels("");
+    world_make(&options, &world);
+    world_write(&world, path_of("whole", whole));
+    replay(whole, &whole_outcomes);
+    for (int part = 0; part < 5; part++) {
+        const struct log_choice choice =
+            between(0.1 * part, part == 4 ? INFINITY : 0.1 * (part + 1));
+        events += cut_and_check(whole, path_of("cut", cut), &choice, &whole_outcomes, &cut_outcomes)
+                      .kept_events;
+    }
+    assert_int_equal(events, world.count);
+    world_clear(&world);
+}
+
+/* ---- Several logs ---- */
+
+static void several_logs_are_one(void **state)
+{
+    (void) state;
+    char whole[PATH_MAX_OF_TESTS], first[PATH_MAX_OF_TESTS], second[PATH_MAX_OF_TESTS],
+        cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
+    const struct world_options options = {.seed = 4, .steps = 80};
+    struct log_world world, begin, end;
+    channels = log_channels("");
+    world_make(&options, &world);
+    begin = end = world;
+    begin.count = world.count / 3;
+    end.event = world.event + begin.count;
+    end.count = world.count - begin.count;
+    world_write(&world, path_of("whole", whole));
+    world_write(&begin, path_of("first", first));
+    world_write(&end, path_of("second", second));
+    const struct log_choice choice = between(1e-3 * (double) (world.count / 2), INFINITY);
+    char *logs[] = {first, second};
+    const struct log_cut_counts counts = cut_logs(logs, 2, path_of("cut", cut), &choice);
+    const struct log_cut_counts same =
+        cut_logs(&(char *){whole}, 1, path_of("again", again), &choice);
+    assert_true(counts.frames > 0);
+    assert_memory_equal(&counts, &same, sizeof counts);
+    assert_int_equal(
+        assert_holds(again, cut, &(struct log_choice){.from = -INFINITY, .to = INFINITY}), 0);
+    world_clear(&world);
+}
+
+/* ---- Scenes that have no room ---- */
+
+enum { LARGE_BODIES = 1000, LARGE_SCENES = 3 };
+
+static void what_has_no_room_is_defined_before(void **state)
+{
+    (void) state;
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
+    struct log_world world;
+    channels = log_channels("");
+    world_make_large(LARGE_BODIES, LARGE_SCENES, &world);
+    world_write(&world, path_of("whole", whole));
+    replay(whole, &whole_outcomes);
+    /* Four scenes tell the bodies. The first that needs them has them told before it. */
+    struct log_choice choice = between(0.008, INFINITY);
+    struct log_cut_counts counts =
+        cut_and_check(whole, path_of("cut", cut), &choice, &whole_outcomes, &cut_outcomes);
+    assert_int_equal(cut_outcomes.count, LARGE_SCENES);
+    assert_int_equal(cut_outcomes.query[0].outcome, REPLAY_SAME);
+    assert_int_equal(counts.kept_events, 2 * LARGE_SCENES);
+    assert_int_equal(counts.queries, 0);
+    assert_int_equal(counts.definitions, 2);
+    assert_int_equal(counts.defined, LARGE_BODIES);
+    assert_same_in_parts(cut);
+    /* Some are told by the cut itself: the others have room. */
+    choice = between(0.002, INFINITY);
+    counts = cut_and_check(whole, cut, &choice, &whole_outcomes, &cut_outcomes);
+    assert_int_equal(counts.definitions, 0);
+    assert_int_equal(counts.frames, LARGE_BODIES % 300 * LARGE_SCENES);
+    /* Of a cut with definitions: those that are left out are written anew. */
+    choice = between(0.008, INFINITY);
+    cut_logs(&(char *){whole}, 1, cut, &choice);
+    choice = between(0.002, 0.003);
+    counts = cut_logs(&(char *){cut}, 1, path_of("again", again), &choice);
+    assert_int_equal(counts.defined, LARGE_BODIES);
+    replay(again, &again_outcomes);
+    assert_int_equal(again_outcomes.count, 1);
+    assert_int_equal(again_outcomes.query[0].outcome, REPLAY_SAME);
+    /* And those that are not are copied, as any event of that time. */
+    choice = log_choice_all();
+    counts = cut_logs(&(char *){cut}, 1, again, &choice);
+    assert_int_equal(counts.kept_bytes, counts.bytes);
+    world_clear(&world);
+}
+
+/* ---- Large logs ---- */
+
+/* Results that stand megabytes behind their queries. */
+static void results_come_from_far(void **state)
+{
+    (void) state;
+    enum { PAIRS = 40000, BEGIN = 20000, COUNT = 1000 };
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
+    struct log_world world;
+    channels = log_channels("");
+    world_make_apart(PAIRS, &world);
+    world_write(&world, path_of("whole", whole));
+    world_clear(&world);
+    struct log_choice choice = between(1e-3 * BEGIN, 1e-3 * (BEGIN + COUNT));
+    const struct log_cut_counts counts =
+        cut_logs(&(char *){whole}, 1, path_of("cut", cut), &choice);
+    assert_int_equal(counts.kept[LOG_PAIR_QUERY], COUNT);
+    assert_int_equal(counts.kept[LOG_PAIR_RESULT], COUNT);
+    assert_int_equal(counts.kept_events, 2 * COUNT);
+    replay(cut, &cut_outcomes);
+    assert_int_equal(cut_outcomes.count, COUNT);
+    for (size_t i = 0; i < cut_outcomes.count; i++)
+        assert_int_equal(cut_outcomes.query[i].outcome, REPLAY_SAME);
+}
+
+/* What is kept of an event in memory is not all that is copied. */
+static void long_events_are_copied_in_full(void **state)
+{
+    (void) state;
+    static unsigned char image[3000001];
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
+    struct log_world world = {.state = 1};
+    const struct log_choice choice = log_choice_all();
+    struct reading reading;
+    for (size_t i = 0; i < sizeof image; i++)
+        image[i] = (unsigned char) (i * i >> 5);
+    world_add(&world, "CAMERA", image, sizeof image);
+    world_add(&world, "CAMERA", image, LOG_DATA_MAX + 1);
+    world_add(&world, "FMB_SCENE_QUERY", image, LOG_DATA_MAX + 2);
+    world_write(&world, path_of("whole", whole));
+    cut_logs(&(char *){whole}, 1, path_of("cut", cut), &choice);
+    open_reading(&reading, &(char *){cut}, 1);
+    for (size_t i = 0; i < world.count; i++) {
+        assert_true(read_next(&reading));
+        assert_int_equal(reading.event.size, world.event[i].size);
+        const void *data = log_map(reading.input.reader[0], &reading.event);
+        assert_non_null(data);
+        assert_memory_equal(data, world.event[i].bytes, world.event[i].size);
+        log_unmap(data, &reading.event);
+    }
+    assert_false(read_next(&reading));
+    input_close(&reading.input);
+    world_clear(&world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cuts_of_small_worlds),
+        cmocka_unit_test(cuts_where_clients_ask_again),
+        cmocka_unit_test(cuts_where_services_tell_the_same_keys),
+        cmocka_unit_test(all_is_copied_where_nothing_is_left_out),
+        cmocka_unit_test(parts_are_the_whole),
+        cmocka_unit_test(several_logs_are_one),
+        cmocka_unit_test(what_has_no_room_is_defined_before),
+        cmocka_unit_test(results_come_from_far),
+        cmocka_unit_test(long_events_are_copied_in_full),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
