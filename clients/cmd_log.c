@@ -14,6 +14,8 @@ struct command {
 
 static const struct command commands[] = {
     {"info", "what is in a log, and whether all of it is whole", cmd_log_info},
+    {"cut", "copy a part of a log into a new one, or repair one", cmd_log_cut},
+    {"scene", "print a query of a log as a scene", cmd_log_scene},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
@@ -23,7 +25,8 @@ static void print_help(FILE *out)
     fputs(
         "usage: fmb log COMMAND [OPTIONS] LOG...\n"
         "\n"
-        "Looks into event logs, as lcm-logger and LCM's file provider write them. Logs may be\n"
+        "Looks into event logs, and takes parts out of them, as lcm-logger and LCM's file provider "
+        "write them. Logs may be\n"
         "damaged: what is whole is read, and what is not is told with its place.\n"
         "\n"
         "Commands:\n",

@@ -9,7 +9,9 @@ int cmd_status(int argc, char **argv);
 int cmd_replay(int argc, char **argv);
 int cmd_log(int argc, char **argv);
 
-/* Those of fmb log; argv[0] is "info". */
+/* Those of fmb log; argv[0] is "info", ... */
 int cmd_log_info(int argc, char **argv);
+int cmd_log_cut(int argc, char **argv);
+int cmd_log_scene(int argc, char **argv);
 
 #endif

@@ -21,7 +21,7 @@ static const struct command commands[] = {
     {"record", "write what passes on the bus to a log", cmd_record},
     {"status", "print how the service is doing", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
-    {"log", "look into event logs, as lcm-logger writes them", cmd_log},
+    {"log", "look into event logs, cut them, take scenes out of them", cmd_log},
     {"help", "help on a command: fmb help query", cmd_help},
 };
 

@@ -1,0 +1,129 @@
+#include "scene_of_query.h"
+
+#include "allocate.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Bodies ---- */
+
+static void set_body(const struct query_frame *frame, struct scene_body *out)
+{
+    const enum fmb_status status = fmb_body_make(frame->dim, frame->shape, frame->components.number,
+                                                 (size_t) frame->components.count, &out->body);
+    assert(status == FMB_OK);
+    (void) status;
+    memcpy(out->origin, frame->origin.number, sizeof out->origin);
+    memcpy(out->velocity, frame->velocity.number, sizeof out->velocity);
+    out->moving = frame->velocity.count > 0;
+}
+
+static int compare(const void *left, const void *right)
+{
+    const int64_t a = *(const int64_t *) left, b = *(const int64_t *) right;
+    return (a > b) - (a < b);
+}
+
+/* The lowest id from *id on that is not among the sorted ones, of which *next is the first that is
+ * not below *id. */
+static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_t *id)
+{
+    for (; *next < count && sorted[*next] <= *id; ++*next)
+        if (sorted[*next] == *id)
+            ++*id;
+    return (*id)++;
+}
+
+/* Whether a frame before this one has its id. Scenes are small: this is quick enough. */
+static bool is_repeated(const struct query_frame *frame, size_t i)
+{
+    for (size_t before = 0; before < i; before++)
+        if (frame[before].body_id == frame[i].body_id)
+            return true;
+    return false;
+}
+
+static void set_ids(const struct query_frame *frame, struct scene *scene)
+{
+    int64_t *sorted = allocate(scene->body_count, sizeof *sorted), id = 1;
+    size_t next = 0;
+    for (size_t i = 0; i < scene->body_count; i++)
+        sorted[i] = frame[i].body_id;
+    qsort(sorted, scene->body_count, sizeof *sorted, compare);
+    for (size_t i = 0; i < scene->body_count; i++)
+        scene->body[i].id = frame[i].body_id == 0 || is_repeated(frame, i)
+                                ? free_id(sorted, scene->body_count, &next, &id)
+                                : frame[i].body_id;
+    free(sorted);
+}
+
+static void set_bodies(const struct query_frame *frame, size_t count, struct scene *scene)
+{
+    scene->dim = count > 0 ? frame[0].dim : FMB_DIM_MAX;
+    scene->body_count = count;
+    scene->body = allocate(count, sizeof *scene->body);
+    for (size_t i = 0; i < count; i++)
+        set_body(&frame[i], &scene->body[i]);
+    set_ids(frame, scene);
+}
+
+/* ---- Pairs ---- */
+
+struct list {
+    struct scene *scene;
+    size_t room;
+    int32_t skip; /* so many more */
+};
+
+static void add(struct list *list, size_t a, size_t b)
+{
+    struct scene *scene = list->scene;
+    if (list->skip > 0) {
+        list->skip--;
+        return;
+    }
+    scene->pair =
+        allocate_room(scene->pair, &list->room, scene->pair_count + 1, sizeof *scene->pair);
+    scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
+}
+
+static void list_across(struct list *list, size_t split)
+{
+    for (size_t a = 0; a < split; a++)
+        for (size_t b = split; b < list->scene->body_count; b++)
+            add(list, a, b);
+}
+
+static void list_all(struct list *list)
+{
+    for (size_t a = 0; a < list->scene->body_count; a++)
+        for (size_t b = a + 1; b < list->scene->body_count; b++)
+            add(list, a, b);
+}
+
+static void set_pairs(const struct scene_query *query, struct scene *scene)
+{
+    struct list list = {.scene = scene, .skip = query->first_pair};
+    scene->all_pairs = query->which == QUERY_PAIRS_ALL && query->first_pair == 0;
+    if (query->which == QUERY_PAIRS_ACROSS)
+        list_across(&list, (size_t) query->split);
+    else if (query->which == QUERY_PAIRS_LISTED)
+        for (int32_t k = 0; k < query->index_count / 2; k++)
+            add(&list, query->pair[k][0], query->pair[k][1]);
+    else if (!scene->all_pairs)
+        list_all(&list);
+}
+
+void scene_of_query(const struct any_query *query, struct scene *out)
+{
+    *out = (struct scene){.all_pairs = true};
+    if (query->kind == LOG_PAIR_QUERY) {
+        out->duration = query->pair.duration;
+        set_bodies(query->pair.frame, 2, out);
+        return;
+    }
+    out->duration = query->scene.duration;
+    set_bodies(query->scene.frame, (size_t) query->scene.frame_count, out);
+    set_pairs(&query->scene, out);
+}

@@ -1,0 +1,298 @@
+# fmb log cut: what is typed, what is printed, exit codes; and what fmb replay says of the cuts.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    : "${FMB_BUILD:=build}"
+    FMB=$FMB_BUILD/fmb
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    T=$BATS_TEST_TMPDIR
+    log=$T/whole.log
+    cut=$T/cut.log
+}
+
+generate() {
+    "$FMB_BUILD/logs/generate" "$@"
+}
+
+# cuts CODE ARGUMENTS: of --json, in $output.
+cuts() {
+    local code=$1
+    shift
+    run --separate-stderr "$FMB" log cut --json "$@"
+    [ "$status" = "$code" ] || {
+        echo "expected exit code $code, found $status: $output $stderr"
+        return 1
+    }
+}
+
+# has FILTER: of the JSON that was printed.
+has() {
+    jq -e "$1" <<< "$output" > "$T/jq" || {
+        echo "not $1: $output"
+        return 1
+    }
+}
+
+# outcomes LOG [OPTIONS]: what a replay says, by channel.
+outcomes() {
+    "$FMB" replay --json "$@" 2> "$T/replay.err" |
+        jq -c '[.channels[] | [.queries, .same, .different, .busy, .unknown_body, .no_result]]'
+}
+
+# u32 FILE OFFSET
+u32() {
+    od -An -tu1 -j "$2" -N 4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }'
+}
+
+# offset_of LOG N: of the event with index N.
+offset_of() {
+    local at=0
+    for ((i = 0; i < $2; i++)); do
+        at=$((at + 28 + $(u32 "$1" $((at + 20))) + $(u32 "$1" $((at + 24)))))
+    done
+    echo "$at"
+}
+
+# split LOG N: into $T/first.log, with N events, and $T/second.log.
+split_at() {
+    local at
+    at=$(offset_of "$1" "$2")
+    head -c "$at" "$1" > "$T/first.log"
+    tail -c +$((at + 1)) "$1" > "$T/second.log"
+}
+
+# ---- What is copied --------------------------------------------------------------------------
+
+@test "without a choice all is copied, to the byte" {
+    for kind in arm clients crowd foreign refused; do
+        generate "$kind" "$log"
+        cuts 0 "$log" -o "$cut" --force
+        cmp "$log" "$cut"
+        has '.kept_events == .events and .kept_bytes == .bytes and .rewritten_queries == 0'
+    done
+}
+
+@test "a replay says of a time that was cut out what it says of it in the whole" {
+    generate clients "$log"
+    for span in '0 0.02' '0.013 0.06' '0.03 1.5' '0.9 1.1' '1.5 3'; do
+        read -r from to <<< "$span"
+        cuts 0 "$log" -o "$cut" --force --from "$from" --to "$to"
+        [ "$(outcomes "$cut")" = "$(outcomes "$log" --from "$from" --to "$to")" ]
+    done
+}
+
+@test "keys that are told before the cut are written back, others stay as they are" {
+    generate --blast pairs 20000 --by-key "$log"
+    cuts 0 "$log" -o "$cut" --from 0.15
+    has '.rewritten_queries > 1000 and .rewritten_frames > .rewritten_queries'
+    has '.pair_queries == .pair_results and .pair_queries < 20000 and .unknown_frames == 0'
+    outcomes "$cut" | jq -e '.[0][1] == .[0][0] and .[0][0] > 1000'
+    cuts 0 "$log" -o "$cut" --force --to 0.15
+    has '.rewritten_queries == 0'
+    cmp -n "$(stat -c %s "$cut")" "$log" "$cut"
+}
+
+@test "scenes that have no room for components are told them before" {
+    generate --blast scenes 40 --by-key "$log"
+    cuts 0 "$log" -o "$cut" --from 0.001
+    has '.definitions > 0 and .rewritten_queries == 0'
+    outcomes "$cut" | jq -e '.[1][1] == .[1][0] and .[1][0] > 5'
+    [ "$(outcomes "$cut" -j 3)" = "$(outcomes "$cut")" ]
+    # They are no queries to fmb replay, and are kept where all is.
+    kept=$(jq .scene_queries <<< "$output")
+    [ "$(outcomes "$cut" | jq '.[1][0]')" = "$kept" ]
+    cuts 0 "$cut" -o "$T/again.log"
+    cmp "$cut" "$T/again.log"
+    has ".scene_queries > $kept"
+}
+
+@test "bodies: their queries and the results of these, and nothing else" {
+    generate clients "$log"
+    cuts 0 "$log" -o "$cut" --body 3
+    has '.pair_queries > 0 and .pair_results > 0 and .scene_queries > 0 and .statuses == 0'
+    outcomes "$cut" | jq -e '.[0][2] == 0 and .[1][2] == 0 and .[0][1] > 0'
+    one=$(jq .kept_events <<< "$output")
+    cuts 0 "$log" -o "$cut" --force --body 3 --body 103
+    has ".kept_events > $one"
+    cuts 0 "$log" -o "$cut" --force --body 3 --from 0.02 --channel FMB_PAIR_QUERY
+    has '.pair_queries > 0 and .kept_events == .pair_queries'
+    cuts 1 "$log" -o "$cut" --force --body 4711
+}
+
+@test "channels, by name and by expression" {
+    generate foreign "$log"
+    cuts 0 "$log" -o "$cut"
+    results=$(jq .pair_results <<< "$output")
+    cuts 0 "$log" -o "$cut" --force --channel FMB_PAIR_RESULT
+    has ".kept_events == $results and .pair_results == $results and $results > 10"
+    cuts 0 "$log" -o "$cut" --force --channel '.*PAIR_RES.*' --channel FMB_STATUS
+    has '.pair_results > 0 and .other_events > 0 and .statuses > 0 and .pair_queries == 0'
+    # The whole name has to match.
+    cuts 1 "$log" -o "$cut" --force --channel PAIR_RES
+    # With a prefix the service is another one.
+    cuts 0 "$log" -o "$cut" --force --prefix LAB_ --channel '.*FMB_PAIR.*'
+    has '.pair_queries > 0 and .other_events > 0'
+}
+
+@test "queries without their results have all that they need" {
+    generate --blast pairs 20000 --by-key "$log"
+    cuts 0 "$log" -o "$cut" --from 0.15 --channel FMB_PAIR_QUERY
+    has '.kept_events == .pair_queries and .rewritten_frames > 1000'
+    outcomes "$cut" | jq -e '.[0][5] == .[0][0]'
+    outcomes "$cut" --golden "$log" | jq -e '.[0][1] == .[0][0] and .[0][0] > 1000'
+}
+
+@test "several logs are one, and the parts of a log are the whole" {
+    generate clients "$log"
+    split_at "$log" 60
+    cuts 0 "$T/first.log" "$T/second.log" -o "$cut" --from 0.02
+    cuts 0 "$log" -o "$T/same.log" --from 0.02
+    cmp "$cut" "$T/same.log"
+    # What was logged before the first event is there too, also to fmb replay.
+    cuts 0 "$T/second.log" "$T/first.log" -o "$cut" --force
+    has '.kept_events == .events'
+    queries='[.[][0]]'
+    [ "$(outcomes "$T/second.log" "$T/first.log" | jq "$queries")" = "$(outcomes "$log" | jq "$queries")" ]
+    # By itself the second log does not tell all keys.
+    cuts 0 "$T/second.log" -o "$cut" --force
+    has '.unknown_frames > 0 and .unknown_queries > 0 and .rewritten_frames == 0'
+    events=0
+    for span in '--to 0.01' '--from 0.01 --to 0.04' '--from 0.04'; do
+        # shellcheck disable=SC2086
+        cuts 0 "$log" -o "$cut" --force $span
+        events=$((events + $(jq .kept_events <<< "$output")))
+    done
+    has ".events == $events"
+}
+
+@test "an event of any size is copied" {
+    generate foreign "$log"
+    # On a channel whose name is one letter.
+    for size in 0 65537 3000000; do
+        printf '\355\241\332\001%s' '' > "$T/event"
+        printf '\0\0\0\0\0\0\0\7\0\6\1\2\3\4\5\6\0\0\0\1' >> "$T/event"
+        # shellcheck disable=SC2059
+        printf "$(printf '\\%03o' $((size >> 24)) $((size >> 16 & 255)) $((size >> 8 & 255)) $((size & 255)))" >> "$T/event"
+        printf 'X' >> "$T/event"
+        yes "$size is so much" | head -c "$size" >> "$T/event"
+        cat "$T/event" >> "$log"
+    done
+    cuts 0 "$log" -o "$cut" --channel X
+    has '.kept_events == 3 and .kept_bytes == 3065624'
+    tail -c 3000000 "$log" | cmp - <(tail -c 3000000 "$cut")
+    # The number of the event is another one.
+    tail -c 3000029 "$log" | cmp - <(tail -c 3000029 "$cut") | grep -q 'byte 12,'
+}
+
+# ---- Damage ----------------------------------------------------------------------------------
+
+@test "damage is told with its place, and left out: the cut is good" {
+    generate stack "$log"
+    cp "$log" "$T/good.log"
+    at=$(offset_of "$log" 30)
+    next=$(offset_of "$log" 31)
+    printf 'XXXX' | dd of="$log" bs=1 seek="$at" conv=notrunc status=none
+    truncate -s -10 "$log"
+    run "$FMB" replay "$log"
+    [ "$status" = 2 ]
+    cuts 1 "$log" -o "$cut"
+    has ".damages == 2 and .damaged_bytes > $((next - at)) and .kept_events == .events"
+    [[ "$stderr" == *"offset $at: $((next - at)) bytes: no event; left out"* ]]
+    [[ "$stderr" == *'the last event is cut off; left out'* ]]
+    # The first 30 are as they were; those behind them are numbered anew.
+    cmp -n "$at" "$T/good.log" "$cut"
+    cuts 0 "$cut" -o "$T/again.log"
+    has '.damages == 0'
+    run "$FMB" replay "$cut"
+    [ "$status" = 0 ]
+}
+
+@test "damage at the beginning of a second log is told too" {
+    generate stack "$log"
+    (printf 'no log'; cat "$log") > "$T/second.log"
+    cuts 1 "$log" "$T/second.log" -o "$cut"
+    has '.damages == 1 and .damaged_bytes == 6'
+    [[ "$stderr" == *"second.log: offset 0: 6 bytes"* ]]
+    # As fmb replay tells it.
+    run --separate-stderr "$FMB" replay "$log" "$T/second.log"
+    [[ "$stderr" == *"second.log: offset 0: 6 bytes"* ]]
+}
+
+@test "messages that cannot be read are no damage" {
+    generate foreign "$log"
+    cuts 0 "$log" -o "$cut" --channel FMB_PAIR_QUERY
+    has '.damages == 0 and .pair_queries > 44'
+}
+
+# ---- Files and usage -------------------------------------------------------------------------
+
+@test "a file is overwritten only by force, and no log by its own cut" {
+    generate stack "$log"
+    cp "$log" "$T/good.log"
+    echo precious > "$cut"
+    cuts 2 "$log" -o "$cut"
+    [ "$(cat "$cut")" = precious ]
+    [[ "$stderr" == *"cut.log: File exists; --force overwrites it" ]]
+    cuts 0 "$log" -o "$cut" --force
+    cmp "$log" "$cut"
+    ln -s whole.log "$T/link.log"
+    cuts 2 "$T/good.log" "$log" -o "$T/link.log" --force
+    cmp "$log" "$T/good.log"
+    [[ "$stderr" == *"link.log: is one of the logs that are cut" ]]
+}
+
+@test "what cannot be read or written is said" {
+    generate --blast pairs 2000 "$log"
+    cuts 2 "$T/nothing.log" -o "$cut"
+    [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
+    [ ! -e "$cut" ]
+    cuts 2 "$log" -o "$T/nowhere/cut.log"
+    [[ "$stderr" == *"nowhere/cut.log: No such file or directory" ]]
+    cuts 2 "$log" -o /dev/full --force
+    [[ "$stderr" == "fmb: /dev/full: No space left on device; make room there, or write elsewhere" ]]
+    [ -z "$output" ]
+}
+
+@test "nothing chosen is an empty log" {
+    generate stack "$log"
+    cuts 1 "$log" -o "$cut" --from 1000
+    has '.kept_events == 0'
+    [ "$stderr" = "fmb: nothing was chosen: $cut has no events" ]
+    [ -f "$cut" ] && [ ! -s "$cut" ]
+    : > "$T/empty.log"
+    cuts 1 "$T/empty.log" -o "$cut" --force
+}
+
+@test "for people there is a text" {
+    generate --blast pairs 400 --by-key "$log"
+    run "$FMB" log cut "$log" -o "$cut" --from 0.001
+    [ "$status" = 0 ]
+    [[ "${lines[0]}" == 'kept '*' of 800 events; 0.'*' MB, of 0.'* ]]
+    [[ "$output" == *'written back '*' frames whose keys are told outside of the cut'* ]]
+}
+
+@test "wrong usage is said" {
+    for arguments in '' 'LOG' '-o FILE' 'LOG -o FILE --from -1' 'LOG -o FILE --to x' \
+        'LOG -o FILE --body 0' 'LOG -o FILE --body 9007199254740992' 'LOG -o FILE --channel (' \
+        'LOG -o FILE --what'; do
+        # shellcheck disable=SC2086
+        run --separate-stderr "$FMB" log cut $arguments
+        [ "$status" = 2 ]
+        [[ "$stderr" == 'fmb log cut: '*"Try 'fmb log cut --help'." ]]
+    done
+    [ ! -e FILE ]
+}
+
+@test "help" {
+    run --separate-stderr "$FMB" log cut --help
+    [ "$status" = 0 ]
+    [[ "$output" == 'usage: fmb log cut '* ]]
+    run --separate-stderr "$FMB" help log
+    [ "$status" = 0 ]
+    [[ "$output" == 'usage: fmb log '*cut*scene* ]]
+    run --separate-stderr "$FMB" log
+    [ "$status" = 2 ]
+    run --separate-stderr "$FMB" log what
+    [ "$status" = 2 ]
+}

@@ -1,0 +1,228 @@
+# fmb log scene: a query of a log, as a scene to ask again.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    : "${FMB_BUILD:=build}"
+    FMB=$FMB_BUILD/fmb
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    T=$BATS_TEST_TMPDIR
+    log=$T/whole.log
+}
+
+generate() {
+    "$FMB_BUILD/logs/generate" "$@"
+}
+
+# scene CODE ARGUMENTS
+scene() {
+    local code=$1
+    shift
+    run --separate-stderr "$FMB" log scene "$@"
+    [ "$status" = "$code" ] || {
+        echo "expected exit code $code, found $status: $stderr"
+        return 1
+    }
+}
+
+said() {
+    [[ "$stderr" == *"$1"* ]] || {
+        echo "expected: $1"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+# answers OPTIONS: of the scene that was printed.
+answers() {
+    "$FMB" query --local --json "$@" <<< "$output"
+}
+
+# u32 FILE OFFSET
+u32() {
+    od -An -tu1 -j "$2" -N 4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }'
+}
+
+# offset_of LOG N: of the event with index N.
+offset_of() {
+    local at=0
+    for ((i = 0; i < $2; i++)); do
+        at=$((at + 28 + $(u32 "$1" $((at + 20))) + $(u32 "$1" $((at + 24)))))
+    done
+    echo "$at"
+}
+
+# split LOG N: into $T/first.log, with N events, and $T/second.log.
+split_at() {
+    local at
+    at=$(offset_of "$1" "$2")
+    head -c "$at" "$1" > "$T/first.log"
+    tail -c +$((at + 1)) "$1" > "$T/second.log"
+}
+
+@test "each query of a log is a scene that can be decided, with the command to ask it" {
+    generate arm "$log"
+    scenes=0
+    certificates=0
+    for ((event = 0; event < 146; event++)); do
+        run --separate-stderr "$FMB" log scene "$log" --event "$event"
+        [ "$status" = 0 ] || continue
+        scenes=$((scenes + 1))
+        said "to ask it again: fmb query --local --json"
+        command=${stderr##*to ask it again: fmb }
+        [[ "$command" != *--certificate* ]] || certificates=$((certificates + 1))
+        # shellcheck disable=SC2086
+        "$FMB" ${command} <<< "$output" | jq -e '.pairs | length > 0 and all(has("verdict"))' > "$T/jq"
+    done
+    # A query and its result are the same scene.
+    [ "$scenes" = 144 ]
+    [ "$certificates" -gt 0 ]
+}
+
+@test "the answers of a query alone are those in the log" {
+    generate --blast pairs 40 --by-key --box --certificate "$log"
+    "$FMB" replay "$log" --write-golden "$T/golden.log" > "$T/said"
+    for event in 20 41 78; do
+        scene 0 "$log" --event "$event"
+        answers --box --certificate > "$T/$event.json"
+        jq -e '.pairs[0] | has("certificate") and .a != .b' "$T/$event.json" > "$T/jq"
+    done
+    # By any of its names it is the same.
+    scene 0 "$log" --event 40
+    said 'sequence number '
+    query=$output
+    client=$(sed 's/.*client \([0-9]*\),.*/\1/' <<< "$stderr")
+    number=$(sed 's/.*sequence number \([0-9]*\);.*/\1/' <<< "$stderr")
+    offset=$(sed 's/.*offset \([0-9]*\)).*/\1/' <<< "$stderr")
+    scene 0 "$log" --event 41
+    [ "$output" = "$query" ]
+    scene 0 "$log" --offset "$offset"
+    [ "$output" = "$query" ]
+    scene 0 "$log" --client "$client" --sequence "$number"
+    [ "$output" = "$query" ]
+    scene 1 "$log" --offset $((offset + 1))
+    said "offset $((offset + 1)): there is none"
+}
+
+@test "what a replay finds different is what the query alone is not" {
+    generate --blast pairs 40 --whole --static --dim 3 --box "$log"
+    cp "$log" "$T/other.log"
+    # Of the last result the verdict: behind header, channel, ids, status, empty detail and method.
+    at=$(($(offset_of "$log" 79) + 28 + 15 + 72 + 4 + 5 + 4))
+    then=$(u32 "$log" "$at")
+    [ "$then" = 1 ] || [ "$then" = 3 ]
+    printf '\0\0\0\2' | dd of="$T/other.log" bs=1 seek="$at" conv=notrunc status=none
+    run "$FMB" replay "$T/other.log"
+    [ "$status" = 1 ]
+    [[ "${lines[0]}" == 'event 78 '*'verdict: touching, now '* ]]
+    now=${lines[0]##*now }
+    scene 0 "$T/other.log" --event 78
+    [ "$(answers | jq -r '.pairs[0].verdict')" = "$now" ]
+}
+
+@test "frames by key have their components, told by the logs before too" {
+    generate --blast pairs 60 --by-key "$log"
+    split_at "$log" 60
+    scene 0 "$log" --event 100
+    query=$output
+    jq -e '.bodies | all(.components | length == 3 or length == 2)' <<< "$query" > "$T/jq"
+    scene 0 "$T/first.log" "$T/second.log" --event 100
+    [ "$output" = "$query" ]
+    # Alone the second log does not tell all keys.
+    unknown=0
+    for ((event = 60; event < 120; event += 2)); do
+        run --separate-stderr "$FMB" log scene "$T/second.log" --event "$event"
+        [ "$status" != 0 ] || continue
+        [ "$status" = 1 ] && [ -z "$output" ]
+        said 'came by key '
+        said ', and no log here tells what that stands for'
+        unknown=$((unknown + 1))
+    done
+    [ "$unknown" -gt 0 ]
+    # A cut tells them.
+    "$FMB" log cut "$log" --from 0.001 -o "$T/cut.log" > "$T/said"
+    scene 0 "$log" --event 118
+    query=$output
+    number=$(sed 's/.*sequence number \([0-9]*\);.*/\1/' <<< "$stderr")
+    client=$(sed 's/.*client \([0-9]*\),.*/\1/' <<< "$stderr")
+    scene 0 "$T/cut.log" --client "$client" --sequence "$number"
+    [ "$output" = "$query" ]
+}
+
+@test "pairs are those that were asked" {
+    generate crowd "$log"
+    forms=
+    for event in 0 2 4 6 8 10; do
+        run --separate-stderr "$FMB" log scene "$log" --event "$event"
+        [ "$status" = 0 ] || continue
+        forms+=$(jq -c 'has("pairs")' <<< "$output")
+        answers | jq -e '.pairs | length > 0' > "$T/jq"
+    done
+    [[ "$forms" == *true* && "$forms" == *false* ]]
+}
+
+@test "bodies without an id of their own get one" {
+    generate --blast pairs 30 --whole "$log"
+    scene 0 "$log" --event 0
+    [[ "$stderr" == *'fmb: event 0 (offset 0), client '* ]]
+    generate refused "$log"
+    found=0
+    for ((event = 0; event < 213; event++)); do
+        run --separate-stderr "$FMB" log scene "$log" --event "$event"
+        [[ "$stderr" == *'which has no id, is body '* || "$stderr" == *', one more of body '* ]] || continue
+        [ "$status" = 0 ]
+        answers > "$T/answers" || [ "$?" = 1 ]
+        found=$((found + 1))
+    done
+    [ "$found" -gt 0 ]
+}
+
+@test "what the service refuses has no scene, and the reason is said" {
+    generate refused "$log"
+    scene 1 "$log" --event 20
+    [ -z "$output" ]
+    [ "$stderr" = 'fmb: event 20: the service refuses it: a.components: expected 9 numbers, found 8' ]
+    # None of them makes it fail in another way.
+    for ((event = 0; event < 213; event++)); do
+        run --separate-stderr "$FMB" log scene "$log" --event "$event"
+        [ "$status" -le 1 ]
+        [ "$status" = 0 ] || [ -z "$output" ]
+    done
+}
+
+@test "numbers that repeat are told with their offsets" {
+    generate stack "$T/one.log"
+    cat "$T/one.log" "$T/one.log" > "$log"
+    at=$(offset_of "$T/one.log" 3)
+    scene 1 "$log" --event 3
+    said "event 3 is there 2 times: --offset $at --offset $((at + $(stat -c %s "$T/one.log")))"
+    scene 0 "$log" --offset "$at"
+    # Of the last log alone.
+    scene 0 "$T/one.log" "$T/one.log" --event 3
+}
+
+@test "what is no query is said" {
+    generate foreign "$log"
+    scene 1 "$log" --event 5000
+    [ "$stderr" = "fmb: $log: event 5000: there is none" ]
+    scene 1 "$log" --event 0
+    said 'a result, whose query is not here'
+    scene 1 "$log" --event 256
+    said 'event 256: longer than its fields'
+    scene 2 "$T/nothing.log" --event 0
+    [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
+}
+
+@test "wrong usage is said" {
+    for arguments in '' '--event 1' 'LOG' 'LOG --event x' 'LOG --event 1 --offset 1' \
+        'LOG --client 1' 'LOG --sequence 1' 'LOG --event 1 --client 1 --sequence 1' \
+        'LOG --offset -1' 'LOG --what'; do
+        # shellcheck disable=SC2086
+        run --separate-stderr "$FMB" log scene $arguments
+        [ "$status" = 2 ]
+        [[ "$stderr" == 'fmb log scene: '*"Try 'fmb log scene --help'." ]]
+    done
+    run --separate-stderr "$FMB" log scene --help
+    [ "$status" = 0 ]
+    [[ "$output" == 'usage: fmb log scene '* ]]
+}

@@ -1,0 +1,400 @@
+/* A query of a log, taken out as a scene of JSON and decided alone, has the answers that were
+ * recorded, to the bit. */
+#include "log_query.h"
+
+#include "answers.h"
+#include "input.h"
+#include "json.h"
+#include "log_world.h"
+#include "message.h"
+#include "scene_json.h"
+#include "scene_of_query.h"
+#include "wire.h"
+
+#include <fcntl.h>
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char path[128];
+
+static int make_path(void **state)
+{
+    const char *temporary = getenv("TMPDIR");
+    (void) state;
+    snprintf(path, sizeof path, "%.80s/fmb_query.XXXXXX", temporary ? temporary : "/tmp");
+    const int fd = mkstemp(path);
+    return fd < 0 ? -1 : close(fd);
+}
+
+static int remove_path(void **state)
+{
+    (void) state;
+    return unlink(path);
+}
+
+/* ---- Taking out ---- */
+
+static struct log_query found;
+
+static void on_progress(void *user, int64_t bytes, int64_t of)
+{
+    (void) user;
+    assert_in_range(bytes, 0, of);
+}
+
+/* What it says is for people. */
+static enum log_query_outcome look_for(struct log_query_options options)
+{
+    char *log = path;
+    const int said = dup(STDERR_FILENO), nowhere = open("/dev/null", O_WRONLY);
+    options.log = &log;
+    options.log_count = 1;
+    options.prefix = "";
+    options.progress = on_progress;
+    fflush(stderr);
+    dup2(nowhere, STDERR_FILENO);
+    const enum log_query_outcome outcome = log_query(&options, &found);
+    fflush(stderr);
+    dup2(said, STDERR_FILENO);
+    close(said);
+    close(nowhere);
+    return outcome;
+}
+
+/* The scene, through its text. To be cleared. */
+static struct scene scene_of_found(void)
+{
+    struct scene scene, read;
+    FILE *text = tmpfile();
+    assert_non_null(text);
+    scene_of_query(&found.query, &scene);
+    scene_json_write(text, &scene);
+    assert_int_equal(fflush(text), 0);
+    rewind(text);
+    struct json_reader *reader = json_open(fileno(text));
+    if (json_next(reader, &read) != JSON_SCENE)
+        fail_msg("%s", json_error(reader));
+    assert_int_equal(read.dim, scene.dim);
+    assert_int_equal(read.body_count, scene.body_count);
+    assert_int_equal(read.all_pairs, scene.all_pairs);
+    assert_int_equal(read.pair_count, scene.pair_count);
+    scene_clear(&scene);
+    json_close(reader);
+    fclose(text);
+    return read;
+}
+
+/* ---- Answers, then and now ---- */
+
+static union {
+    struct pair_result pair;
+    struct scene_result scene;
+} recorded;
+
+/* A walk over the pairs of a scene, in their order. */
+struct walk {
+    int32_t pair;    /* from first_pair on */
+    int32_t verdict; /* the next one of the result */
+    int32_t contact;
+    int64_t compared;
+};
+
+static bool same_bits(const double *a, const double *b, size_t count)
+{
+    return memcmp(a, b, count * sizeof *a) == 0;
+}
+
+static void assert_contact(const struct walk *walk, const struct outcome *outcome, int dim)
+{
+    const struct scene_result *result = &recorded.scene;
+    const double *times = &result->times[2 * walk->contact];
+    const double *box = &result->boxes[2 * dim * walk->contact];
+    if (result->has_times && isnan(times[0]))
+        assert_false(outcome->answer.has_contact);
+    else if (result->has_times)
+        assert_true(outcome->answer.has_contact && same_bits(times, outcome->answer.contact, 2));
+    for (int side = 0; side < 2 && result->has_boxes; side++)
+        assert_true(same_bits(box + dim * side, outcome->answer.box[side], (size_t) dim));
+}
+
+/* Whether the result has an answer to this pair of its own. */
+static bool is_named(const struct walk *walk, const struct outcome *outcome)
+{
+    const struct scene_result *result = &recorded.scene;
+    return walk->verdict < result->verdict_count &&
+           (!result->names_pairs || (result->pair[walk->verdict][0] == outcome->pair.a &&
+                                     result->pair[walk->verdict][1] == outcome->pair.b));
+}
+
+static void on_scene_pair(void *user, const struct scene *scene, const struct outcome *outcome)
+{
+    const struct scene_query *query = &found.query.scene;
+    struct walk *walk = user;
+    const int32_t number = query->first_pair + walk->pair++;
+    if (query->which == QUERY_PAIRS_LISTED) {
+        assert_int_equal(outcome->pair.a, query->pair[number][0]);
+        assert_int_equal(outcome->pair.b, query->pair[number][1]);
+    }
+    if (number >= recorded.scene.end_pair)
+        return;
+    walk->compared++;
+    if (!is_named(walk, outcome)) {
+        assert_int_equal(outcome->answer.verdict, FMB_SEPARATED);
+        return;
+    }
+    assert_int_equal(outcome->answer.verdict, recorded.scene.verdict[walk->verdict++]);
+    if (outcome->answer.verdict == FMB_SEPARATED)
+        return;
+    assert_contact(walk, outcome, scene->dim);
+    walk->contact++;
+}
+
+static void on_pair(void *user, const struct scene *scene, const struct outcome *outcome)
+{
+    const struct fmb_answer *then = &recorded.pair.answer, *now = &outcome->answer;
+    struct walk *walk = user;
+    walk->compared++;
+    assert_int_equal(now->verdict, then->verdict);
+    assert_int_equal(now->has_contact, then->has_contact);
+    assert_true(!then->has_contact || same_bits(now->contact, then->contact, 2));
+    for (int side = 0; side < 2 && then->has_box; side++)
+        assert_true(same_bits(now->box[side], then->box[side], (size_t) scene->dim));
+}
+
+static int64_t decide_found(void)
+{
+    const bool is_pair = found.query.kind == LOG_PAIR_QUERY;
+    const struct answers_question question = {
+        .method =
+            fmb_method_by_number(is_pair ? found.query.pair.method : found.query.scene.method),
+        .box = true};
+    struct scene scene = scene_of_found();
+    struct walk walk = {.pair = 0};
+    answers_local(&question, &scene, is_pair ? on_pair : on_scene_pair, &walk);
+    if (!is_pair)
+        assert_int_equal(walk.verdict, recorded.scene.verdict_count);
+    scene_clear(&scene);
+    return walk.compared;
+}
+
+/* ---- Worlds ---- */
+
+static struct query_header ids_of(const struct world_event *event, enum log_kind *kind)
+{
+    const struct log_channels channels = log_channels("");
+    const struct log_event logged = {.channel = event->channel,
+                                     .channel_length = strlen(event->channel),
+                                     .data = event->bytes,
+                                     .size = event->size,
+                                     .kept = event->size};
+    struct match_item item = {.ids = {.client_id = -1}};
+    *kind = log_kind_of(&channels, &logged);
+    if (*kind >= LOG_STATUS || message_read_ids(*kind, &logged, &item))
+        *kind = LOG_OTHER;
+    return item.ids;
+}
+
+/* The result of an event's ids, which says that they were decided. */
+static bool read_recorded(const struct world_event *event, enum log_kind kind)
+{
+    if (kind == LOG_PAIR_RESULT)
+        return !wire_read_pair_result(event->bytes, (uint32_t) event->size, &recorded.pair) &&
+               recorded.pair.status == FMB_OK;
+    return !wire_read_scene_result(event->bytes, (uint32_t) event->size, &recorded.scene) &&
+           recorded.scene.status == FMB_OK;
+}
+
+/* The query that a result has, by the number of its event. */
+static int64_t ask_by_result(size_t event, const struct query_header *ids)
+{
+    const struct log_query_options by_number = {.by = LOG_QUERY_NUMBER, .number = (int64_t) event};
+    if (look_for(by_number) != LOG_QUERY_FOUND)
+        return 0;
+    assert_int_equal(found.ids.client_id, ids->client_id);
+    assert_int_equal(found.ids.sequence_number, ids->sequence_number);
+    const int64_t compared = decide_found();
+
+    /* It is the same query, however one asks for it. */
+    const int64_t offset = found.place.offset, number = found.place.number;
+    const struct log_query_options ways[] = {
+        {.by = LOG_QUERY_NUMBER, .number = number},
+        {.by = LOG_QUERY_OFFSET, .offset = offset},
+        {.by = LOG_QUERY_IDS, .client_id = ids->client_id, .sequence_number = ids->sequence_number},
+    };
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        assert_int_equal(look_for(ways[i]), LOG_QUERY_FOUND);
+        assert_true(found.place.offset == offset || ways[i].by == LOG_QUERY_IDS);
+        assert_int_equal(decide_found(), compared);
+    }
+    return compared;
+}
+
+static int64_t ask_world(const struct log_world *world)
+{
+    int64_t compared = 0;
+    for (size_t i = 0; i < world->count; i++) {
+        enum log_kind kind;
+        const struct query_header ids = ids_of(&world->event[i], &kind);
+        if (message_is_result(kind) && read_recorded(&world->event[i], kind))
+            compared += ask_by_result(i, &ids);
+    }
+    return compared;
+}
+
+static void queries_alone_have_the_same_answers(void **state)
+{
+    (void) state;
+    struct log_world world;
+    const struct world_options options = {.seed = 11, .steps = getenv("FMB_FAST") ? 15 : 60};
+    world_make(&options, &world);
+    world_write(&world, path);
+    assert_true(ask_world(&world) > 50);
+    world_clear(&world);
+}
+
+static void large_scenes_have_the_same_answers(void **state)
+{
+    (void) state;
+    struct log_world world;
+    world_make_large(700, 1, &world);
+    world_write(&world, path);
+    assert_true(ask_world(&world) >= 700 * 699 / 2);
+    world_clear(&world);
+}
+
+/* ---- What is not there ---- */
+
+static void what_is_not_there_is_not_found(void **state)
+{
+    (void) state;
+    struct log_world world = {.state = 1};
+    const struct pair_query query = {.client_id = 3, .sequence_number = 4};
+    unsigned char bytes[WIRE_BYTES_MAX];
+    world_add(&world, WIRE_PAIR_QUERY, bytes, wire_write_pair_query(&query, bytes));
+    world_add(&world, "CAMERA", "image", 5);
+    world_add(&world, WIRE_PAIR_QUERY, "no query", 8);
+    world_write(&world, path);
+    const struct log_query_options ways[] = {
+        {.by = LOG_QUERY_NUMBER, .number = 1},     {.by = LOG_QUERY_NUMBER, .number = 2},
+        {.by = LOG_QUERY_NUMBER, .number = 3},     {.by = LOG_QUERY_OFFSET, .offset = 1},
+        {.by = LOG_QUERY_OFFSET, .offset = 99999}, {.by = LOG_QUERY_IDS, .client_id = 3},
+    };
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
+        assert_int_equal(look_for(ways[i]), LOG_QUERY_NONE);
+    world_clear(&world);
+    assert_int_equal(truncate(path, 0), 0);
+    assert_int_equal(look_for(ways[0]), LOG_QUERY_NONE);
+}
+
+/* ---- Scenes ---- */
+
+/* Frames with these body ids, unit cubes. */
+static void set_frames(const int64_t *ids, int count)
+{
+    memset(&found, 0, sizeof found);
+    found.query.kind = LOG_SCENE_QUERY;
+    found.query.scene.frame_count = count;
+    found.query.scene.duration = 0.25;
+    for (int i = 0; i < count; i++) {
+        struct query_frame *frame = &found.query.scene.frame[i];
+        *frame = (struct query_frame){
+            .body_id = ids[i], .shape = FMB_CUBOID, .dim = 3, .origin.count = 3};
+        frame->components.count = 9;
+        for (int c = 0; c < 3; c++)
+            frame->components.number[4 * c] = 1;
+    }
+}
+
+static void bodies_get_ids_that_are_free(void **state)
+{
+    (void) state;
+    const int64_t ids[] = {0, 1, 1, 0, 3, QUERY_ID_MAX, QUERY_ID_MAX, 5};
+    const int64_t expected[] = {2, 1, 4, 6, 3, QUERY_ID_MAX, 7, 5};
+    set_frames(ids, 8);
+    found.query.scene.which = QUERY_PAIRS_ALL;
+    struct scene scene = scene_of_found();
+    assert_true(scene.all_pairs);
+    for (int i = 0; i < 8; i++)
+        assert_int_equal(scene.body[i].id, expected[i]);
+    scene_clear(&scene);
+}
+
+static void assert_pairs(const size_t (*expected)[2], size_t count)
+{
+    struct scene scene = scene_of_found();
+    struct scene_cursor cursor = {0};
+    struct scene_pair pair;
+    for (size_t k = 0; k < count; k++) {
+        assert_true(scene_next_pair(&scene, &cursor, &pair));
+        assert_int_equal(pair.a, expected[k][0]);
+        assert_int_equal(pair.b, expected[k][1]);
+    }
+    assert_false(scene_next_pair(&scene, &cursor, &pair));
+    scene_clear(&scene);
+}
+
+static void pairs_are_those_that_were_asked(void **state)
+{
+    (void) state;
+    const int64_t ids[] = {4, 3, 2, 1};
+    set_frames(ids, 4);
+    found.query.scene.which = QUERY_PAIRS_ACROSS;
+    found.query.scene.split = 2;
+    assert_pairs((const size_t[][2]){{0, 2}, {0, 3}, {1, 2}, {1, 3}}, 4);
+    found.query.scene.first_pair = 3;
+    assert_pairs((const size_t[][2]){{1, 3}}, 1);
+    found.query.scene.which = QUERY_PAIRS_ALL;
+    found.query.scene.split = 0;
+    assert_pairs((const size_t[][2]){{1, 2}, {1, 3}, {2, 3}}, 3);
+    found.query.scene.first_pair = 0;
+    assert_pairs((const size_t[][2]){{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}, 6);
+    found.query.scene.which = QUERY_PAIRS_LISTED;
+    assert_pairs(NULL, 0);
+    found.query.scene.index_count = 4;
+    memcpy(found.query.scene.pair, (unsigned[2][2]){{3, 0}, {0, 3}}, 4 * sizeof(unsigned));
+    assert_pairs((const size_t[][2]){{3, 0}, {0, 3}}, 2);
+}
+
+static void numbers_read_back_as_the_same_bits(void **state)
+{
+    (void) state;
+    static const double numbers[9] = {-0.0, 5e-324, DBL_MAX,  -DBL_MIN,          1.0 / 3,
+                                      1e23, 0.1,    -2.5e-17, 9007199254740993.0};
+    const int64_t ids[] = {1, 2};
+    set_frames(ids, 2);
+    struct query_frame *frame = &found.query.scene.frame[1];
+    memcpy(frame->components.number, numbers, sizeof numbers);
+    memcpy(frame->origin.number, numbers, 3 * sizeof *numbers);
+    memcpy(frame->velocity.number, numbers + 3, 3 * sizeof *numbers);
+    frame->velocity.count = 3;
+    found.query.scene.duration = 5e-324;
+    struct scene scene = scene_of_found();
+    const struct scene_body *body = &scene.body[1];
+    assert_true(same_bits(&body->body.component[0][0], numbers, 9));
+    assert_true(same_bits(body->origin, numbers, 3));
+    assert_true(body->moving && same_bits(body->velocity, numbers + 3, 3));
+    assert_true(scene.duration == 5e-324 && !scene.body[0].moving);
+    scene_clear(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(queries_alone_have_the_same_answers),
+        cmocka_unit_test(large_scenes_have_the_same_answers),
+        cmocka_unit_test(what_is_not_there_is_not_found),
+        cmocka_unit_test(bodies_get_ids_that_are_free),
+        cmocka_unit_test(pairs_are_those_that_were_asked),
+        cmocka_unit_test(numbers_read_back_as_the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, make_path, remove_path);
+}
