@@ -196,8 +196,7 @@ static bool read_again(struct surveying *surveying, const struct later *later,
            !any_query_read(&surveying->query, item->kind, item->bytes, item->size);
 }
 
-/* As fmb replay does: what was not known when a query came may be known now; and what its result
- * tells is known from here on. */
+/* As fmb replay does: what was not known when a query came may be known now. */
 static void look_at_rest(struct surveying *surveying)
 {
     struct later later;
@@ -211,10 +210,8 @@ static void look_at_rest(struct surveying *surveying)
             return;
         }
         const bool chosen = later.mine && surveying->has[item.kind];
-        told_look(surveying->told, &surveying->query, chosen);
         if (chosen)
             settle(surveying, later.event, item.size, ROW_LATER);
-        match_query(surveying->told->match, &item);
     }
     if (ferror(surveying->later))
         fail(surveying, temporary, EIO);
@@ -232,11 +229,11 @@ static void look(struct surveying *surveying, const struct match_item *query, bo
 {
     switch (told_look(surveying->told, &surveying->query, chosen)) {
     case TOLD_DEFINITION: return;
-    case TOLD_SOME: look_later(surveying, &query->place); return;
-    case TOLD_ALL: break;
+    case TOLD_SOME: look_later(surveying, &query->place); break;
+    case TOLD_ALL:
+        if (chosen)
+            settle(surveying, query->place.number, query->size, ROW_AT_ONCE);
     }
-    if (chosen)
-        settle(surveying, query->place.number, query->size, ROW_AT_ONCE);
     match_query(surveying->told->match, query);
 }
 
@@ -333,9 +330,9 @@ bool log_survey(const struct log_survey_options *options, struct log_survey *out
     surveying->told = told_open(&sink);
     choose_channels(surveying);
     take_events(surveying);
-    look_at_rest(surveying);
     if (!surveying->failed && !match_finish(surveying->told->match))
         fail(surveying, temporary, errno);
+    look_at_rest(surveying);
     fail(surveying, temporary, log_marks_error(out->marks));
     fail(surveying, temporary, log_patches_error(out->patches));
     const bool good = !surveying->failed;

@@ -47,17 +47,6 @@ void told_close(struct told *told)
     free(told);
 }
 
-/* As answer_now.c: such a frame tells only what nothing before it has told. */
-static void claim(struct told *told, const struct query_frame *frame, bool mine)
-{
-    if (frame->key == 0 || frame->components.count == 0 ||
-        known_bodies_find(told->known, frame->body_id, frame->key))
-        return;
-    struct known_body *body = known_bodies_learn(told->known, frame, frame->key, 0);
-    if (body)
-        body->mine = mine;
-}
-
 bool told_is_by_key(const struct query_frame *frame)
 {
     return check_by_key(frame) && query_id_ok(frame->key);
@@ -72,12 +61,10 @@ enum told_keys told_look(struct told *told, struct any_query *query, bool mine)
         definition_learn(&query->scene, told->known, mine);
         return TOLD_DEFINITION;
     }
-    for (int32_t i = 0; i < count; i++) {
-        claim(told, &frame[i], mine);
+    for (int32_t i = 0; i < count; i++)
         if (told_is_by_key(&frame[i]) &&
             !known_bodies_find(told->known, frame[i].body_id, frame[i].key))
             all = false;
-    }
     return all ? TOLD_ALL : TOLD_SOME;
 }
 

@@ -3,7 +3,7 @@
  *
  * For each event, in the order of the log: of a query told_look(), what one wants of its frames,
  * then match_query(); of a result match_result(). A query that told_look() does not know all keys
- * of fmb replay looks at once more, when all of the log has been read, and matches it only then. */
+ * of fmb replay answers later, when all of the log has been read and matched. */
 #ifndef TOLD_H
 #define TOLD_H
 
@@ -30,8 +30,7 @@ enum told_keys {
     TOLD_DEFINITION /* no question (definition.h): not to be matched */
 };
 
-/* Learns what a query says itself of its keys (frames that have both, components and key, and
- * definitions). mine: that is the user's own then (known_body.mine). */
+/* Learns what a definition says. mine: that is the user's own then (known_body.mine). */
 enum told_keys told_look(struct told *told, struct any_query *query, bool mine);
 
 /* Whether a frame came by key; what is no key is refused as such. */
