@@ -266,6 +266,7 @@ family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,c
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 
 client_tests := $(filter test_client_%,$(unit_names))
+live_tests := test_live test_live_results
 $(client_tests:%=$(B)/tests/%): $(O)/tests/unit/relay.o
 
 log_tests := $(filter test_log_%,$(unit_names))
@@ -279,6 +280,8 @@ world_tests := test_log_cut test_log_query
 $(world_tests:%=$(B)/tests/%): $(O)/tests/unit/log_world.o
 # Sees what becomes of each query.
 wraps_test_log_cut := $(addprefix -Wl$(comma)--wrap=,page_open page_take)
+
+$(live_tests:%=$(B)/tests/%): $(O)/tests/unit/world.o
 
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)

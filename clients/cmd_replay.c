@@ -6,6 +6,7 @@
 #include "cache.h"
 #include "input.h"
 #include "progress.h"
+#include "replay_bus.h"
 #include "replay_jobs.h"
 #include "replay_json.h"
 #include "replay_junit.h"
@@ -39,12 +40,22 @@ static const char usage[] =
     "                       event, from S on and before S; the rest is read for what these need\n"
     "  -j, --jobs N         on N cores, each with a part of the bytes\n"
     "  --bodies N           bodies that are kept, as fmbd --bodies (65536)\n"
+    "  --bus                the service on the bus answers, not this process\n"
+    "  --speed X            with --bus: ask X times as fast as was logged, 1 for real time;\n"
+    "                       without it, or 0, as fast as the service answers\n"
+    "  --timeout SECONDS    with --bus: wait so long before a query is sent again (0.5)\n"
+    "  --retries N          with --bus: after N more such times without any answer, one after the\n"
+    "                       other, the service is given up (9)\n"
     "  --json               one line of JSON in place of the text\n"
     "  --junit FILE         write JUnit XML as well, for CI systems\n"
-    "  --html FILE          write a page that shows what happened\n"
     "  --limit N            tell N differences, and only count the others (1000)\n"
-    "  -p, --prefix P       the service's channels begin with P\n"
-    "  -h, --help\n"
+    "  --html FILE          write a page that shows what happened\n" ARGS_COMMON_USAGE
+    "\n"
+    "With --bus a live fmbd is asked, and nothing else changes: what the log holds is compared\n"
+    "with what it says now. It is asked under a client id of its own, many queries at once, none\n"
+    "is lost, and a service that dies and comes back is waited for. Keys of the log become keys\n"
+    "of this service, or components. (Where it serves others too, bodies of the same ids replace\n"
+    "theirs, and they have to send them again.) SIGINT ends it with what was answered so far.\n"
     "\n"
     "Results of the moment are counted apart, not compared: that the service was busy, or did\n"
     "not hold a body, then; or that the log does not have the components of a key. Times are\n"
@@ -52,16 +63,20 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 all the same, 1 something is different, 2 unusable: a log cannot be read or\n"
     "is damaged (which is told with its offset; 'fmb log cut' copies what can be read), a\n"
-    "message of the service's channels cannot be read, or there is nothing to compare.\n";
+    "message of the service's channels cannot be read, there is nothing to compare, or the\n"
+    "service on the bus does not answer all.\n";
 
 struct options {
     struct replay_options replay;
-    long jobs, bodies, limit;
-    bool json;
+    struct answer_bus_options bus;
+    struct args_bus where;
+    long jobs, bodies, limit, retries;
+    bool json, live;
     const char *junit, *html;
 };
 
 enum { GOLDEN = 1, WRITE_GOLDEN, FORCE, TOLERANCE, FROM, TO, BODIES, JSON, JUNIT, HTML, LIMIT };
+enum { BUS = LIMIT + 1, SPEED, TIMEOUT, RETRIES };
 
 static const struct option own_options[] = {
     {"golden", required_argument, NULL, GOLDEN},
@@ -76,6 +91,10 @@ static const struct option own_options[] = {
     {"junit", required_argument, NULL, JUNIT},
     {"html", required_argument, NULL, HTML},
     {"limit", required_argument, NULL, LIMIT},
+    {"bus", no_argument, NULL, BUS},
+    {"speed", required_argument, NULL, SPEED},
+    {"timeout", required_argument, NULL, TIMEOUT},
+    {"retries", required_argument, NULL, RETRIES},
     {NULL, 0, NULL, 0},
 };
 
@@ -96,6 +115,10 @@ static bool take_option(const struct args *args, int option, void *out)
     case JUNIT: options->junit = optarg; break;
     case HTML: options->html = optarg; break;
     case LIMIT: return args_integer(args, 0, INT32_MAX, &options->limit);
+    case BUS: options->live = true; break;
+    case SPEED: return args_number(args, 0, 1e9, &options->bus.speed);
+    case TIMEOUT: return args_number(args, 0.001, 1e6, &options->bus.timeout);
+    case RETRIES: return args_integer(args, 0, 1000000, &options->retries);
     }
     return true;
 }
@@ -257,12 +280,19 @@ static void tell_rest(const struct run *run)
         printf("and %" PRId64 " more differences (--limit)\n", run->untold);
 }
 
+/* Where there was no bus, or nobody on it, counts say nothing. */
+static bool has_counts(const struct run *run, const struct tally *all)
+{
+    return !run->options->live || all->bus.answered > 0 ||
+           (all->bus.used && all->bus.end == ANSWER_BUS_NO_END);
+}
+
 static void tell_all(struct run *run, const struct tally *all, int code)
 {
     tell_rest(run);
     if (run->options->json)
         replay_json_end(&run->json, all, run->untold, code);
-    else
+    else if (has_counts(run, all))
         replay_text_summary(stdout, all);
 }
 
@@ -280,6 +310,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
         tally_add(&all, &tally[log]);
+    replay_bus_end(&all.bus, &options->bus, options->replay.log);
     int code = good ? code_of(options, &all) : ARGS_USAGE;
     if (options->junit && !write_junit(run, tally))
         code = ARGS_USAGE;
@@ -324,20 +355,51 @@ static bool check_options(const struct args *args, const struct options *options
     return true;
 }
 
+/* What goes with answers of this process, and what with those of a service. */
+static bool check_bus(const struct args *args, const struct options *options)
+{
+    if (options->live && (options->jobs > 1 || options->bodies > 0))
+        return args_error(args, "--%s does not go with --bus",
+                          options->jobs > 1 ? "jobs" : "bodies");
+    if (!options->live && (options->bus.speed >= 0 || options->bus.timeout > 0 ||
+                           options->retries >= 0 || args->bus.url))
+        return args_error(args, "--speed, --timeout, --retries and --lcm-url go with --bus");
+    return true;
+}
+
+/* Those that were not given. */
+static void complete(struct options *options)
+{
+    struct answer_bus_options *bus = &options->bus;
+    options->bodies = options->bodies > 0 ? options->bodies : 65536;
+    options->retries = options->retries >= 0 ? options->retries : 9;
+    bus->url = options->where.url;
+    bus->prefix = options->where.prefix;
+    bus->speed = bus->speed >= 0 ? bus->speed : 0;
+    bus->timeout = bus->timeout > 0 ? bus->timeout : 0.5;
+    bus->retries = (int) options->retries;
+    options->replay.bus = options->live ? bus : NULL;
+    options->replay.prefix = options->where.prefix;
+    options->replay.bodies = (size_t) options->bodies;
+}
+
 int cmd_replay(int argc, char **argv)
 {
     struct args args = {
         "replay", usage, own_options, take_option, .operand = "LOG", .operands_max = 4096};
-    struct options options = {
-        .replay = {.from = -INFINITY, .to = INFINITY}, .jobs = 1, .bodies = 65536, .limit = 1000};
+    struct options options = {.replay = {.from = -INFINITY, .to = INFINITY},
+                              .bus = {.speed = -1},
+                              .jobs = 1,
+                              .limit = 1000,
+                              .retries = -1};
     const int code = args_parse(&args, argc, argv, &options);
     if (code != ARGS_RUN)
         return code;
-    if (!check_options(&args, &options))
+    if (!check_options(&args, &options) || !check_bus(&args, &options))
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;
-    options.replay.prefix = args.bus.prefix;
-    options.replay.bodies = (size_t) options.bodies;
+    options.where = args.bus;
+    complete(&options);
     return run_replay(&options);
 }

@@ -129,13 +129,13 @@ static void keep_all(struct answer_now *now, struct query_frame *frame, int32_t 
 
 /* ---- Pairs ---- */
 
-/* Of one that is longer than any log's reader keeps, the header has to do. */
+/* Of one of which the log's reader has not kept all, the header has to do. */
 static const char *read_pair(const unsigned char *bytes, size_t size, struct pair_query *out)
 {
     struct query_header header;
-    const char *error;
-    if (size < LOG_DATA_MAX)
-        return wire_read_pair_query(bytes, (uint32_t) size, out);
+    const char *error = wire_read_pair_query(bytes, (uint32_t) size, out);
+    if (!error || size < LOG_DATA_MAX)
+        return error;
     error = wire_read_pair_header(bytes, (uint32_t) size, &header);
     *out = (struct pair_query){.utime = header.utime,
                                .client_id = header.client_id,

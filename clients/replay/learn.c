@@ -65,6 +65,12 @@ static bool scene_tells_keys(const struct match_item *result)
     return result->size >= KEY_COUNT_AT + 4 && big_endian_32(result->bytes + KEY_COUNT_AT) != 0;
 }
 
+bool learn_may(const struct learner *learner, const struct match_item *result)
+{
+    return result->kind == LOG_PAIR_QUERY ? pair_tells_news(learner, result, false)
+                                          : scene_tells_keys(result);
+}
+
 /* ---- Learning ---- */
 
 /* Who told a key. */

@@ -11,6 +11,9 @@ struct learner;
 struct learner *learner_open(struct known_bodies *known);
 void learner_close(struct learner *learner); /* may be NULL */
 
+/* Whether a result may teach something, seen from its bytes alone. */
+bool learn_may(const struct learner *learner, const struct match_item *result);
+
 /* Bytes that are no messages teach nothing. A body is the user's own (known_body.mine) where a
  * query and a result that both are (match_place.mine) have told it, or told again what others had.
  */

@@ -27,7 +27,8 @@ struct replay {
     struct log_writer *new_golden; /* NULL: none */
     struct known_bodies *known;
     struct learner *learner;
-    struct answer_now *now;
+    struct answer_now *now; /* NULL: the service on the bus answers */
+    struct answer_bus *bus; /* NULL: this process does */
     struct judge *judge;
     /* With the results recorded; and where there is a golden, with those of that, else NULL. */
     struct match *recorded, *compared;
@@ -38,6 +39,7 @@ struct replay {
     struct match *late;
     int64_t first_utime, at, told;
     bool started, failed;
+    bool asks_again; /* those that were put off */
 };
 
 /* Says what cannot be read or written; the rest goes on. */
@@ -51,6 +53,21 @@ static void fail(struct replay *replay, const char *what)
 static struct tally_channel *channel_of(struct replay *replay, const struct match_item *item)
 {
     return &replay->tally[item->place.log].channel[tally_channel_of(item->kind)];
+}
+
+/* ---- What is of the part ---- */
+
+static bool in_time(const struct replay *replay, int64_t utime)
+{
+    const double seconds = 1e-6 * ((double) utime - (double) replay->first_utime);
+    return seconds >= replay->options->from && seconds < replay->options->to;
+}
+
+/* Whether what begins there in the log that is being read is of the part. */
+static bool in_part(const struct replay *replay, int64_t offset)
+{
+    const int64_t at = replay->input.begin[replay->input.log] + offset;
+    return at >= replay->part.begin && at < replay->part.end;
 }
 
 /* ---- What is brought together ---- */
@@ -166,19 +183,40 @@ static void take_answer(struct replay *replay, struct match_item *query,
         write_golden(replay, query);
 }
 
+/* To where it is brought together with its result, in the order of the log. */
+static void pass_query(struct replay *replay, const struct match_item *query)
+{
+    if (replay->bus)
+        answer_bus_pass(replay->bus, query, ANSWER_BUS_QUERY);
+    else
+        match_all(replay, query);
+}
+
+/* last: there is nothing more to be learned of keys. What a bus answers comes later. */
+static enum answer_now_outcome ask(struct replay *replay, const struct match_item *query, bool last,
+                                   struct answered_now *out)
+{
+    if (replay->bus)
+        return answer_bus_query(replay->bus, query, last, &out->error);
+    return answer_now(replay->now, query->kind, query->bytes, query->size, out);
+}
+
 /* A query that cannot be read has a result all the same, perhaps, which is not to be compared. */
 static void answer(struct replay *replay, struct match_item *query)
 {
     struct answered_now answered;
-    switch (answer_now(replay->now, query->kind, query->bytes, query->size, &answered)) {
+    switch (ask(replay, query, false, &answered)) {
     case ANSWER_NOW_UNREADABLE:
         refuse(replay, query->kind, query, answered.error);
         query->place.mine = false;
         break;
     case ANSWER_NOW_WITHOUT_BODY: ask_later(replay, &query->place); break;
-    case ANSWER_NOW_DONE: take_answer(replay, query, &answered); break;
+    case ANSWER_NOW_DONE:
+        if (replay->bus)
+            return;
+        take_answer(replay, query, &answered);
     }
-    match_all(replay, query);
+    pass_query(replay, query);
 }
 
 /* ---- The golden: results in the order of their queries ----
@@ -231,20 +269,39 @@ static bool pull_golden(struct replay *replay, bool mine, bool own)
     return false;
 }
 
+/* After each query of the log. */
+static void follow_golden(struct replay *replay, bool mine, int64_t offset)
+{
+    if (replay->golden)
+        pull_golden(replay, mine, in_part(replay, offset));
+}
+
+/* ---- What comes from the bus, in the order of the log ---- */
+
+static void on_answered(void *user, struct match_item *query, const struct answered_now *answered)
+{
+    struct replay *replay = user;
+    take_answer(replay, query, answered);
+    if (replay->asks_again) {
+        match_query(replay->late, query);
+        return;
+    }
+    match_all(replay, query);
+    follow_golden(replay, query->place.mine, query->place.offset);
+}
+
+static void on_passed(void *user, const struct match_item *item, bool is_result)
+{
+    struct replay *replay = user;
+    if (is_result) {
+        match_result(replay->recorded, item);
+    } else {
+        match_all(replay, item);
+        follow_golden(replay, item->place.mine, item->place.offset);
+    }
+}
+
 /* ---- Events ---- */
-
-static bool in_time(const struct replay *replay, int64_t utime)
-{
-    const double seconds = 1e-6 * ((double) utime - (double) replay->first_utime);
-    return seconds >= replay->options->from && seconds < replay->options->to;
-}
-
-/* Whether what begins there in the log that is being read is of the part. */
-static bool in_part(const struct replay *replay, int64_t offset)
-{
-    const int64_t at = replay->input.begin[replay->input.log] + offset;
-    return at >= replay->part.begin && at < replay->part.end;
-}
 
 static struct match_place place_of(const struct replay *replay, const struct log_event *event)
 {
@@ -264,15 +321,19 @@ static void take_query(struct replay *replay, struct match_item *query)
     if (mine)
         answer(replay, query);
     else
-        match_all(replay, query);
-    if (replay->golden)
-        pull_golden(replay, mine, in_part(replay, query->place.offset));
+        pass_query(replay, query);
+    if (!replay->bus)
+        follow_golden(replay, mine, query->place.offset);
 }
 
 static void take_result(struct replay *replay, const struct match_item *result)
 {
     channel_of(replay, result)->results += result->place.mine && !replay->golden;
-    match_result(replay->recorded, result);
+    if (replay->bus)
+        answer_bus_pass(replay->bus, result,
+                        learn_may(replay->learner, result) ? ANSWER_BUS_NEWS : ANSWER_BUS_RESULT);
+    else
+        match_result(replay->recorded, result);
 }
 
 static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
@@ -337,6 +398,18 @@ static bool open_goldens(struct replay *replay)
     return true;
 }
 
+/* Where the queries are answered. */
+static bool open_answers(struct replay *replay)
+{
+    const struct replay_options *options = replay->options;
+    const struct answer_bus_sink sink = {on_answered, on_passed, replay};
+    if (options->bus)
+        replay->bus = answer_bus_open(options->bus, replay->known, &sink);
+    else
+        replay->now = answer_now_open(options->bodies, replay->known);
+    return replay->bus || replay->now;
+}
+
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
@@ -347,12 +420,11 @@ static bool open_replay(struct replay *replay)
         fprintf(stderr, "fmb: %s\n", why);
         return false;
     }
-    if (!open_goldens(replay))
+    replay->known = known_bodies_create(KNOWN_BODIES_USUAL);
+    if (!open_answers(replay) || !open_goldens(replay))
         return false;
     replay->channels = log_channels(options->prefix);
-    replay->known = known_bodies_create(KNOWN_BODIES_USUAL);
     replay->learner = learner_open(replay->known);
-    replay->now = answer_now_open(options->bodies, replay->known);
     replay->recorded = match_open(&recorded);
     replay->compared = options->golden ? match_open(&golden) : NULL;
     const struct judge_options judging = {options->compare, options->log,  replay->sink,
@@ -363,6 +435,9 @@ static bool open_replay(struct replay *replay)
 
 static void close_replay(struct replay *replay)
 {
+    if (replay->bus)
+        replay->tally[0].bus = answer_bus_counts(replay->bus);
+    answer_bus_close(replay->bus);
     judge_close(replay->judge);
     match_close(replay->late);
     match_close(replay->compared);
@@ -381,12 +456,19 @@ static void close_replay(struct replay *replay)
     replay->failed = true;
 }
 
+/* A bus may take long over few bytes. */
 static void tell_progress(struct replay *replay)
 {
-    if (replay->at - replay->told < PROGRESS_BYTES)
+    if (replay->at - replay->told < PROGRESS_BYTES && !replay->bus)
         return;
     replay->told = replay->at;
     replay->sink->progress(replay->sink->user, replay->at);
+}
+
+/* The service was given up, or a signal came. */
+static bool has_ended(const struct replay *replay)
+{
+    return replay->bus && !answer_bus_goes_on(replay->bus);
 }
 
 /* Nothing of the part waits for what comes behind it. */
@@ -408,11 +490,18 @@ static void read_logs(struct replay *replay)
         else
             take_damage(replay, &damage);
         tell_progress(replay);
-        if (is_done(replay))
+        if (is_done(replay) || has_ended(replay))
             return;
     }
     if (outcome == LOG_FAILED)
         fail(replay, replay->options->log[replay->input.log]);
+}
+
+/* Of what has been asked all is answered and matched. */
+static void finish_bus(struct replay *replay)
+{
+    if (replay->bus)
+        answer_bus_finish(replay->bus);
 }
 
 static void ask_again(struct replay *replay, const struct match_place *place)
@@ -423,12 +512,13 @@ static void ask_again(struct replay *replay, const struct match_place *place)
     errno = 0;
     if (!input_again(&replay->input, place->log, place->offset, &event) ||
         message_read_ids(log_kind_of(&replay->channels, &event), &event, &query) ||
-        answer_now(replay->now, query.kind, query.bytes, query.size, &answered) ==
-            ANSWER_NOW_UNREADABLE) {
+        ask(replay, &query, true, &answered) == ANSWER_NOW_UNREADABLE) {
         errno = errno ? errno : EIO; /* it was there before */
         fail(replay, replay->options->log[place->log]);
         return;
     }
+    if (replay->bus)
+        return;
     take_answer(replay, &query, &answered);
     match_query(replay->late, &query);
 }
@@ -438,11 +528,13 @@ static void ask_all_again(struct replay *replay)
     struct match_place place;
     if (!replay->later)
         return;
+    replay->asks_again = true;
     bool good = fflush(replay->later) == 0 && fseeko(replay->later, 0, SEEK_SET) == 0;
-    while (good && fread(&place, sizeof place, 1, replay->later) == 1)
+    while (good && !has_ended(replay) && fread(&place, sizeof place, 1, replay->later) == 1)
         ask_again(replay, &place);
     if (!good || ferror(replay->later))
         fail(replay, "a temporary file");
+    finish_bus(replay);
 }
 
 /* What it still waits for may stand behind what has been read of the golden; the last part counts
@@ -454,16 +546,24 @@ static void read_golden(struct replay *replay)
         continue;
 }
 
-/* All that is known is known before those that were put off are asked. */
+/* All that is known is known before those that were put off are asked. After an early end what
+ * stands alone says nothing: its partner may be what was not read. */
 static void finish(struct replay *replay)
 {
+    finish_bus(replay);
+    if (has_ended(replay)) {
+        replay->failed = true;
+        return;
+    }
     read_golden(replay);
     if (is_done(replay)) /* what is left is of others */
         return;
     if (!match_finish(replay->recorded) || (replay->compared && !match_finish(replay->compared)))
         fail(replay, "a temporary file");
     ask_all_again(replay);
-    if (replay->late && !match_finish(replay->late))
+    if (has_ended(replay))
+        replay->failed = true;
+    else if (replay->late && !match_finish(replay->late))
         fail(replay, "a temporary file");
 }
 

@@ -89,6 +89,21 @@ static void write_times(FILE *out, const char *name, const struct histogram *tim
             times->max);
 }
 
+static void write_bus(FILE *out, const struct tally_bus *bus)
+{
+    static const char *const end[] = {[ANSWER_BUS_NO_END] = "null",
+                                      [ANSWER_BUS_SIGNAL] = "\"signal\"",
+                                      [ANSWER_BUS_NOBODY] = "\"nobody answers\"",
+                                      [ANSWER_BUS_FAILED] = "\"the bus has failed\""};
+    fprintf(out,
+            ", \"bus\": {\"answered\": %" PRId64 ", \"ns\": %" PRId64 ", \"late_ns\": %" PRId64
+            ", \"sent_again\": %" PRId64 ", \"busy\": %" PRId64 ", \"dead_keys\": %" PRId64
+            ", \"brought_bodies\": %" PRId64 ", \"too_long\": %" PRId64 ", \"services\": %" PRId64
+            ", \"unreadable\": %" PRId64 ", \"end\": %s}",
+            bus->answered, bus->ns, bus->late_ns, bus->again, bus->busy, bus->deaths, bus->lessons,
+            bus->too_long, bus->services, bus->nonsense, end[bus->end]);
+}
+
 void replay_json_end(struct replay_json *json, const struct tally *tally, int64_t untold,
                      int exit_code)
 {
@@ -111,5 +126,8 @@ void replay_json_end(struct replay_json *json, const struct tally *tally, int64_
     fputs("}, \"compute\": {\"unit\": \"ns\"", out);
     write_times(out, "then", &tally->then);
     write_times(out, "now", &tally->now);
-    fputs("}}\n", out);
+    putc('}', out);
+    if (tally->bus.used)
+        write_bus(out, &tally->bus);
+    fputs("}\n", out);
 }

@@ -82,6 +82,23 @@ static bool is_whole(const struct tally *tally)
     return tally->damages == 0 && tally_unreadable(tally) == 0;
 }
 
+/* Of a live service. */
+static bool ended_early(const struct tally *tally)
+{
+    return tally->bus.used && tally->bus.end != ANSWER_BUS_NO_END;
+}
+
+static void write_bus(FILE *out, const char *log, const struct tally *tally)
+{
+    if (!tally->bus.used)
+        return;
+    begin_case(out, log, "the service answered all");
+    if (ended_early(tally))
+        fprintf(out, "      <error message=\"it answered %" PRId64 " queries\"/>\n",
+                tally->bus.answered);
+    fputs("    </testcase>\n", out);
+}
+
 static void write_log(FILE *out, const char *log, int index, FILE *found, const struct tally *tally,
                       int64_t first_utime)
 {
@@ -90,8 +107,9 @@ static void write_log(FILE *out, const char *log, int index, FILE *found, const 
         failures += tally->channel[i].outcome[REPLAY_DIFFERENT] > 0;
     fputs("  <testsuite name=\"", out);
     write_xml(out, log);
-    fprintf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n", TALLY_CHANNELS + 1, failures,
-            !is_whole(tally));
+    fprintf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n",
+            TALLY_CHANNELS + 1 + (int) tally->bus.used, failures,
+            !is_whole(tally) + ended_early(tally));
     for (int i = 0; i < TALLY_CHANNELS; i++)
         write_channel(out, log, index, i, found, &tally->channel[i], first_utime);
     begin_case(out, log, "the log is whole");
@@ -100,7 +118,9 @@ static void write_log(FILE *out, const char *log, int index, FILE *found, const 
                 "      <error message=\"%" PRId64 " damaged places, %" PRId64
                 " messages that cannot be read\"/>\n",
                 tally->damages, tally_unreadable(tally));
-    fputs("    </testcase>\n  </testsuite>\n", out);
+    fputs("    </testcase>\n", out);
+    write_bus(out, log, tally);
+    fputs("  </testsuite>\n", out);
 }
 
 void replay_junit(FILE *out, const struct replay_options *options, FILE *found,

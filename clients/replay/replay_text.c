@@ -142,6 +142,34 @@ static void print_log(FILE *out, const struct tally *tally)
     putc('\n', out);
 }
 
+/* "asked fmbd: 300,000 queries in 9.72 s (30,864 a second), 3 sent again": counts that are not 0.
+ */
+static void print_bus(FILE *out, const struct tally_bus *bus)
+{
+    const struct {
+        int64_t count;
+        const char *what;
+    } more[] = {{bus->again, "sent again"},
+                {bus->busy, "refused as busy for a while"},
+                {bus->deaths, "dead keys replaced"},
+                {bus->lessons, "more that brought bodies"},
+                {bus->too_long, "too long to be asked"},
+                {bus->services > 1 ? bus->services - 1 : 0, "times another service, or anew"},
+                {bus->nonsense, "results that could not be read"}};
+    const double seconds = 1e-9 * (double) bus->ns;
+    char text[NUMBER_TEXT_MAX];
+    fprintf(out, "asked fmbd: %s queries in %.3f s", number_grouped(bus->answered, text), seconds);
+    if (bus->ns > 0)
+        fprintf(out, " (%s a second)",
+                number_grouped((int64_t) ((double) bus->answered / seconds), text));
+    if (bus->late_ns > 0)
+        fprintf(out, ", at most %.1f ms late", 1e-6 * (double) bus->late_ns);
+    for (size_t i = 0; i < sizeof more / sizeof *more; i++)
+        if (more[i].count > 0)
+            fprintf(out, ", %s %s", number_grouped(more[i].count, text), more[i].what);
+    putc('\n', out);
+}
+
 void replay_text_summary(FILE *out, const struct tally *tally)
 {
     print_channels(out, tally);
@@ -150,4 +178,6 @@ void replay_text_summary(FILE *out, const struct tally *tally)
     print_times(out, "then", &tally->then);
     print_times(out, "now", &tally->now);
     print_log(out, tally);
+    if (tally->bus.used)
+        print_bus(out, &tally->bus);
 }

@@ -39,6 +39,8 @@ void tally_add(struct tally *to, const struct tally *from)
     to->damaged_bytes += from->damaged_bytes;
     add_histogram(&to->then, &from->then);
     add_histogram(&to->now, &from->now);
+    if (from->bus.used)
+        to->bus = from->bus;
 }
 
 int64_t tally_queries(const struct tally *tally)

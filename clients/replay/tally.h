@@ -18,6 +18,24 @@ struct tally_channel {
 
 enum { TALLY_PAIRS, TALLY_SCENES, TALLY_CHANNELS };
 
+/* Of a live service that answered (answer_bus.h). */
+struct tally_bus {
+    int64_t used;     /* 1; 0: all was answered in this process */
+    int64_t end;      /* enum answer_bus_end */
+    int64_t answered; /* queries of the log */
+    int64_t ns;       /* from the first query to the last answer */
+    int64_t late_ns;  /* how late a query was sent at most, where the log's times counted */
+    int64_t again;    /* sent again, for want of an answer */
+    int64_t busy;     /* refused so, and sent again */
+    int64_t deaths;   /* keys of the service had died, and components went in their place */
+    int64_t lessons;  /* queries asked besides, which brought components alone */
+    int64_t too_long; /* not asked: no service hears a query so long */
+    int64_t services; /* how often another service answered than before; 1: it was one */
+    int64_t nonsense; /* results that could not be read */
+    /* Of the query that has waited longest for its answer, where that was the end. */
+    int64_t log, number, offset;
+};
+
 /* Numbers alone, so that it may lie in memory that processes share. */
 struct tally {
     struct tally_channel channel[TALLY_CHANNELS];
@@ -26,6 +44,7 @@ struct tally {
     int64_t other_events;  /* on other channels */
     int64_t damages, damaged_bytes;
     struct histogram then, now; /* nanoseconds to decide */
+    struct tally_bus bus;       /* of the first log, for all of them */
 };
 
 /* Which channel a kind of query or result is counted in; heartbeats and others have none. */

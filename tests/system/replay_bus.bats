@@ -1,0 +1,349 @@
+# Logs replayed through a live service: what it finds is what a replay in process finds, whatever is
+# done to the service meanwhile.
+
+load service
+
+setup() {
+    root=$PWD
+    FMB_BUILD=$(realpath "$FMB_BUILD")
+    FMBD=$FMB_BUILD/fmbd
+    FMB=$FMB_BUILD/fmb
+    cd "$BATS_TEST_TMPDIR" || return
+}
+
+# generate WHAT... LOG
+generate() {
+    "$FMB_BUILD/logs/generate" "$@"
+}
+
+# replay OPTIONS LOG...: as JSON in $replayed; the exit code in $code.
+replay() {
+    code=0
+    replayed=$("$FMB" replay --json --bus --retries 40 "$@" 2> stderr) || code=$?
+}
+
+holds() {
+    jq -e "$1" <<< "$replayed"
+}
+
+# Without what is of the moment, or of the bus.
+essence() {
+    jq -c 'del(.compute, .bus)' <<< "$1"
+}
+
+# as_in_process OPTIONS LOG...: exit code, counts and differences, each of them.
+as_in_process() {
+    local expected=0 in_process
+    in_process=$("$FMB" replay --json "$@" 2> /dev/null) || expected=$?
+    replay "$@"
+    [ "$code" = "$expected" ]
+    [ "$(essence "$in_process")" = "$(essence "$replayed")" ]
+    holds '.bus.end == null'
+}
+
+# byte_at FILE OFFSET BYTE: replaces it; BYTE as three octal digits.
+byte_at() {
+    printf "\\$3" | dd of="$1" bs=1 seek="$2" conv=notrunc status=none
+}
+
+# place_of LOG CHANNEL N: where the data of its event N on the channel begin, from 1.
+place_of() {
+    echo $(($(grep -abo "$2" "$1" | sed -n "$3s/:.*//p") + ${#2}))
+}
+
+# int64_at FILE OFFSET
+int64_at() {
+    echo $((16#$(od -An -tx1 -j "$2" -N 8 "$1" | tr -d ' \n')))
+}
+
+# utime_at LOG CHANNEL N: of the log, in microseconds.
+utime_at() {
+    int64_at "$1" $(($(place_of "$1" "$2" "$3") - ${#2} - 16))
+}
+
+# event LOG CHANNEL: appends an event with the data of standard input.
+event() {
+    local hex i size
+    cat > data
+    size=$(stat -c %s data)
+    hex=eda1da01$(printf '%016x%016x%08x%08x' 0 1000000 ${#2} "$size")
+    for ((i = 0; i < ${#hex}; i += 2)); do printf "\\x${hex:i:2}"; done >> "$1"
+    printf %s "$2" >> "$1"
+    cat data >> "$1"
+}
+
+@test "the same as in process, for every kind of log" {
+    start_fmbd
+    for kind in arm stack crowd hard-2d hard-3d hard-3d-moving refused clients foreign; do
+        generate $kind $kind.log
+        as_in_process $kind.log
+        holds '.queries > 0 and .different == 0 and .bus.answered == .queries'
+        holds '.bus.services == 1 and .bus.unreadable == 0'
+    done
+    # Those that are refused for their ids, too.
+    replay refused.log
+    holds '.same > 80'
+    stop_fmbd
+}
+
+@test "parts of a log, several logs, and goldens of both" {
+    start_fmbd
+    generate arm arm.log
+    generate clients clients.log
+    generate hard-2d hard.log
+    as_in_process --from 0.05 --to 0.15 arm.log
+    holds '.queries > 10 and .queries < 60'
+    as_in_process arm.log clients.log hard.log
+    "$FMB" replay --write-golden golden clients.log
+    as_in_process --golden golden clients.log
+    holds '.same == .queries'
+    "$FMB" replay --bus --write-golden live clients.log
+    "$FMB" replay --golden live clients.log
+    as_in_process --golden live clients.log
+    # The goldens of a process and of a service are the same but for who answered.
+    "$FMB" replay --golden golden --write-golden again --bus clients.log
+    stop_fmbd
+}
+
+@test "a verdict that was altered is found" {
+    start_fmbd
+    generate --blast pairs 500 pairs.log
+    at=$(place_of pairs.log FMB_PAIR_RESULT 217)
+    # Behind fingerprint, ids, server, bodies, keys, status, an empty detail and method.
+    verdict=$((at + 88))
+    before=$(od -An -tu1 -j $verdict -N 1 pairs.log)
+    as_in_process pairs.log
+    [ "$code" = 0 ]
+    byte_at pairs.log $verdict 00$((before == 1 ? 2 : 1))
+    as_in_process pairs.log
+    [ "$code" = 1 ]
+    holds '.different == 1 and .same == 499'
+    holds '.differences | length == 1 and (.[0] | .kind == "verdict" and .then != .now)'
+    "$FMB" replay --bus --junit junit.xml pairs.log > text && false
+    grep -q 'verdict: ' text
+    grep -q '^asked fmbd: 500 queries in ' text
+    grep -q '<failure message="1 of 500 queries' junit.xml
+    grep -q 'the service answered all' junit.xml
+    stop_fmbd
+}
+
+@test "keys of the log become keys of the service, and then components where these die" {
+    generate --blast pairs 3000 --by-key keys.log
+    generate clients clients.log
+    generate crowd crowd.log
+    start_fmbd
+    for log in keys clients crowd; do
+        as_in_process $log.log
+    done
+    # What it holds is used.
+    before=$(status_of hits)
+    as_in_process keys.log
+    [ $(($(status_of hits) - before)) -ge 3000 ]
+    stop_fmbd
+    start_fmbd --bodies 2
+    for log in keys clients crowd; do
+        as_in_process $log.log
+        holds '.bus.dead_keys > 0'
+    done
+    stop_fmbd
+}
+
+@test "scenes that are too long for a datagram with their components" {
+    generate --blast scenes 60 scenes.log
+    start_fmbd
+    as_in_process scenes.log
+    [ "$code" = 0 ]
+    holds '.pairs > 500000 and .bus.brought_bodies > 0'
+    stop_fmbd
+    # A service that cannot hold as many bodies is told so.
+    start_fmbd --bodies 10
+    replay scenes.log
+    [ "$code" = 0 ]
+    holds '.unknown_body > 0 and .same + .unknown_body == .queries'
+    stop_fmbd
+}
+
+@test "queries that are longer than any service hears" {
+    generate hard-2d hard.log
+    # A pair of frames that are nothing but zeros; the last list of all has the rest.
+    for numbers in 8120 8173; do
+        {
+            dd if=hard.log bs=1 skip="$(place_of hard.log FMB_PAIR_QUERY 1)" count=8 status=none
+            head -c 100 /dev/zero
+            for ((i = 24; i >= 0; i -= 8)); do printf "\\x$(printf %02x $((numbers >> i & 255)))"; done
+            head -c $((8 * numbers)) /dev/zero
+        } | event long.log FMB_PAIR_QUERY
+    done
+    "$FMB" replay --write-golden golden long.log
+    start_fmbd
+    as_in_process --golden golden long.log
+    [ "$code" = 0 ]
+    holds '.same == 2 and .bus.too_long == 1 and .bus.answered == 2'
+    [ "$(status_of results.OVER_LIMIT)" = 1 ]
+    "$FMB" replay --bus --golden golden long.log | grep -q '1 too long to be asked'
+    stop_fmbd
+}
+
+@test "--speed keeps to the times of the log" {
+    generate arm arm.log
+    first=$(utime_at arm.log FMB_PAIR_QUERY 1)
+    last=$(utime_at arm.log FMB_PAIR_QUERY 48)
+    [ $((last - first)) -gt 100000 ]
+    start_fmbd
+    # Nothing is early; how late is another matter.
+    for speed in 4 1 0.5; do
+        replay --speed $speed arm.log
+        [ "$code" = 0 ]
+        holds ".bus.ns >= 1000 * ($last - $first) / $speed and .bus.late_ns > 0"
+    done
+    replay --speed 0 arm.log
+    holds '.exit == 0 and .bus.late_ns == 0'
+    stop_fmbd
+}
+
+@test "workers are killed, and every query is answered" {
+    generate --blast pairs 20000 --by-key keys.log
+    start_fmbd
+    "$FMB" replay --json --bus --timeout 0.1 --retries 100 keys.log > replayed 3>&- &
+    replay=$!
+    started="$started $replay"
+    kills=0
+    while kill -0 $replay 2> /dev/null && [ $kills -lt 100 ]; do
+        sleep 0.2
+        worker=$(worker_of "$fmbd")
+        if [ -n "$worker" ] && kill -KILL "$worker"; then : $((++kills)); fi
+    done
+    wait $replay
+    replayed=$(cat replayed)
+    holds '.same == 20000 and .exit == 0'
+    holds '.bus.services > 1 and .bus.sent_again > 0'
+    stop_fmbd
+}
+
+@test "one datagram in ten lost, and one overtaken" {
+    generate clients clients.log
+    generate refused refused.log
+    generate --blast pairs 300 --by-key keys.log
+    start_fmbd
+    "$FMB_BUILD/soak-relay" 7667 7668 10 3>&- &
+    started="$started $!"
+    through=(--lcm-url 'udpm://239.255.76.67:7668?ttl=0' --timeout 0.05)
+    for log in clients refused keys; do
+        in_process=$("$FMB" replay --json $log.log)
+        replay "${through[@]}" --retries 400 $log.log
+        [ "$code" = 0 ]
+        [ "$(essence "$in_process")" = "$(essence "$replayed")" ]
+        holds '.bus.sent_again > 0'
+    done
+    stop_fmbd
+}
+
+@test "beside others that ask as fast as they can, and damaged results, as many times at once" {
+    generate clients clients.log
+    generate --blast pairs 300 --by-key keys.log
+    start_fmbd
+    "$FMB_BUILD/poke" flood pair_query 101 60 > /dev/null 3>&- &
+    flood=$!
+    started="$started $flood"
+    "$FMB_BUILD/poke" FMB_PAIR_RESULT pair_result > /dev/null 3>&- &
+    started="$started $!"
+    for i in 1 2 3; do
+        "$FMB" replay --json --bus --retries 100 keys.log clients.log > replayed.$i 3>&- &
+        replays="${replays-} $!"
+    done
+    for pid in $replays; do wait "$pid"; done
+    kill $flood
+    in_process=$("$FMB" replay --json keys.log clients.log)
+    for i in 1 2 3; do
+        [ "$(essence "$in_process")" = "$(essence "$(cat replayed.$i)")" ]
+    done
+    stop_fmbd
+}
+
+@test "a service that is busy is asked again" {
+    generate --blast pairs 20 pairs.log
+    LUA_PATH="$root/build/examples/lua/?.lua;;" lua5.2 "$root/tests/system/busy.lua" 5 > asked 3>&- &
+    started="${started-} $!"
+    sleep 0.5
+    replay pairs.log
+    holds '.queries == 20 and .busy == 0 and .bus.busy >= 5'
+    # It says of all that they are separated; nothing was taken from another's answer.
+    holds '.same + .different == 20 and .same > 0'
+    holds 'all(.differences[]; .kind != "verdict" or .now.verdict == "separated")'
+    grep -q busy asked
+}
+
+@test "SIGINT ends it with what was answered so far" {
+    generate --blast pairs 5000 pairs.log
+    start_fmbd
+    # A shell's background job ignores SIGINT; env gives it back.
+    env --default-signal=INT "$FMB" replay --json --bus --speed 0.01 pairs.log > replayed 2> stderr 3>&- &
+    replay=$!
+    started="$started $replay"
+    some_answered() { [ "$(status_of received)" -gt 5 ]; }
+    wait_until some_answered
+    kill -INT $replay
+    code=0
+    wait $replay || code=$?
+    [ "$code" = 2 ]
+    grep -q '^fmb: ended by a signal; counts are of [0-9,]* queries, answered so far$' stderr
+    replayed=$(cat replayed)
+    holds '.exit == 2 and .bus.end == "signal" and .queries > 5 and .queries < 5000'
+    holds '.different == 0 and .no_result == 0 and .same >= .queries - 1 and .same <= .queries'
+    stop_fmbd
+}
+
+@test "nobody there, and nobody any more" {
+    generate arm arm.log
+    code=0
+    "$FMB" replay --bus --timeout 0.05 --retries 2 arm.log > stdout 2> stderr || code=$?
+    [ "$code" = 2 ]
+    [ ! -s stdout ]
+    grep -q '^fmb: no fmbd answered on FMB_PAIR_RESULT and FMB_SCENE_RESULT of .* within 0.15 s$' stderr
+    grep -q "^fmb: start one with 'fmbd &'" stderr
+    [ "$(wc -l < stderr)" = 2 ]
+    # Another service does not answer.
+    start_fmbd --prefix P
+    "$FMB" replay --bus --timeout 0.05 --retries 2 arm.log 2> stderr && false
+    grep -q 'no fmbd answered' stderr
+    stop_fmbd
+    start_fmbd
+    "$FMB" replay --json --bus --timeout 0.05 --retries 3 --speed 0.01 --junit junit.xml arm.log > replayed 2> stderr 3>&- &
+    replay=$!
+    some_answered() { [ "$(status_of received)" -gt 3 ]; }
+    wait_until some_answered
+    stop_fmbd
+    code=0
+    wait $replay || code=$?
+    [ "$code" = 2 ]
+    grep -q '^fmb: fmbd answered [0-9,]* queries, and then nothing for 0.2 s; the next one is event [0-9]* (offset [0-9]*) of arm.log$' stderr
+    replayed=$(cat replayed)
+    holds '.exit == 2 and .bus.end == "nobody answers" and .queries == .bus.answered'
+    grep -q '<error message="it answered [0-9]* queries"/>' junit.xml
+}
+
+@test "a log of another prefix, and a bus that is not there" {
+    generate arm arm.log
+    start_fmbd
+    replay --prefix P arm.log
+    [ "$code" = 2 ]
+    holds '.queries == 0 and .other_events > 0 and .bus.answered == 0'
+    stop_fmbd
+    code=0
+    "$FMB" replay --bus --lcm-url udpm://239.255.76.67 --write-golden golden arm.log > stdout 2> stderr || code=$?
+    [ "$code" = 2 ]
+    grep -q 'has no port' stderr
+    # Nothing was begun.
+    [ ! -s stdout ]
+    [ ! -e golden ]
+}
+
+@test "options that do not go together" {
+    for options in '--bus --jobs 2' '--bus --bodies 5' '--speed 1' '--timeout 1' '--retries 1' \
+        '--lcm-url udpm://239.255.76.67:7667' '--bus --speed -1' '--bus --timeout 0' \
+        '--bus --retries x'; do
+        run "$FMB" replay $options some.log
+        [ "$status" = 2 ]
+        [[ "$output" == "fmb replay: "* ]]
+    done
+}
