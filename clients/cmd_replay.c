@@ -11,7 +11,7 @@
 #include "replay_json.h"
 #include "replay_junit.h"
 #include "replay_text.h"
-#include "temporary.h"
+#include "listing.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
@@ -132,10 +133,9 @@ struct run {
     const struct options *options;
     struct progress progress;
     int64_t first_utime;
-    int64_t told, untold; /* differences */
+    struct listing *told;
     int64_t complaints;
     struct replay_json json;
-    FILE *found; /* for JUnit; NULL: not wanted */
 };
 
 static const char *log_name(const struct run *run, int log)
@@ -146,23 +146,7 @@ static const char *log_name(const struct run *run, int log)
 static void on_found(void *user, const struct found *found)
 {
     struct run *run = user;
-    const struct options *options = run->options;
-    if (run->told >= options->limit) {
-        run->untold++;
-        return;
-    }
-    run->told++;
-    progress_end(&run->progress);
-    const char *log = log_name(run, found->place.log);
-    char line[REPLAY_LINE_MAX];
-    if (options->json) {
-        replay_json_found(&run->json, found, log, run->first_utime);
-    } else {
-        replay_line(found, options->replay.log_count > 1 ? log : NULL, run->first_utime, line);
-        puts(line);
-    }
-    if (run->found)
-        found_write(run->found, found);
+    listing_put(run->told, found);
 }
 
 /* Whether one more may be printed. */
@@ -196,6 +180,16 @@ static void on_progress(void *user, int64_t bytes)
 }
 
 /* ---- Before and after ---- */
+
+/* As many files at a time as the system grants: each log is one. */
+static void open_many(void)
+{
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+        return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
 
 /* When the logs begin. */
 static int64_t first_utime(const struct replay_options *options)
@@ -231,7 +225,7 @@ static bool write_junit(const struct run *run, const struct tally *tally)
         fprintf(stderr, "fmb: %s: %s\n", options->junit, strerror(errno));
         return false;
     }
-    replay_junit(file, &options->replay, run->found, tally, run->first_utime);
+    replay_junit(file, &options->replay, run->told, tally, run->first_utime);
     return close_written(file, options->junit);
 }
 
@@ -249,7 +243,7 @@ static bool write_page(const struct options *options)
 /* Why nothing was compared, for people; NULL: something was, or nothing had to be. */
 static const char *why_nothing(const struct options *options, const struct tally *all)
 {
-    const bool in_part = options->replay.from > 0 || isfinite(options->replay.to);
+    const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
     if (tally_queries(all) == 0)
         return in_part ? NULL : "there are no queries of this service";
     if (tally_compared(all) > 0 || options->replay.write_golden)
@@ -271,13 +265,18 @@ static int code_of(const struct options *options, const struct tally *all)
     return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
 }
 
-static void tell_rest(const struct run *run)
+static void tell_one(void *user, const struct found *found)
 {
-    if (run->complaints > COMPLAINTS_MAX)
-        fprintf(stderr, "fmb: and %" PRId64 " more that could not be read\n",
-                run->complaints - COMPLAINTS_MAX);
-    if (run->untold > 0 && !run->options->json)
-        printf("and %" PRId64 " more differences (--limit)\n", run->untold);
+    struct run *run = user;
+    const bool several = run->options->replay.log_count > 1;
+    const char *log = log_name(run, found->place.log);
+    char line[REPLAY_LINE_MAX];
+    if (run->options->json) {
+        replay_json_found(&run->json, found, log, run->first_utime);
+        return;
+    }
+    replay_line(found, several ? log : NULL, run->first_utime, line);
+    puts(line);
 }
 
 /* Where there was no bus, or nobody on it, counts say nothing. */
@@ -289,10 +288,20 @@ static bool has_counts(const struct run *run, const struct tally *all)
 
 static void tell_all(struct run *run, const struct tally *all, int code)
 {
-    tell_rest(run);
+    const int64_t beyond = listing_beyond(run->told);
+    if (run->complaints > COMPLAINTS_MAX)
+        fprintf(stderr, "fmb: and %" PRId64 " more that could not be read\n",
+                run->complaints - COMPLAINTS_MAX);
     if (run->options->json)
-        replay_json_end(&run->json, all, run->untold, code);
-    else if (has_counts(run, all))
+        run->json = replay_json_begin(stdout);
+    listing_each(run->told, tell_one, run);
+    if (run->options->json) {
+        replay_json_end(&run->json, all, beyond, code);
+        return;
+    }
+    if (beyond > 0)
+        printf("and %" PRId64 " more differences (--limit)\n", beyond);
+    if (has_counts(run, all))
         replay_text_summary(stdout, all);
 }
 
@@ -304,8 +313,6 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
     run->progress = progress_begin_bytes((uint64_t) size);
-    if (options->json)
-        run->json = replay_json_begin(stdout);
     bool good = replay_jobs(&options->replay, (int) options->jobs, size, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
@@ -327,23 +334,34 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
 static int run_replay(struct options *options)
 {
     struct run run = {.options = options};
+    open_many();
     const int64_t size = replay_size(&options->replay);
     if (size < 0)
         return ARGS_USAGE;
-    if (options->junit && !(run.found = temporary_open())) {
-        perror("fmb: a temporary file");
-        return ARGS_USAGE;
-    }
     run.first_utime = first_utime(&options->replay);
     if (options->html)
         options->replay.page = page_open(options->replay.log[0], run.first_utime);
+    run.told = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
     const int code = replay(&run, size, tally);
     free(tally);
     page_close(options->replay.page);
-    if (run.found)
-        fclose(run.found);
+    listing_close(run.told);
     return code;
+}
+
+/* A report goes where no log is, lest 'fmb replay --junit *.log' costs one. */
+static bool check_report(const struct args *args, const char *option, const char *path)
+{
+    static const unsigned char begin[] = {0xed, 0xa1, 0xda, 0x01};
+    unsigned char found[sizeof begin];
+    FILE *file = path ? fopen(path, "rb") : NULL;
+    if (!file)
+        return true;
+    const bool is_log = fread(found, 1, sizeof found, file) == sizeof found &&
+                        memcmp(found, begin, sizeof begin) == 0;
+    fclose(file);
+    return !is_log || args_error(args, "--%s: %s is an event log", option, path);
 }
 
 static bool check_options(const struct args *args, const struct options *options)
@@ -352,7 +370,7 @@ static bool check_options(const struct args *args, const struct options *options
         return args_error(args, "expected a LOG");
     if (options->jobs > 1 && (options->html || options->replay.write_golden))
         return args_error(args, "--jobs does not go with --html and --write-golden");
-    return true;
+    return check_report(args, "junit", options->junit) && check_report(args, "html", options->html);
 }
 
 /* What goes with answers of this process, and what with those of a service. */

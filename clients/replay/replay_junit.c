@@ -10,19 +10,45 @@ enum { LINES_MAX = 100 };
 
 static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
-/* As the text of an element, or of an attribute in double quotes. What XML cannot hold becomes '?'.
- */
+/* ---- XML ---- */
+
+/* How many bytes of UTF-8 the text begins with that are one character of XML; 0: none. */
+static size_t character_at(const unsigned char *text)
+{
+    static const uint32_t least[] = {0, ' ', 0x80, 0x800, 0x10000};
+    const size_t size = text[0] < 0x80                      ? 1
+                        : text[0] >= 0xc0 && text[0] < 0xe0 ? 2
+                        : text[0] >= 0xe0 && text[0] < 0xf0 ? 3
+                        : text[0] >= 0xf0 && text[0] < 0xf8 ? 4
+                                                            : 0;
+    uint32_t code = size > 1 ? text[0] & (0x7fu >> size) : text[0];
+    for (size_t i = 1; i < size; i++) {
+        if ((text[i] & 0xc0) != 0x80) /* the final 0 too */
+            return 0;
+        code = code << 6 | (text[i] & 0x3f);
+    }
+    const bool bad = size == 0 || (code < least[size] && code != '\n') || code > 0x10ffff ||
+                     (code >= 0xd800 && code < 0xe000) || code == 0xfffe || code == 0xffff;
+    return bad ? 0 : size;
+}
+
+/* As the text of an element, or of an attribute in double quotes. What XML cannot hold becomes '?',
+ * byte by byte. */
 static void write_xml(FILE *out, const char *text)
 {
-    for (; *text; text++)
+    for (size_t size; *text; text += size ? size : 1) {
+        size = character_at((const unsigned char *) text);
         switch (*text) {
         case '&': fputs("&amp;", out); break;
         case '<': fputs("&lt;", out); break;
         case '>': fputs("&gt;", out); break;
         case '"': fputs("&quot;", out); break;
-        default: putc((unsigned char) *text < ' ' && *text != '\n' ? '?' : *text, out);
+        default: fprintf(out, "%.*s", size ? (int) size : 1, size ? text : "?");
         }
+    }
 }
+
+/* ---- Cases ---- */
 
 static void begin_case(FILE *out, const char *log, const char *name)
 {
@@ -31,21 +57,24 @@ static void begin_case(FILE *out, const char *log, const char *name)
     fprintf(out, "\" name=\"%s\">\n", name);
 }
 
-static void write_lines(FILE *out, FILE *found_file, int log, int channel, int64_t first_utime)
+/* The lines of one case. */
+struct lines {
+    FILE *out;
+    int log, channel, count;
+    int64_t first_utime;
+};
+
+static void write_line(void *user, const struct found *found)
 {
-    struct found found;
-    struct found_text text;
+    struct lines *lines = user;
     char line[REPLAY_LINE_MAX];
-    int lines = 0;
-    rewind(found_file);
-    while (lines < LINES_MAX && found_read(found_file, &found, &text)) {
-        if (found.place.log != log || tally_channel_of(found.kind) != channel)
-            continue;
-        replay_line(&found, NULL, first_utime, line);
-        write_xml(out, line);
-        putc('\n', out);
-        lines++;
-    }
+    if (found->place.log != lines->log || tally_channel_of(found->kind) != lines->channel ||
+        lines->count == LINES_MAX)
+        return;
+    replay_line(found, NULL, lines->first_utime, line);
+    write_xml(lines->out, line);
+    putc('\n', lines->out);
+    lines->count++;
 }
 
 static int64_t differences_of(const struct tally_channel *channel)
@@ -56,8 +85,9 @@ static int64_t differences_of(const struct tally_channel *channel)
     return sum;
 }
 
-static void write_channel(FILE *out, const char *log, int index, int channel_index, FILE *found,
-                          const struct tally_channel *channel, int64_t first_utime)
+static void write_channel(FILE *out, const char *log, int index, int channel_index,
+                          struct listing *told, const struct tally_channel *channel,
+                          int64_t first_utime)
 {
     begin_case(out, log, channel_name[channel_index]);
     if (channel->outcome[REPLAY_DIFFERENT] > 0) {
@@ -65,7 +95,8 @@ static void write_channel(FILE *out, const char *log, int index, int channel_ind
                 "      <failure message=\"%" PRId64 " of %" PRId64
                 " queries are answered differently, in %" PRId64 " pairs\">",
                 channel->outcome[REPLAY_DIFFERENT], channel->queries, differences_of(channel));
-        write_lines(out, found, index, channel_index, first_utime);
+        struct lines lines = {out, index, channel_index, 0, first_utime};
+        listing_each(told, write_line, &lines);
         fputs("</failure>\n", out);
     }
     fprintf(out,
@@ -99,8 +130,8 @@ static void write_bus(FILE *out, const char *log, const struct tally *tally)
     fputs("    </testcase>\n", out);
 }
 
-static void write_log(FILE *out, const char *log, int index, FILE *found, const struct tally *tally,
-                      int64_t first_utime)
+static void write_log(FILE *out, const char *log, int index, struct listing *told,
+                      const struct tally *tally, int64_t first_utime)
 {
     int failures = 0;
     for (int i = 0; i < TALLY_CHANNELS; i++)
@@ -111,7 +142,7 @@ static void write_log(FILE *out, const char *log, int index, FILE *found, const 
             TALLY_CHANNELS + 1 + (int) tally->bus.used, failures,
             !is_whole(tally) + ended_early(tally));
     for (int i = 0; i < TALLY_CHANNELS; i++)
-        write_channel(out, log, index, i, found, &tally->channel[i], first_utime);
+        write_channel(out, log, index, i, told, &tally->channel[i], first_utime);
     begin_case(out, log, "the log is whole");
     if (!is_whole(tally))
         fprintf(out,
@@ -123,11 +154,11 @@ static void write_log(FILE *out, const char *log, int index, FILE *found, const 
     fputs("  </testsuite>\n", out);
 }
 
-void replay_junit(FILE *out, const struct replay_options *options, FILE *found,
+void replay_junit(FILE *out, const struct replay_options *options, struct listing *told,
                   const struct tally *tally, int64_t first_utime)
 {
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"fmb replay\">\n", out);
     for (int i = 0; i < options->log_count; i++)
-        write_log(out, options->log[i], i, found, &tally[i], first_utime);
+        write_log(out, options->log[i], i, told, &tally[i], first_utime);
     fputs("</testsuites>\n", out);
 }

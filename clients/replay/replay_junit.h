@@ -4,10 +4,10 @@
 #define REPLAY_JUNIT_H
 
 #include "replay.h"
+#include "listing.h"
 
-/* On input: found: of all logs, the first ones, as found_write() wrote them; tally[log_count].
- * Where out fails, ferror() tells. */
-void replay_junit(FILE *out, const struct replay_options *options, FILE *found,
+/* On input: tally[log_count]. Where out fails, ferror() tells. */
+void replay_junit(FILE *out, const struct replay_options *options, struct listing *told,
                   const struct tally *tally, int64_t first_utime);
 
 #endif

@@ -1,0 +1,121 @@
+/* Which differences are told, and in which order: against all of them, sorted. */
+#include "listing.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static uint64_t drawn = 1;
+
+static uint64_t draw(uint64_t below)
+{
+    drawn = drawn * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (drawn >> 33) % below;
+}
+
+enum { PUT_MAX = 3000 };
+
+static struct found put[PUT_MAX];
+static int told_count;
+
+/* What is told next has to be put[told_count]. */
+static void on_told(void *user, const struct found *found)
+{
+    const struct found *expected = &put[told_count++];
+    (void) user;
+    assert_int_equal(found->place.log, expected->place.log);
+    assert_int_equal(found->place.offset, expected->place.offset);
+    assert_int_equal(found->place.number, expected->place.number);
+    const char *certificate = found->difference.then.certificate;
+    const int64_t number = found->place.number;
+    char text[32];
+    snprintf(text, sizeof text, "certificate %d", (int) number);
+    if (number % 2)
+        assert_string_equal(certificate, text);
+    else
+        assert_null(certificate);
+    assert_null(found->difference.now.certificate);
+}
+
+static struct found draw_found(int number)
+{
+    struct found found = {.place = {.number = number}};
+    found.place.log = (int32_t) draw(3);
+    found.place.offset = (int64_t) draw(40) - 20;
+    return found;
+}
+
+static int compare(const void *left, const void *right)
+{
+    const struct found *a = left, *b = right;
+    if (a->place.log != b->place.log)
+        return a->place.log < b->place.log ? -1 : 1;
+    if (a->place.offset != b->place.offset)
+        return a->place.offset < b->place.offset ? -1 : 1;
+    return a->place.number < b->place.number ? -1 : 1;
+}
+
+static void check(int count, int64_t limit, int order)
+{
+    struct listing *told = listing_open(limit);
+    for (int i = 0; i < count; i++) {
+        char text[32];
+        put[i] = draw_found(i);
+        if (order != 0)
+            put[i].place.offset = order * (int64_t) i;
+        struct found found = put[i];
+        snprintf(text, sizeof text, "certificate %d", i);
+        found.difference.then.certificate = i % 2 ? text : NULL;
+        listing_put(told, &found);
+    }
+    qsort(put, (size_t) count, sizeof *put, compare);
+    const int kept = count < limit ? count : (int) limit;
+    assert_int_equal(listing_beyond(told), count - kept);
+    for (int times = 0; times < 2; times++) {
+        told_count = 0;
+        listing_each(told, on_told, NULL);
+        assert_int_equal(told_count, kept);
+    }
+    listing_close(told);
+}
+
+static void test_the_first_ones(void **state)
+{
+    static const int64_t limits[] = {0, 1, 2, 3, 7, 100, 1000, PUT_MAX, INT32_MAX};
+    (void) state;
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
+        for (int order = -1; order <= 1; order++) {
+            check(0, limits[i], order);
+            for (int count = 1; count <= PUT_MAX; count = 3 * count + 1)
+                check(count, limits[i], order);
+        }
+}
+
+/* Of a long certificate the beginning. */
+static void test_long_certificates(void **state)
+{
+    static char text[1000];
+    (void) state;
+    memset(text, 'x', sizeof text - 1);
+    struct found found = {.place = {.number = 1}};
+    found.difference.then.certificate = text;
+    struct listing *told = listing_open(1);
+    listing_put(told, &found);
+    text[0] = '\0'; /* it is copied */
+    listing_close(told);
+    listing_close(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_first_ones),
+        cmocka_unit_test(test_long_certificates),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
