@@ -5,6 +5,7 @@
 #include "temporary.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,7 @@ struct job {
  *
  * Texts that are static are where they were: the process is a copy of this one. */
 
-enum record_kind { RECORD_FOUND, RECORD_UNREADABLE, RECORD_DAMAGE };
+enum record_kind { RECORD_FOUND, RECORD_UNREADABLE, RECORD_DAMAGE, RECORD_KINDS };
 
 struct unreadable {
     struct match_place place;
@@ -113,7 +114,7 @@ static bool tell_again(FILE *told, const struct replay_sink *sink)
     bool good = true;
     rewind(told);
     for (int kind; good && (kind = getc(told)) != EOF;)
-        good = again[kind](told, sink);
+        good = kind < RECORD_KINDS && again[kind](told, sink);
     return good && !ferror(told);
 }
 
@@ -149,10 +150,11 @@ static bool begin(const struct replay_options *options, struct job *job)
 }
 
 /* Of those that have ended. False: badly. */
-static bool reap(struct job *job, bool wait)
+static bool reap(struct job *job)
 {
-    int status;
-    if (job->pid == 0 || waitpid(job->pid, &status, wait ? 0 : WNOHANG) != job->pid)
+    int status = -1; /* where it is not known */
+    const pid_t ended = job->pid == 0 ? 0 : waitpid(job->pid, &status, WNOHANG);
+    if (ended == 0)
         return true;
     job->pid = 0;
     *job->progress = job->part.end;
@@ -181,7 +183,7 @@ static bool wait_for(struct job *job, int jobs, const struct replay_sink *sink)
     while (any) {
         any = false;
         for (int i = 0; i < jobs; i++) {
-            good = reap(&job[i], false) && good;
+            good = reap(&job[i]) && good;
             any = any || job[i].pid > 0;
         }
         sink->progress(sink->user, progress_of(job, jobs));
@@ -195,7 +197,8 @@ static bool run_all(const struct replay_options *options, struct job *job, int j
                     const struct replay_sink *sink, struct tally *tally)
 {
     bool good = true;
-    fflush(NULL); /* what is buffered is written once */
+    fflush(NULL);             /* what is buffered is written once */
+    signal(SIGCHLD, SIG_DFL); /* who started this may not want to hear of children; this does */
     for (int i = 0; i < jobs; i++)
         good = begin(options, &job[i]) && good;
     good = wait_for(job, jobs, sink) && good;
