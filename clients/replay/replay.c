@@ -12,6 +12,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Bytes between two words of progress. */
 enum { PROGRESS_BYTES = 1 << 16 };
@@ -59,7 +60,7 @@ static struct tally_channel *channel_of(struct replay *replay, const struct matc
 
 static bool in_time(const struct replay *replay, int64_t utime)
 {
-    const double seconds = 1e-6 * ((double) utime - (double) replay->first_utime);
+    const double seconds = ((double) utime - (double) replay->first_utime) / 1e6;
     return seconds >= replay->options->from && seconds < replay->options->to;
 }
 
@@ -382,12 +383,31 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- The run ---- */
 
+static bool same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    return stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+static bool is_read(const struct replay_options *options, const char *path)
+{
+    for (int log = 0; log < options->log_count; log++)
+        if (same_file(options->log[log], path))
+            return true;
+    return options->golden && same_file(options->golden, path);
+}
+
 static bool open_goldens(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
     char why[LOG_WHY_MAX];
     if (options->golden && !(replay->golden = log_open(options->golden, why))) {
         fprintf(stderr, "fmb: %s: %s\n", options->golden, why);
+        return false;
+    }
+    if (options->write_golden && is_read(options, options->write_golden)) {
+        fprintf(stderr, "fmb: %s: it is read: write elsewhere\n", options->write_golden);
         return false;
     }
     if (options->write_golden &&

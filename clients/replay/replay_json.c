@@ -40,7 +40,7 @@ void replay_json_found(struct replay_json *json, const struct found *found, cons
             ", \"time\": %s, \"channel\": \"%s\", \"client_id\": %" PRId64
             ", \"sequence_number\": %" PRId64,
             found->place.number, found->place.offset, found->place.utime,
-            number_exact(1e-6 * ((double) found->place.utime - (double) first_utime), time),
+            number_exact(((double) found->place.utime - (double) first_utime) / 1e6, time),
             channel_name[tally_channel_of(found->kind)], found->ids.client_id,
             found->ids.sequence_number);
     if (!difference->whole)

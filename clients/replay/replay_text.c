@@ -4,17 +4,25 @@
 #include "wire.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 /* ---- One difference ---- */
 
+static const char *end_text(double value, char text[NUMBER_TEXT_MAX])
+{
+    if (!isinf(value))
+        return number_exact(value, text);
+    return strcpy(text, value < 0 ? "-inf" : "inf");
+}
+
 static void interval_text(const struct fmb_answer *answer, char text[REPLAY_SIDE_MAX])
 {
     char ends[2][NUMBER_TEXT_MAX];
     if (answer->has_contact)
-        snprintf(text, REPLAY_SIDE_MAX, "%s to %s s", number_exact(answer->contact[0], ends[0]),
-                 number_exact(answer->contact[1], ends[1]));
+        snprintf(text, REPLAY_SIDE_MAX, "%s to %s s", end_text(answer->contact[0], ends[0]),
+                 end_text(answer->contact[1], ends[1]));
     else
         strcpy(text, "none");
 }
@@ -26,10 +34,9 @@ static void box_text(const struct fmb_answer *answer, int dim, char text[REPLAY_
     size_t used = 0;
     strcpy(text, "none");
     for (int axis = 0; axis < dim && answer->has_box; axis++)
-        used +=
-            (size_t) snprintf(text + used, REPLAY_SIDE_MAX - used, "%s%c %s..%s", axis ? "  " : "",
-                              axis_name[axis], number_exact(answer->box[0][axis], ends[0]),
-                              number_exact(answer->box[1][axis], ends[1]));
+        used += (size_t) snprintf(
+            text + used, REPLAY_SIDE_MAX - used, "%s%c %s..%s", axis ? "  " : "", axis_name[axis],
+            end_text(answer->box[0][axis], ends[0]), end_text(answer->box[1][axis], ends[1]));
 }
 
 static void status_text(const struct difference_side *side, char text[REPLAY_SIDE_MAX])
@@ -68,7 +75,7 @@ void replay_line(const struct found *found, const char *log, int64_t first_utime
                  difference->body_id[1]);
     snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
              log ? log : "", log ? ": " : "", found->place.number,
-             1e-6 * ((double) found->place.utime - (double) first_utime), bodies,
+             ((double) found->place.utime - (double) first_utime) / 1e6, bodies,
              difference_name(difference->kind), then, now);
 }
 
