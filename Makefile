@@ -99,7 +99,7 @@ demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
 	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-relay $(B)/logs/generate \
-	$(B)/logs/tell $(B)/make-page $(B)/events $(capped_programs)
+	$(B)/logs/tell $(B)/make-page $(B)/edit-log $(B)/events $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -304,6 +304,12 @@ $(O)/tests/page/%.o: tests/page/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) $(clients_see)
 
+$(B)/edit-log: $(O)/tests/replay/edit_log.o $(O)/tests/unit/log_draft.o $(client_objects) \
+		$(answer_objects) $(bus_objects) $(O)/service/senders.o $(message_objects) \
+		$(asking_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+
 # Tests of the engine link neither LCM nor the service.
 $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
@@ -380,6 +386,10 @@ unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views)),-Ites
 	$(if $(filter $1,$(engine_views)),,-Iservice) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\
 		$(clients_see) -Itests/hostile -I$(GEN))
+$(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) $(clients_see) -Itests/unit
+
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(call unit_sees,$*)
@@ -727,7 +737,7 @@ clean:
 
 build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev
 test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
-	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium
+	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils
 
 fuzz_packages := $(build_packages) clang libclang-rt-14-dev llvm afl++
 

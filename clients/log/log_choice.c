@@ -65,7 +65,7 @@ bool log_choice_is_all(const struct log_choice *choice)
 
 bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, int64_t utime)
 {
-    const double seconds = 1e-6 * ((double) utime - (double) first_utime);
+    const double seconds = ((double) utime - (double) first_utime) / 1e6;
     return seconds >= choice->from && seconds < choice->to;
 }
 

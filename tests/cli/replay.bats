@@ -1,0 +1,671 @@
+# fmb replay: what is typed, what is printed, exit codes; on logs that are made here, and spoiled by
+# edit-log in one way each.
+
+bats_require_minimum_version 1.5.0
+
+setup_file() {
+    cd "$BATS_FILE_TMPDIR" || return
+    local build
+    build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
+    for kind in arm clients foreign refused; do "$build/logs/generate" $kind $kind.log; done
+    "$build/logs/generate" --blast pairs 400 --box --certificate blast.log
+    "$build/logs/generate" --blast pairs 40 --moving --box --whole moving.log
+}
+
+setup() {
+    local build
+    build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
+    FMB=$build/fmb
+    EDIT=$build/edit-log
+    cd "$BATS_TEST_TMPDIR" || return
+    ln -s "$BATS_FILE_TMPDIR"/*.log .
+}
+
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status: $output $stderr"
+        return 1
+    }
+}
+
+# edit EDIT... LOG: the copy is spoiled.log.
+edit() {
+    "$EDIT" "$@" spoiled.log
+}
+
+# replay ARGUMENT...: as JSON, kept apart from what is said.
+replay() {
+    run --separate-stderr "$FMB" replay --json "$@"
+    [ "${#lines[@]}" = 1 ]
+    jq -e . <<< "$output" > /dev/null
+}
+
+# counts EXPRESSION: jq says true of the report.
+counts() {
+    jq -e "$1" <<< "$output" > /dev/null || {
+        echo "not so: $1"
+        jq -c . <<< "$output"
+        return 1
+    }
+}
+
+# What a report says but for the times taken.
+report_of() {
+    "$FMB" replay --json "$@" 2> /dev/null | jq -cS 'del(.compute.now)'
+}
+
+# same_in_jobs ARGUMENT...: JOBS: how many there are.
+same_in_jobs() {
+    report_of "$@" > one
+    for jobs in ${JOBS:-2 5}; do
+        report_of -j $jobs "$@" > several
+        cmp one several || {
+            echo "with $jobs jobs, of $*"
+            return 1
+        }
+    done
+}
+
+# junit ARGUMENT...: the report is well-formed.
+junit() {
+    run "$FMB" replay --junit report.xml "$@"
+    xmllint --noout report.xml
+}
+
+# xpath EXPRESSION: what the report says there.
+xpath() {
+    xmllint --xpath "string($1)" report.xml
+}
+
+# ---- All the same -----------------------------------------------------------------------------
+
+@test "a log that says what is so" {
+    run --separate-stderr "$FMB" replay arm.log
+    ended 0
+    [ -z "$stderr" ]
+    [[ $output == *"FMB_PAIR_QUERY             48           48           48            0 "* ]]
+    [[ $output == *"146 events, 0.1 MB; 0 on other channels; 0 results of queries that are not here"* ]]
+    replay arm.log
+    ended 0
+    counts '.queries == 72 and .same == 72 and .differences == [] and .exit == 0'
+    counts '.events == 146 and .bytes == 60308 and .statuses == 2 and .results == 72'
+    counts '.channels.FMB_PAIR_QUERY.queries == 48 and .channels.FMB_SCENE_QUERY.pairs == 408'
+    counts '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
+}
+
+@test "every kind of log, in one part or several" {
+    for log in arm clients foreign refused blast moving; do
+        replay $log.log
+        counts '.different == 0 and .queries == .same + .busy + .unknown_body + .no_result'
+        same_in_jobs $log.log
+    done
+}
+
+@test "more jobs than there is to do" {
+    JOBS='73 256' same_in_jobs clients.log
+}
+
+@test "what a service could not answer then is counted apart" {
+    replay clients.log
+    ended 0
+    counts '.busy > 0 and .unknown_body > 0 and .no_result > 0 and .same > 0'
+    replay refused.log
+    ended 0
+    counts '.channels.FMB_PAIR_QUERY.unknown_body > 0'
+    edit --busy 3 --unknown 5 --busy 11 moving.log
+    replay spoiled.log
+    ended 0
+    counts '.busy == 2 and .unknown_body == 1 and .same == 37'
+}
+
+# ---- Differences ------------------------------------------------------------------------------
+
+@test "another verdict" {
+    edit --flip 3 --flip 4 arm.log
+    run --separate-stderr "$FMB" replay spoiled.log
+    ended 1
+    [ -z "$stderr" ]
+    [ "${lines[0]}" = 'event 7  0.010000 s  bodies 3 1  verdict: overlapping, now touching' ]
+    [[ ${lines[1]} =~ ^event\ [0-9]+\ .*\ verdict:\ (touching|overlapping),\ now\  ]]
+    [[ $output == *'different in: 2 verdict'* ]]
+    replay spoiled.log
+    ended 1
+    counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70'
+    counts '.differences[0] | .event == 7 and .offset == 3270 and .time == 0.01 and .a == 3 and .b == 1'
+    counts '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"'
+    counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
+    same_in_jobs spoiled.log
+}
+
+@test "another number, and how near is near enough" {
+    edit --nudge 0 1e-9 moving.log
+    replay spoiled.log
+    ended 1
+    counts '.different_in.box == 1 and .different == 1'
+    counts '.differences[0] | (.then.box.max[0] != .now.box.max[0]) and (.then.contact == .now.contact)'
+    run "$FMB" replay spoiled.log
+    ended 1
+    [[ $output == *'  box: x '*', now x '* ]]
+    replay --tolerance 1e-15 spoiled.log
+    ended 1
+    replay --tolerance 1e-6 spoiled.log
+    ended 0
+    counts '.same == 40'
+    edit --flip 0 moving.log
+    replay --tolerance 1 spoiled.log
+    ended 1
+}
+
+@test "a box without an end" {
+    edit --nudge 0 inf moving.log
+    for tolerance in 0 1; do
+        replay --tolerance $tolerance spoiled.log
+        ended 1
+        counts '.different_in.box == 1 and .differences[0].then.box.max[0] == null'
+    done
+    run "$FMB" replay spoiled.log
+    ended 1
+    [[ ${lines[0]} == *" box: x "*"..inf  y "*", now x "* ]]
+}
+
+@test "another certificate" {
+    edit --certify 2 '5 more <&"'"'> of it" blast.log
+    replay spoiled.log
+    ended 1
+    counts '.different_in.certificate == 1 and .differences[0].then.certificate == "5 more <&\"'"'"'> of it"'
+    replay --tolerance 1e-12 spoiled.log
+    ended 0
+}
+
+@test "another status" {
+    edit --refuse 2 9 --refuse 3 12345 moving.log
+    replay spoiled.log
+    ended 1
+    counts '.different_in.status == 2 and .differences[1].then.error == "unknown status"'
+    counts '.differences[0] | .then == {"error": "the duration is negative or not finite"} and .now.verdict'
+    run "$FMB" replay spoiled.log
+    [[ $output == *' status: unknown status, now '* ]]
+}
+
+@test "differences are told in the order of their queries, however late their results" {
+    local flips=()
+    for n in 3 9 12 18 21 30 36 60; do flips+=(--flip $n); done
+    "$EDIT" "${flips[@]}" arm.log flipped.log
+    "$EDIT" --delay 40 flipped.log delayed.log
+    "$EDIT" --last flipped.log last.log
+    "$EDIT" --first flipped.log first.log
+    for log in flipped delayed last first; do
+        replay $log.log
+        ended 1
+        counts '.different == 8 and ([.differences[].offset] | . == sort) and (.differences | length) == 8'
+        same_in_jobs $log.log
+    done
+    # Which are told does not hang on it either.
+    for log in flipped delayed last; do
+        replay --limit 3 $log.log
+        ended 1
+        counts '.untold == 5 and [.differences[].sequence_number] == [3,9,12]'
+        same_in_jobs --limit 3 $log.log
+        replay --limit 0 $log.log
+        counts '.untold == 8 and .differences == [] and .different == 8'
+    done
+    run "$FMB" replay --limit 6 delayed.log
+    ended 1
+    [[ $output == *'and 2 more differences (--limit)'* ]]
+    [ "$(grep -c '^event' <<< "$output")" = 6 ]
+}
+
+# ---- What stands where -------------------------------------------------------------------------
+
+@test "results anywhere: later, all behind all queries, all before them" {
+    for how in '--delay 1' '--delay 37' --last --first '--utime 5'; do
+        # shellcheck disable=SC2086
+        edit $how clients.log
+        [ "$(report_of spoiled.log | jq -c '[.same, .busy, .unknown_body, .no_result]')" = \
+            "$(report_of clients.log | jq -c '[.same, .busy, .unknown_body, .no_result]')" ]
+        same_in_jobs spoiled.log
+    done
+}
+
+@test "two results, no result, a result of nobody" {
+    edit --repeat 4 --repeat 50 arm.log
+    replay spoiled.log
+    ended 0
+    counts '.queries == 72 and .same == 74 and .results == 74 and .results_alone == 0'
+    same_in_jobs spoiled.log
+    edit --drop 4 --drop 30 moving.log
+    replay spoiled.log
+    ended 0
+    counts '.same == 38 and .no_result == 2 and .results == 38'
+    same_in_jobs spoiled.log
+    edit --drop-query 7 --drop-query 40 arm.log
+    replay spoiled.log
+    ended 0
+    counts '.queries == 70 and .results_alone == 2 and .results == 72'
+    same_in_jobs spoiled.log
+}
+
+@test "several logs are one" {
+    for at in 1 30 31 77 145; do
+        "$EDIT" --events 0 $at clients.log a.log
+        "$EDIT" --events $at 1000 clients.log b.log
+        report_of clients.log | jq -c 'del(.differences)' > whole
+        report_of a.log b.log | jq -c 'del(.differences)' > two
+        cmp whole two
+        same_in_jobs a.log b.log
+    done
+    "$EDIT" --flip 3 --flip 60 arm.log flipped.log
+    "$EDIT" --events 0 50 flipped.log a.log
+    "$EDIT" --events 50 1000 flipped.log b.log
+    run "$FMB" replay a.log b.log
+    ended 1
+    [[ ${lines[0]} == 'a.log: event 7  0.010000 s '* ]]
+    [[ ${lines[1]} == 'b.log: event '*' 0.200000 s '* ]]
+    replay a.log b.log
+    counts '[.differences[].log] == ["a.log", "b.log"]'
+}
+
+@test "what is wrong with one of several logs is told of that" {
+    local middle=$(($("$EDIT" --offset 77 arm.log) + 11))
+    head -c $middle arm.log > a.log
+    tail -c +$((middle + 1)) arm.log > b.log
+    replay a.log b.log
+    ended 2
+    counts '.damages == 2 and .bytes == 60308 and .events == 145'
+    [ "$stderr" = "fmb: a.log: offset $((middle - 11)): 11 bytes: the last event is cut off
+fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no event" ]
+    same_in_jobs a.log b.log
+    junit a.log b.log arm.log
+    [ "$(xpath 'count(//testsuite[1]//error)')$(xpath 'count(//testsuite[2]//error)')" = 11 ]
+    [ "$(xpath 'count(//testsuite[3]//error)')" = 0 ]
+}
+
+@test "many logs" {
+    for i in $(seq 0 145); do
+        "$EDIT" --events $i $((i + 1)) arm.log part.$i.log
+        parts+=("part.$i.log")
+    done
+    [ "$(report_of "${parts[@]}" | jq -c .same)" = 72 ]
+    ulimit -S -n 40
+    replay "${parts[@]}"
+    ended 0
+    counts '.same == 72'
+}
+
+@test "of ranges of time the sum is the whole" {
+    for log in clients arm foreign; do
+        sums() { jq -cs '[.[] | [.queries, .same, .busy, .unknown_body, .no_result, .results,
+            .results_alone, .unreadable_queries, .unreadable_results]] | transpose | map(add)'; }
+        report_of $log.log | sums > whole
+        {
+            report_of --to 0.01 $log.log
+            report_of --from 0.01 --to 0.2 $log.log
+            report_of --from 0.2 --to 0.3 $log.log
+            report_of --from 0.3 $log.log
+        } | sums > ranges
+        cmp whole ranges
+        same_in_jobs --from 0.01 --to 0.2 $log.log
+    done
+}
+
+@test "a range begins and ends on the microsecond" {
+    replay --from 0.2 --to 0.200001 arm.log
+    ended 0
+    counts '.queries > 0'
+    local at=$output
+    replay --from 0.2 --to 0.2 arm.log
+    ended 0
+    counts '.queries == 0'
+    replay --from 0.200001 --to 0.21 arm.log
+    local behind=$output
+    replay --from 0.2 --to 0.21 arm.log
+    [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$behind"))) ]
+}
+
+@test "a clock that was set back hides nothing" {
+    edit --clock 20 5000000 --flip 30 arm.log
+    replay spoiled.log
+    ended 1
+    counts '.queries == 72 and .same == 71 and .differences[0].time < 0'
+    same_in_jobs spoiled.log
+    replay --from 0 spoiled.log
+    counts '.queries < 72 and .queries > 0'
+}
+
+@test "channels with a prefix" {
+    edit --prefix LAB_ arm.log
+    replay spoiled.log
+    ended 2
+    counts '.queries == 0 and .other_events == 146'
+    [[ $stderr == *'there are no queries of this service'* ]]
+    replay --prefix LAB_ spoiled.log
+    ended 0
+    counts '.same == 72 and .other_events == 0'
+    replay -p LAB_ spoiled.log arm.log
+    ended 0
+    counts '.same == 72 and .other_events == 146'
+}
+
+# ---- The golden --------------------------------------------------------------------------------
+
+@test "golden results, there and back" {
+    for log in arm clients refused blast; do
+        run "$FMB" replay --write-golden $log.golden $log.log
+        ended 0
+        replay --golden $log.golden $log.log
+        ended 0
+        counts '.different == 0 and .no_result == 0 and .queries == .same + .unknown_body'
+        same_in_jobs --golden $log.golden $log.log
+    done
+    # It is a log: the results are its own.
+    replay arm.golden
+    ended 2
+    counts '.results == 72 and .results_alone == 72'
+    run "$FMB" replay --write-golden arm.golden arm.log
+    ended 2
+    [[ $output == *'arm.golden: File exists; --force overwrites it'* ]]
+    run "$FMB" replay --write-golden arm.golden --force arm.log
+    ended 0
+}
+
+@test "golden results of other verdicts" {
+    "$FMB" replay --write-golden arm.golden arm.log
+    "$EDIT" --flip 3 --flip 60 arm.golden flipped.golden
+    replay --golden flipped.golden arm.log
+    ended 1
+    counts '.different == 2 and [.differences[].sequence_number] == [3,60]'
+    same_in_jobs --golden flipped.golden arm.log
+    # What the log itself says is not looked at.
+    edit --flip 7 arm.log
+    replay --golden arm.golden spoiled.log
+    ended 0
+}
+
+@test "golden results in another order, too many and too few" {
+    "$FMB" replay --write-golden arm.golden arm.log
+    "$EDIT" --events 20 72 arm.golden a.log
+    "$EDIT" --events 0 20 arm.golden b.log
+    cat a.log b.log > turned.golden
+    replay --golden turned.golden arm.log
+    ended 0
+    counts '.same == 72'
+    same_in_jobs --golden turned.golden arm.log
+    replay --golden a.log arm.log
+    ended 0
+    counts '.same == 52 and .no_result == 20'
+    same_in_jobs --golden a.log arm.log
+    edit --events 0 60 arm.log
+    replay --golden arm.golden spoiled.log
+    ended 0
+    counts '.results == 72 and .results_alone > 20 and .no_result == 0'
+    same_in_jobs --golden arm.golden spoiled.log
+    same_in_jobs --golden arm.golden --from 0.05 --to 0.1 arm.log
+}
+
+@test "golden results that cannot be read are named" {
+    "$FMB" replay --write-golden arm.golden arm.log
+    "$EDIT" --shorten 5 arm.golden short.golden
+    for jobs in 1 3; do
+        replay -j $jobs --golden short.golden arm.log
+        ended 2
+        [ "$stderr" = "fmb: short.golden: offset $("$EDIT" --offset 5 arm.golden): shorter than its fields" ]
+        counts '.no_result == 1 and .same == 71'
+    done
+    "$EDIT" --garbage 30 arm.golden spoiled.golden
+    for jobs in 1 3; do
+        replay -j $jobs --golden spoiled.golden arm.log
+        ended 2
+        [ "$stderr" = "fmb: spoiled.golden: offset $("$EDIT" --offset 30 arm.golden): no event" ]
+        counts '.same == 72'
+    done
+    for golden in missing.golden .; do
+        replay --golden $golden arm.log
+        ended 2
+        [[ $stderr == "fmb: $golden: "* ]]
+    done
+}
+
+@test "results are not written over what is read" {
+    cp arm.log mine.log
+    for golden in mine.log ./mine.log "$PWD/mine.log"; do
+        run "$FMB" replay --write-golden "$golden" --force arm.log mine.log
+        ended 2
+        cmp mine.log arm.log
+    done
+    "$FMB" replay --write-golden arm.golden arm.log
+    cp arm.golden kept
+    run "$FMB" replay --golden arm.golden --write-golden arm.golden --force arm.log
+    ended 2
+    cmp arm.golden kept
+}
+
+@test "a report is not written over a log" {
+    cp arm.log mine.log
+    for option in --junit --html; do
+        run "$FMB" replay $option mine.log arm.log # as of fmb replay --junit *.log
+        ended 2
+        [[ $output == *'mine.log'*'event log'* ]]
+        cmp mine.log arm.log
+    done
+}
+
+# ---- What is broken ----------------------------------------------------------------------------
+
+@test "a log that is cut off" {
+    for lost in 1 27 28 29 300; do
+        head -c -$lost arm.log > spoiled.log
+        replay spoiled.log
+        ended 2
+        [[ $stderr == *'spoiled.log: offset '*': the last event is cut off' ]]
+        counts ".damages == 1 and .bytes == 60308 - $lost and .same >= 70"
+        same_in_jobs spoiled.log
+    done
+}
+
+@test "a log with something else in it" {
+    edit --garbage 50 --garbage 3 --garbage 0 arm.log
+    replay spoiled.log
+    ended 2
+    counts '.damages == 3 and .damaged_bytes == 75 and .same == 72'
+    [ "$(grep -c 'spoiled.log: offset .*: 25 bytes: no event' <<< "$stderr")" = 3 ]
+    [[ $stderr == *"offset $(($("$EDIT" --offset 3 arm.log) + 25)): "* ]]
+    same_in_jobs spoiled.log
+}
+
+@test "differences count more than damage" {
+    edit --garbage 50 --flip 3 arm.log
+    replay spoiled.log
+    ended 1
+    counts '.damages == 1 and .different == 1'
+}
+
+@test "many damages are counted, and not all told" {
+    local garbage=()
+    for n in $(seq 1 60); do garbage+=(--garbage $n); done
+    edit "${garbage[@]}" arm.log
+    replay spoiled.log
+    ended 2
+    counts '.damages == 60'
+    [ "$(grep -c 'no event' <<< "$stderr")" = 20 ]
+    [[ $stderr == *'fmb: and 40 more that could not be read' ]]
+}
+
+@test "no log at all: text, one byte, zeros, noise, a folder, a pipe, nothing there" {
+    echo 'this is no log' > text.log
+    printf 'x' > byte.log
+    head -c 100000 /dev/zero > zeros.log
+    head -c 100000 "$FMB" > noise.log
+    for log in text byte zeros noise; do
+        replay $log.log
+        ended 2
+        counts '.damages == 1 and .queries == 0 and .damaged_bytes == .bytes'
+        [[ $stderr == "fmb: $log.log: offset 0: "* ]]
+        same_in_jobs $log.log
+    done
+    mkdir folder.log
+    mkfifo pipe.log
+    for log in folder pipe missing; do
+        run --separate-stderr "$FMB" replay arm.log $log.log
+        ended 2
+        [[ $stderr == "fmb: $log.log: "* ]]
+    done
+}
+
+@test "an empty log, and one of others" {
+    : > empty.log
+    replay empty.log
+    ended 2
+    counts '.events == 0 and .bytes == 0'
+    same_in_jobs empty.log
+    replay empty.log arm.log empty.log
+    ended 0
+    counts '.same == 72'
+    edit --rename FMB_PAIR_QUERY POSE --rename FMB_SCENE_QUERY POSE --rename FMB_PAIR_RESULT X \
+        --rename FMB_SCENE_RESULT Y --rename FMB_STATUS Z arm.log
+    replay spoiled.log
+    ended 2
+    counts '.other_events == 146'
+}
+
+@test "messages of another version" {
+    edit --version 4 --version 7 arm.log # a query and a result
+    replay spoiled.log
+    ended 2
+    counts '.unreadable_queries + .unreadable_results == 2 and .damages == 0'
+    [ "$(grep -c ': another message type, or another version of it$' <<< "$stderr")" = 2 ]
+    [[ $stderr == *"spoiled.log: event 4 (offset $("$EDIT" --offset 4 arm.log)): FMB_"* ]]
+    same_in_jobs spoiled.log
+    for n in $(seq 0 20); do
+        edit --shorten "$n" arm.log
+        replay spoiled.log
+        same_in_jobs spoiled.log
+    done
+}
+
+@test "what is told reaches the terminal as it is meant" {
+    edit --certify 2 "$(printf '%%s%%n\e[31m')" blast.log || true # what the reader refuses
+    replay spoiled.log
+    [[ $stderr != *$'\e'* ]]
+    edit --certify 2 '%s%n%1$s' blast.log
+    run "$FMB" replay spoiled.log
+    ended 1
+    [[ $output == *'certificate: %s%n%1$s, now '* ]]
+    edit --rename FMB_STATUS $'\e[2J%n' arm.log
+    run "$FMB" replay spoiled.log
+    ended 0
+    [[ $output != *$'\e'* ]]
+}
+
+# ---- JUnit -------------------------------------------------------------------------------------
+
+@test "JUnit: all the same" {
+    junit arm.log
+    ended 0
+    [ "$(xpath 'count(//testcase)')" = 3 ]
+    [ "$(xpath 'count(//failure | //error)')" = 0 ]
+    [ "$(xpath '//testsuite/@tests')/$(xpath '//testsuite/@failures')" = 3/0 ]
+    [ "$(xpath '//testsuite/@name')" = arm.log ]
+}
+
+@test "JUnit: differences, in the log where they are" {
+    "$EDIT" --flip 3 --flip 60 arm.log flipped.log
+    junit arm.log flipped.log arm.log
+    ended 1
+    [ "$(xpath 'count(//testsuite)')" = 3 ]
+    [ "$(xpath '//testsuite[2]/@failures')" = 1 ]
+    [ "$(xpath 'count(//testsuite[2]/testcase[@name="FMB_SCENE_QUERY"]/failure)')" = 1 ]
+    [ "$(xpath 'count(//failure)')" = 1 ]
+    [ "$(xpath '//failure' | grep -c ^event)" = 2 ]
+    [[ $(xpath '//failure/@message') == '2 of 24 queries'* ]]
+}
+
+@test "JUnit: damage is an error" {
+    edit --garbage 5 arm.log
+    junit spoiled.log
+    ended 2
+    [ "$(xpath '//testsuite/@errors')" = 1 ]
+    [[ $(xpath '//error/@message') == '1 damaged place'* ]]
+}
+
+@test "JUnit: any text is kept within XML" {
+    "$EDIT" --certify 2 ']]> <a b="c"> &amp; &#0;' blast.log $'a\xff\xc3(\xed\xa0\x80\xef\xbf\xbf\x01\t\n"\'<&>é€𝄞.log'
+    junit $'a\xff\xc3(\xed\xa0\x80\xef\xbf\xbf\x01\t\n"\'<&>é€𝄞.log'
+    ended 1
+    [[ $(xpath '//failure') == *']]> <a b="c"> &amp; &#0;'* ]]
+    [[ $(xpath '//testcase/@classname') == *'"'"'"'<&>é€𝄞.log' ]]
+}
+
+@test "JUnit: more differences than are told" {
+    local flips=()
+    for n in $(seq 0 300); do flips+=(--flip "$n"); done
+    edit "${flips[@]}" blast.log
+    junit spoiled.log
+    ended 1
+    [[ $(xpath '//failure/@message') == '301 of 400 queries'*'in 301 pairs' ]]
+    [ "$(xpath '//failure' | grep -c ^event)" = 100 ]
+}
+
+@test "JUnit that cannot be written" {
+    run "$FMB" replay --junit /nowhere/report.xml arm.log
+    ended 2
+    [[ $output == *'fmb: /nowhere/report.xml: No such file or directory'* ]]
+    run "$FMB" replay --junit /dev/full arm.log
+    ended 2
+    [[ $output == *'fmb: /dev/full: No space left on device'* ]]
+}
+
+# ---- The command -------------------------------------------------------------------------------
+
+@test "what is typed wrong" {
+    for arguments in '' '--tolerance -1 arm.log' '--tolerance nan arm.log' '--tolerance x arm.log' \
+        '--from -1 arm.log' '--from inf arm.log' '-j 0 arm.log' '-j 257 arm.log' '--limit -1 arm.log' \
+        '--bodies 0 arm.log' '--frm 1 arm.log' '--golden' '-p a/b arm.log' \
+        '-j 2 --write-golden g arm.log' '-j 2 --html h arm.log'; do
+        # shellcheck disable=SC2086
+        run --separate-stderr "$FMB" replay $arguments
+        ended 2
+        [ -z "$output" ]
+        [[ $stderr == 'fmb replay: '*"Try 'fmb replay --help'." ]]
+    done
+    [ ! -e g ]
+    run "$FMB" replay --help
+    ended 0
+    [[ $output == 'usage: fmb replay '* ]]
+}
+
+@test "output that cannot be written" {
+    run bash -c '"$0" replay arm.log > /dev/full' "$FMB"
+    ended 2
+    [[ $output == *'fmb: standard output: No space left on device'* ]]
+}
+
+@test "temporary files that cannot be made" {
+    edit --drop 5 arm.log # what waits to the end goes there
+    for jobs in 1 2; do
+        TMPDIR=/nowhere run --separate-stderr "$FMB" replay -j $jobs spoiled.log
+        ended 2
+        [[ $stderr == *'fmb: a temporary file: No such file or directory'* ]]
+    done
+    TMPDIR=/nowhere run --separate-stderr "$FMB" replay arm.log
+    ended 0
+    [ -z "$stderr" ]
+}
+
+@test "temporary files leave nothing behind" {
+    mkdir temporary
+    edit --last clients.log
+    for jobs in 1 3; do
+        TMPDIR=$PWD/temporary report_of -j $jobs spoiled.log > /dev/null
+        [ -z "$(ls -A temporary)" ]
+    done
+}
+
+@test "a process that does not hear of its children" {
+    run timeout 60 env --ignore-signal=CHLD "$FMB" replay -j 3 arm.log
+    ended 0
+}
+
+@test "a cache of one body" {
+    report_of --bodies 1 arm.log > one
+    jq -e '.different == 0 and .queries == .same + .unknown_body' one
+}
