@@ -386,9 +386,9 @@ unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views)),-Ites
 	$(if $(filter $1,$(engine_views)),,-Iservice) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\
 		$(clients_see) -Itests/hostile -I$(GEN))
-$(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings
+$(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) $(clients_see) -Itests/unit
+	$(compile) $(clients_see) -Itests/unit -Itests/bench -I$(GEN)
 
 $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
@@ -654,10 +654,6 @@ $(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
 		$(answer_objects) $(bus_objects) $(message_objects) $(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
-
-$(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) $(clients_see) -Itests/bench
 
 bench_logs := $(addprefix $(B)/replay/,scenes.log pairs.log pairs-whole.log pairs-by-key.log)
 $(B)/replay/%.log: $(B)/logs/generate
