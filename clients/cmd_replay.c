@@ -20,6 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
@@ -313,6 +314,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
     run->progress = progress_begin_bytes((uint64_t) size);
+    run->progress.enabled = isatty(STDERR_FILENO); /* what is printed comes when it has ended */
     bool good = replay_jobs(&options->replay, (int) options->jobs, size, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)

@@ -229,11 +229,24 @@ static void tell_alone(struct joining *joining, FILE *queries)
             joining->sink->query_alone(joining->sink->user, &query);
 }
 
+/* Where there are no results, it takes no memory to tell that. */
+static void tell_all_alone(struct joining *joining, FILE *queries)
+{
+    struct match_item query;
+    rewind(queries);
+    while (read_item(joining->spill, queries, joining->buffer[SPILL_QUERIES], &query))
+        joining->sink->query_alone(joining->sink->user, &query);
+}
+
 static void join_part(struct joining *joining, int part)
 {
     FILE *queries = joining->spill->file[SPILL_QUERIES][part];
     FILE *results = joining->spill->file[SPILL_RESULTS][part];
     joining->count = 0;
+    if (queries && !results) {
+        tell_all_alone(joining, queries);
+        return;
+    }
     if (queries)
         list_queries(joining, queries);
     if (results)
