@@ -75,7 +75,7 @@ struct answer_bus {
     int64_t client_id, server_id, timeout_ns;
     struct live *live;
     struct behind *behind;
-    bool news;             /* some of that may tell keys */
+    bool news;             /* among what waits behind is what may tell keys */
     uint64_t oldest, next; /* queries: not passed on yet; not asked yet */
     struct slot *slot;     /* [query % WINDOW] */
     size_t charge;         /* of all that is under way */
@@ -141,17 +141,22 @@ static void finish(struct answer_bus *bus, struct slot *slot)
     slot->done = true;
 }
 
+/* Whether LCM sends it in one datagram, which the service hears. What is written here always is. */
+static bool is_heard(struct answer_bus *bus, const struct match_item *query)
+{
+    return strlen(intake_of(bus, query->kind)->query_channel) + 1 + query->size <= DATAGRAM_MAX;
+}
+
 static void ask(struct answer_bus *bus, struct slot *slot)
 {
-    live_next(bus->live, &slot->query);
-    const struct live_query *query = &slot->query;
-    if (strlen(intake_of(bus, query->kind)->query_channel) + 1 + query->size <= DATAGRAM_MAX) {
+    if (is_heard(bus, &slot->query.recorded)) {
+        live_next(bus->live, &slot->query);
         send_slot(bus, slot);
-        return;
+    } else {
+        live_refuse(bus->live, &slot->query);
+        bus->counts.too_long++;
+        finish(bus, slot);
     }
-    live_refuse(bus->live, &slot->query);
-    bus->counts.too_long++;
-    finish(bus, slot);
 }
 
 /* ---- Answers coming in ---- */

@@ -94,6 +94,10 @@ event() {
     as_in_process --from 0.05 --to 0.15 arm.log
     holds '.queries > 10 and .queries < 60'
     as_in_process arm.log clients.log hard.log
+    # The same ids again and again: each query has its own result.
+    generate --blast pairs 10 few.log
+    as_in_process few.log few.log few.log
+    holds '.same == 30'
     "$FMB" replay --write-golden golden clients.log
     as_in_process --golden golden clients.log
     holds '.same == .queries'
@@ -145,6 +149,30 @@ event() {
         as_in_process $log.log
         holds '.bus.dead_keys > 0'
     done
+    stop_fmbd
+}
+
+# A service that was started anew, and gave the same keys to other components: what a key stands for
+# depends on the place in the log.
+@test "keys that stand for something else later" {
+    generate arm arm.log
+    head -c $(($(place_of arm.log FMB_SCENE_QUERY 2) - 15 - 28)) arm.log > first.log
+    cp arm.log later.log
+    for channel in FMB_PAIR_RESULT FMB_SCENE_RESULT; do
+        for n in $(seq "$(grep -ao $channel arm.log | wc -l)"); do
+            byte_at later.log $(($(place_of arm.log $channel "$n") + 39)) 077 # of the server id
+        done
+    done
+    # The first component of the table and the parts, which come whole only once, is 3 0 0 then.
+    whole=$(place_of arm.log FMB_SCENE_QUERY 1)
+    for frame in 0 1 2 3 4 5 6; do
+        at=$((whole + 64 + 128 * frame + 52))
+        byte_at later.log $at 100
+        byte_at later.log $((at + 1)) 010
+    done
+    start_fmbd
+    as_in_process first.log later.log
+    holds '.different > 10 and .bus.dead_keys == 0'
     stop_fmbd
 }
 
@@ -217,6 +245,25 @@ event() {
     replayed=$(cat replayed)
     holds '.same == 20000 and .exit == 0'
     holds '.bus.services > 1 and .bus.sent_again > 0'
+    stop_fmbd
+}
+
+@test "a service that stops again and again is given up only when it stays silent" {
+    generate --blast pairs 2000 pairs.log
+    start_fmbd
+    "$FMB" replay --json --bus --timeout 0.05 --retries 60 --speed 0.015 pairs.log > replayed 3>&- &
+    replay=$!
+    started="$started $replay"
+    worker=$(worker_of "$fmbd")
+    for _ in $(seq 12); do
+        kill -STOP "$worker"
+        sleep 0.5
+        kill -CONT "$worker"
+        sleep 0.1
+    done
+    wait $replay
+    replayed=$(cat replayed)
+    holds '.same == 2000 and .exit == 0 and .bus.services == 1 and .bus.sent_again > 60'
     stop_fmbd
 }
 
