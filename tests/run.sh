@@ -18,7 +18,7 @@ unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report
 # Where one of them is enough.
 sanitized_once='system/soak.bats system/fairness.bats system/supervisor.bats'
 sanitized_once="$sanitized_once system/record.bats system/replay_bus.bats cli/log.bats"
-sanitized_once="$sanitized_once cli/log_cut.bats cli/log_scene.bats"
+sanitized_once="$sanitized_once cli/log_cut.bats cli/log_scene.bats cli/replay.bats"
 slow="$sanitized_once system/examples.bats system/bus.bats cli/page.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
