@@ -17,6 +17,8 @@ const char *message_read_ids(enum log_kind kind, const struct log_event *event,
 {
     out->bytes = event->data;
     out->size = (uint32_t) event->kept;
+    out->more = NULL;
+    out->more_size = 0;
     out->kind =
         kind == LOG_PAIR_QUERY || kind == LOG_PAIR_RESULT ? LOG_PAIR_QUERY : LOG_SCENE_QUERY;
     if (event->kept < event->size && !message_is_query(kind)) /* those of any length get a result */
