@@ -70,9 +70,9 @@ static void keep(struct answer_now *now, struct known_body *known)
  * frame has. 0: the frame is no such one. */
 static int64_t claim(struct answer_now *now, struct query_frame *frame)
 {
-    const int64_t key = -frame->key;
     if (frame->key <= 0 || frame->components.count == 0)
         return 0;
+    const int64_t key = -frame->key;
     const struct known_body *known = known_bodies_find(now->known, frame->body_id, key);
     if (!known || !known_bodies_same(known, frame))
         known = known_bodies_learn(now->known, frame, key, 0);

@@ -116,8 +116,8 @@ static bool same_bits(const double *a, const double *b, size_t count)
 static void assert_contact(const struct walk *walk, const struct outcome *outcome, int dim)
 {
     const struct scene_result *result = &recorded.scene;
-    const double *times = &result->times[2 * walk->contact];
-    const double *box = &result->boxes[2 * dim * walk->contact];
+    const double *times = result->has_times ? &result->times[2 * walk->contact] : NULL;
+    const double *box = result->has_boxes ? &result->boxes[2 * dim * walk->contact] : NULL;
     if (result->has_times && isnan(times[0]))
         assert_false(outcome->answer.has_contact);
     else if (result->has_times)
