@@ -5,8 +5,7 @@
 
 INLINE bool is_mirrored(const struct walk_kind kind)
 {
-    return LANES == 2 && !kind.ordered && kind.dim == 2 &&
-           kind.tetrahedron[0] == kind.tetrahedron[1];
+    return LANES == 2 && !kind.ordered && kind.dim == 2 && kind.simplex[0] == kind.simplex[1];
 }
 
 INLINE lanes exchanged(lanes x)

@@ -248,7 +248,7 @@ struct overlaps {
 static bool has_plain_box(const struct block *block, enum run_kind kind, size_t k)
 {
     const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
-    return block->outcome[k] == SLABS_OVERLAPPING && !(kind & RUN_DRIFTS) &&
+    return block->outcome[k] == SLABS_OVERLAPPING && !(kind & (RUN_DRIFTS | RUN_FACE)) &&
            !prepared_both_plain(a, b) && !prepared_one_moves(a, b);
 }
 

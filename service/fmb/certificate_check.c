@@ -127,6 +127,19 @@ static void proof_each(struct proof *proof, void (*call)(mpq_ptr))
     call(proof->duration);
 }
 
+/* component + rest */
+static void add_rest(struct side *side, const struct fmb_body *body)
+{
+    mpq_t rest;
+    mpq_init(rest);
+    for (int i = 0; i < 2; i++)
+        for (int axis = 0; axis < body->dim; axis++) {
+            mpq_set_d(rest, body->rest[i][axis]);
+            mpq_add(side->edge[i][axis], side->edge[i][axis], rest);
+        }
+    mpq_clear(rest);
+}
+
 static void set_side(struct side *side, const struct fmb_frame *frame)
 {
     const struct fmb_body *body = frame->body;
@@ -139,6 +152,8 @@ static void set_side(struct side *side, const struct fmb_frame *frame)
         for (int i = 0; i < body->count; i++)
             mpq_set_d(side->edge[i][axis], body->component[i][axis]);
     }
+    if (body->rounded)
+        add_rest(side, body);
     side->edges = side->count;
     for (int i = 0; side->simplex && i < side->count; i++)
         for (int j = i + 1; j < side->count; j++)

@@ -1,6 +1,7 @@
 #include "certified.h"
 
 #include "exact.h"
+#include "faces.h"
 #include "limbs.h"
 #include "run.h"
 
@@ -17,12 +18,15 @@ struct certified {
     bool span_known, rounds; /* rounds: operations on these numbers may round */
     struct dyadic_span span;
     enum certified_path path;
+    enum faces_planes planes;   /* other than CROSSING only of two faces that are close */
+    struct faces_shadow shadow; /* where they are SHARED */
 };
 
 static void begin(struct certified *certified, const struct fmb_pair *pair)
 {
     certified->pair = pair;
     certified->slabs_known = certified->span_known = false;
+    certified->planes = FACES_CROSSING;
 }
 
 static bool find_slabs(struct certified *certified)
@@ -102,13 +106,10 @@ static enum fmb_verdict exact_verdict(const struct fmb_pair *pair)
     return answer.verdict;
 }
 
-/* A slab in one limb costs no more than in doubles with a bound of its own. */
-static enum fmb_verdict verdict_of_unsure(struct certified *certified)
+/* On input: good slabs. A slab in one limb costs no more than in doubles with a bound of its own.
+ */
+static enum fmb_verdict verdict_of_slabs(struct certified *certified)
 {
-    if (!find_slabs(certified)) {
-        certified->path = CERTIFIED_EXACT;
-        return exact_verdict(certified->pair);
-    }
     find_span(certified);
     if (!certified->rounds) {
         certified->path = CERTIFIED_UNROUNDED;
@@ -128,6 +129,34 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     }
     certified->path = CERTIFIED_EXACT;
     return exact_verdict(certified->pair);
+}
+
+/* Of two faces that no slab separates, and that do not lie strictly within all of them: they touch
+ * unless their planes are parallel. */
+static enum fmb_verdict verdict_of_planes(struct certified *certified)
+{
+    certified->planes =
+        faces_planes_of(certified->pair, &certified->slabs, certified->span, &certified->shadow);
+    if (certified->planes == FACES_CROSSING)
+        return FMB_TOUCHING;
+    if (certified->planes == FACES_SHARED)
+        return certified_verdict(&certified->shadow.pair, &certified->path);
+    certified->path = CERTIFIED_EXACT;
+    return exact_verdict(certified->pair);
+}
+
+static enum fmb_verdict verdict_of_unsure(struct certified *certified)
+{
+    if (!find_slabs(certified)) {
+        certified->path = CERTIFIED_EXACT;
+        return exact_verdict(certified->pair);
+    }
+    const enum fmb_verdict verdict = verdict_of_slabs(certified);
+    const bool faces =
+        certified->pair->a.body->shape == FMB_FACE && certified->pair->b.body->shape == FMB_FACE;
+    return faces && verdict == FMB_TOUCHING && certified->path != CERTIFIED_EXACT
+               ? verdict_of_planes(certified)
+               : verdict;
 }
 
 /* False if doubles can say nothing of the pair. */
@@ -182,9 +211,15 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
         answer->contact[1] = certified->pair->duration + 0.0; /* never -0 */
         return true;
     }
+    if (certified->planes == FACES_SHARED) {
+        struct fmb_answer shadow = {0};
+        certified_decide(&certified->shadow.pair, 0, &shadow);
+        memcpy(answer->contact, shadow.contact, sizeof shadow.contact);
+        return true;
+    }
     if (!never_rounds(certified) && !isnan(answer->contact[0]))
         return true;
-    if (!find_slabs(certified))
+    if (certified->planes == FACES_ELSE || !find_slabs(certified))
         return false;
     find_span(certified);
     return contact_of(certified->pair, &certified->slabs, certified->rounds, certified->span,
@@ -195,6 +230,8 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 static bool answer_box(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
+    if (certified->kind & RUN_FACE)
+        return false;
     if (answer->verdict == FMB_OVERLAPPING && !answer->has_contact && !never_rounds(certified)) {
         double box[2][FMB_DIM_MAX];
         run_boxes_alone()[certified->kind](&certified->frame[0], &certified->frame[1], 0,

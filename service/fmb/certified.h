@@ -2,10 +2,12 @@
  * something open.
  *
  *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c); where unsure, the open
- * slabs in integers (limbs.c), or the whole question by the exact method contact   the filter
- * bounds the time in the same walk (walk_slab.h); where that is not near enough, or nothing rounds,
- * the slabs one by one (contact.c) box       edges of each frame cut by the other: of a pair at
- * rest by the filter (walk_box.h), of others, and where nothing rounds, by box.c
+ *               slabs in integers (limbs.c), or the whole question by the exact method; of two
+ *               faces in one plane, that of two triangles in 2D (faces.c)
+ *     contact   the filter bounds the time in the same walk (walk_slab.h); where that is not near
+ *               enough, or nothing rounds, the slabs one by one (contact.c)
+ *     box       edges of each frame cut by the other: of solid frames at rest by the filter
+ *               (walk_box.h), of others, and where nothing rounds, by box.c
  *
  * Contact and box are two-sided: the outer value surely contains the true one, the inner one is
  * surely contained in it. The answer is the outer one, given only where both are so close that it

@@ -12,6 +12,8 @@ static long pair_unit(const struct fmb_pair *pair)
         unit = integer_vector_unit(unit, frame->origin, dim);
         for (int i = 0; i < frame->body->count; i++)
             unit = integer_vector_unit(unit, frame->body->component[i], dim);
+        for (int i = 0; i < 2 && frame->body->rounded; i++)
+            unit = integer_vector_unit(unit, frame->body->rest[i], dim);
         long speed = frame->moving ? integer_vector_unit(INTEGER_NO_EXPONENT, frame->velocity, dim)
                                    : INTEGER_NO_EXPONENT;
         if (speed < INTEGER_NO_EXPONENT)
@@ -37,6 +39,19 @@ static void set_edges(struct exact_frame *frame)
     }
 }
 
+/* component + rest */
+static void add_rest(struct exact_frame *out, const struct fmb_body *body, long unit)
+{
+    mpz_t rest;
+    mpz_init(rest);
+    for (int i = 0; i < 2; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            integer_set(rest, dyadic_of(body->rest[i][axis]), unit);
+            mpz_add(out->component[i][axis], out->component[i][axis], rest);
+        }
+    mpz_clear(rest);
+}
+
 static void frame_set(struct exact_frame *out, const struct fmb_frame *frame, double duration,
                       long unit)
 {
@@ -52,6 +67,8 @@ static void frame_set(struct exact_frame *out, const struct fmb_frame *frame, do
         for (int i = 0; i < body->count; i++)
             integer_set(out->component[i][axis], dyadic_of(body->component[i][axis]), unit);
     }
+    if (body->rounded)
+        add_rest(out, body, unit);
     set_edges(out);
 }
 

@@ -103,13 +103,18 @@ struct fmb_body {
     bool flat;     /* exactly zero volume (every face is): no inverse */
     bool inverted; /* the inverse is there: not flat, and all its entries finite */
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
+    /* Of a face made by fmb_body_make_triangle(): its components are component + rest, exactly.
+     * rounded: not all of rest is 0. */
+    bool rounded;
+    double rest[2][FMB_DIM_MAX];
     /* [axis][component], rounded, of a nearly flat body too: x_i = sum_axis inverse[axis][i]
      * p[axis] for p = sum x_i c_i. The article's invComp (Listing 1, PROJ). Zero where not
      * inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
     /* What the certified method keeps: the largest magnitude in each component; whether doubles can
-     * say anything of it: not flat, and no number so large or so small that a product of a few of
-     * them might overflow or vanish. All components are multiples of 2^bits[0] below 2^bits[1]. */
+     * say anything of it: not flat, or a face with an area, and no number so large or so small that
+     * a product of a few of them might overflow or vanish. All components are multiples of
+     * 2^bits[0] below 2^bits[1]. */
     double size[FMB_DIM_MAX];
     bool in_range;
     int bits[2];
@@ -122,6 +127,14 @@ struct fmb_body {
  * *out unspecified. components may be NULL if count is 0. */
 enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
                               struct fmb_body *out);
+
+/* A face by its vertices, which need not be the sums of two doubles: vertex[0] is the origin of its
+ * frames, and the others are vertex[0] + component + rest exactly. So faces that share vertices do
+ * so exactly.
+ * On input: [vertex][axis], any finite doubles.
+ * On output: *out, or NOT_FINITE, where a difference is beyond the doubles too, and *out
+ * unspecified. */
+enum fmb_status fmb_body_make_triangle(const double vertex[3][FMB_DIM_MAX], struct fmb_body *out);
 
 /* A body at a place. Axes beyond the body's dim are not read. */
 struct fmb_frame {
@@ -178,10 +191,12 @@ struct fmb_method {
 };
 
 /*   certified  the default: never wrong. Doubles with bounds on their errors decide nearly all
- * pairs, exact arithmetic those that are too close for doubles, and flat frames exact      never
- * wrong either, and all of it in exact arithmetic (GMP) fmb        the article's elimination in
- * doubles: verdict, interval, the article's loose box sat        the separating axis theorem in
- * doubles: verdict and interval, no box fmb and sat are inexact and cannot decide flat frames.
+ *              pairs; exact arithmetic those that are too close for doubles, and flat frames that
+ *              are no faces with an area
+ *   exact      never wrong either, and all of it in exact arithmetic (GMP)
+ *   fmb        the article's elimination in doubles: verdict, interval, the article's loose box
+ *   sat        the separating axis theorem in doubles: verdict and interval, no box
+ * fmb and sat are inexact and cannot decide flat frames.
  *
  * exact takes microseconds for numbers of like size, and a bounded time for any (exact.c says
  * which): milliseconds where the exponents go from one end of the doubles to the other. That bounds
@@ -221,7 +236,8 @@ struct fmb_prepared {
     double number[15];
 };
 
-/* On output: OK, or NOT_FINITE and *out all 0: pairs with it are refused. */
+/* On output: OK; or *out all 0, and pairs with it are refused: NOT_FINITE; NOT_SUPPORTED for a body
+ * that is rounded, for whose rest there is no room. */
 enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out);
 
 /* The verdict of one pair, certified; 0 where it is refused: dimensions that differ, a duration

@@ -92,6 +92,35 @@ static void invert(struct fmb_body *body)
  * nor lose bits to underflow; and no number so small that a product of two underflows. */
 static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
+/* Of x y - z w, the products of numbers in range: whether it is surely not 0, the factors being off
+ * by u each; and whether it is exactly 0, they being exact.
+ *
+ * Each product is rounded twice in its factors, once itself, and once in the difference: 4.01 u of
+ * the sum of the magnitudes, and the bound is computed with fewer roundings than it has room for.
+ * The error of a product is a double: products are above 2^-800, and errors above 2^-907. */
+static bool surely_differ(double x, double y, double z, double w)
+{
+    return fabs(x * y - z * w) > 0x1p-50 * (fabs(x * y) + fabs(z * w));
+}
+
+static bool are_equal(double x, double y, double z, double w)
+{
+    return x * y == z * w && fma(x, y, -(x * y)) == fma(z, w, -(z * w));
+}
+
+/* Whether a face has an area. Of one that is rounded only what is sure counts. */
+static bool has_area(const struct fmb_body *body)
+{
+    const double *c = body->component[0], *d = body->component[1];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3;
+        if (surely_differ(c[i], d[j], c[j], d[i]) ||
+            (!body->rounded && !are_equal(c[i], d[j], c[j], d[i])))
+            return true;
+    }
+    return false;
+}
+
 static void measure_number(struct fmb_body *body, int i, double c, struct dyadic_span *span)
 {
     const double magnitude = fabs(c);
@@ -103,13 +132,17 @@ static void measure_number(struct fmb_body *body, int i, double c, struct dyadic
 void body_measure(struct fmb_body *body)
 {
     struct dyadic_span span = dyadic_span_begin();
-    body->in_range = !body->flat;
+    body->in_range = body->shape == FMB_FACE || !body->flat;
     for (int i = 0; i < body->count; i++) {
         for (int axis = 0; axis < body->dim; axis++)
             measure_number(body, i, body->component[i][axis], &span);
+        for (int axis = 0; axis < body->dim && body->rounded; axis++)
+            dyadic_span_add(&span, dyadic_of(body->rest[i][axis]));
         body->in_range =
             body->in_range && body->size[i] >= least_size && body->size[i] <= largest_size;
     }
+    if (body->shape == FMB_FACE && body->in_range)
+        body->in_range = has_area(body);
     body->bits[0] = (int) span.unit;
     body->bits[1] = (int) span.top;
 }
@@ -134,6 +167,37 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
     for (int i = 0; i < vectors; i++)
         memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
     invert(out);
+    body_measure(out);
+    out->head = prepared_head_of(out);
+    return FMB_OK;
+}
+
+/* The error of a difference of doubles is a double (Knuth, The Art of Computer Programming, volume
+ * 2, 4.2.2, theorem B). */
+static double difference_error(double x, double y, double difference)
+{
+    const double part = difference - x;
+    return (x - (difference - part)) - (y + part);
+}
+
+enum fmb_status fmb_body_make_triangle(const double vertex[3][FMB_DIM_MAX], struct fmb_body *out)
+{
+    double component[2][FMB_DIM_MAX];
+    for (int i = 0; i < 2; i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            component[i][axis] = vertex[i + 1][axis] - vertex[0][axis];
+    const enum fmb_status status = fmb_body_make(3, FMB_FACE, component[0], 6, out);
+    if (status != FMB_OK)
+        return status;
+    for (int i = 0; i < 2; i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            out->rest[i][axis] =
+                difference_error(vertex[i + 1][axis], vertex[0][axis], component[i][axis]);
+            out->rounded = out->rounded || out->rest[i][axis] != 0;
+        }
+    if (!out->rounded)
+        return FMB_OK;
+    memset(out->size, 0, sizeof out->size);
     body_measure(out);
     out->head = prepared_head_of(out);
     return FMB_OK;

@@ -1,4 +1,6 @@
-/* Width. Let all lengths of a pair be below 2^t units, with 64 L limbs and t <= 64 L - 3. Their
+/* Width. Let all lengths of a pair be below 2^t units, with 64 L limbs and t <= 64 L - 3 (a
+ * component with its rest is the difference of two vertices: rest is at most half a unit in the
+ * last place of it, so that what a component below 2^t was rounded from is at most 2^t). Their
  * differences (offset, drift, edges of a tetrahedron) are below 2^(t+1) and fit L limbs. An entry
  * of a normal is a difference of two products of those, below 2^(2t+3) <= 2^(128L-3), and fits
  * 2 L limbs. With a component its dot product is a sum of three, below 3 2^(3t+3); with an offset
@@ -150,7 +152,7 @@ static double greatest(double x, double y)
  * drift and extents are computed from. */
 bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
 {
-    if (span.top - span.unit > 50)
+    if (span.top - span.unit > 50 || pair->a->rounded || pair->b->rounded)
         return false;
     const bool cuboids = pair->a->shape == FMB_CUBOID && pair->b->shape == FMB_CUBOID;
     double largest = pair->drift_size;
@@ -209,6 +211,10 @@ static void add_frame(const struct fmb_frame *frame, int f, struct dyadic window
         limbs_length term;
         for (int i = 0; i < frame->body->count; i++)
             set_length(n, out->component[f][i][axis], frame->body->component[i][axis], 1, unit);
+        for (int i = 0; i < 2 && frame->body->rounded; i++) {
+            set_length(n, term, frame->body->rest[i][axis], 1, unit);
+            add(n, out->component[f][i][axis], term);
+        }
         set_length(n, term, there ? frame->origin[axis] : 0, sign, unit);
         add(n, out->offset[axis], term);
         if (!frame->moving || !there)
@@ -377,6 +383,30 @@ int limbs_gap_sign(const struct limbs_pair *pair, struct slab_normal normal)
     case 2: return gap_sign(2, pair, normal);
     case 4: return gap_sign(4, pair, normal);
     default: return gap_sign(8, pair, normal);
+    }
+}
+
+/* Planes are parallel where the normal of a has no extent along the other face. */
+INLINE struct limbs_planes planes_of(const int n, const struct limbs_pair *pair)
+{
+    uint64_t normal[FMB_DIM_MAX][NORMAL_MAX], at[4][VALUE_MAX];
+    set_normal(n, pair, (struct slab_normal){0, 1}, normal);
+    dot(n, normal, pair->component[1][0], at[0]);
+    dot(n, normal, pair->component[1][1], at[1]);
+    dot(n, normal, pair->offset, at[2]);
+    dot(n, normal, pair->drift, at[3]);
+    const bool parallel = is_zero(3 * n, at[0]) && is_zero(3 * n, at[1]);
+    return (struct limbs_planes){
+        .parallel = parallel, .shared = parallel && is_zero(3 * n, at[2]) && is_zero(3 * n, at[3])};
+}
+
+struct limbs_planes limbs_planes_of(const struct limbs_pair *pair)
+{
+    switch (pair->limbs) {
+    case 1: return planes_of(1, pair);
+    case 2: return planes_of(2, pair);
+    case 4: return planes_of(4, pair);
+    default: return planes_of(8, pair);
     }
 }
 

@@ -37,6 +37,14 @@ bool limbs_prepare(const struct fmb_pair *pair, struct dyadic_span span, struct 
 /* The sign of the gap of a slab; -1 where its normal is zero: it says nothing. */
 int limbs_gap_sign(const struct limbs_pair *pair, struct slab_normal normal);
 
+/* Of two faces. */
+struct limbs_planes {
+    bool parallel; /* their planes are */
+    bool shared;   /* and they are one plane at all times of the window */
+};
+
+struct limbs_planes limbs_planes_of(const struct limbs_pair *pair);
+
 /* The numbers of a slab_value, exactly, times a common power of two. */
 void limbs_slab(const struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
                 mpz_t start, mpz_t slope);

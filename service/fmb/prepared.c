@@ -74,7 +74,8 @@ void prepared_set(const struct fmb_frame *frame, struct fmb_prepared *out)
 enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out)
 {
     const struct fmb_pair with_itself = {*frame, *frame, 0};
-    const enum fmb_status status = fmb_pair_check(&with_itself);
+    const enum fmb_status status =
+        frame->body->rounded ? FMB_NOT_SUPPORTED : fmb_pair_check(&with_itself);
     if (status == FMB_OK)
         prepared_set(frame, out);
     else
@@ -97,7 +98,7 @@ struct fmb_frame prepared_frame(const struct fmb_prepared *prepared, struct fmb_
     body->dim = kind & PREPARED_SPACE ? 3 : 2;
     body->shape = shape_of(kind);
     body->count = fmb_component_count(body->dim, body->shape);
-    body->flat = !(kind & PREPARED_USABLE);
+    body->flat = body->shape == FMB_FACE || !(kind & PREPARED_USABLE);
     const size_t dim = (size_t) body->dim;
     const double *next = prepared->number;
     memcpy(frame.origin, next, dim * sizeof *next);

@@ -11,14 +11,15 @@
 #include <stddef.h>
 
 /* Kinds of pairs that the filter can be asked. Two frames of different shapes come with the cuboid
- * first. */
+ * first, and with the face last. */
 enum run_kind {
-    RUN_TETRAHEDRON_B = 1 << 0, /* b is a tetrahedron */
-    RUN_TETRAHEDRON_A = 1 << 1, /* a too */
+    RUN_TETRAHEDRON = 1 << 0, /* one is a tetrahedron: b, or with a face a */
+    RUN_ALIKE = 1 << 1,       /* both are tetrahedra, or faces */
     RUN_SPACE = 1 << 2,
     RUN_DRIFTS = 1 << 3, /* the velocities differ and the window is not empty */
     RUN_ALONG = 1 << 4,  /* 3D: edges or drift may be parallel to the same axis */
-    RUN_KINDS = 1 << 5,
+    RUN_FACE = 1 << 5,   /* b is a face */
+    RUN_KINDS = 1 << 6,
     RUN_ODD = RUN_KINDS, /* doubles can say nothing of it */
     RUN_REFUSED          /* cannot be asked */
 };
@@ -39,17 +40,19 @@ static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, do
         return (struct run_kinds){RUN_REFUSED, RUN_REFUSED, false, false};
     if (!(both & PREPARED_USABLE))
         return (struct run_kinds){RUN_ODD, RUN_ODD, false, false};
-    const unsigned space = both & PREPARED_SPACE;
-    const unsigned kind = (any & PREPARED_TETRAHEDRON) | (both & PREPARED_TETRAHEDRON) << 1 | space;
+    const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE, space = both & PREPARED_SPACE;
+    const unsigned alike = (both & PREPARED_TETRAHEDRON) << 1 | (both & PREPARED_FACE);
+    const unsigned kind = (any & PREPARED_TETRAHEDRON) | alike | (any & PREPARED_FACE) << 4 | space;
     const unsigned along = space / PREPARED_SPACE * PREPARED_ALONG;
     return (struct run_kinds){.at_rest = (enum run_kind)(kind | (both & along)),
                               .drifting = (enum run_kind)(kind | RUN_DRIFTS | (any & along)),
-                              .swapped = kind_a & ~kind_b & PREPARED_TETRAHEDRON,
+                              .swapped = (kind_a & shapes) > (kind_b & shapes),
                               .moving = any & PREPARED_MOVING && duration > 0};
 }
 
-static_assert((int) RUN_TETRAHEDRON_B == (int) PREPARED_TETRAHEDRON &&
-                  (int) RUN_TETRAHEDRON_A == PREPARED_TETRAHEDRON << 1 &&
+static_assert((int) RUN_TETRAHEDRON == (int) PREPARED_TETRAHEDRON &&
+                  (int) RUN_ALIKE == PREPARED_TETRAHEDRON << 1 &&
+                  (int) RUN_ALIKE == (int) PREPARED_FACE && (int) RUN_FACE == PREPARED_FACE << 4 &&
                   (int) RUN_SPACE == (int) PREPARED_SPACE &&
                   (int) RUN_ALONG == (int) PREPARED_ALONG,
               "run_kinds_of() takes bits over as they are");

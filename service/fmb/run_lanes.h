@@ -260,37 +260,49 @@ INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
 
 /* ---- The table ----
  *
- * FUNCTION(name, kind) defines a function for a struct walk_kind. a and b are tetrahedra (1) or
- * cuboids (0). */
+ * FUNCTION(name, kind) defines a function for a struct walk_kind. */
 
-#define RUN_KIND(FUNCTION, name, dimension, a_is, b_is, drift, parallel) \
-    FUNCTION(name, ((struct walk_kind){.dim = dimension,                 \
-                                       .tetrahedron = {a_is, b_is},      \
-                                       .drifts = drift,                  \
-                                       .along = parallel,                \
-                                       .ordered = ORDERED,               \
+enum run_shape { RUN_C, RUN_T, RUN_F }; /* cuboid, tetrahedron, face */
+
+#define RUN_KIND(FUNCTION, name, dimension, a, b, drift, parallel)          \
+    FUNCTION(name, ((struct walk_kind){.dim = dimension,                    \
+                                       .simplex = {a != RUN_C, b != RUN_C}, \
+                                       .face = {a == RUN_F, b == RUN_F},    \
+                                       .drifts = drift,                     \
+                                       .along = parallel,                   \
+                                       .ordered = ORDERED,                  \
                                        .times = TIMES}))
-#define RUN_SHAPES(FUNCTION, name, dimension, drift, parallel)      \
-    RUN_KIND(FUNCTION, name##_cc, dimension, 0, 0, drift, parallel) \
-    RUN_KIND(FUNCTION, name##_ct, dimension, 0, 1, drift, parallel) \
-    RUN_KIND(FUNCTION, name##_tt, dimension, 1, 1, drift, parallel)
+#define RUN_SOLIDS(FUNCTION, name, dimension, drift, parallel)              \
+    RUN_KIND(FUNCTION, name##_cc, dimension, RUN_C, RUN_C, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_ct, dimension, RUN_C, RUN_T, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_tt, dimension, RUN_T, RUN_T, drift, parallel)
+#define RUN_SHAPES(FUNCTION, name, drift, parallel)                 \
+    RUN_SOLIDS(FUNCTION, name, 3, drift, parallel)                  \
+    RUN_KIND(FUNCTION, name##_cf, 3, RUN_C, RUN_F, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_tf, 3, RUN_T, RUN_F, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_ff, 3, RUN_F, RUN_F, drift, parallel)
 #define RUN_DRIFTING(FUNCTION)                  \
-    RUN_SHAPES(FUNCTION, plane_drifts, 2, 1, 0) \
-    RUN_SHAPES(FUNCTION, space_drifts, 3, 1, 0) \
-    RUN_SHAPES(FUNCTION, space_drifts_along, 3, 1, 1)
+    RUN_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0) \
+    RUN_SHAPES(FUNCTION, space_drifts, 1, 0)    \
+    RUN_SHAPES(FUNCTION, space_drifts_along, 1, 1)
 #define RUN_AT_REST(FUNCTION)            \
-    RUN_SHAPES(FUNCTION, plane, 2, 0, 0) \
-    RUN_SHAPES(FUNCTION, space, 3, 0, 0) \
-    RUN_SHAPES(FUNCTION, space_along, 3, 0, 1)
+    RUN_SOLIDS(FUNCTION, plane, 2, 0, 0) \
+    RUN_SHAPES(FUNCTION, space, 0, 0)    \
+    RUN_SHAPES(FUNCTION, space_along, 0, 1)
 
-#define RUN_ENTRIES(name, kind)                                   \
-    [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON_B] = name##_ct, \
-    [(kind) + RUN_TETRAHEDRON_B + RUN_TETRAHEDRON_A] = name##_tt
-#define RUN_DRIFTING_ENTRIES                                                                  \
-    RUN_ENTRIES(plane_drifts, RUN_DRIFTS), RUN_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS), \
+#define RUN_SOLID_ENTRIES(name, kind)                           \
+    [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON] = name##_ct, \
+    [(kind) + RUN_TETRAHEDRON + RUN_ALIKE] = name##_tt
+#define RUN_ENTRIES(name, kind)                                                                 \
+    RUN_SOLID_ENTRIES(name, kind), [(kind) + RUN_FACE] = name##_cf,                             \
+                                             [(kind) + RUN_FACE + RUN_TETRAHEDRON] = name##_tf, \
+                                             [(kind) + RUN_FACE + RUN_ALIKE] = name##_ff
+#define RUN_DRIFTING_ENTRIES                               \
+    RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),           \
+        RUN_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS), \
         RUN_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG)
-#define RUN_AT_REST_ENTRIES                               \
-    RUN_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
+#define RUN_AT_REST_ENTRIES                                     \
+    RUN_SOLID_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
         RUN_ENTRIES(space_along, RUN_SPACE + RUN_ALONG)
 
 #if defined(RUN_TIMES)
@@ -299,14 +311,14 @@ INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
     {                        \
         RUN_DRIFTING_ENTRIES \
     }
-#elif defined(RUN_BOXES) /* normals that are zero do not matter */
+#elif defined(RUN_BOXES) /* of solid frames; normals that are zero do not matter */
 #define RUN_FUNCTIONS(FUNCTION)          \
-    RUN_SHAPES(FUNCTION, plane, 2, 0, 0) \
-    RUN_SHAPES(FUNCTION, space, 3, 0, 0)
-#define RUN_TABLE                                             \
-    {                                                         \
-        RUN_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
-            RUN_ENTRIES(space, RUN_SPACE + RUN_ALONG)         \
+    RUN_SOLIDS(FUNCTION, plane, 2, 0, 0) \
+    RUN_SOLIDS(FUNCTION, space, 3, 0, 0)
+#define RUN_TABLE                                                         \
+    {                                                                     \
+        RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(space, RUN_SPACE), \
+            RUN_SOLID_ENTRIES(space, RUN_SPACE + RUN_ALONG)               \
     }
 #else
 #define RUN_FUNCTIONS(FUNCTION) RUN_AT_REST(FUNCTION) RUN_DRIFTING(FUNCTION)

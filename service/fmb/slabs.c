@@ -61,8 +61,15 @@
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.
  *
- * Along an axis a coordinate of a component is rounded at most 6 times, and the difference with the
- * bound once: 7.01 u T against 16 u T.
+ * A face is a simplex of two components; of the products above it needs those without a_2, and its
+ * own normal n_2, along which it has no extent. Its components may be rounded before they come here
+ * (fmb_body.rest), by a factor within 1 +- u for each coordinate, so that a monomial of two edges
+ * and an offset or H is rounded twice more, one of three components three times more: at most 16
+ * times in all. 16.01 (2 / sqrt(3)) u + 1.01 u < 19.6 u leaves as much of the 21 u of
+ * SLABS_ROUNDING_FACES. Sizes in heads are no smaller than lengths that are longer by u.
+ *
+ * Along an axis a coordinate of a component is rounded at most 6 times, of a face once before, and
+ * the difference with the bound once: 8.01 u T against 16 u T.
  *
  * Overflow and underflow: components and a drift that is not 0 have sizes between 2^-200 and 2^200,
  * offsets are below 2^200 (slabs_prepare, walk_pair.in_range), so that nothing overflows. Entries
@@ -143,25 +150,29 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
                                    struct slab_value *next)
 {
     struct walk_found found;
-#define WALK(dimension, x, y, drift)                                                  \
-    if (pair->a->dim == (dimension) && (pair->a->shape == FMB_TETRAHEDRON) == (x) &&  \
-        (pair->b->shape == FMB_TETRAHEDRON) == (y) && pair->motion.drifts == (drift)) \
-        walk_one(pair,                                                                \
-                 (struct walk_kind){.dim = dimension,                                 \
-                                    .tetrahedron = {x, y},                            \
-                                    .drifts = drift,                                  \
-                                    .along = (dimension) == 3,                        \
-                                    .ordered = true},                                 \
+#define WALK(dimension, x, y, drift)                                                     \
+    if (pair->a->dim == (dimension) && pair->a->shape == (x) && pair->b->shape == (y) && \
+        pair->motion.drifts == (drift))                                                  \
+        walk_one(pair,                                                                   \
+                 (struct walk_kind){.dim = dimension,                                    \
+                                    .simplex = {(x) != FMB_CUBOID, (y) != FMB_CUBOID},   \
+                                    .face = {(x) == FMB_FACE, (y) == FMB_FACE},          \
+                                    .drifts = drift,                                     \
+                                    .along = (dimension) == 3,                           \
+                                    .ordered = true},                                    \
                  rounds, next, &found);
 #define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
-#define WALK_SHAPES(dimension)    \
-    WALK_MOTIONS(dimension, 0, 0) \
-    WALK_MOTIONS(dimension, 0, 1) \
-    WALK_MOTIONS(dimension, 1, 0) \
-    WALK_MOTIONS(dimension, 1, 1)
-    WALK_SHAPES(2)
-    WALK_SHAPES(3)
-#undef WALK_SHAPES
+#define WALK_PAIR(x, y) WALK_MOTIONS(2, x, y) WALK_MOTIONS(3, x, y)
+#define WALK_FACE(x) WALK_MOTIONS(3, x, FMB_FACE) WALK_MOTIONS(3, FMB_FACE, x)
+    WALK_PAIR(FMB_CUBOID, FMB_CUBOID)
+    WALK_PAIR(FMB_CUBOID, FMB_TETRAHEDRON)
+    WALK_PAIR(FMB_TETRAHEDRON, FMB_CUBOID)
+    WALK_PAIR(FMB_TETRAHEDRON, FMB_TETRAHEDRON)
+    WALK_FACE(FMB_CUBOID)
+    WALK_FACE(FMB_TETRAHEDRON)
+    WALK_MOTIONS(3, FMB_FACE, FMB_FACE)
+#undef WALK_FACE
+#undef WALK_PAIR
 #undef WALK_MOTIONS
 #undef WALK
     return found;
@@ -229,7 +240,7 @@ static struct known farthest(const struct fmb_body *body, const struct known x[F
                              double sign)
 {
     double value = 0, low = 0, high = 0;
-    for (int i = 0; i < body->dim; i++) {
+    for (int i = 0; i < body->count; i++) {
         const double at = sign * x[i].value;
         const double below = above_zero(at - x[i].error), above = above_zero(at + x[i].error);
         if (body->shape == FMB_CUBOID) {
@@ -261,10 +272,10 @@ void slabs_refine(const struct slabs_pair *pair, struct slab_normal edges, struc
     const struct known start = known_dot(&normal, pair->motion.offset);
     const struct known slope = known_dot(&normal, pair->motion.drift);
     struct known a[FMB_DIM_MAX], b[FMB_DIM_MAX];
-    for (int i = 0; i < pair->a->dim; i++) {
+    for (int i = 0; i < pair->a->count; i++)
         a[i] = known_dot(&normal, pair->a->component[i]);
+    for (int i = 0; i < pair->b->count; i++)
         b[i] = known_dot(&normal, pair->b->component[i]);
-    }
     for (int side = 0; side < 2; side++) {
         const double sign = side ? -1 : 1;
         const struct known of_a = farthest(pair->a, a, -sign), of_b = farthest(pair->b, b, sign);

@@ -1,6 +1,6 @@
 /* The certified filter: the slabs of a pair in doubles, each with a bound on its error.
  *
- * Two solid frames meet just if the offset of their origins lies in the Minkowski difference
+ * Two frames meet just if the offset of their origins lies in the Minkowski difference
  * D = A - B, and a moving pair does at some time of its window just if the offset at the start
  * lies in D swept back along the drift (over the whole window): S = D - [0,1] drift. D and S are
  * polytopes, the intersections of a fixed list of slabs: this is what is left of the article's
@@ -15,6 +15,13 @@
  *
  * A slab whose normal is zero (parallel edges) says nothing and does not count.
  *
+ * All of this holds for a face too, a polytope with one plane of its own, and D has an interior
+ * where the other frame is solid, or a face of another plane. Two faces in parallel planes have a
+ * flat D. What separates them still does, and what lies strictly between the bounds of all slabs
+ * still overlaps: S then is a prism, spanned by a drift that leaves the planes, whose interior is
+ * that of D swept over the open window. But the rest may be anything, and is decided elsewhere
+ * (faces.h).
+ *
  * How far beyond a bound the offset is, times the length of the normal, is the gap of the slab.
  * Doubles give it with an error that slabs.c bounds; where that leaves its sign open the
  * filter is unsure. */
@@ -25,13 +32,14 @@
 #include "fmb.h"
 #include "relative.h"
 
-/* Bounds on the error of a gap, and of all that it is made of, in 3D and in 2D, relative to the
- * scale of the slab; and along an axis, relative to the sum of all lengths. Derived in slabs.c: a
- * smaller one gives wrong answers, a larger one more that are unsure. */
+/* Bounds on the error of a gap, and of all that it is made of, in 3D, in 2D and with a face,
+ * relative to the scale of the slab; and along an axis, relative to the sum of all lengths.
+ * Derived in slabs.c: a smaller one gives wrong answers, a larger one more that are unsure. */
 #ifndef SLABS_ROUNDING
 #define SLABS_ROUNDING (18 * 0x1p-53)
 #endif
 #define SLABS_ROUNDING_2D (SLABS_ROUNDING * 2 / 3)
+#define SLABS_ROUNDING_FACES (SLABS_ROUNDING * 7 / 6)
 #define SLABS_ROUNDING_AXES 0x1p-49
 
 /* A pair that doubles can say something of. */
@@ -42,11 +50,13 @@ struct slabs_pair {
     double drift_size; /* the largest magnitude of the drift */
 };
 
-/* False if doubles can say nothing of the pair: a frame is flat, or numbers are out of range. */
+/* False if doubles can say nothing of the pair: a frame is flat and no face with an area, or
+ * numbers are out of range. */
 bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out);
 
 /* The edges of a pair by number: of A; of B; the drift. A frame's edges are its components, then,
- * of a tetrahedron, c2 - c1, c0 - c2, c1 - c0 (a triangle: c1 - c0). */
+ * of a tetrahedron, c2 - c1, c0 - c2, c1 - c0 (a triangle in 2D: c1 - c0). A face has numbers 0, 1
+ * and 5 of these. */
 enum { SLABS_EDGES = 6, SLABS_EDGE_OF_B = SLABS_EDGES, SLABS_DRIFT = 2 * SLABS_EDGES };
 
 /* In 3D the normal is u x v, in 2D it is u turned by a right angle, (-u_y, u_x). */

@@ -85,7 +85,7 @@ INLINE void set_way(const struct walk_pair *pair, const struct walk_kind kind,
         for (int f = 0; f < 2; f++)
             UNROLL(3)
         for (int i = 0; i < kind.dim; i++)
-            if (!kind.tetrahedron[f])
+            if (!kind.simplex[f])
                 of[f] += lanes_magnitude(pair->component[f][i][axis]);
         way[axis] = (of[0] + of[1]) + (is_doubled(kind) ? apart + apart : apart);
     }
@@ -109,9 +109,9 @@ INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
 
 INLINE void set_bounds(const struct walk_kind kind, int of, lanes size, struct box_face *face)
 {
-    const struct walk_extent own = extent_of_one(kind.tetrahedron[of], size);
-    face->low = kind.tetrahedron[of] ? own.low : -own.radius;
-    face->high = kind.tetrahedron[of] ? own.high : own.radius;
+    const struct walk_extent own = extent_of_one(kind.simplex[of], size);
+    face->low = kind.simplex[of] ? own.low : -own.radius;
+    face->high = kind.simplex[of] ? own.high : own.radius;
 }
 
 INLINE lanes sum_of_three(const struct box_function function[3], int i)
@@ -130,7 +130,7 @@ INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind
     struct box_function function[3], weight[3];
     lanes own = lanes_of(0);
     set_side(pair, kind, other, &side);
-    out->faces = kind.tetrahedron[other] ? 4 : 3;
+    out->faces = kind.simplex[other] ? 4 : 3;
     UNROLL(3)
     for (int k = 0; k < 3; k++) {
         lanes normal_weight[3];
@@ -148,7 +148,7 @@ INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind
         out->face[k].weight = weight[k];
         set_bounds(kind, other, side.volume, &out->face[k]);
     }
-    if (!kind.tetrahedron[other])
+    if (!kind.simplex[other])
         return;
     struct box_face *face = &out->face[3];
     face->function.at = sum_of_three(function, -1);
@@ -214,8 +214,7 @@ INLINE void set_places(const struct walk_pair *pair, const struct walk_kind kind
             function->component[i] = pair->component[which][i][axis];
             sum += lanes_magnitude(function->component[i]);
         }
-        function->at =
-            kind.tetrahedron[which] ? at : at + shift_of(kind, pair->component[which], axis);
+        function->at = kind.simplex[which] ? at : at + shift_of(kind, pair->component[which], axis);
         out->slack[axis] = BOX_POINT_ROUNDING * (lanes_magnitude(at) + (sum + sum));
     }
 }
@@ -385,12 +384,12 @@ INLINE lanes sum_above(lanes x, lanes y)
 INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind kind, int which,
                           const lanes origin[3], int axis, lanes box[2][3])
 {
-    const bool twice = is_doubled(kind) && kind.tetrahedron[which];
+    const bool twice = is_doubled(kind) && kind.simplex[which];
     lanes low = origin[axis], high = origin[axis];
     UNROLL(3)
     for (int i = 0; i < kind.dim; i++) {
         const lanes c = (twice ? 0.5 : 1.0) * pair->component[which][i][axis];
-        if (kind.tetrahedron[which]) {
+        if (kind.simplex[which]) {
             low = lanes_least(sum_below(origin[axis], c), low);
             high = lanes_greatest(sum_above(origin[axis], c), high);
         } else {
@@ -415,7 +414,7 @@ INLINE lanes largest_place(const struct walk_kind kind, int which, const struct 
         lanes farthest = lanes_magnitude(function->at);
         UNROLL(3)
         for (int i = 0; i < kind.dim; i++)
-            farthest = kind.tetrahedron[which]
+            farthest = kind.simplex[which]
                            ? lanes_greatest(lanes_magnitude(function->at + function->component[i]),
                                             farthest)
                            : farthest + lanes_magnitude(function->component[i]);
@@ -438,7 +437,7 @@ INLINE void add_edges_of(const struct walk_kind kind, int which, const struct bo
 {
     UNROLL(6)
     for (int e = 0; e < edge_count(kind, which); e++) {
-        if (kind.tetrahedron[which])
+        if (kind.simplex[which])
             add_simplex_edge(kind, frame, e, found);
         else
             add_cuboid_edges(kind, frame, e, found);

@@ -9,7 +9,8 @@
 /* What is known when a kernel is compiled. */
 struct walk_kind {
     int dim;
-    bool tetrahedron[2]; /* of a, of b; else cuboids */
+    bool simplex[2]; /* of a, of b: tetrahedra, triangles of 2D, faces; else cuboids */
+    bool face[2];    /* 3D: a simplex of two components */
     bool drifts;
     bool along;   /* edges may be parallel to the same axis: zero normals are looked for (3D) */
     bool ordered; /* every number is to have the same bits for the pair the other way round */
@@ -19,7 +20,7 @@ struct walk_kind {
     bool times; /* the times of contact are wanted; ordered */
 };
 
-/* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a tetrahedron.
+/* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex.
  * In a pair with a cuboid all lengths are doubled, so that the halves of its edges are its
  * components. */
 struct walk_pair {
@@ -38,9 +39,26 @@ INLINE int next(int i)
     return i == 2 ? 0 : i + 1;
 }
 
+INLINE int component_count(const struct walk_kind kind, int which)
+{
+    return kind.face[which] ? 2 : kind.dim;
+}
+
 INLINE int edge_count(const struct walk_kind kind, int which)
 {
-    return !kind.tetrahedron[which] ? kind.dim : kind.dim == 2 ? 3 : 6;
+    return !kind.simplex[which] ? kind.dim : component_count(kind, which) == 2 ? 3 : 6;
+}
+
+/* The number of an edge (slabs.h): a face has c_0, c_1 and c_1 - c_0. */
+INLINE int edge_at(const struct walk_kind kind, int which, int index)
+{
+    return kind.face[which] && index == 2 ? 5 : index;
+}
+
+/* Whether edge 3 + i of a frame in 3D is one of its own. */
+INLINE bool has_difference(const struct walk_kind kind, int which, int i)
+{
+    return kind.simplex[which] && (!kind.face[which] || i == 2);
 }
 
 INLINE lanes dot(const lanes u[3], const lanes v[3])
@@ -67,36 +85,38 @@ INLINE lanes product(const lanes x[3], const lanes y[3])
  * derived in slabs.c. */
 INLINE double walk_error(const struct walk_kind kind)
 {
-    return kind.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING;
+    return kind.dim == 2                  ? SLABS_ROUNDING_2D
+           : kind.face[0] || kind.face[1] ? SLABS_ROUNDING_FACES
+                                          : SLABS_ROUNDING;
 }
 
 INLINE bool is_doubled(const struct walk_kind kind)
 {
-    return !kind.tetrahedron[0] || !kind.tetrahedron[1];
+    return !kind.simplex[0] || !kind.simplex[1];
 }
 
 /* Components and sizes of a frame; returns its share of the reach. */
 INLINE lanes set_frame(const struct walk_kind kind, int which, const lanes component[3][3],
                        const lanes size[3], struct walk_pair *out)
 {
-    const bool twice = is_doubled(kind) && kind.tetrahedron[which];
+    const bool twice = is_doubled(kind) && kind.simplex[which];
     lanes sum = size[0] + size[1];
     UNROLL(3)
-    for (int i = 0; i < kind.dim; i++) {
+    for (int i = 0; i < component_count(kind, which); i++) {
         UNROLL(3)
         for (int axis = 0; axis < kind.dim; axis++)
             out->component[which][i][axis] =
                 twice ? component[i][axis] + component[i][axis] : component[i][axis];
         out->size[which][i] = twice ? size[i] + size[i] : size[i];
     }
-    if (kind.dim == 3)
+    if (component_count(kind, which) == 3)
         sum += size[2];
     lanes *own = out->size[which];
     UNROLL(3)
     for (int i = 0; i < 3; i++)
-        if (kind.tetrahedron[which] && kind.dim == 3)
+        if (kind.dim == 3 && has_difference(kind, which, i))
             own[3 + i] = own[next(i)] + own[next(next(i))];
-    if (kind.tetrahedron[which] && kind.dim == 2)
+    if (kind.simplex[which] && kind.dim == 2)
         own[2] = own[0] + own[1];
     return is_doubled(kind) ? sum + sum : sum;
 }
@@ -114,9 +134,9 @@ INLINE lanes offset_of(const struct walk_kind kind, const lanes component[2][3][
                        lanes half, int axis)
 {
     const lanes at = kind.drifts ? offset + half : offset;
-    if (kind.tetrahedron[0])
-        return kind.tetrahedron[1] ? at : at + shift_of(kind, component[1], axis);
-    if (kind.tetrahedron[1])
+    if (kind.simplex[0])
+        return kind.simplex[1] ? at : at + shift_of(kind, component[1], axis);
+    if (kind.simplex[1])
         return at - shift_of(kind, component[0], axis);
     return at + (shift_of(kind, component[1], axis) - shift_of(kind, component[0], axis));
 }

@@ -20,7 +20,7 @@ INLINE void set_plane_edges(const struct walk_pair *pair, const struct walk_kind
         out->other[i][0] = product(e, pair->component[!which][0]);
         out->other[i][1] = product(e, pair->component[!which][1]);
     }
-    if (!kind.tetrahedron[which])
+    if (!kind.simplex[which])
         return;
     out->middle[2] = out->middle[1] - out->middle[0];
     out->swing[2] = out->swing[1] - out->swing[0];
@@ -37,10 +37,9 @@ INLINE void add_plane_edges(const struct walk_pair *pair, const struct walk_kind
     const lanes_mask none = {0};
     UNROLL(3)
     for (int e = 0; e < edge_count(kind, which); e++) {
-        const struct walk_extent own =
-            extent_of_one(kind.tetrahedron[which], e == 0 ? area : -area);
+        const struct walk_extent own = extent_of_one(kind.simplex[which], e == 0 ? area : -area);
         const struct walk_extent other =
-            extent_of_two(kind.tetrahedron[!which], edges->other[e][0], edges->other[e][1]);
+            extent_of_two(kind.simplex[!which], edges->other[e][0], edges->other[e][1]);
         add_slab(kind, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + e, 0},
                  extent_difference(kind, which ? other : own, which ? own : other),
                  pair->size[which][e], pair->unit, edges->middle[e], edges->swing[e], false, none,
@@ -53,9 +52,9 @@ INLINE void add_plane_drift(const struct walk_pair *pair, const struct walk_kind
 {
     const lanes_mask none = {0};
     const struct walk_extent a =
-        extent_of_two(kind.tetrahedron[0], -side[0].swing[0], -side[0].swing[1]);
+        extent_of_two(kind.simplex[0], -side[0].swing[0], -side[0].swing[1]);
     const struct walk_extent b =
-        extent_of_two(kind.tetrahedron[1], -side[1].swing[0], -side[1].swing[1]);
+        extent_of_two(kind.simplex[1], -side[1].swing[0], -side[1].swing[1]);
     add_slab(kind, (struct slab_normal){SLABS_DRIFT, 0}, extent_difference(kind, a, b),
              pair->half_size, pair->unit, product(pair->half, pair->offset), lanes_of(0), true,
              none, found);

@@ -18,32 +18,32 @@ struct walk_found {
 
 /* ---- Extents along a normal ----
  *
- * Of a frame about its reference point: of a cuboid [-radius, radius], of a tetrahedron
- * [low, high]; of D, the sum of both. */
+ * Of a frame about its reference point: of a cuboid [-radius, radius], of a simplex [low, high]; of
+ * D, the sum of both. */
 struct walk_extent {
     lanes low, high, radius;
 };
 
-INLINE struct walk_extent extent_of_one(bool tetrahedron, lanes x)
+INLINE struct walk_extent extent_of_one(bool simplex, lanes x)
 {
-    if (!tetrahedron)
+    if (!simplex)
         return (struct walk_extent){lanes_of(0), lanes_of(0), lanes_magnitude(x)};
     return (struct walk_extent){lanes_least(x, lanes_of(0)), lanes_greatest(x, lanes_of(0)),
                                 lanes_of(0)};
 }
 
-INLINE struct walk_extent extent_of_two(bool tetrahedron, lanes x, lanes y)
+INLINE struct walk_extent extent_of_two(bool simplex, lanes x, lanes y)
 {
-    if (!tetrahedron)
+    if (!simplex)
         return (struct walk_extent){lanes_of(0), lanes_of(0),
                                     lanes_magnitude(x) + lanes_magnitude(y)};
     return (struct walk_extent){lanes_least(lanes_least(x, y), lanes_of(0)),
                                 lanes_greatest(lanes_greatest(x, y), lanes_of(0)), lanes_of(0)};
 }
 
-INLINE struct walk_extent extent_of_three(bool tetrahedron, lanes x, lanes y, lanes z)
+INLINE struct walk_extent extent_of_three(bool simplex, lanes x, lanes y, lanes z)
 {
-    if (!tetrahedron)
+    if (!simplex)
         return (struct walk_extent){lanes_of(0), lanes_of(0),
                                     (lanes_magnitude(x) + lanes_magnitude(y)) + lanes_magnitude(z)};
     return (struct walk_extent){
@@ -54,8 +54,9 @@ INLINE struct walk_extent extent_of_three(bool tetrahedron, lanes x, lanes y, la
 /* Of all components along what makes at[] of them. */
 INLINE struct walk_extent extent_of_frame(const struct walk_kind kind, int which, const lanes at[3])
 {
-    return kind.dim == 2 ? extent_of_two(kind.tetrahedron[which], at[0], at[1])
-                         : extent_of_three(kind.tetrahedron[which], at[0], at[1], at[2]);
+    return component_count(kind, which) == 2
+               ? extent_of_two(kind.simplex[which], at[0], at[1])
+               : extent_of_three(kind.simplex[which], at[0], at[1], at[2]);
 }
 
 /* The extent of D = A - B from those of A and B along the same direction. */
@@ -63,15 +64,15 @@ INLINE struct walk_extent extent_difference(const struct walk_kind kind, struct 
                                             struct walk_extent b)
 {
     struct walk_extent out = {lanes_of(0), lanes_of(0), lanes_of(0)};
-    if (kind.tetrahedron[0] && kind.tetrahedron[1])
+    if (kind.simplex[0] && kind.simplex[1])
         return (struct walk_extent){a.low - b.high, a.high - b.low, out.radius};
-    if (!kind.tetrahedron[0] && !kind.tetrahedron[1]) {
+    if (!kind.simplex[0] && !kind.simplex[1]) {
         out.radius = a.radius + b.radius;
         return out;
     }
-    out.radius = kind.tetrahedron[0] ? b.radius : a.radius;
-    out.low = kind.tetrahedron[0] ? a.low : -b.high;
-    out.high = kind.tetrahedron[0] ? a.high : -b.low;
+    out.radius = kind.simplex[0] ? b.radius : a.radius;
+    out.low = kind.simplex[0] ? a.low : -b.high;
+    out.high = kind.simplex[0] ? a.high : -b.low;
     return out;
 }
 
@@ -79,21 +80,21 @@ INLINE struct walk_extent extent_difference(const struct walk_kind kind, struct 
 INLINE struct walk_extent extent_sum(const struct walk_kind kind, struct walk_extent a,
                                      struct walk_extent b)
 {
-    if (kind.tetrahedron[0] && kind.tetrahedron[1])
+    if (kind.simplex[0] && kind.simplex[1])
         return (struct walk_extent){a.low + b.low, a.high + b.high, lanes_of(0)};
-    if (!kind.tetrahedron[0] && !kind.tetrahedron[1])
+    if (!kind.simplex[0] && !kind.simplex[1])
         return (struct walk_extent){lanes_of(0), lanes_of(0), a.radius + b.radius};
-    return kind.tetrahedron[0] ? (struct walk_extent){a.low, a.high, b.radius}
-                               : (struct walk_extent){b.low, b.high, a.radius};
+    return kind.simplex[0] ? (struct walk_extent){a.low, a.high, b.radius}
+                           : (struct walk_extent){b.low, b.high, a.radius};
 }
 
 /* How far beyond D the offset is at most over the window: D widened by the drift. */
 INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes middle, lanes swing)
 {
-    const bool round = !kind.tetrahedron[0] && !kind.tetrahedron[1];
+    const bool round = !kind.simplex[0] && !kind.simplex[1];
     const lanes beyond =
         round ? lanes_magnitude(middle) : lanes_greatest(middle - d.high, d.low - middle);
-    if (kind.tetrahedron[0] && kind.tetrahedron[1])
+    if (kind.simplex[0] && kind.simplex[1])
         return kind.drifts ? beyond - lanes_magnitude(swing) : beyond;
     return beyond - (kind.drifts ? d.radius + lanes_magnitude(swing) : d.radius);
 }
@@ -107,8 +108,8 @@ INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes mid
 INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes error,
                         lanes middle, lanes swing, lanes_mask nothing, struct walk_found *found)
 {
-    const bool both = kind.tetrahedron[0] && kind.tetrahedron[1];
-    const bool none = !kind.tetrahedron[0] && !kind.tetrahedron[1];
+    const bool both = kind.simplex[0] && kind.simplex[1];
+    const bool none = !kind.simplex[0] && !kind.simplex[1];
     lanes low = both ? d.low : none ? -d.radius : d.low - d.radius;
     lanes high = both ? d.high : none ? d.radius : d.high + d.radius;
     low -= middle;
@@ -138,9 +139,6 @@ INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, str
                      lanes_mask nothing, struct walk_found *found)
 {
     const lanes gap = gap_of(kind, d, middle, swing);
-#if LANES == 1 /* where nothing rounds, a zero normal shows in that both frames have no extent */
-    nothing |= unit == 0 && d.low == d.high && d.radius == 0;
-#endif
     const lanes above = gap + scale * unit;
     found->surely = lanes_greatest(gap - scale * unit, found->surely);
     found->possibly = lanes_greatest(
@@ -187,7 +185,7 @@ INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
         UNROLL(2)
         for (int f = 0; f < 2; f++)
             UNROLL(3)
-        for (int i = 0; i < kind.dim; i++)
+        for (int i = 0; i < component_count(kind, f); i++)
             at[f][i] = pair->component[f][i][axis];
         const struct walk_extent d = extent_difference(kind, extent_of_frame(kind, 0, at[0]),
                                                        extent_of_frame(kind, 1, at[1]));

@@ -6,7 +6,7 @@
 
 /* What a frame has of its own, and what of the pair is linear in its normals. */
 struct walk_side {
-    lanes normal[3][3];        /* normal[k] = c_i x c_j */
+    lanes normal[3][3];        /* normal[k] = c_i x c_j; of a face, k = 2 alone */
     lanes volume;              /* normal[k] . c_k, any k */
     lanes other[3][6];         /* normal[k] . edges of the other frame */
     lanes middle[3], swing[3]; /* normal[k] . offset, normal[k] . half */
@@ -14,28 +14,35 @@ struct walk_side {
 
 INLINE void add_differences(const struct walk_kind kind, int which, lanes value[6])
 {
-    if (!kind.tetrahedron[which])
-        return;
-    value[3] = value[2] - value[1];
-    value[4] = value[0] - value[2];
-    value[5] = value[1] - value[0];
+    UNROLL(3)
+    for (int i = 0; i < 3; i++)
+        if (has_difference(kind, which, i))
+            value[3 + i] = value[next(next(i))] - value[next(i)];
+}
+
+/* The first of the components' planes that the frame has. */
+INLINE int first_plane(const struct walk_kind kind, int which)
+{
+    return kind.face[which] ? 2 : 0;
 }
 
 INLINE void set_side(const struct walk_pair *pair, const struct walk_kind kind, int which,
                      struct walk_side *out)
 {
+    if (kind.face[which]) /* for the planes that it does not have */
+        memset(out, 0, sizeof *out);
     UNROLL(3)
-    for (int k = 0; k < 3; k++) {
+    for (int k = first_plane(kind, which); k < 3; k++) {
         cross(pair->component[which][next(k)], pair->component[which][next(next(k))],
               out->normal[k]);
         out->middle[k] = dot(out->normal[k], pair->offset);
         out->swing[k] = kind.drifts ? dot(out->normal[k], pair->half) : lanes_of(0);
         UNROLL(3)
-        for (int j = 0; j < 3; j++)
+        for (int j = 0; j < component_count(kind, !which); j++)
             out->other[k][j] = dot(out->normal[k], pair->component[!which][j]);
         add_differences(kind, !which, out->other[k]);
     }
-    out->volume = dot(out->normal[0], pair->component[which][0]);
+    out->volume = kind.face[which] ? lanes_of(0) : dot(out->normal[0], pair->component[which][0]);
 }
 
 /* The faces of a (which = 0) or of b. The extent of a frame along its own normals is that of one
@@ -44,7 +51,7 @@ INLINE void add_face(const struct walk_pair *pair, const struct walk_kind kind, 
                      struct slab_normal normal, const struct walk_side *side, const lanes at[3],
                      lanes scale, lanes middle, lanes swing, struct walk_found *found)
 {
-    const struct walk_extent own = extent_of_one(kind.tetrahedron[which], side->volume);
+    const struct walk_extent own = extent_of_one(kind.simplex[which], side->volume);
     const struct walk_extent other = extent_of_frame(kind, !which, at);
     const lanes_mask none = {0};
     add_slab(kind, normal, extent_difference(kind, which ? other : own, which ? own : other), scale,
@@ -57,16 +64,16 @@ INLINE void add_faces(const struct walk_pair *pair, const struct walk_kind kind,
     const int first = which ? SLABS_EDGE_OF_B : 0;
     const lanes *size = pair->size[which];
     UNROLL(3)
-    for (int k = 0; k < 3; k++) {
+    for (int k = first_plane(kind, which); k < 3; k++) {
         const int i = next(k), j = next(i);
         add_face(pair, kind, which, (struct slab_normal){first + i, first + j}, side,
                  side->other[k], size[i] * size[j], side->middle[k], side->swing[k], found);
     }
-    if (!kind.tetrahedron[which])
+    if (!kind.simplex[which] || kind.face[which])
         return;
     lanes at[3];
     UNROLL(3)
-    for (int j = 0; j < 3; j++)
+    for (int j = 0; j < component_count(kind, !which); j++)
         at[j] = (side->other[0][j] + side->other[1][j]) + side->other[2][j];
     add_face(pair, kind, which, (struct slab_normal){first + 3, first + 4}, side, at,
              (size[0] * size[1] + size[1] * size[2]) + size[2] * size[0],
@@ -88,19 +95,19 @@ INLINE void add_product_differences(const struct walk_kind kind, lanes value[6][
         const int p = next(i), q = next(p);
         UNROLL(3)
         for (int j = 0; j < 3; j++) {
-            if (kind.tetrahedron[1])
+            if (has_difference(kind, 1, i) && j < component_count(kind, 0))
                 value[j][3 + i] = value[j][q] - value[j][p];
-            if (kind.tetrahedron[0])
+            if (has_difference(kind, 0, i) && j < component_count(kind, 1))
                 value[3 + i][j] = value[q][j] - value[p][j];
         }
     }
-    if (!kind.tetrahedron[0] || !kind.tetrahedron[1])
-        return;
     UNROLL(3)
     for (int i = 0; i < 3; i++) {
         const int p = next(i), q = next(p);
         UNROLL(3)
         for (int j = 0; j < 3; j++) {
+            if (!has_difference(kind, 0, i) || !has_difference(kind, 1, j))
+                continue;
             const int r = next(j), s = next(r);
             value[3 + i][3 + j] = kind.ordered
                                       ? (value[q][s] + value[p][r]) - (value[q][r] + value[p][s])
@@ -115,12 +122,12 @@ INLINE void set_products(const struct walk_pair *pair, const struct walk_kind ki
                          const lanes w[3], lanes value[6][6])
 {
     UNROLL(3)
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < component_count(kind, 0); i++) {
         lanes turned[3];
         if (!kind.ordered)
             cross(w, pair->component[0][i], turned);
         UNROLL(3)
-        for (int j = 0; j < 3; j++) {
+        for (int j = 0; j < component_count(kind, 1); j++) {
             if (kind.ordered) {
                 cross(pair->component[0][i], pair->component[1][j], turned);
                 value[i][j] = dot(turned, w);
@@ -132,14 +139,18 @@ INLINE void set_products(const struct walk_pair *pair, const struct walk_kind ki
     add_product_differences(kind, value);
 }
 
-/* The extent of a frame along e x f, e an edge of its own; at[k] = normal[k] . f. */
+/* The extent of a frame along e x f, e an edge of its own; at[k] = normal[k] . f. Of a face it is
+ * that of one component: c_0 x f has c_1 at -at[2], c_1 x f and (c_1 - c_0) x f have c_0 at
+ * at[2], and the last of them c_1 too. */
 INLINE struct walk_extent extent_at_edge(const struct walk_kind kind, int which, int e, lanes at0,
                                          lanes at1, lanes at2)
 {
     const lanes at[3] = {at0, at1, at2};
+    if (kind.face[which])
+        return extent_of_one(true, e == 0 ? -at2 : at2);
     if (e < 3)
-        return extent_of_two(kind.tetrahedron[which],
-                             kind.tetrahedron[which] ? -at[next(next(e))] : at[next(next(e))],
+        return extent_of_two(kind.simplex[which],
+                             kind.simplex[which] ? -at[next(next(e))] : at[next(next(e))],
                              at[next(e)]);
     const int r = e - 3, p = next(r), q = next(p);
     return extent_of_two(true, at[r], -(at[p] + at[q]));
@@ -165,20 +176,36 @@ INLINE lanes_mask cross_is_nothing(const lanes u[3], const lanes v[3])
     return (x + y) + z == 0;
 }
 
+/* Where nothing rounds (unit = 0), the normal of two edges that is zero shows in that neither frame
+ * has an extent along it. Those of two faces in parallel planes have none along that of the planes
+ * either, but a face has that one of its own. */
+INLINE lanes_mask extent_is_nothing(lanes unit, struct walk_extent d)
+{
+#if LANES == 1
+    return (lanes_mask){unit == 0 && d.low == d.high && d.radius == 0};
+#else
+    (void) unit;
+    (void) d;
+    return (lanes_mask){0};
+#endif
+}
+
 INLINE void add_edges(const struct walk_pair *pair, const struct walk_kind kind,
                       const struct walk_side side[2], const struct walk_edges *edges,
                       struct walk_found *found)
 {
     const struct walk_side *a = &side[0], *b = &side[1];
     UNROLL(6)
-    for (int i = 0; i < edge_count(kind, 0); i++) {
+    for (int edge_a = 0; edge_a < edge_count(kind, 0); edge_a++) {
+        const int i = edge_at(kind, 0, edge_a);
         const lanes unit = kind.ordered ? pair->unit : pair->size[0][i] * pair->unit;
         lanes u[3], v[3];
         lanes_mask nothing = {0};
         if (kind.along)
             walk_edge(pair, 0, i, u);
         UNROLL(6)
-        for (int j = 0; j < edge_count(kind, 1); j++) {
+        for (int edge_b = 0; edge_b < edge_count(kind, 1); edge_b++) {
+            const int j = edge_at(kind, 1, edge_b);
             const struct walk_extent of_a =
                 extent_at_edge(kind, 0, i, a->other[0][j], a->other[1][j], a->other[2][j]);
             const struct walk_extent of_b =
@@ -189,9 +216,10 @@ INLINE void add_edges(const struct walk_pair *pair, const struct walk_kind kind,
             }
             const lanes scale =
                 kind.ordered ? pair->size[0][i] * pair->size[1][j] : pair->size[1][j];
-            add_slab(kind, (struct slab_normal){i, SLABS_EDGE_OF_B + j},
-                     extent_sum(kind, of_a, of_b), scale, unit, edges->middle[i][j],
-                     edges->swing[i][j], false, nothing, found);
+            const struct walk_extent d = extent_sum(kind, of_a, of_b);
+            nothing |= extent_is_nothing(unit, d);
+            add_slab(kind, (struct slab_normal){i, SLABS_EDGE_OF_B + j}, d, scale, unit,
+                     edges->middle[i][j], edges->swing[i][j], false, nothing, found);
         }
     }
 }
@@ -207,16 +235,17 @@ INLINE void add_drift(const struct walk_pair *pair, const struct walk_kind kind,
     lanes plane[3], middle[6];
     cross(pair->half, pair->offset, plane);
     UNROLL(3)
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < component_count(kind, which); i++)
         middle[i] = dot(plane, pair->component[which][i]);
     add_differences(kind, which, middle);
     const lanes unit = pair->half_size * pair->unit;
     UNROLL(6)
-    for (int i = 0; i < edge_count(kind, which); i++) {
+    for (int own_edge = 0; own_edge < edge_count(kind, which); own_edge++) {
+        const int i = edge_at(kind, which, own_edge);
         lanes at[3], edge[3];
         lanes_mask nothing = {0};
         UNROLL(3)
-        for (int j = 0; j < 3; j++)
+        for (int j = 0; j < component_count(kind, !which); j++)
             at[j] = which ? edges->swing[j][i] : -edges->swing[i][j];
         if (kind.along) {
             walk_edge(pair, which, i, edge);
@@ -225,8 +254,10 @@ INLINE void add_drift(const struct walk_pair *pair, const struct walk_kind kind,
         const struct walk_extent of_own =
             extent_at_edge(kind, which, i, own->swing[0], own->swing[1], own->swing[2]);
         const struct walk_extent of_other = extent_of_frame(kind, !which, at);
-        add_slab(kind, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + i, SLABS_DRIFT},
-                 extent_difference(kind, which ? of_other : of_own, which ? of_own : of_other),
+        const struct walk_extent d =
+            extent_difference(kind, which ? of_other : of_own, which ? of_own : of_other);
+        nothing |= extent_is_nothing(unit, d);
+        add_slab(kind, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + i, SLABS_DRIFT}, d,
                  pair->size[which][i], unit, middle[i], lanes_of(0), true, nothing, found);
     }
 }

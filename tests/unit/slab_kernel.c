@@ -7,8 +7,10 @@ static struct walk_kind kind_of(const struct fmb_pair *pair, bool along)
 {
     struct slabs_pair slabs;
     struct walk_kind kind = {.dim = pair->a.body->dim};
-    kind.tetrahedron[0] = pair->a.body->shape == FMB_TETRAHEDRON;
-    kind.tetrahedron[1] = pair->b.body->shape == FMB_TETRAHEDRON;
+    kind.simplex[0] = pair->a.body->shape != FMB_CUBOID;
+    kind.simplex[1] = pair->b.body->shape != FMB_CUBOID;
+    kind.face[0] = pair->a.body->shape == FMB_FACE;
+    kind.face[1] = pair->b.body->shape == FMB_FACE;
     kind.drifts = slabs_prepare(pair, &slabs) && slabs.motion.drifts;
     kind.along = along && kind.dim == 3;
     return kind;

@@ -126,9 +126,9 @@ static void sizes_are_lengths_or_a_little_more(void **state)
             question.a.component[0][1] = question.a.component[0][2] = 0;
         referee_ready(&question, &ready);
         const struct fmb_body *body = &ready.body[0];
-        for (int i = 0; i < body->dim && body->in_range; i++, sizes++)
+        for (int i = 0; i < body->count && body->in_range; i++, sizes++)
             expect_size(body, i);
-        for (int i = body->in_range ? body->dim : 0; i < FMB_DIM_MAX; i++)
+        for (int i = body->in_range ? body->count : 0; i < FMB_DIM_MAX; i++)
             assert_true(prepared_size(body->head, i) == 0);
     }
     printf("# %ld sizes\n", sizes);
@@ -142,24 +142,33 @@ static bool is_kind(int kind)
     return run_wide[kind] != NULL;
 }
 
+static void set_shapes(int kind, enum fmb_shape shape[2])
+{
+    const bool tetrahedron = kind & RUN_TETRAHEDRON, alike = kind & RUN_ALIKE;
+    shape[1] = kind & RUN_FACE ? FMB_FACE : tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
+    shape[0] = alike ? shape[1] : kind & RUN_FACE && tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
+}
+
 static const char *kind_text(int kind)
 {
-    static char text[40];
-    snprintf(text, sizeof text, "%dD %s %c%c%s", kind & RUN_SPACE ? 3 : 2,
-             kind & RUN_DRIFTS ? "drifts" : "at rest", kind & RUN_TETRAHEDRON_A ? 'T' : 'C',
-             kind & RUN_TETRAHEDRON_B ? 'T' : 'C', kind & RUN_ALONG ? " along" : "");
+    static char text[80];
+    enum fmb_shape shape[2];
+    set_shapes(kind, shape);
+    snprintf(text, sizeof text, "%dD %s %s %s%s", kind & RUN_SPACE ? 3 : 2,
+             kind & RUN_DRIFTS ? "drifts" : "at rest", fmb_shape_name(shape[0]),
+             fmb_shape_name(shape[1]), kind & RUN_ALONG ? " along" : "");
     return text;
 }
 
 /* Any order of the two shapes. */
 static struct cell draw_cell(struct draw *draw, int kind, bool may_move)
 {
-    const enum fmb_shape a = kind & RUN_TETRAHEDRON_A ? FMB_TETRAHEDRON : FMB_CUBOID;
-    const enum fmb_shape b = kind & RUN_TETRAHEDRON_B ? FMB_TETRAHEDRON : FMB_CUBOID;
+    enum fmb_shape shape[2];
+    set_shapes(kind, shape);
     const bool turned = draw_coin(draw);
     return (struct cell){kind & RUN_SPACE ? 3 : 2,
                          kind & RUN_DRIFTS || (may_move && draw_int(draw, 0, 7) == 0),
-                         {turned ? b : a, turned ? a : b}};
+                         {shape[turned], shape[!turned]}};
 }
 
 /* ---- Pools of pairs of one kind and duration ---- */
@@ -189,7 +198,7 @@ typedef void pair_function(struct draw *draw, const struct cell *cell, struct qu
 static void align(struct draw *draw, struct question *question)
 {
     struct solid *solid = draw_coin(draw) ? &question->a : &question->b;
-    double *edge = solid->component[draw_int(draw, 0, solid->dim - 1)];
+    double *edge = solid->component[draw_int(draw, 0, solid_count(solid) - 1)];
     const int kept = draw_int(draw, 0, solid->dim - 1);
     for (int axis = 0; axis < solid->dim; axis++)
         edge[axis] = axis == kept ? edge[axis] : 0;
@@ -537,7 +546,9 @@ static void swap_pool(struct pool *pool)
 
 static bool is_symmetric(int kind)
 {
-    return !(kind & RUN_TETRAHEDRON_B) || kind & RUN_TETRAHEDRON_A;
+    enum fmb_shape shape[2];
+    set_shapes(kind, shape);
+    return shape[0] == shape[1];
 }
 
 static void expect_same_for_all(struct draw *draw, struct pool *pool, const struct subject *subject,

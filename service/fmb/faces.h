@@ -1,0 +1,25 @@
+/* Two faces in parallel planes: what the slabs of a pair do not decide (slabs.h). */
+#ifndef FMB_FACES_H
+#define FMB_FACES_H
+
+#include "integer.h"
+#include "slabs.h"
+
+/* Two faces that stay in one plane, seen along an axis that crosses it: two triangles in 2D, with
+ * the same verdict and the same times of contact. */
+struct faces_shadow {
+    struct fmb_body body[2];
+    struct fmb_pair pair; /* points into body */
+};
+
+enum faces_planes {
+    FACES_CROSSING, /* the planes are not parallel */
+    FACES_SHARED,   /* both are in one plane at all times: the shadow is set */
+    FACES_ELSE      /* neither, or not to be known here: to be decided exactly */
+};
+
+/* On input: two faces with areas, in range; span: of the pair. */
+enum faces_planes faces_planes_of(const struct fmb_pair *pair, const struct slabs_pair *slabs,
+                                  struct dyadic_span span, struct faces_shadow *shadow);
+
+#endif
