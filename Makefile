@@ -89,7 +89,7 @@ answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_p
 	bodies.o cache.o histogram.o)
 server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
-	clients/log/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) $(O)/page/template.o
+	clients/log/*.c clients/mesh/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) $(O)/page/template.o
 asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
@@ -164,7 +164,7 @@ $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iservice -I$(GEN)
 
-clients_see := -Iclients -Iclients/lib -Iclients/log -Iclients/page -Iclients/record -Iclients/replay -Iservice -Iservice/fmb
+clients_see := -Iclients -Iclients/lib -Iclients/log -Iclients/mesh -Iclients/page -Iclients/record -Iclients/replay -Iservice -Iservice/fmb
 
 $(O)/clients/lib/%.o: clients/lib/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
@@ -683,7 +683,7 @@ deps-report:
 # Every header compiles alone.
 sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
-	clients/page/*.h clients/record/*.h clients/replay/*.h tests/oracle/*.h \
+	clients/mesh/*.h clients/page/*.h clients/record/*.h clients/replay/*.h tests/oracle/*.h \
 	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h \
 	tests/logs/*.h tests/page/*.h)
 .PHONY: headers
