@@ -1,0 +1,261 @@
+/* A statement a line, or more lines where a backslash ends all but the last. Vertices are v, faces
+ * are f; what defines no surface of its own is passed over, and what would is refused. */
+#include "mesh_build.h"
+#include "mesh_formats.h"
+#include "mesh_number.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum what { VERTEX, FACE, PASSED, SURFACE, UNKNOWN };
+
+/* Those that files have most of come first; by the first ones a file may be told that has no name.
+ */
+enum { TELLING = 10 };
+static const struct {
+    const char *word;
+    enum what what;
+} statements[] = {
+    {"v", VERTEX},         {"f", FACE},          {"vn", PASSED},       {"vt", PASSED},
+    {"o", PASSED},         {"g", PASSED},        {"s", PASSED},        {"usemtl", PASSED},
+    {"mtllib", PASSED},    {"vp", PASSED},       {"l", PASSED},        {"p", PASSED},
+    {"mg", PASSED},        {"maplib", PASSED},   {"usemap", PASSED},   {"bevel", PASSED},
+    {"lod", PASSED},       {"c_interp", PASSED}, {"d_interp", PASSED}, {"shadow_obj", PASSED},
+    {"trace_obj", PASSED}, {"ctech", PASSED},    {"stech", PASSED},    {"cstype", PASSED},
+    {"deg", PASSED},       {"bmat", PASSED},     {"step", PASSED},     {"parm", PASSED},
+    {"trim", PASSED},      {"hole", PASSED},     {"scrv", PASSED},     {"sp", PASSED},
+    {"end", PASSED},       {"con", PASSED},      {"fo", FACE},         {"surf", SURFACE},
+    {"curv", SURFACE},     {"curv2", SURFACE},   {"bzp", SURFACE},     {"bsp", SURFACE},
+    {"cdc", SURFACE},      {"cdp", SURFACE},     {"res", SURFACE},     {"call", SURFACE},
+    {"csh", SURFACE},
+};
+
+/* Larger than an index can be. */
+#define INDEX_MAX INT64_C(10000000000)
+
+struct obj {
+    struct mesh_build build;
+    /* The largest index, from 1, and where it stands: the vertex may follow. */
+    uint64_t largest;
+    const unsigned char *largest_at;
+};
+
+/* ---- Words of a statement -------------------------------------------------------------------- */
+
+/* Bytes of a backslash and the end of its line; 0: none is there. */
+static size_t continuation(const unsigned char *at)
+{
+    if (*at != '\\')
+        return 0;
+    return at[1] == '\n' ? 2 : at[1] == '\r' && at[2] == '\n' ? 3 : 0;
+}
+
+static const unsigned char *skip(const unsigned char *at)
+{
+    size_t length = 0;
+    do
+        at = mesh_skip_blanks(at + length);
+    while ((length = continuation(at)) > 0);
+    return at;
+}
+
+static bool ends_word(const struct mesh_source *source, const unsigned char *at)
+{
+    return mesh_ends_word(source, at) || continuation(at) > 0;
+}
+
+/* Whether a word is next, to which it goes. */
+static bool has_word(struct mesh_source *source)
+{
+    source->at = skip(source->at);
+    return source->at < source->end && *source->at != '\n' && *source->at != '#';
+}
+
+static void skip_line(struct mesh_source *source)
+{
+    const unsigned char *end = memchr(source->at, '\n', mesh_left(source));
+    source->at = end ? end : source->end;
+}
+
+/* All lines of the statement. */
+static void skip_statement(struct mesh_source *source)
+{
+    while (has_word(source))
+        while (!ends_word(source, source->at))
+            source->at++;
+}
+
+static enum what what_is(const struct mesh_source *source, const unsigned char *at, size_t *length)
+{
+    for (size_t i = 0; i < sizeof statements / sizeof *statements; i++) {
+        *length = strlen(statements[i].word);
+        if (strncmp((const char *) at, statements[i].word, *length) == 0 &&
+            ends_word(source, at + *length))
+            return statements[i].what;
+    }
+    return UNKNOWN;
+}
+
+bool mesh_is_obj_statement(const unsigned char *at)
+{
+    for (size_t i = 0; i < TELLING; i++) {
+        const size_t length = strlen(statements[i].word);
+        if (strncmp((const char *) at, statements[i].word, length) == 0 &&
+            mesh_is_space(at[length]))
+            return true;
+    }
+    return false;
+}
+
+/* ---- Vertices -------------------------------------------------------------------------------- */
+
+static bool read_number(struct mesh_source *source, size_t axis, double *out)
+{
+    char text[MESH_WORD_MAX];
+    const unsigned char *begin = source->at, *end = mesh_number(begin, out);
+    if (!end || !ends_word(source, end))
+        return mesh_refuse_line(source, begin, "'%s' is no number", mesh_word(source, begin, text));
+    if (axis < 3 && !isfinite(*out))
+        return mesh_refuse_line(source, begin, "%c is not finite", "xyz"[axis]);
+    source->at = end;
+    return true;
+}
+
+/* Three coordinates, and what some programs add: a weight, a colour, both, or a colour of four. */
+static bool read_vertex(struct obj *obj)
+{
+    struct mesh_source *source = obj->build.source;
+    const unsigned char *begin = source->at;
+    double position[3], ignored;
+    size_t count = 0;
+    for (; has_word(source); count++)
+        if (!read_number(source, count, count < 3 ? &position[count] : &ignored))
+            return false;
+    if (count != 3 && count != 4 && count != 6 && count != 7)
+        return mesh_refuse_line(source, begin,
+                                "a vertex of %zu numbers: it has 3, and 1 more for a weight, 3 "
+                                "more for a colour",
+                                count);
+    return mesh_add_vertex(&obj->build, position);
+}
+
+/* ---- Faces ----------------------------------------------------------------------------------- */
+
+/* NULL: there is none. */
+static const unsigned char *read_integer(const unsigned char *at, int64_t *out)
+{
+    const bool negative = *at == '-';
+    at += *at == '-' || *at == '+';
+    const unsigned char *begin = at;
+    for (*out = 0; *at >= '0' && *at <= '9'; at++)
+        *out = *out < INDEX_MAX ? 10 * *out + (*at - '0') : INDEX_MAX;
+    if (negative)
+        *out = -*out;
+    return at > begin ? at : NULL;
+}
+
+/* V, V/T, V/T/N or V//N; only V is asked for. NULL: it is none of these. */
+static const unsigned char *read_corner(const unsigned char *at, int64_t *out)
+{
+    int64_t ignored;
+    at = read_integer(at, out);
+    if (!at || *at != '/')
+        return at;
+    if (*++at != '/' && !(at = read_integer(at, &ignored)))
+        return NULL;
+    return *at == '/' ? read_integer(at + 1, &ignored) : at;
+}
+
+/* An index from 0, of what counts from 1, or back from the last vertex so far. Whether a vertex
+ * follows that it may be of is seen at the end. */
+static bool take_index(struct obj *obj, int64_t index, unsigned *out)
+{
+    struct mesh_source *source = obj->build.source;
+    const size_t count = obj->build.mesh->vertex_count;
+    char text[MESH_WORD_MAX];
+    if (index == 0)
+        return mesh_refuse_line(source, source->at, "index 0 is no vertex: they count from 1");
+    if (index < 0 && (uint64_t) -index > count)
+        return mesh_refuse_line(source, source->at,
+                                "index %s is no vertex: there are %zu before it",
+                                mesh_word(source, source->at, text), count);
+    if (index > 0 && (uint64_t) index > obj->largest) {
+        obj->largest = (uint64_t) index;
+        obj->largest_at = source->at;
+    }
+    *out = index < 0 ? (unsigned) (count - (uint64_t) -index) : (unsigned) (index - 1);
+    return true;
+}
+
+static bool read_face(struct obj *obj)
+{
+    struct mesh_source *source = obj->build.source;
+    const unsigned char *begin = source->at;
+    char text[MESH_WORD_MAX];
+    unsigned corner[3];
+    size_t count = 0;
+    for (; has_word(source); count++) {
+        int64_t index;
+        unsigned unused;
+        const unsigned char *end = read_corner(source->at, &index);
+        if (!end || !ends_word(source, end))
+            return mesh_refuse_line(source, source->at, "'%s' is no corner of a face",
+                                    mesh_word(source, source->at, text));
+        if (!take_index(obj, index, count < 3 ? &corner[count] : &unused))
+            return false;
+        source->at = end;
+    }
+    if (count != 3)
+        return mesh_refuse_line(source, begin, "a face of %zu vertices: %s", count,
+                                count > 3 ? "triangulate it first" : "remove it first");
+    return mesh_add_face(&obj->build, corner);
+}
+
+/* ---- All of it ------------------------------------------------------------------------------- */
+
+static bool read_statement(struct obj *obj)
+{
+    struct mesh_source *source = obj->build.source;
+    const unsigned char *begin = source->at;
+    char text[MESH_WORD_MAX];
+    size_t length;
+    const enum what what = what_is(source, begin, &length);
+    if (what == UNKNOWN)
+        return mesh_refuse_line(source, begin, "'%s' is no statement of OBJ",
+                                mesh_word(source, begin, text));
+    if (what == SURFACE)
+        return mesh_refuse_line(source, begin,
+                                "%s defines what is no triangle: make triangles of it first",
+                                mesh_word(source, begin, text));
+    source->at += length;
+    if (what == PASSED)
+        skip_statement(source);
+    return what == PASSED || (what == VERTEX ? read_vertex(obj) : read_face(obj));
+}
+
+static bool read_statements(struct obj *obj)
+{
+    struct mesh_source *source = obj->build.source;
+    while ((source->at = mesh_skip_spaces(skip(source->at))) < source->end) {
+        if (*source->at != '#' && !read_statement(obj))
+            return false;
+        skip_line(source); /* what is left of it is a comment */
+        mesh_tell(source);
+    }
+    return true;
+}
+
+bool mesh_obj(struct mesh_source *source, struct mesh *out)
+{
+    struct obj obj = {.build = {.source = source, .mesh = out}};
+    char text[MESH_WORD_MAX];
+    if (!read_statements(&obj))
+        return false;
+    if (obj.largest > out->vertex_count)
+        return mesh_refuse_line(source, obj.largest_at,
+                                "index %s is no vertex: there are %zu, counted from 1",
+                                mesh_word(source, obj.largest_at, text), out->vertex_count);
+    mesh_fit(&obj.build);
+    return true;
+}
