@@ -99,7 +99,7 @@ demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
 	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-relay $(B)/logs/generate \
-	$(B)/logs/tell $(B)/make-page $(B)/edit-log $(B)/events $(capped_programs)
+	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/make-page $(B)/edit-log $(B)/events $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -545,6 +545,18 @@ $(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
 
+# ---- Meshes: closed ones of any size, for tests and benchmarks --------------------------------
+
+mesh_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/mesh/*.c))
+
+$(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lm
+
+$(O)/tests/mesh/%.o: tests/mesh/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Iclients/mesh
+
 # The programs with a library that takes no more of the machine than its name says: nothing else of
 # them differs. On a machine that has less, they take less.
 capped_most_plain := 1
@@ -685,7 +697,7 @@ sources := $(shell find service clients tests -name '*.[ch]')
 headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
 	clients/mesh/*.h clients/page/*.h clients/record/*.h clients/replay/*.h tests/oracle/*.h \
 	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h \
-	tests/logs/*.h tests/page/*.h)
+	tests/logs/*.h tests/mesh/*.h tests/page/*.h)
 .PHONY: headers
 headers: $(headers:%=$(O)/%.ok)
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)

@@ -1,0 +1,18 @@
+/* Writing meshes in all formats that are read. */
+#ifndef FORMATS_H
+#define FORMATS_H
+
+#include "mesh.h"
+
+#include <stdio.h>
+
+/* Text has six digits behind the point, binary PLY doubles, binary STL the floats nearest to them.
+ */
+extern const struct format {
+    const char *name; /* "ply-ascii" */
+    void (*write)(FILE *out, const struct mesh *mesh);
+} formats[];
+
+enum { FORMAT_COUNT = 6 };
+
+#endif
