@@ -396,7 +396,7 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 
 # ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
 
-fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json event_log
+fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json event_log mesh
 replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
 fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair.o results_scene.o \
 	model.o)

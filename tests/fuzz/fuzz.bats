@@ -66,6 +66,14 @@ finds() {
     finds event_log "this does not hold: "
 }
 
+@test "mesh finds a coordinate that is not finite" {
+    finds mesh "isfinite(mesh->vertex[i][axis])"
+}
+
+@test "mesh finds bytes behind the end that are read" {
+    finds mesh-bytes "AddressSanitizer: heap-buffer-overflow"
+}
+
 @test "every plant is looked for" {
     local plant
     for plant in tests/fuzz/planted/*.c; do

@@ -1,6 +1,6 @@
 /* Writes what fuzzing begins with into FOLDER/TARGET/: good messages of every type, each with
- * something in it that the others lack, short talks with the service, and logs. Texts of scenes
- * there are enough in the tree. */
+ * something in it that the others lack, short talks with the service, logs, and meshes. Texts of
+ * scenes there are enough in the tree. */
 #include "fuzz.h"
 #include "hostile.h"
 #include "wire.h"
@@ -450,6 +450,119 @@ static void write_logs(void)
     write_broken_logs();
 }
 
+/* ---- Meshes: a triangle or two, in all that is written differently -------------------------- */
+
+static void mesh_bytes(const char *text)
+{
+    log_bytes(text, strlen(text));
+}
+
+static void end_mesh(const char *name)
+{
+    write_seed("mesh", name, file.bytes, file.size);
+    file.size = 0;
+}
+
+static void mesh_number(uint64_t bits, int size, bool big_endian)
+{
+    for (int i = 0; i < size; i++) {
+        const unsigned char byte = (unsigned char) (bits >> 8 * (big_endian ? size - 1 - i : i));
+        log_bytes(&byte, 1);
+    }
+}
+
+static void mesh_float(float value, bool big_endian)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    mesh_number(bits, sizeof bits, big_endian);
+}
+
+static void write_ply_texts(void)
+{
+    mesh_bytes(
+        "ply\nformat ascii 1.0\ncomment of a few\nelement vertex 4\nproperty float x\n"
+        "property float y\nproperty float z\nproperty float confidence\nelement face 2\n"
+        "property list uchar int vertex_indices\nend_header\n0 0 0 1\n1.5 -0.25 1e-3 nan\n"
+        "0 1 0 0.5 \n+.5 0. 12345678901234567890 inf\n3 0 1 2\n3 3 2 1\n");
+    end_mesh("ply-ascii");
+    mesh_bytes(
+        "ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement face 1\r\nproperty uchar red\r\n"
+        "property list uint8 uint32 vertex_index\r\nproperty list int8 float64 texcoord\r\n"
+        "element vertex 3\r\nproperty int16 z\r\nproperty float32 x\r\nproperty double y\r\n"
+        "element edge 2\r\nproperty int a\r\nelement empty 1000000\r\nend_header\r\n"
+        "255 3 0 1 2 2 0.5 1\r\n3 1 2\r\n-3 1e22 1e-22\r\n0 9007199254740993 4.9e-324\r\n"
+        "1\r\n2\r\n");
+    end_mesh("ply-order");
+    mesh_bytes("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
+    end_mesh("ply-empty");
+}
+
+static void write_ply_binaries(bool big_endian)
+{
+    mesh_bytes("ply\nformat ");
+    mesh_bytes(big_endian ? "binary_big_endian" : "binary_little_endian");
+    mesh_bytes(
+        " 1.0\nelement other 2\nproperty list ushort short a\nproperty char b\n"
+        "element vertex 3\nproperty float x\nproperty int y\nproperty ushort z\n"
+        "element face 2\nproperty list uchar uchar vertex_indices\n"
+        "property list int float texcoord\nend_header\n");
+    for (int i = 0; i < 2; i++) {
+        mesh_number((uint64_t) i, 2, big_endian);
+        mesh_number(0xfffe, 2 * i, big_endian);
+        mesh_number(0x80, 1, big_endian);
+    }
+    for (int i = 0; i < 3; i++) {
+        mesh_float((float) i / 3, big_endian);
+        mesh_number((uint64_t) -i, 4, big_endian);
+        mesh_number(60000, 2, big_endian);
+    }
+    for (int i = 0; i < 2; i++) {
+        mesh_number(0x03000102, 4, true);
+        mesh_number((uint64_t) i, 4, big_endian);
+        mesh_number(0x7fc00000, 4 * i, big_endian);
+    }
+    end_mesh(big_endian ? "ply-be" : "ply-le");
+}
+
+static void write_stls(void)
+{
+    static const char head[80] = "solid, and yet binary";
+    mesh_bytes(
+        "solid a name\n facet normal 0 0 nan\n  outer loop\n   vertex 0 0 0\n"
+        "   vertex 1 0 0\n   vertex 0 1e0 -0\n  endloop\n endfacet\nFACET NORMAL 0 0 1 "
+        "OUTER LOOP VERTEX 1 0 0 VERTEX 0 1 0 VERTEX 1 1 0 ENDLOOP ENDFACET\n"
+        "endsolid a name\nsolid\nendsolid\n");
+    end_mesh("stl-ascii");
+    log_bytes(head, sizeof head);
+    mesh_number(3, 4, false);
+    for (int facet = 0; facet < 3; facet++) {
+        for (int number = 0; number < 12; number++)
+            mesh_float((float) (number * facet % 5) / -4, false);
+        mesh_number(0x7fff, 2, false);
+    }
+    end_mesh("stl-binary");
+}
+
+static void write_objs(void)
+{
+    mesh_bytes(
+        "# a mesh\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0 1\nv 0 1 0 0.5 0.5 0.5\n"
+        "v 1 \\\n 1 \\\r\n 0 1 1 1 1 # of seven\nvt 0 0\nvn 0 0 1\ng\ns off\nusemtl b\n"
+        "f 1 2 3\nf 4/1 3/1 2/1\nf 1//1 2//1 4//1\nf -4/1/1 -1/1/1 \\\n-2/-1/-1\n"
+        "f 5 1 2\nv -1e-1 .5 5.\nl 1 2\np 1\ncstype bezier\n");
+    end_mesh("obj");
+}
+
+static void write_meshes(void)
+{
+    write_ply_texts();
+    write_ply_binaries(false);
+    write_ply_binaries(true);
+    write_stls();
+    write_objs();
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -464,5 +577,6 @@ int main(int argc, char **argv)
     write_statuses();
     write_talks();
     write_logs();
+    write_meshes();
     return 0;
 }
