@@ -547,11 +547,12 @@ $(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
 
 # ---- Meshes: closed ones of any size, for tests and benchmarks --------------------------------
 
-mesh_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/mesh/*.c))
+mesh_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/mesh/*.c)) \
+	$(addprefix $(O)/clients/,allocate.o number.o)
 
-$(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects)
+$(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lm
+	$(CC) $(link_flags) -o $@ $^ -lgmp -lm
 
 $(O)/tests/mesh/%.o: tests/mesh/%.c $(O)/settings
 	@mkdir -p $(@D)

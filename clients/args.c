@@ -62,10 +62,13 @@ static void join_options(const struct option *own,
     memcpy(out + count, common_options, sizeof common_options);
 }
 
-/* Of the options that have one, the letters, as getopt wants them. */
-enum { LETTERS_MAX = 2 * (ARGS_OPTIONS_MAX + COMMON_OPTIONS) + 2 };
-static void list_letters(const struct option *options, char out[LETTERS_MAX])
+/* Of the options that have one, the letters, as getopt wants them; with a '-' before them it tells
+ * operands where they stand. */
+enum { LETTERS_MAX = 2 * (ARGS_OPTIONS_MAX + COMMON_OPTIONS) + 3 };
+static void list_letters(const struct option *options, bool in_order, char out[LETTERS_MAX])
 {
+    if (in_order)
+        *out++ = '-';
     *out++ = ':';
     for (; options->name; options++) {
         if (options->val < ' ')
@@ -120,18 +123,21 @@ static bool take_option(struct args *args, int option, char **argv, void *out, b
 }
 
 /* What stands behind the options. */
-static bool take_operands(struct args *args, int count, char **operands)
+static bool take_operands(struct args *args, int count)
 {
-    args->operands = operands;
     args->operand_count = count;
     if (!args->operand && count > 0)
-        return args_error(args, "unknown argument '%s'", operands[0]);
+        return args_error(args, "unknown argument '%s'", args->operands[0]);
     if (count > args->operands_max && args->operands_max == 1)
-        return args_error(args, "expected one %s, found '%s' too", args->operand, operands[1]);
+        return args_error(args, "expected one %s, found '%s' too", args->operand,
+                          args->operands[1]);
     if (count > args->operands_max)
         return args_error(args, "expected at most %d %ss", args->operands_max, args->operand);
     return true;
 }
+
+/* What getopt calls an operand where it tells them in order. */
+enum { AN_OPERAND = 1 };
 
 int args_parse(struct args *args, int argc, char **argv, void *out)
 {
@@ -140,16 +146,24 @@ int args_parse(struct args *args, int argc, char **argv, void *out)
     bool help = false;
     int option;
     join_options(args->options, options);
-    list_letters(options, letters);
+    list_letters(options, args->in_order, letters);
     args->bus = (struct args_bus){.prefix = ""};
+    args->operands = argv + 1;
+    args->operand_count = 0;
     optind = 1;
     opterr = 0;
     while ((option = getopt_long(argc, argv, letters, options, NULL)) != -1) {
+        if (args->in_order && option == AN_OPERAND) {
+            args->operands[args->operand_count++] = optarg; /* over words that are done with */
+            continue;
+        }
         args->option = name_of(options, option);
         if (!take_option(args, option, argv, out, &help))
             return ARGS_USAGE;
     }
-    if (!take_operands(args, argc - optind, argv + optind))
+    memmove(args->operands + args->operand_count, argv + optind,
+            (size_t) (argc - optind) * sizeof *argv);
+    if (!take_operands(args, args->operand_count + argc - optind))
         return ARGS_USAGE;
     if (!help)
         return ARGS_RUN;

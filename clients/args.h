@@ -37,6 +37,9 @@ struct args {
     args_take *take;
     const char *operand; /* what may stand behind the options, for people: "FILE"; NULL: nothing */
     int operands_max;
+    /* Options may say what they say of the operand before them: take is told how many there were,
+     * in operand_count. The command has no option of the value 1 then. */
+    bool in_order;
 
     /* Filled in by args_parse(). */
     struct args_bus bus;

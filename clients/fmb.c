@@ -22,6 +22,7 @@ static const struct command commands[] = {
     {"status", "print how the service is doing", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
     {"log", "look into event logs, cut them, take scenes out of them", cmd_log},
+    {"mesh", "which faces of two triangle meshes meet", cmd_mesh},
     {"help", "help on a command: fmb help query", cmd_help},
 };
 

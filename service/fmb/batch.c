@@ -165,7 +165,13 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     }
 }
 
-/* A pair by itself, with all that is wanted of it. */
+/* Whether what is prepared of a pair does not tell all of it. */
+static bool is_rounded(const struct fmb_prepared *a, const struct fmb_prepared *b)
+{
+    return (prepared_kind(a) | prepared_kind(b)) & PREPARED_ROUNDED;
+}
+
+/* A pair by itself, with all that is wanted of it; or left open. */
 static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepared *const pair[2],
                          size_t i)
 {
@@ -173,6 +179,10 @@ static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepare
     struct fmb_answer answer = {0};
     const struct fmb_pair one = {prepared_frame(pair[0], &body[0]),
                                  prepared_frame(pair[1], &body[1]), batch->duration};
+    if (is_rounded(pair[0], pair[1])) {
+        batch->verdicts[i] = 0;
+        return;
+    }
     certified_decide(&one, batch->boxes ? FMB_WANT_BOX : 0, &answer);
     batch->verdicts[i] = (unsigned char) answer.verdict;
     if (batch->contacts && answer.has_contact)
@@ -187,6 +197,8 @@ static enum fmb_verdict __attribute__((noinline))
 verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
 {
     struct fmb_body body[2];
+    if (is_rounded(a, b))
+        return 0;
     const struct fmb_pair pair = {prepared_frame(a, &body[0]), prepared_frame(b, &body[1]),
                                   duration};
     return certified_unsure(&pair);

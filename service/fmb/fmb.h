@@ -236,12 +236,13 @@ struct fmb_prepared {
     double number[15];
 };
 
-/* On output: OK; or *out all 0, and pairs with it are refused: NOT_FINITE; NOT_SUPPORTED for a body
- * that is rounded, for whose rest there is no room. */
+/* There is no room for the rest of a body that is rounded: pairs with it that doubles leave open,
+ * few but where they touch or nearly, get the verdict 0. fmb_decide() is to be asked of them.
+ * On output: OK, or NOT_FINITE and *out all 0: pairs with it are refused. */
 enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out);
 
 /* The verdict of one pair, certified; 0 where it is refused: dimensions that differ, a duration
- * that is negative or not finite, a frame that was not prepared. */
+ * that is negative or not finite, a frame that was not prepared; and where it is left open. */
 enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
                           double duration);
 
@@ -261,10 +262,11 @@ struct fmb_batch {
     size_t frame_count;
     const unsigned (*pairs)[2]; /* [pair_count][a, b], indices of frames */
     size_t pair_count;
-    double duration;         /* T of all pairs, seconds */
-    unsigned char *verdicts; /* [pair_count]: enum fmb_verdict; 0 where the pair is refused */
+    double duration; /* T of all pairs, seconds */
+    /* [pair_count]: enum fmb_verdict; 0 where the pair is refused, or left open (fmb_prepare()). */
+    unsigned char *verdicts;
     /* [pair_count][first, last], or NULL; as fmb_answer.contact. NAN where there is none: separated
-     * pairs, static ones, refused ones. */
+     * pairs, static ones, refused ones, moving ones left open. */
     double (*contacts)[2];
     /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN where there is none. */
     double (*boxes)[2][FMB_DIM_MAX];
@@ -329,6 +331,24 @@ size_t fmb_tree_bytes(size_t count);
  * Takes a time that grows as n log n, whatever the frames are. */
 enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, double duration,
                                void *memory, struct fmb_tree *out);
+
+/* Boxes of anything, for a tree of them. */
+struct fmb_boxes {
+    int dim; /* 2 or 3 */
+    /* Puts box number index, where it is at the start of the window, into box: [lower,
+     * upper][axis], no NaN, lower <= upper. */
+    void (*at)(const void *context, unsigned index, double box[2][FMB_DIM_MAX]);
+    const void *context;
+    const double *velocity; /* [dim], finite: of all of them; NULL: at rest */
+};
+
+/* The same for boxes, which come one by one and need not be kept.
+ * On output: OK, BAD_DURATION, OVER_LIMIT, or WRONG_DIMENSION. */
+enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count, double duration,
+                                     void *memory, struct fmb_tree *out);
+
+/* The box of a prepared frame over a window, as trees have it: [lower, upper][axis]. */
+void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX]);
 
 /* The same tree for frames that have moved since, or changed. What is found is exactly what a new
  * tree finds; it takes longer to find as frames go far from where they were when the tree was

@@ -108,6 +108,17 @@ static bool are_equal(double x, double y, double z, double w)
     return x * y == z * w && fma(x, y, -(x * y)) == fma(z, w, -(z * w));
 }
 
+/* Whether an edge c_1 - c_0 of doubles is 0 on an axis where the true one is not: the filter takes
+ * a coordinate of 0 for what it is. */
+static bool hides_difference(const struct fmb_body *body)
+{
+    const double *c = body->component[0], *d = body->component[1];
+    for (int axis = 0; axis < 3; axis++)
+        if (c[axis] == d[axis] && body->rest[0][axis] != body->rest[1][axis])
+            return true;
+    return false;
+}
+
 /* Whether a face has an area. Of one that is rounded only what is sure counts. */
 static bool has_area(const struct fmb_body *body)
 {
@@ -142,7 +153,7 @@ void body_measure(struct fmb_body *body)
             body->in_range && body->size[i] >= least_size && body->size[i] <= largest_size;
     }
     if (body->shape == FMB_FACE && body->in_range)
-        body->in_range = has_area(body);
+        body->in_range = has_area(body) && !hides_difference(body);
     body->bits[0] = (int) span.unit;
     body->bits[1] = (int) span.top;
 }

@@ -41,6 +41,7 @@ unsigned long long prepared_head_of(const struct fmb_body *body)
     kind |= body->shape == FMB_FACE ? PREPARED_FACE : 0;
     kind |= body->dim == 3 ? PREPARED_SPACE : 0;
     kind |= body->in_range ? PREPARED_USABLE : 0;
+    kind |= body->rounded ? PREPARED_ROUNDED : 0;
     kind |= has_edge_along(body) ? PREPARED_ALONG : 0;
     kind |= body->bits[1] - body->bits[0] <= 24 ? PREPARED_PLAIN : 0;
     uint64_t head = kind << 3 * PREPARED_SIZE_BITS;
@@ -74,8 +75,7 @@ void prepared_set(const struct fmb_frame *frame, struct fmb_prepared *out)
 enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out)
 {
     const struct fmb_pair with_itself = {*frame, *frame, 0};
-    const enum fmb_status status =
-        frame->body->rounded ? FMB_NOT_SUPPORTED : fmb_pair_check(&with_itself);
+    const enum fmb_status status = fmb_pair_check(&with_itself);
     if (status == FMB_OK)
         prepared_set(frame, out);
     else

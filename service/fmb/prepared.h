@@ -20,7 +20,8 @@ enum {
     PREPARED_ALONG = 1 << 4,  /* an edge is parallel to a coordinate axis */
     PREPARED_USABLE = 1 << 5, /* doubles can say something of it: fmb_body.in_range */
     PREPARED_PLAIN = 1 << 6,  /* components of few bits, as people write them */
-    PREPARED_GOOD = 1 << 7    /* it was prepared */
+    PREPARED_GOOD = 1 << 7,   /* it was prepared */
+    PREPARED_ROUNDED = 1 << 8 /* its components are off by a rest that is not here */
 };
 
 /* The bits of the kind. */

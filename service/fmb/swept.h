@@ -18,7 +18,10 @@
  * Special cases. All terms but o are zero or negative, and o is finite: a sum that overflows goes
  * to -infinity, and stays there. No infinity of the other sign is met, hence no number that is
  * none. Inside the error of a sum there might be one where the numbers are among the largest: such
- * a sum steps down. */
+ * a sum steps down.
+ *
+ * A body that is rounded (fmb_body.rest) has vertices up to half a unit in the last place of a
+ * component beyond this: its box is widened by as much, and by no less. */
 #ifndef FMB_SWEPT_H
 #define FMB_SWEPT_H
 
@@ -68,6 +71,14 @@ INLINE double swept_path(double speed, double duration)
     return fma(-speed, duration, -path) < 0 ? path + path * 0x1p-52 : path;
 }
 
+/* An axis of a box that moves. */
+INLINE lanes swept_along(lanes end, double velocity, double duration)
+{
+    const double path = swept_path(fabs(velocity), duration);
+    const lanes back = {path, 0}, forth = {0, path};
+    return swept_sum(end, velocity < 0 ? back : forth);
+}
+
 /* {x, -x}, where it is negative. */
 INLINE lanes swept_extent(double x)
 {
@@ -100,10 +111,19 @@ INLINE void swept_axes(const struct fmb_prepared *frame, const int dim, double d
     UNROLL(3)
     for (int axis = 0; axis < dim; axis++)
         out->end[axis] = swept_axis(frame->number + axis, dim, cuboid);
-    for (int axis = 0; axis < dim && kind & PREPARED_MOVING; axis++) {
-        const double path = swept_path(fabs(velocity[axis]), duration);
-        const lanes back = {path, 0}, forth = {0, path};
-        out->end[axis] = swept_sum(out->end[axis], velocity[axis] < 0 ? back : forth);
+    for (int axis = 0; axis < dim && kind & PREPARED_MOVING; axis++)
+        out->end[axis] = swept_along(out->end[axis], velocity[axis], duration);
+}
+
+/* What a rest may reach beyond o + c_i: at most 2^-53 of the largest component, and that of the
+ * smallest double where it is subnormal. */
+INLINE void swept_widen(const struct fmb_prepared *frame, struct swept *out)
+{
+    UNROLL(3)
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double c = fabs(frame->number[3 + axis]), d = fabs(frame->number[6 + axis]);
+        const double rest = (c > d ? c : d) * 0x1p-52 + 0x1p-1074;
+        out->end[axis] = swept_sum(out->end[axis], lanes_of(-rest));
     }
 }
 
@@ -115,6 +135,8 @@ INLINE struct swept swept_of(const struct fmb_prepared *frame, double duration)
         swept_axes(frame, 3, duration, &out);
     else
         swept_axes(frame, 2, duration, &out);
+    if (prepared_kind(frame) & PREPARED_ROUNDED)
+        swept_widen(frame, &out);
     return out;
 }
 

@@ -450,6 +450,50 @@ enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, 
     return FMB_OK;
 }
 
+static struct swept swept_box(const struct fmb_boxes *boxes, unsigned index, double duration)
+{
+    struct swept out = {{{0}}};
+    double box[2][FMB_DIM_MAX];
+    boxes->at(boxes->context, index, box);
+    for (int axis = 0; axis < boxes->dim; axis++) {
+        out.end[axis] = (lanes){box[0][axis], -box[1][axis]};
+        if (boxes->velocity)
+            out.end[axis] = swept_along(out.end[axis], boxes->velocity[axis], duration);
+    }
+    return out;
+}
+
+enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count, double duration,
+                                     void *memory, struct fmb_tree *out)
+{
+    memset(out, 0, sizeof *out);
+    if (count >= UINT_MAX || !prepared_is_duration(duration))
+        return count >= UINT_MAX ? FMB_OVER_LIMIT : FMB_BAD_DURATION;
+    if (boxes->dim != 2 && boxes->dim != 3)
+        return FMB_WRONG_DIMENSION;
+    if (count == 0)
+        return FMB_OK;
+    lay_out(memory, count, out);
+    out->dim = boxes->dim;
+    out->duration = duration;
+    for (size_t i = 0; i < count; i++) {
+        out->boxes[i].box = swept_box(boxes, (unsigned) i, duration);
+        out->order[i] = (unsigned) i;
+    }
+    set_nodes(out);
+    set_boxes(out);
+    return FMB_OK;
+}
+
+void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX])
+{
+    const struct swept swept = swept_of(frame, duration);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        box[0][axis] = swept.end[axis][0];
+        box[1][axis] = 0 - swept.end[axis][1];
+    }
+}
+
 /* Both of its cache lines. */
 static void prefetch(const struct fmb_prepared *frame)
 {

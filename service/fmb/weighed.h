@@ -21,8 +21,9 @@ struct weighed {
  * A monomial is rounded at most 3 times before (offset once, drift twice), once in each edge that
  * is a difference, 2 times in a cross product, 2 in the sum of three normals, 3 in a dot product,
  * 4 in sums of components and motion, 2 where a bound is taken from it: 18 times, if all of these
- * applied to one. 2^-48 = 32 u leaves room for the rounding of the weight and of what the bound is
- * added to. Underflow: at most 2^8 operations, each off by less than 2^-1074, some of them
+ * applied to one; and once for each of three components that are rounded themselves
+ * (fmb_body.rest): 21. 2^-48 = 32 u leaves room for the rounding of the weight and of what the
+ * bound is added to. Underflow: at most 2^8 operations, each off by less than 2^-1074, some of them
  * multiplied later by at most two lengths, of 2^204 each at most: less than 2^-660. */
 static inline double weighed_error(double weight)
 {

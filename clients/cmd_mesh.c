@@ -1,0 +1,375 @@
+/* fmb mesh: which faces of two meshes meet. */
+#include "commands.h"
+
+#include "args.h"
+#include "mesh_meet.h"
+#include "mesh_report.h"
+#include "mesh_transform.h"
+#include "progress.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: fmb mesh [OPTIONS] A B\n"
+    "       fmb mesh [OPTIONS] --self A\n"
+    "\n"
+    "Tells which faces of the triangle mesh A meet which of B, or of A itself: exactly. A and B\n"
+    "are files in PLY (text or bytes), STL (likewise) or OBJ. Faces count from 0, as the file has\n"
+    "them.\n"
+    "\n"
+    "Where meshes are, in steps that follow each other: behind a file for that mesh, before the\n"
+    "first one for both.\n"
+    "  --scale S            S, or X,Y,Z: a factor for each axis\n"
+    "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the rule of the\n"
+    "                       right hand\n"
+    "  --mirror AXIS        x becomes -x, or y, or z\n"
+    "  --translate X,Y,Z\n"
+    "  --velocity X,Y,Z     it moves so far a second: faces meet at some time of the window, and\n"
+    "                       the answer says when\n"
+    "  --duration T         the window, seconds (1)\n"
+    "\n"
+    "What is asked:\n"
+    "  --self               A with itself. Faces that share a vertex or an edge and have nothing\n"
+    "                       else in common are told apart, and counted by themselves\n"
+    "  --as tetrahedra      a face is the tetrahedron of its edges and its unit normal, as in\n"
+    "                       the article; --as faces: it is a triangle (the default)\n"
+    "  --method NAME        how to decide: certified (the default), or exact, which takes longer\n"
+    "                       and says the same\n"
+    "\n"
+    "What is told:\n"
+    "  --json               one line of JSON: counts, and all pairs\n"
+    "  --list               all pairs, a line each\n"
+    "  --ply FILE           write both meshes as one, in colours: red what overlaps, yellow what\n"
+    "                       touches, grey (A) and blue (B) the rest\n" ARGS_COMMON_USAGE
+    "\n"
+    "Two faces overlap where inner points of both are the same, and touch where they only have\n"
+    "points of their rims in common. Coordinates in text are taken for the doubles next to them;\n"
+    "steps round each coordinate, the same way on every machine.\n"
+    "\n"
+    "  fmb mesh bunny.ply --scale 1000 bunny.ply --scale 1000 --mirror x --translate 50,-10,0\n"
+    "\n"
+    "Exit codes: 0 answered, 1 it could not be, 2 wrong usage, or a file that cannot be read.\n";
+
+enum {
+    SCALE = 2, /* 1 is an operand */
+    ROTATE,
+    MIRROR,
+    TRANSLATE,
+    VELOCITY,
+    DURATION,
+    SELF,
+    AS,
+    METHOD,
+    JSON,
+    LIST,
+    PLY,
+    HTML
+};
+
+static const struct option own_options[] = {
+    {"scale", required_argument, NULL, SCALE},
+    {"rotate", required_argument, NULL, ROTATE},
+    {"mirror", required_argument, NULL, MIRROR},
+    {"translate", required_argument, NULL, TRANSLATE},
+    {"velocity", required_argument, NULL, VELOCITY},
+    {"duration", required_argument, NULL, DURATION},
+    {"self", no_argument, NULL, SELF},
+    {"as", required_argument, NULL, AS},
+    {"method", required_argument, NULL, METHOD},
+    {"json", no_argument, NULL, JSON},
+    {"list", no_argument, NULL, LIST},
+    {"ply", required_argument, NULL, PLY},
+    {"html", required_argument, NULL, HTML},
+    {NULL, 0, NULL, 0},
+};
+
+/* What is said of one mesh. */
+struct placed {
+    struct mesh_transform transform;
+    bool moving;
+    double velocity[3];
+};
+
+struct options {
+    struct placed placed[2];
+    double duration;
+    bool self, json, list;
+    enum mesh_as as;
+    const struct fmb_method *method;
+    const char *ply, *html;
+};
+
+/* ---- Options --------------------------------------------------------------------------------- */
+
+/* "X,Y,Z", as many numbers as there are places; the next character after them, or NULL. */
+static const char *read_numbers(const char *text, int count, double *out)
+{
+    for (int i = 0; i < count; i++) {
+        char *end;
+        if (i > 0 && *text++ != ',')
+            return NULL;
+        out[i] = strtod(text, &end);
+        if (end == text || !isfinite(out[i]))
+            return NULL;
+        text = end;
+    }
+    return text;
+}
+
+static bool take_vector(const struct args *args, double out[3])
+{
+    const char *end = read_numbers(optarg, 3, out);
+    return (end && !*end) ||
+           args_error(args, "--%s: expected three numbers X,Y,Z, found '%s'", args->option, optarg);
+}
+
+static bool take_scale(const struct args *args, double out[3])
+{
+    const char *end = read_numbers(optarg, 1, out);
+    if (end && !*end) {
+        out[1] = out[2] = out[0];
+        return true;
+    }
+    end = read_numbers(optarg, 3, out);
+    return (end && !*end) ||
+           args_error(args, "--scale: expected a number, or three X,Y,Z, found '%s'", optarg);
+}
+
+static bool is_axis(char letter)
+{
+    return letter >= 'x' && letter <= 'z';
+}
+
+static bool take_mirror(const struct args *args, int *axis)
+{
+    *axis = *optarg - 'x';
+    return (is_axis(*optarg) && !optarg[1]) ||
+           args_error(args, "--mirror: expected x, y or z, found '%s'", optarg);
+}
+
+static bool take_rotate(const struct args *args, struct mesh_step *step)
+{
+    step->axis = *optarg - 'x';
+    const bool good = is_axis(*optarg) && optarg[1] == ',';
+    const char *end = good ? read_numbers(optarg + 2, 1, step->number) : NULL;
+    return (end && !*end) ||
+           args_error(args, "--rotate: expected an axis and degrees, such as z,90, found '%s'",
+                      optarg);
+}
+
+static bool take_step_value(const struct args *args, int option, struct mesh_step *step)
+{
+    switch (option) {
+    case SCALE: step->kind = MESH_SCALE; return take_scale(args, step->number);
+    case ROTATE: step->kind = MESH_ROTATE; return take_rotate(args, step);
+    case MIRROR: step->kind = MESH_MIRROR; return take_mirror(args, &step->axis);
+    default: step->kind = MESH_TRANSLATE; return take_vector(args, step->number);
+    }
+}
+
+/* Behind a mesh, for that one; before the first one, for both. */
+static bool take_step(const struct args *args, int option, struct options *options)
+{
+    struct mesh_step step = {0};
+    if (!take_step_value(args, option, &step))
+        return false;
+    for (int which = 0; which < 2; which++) {
+        struct mesh_transform *transform = &options->placed[which].transform;
+        if (args->operand_count != 0 && args->operand_count != which + 1)
+            continue;
+        if (transform->count == MESH_STEPS_MAX)
+            return args_error(args, "more than %d steps for a mesh", MESH_STEPS_MAX);
+        transform->step[transform->count++] = step;
+    }
+    return true;
+}
+
+static bool take_velocity(const struct args *args, struct options *options)
+{
+    double velocity[3];
+    if (!take_vector(args, velocity))
+        return false;
+    for (int which = 0; which < 2; which++)
+        if (args->operand_count == 0 || args->operand_count == which + 1) {
+            options->placed[which].moving = true;
+            memcpy(options->placed[which].velocity, velocity, sizeof velocity);
+        }
+    return true;
+}
+
+static bool take_as(const struct args *args, enum mesh_as *out)
+{
+    *out = strcmp(optarg, "tetrahedra") == 0 ? MESH_TETRAHEDRA : MESH_FACES;
+    return *out == MESH_TETRAHEDRA || strcmp(optarg, "faces") == 0 ||
+           args_error(args, "--as: there are faces and tetrahedra, not '%s'", optarg);
+}
+
+static bool take_method(const struct args *args, const struct fmb_method **out)
+{
+    const struct fmb_method *method = fmb_method_by_name(optarg);
+    if (!method || !method->certain)
+        return args_error(args, "--method: there are certified and exact, not '%s'", optarg);
+    *out = method == fmb_method_default() ? NULL : method;
+    return true;
+}
+
+static bool take_option(const struct args *args, int option, void *out)
+{
+    struct options *options = out;
+    switch (option) {
+    case VELOCITY: return take_velocity(args, options);
+    case DURATION: return args_number(args, 0, DBL_MAX, &options->duration);
+    case SELF: options->self = true; return true;
+    case AS: return take_as(args, &options->as);
+    case METHOD: return take_method(args, &options->method);
+    case JSON: options->json = true; return true;
+    case LIST: options->list = true; return true;
+    case PLY: options->ply = optarg; return true;
+    case HTML: options->html = optarg; return true;
+    default: return take_step(args, option, options);
+    }
+}
+
+/* What goes together, and how many files. */
+static bool check(const struct args *args, const struct options *options)
+{
+    const int wanted = options->self ? 1 : 2;
+    if (args->operand_count != wanted)
+        return args_error(args,
+                          options->self ? "expected one mesh with --self, found %d"
+                                        : "expected two meshes, found %d; or one and --self",
+                          args->operand_count);
+    if (options->self && options->as == MESH_TETRAHEDRA)
+        return args_error(args, "--self asks faces, not tetrahedra");
+    if (options->self && options->placed[0].moving)
+        return args_error(args, "--self and --velocity: a mesh does not move against itself");
+    return true;
+}
+
+/* ---- Reading --------------------------------------------------------------------------------- */
+
+static void tell_progress(void *context, uint64_t done, uint64_t total)
+{
+    struct progress *progress = context;
+    if (progress->total != total)
+        *progress = progress_begin_bytes(total);
+    progress_to(progress, done);
+}
+
+static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
+{
+    char error[MESH_ERROR_MAX];
+    struct progress progress = {0};
+    const struct mesh_watch watch = {tell_progress, &progress};
+    const bool good = mesh_read(path, &watch, out, error);
+    progress_end(&progress);
+    if (!good) {
+        fprintf(stderr, "fmb: %s: %s\n", path, error);
+        return false;
+    }
+    const size_t far = mesh_transform(&placed->transform, out);
+    if (far == SIZE_MAX)
+        return true;
+    fprintf(stderr, "fmb: %s: vertex %zu is farther out than edges in doubles go: scale the mesh\n",
+            path, far);
+    mesh_free(out);
+    return false;
+}
+
+/* ---- The run --------------------------------------------------------------------------------- */
+
+static int file_error(const char *name)
+{
+    fprintf(stderr, "fmb: %s: %s\n", name, strerror(errno));
+    return ARGS_FAILED;
+}
+
+typedef void write_function(FILE *out, const struct mesh_report *report);
+
+/* name: NULL: not wanted. */
+static int write_file(const char *name, write_function *write, const struct mesh_report *report)
+{
+    FILE *out = name ? fopen(name, "wb") : NULL;
+    if (!name)
+        return ARGS_ANSWERED;
+    if (!out)
+        return file_error(name);
+    write(out, report);
+    const bool good = !ferror(out);
+    return fclose(out) == 0 && good ? ARGS_ANSWERED : file_error(name);
+}
+
+static int worse(int code, int other)
+{
+    return code > other ? code : other;
+}
+
+static int tell(const struct options *options, const struct mesh_report *report)
+{
+    if (options->json)
+        mesh_report_json(stdout, report);
+    else
+        mesh_report_text(stdout, report, options->list);
+    int code = write_file(options->ply, mesh_report_ply, report);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        code = worse(code, file_error("standard output"));
+    return code;
+}
+
+static int meet(const struct options *options, const struct mesh *a, const struct mesh *b,
+                char **names)
+{
+    struct progress progress = {0};
+    const struct mesh_question question = {
+        .a = a,
+        .b = b,
+        .as = options->as,
+        .velocity = {options->placed[0].moving ? options->placed[0].velocity : NULL,
+                     options->placed[1].moving ? options->placed[1].velocity : NULL},
+        .duration = options->duration,
+        .method = options->method,
+        .told = tell_progress,
+        .context = &progress};
+    struct mesh_meeting meeting;
+    const enum fmb_status status = mesh_meet(&question, &meeting);
+    progress_end(&progress);
+    if (status != FMB_OK) {
+        fprintf(stderr, "fmb: %s\n",
+                status == FMB_NOT_FINITE
+                    ? "the normal of a face is beyond the doubles: scale the meshes"
+                    : fmb_status_text((int) status));
+        return ARGS_FAILED;
+    }
+    const struct mesh_report report = {
+        .mesh = {a, b}, .name = {names[0], names[a != b]}, .meeting = &meeting};
+    const int code = tell(options, &report);
+    mesh_meeting_free(&meeting);
+    return code;
+}
+
+int cmd_mesh(int argc, char **argv)
+{
+    struct args args = {
+        "mesh",          usage, own_options, take_option, .operand = "mesh", .operands_max = 2,
+        .in_order = true};
+    struct options options = {.duration = 1};
+    struct mesh mesh[2] = {{0}};
+    int code = args_parse(&args, argc, argv, &options);
+    if (code != ARGS_RUN)
+        return code;
+    if (!check(&args, &options))
+        return ARGS_USAGE;
+    code = ARGS_USAGE;
+    if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&
+        (options.self || read_mesh(args.operands[1], &options.placed[1], &mesh[1])))
+        code = meet(&options, &mesh[0], &mesh[!options.self], args.operands);
+    mesh_free(&mesh[0]);
+    mesh_free(&mesh[1]);
+    return code;
+}

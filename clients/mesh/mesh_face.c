@@ -1,0 +1,48 @@
+#include "mesh_face.h"
+
+#include <math.h>
+#include <string.h>
+
+void mesh_face_vertices(const struct mesh *mesh, unsigned face, double vertex[3][3])
+{
+    for (int corner = 0; corner < 3; corner++)
+        memcpy(vertex[corner], mesh->vertex[mesh->face[face][corner]], sizeof vertex[corner]);
+}
+
+/* c1 x c0, divided by its length. */
+static void unit_normal(const double c0[3], const double c1[3], double out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = c1[j] * c0[k] - c1[k] * c0[j];
+    }
+    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int i = 0; i < 3; i++)
+        out[i] = length > 0 ? out[i] / length : 0;
+}
+
+static enum fmb_status make_tetrahedron(const double vertex[3][3], struct fmb_body *out)
+{
+    double component[3][3];
+    for (int axis = 0; axis < 3; axis++) {
+        component[0][axis] = vertex[1][axis] - vertex[0][axis];
+        component[1][axis] = vertex[2][axis] - vertex[0][axis];
+    }
+    unit_normal(component[0], component[1], component[2]);
+    return fmb_body_make(3, FMB_TETRAHEDRON, component[0], 9, out);
+}
+
+bool mesh_face_frame(const struct mesh *mesh, enum mesh_as as, unsigned face,
+                     const double *velocity, struct fmb_body *body, struct fmb_frame *out)
+{
+    double vertex[3][3];
+    mesh_face_vertices(mesh, face, vertex);
+    const double(*corners)[3] = (const double(*)[3]) vertex;
+    const enum fmb_status status =
+        as == MESH_FACES ? fmb_body_make_triangle(corners, body) : make_tetrahedron(corners, body);
+    *out = (struct fmb_frame){.body = body, .moving = velocity != NULL};
+    memcpy(out->origin, vertex[0], sizeof out->origin);
+    if (velocity)
+        memcpy(out->velocity, velocity, sizeof out->velocity);
+    return status == FMB_OK;
+}

@@ -1,0 +1,164 @@
+#include "mesh_report.h"
+
+#include "allocate.h"
+#include "mesh_write.h"
+#include "number.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_self(const struct mesh_report *report)
+{
+    return report->mesh[0] == report->mesh[1];
+}
+
+/* ---- For people ------------------------------------------------------------------------------ */
+
+static void put_count(FILE *out, uint64_t count, const char *what)
+{
+    char text[NUMBER_TEXT_MAX];
+    fprintf(out, "%14s  %s\n", number_grouped((int64_t) count, text), what);
+}
+
+static void put_faces(FILE *out, const struct mesh_report *report, int which)
+{
+    char in_pairs[NUMBER_TEXT_MAX], all[NUMBER_TEXT_MAX];
+    fprintf(out, "%14s  of %s faces of %s\n",
+            number_grouped((int64_t) report->meeting->faces[which], in_pairs),
+            number_grouped((int64_t) report->mesh[which]->face_count, all), report->name[which]);
+}
+
+/* From the first to the last time at which any two faces meet. */
+static void put_times(FILE *out, const struct mesh_meeting *meeting)
+{
+    double first = meeting->pair[0].contact[0], last = meeting->pair[0].contact[1];
+    char first_text[NUMBER_TEXT_MAX], last_text[NUMBER_TEXT_MAX];
+    for (size_t i = 1; i < meeting->count; i++) {
+        const double *contact = meeting->pair[i].contact;
+        first = contact[0] < first ? contact[0] : first;
+        last = contact[1] > last ? contact[1] : last;
+    }
+    number_ends(first, last, first_text, last_text);
+    fprintf(out, "faces meet first at %s s, and last at %s s\n", first_text, last_text);
+}
+
+static void put_pair(FILE *out, const struct mesh_pair *pair, bool moving)
+{
+    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
+    fprintf(out, "%u %u %s", pair->a, pair->b, fmb_verdict_name((int) pair->verdict));
+    if (moving)
+        fprintf(out, " %s %s", number_exact(pair->contact[0], first),
+                number_exact(pair->contact[1], last));
+    putc('\n', out);
+}
+
+void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
+{
+    const struct mesh_meeting *meeting = report->meeting;
+    for (size_t i = 0; i < meeting->count && list; i++)
+        put_pair(out, &meeting->pair[i], meeting->moving);
+    put_count(out, meeting->count,
+              meeting->count == 1 ? "pair of faces meets:" : "pairs of faces meet:");
+    put_count(out, meeting->overlapping, "overlap");
+    put_count(out, meeting->touching, "touch");
+    fputs("in them are\n", out);
+    put_faces(out, report, 0);
+    if (is_self(report)) {
+        fputs("and beside each other, with nothing else in common, are\n", out);
+        put_count(out, meeting->sharing_edge, "pairs that share an edge");
+        put_count(out, meeting->sharing_vertex, "pairs that share a vertex");
+    } else {
+        put_faces(out, report, 1);
+    }
+    if (meeting->moving && meeting->count > 0)
+        put_times(out, meeting);
+}
+
+/* ---- JSON ------------------------------------------------------------------------------------ */
+
+static void put_pair_json(FILE *out, const struct mesh_pair *pair, bool moving)
+{
+    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
+    fprintf(out, "[%u, %u, \"%s\"", pair->a, pair->b, fmb_verdict_name((int) pair->verdict));
+    if (moving)
+        fprintf(out, ", [%s, %s]", number_exact(pair->contact[0], first),
+                number_exact(pair->contact[1], last));
+    putc(']', out);
+}
+
+void mesh_report_json(FILE *out, const struct mesh_report *report)
+{
+    const struct mesh_meeting *meeting = report->meeting;
+    fprintf(out, "{\"overlapping\": %zu, \"touching\": %zu, \"faces_a\": %zu, \"faces_b\": %zu, ",
+            meeting->overlapping, meeting->touching, meeting->faces[0], meeting->faces[1]);
+    if (is_self(report))
+        fprintf(out, "\"sharing_edge\": %" PRIu64 ", \"sharing_vertex\": %" PRIu64 ", ",
+                meeting->sharing_edge, meeting->sharing_vertex);
+    fputs("\"pairs\": [", out);
+    for (size_t i = 0; i < meeting->count; i++) {
+        fputs(i ? ", " : "", out);
+        put_pair_json(out, &meeting->pair[i], meeting->moving);
+    }
+    fputs("]}\n", out);
+}
+
+/* ---- Colours --------------------------------------------------------------------------------- */
+
+typedef unsigned char colour[3];
+
+static const colour of_mesh[2] = {{190, 190, 190}, {120, 160, 220}};
+static const colour of_touching = {240, 200, 40}, of_overlapping = {220, 40, 40};
+
+static void paint(const struct mesh_report *report, colour *face)
+{
+    const struct mesh_meeting *meeting = report->meeting;
+    const size_t first[2] = {0, is_self(report) ? 0 : report->mesh[0]->face_count};
+    for (int pass = 0; pass < 2; pass++) /* a face that overlaps another stays red */
+        for (size_t i = 0; i < meeting->count; i++) {
+            const struct mesh_pair *pair = &meeting->pair[i];
+            const bool overlaps = pair->verdict == FMB_OVERLAPPING;
+            if (overlaps != (pass == 1))
+                continue;
+            const unsigned char *to = overlaps ? of_overlapping : of_touching;
+            memcpy(face[first[0] + pair->a], to, sizeof *face);
+            memcpy(face[first[1] + pair->b], to, sizeof *face);
+        }
+}
+
+/* Owned by the caller. */
+static struct mesh join(const struct mesh_report *report, colour **face_colour)
+{
+    const int meshes = is_self(report) ? 1 : 2;
+    struct mesh out = {0};
+    for (int m = 0; m < meshes; m++) {
+        out.vertex_count += report->mesh[m]->vertex_count;
+        out.face_count += report->mesh[m]->face_count;
+    }
+    out.vertex = allocate(out.vertex_count, sizeof *out.vertex);
+    out.face = allocate(out.face_count, sizeof *out.face);
+    *face_colour = allocate(out.face_count, sizeof **face_colour);
+    size_t vertex = 0, face = 0;
+    for (int m = 0; m < meshes; m++) {
+        const struct mesh *mesh = report->mesh[m];
+        for (size_t f = 0; f < mesh->face_count; f++, face++) {
+            for (int corner = 0; corner < 3; corner++)
+                out.face[face][corner] = (unsigned) vertex + mesh->face[f][corner];
+            memcpy((*face_colour)[face], of_mesh[m], sizeof **face_colour);
+        }
+        if (mesh->vertex_count > 0)
+            memcpy(out.vertex + vertex, mesh->vertex, mesh->vertex_count * sizeof *out.vertex);
+        vertex += mesh->vertex_count;
+    }
+    return out;
+}
+
+void mesh_report_ply(FILE *out, const struct mesh_report *report)
+{
+    colour *face_colour;
+    struct mesh both = join(report, &face_colour);
+    paint(report, face_colour);
+    mesh_write_ply(out, &both, (const unsigned char(*)[3]) face_colour);
+    free(face_colour);
+    mesh_free(&both);
+}
