@@ -3,11 +3,14 @@
  * Method. The box is that of the points (exact_box.c derives them)
  *   1. where an edge of one frame, cut by the other, ends: at both ends of the window;
  *   2. where the path of a vertex of one, cut by the other, ends;
- *   3. where an edge of one crosses an edge of the other in the course of the window,
- * and where the frames do not drift, of 1 at the start alone, swept by their common displacement.
- * Each is cut twice (clip.h): what might belong to the intersection widens the outer box, what
- * surely does the inner one. The true box lies between; where the two are close enough the outer
- * one is the answer.
+ *   3. where an edge of one crosses an edge of the other in the course of the window.
+ * A face (FMB_FACE) cuts nothing, and is pierced by edges of the other frame in 1, and by paths of
+ * its vertices in 2: an edge or path parallel to it that lies in it brings nothing that another one
+ * from the same vertex does not, which there is where the other frame is solid, or a face of
+ * another plane (with one of a parallel plane the drift is no such path). And where the frames do
+ * not drift, of 1 at the start alone, swept by their common displacement. Each is cut twice
+ * (clip.h): what might belong to the intersection widens the outer box, what surely does the inner
+ * one. The true box lies between; where the two are close enough the outer one is the answer.
  *
  * Accuracy. Cuts: weighed.h bounds the error of normal . w for vertices w of one frame seen from
  * the other. Where nothing rounds (limbs_never_round) there is none but that of quotients and of
@@ -186,43 +189,43 @@ static void include_paths(struct boxing *boxing, int f, const struct seen *seen)
     }
 }
 
-/* ---- Kind 3: an edge of each ----
- *
- * With p + s e of A, q + u f of B, all seen from A, r = q + offset - p and
- * det = drift . (e x f) (exact_box.c):
- *
- *     tau = -r . (e x f) / det,   s = r . (f x drift) / det,   u = r . (e x drift) / det. */
+/* ---- Crossings: of two things that have one point in common, each with a parameter in [0,1] ----
+ */
 
+enum { CROSSING_PARAMETERS = 4 };
+
+/* Parameter i is normal[i] . r / det, of a vector r. */
 struct crossing {
-    double normal[3][FMB_DIM_MAX]; /* of tau, s, u; signs turned so that det >= 0 */
-    double error[3];
+    int parameters;
+    double normal[CROSSING_PARAMETERS][FMB_DIM_MAX]; /* signs turned so that det >= 0 */
+    double error[CROSSING_PARAMETERS];
     double det, det_error;
 };
 
-static void set_crossing(const struct boxing *boxing, const struct weighed *e,
-                         const struct weighed *f, struct crossing *out)
+/* From normals that are to be multiplied with +1 or -1, and det = normal[0] . of. */
+static void set_crossing(const struct boxing *boxing, int parameters,
+                         const struct weighed *const normal[], const int sign[],
+                         const struct weighed *of, struct crossing *out)
 {
-    const struct weighed ef = weighed_cross(e, f), fd = weighed_cross(f, &boxing->drift),
-                         ed = weighed_cross(e, &boxing->drift);
-    const struct weighed *normals[3] = {&ef, &fd, &ed};
-    const double det = weighed_dot(boxing->drift.at, ef.at);
-    for (int i = 0; i < 3; i++) {
-        out->error[i] = error_of(boxing, weighed_dot(normals[i]->weight, boxing->reach));
-        const double sign = (det < 0 ? -1 : 1) * (i == 0 ? -1 : 1);
+    const double det = weighed_dot(of->at, normal[0]->at);
+    out->parameters = parameters;
+    for (int i = 0; i < parameters; i++) {
+        out->error[i] = error_of(boxing, weighed_dot(normal[i]->weight, boxing->reach));
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            out->normal[i][axis] = sign * normals[i]->at[axis];
+            out->normal[i][axis] = (det < 0 ? -sign[i] : sign[i]) * normal[i]->at[axis];
     }
     out->det = fabs(det);
-    out->det_error = error_of(boxing, weighed_dot(ef.weight, boxing->drift.weight));
+    out->det_error = error_of(boxing, weighed_dot(normal[0]->weight, of->weight));
 }
 
 /* Where a parameter in [0,1], num / det, may lie.
  *
  * Where the sign of det is not known it may have been turned the wrong way, and num with it; the
- * true det is then no larger than what det is off by. That is less than 10/32 of det_error, and
- * what num is off by less than 14/32 of error (of the 32 u in weighed_error(), so many are
- * roundings of these), and det_error <= error, whose weight has all of the monomials of det in it.
- * So a true num / det in [0,1] has |num| < error as it is found here, and is possible. */
+ * true det is then no larger than what det is off by. That is less than 13/32 of det_error, and
+ * what num is off by less than 17/32 of error (of the 32 u in weighed_error(), so many are
+ * roundings of these, three of each those of components that are rounded themselves), and
+ * det_error <= error, whose weight has all of the monomials of det in it: the reach holds edges and
+ * drift. So a true num / det in [0,1] has |num| < error as it is found here, and is possible. */
 struct parameter {
     struct clip outer;
     bool possible, sure; /* in [0,1] */
@@ -250,61 +253,194 @@ static struct range scaled(struct clip s, double x)
     return range_hull(range_product(s.low, x), range_product(s.high, x));
 }
 
-/* start + s edge + tau displacement along an axis. */
-static struct range point_range(const struct boxing *boxing, const struct part *part, int vertex,
-                                const struct weighed *edge, struct clip s, struct clip tau,
-                                int axis)
+enum crossing_outcome { CROSSING_NONE, CROSSING_SOMEWHERE, CROSSING_POSSIBLE, CROSSING_SURE };
+
+/* SOMEWHERE: there may be one, but nothing can be said of where. */
+static enum crossing_outcome crossing_at(const struct boxing *boxing,
+                                         const struct crossing *crossing,
+                                         const double r[FMB_DIM_MAX],
+                                         struct clip where[CROSSING_PARAMETERS])
 {
-    const double e = edge->at[axis], v = part->displacement[axis];
-    const struct range at = part->place[0][vertex][axis];
-    const double slack = part->slack[axis];
-    if (!boxing->rounds)
-        return range_sum(range_sum(at, scaled(s, e)), scaled(tau, v));
-    return (struct range){
-        at.low + (range_least(s.low * e, s.high * e) + range_least(tau.low * v, tau.high * v)) -
-            slack,
-        at.high +
-            (range_greatest(s.low * e, s.high * e) + range_greatest(tau.low * v, tau.high * v)) +
-            slack};
+    bool sure = true;
+    for (int i = 0; i < crossing->parameters; i++) {
+        const struct parameter parameter =
+            parameter_of(boxing, crossing, weighed_dot(crossing->normal[i], r), crossing->error[i]);
+        if (!parameter.possible)
+            return CROSSING_NONE;
+        where[i] = parameter.outer;
+        sure = sure && parameter.sure;
+    }
+    if (crossing->det <= crossing->det_error)
+        return CROSSING_SOMEWHERE;
+    return sure ? CROSSING_SURE : CROSSING_POSSIBLE;
 }
 
-/* The point lies on both edges, and so in both ranges. */
-static void include_crossing(struct boxing *boxing, struct part_edge a, struct part_edge b,
-                             const struct parameter parameter[3])
+/* at and steps from there, each as long as a parameter says. */
+static struct range walked(const struct boxing *boxing, struct range at, double slack, int steps,
+                           const struct clip parameter[], const double step[])
 {
-    const struct part *part = boxing->part;
-    const bool sure = parameter[0].sure && parameter[1].sure && parameter[2].sure;
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const struct range on_a =
-            point_range(boxing, &part[0], a.start, &part[0].direction[a.direction],
-                        parameter[1].outer, parameter[0].outer, axis);
-        const struct range on_b =
-            point_range(boxing, &part[1], b.start, &part[1].direction[b.direction],
-                        parameter[2].outer, parameter[0].outer, axis);
-        const struct range both = {range_greatest(on_a.low, on_b.low),
-                                   range_least(on_a.high, on_b.high)};
-        include(boxing, axis, both, true, sure);
+    double low = 0, high = 0;
+    for (int i = 0; i < steps && !boxing->rounds; i++)
+        at = range_sum(at, scaled(parameter[i], step[i]));
+    if (!boxing->rounds)
+        return at;
+    for (int i = 0; i < steps; i++) {
+        const double one = parameter[i].low * step[i], other = parameter[i].high * step[i];
+        low += range_least(one, other);
+        high += range_greatest(one, other);
     }
+    return (struct range){at.low + low - slack, at.high + high + slack};
+}
+
+/* A point that lies in both ranges. */
+static void include_both(struct boxing *boxing, int axis, struct range x, struct range y, bool sure)
+{
+    const struct range both = {range_greatest(x.low, y.low), range_least(x.high, y.high)};
+    include(boxing, axis, both, true, sure);
+}
+
+/* ---- Kinds 1 and 2, of a face: pierced by an edge at an end of the window, or by a path ----
+ *
+ * With p + s e of the segment, seen from the origin of the face, n = c0 x c1 and det = n . e,
+ *
+ *     s = -p . n / det,   x_0 = p . (c1 x e) / det,   x_1 = p . (e x c0) / det,
+ *
+ * as dot products of p + s e = x_0 c0 + x_1 c1 with n, c1 x e and e x c0 show; and x_0 + x_1 =
+ * p . (e x (c0 - c1)) / det. */
+
+static void set_piercing(const struct boxing *boxing, const struct part *face,
+                         const struct weighed *e, struct crossing *out)
+{
+    static const int sign[] = {-1, 1, 1, 1};
+    const struct weighed *c0 = &face->component[0], *c1 = &face->component[1];
+    const struct weighed edge = weighed_sum(c0, -1, c1);
+    const struct weighed normal[] = {weighed_cross(c0, c1), weighed_cross(c1, e),
+                                     weighed_cross(e, c0), weighed_cross(e, &edge)};
+    const struct weighed *const normals[] = {&normal[0], &normal[1], &normal[2], &normal[3]};
+    set_crossing(boxing, 4, normals, sign, e, out);
+}
+
+/* A segment of frame 1 - f, from a vertex at an end of the window; where it is a path, s is the
+ * time. step: the whole of it. */
+struct piercer {
+    int vertex, end;
+    bool path;
+    const double *step;
+};
+
+static void include_pierced(struct boxing *boxing, int f, const struct piercer *piercer,
+                            const struct clip where[CROSSING_PARAMETERS], bool sure)
+{
+    const struct part *face = &boxing->part[f], *other = &boxing->part[1 - f];
+    const struct clip of_face[3] = {where[1], where[2], where[0]};
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double step[3] = {face->component[0].at[axis], face->component[1].at[axis],
+                                face->displacement[axis]};
+        const struct range on_segment =
+            walked(boxing, other->place[piercer->end][piercer->vertex][axis], other->slack[axis], 1,
+                   where, &piercer->step[axis]);
+        const struct range on_face =
+            walked(boxing, face->place[piercer->end][0][axis], face->slack[axis],
+                   piercer->path ? 3 : 2, of_face, step);
+        include_both(boxing, axis, on_segment, on_face, sure);
+    }
+}
+
+static bool include_piercing(struct boxing *boxing, int f, const struct crossing *crossing,
+                             const struct piercer *piercer)
+{
+    const struct part *other = &boxing->part[1 - f];
+    struct clip where[CROSSING_PARAMETERS];
+    double r[FMB_DIM_MAX];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double way = piercer->end ? boxing->drift.at[axis] : 0;
+        const double apart = boxing->offset.at[axis] + way;
+        r[axis] = other->vertex[piercer->vertex][axis] + (f == 0 ? apart : -apart);
+    }
+    const enum crossing_outcome outcome = crossing_at(boxing, crossing, r, where);
+    if (outcome == CROSSING_POSSIBLE || outcome == CROSSING_SURE)
+        include_pierced(boxing, f, piercer, where, outcome == CROSSING_SURE);
+    return outcome != CROSSING_SOMEWHERE;
+}
+
+/* Edges of which det is exactly 0 are parallel to the face. */
+static bool include_piercing_edges(struct boxing *boxing, int f, int end)
+{
+    const struct part *face = &boxing->part[f], *other = &boxing->part[1 - f];
+    const int each = other->edges / other->directions;
+    for (int i = 0; i < other->directions; i++) {
+        struct crossing crossing;
+        set_piercing(boxing, face, &other->direction[i], &crossing);
+        if (!boxing->rounds && crossing.det == 0)
+            continue;
+        for (int k = i * each; k < (i + 1) * each; k++) {
+            const struct piercer edge = {other->edge[k].start, end, false, other->direction[i].at};
+            if (!include_piercing(boxing, f, &crossing, &edge))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Seen from frame f, the other one moves by the drift, or by what is opposite to it. */
+static bool include_piercing_paths(struct boxing *boxing, int f)
+{
+    const struct part *other = &boxing->part[1 - f];
+    const struct weighed zero = {{0}, {0}};
+    const struct weighed way = weighed_sum(&zero, f == 0 ? 1 : -1, &boxing->drift);
+    struct crossing crossing;
+    set_piercing(boxing, &boxing->part[f], &way, &crossing);
+    for (int v = 0; v < other->vertices && (boxing->rounds || crossing.det != 0); v++) {
+        const struct piercer path = {v, 0, true, other->displacement};
+        if (!include_piercing(boxing, f, &crossing, &path))
+            return false;
+    }
+    return true;
+}
+
+/* ---- Kind 3: an edge of each ----
+ *
+ * With p + s e of A, q + u f of B, all seen from A, r = q + offset - p and
+ * det = drift . (e x f) (exact_box.c):
+ *
+ *     tau = -r . (e x f) / det,   s = r . (f x drift) / det,   u = r . (e x drift) / det. */
+
+static void set_edge_crossing(const struct boxing *boxing, const struct weighed *e,
+                              const struct weighed *f, struct crossing *out)
+{
+    static const int sign[] = {-1, 1, 1};
+    const struct weighed normal[] = {weighed_cross(e, f), weighed_cross(f, &boxing->drift),
+                                     weighed_cross(e, &boxing->drift)};
+    const struct weighed *const normals[] = {&normal[0], &normal[1], &normal[2]};
+    set_crossing(boxing, 3, normals, sign, &boxing->drift, out);
+}
+
+/* Along an axis, a point of an edge, at tau. */
+static struct range point_range(const struct boxing *boxing, const struct part *part,
+                                struct part_edge edge, struct clip s, struct clip tau, int axis)
+{
+    const struct clip where[2] = {s, tau};
+    const double step[2] = {part->direction[edge.direction].at[axis], part->displacement[axis]};
+    return walked(boxing, part->place[0][edge.start][axis], part->slack[axis], 2, where, step);
 }
 
 /* False where edges may cross, but nothing can be said of where. */
 static bool include_crossing_at(struct boxing *boxing, const struct crossing *crossing,
                                 struct part_edge a, struct part_edge b)
 {
+    const struct part *part = boxing->part;
     double r[FMB_DIM_MAX];
-    struct parameter parameter[3];
+    struct clip where[CROSSING_PARAMETERS]; /* tau, s, u */
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        r[axis] = (boxing->part[1].vertex[b.start][axis] - boxing->part[0].vertex[a.start][axis]) +
+        r[axis] = (part[1].vertex[b.start][axis] - part[0].vertex[a.start][axis]) +
                   boxing->offset.at[axis];
-    for (int i = 0; i < 3; i++) {
-        parameter[i] =
-            parameter_of(boxing, crossing, weighed_dot(crossing->normal[i], r), crossing->error[i]);
-        if (!parameter[i].possible)
-            return true;
-    }
-    if (crossing->det <= crossing->det_error)
-        return false;
-    include_crossing(boxing, a, b, parameter);
+    const enum crossing_outcome outcome = crossing_at(boxing, crossing, r, where);
+    if (outcome == CROSSING_NONE || outcome == CROSSING_SOMEWHERE)
+        return outcome == CROSSING_NONE;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        include_both(boxing, axis, point_range(boxing, &part[0], a, where[1], where[0], axis),
+                     point_range(boxing, &part[1], b, where[2], where[0], axis),
+                     outcome == CROSSING_SURE);
     return true;
 }
 
@@ -328,7 +464,7 @@ static bool include_crossings(struct boxing *boxing)
     for (int i = 0; i < a->directions; i++)
         for (int j = 0; j < b->directions; j++) {
             struct crossing crossing;
-            set_crossing(boxing, &a->direction[i], &b->direction[j], &crossing);
+            set_edge_crossing(boxing, &a->direction[i], &b->direction[j], &crossing);
             if (!boxing->rounds && crossing.det == 0)
                 continue;
             if (!include_parallel_crossings(boxing, i, j, &crossing))
@@ -381,18 +517,28 @@ static bool is_tight(const struct boxing *boxing)
     return true;
 }
 
-static bool include_all(struct boxing *boxing)
+/* Kinds 1 and 2: segments of frame f, cut by the faces of the other one, or piercing it. */
+static bool include_segments(struct boxing *boxing, int f, bool drifts)
 {
-    const bool drifts = boxing->slabs->motion.drifts;
-    for (int f = 0; f < 2; f++) {
-        struct seen seen;
-        set_seen(boxing, f, &seen);
-        include_edges(boxing, f, &seen, 0);
-        if (!drifts)
-            continue;
+    struct seen seen;
+    if (boxing->part[1 - f].shape == FMB_FACE)
+        return include_piercing_edges(boxing, 1 - f, 0) &&
+               (!drifts || (include_piercing_edges(boxing, 1 - f, 1) &&
+                            include_piercing_paths(boxing, 1 - f)));
+    set_seen(boxing, f, &seen);
+    include_edges(boxing, f, &seen, 0);
+    if (drifts) {
         include_edges(boxing, f, &seen, 1);
         include_paths(boxing, f, &seen);
     }
+    return true;
+}
+
+static bool include_all(struct boxing *boxing)
+{
+    const bool drifts = boxing->slabs->motion.drifts;
+    if (!include_segments(boxing, 0, drifts) || !include_segments(boxing, 1, drifts))
+        return false;
     return !drifts || boxing->part[0].dim == 2 || include_crossings(boxing);
 }
 

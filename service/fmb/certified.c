@@ -230,9 +230,10 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 static bool answer_box(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
-    if (certified->kind & RUN_FACE)
+    if (certified->planes != FACES_CROSSING)
         return false;
-    if (answer->verdict == FMB_OVERLAPPING && !answer->has_contact && !never_rounds(certified)) {
+    if (answer->verdict == FMB_OVERLAPPING && !answer->has_contact &&
+        !(certified->kind & RUN_FACE) && !never_rounds(certified)) {
         double box[2][FMB_DIM_MAX];
         run_boxes_alone()[certified->kind](&certified->frame[0], &certified->frame[1], 0,
                                            (double *) box);

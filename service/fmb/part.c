@@ -4,8 +4,9 @@
 
 /* Accuracy: places are rounded outward at each step (range.h). A point between vertices,
  * o + sum x_i c_i + tau v T with x and tau in [0,1], is made from a place by at most 5 more
- * operations, and a place is off by at most 3 u of the sum of the magnitudes for each of its at
- * most 3 sums: 14 u in all, within 2^-49 = 16 u. Where a sum of such numbers is smaller than the
+ * roundings of each term, one more where a component is rounded itself, and a place is off by at
+ * most 3 u of the sum of the magnitudes for each of its at most 3 sums (of a face o, c_i, its rest
+ * and v T): 15 u in all, within 2^-49 = 16 u. Where a sum of such numbers is smaller than the
  * smallest normal double, 2^-1070 covers what its products lose. */
 static const double point_error = 0x1p-49, point_underflow = 0x1p-1070;
 
@@ -36,12 +37,12 @@ static void set_cuboid(struct part *part)
 
 static void set_simplex(struct part *part)
 {
-    part->vertices = part->dim + 1;
-    for (int i = 0; i < part->dim; i++) {
+    part->vertices = part->components + 1;
+    for (int i = 0; i < part->components; i++) {
         memcpy(part->vertex[i + 1], part->component[i].at, sizeof part->vertex[i + 1]);
         add_edge(part, part->directions, 0, i + 1);
         part->direction[part->directions++] = part->component[i];
-        for (int j = i + 1; j < part->dim; j++) {
+        for (int j = i + 1; j < part->components; j++) {
             add_edge(part, part->directions, i + 1, j + 1);
             part->direction[part->directions++] =
                 weighed_sum(&part->component[j], -1, &part->component[i]);
@@ -54,6 +55,8 @@ static void set_simplex(struct part *part)
 static void set_faces(struct part *part)
 {
     const struct weighed *c = part->component;
+    if (part->shape == FMB_FACE)
+        return;
     part->faces = part->dim;
     if (part->dim == 2) {
         const struct weighed turned = weighed_turn(&c[1]), zero = {{0}, {0}};
@@ -74,15 +77,17 @@ static void set_faces(struct part *part)
     part->faces++;
 }
 
-/* o + sum of components, + v T */
+/* o + sum of components and their rests, + v T */
 static void set_vertex_places(const struct fmb_frame *frame, struct range way, int axis,
                               struct part *part)
 {
     for (int v = 0; v < part->vertices; v++) {
         struct range at = range_of(frame->origin[axis]);
-        for (int i = 0; i < part->dim; i++)
+        for (int i = 0; i < part->components; i++)
             if (part->shape == FMB_CUBOID ? v >> i & 1 : v == i + 1)
                 at = range_sum(at, range_of(part->component[i].at[axis]));
+        if (frame->body->rounded && v > 0)
+            at = range_sum(at, range_of(frame->body->rest[v - 1][axis]));
         part->place[0][v][axis] = at;
         part->place[1][v][axis] = range_sum(at, way);
         part->extent[axis] = range_hull(part->extent[axis], at);
@@ -98,7 +103,7 @@ static bool set_places(const struct fmb_frame *frame, double duration, struct pa
         part->displacement[axis] = velocity * duration;
         double magnitude = fabs(frame->origin[axis]) + fabs(part->displacement[axis]);
         near = near && magnitude <= largest_place;
-        for (int i = 0; i < part->dim; i++)
+        for (int i = 0; i < part->components; i++)
             magnitude += part->component[i].weight[axis];
         part->slack[axis] = point_error * magnitude + point_underflow;
         part->extent[axis] = range_none();
@@ -113,7 +118,8 @@ bool part_set(const struct fmb_frame *frame, double duration, struct part *part)
     memset(part, 0, sizeof *part);
     part->shape = frame->body->shape;
     part->dim = frame->body->dim;
-    for (int i = 0; i < part->dim; i++)
+    part->components = frame->body->count;
+    for (int i = 0; i < part->components; i++)
         part->component[i] = weigh(frame->body->component[i]);
     if (part->shape == FMB_CUBOID)
         set_cuboid(part);

@@ -1,4 +1,5 @@
-/* A frame as vertices, edges and faces, in doubles with bounds: what box.c cuts, and cuts with. */
+/* A frame as vertices, edges and faces, in doubles with bounds: what box.c cuts, and cuts with. A
+ * face (FMB_FACE) has no faces of its own to cut with: edges pierce it. */
 #ifndef FMB_PART_H
 #define FMB_PART_H
 
@@ -16,7 +17,7 @@ struct part_edge {
 /* A frame: its vertices and edges, and its faces, which cut those of the other one. */
 struct part {
     enum fmb_shape shape;
-    int dim, vertices, directions, edges, faces;
+    int dim, components, vertices, directions, edges, faces;
     struct weighed component[FMB_DIM_MAX];
     struct weighed direction[PART_DIRECTIONS];
     struct part_edge edge[PART_EDGES];
@@ -32,7 +33,7 @@ struct part {
     double low, high;
 };
 
-/* On input: a frame of a solid body in range, checked; the window, in seconds. False if a place is
+/* On input: a frame of a body in range, checked; the window, in seconds. False if a place is
  * too far away for doubles. */
 bool part_set(const struct fmb_frame *frame, double duration, struct part *part);
 
