@@ -99,7 +99,7 @@ demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
 	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-relay $(B)/logs/generate \
-	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/make-page $(B)/edit-log $(B)/events $(capped_programs)
+	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/mesh/bench-mesh $(B)/make-page $(B)/edit-log $(B)/events $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -548,7 +548,7 @@ $(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
 # ---- Meshes: closed ones of any size, for tests and benchmarks --------------------------------
 
 mesh_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/mesh/*.c)) \
-	$(addprefix $(O)/clients/,allocate.o number.o)
+	$(addprefix $(O)/clients/,allocate.o number.o) $(O)/service/clock.o
 
 $(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
@@ -556,7 +556,7 @@ $(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o)
 
 $(O)/tests/mesh/%.o: tests/mesh/%.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile) -Iclients/mesh
+	$(compile) -Iclients/mesh -Iclients -Iservice -Iservice/fmb -Itests/bench
 
 # The programs with a library that takes no more of the machine than its name says: nothing else of
 # them differs. On a machine that has less, they take less.
@@ -663,7 +663,7 @@ bench-bus: $(B)/bus/bench-bus $(B)/netns
 # Logs: replayed, and described, beside the batch alone and beside cat. Some minutes, and some
 # hundred megabytes in build/replay/.
 $(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
-		$(addprefix $(O)/tests/bench/,machine.o stopwatch.o) $(client_objects) \
+		$(addprefix $(O)/tests/bench/,child.o machine.o stopwatch.o) $(client_objects) \
 		$(answer_objects) $(bus_objects) $(message_objects) $(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
@@ -677,6 +677,21 @@ $(B)/replay/%.log: $(B)/logs/generate
 .PHONY: bench-replay
 bench-replay: $(B)/replay/bench-replay $(B)/fmb $(bench_logs)
 	$< $(B)/fmb $(bench_logs)
+
+# Meshes: the article's scene, of MESH, whose coordinates it multiplies by 1000 as the article does
+# with the Stanford Bunny; or of a mesh that is made, about as large and of as many faces. A minute.
+$(B)/mesh/bench-mesh: $(addprefix $(O)/tests/mesh/,bench_mesh.o bumpy.o sweep.o) \
+		$(addprefix $(O)/tests/bench/,child.o machine.o stopwatch.o) $(mesh_objects) \
+		$(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lgmp -lm
+
+.PHONY: bench-mesh
+bench-mesh: $(B)/mesh/bench-mesh $(B)/fmb $(if $(MESH),,$(B)/mesh/bumpy.ply)
+	$< $(B)/fmb $(or $(MESH),$(B)/mesh/bumpy.ply) $(if $(MESH),1000,60)
+
+$(B)/mesh/bumpy.ply: $(B)/mesh/make-mesh
+	$< --faces 70000 --format ply-ascii > $@
 
 # ---- Report ----------------------------------------------------------------------------------
 

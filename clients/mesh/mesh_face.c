@@ -21,15 +21,40 @@ static void unit_normal(const double c0[3], const double c1[3], double out[3])
         out[i] = length > 0 ? out[i] / length : 0;
 }
 
+static void set_components(const double vertex[3][3], double out[3][3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        out[0][axis] = vertex[1][axis] - vertex[0][axis];
+        out[1][axis] = vertex[2][axis] - vertex[0][axis];
+    }
+    unit_normal(out[0], out[1], out[2]);
+}
+
 static enum fmb_status make_tetrahedron(const double vertex[3][3], struct fmb_body *out)
 {
     double component[3][3];
-    for (int axis = 0; axis < 3; axis++) {
-        component[0][axis] = vertex[1][axis] - vertex[0][axis];
-        component[1][axis] = vertex[2][axis] - vertex[0][axis];
-    }
-    unit_normal(component[0], component[1], component[2]);
+    set_components(vertex, component);
     return fmb_body_make(3, FMB_TETRAHEDRON, component[0], 9, out);
+}
+
+/* A sum is off by at most 2^-53 of itself; where it overflows it is an end of all. A normal that is
+ * no number is taken for one that goes everywhere: the face is to be asked then, and refused. */
+void mesh_face_tetrahedron_box(const struct mesh *mesh, unsigned face, double box[2][3])
+{
+    double vertex[3][3], component[3][3];
+    mesh_face_vertices(mesh, face, vertex);
+    set_components((const double(*)[3]) vertex, component);
+    for (int axis = 0; axis < 3; axis++) {
+        double low = vertex[0][axis], high = low;
+        for (int i = 0; i < 3; i++) {
+            const double end = vertex[0][axis] + component[i][axis];
+            low = end < low ? end : low;
+            high = end > high ? end : high;
+        }
+        const bool known = isfinite(component[2][axis]);
+        box[0][axis] = known ? low - fabs(low) * 0x1p-52 : -INFINITY;
+        box[1][axis] = known ? high + fabs(high) * 0x1p-52 : INFINITY;
+    }
 }
 
 bool mesh_face_frame(const struct mesh *mesh, enum mesh_as as, unsigned face,

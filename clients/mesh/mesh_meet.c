@@ -1,10 +1,10 @@
 #include "mesh_meet.h"
 
 #include "allocate.h"
+#include "clock.h"
 #include "mesh_face.h"
 #include "mesh_near.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,18 +43,13 @@ static const struct mesh *mesh_of(const struct mesh_question *question, int whic
 
 /* ---- Trees ---- */
 
-struct boxing {
-    const struct mesh *mesh;
-    enum mesh_as as;
-};
-
 /* Of vertices, exactly. */
 static void put_face_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
 {
-    const struct boxing *boxing = context;
-    const unsigned *corner = boxing->mesh->face[index];
-    const double *u = boxing->mesh->vertex[corner[0]], *v = boxing->mesh->vertex[corner[1]];
-    const double *w = boxing->mesh->vertex[corner[2]];
+    const struct mesh *mesh = context;
+    const unsigned *corner = mesh->face[index];
+    const double *u = mesh->vertex[corner[0]], *v = mesh->vertex[corner[1]];
+    const double *w = mesh->vertex[corner[2]];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         const double low = u[axis] < v[axis] ? u[axis] : v[axis];
         const double high = u[axis] < v[axis] ? v[axis] : u[axis];
@@ -65,29 +60,16 @@ static void put_face_box(const void *context, unsigned index, double box[2][FMB_
 
 static void put_tetrahedron_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
 {
-    const struct boxing *boxing = context;
-    struct fmb_body body;
-    struct fmb_frame frame;
-    struct fmb_prepared prepared;
-    if (mesh_face_frame(boxing->mesh, boxing->as, index, NULL, &body, &frame) &&
-        fmb_prepare(&frame, &prepared) == FMB_OK) {
-        fmb_box_of(&prepared, 0, box);
-        return;
-    }
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) { /* it is to be asked, and told */
-        box[0][axis] = -INFINITY;
-        box[1][axis] = INFINITY;
-    }
+    mesh_face_tetrahedron_box(context, index, box);
 }
 
 /* Returns the tree's memory. */
 static void *build_tree(const struct mesh_question *question, int which, struct fmb_tree *out)
 {
     const struct mesh *mesh = mesh_of(question, which);
-    const struct boxing boxing = {mesh, question->as};
     const struct fmb_boxes boxes = {3,
                                     question->as == MESH_FACES ? put_face_box : put_tetrahedron_box,
-                                    &boxing, question->velocity[which]};
+                                    mesh, question->velocity[which]};
     void *memory = allocate(1, fmb_tree_bytes(mesh->face_count));
     fmb_tree_build_boxes(&boxes, mesh->face_count, question->duration, memory, out);
     return memory;
@@ -294,9 +276,12 @@ enum fmb_status mesh_meet(const struct mesh_question *question, struct mesh_meet
     meeter->frame = allocate(FRAMES, sizeof *meeter->frame);
     if (self)
         mesh_near_open(question->a, &meeter->near);
+    const int64_t begin = clock_ns();
     for (int which = 0; which < 2 - self; which++)
         memory[which] = build_tree(question, which, &meeter->tree[which]);
+    out->build_ns = clock_ns() - begin;
     take_all(meeter);
+    out->ask_ns = clock_ns() - begin - out->build_ns;
     const enum fmb_status status = meeter->status;
     for (int which = 0; which < 2; which++)
         free(memory[which]);

@@ -42,6 +42,7 @@ struct mesh_meeting {
      * They are in no other number. */
     uint64_t sharing_edge, sharing_vertex;
     bool moving;
+    int64_t build_ns, ask_ns; /* how long it took to make the trees, and the rest */
 };
 
 /* On input: meshes of mesh_transform().

@@ -10,6 +10,7 @@
 #include "allocate.h"
 #include "answer.h"
 #include "bodies.h"
+#include "child.h"
 #include "check.h"
 #include "input.h"
 #include "learn.h"
@@ -23,8 +24,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { ROUNDS = 15, SCENES_MAX = 400, BODIES = 65536 };
@@ -177,30 +176,6 @@ static double replay_ns(char *path, struct tally *tally)
     return took;
 }
 
-/* ---- Programs ---- */
-
-static double child_ns(const char *const *arguments)
-{
-    struct rusage before, after;
-    int status;
-    getrusage(RUSAGE_CHILDREN, &before);
-    const pid_t pid = fork();
-    if (pid == 0) {
-        const int null = open("/dev/null", O_WRONLY);
-        dup2(null, STDOUT_FILENO);
-        execvp(arguments[0], (char *const *) arguments);
-        _exit(127);
-    }
-    if (pid < 0 || waitpid(pid, &status, 0) != pid || !WIFEXITED(status) ||
-        WEXITSTATUS(status) != 0)
-        fail(arguments[0]);
-    getrusage(RUSAGE_CHILDREN, &after);
-    return 1e9 * (double) (after.ru_utime.tv_sec - before.ru_utime.tv_sec + after.ru_stime.tv_sec -
-                           before.ru_stime.tv_sec) +
-           1e3 * (double) (after.ru_utime.tv_usec - before.ru_utime.tv_usec +
-                           after.ru_stime.tv_usec - before.ru_stime.tv_usec);
-}
-
 /* ---- The benchmark ---- */
 
 static void bench_scenes(char *path)
@@ -239,8 +214,8 @@ static void bench_info(const char *fmb, const char *path)
     const double size = (double) lseek(fd, 0, SEEK_END);
     close(fd);
     for (int round = 0; round < ROUNDS; round++) {
-        of_info[round] = child_ns(info) / size;
-        of_cat[round] = child_ns(cat) / size;
+        of_info[round] = child_run(info).cpu_ns / size;
+        of_cat[round] = child_run(cat).cpu_ns / size;
         ratio[round] = of_cat[round] / of_info[round];
     }
     printf("info    %8.2f GB a second   cat %8.2f   ratio %.2f   %s\n",
