@@ -283,6 +283,8 @@ wraps_test_log_cut := $(addprefix -Wl$(comma)--wrap=,page_open page_take)
 
 $(live_tests:%=$(B)/tests/%): $(O)/tests/unit/world.o
 
+$(B)/tests/test_mesh_read: $(addprefix $(O)/tests/mesh/,bumpy.o formats.o)
+
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
@@ -385,7 +387,7 @@ unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views)),-Ites
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
 	$(if $(filter $1,$(engine_views)),,-Iservice) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\
-		$(clients_see) -Itests/hostile -I$(GEN))
+		$(clients_see) -Itests/hostile -Itests/mesh -I$(GEN))
 $(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(clients_see) -Itests/unit -Itests/bench -I$(GEN)

@@ -483,7 +483,7 @@ static void write_ply_texts(void)
     mesh_bytes(
         "ply\nformat ascii 1.0\ncomment of a few\nelement vertex 4\nproperty float x\n"
         "property float y\nproperty float z\nproperty float confidence\nelement face 2\n"
-        "property list uchar int vertex_indices\nend_header\n0 0 0 1\n1.5 -0.25 1e-3 nan\n"
+        "property list uchar int vertex_indices\nend_header\n0 0 0 1\n1e308 -1e308 1e-3 nan\n"
         "0 1 0 0.5 \n+.5 0. 12345678901234567890 inf\n3 0 1 2\n3 3 2 1\n");
     end_mesh("ply-ascii");
     mesh_bytes(
@@ -491,7 +491,7 @@ static void write_ply_texts(void)
         "property list uint8 uint32 vertex_index\r\nproperty list int8 float64 texcoord\r\n"
         "element vertex 3\r\nproperty int16 z\r\nproperty float32 x\r\nproperty double y\r\n"
         "element edge 2\r\nproperty int a\r\nelement empty 1000000\r\nend_header\r\n"
-        "255 3 0 1 2 2 0.5 1\r\n3 1 2\r\n-3 1e22 1e-22\r\n0 9007199254740993 4.9e-324\r\n"
+        "255 3 0 1 2 2 0.5 1\r\n3 1 2\r\n-3 1e308 1e-22\r\n0 9007199254740993 4.9e-324\r\n"
         "1\r\n2\r\n");
     end_mesh("ply-order");
     mesh_bytes("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
@@ -525,12 +525,22 @@ static void write_ply_binaries(bool big_endian)
     end_mesh(big_endian ? "ply-be" : "ply-le");
 }
 
+static void write_ply_lists(void)
+{
+    mesh_bytes(
+        "ply\nformat binary_big_endian 1.0\nelement a 9\nproperty list uchar ushort b\n"
+        "end_header\n");
+    for (int i = 0; i < 9; i++)
+        mesh_number(0x012345, 3, true);
+    end_mesh("ply-lists");
+}
+
 static void write_stls(void)
 {
     static const char head[80] = "solid, and yet binary";
     mesh_bytes(
         "solid a name\n facet normal 0 0 nan\n  outer loop\n   vertex 0 0 0\n"
-        "   vertex 1 0 0\n   vertex 0 1e0 -0\n  endloop\n endfacet\nFACET NORMAL 0 0 1 "
+        "   vertex 1 0 0\n   vertex 0 1e308 -0\n  endloop\n endfacet\nFACET NORMAL 0 0 1 "
         "OUTER LOOP VERTEX 1 0 0 VERTEX 0 1 0 VERTEX 1 1 0 ENDLOOP ENDFACET\n"
         "endsolid a name\nsolid\nendsolid\n");
     end_mesh("stl-ascii");
@@ -550,7 +560,7 @@ static void write_objs(void)
         "# a mesh\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0 1\nv 0 1 0 0.5 0.5 0.5\n"
         "v 1 \\\n 1 \\\r\n 0 1 1 1 1 # of seven\nvt 0 0\nvn 0 0 1\ng\ns off\nusemtl b\n"
         "f 1 2 3\nf 4/1 3/1 2/1\nf 1//1 2//1 4//1\nf -4/1/1 -1/1/1 \\\n-2/-1/-1\n"
-        "f 5 1 2\nv -1e-1 .5 5.\nl 1 2\np 1\ncstype bezier\n");
+        "f 5 1 2\nv -1e308 .5 5.\nl 1 2\np 1\ncstype bezier\n");
     end_mesh("obj");
 }
 
@@ -559,6 +569,7 @@ static void write_meshes(void)
     write_ply_texts();
     write_ply_binaries(false);
     write_ply_binaries(true);
+    write_ply_lists();
     write_stls();
     write_objs();
 }

@@ -1,0 +1,954 @@
+/* Meshes in every format, as they are and as they should not be. */
+#include "mesh.h"
+
+#include "bumpy.h"
+#include "formats.h"
+#include "mesh_write.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* ---- Bytes that a file has ------------------------------------------------------------------- */
+
+enum { FILE_MAX = 1 << 16 };
+
+struct file {
+    size_t size;
+    unsigned char bytes[FILE_MAX];
+};
+
+static void add(struct file *file, const void *bytes, size_t size)
+{
+    assert_true(size <= sizeof file->bytes - file->size);
+    if (size > 0)
+        memcpy(file->bytes + file->size, bytes, size);
+    file->size += size;
+}
+
+static void add_text(struct file *file, const char *text)
+{
+    add(file, text, strlen(text));
+}
+
+static void add_bits(struct file *file, uint64_t bits, int size, bool big_endian)
+{
+    for (int i = 0; i < size; i++) {
+        const unsigned char byte = (unsigned char) (bits >> 8 * (big_endian ? size - 1 - i : i));
+        add(file, &byte, 1);
+    }
+}
+
+static void add_float(struct file *file, float value, bool big_endian)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    add_bits(file, bits, sizeof bits, big_endian);
+}
+
+/* In a block that ends behind the 0 behind the bytes. */
+static bool parse(const void *bytes, size_t size, const char *name, struct mesh *out, char *error)
+{
+    unsigned char *copy = malloc(size + 1);
+    assert_non_null(copy);
+    if (size > 0)
+        memcpy(copy, bytes, size);
+    copy[size] = '\0';
+    const bool good = mesh_parse(copy, size, name, NULL, out, error);
+    free(copy);
+    return good;
+}
+
+static struct mesh read_good(const void *bytes, size_t size, const char *name)
+{
+    struct mesh mesh;
+    char error[MESH_ERROR_MAX];
+    if (!parse(bytes, size, name, &mesh, error))
+        fail_msg("%s", error);
+    assert_string_equal(error, "");
+    return mesh;
+}
+
+static struct mesh read_text(const char *text)
+{
+    return read_good(text, strlen(text), "");
+}
+
+static void expect_error(const void *bytes, size_t size, const char *name, const char *expected)
+{
+    struct mesh mesh;
+    char error[MESH_ERROR_MAX];
+    if (parse(bytes, size, name, &mesh, error))
+        fail_msg("it is read, not refused: %s", expected);
+    assert_string_equal(error, expected);
+    assert_true(!mesh.vertex && !mesh.face && mesh.vertex_count == 0 && mesh.face_count == 0);
+}
+
+/* head, and rest: most of the texts have the same beginning. */
+static void expect_refused(const char *head, const char *rest, const char *expected)
+{
+    struct file *file = calloc(1, sizeof *file);
+    assert_non_null(file);
+    add_text(file, head);
+    add_text(file, rest);
+    expect_error(file->bytes, file->size, "", expected);
+    free(file);
+}
+
+/* ---- Meshes that are expected ---------------------------------------------------------------- */
+
+static void expect_mesh(struct mesh mesh, size_t vertices, const double (*vertex)[3], size_t faces,
+                        const unsigned (*face)[3])
+{
+    assert_int_equal(mesh.vertex_count, vertices);
+    assert_int_equal(mesh.face_count, faces);
+    if (vertices > 0)
+        assert_memory_equal(mesh.vertex, vertex, vertices * sizeof *vertex);
+    if (faces > 0)
+        assert_memory_equal(mesh.face, face, faces * sizeof *face);
+    mesh_free(&mesh);
+    assert_true(!mesh.vertex && !mesh.face && mesh.vertex_count == 0 && mesh.face_count == 0);
+}
+
+static void expect_same(const struct mesh *a, const struct mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->face_count, b->face_count);
+    assert_memory_equal(a->vertex, b->vertex, a->vertex_count * sizeof *a->vertex);
+    assert_memory_equal(a->face, b->face, a->face_count * sizeof *a->face);
+}
+
+static const double square[][3] = {{0, 0, 0}, {1, 0, 0.1}, {0, 1, -1e-3}, {1, 1, 5e22}};
+static const unsigned halves[][3] = {{0, 1, 2}, {3, 2, 1}};
+
+/* ---- PLY ------------------------------------------------------------------------------------- */
+
+static const char ply_ascii[] =
+    "ply\n"
+    "format ascii 1.0\n"
+    "comment made by hand\n"
+    "element vertex 4\n"
+    "property float x\n"
+    "property float y\n"
+    "property float z\n"
+    "property float confidence\n"
+    "element face 2\n"
+    "property list uchar int vertex_indices\n"
+    "end_header\n"
+    "0 0 0 0.5\n"
+    "1 0 0.1 nan\n"
+    "0 1 -1e-3 -inf \n"
+    "+1. 1e0 5e22 12345678901234567890.5e+3\n"
+    "3 0 1 2\n"
+    "3 3 2 1\n";
+
+/* Faces before vertices, coordinates in another order and between others, elements and lists that
+ * nobody asks for. */
+static const char ply_order[] =
+    "ply\r\n"
+    "obj_info any\r\n"
+    "format ascii 1.0\r\n"
+    "element face 2\r\n"
+    "property uint8 red\r\n"
+    "property list uint8 uint32 vertex_index\r\n"
+    "property list int16 float64 texcoord\r\n"
+    "element nothing 4000000000\r\n"
+    "element vertex 4\r\n"
+    "property int8 z\r\n"
+    "property int16 a\r\n"
+    "property uint16 y\r\n"
+    "property int32 x\r\n"
+    "element edge 1\r\n"
+    "property float32 x\r\n"
+    "end_header\r\n"
+    "255 3 0 1 2 2 0.5 .5\r\n"
+    "0\t3  3 2 1 0 \r\n"
+    "\r\n"
+    "0 7 0 0\r\n"
+    "  0.1 7 0 1\r\n"
+    "-1e-3 7 1 0\r\n"
+    "5e22 7 1 1\r\n"
+    "9\r\n\r\n";
+
+static void test_ply_ascii(void **state)
+{
+    (void) state;
+    expect_mesh(read_text(ply_ascii), 4, square, 2, halves);
+    expect_mesh(read_text(ply_order), 4, square, 2, halves);
+    expect_mesh(read_good(ply_ascii, sizeof ply_ascii - 2, ""), 4, square, 2, halves);
+}
+
+static const char *const types[][2] = {
+    {"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
+    {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
+enum { CHAR, UCHAR, SHORT, USHORT, INT, UINT, FLOAT, DOUBLE, TYPE_COUNT };
+static const int sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+
+static void add_number(struct file *file, int type, double value, bool big_endian)
+{
+    uint64_t bits;
+    if (type == FLOAT) {
+        add_float(file, (float) value, big_endian);
+        return;
+    }
+    memcpy(&bits, &value, sizeof bits);
+    add_bits(file, type == DOUBLE ? bits : (uint64_t) (int64_t) value, sizes[type], big_endian);
+}
+
+/* One triangle with what can be written differently: types of coordinates, of counts and indices;
+ * a list before, and behind, and a value behind. */
+static void make_binary(struct file *file, int coordinate, int count, int index, int spelling,
+                        bool big_endian, const double vertex[3][3])
+{
+    char header[1024];
+    const char *type = types[coordinate][spelling];
+    file->size = 0;
+    sprintf(header,
+            "ply\nformat binary_%s_endian 1.0\nelement vertex 3\nproperty list %s short l\n"
+            "property %s x\nproperty %s y\nproperty %s z\nelement face 1\n"
+            "property list %s %s vertex_indices\nproperty double quality\nend_header\n",
+            big_endian ? "big" : "little", types[count][1 - spelling], type, type, type,
+            types[count][spelling], types[index][spelling]);
+    add_text(file, header);
+    for (int i = 0; i < 3; i++) {
+        add_number(file, count, i, big_endian);
+        for (int value = 0; value < i; value++)
+            add_bits(file, 0xffff, 2, big_endian);
+        for (int axis = 0; axis < 3; axis++)
+            add_number(file, coordinate, vertex[i][axis], big_endian);
+    }
+    add_number(file, count, 3, big_endian);
+    for (int i = 0; i < 3; i++)
+        add_number(file, index, 2 - i, big_endian);
+    add_number(file, DOUBLE, NAN, big_endian);
+}
+
+static void test_ply_binary(void **state)
+{
+    static const unsigned face[][3] = {{2, 1, 0}};
+    static const double extremes[TYPE_COUNT][2] = {{-128, 127},
+                                                   {0, 255},
+                                                   {-32768, 32767},
+                                                   {0, 65535},
+                                                   {-2147483648., 2147483647.},
+                                                   {0, 4294967295.},
+                                                   {-0.1f, 0x1p-149},
+                                                   {-0.1, 0x1p-1074}};
+    struct file *file = malloc(sizeof *file);
+    (void) state;
+    for (int mix = 0; mix < TYPE_COUNT * TYPE_COUNT * TYPE_COUNT * 4; mix++) {
+        const int coordinate = mix / 4 % TYPE_COUNT, count = mix / 32 % TYPE_COUNT;
+        const int index = mix / 256;
+        const double *extreme = extremes[coordinate];
+        const double vertex[3][3] = {{extreme[0], 1, extreme[1]}, {0, extreme[1], 2}, {100, 0, 0}};
+        make_binary(file, coordinate, count, index, mix & 1, mix & 2, vertex);
+        expect_mesh(read_good(file->bytes, file->size, ""), 3, vertex, 1, face);
+    }
+    free(file);
+}
+
+static void test_ply_headers_that_are_refused(void **state)
+{
+    static const char *const cases[][2] = {
+        {"ply \nfoo\n", "line 2: 'foo' is no keyword of a PLY header"},
+        {"ply\n\x01\xff\n", "line 2: '\?\?' is no keyword of a PLY header"},
+        {"ply 1\nformat ascii 1.0\nend_header\n", "line 1: a PLY file begins with a line 'ply'"},
+        {"ply\rformat ascii 1.0\rend_header\r",
+         "line 1: lines end in carriage returns alone: convert them first"},
+        {"ply\n", "line 2: the file ends before the header does: no end_header"},
+        {"ply\nformat ascii 1.0\nend_header",
+         "line 3: the file ends before the header does: no end_header"},
+        {"ply\nend_header\n", "line 2: the header names no format"},
+        {"ply\nformat ascii 1.0\nformat ascii 1.0\nend_header\n", "line 3: a second format"},
+        {"ply\nformat ascii 1.1\nend_header\n",
+         "line 2: the format is not ascii 1.0, binary_little_endian 1.0 or binary_big_endian 1.0"},
+        {"ply\nformat text 1.0\nend_header\n",
+         "line 2: the format is not ascii 1.0, binary_little_endian 1.0 or binary_big_endian 1.0"},
+        {"ply\nformat ascii 1.0\nelement vertex\n", "line 3: an element has a name and a count"},
+        {"ply\nformat ascii 1.0\nelement vertex -1\n",
+         "line 3: '-1' is no count from 0 to 4294967294"},
+        {"ply\nformat ascii 1.0\nelement face 4294967295\n",
+         "line 3: '4294967295' is no count from 0 to 4294967294"},
+        {"ply\nformat ascii 1.0\nelement face 18446744073709551617\n",
+         "line 3: '18446744073709551617' is no count from 0 to 4294967294"},
+        {"ply\nformat ascii 1.0\nelement face 1.0\n",
+         "line 3: '1.0' is no count from 0 to 4294967294"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\n",
+         "line 4: a second element vertex"},
+        {"ply\nformat ascii 1.0\nelement tristrips 1\n",
+         "line 3: strips of triangles are not read: write them as faces first"},
+        {"ply\nformat ascii 1.0\nproperty int x\n", "line 3: a property before any element"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty x\n",
+         "line 4: a property is 'TYPE NAME' or 'list TYPE TYPE NAME'"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int x\n",
+         "line 4: a property is 'TYPE NAME' or 'list TYPE TYPE NAME'"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty int64 x\n",
+         "line 4: 'int64' is no type of PLY"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int list x\n",
+         "line 4: 'list' is no type of PLY"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\nproperty int x\n",
+         "line 5: vertex has this property already"},
+        {"ply\nformat ascii 1.0\nelement face 0\nproperty list int int vertex_index\n"
+         "property list int int vertex_indices\n",
+         "line 5: face has this property already"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int int y\n",
+         "line 4: 'y' is a list"},
+        {"ply\nformat ascii 1.0\nelement face 0\nproperty int vertex_indices\n",
+         "line 4: 'vertex_indices' is no list"},
+        {"ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int z\nend_header\n0 0",
+         "line 3: vertices without y"},
+        {"ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nend_header\n0 0",
+         "line 3: faces without vertex_indices or vertex_index"},
+    };
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_refused(cases[i][0], "", cases[i][1]);
+    expect_error("plY", 3, "a.PLY", "line 1: the file ends before the header does: no end_header");
+    expect_error("plyy\n", 5, "a.PLY", "line 1: a PLY file begins with a line 'ply'");
+}
+
+static void test_ply_headers_that_are_too_long(void **state)
+{
+    struct file *file = calloc(1, sizeof *file);
+    (void) state;
+    add_text(file, "ply\n");
+    for (int i = 0; i < 65; i++)
+        add_text(file, "element e 0\n");
+    expect_error(file->bytes, file->size, "", "line 66: more than 64 elements");
+    file->size = 0;
+    add_text(file, "ply\nelement e 0\n");
+    for (int i = 0; i < 257; i++)
+        add_text(file, "property int p\n");
+    expect_error(file->bytes, file->size, "", "line 259: more than 256 properties");
+    free(file);
+}
+
+#define VERTICES(format, count)                         \
+    "ply\nformat " format " 1.0\nelement vertex " count \
+    "\nproperty float x\nproperty float y\nproperty float z\n"
+#define FACES(count) "element face " count "\nproperty list uchar int vertex_indices\nend_header\n"
+
+static void test_ply_bodies_that_are_refused(void **state)
+{
+    static const char *const cases[][2] = {
+        {"", "line 3: the file is cut off, or this count is wrong: there is room for 0 at most"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1\n",
+         "line 7: the file is cut off, or this count is wrong: there is room for 0 at most"},
+        {"0 0 0\n0 0 0\n0 0\n3 0 1 2\n3 1",
+         "line 12: the line ends before all numbers of vertex 2"},
+        {"0 0 0\n0 0 0\n0 0 0\n       \n\t\t", "line 14: the file ends before face 0 of 1"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1       ", "line 13: the file ends within face 0"},
+        {"0 0 0\n0 0 0\n0 0 0 7\n3 0 1 2\n", "line 12: '7' behind the last number of vertex 2"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 2 7\n", "line 13: '7' behind the last number of face 0"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n3 0 1 2\n",
+         "line 14: '3' behind the last element: a count is wrong, or something was added"},
+        {"0 0 0\n0 zero 0\n0 0 0\n3 0 1 2\n", "line 11: 'zero' is no number"},
+        {"0 0 0\n0 1..5 0\n0 0 0\n3 0 1 2\n", "line 11: '1..5' is no number"},
+        {"0 0 0\n0 0x1 0\n0 0 0\n3 0 1 2\n", "line 11: '0x1' is no number"},
+        {"0 0 0\n0 0,5 0\n0 0 0\n3 0 1 2\n", "line 11: '0,5' is no number"},
+        {"0 0 0\n0 abcdefghijklmnopqrstuvwxyz0123456789 0\n0 0 0\n3 0 1 2\n",
+         "line 11: 'abcdefghijklmnopqrstuvwxyz01...' is no number"},
+        {"0 0 0\n0 1e999 0\n0 0 0\n3 0 1 2\n", "line 11: y is not finite"},
+        {"0 0 0\n0 0 nan\n0 0 0\n3 0 1 2\n", "line 11: z is not finite"},
+        {"-inf 0 0\n0 0 0\n0 0 0\n3 0 1 2\n", "line 10: x is not finite"},
+        {"0 0 0\n0 0 0\n0 0 0\n4 0 1 2 0\n", "line 13: a face of 4 vertices: triangulate it first"},
+        {"0 0 0\n0 0 0\n0 0 0\n2 0 1      \n", "line 13: a face of 2 vertices: remove it first"},
+        {"0 0 0\n0 0 0\n0 0 0\n-3 0 1 2\n", "line 13: a list of -3 values"},
+        {"0 0 0\n0 0 0\n0 0 0\n3.5 0 1 2\n", "line 13: a list of 3.5 values"},
+        {"0 0 0\n0 0 0\n0 0 0\nnan 0 1 2\n", "line 13: a list of nan values"},
+        {"0 0 0\n0 0 0\n0 0 0\n1e10 0 1 2\n", "line 13: a list of 1e+10 values"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 3\n",
+         "line 13: index 3 is no vertex: there are 3, counted from 0"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 -1 2\n",
+         "line 13: index -1 is no vertex: there are 3, counted from 0"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0.5 1 2\n",
+         "line 13: index 0.5 is no vertex: there are 3, counted from 0"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 1e999\n",
+         "line 13: index inf is no vertex: there are 3, counted from 0"},
+    };
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_refused(VERTICES("ascii", "3") FACES("1"), cases[i][0], cases[i][1]);
+    expect_refused(VERTICES("ascii", "0") FACES("1"), "3 0 0 0\n",
+                   "line 10: index 0 is no vertex: there are 0, counted from 0");
+    expect_refused("ply\nformat ascii 1.0\nelement a 1\nproperty float a\nend_header\n", "1,5",
+                   "line 6: '1,5' is no number");
+}
+
+static void expect_refused_bytes(const char *header, const char *bytes, size_t size,
+                                 const char *expected)
+{
+    struct file *file = calloc(1, sizeof *file);
+    add_text(file, header);
+    add(file, bytes, size);
+    expect_error(file->bytes, file->size, "", expected);
+    free(file);
+}
+
+#define BYTES(bytes) bytes, sizeof bytes - 1
+
+static void test_ply_bytes_that_are_refused(void **state)
+{
+    static const char one[] = VERTICES("binary_little_endian", "1") FACES("1");
+    static const char zero[] = VERTICES("binary_big_endian", "0") "element face 1\n"
+                                                                  "property list short float "
+                                                                  "vertex_indices\nend_header\n";
+    static const char lists[] =
+        "ply\nformat binary_big_endian 1.0\nelement a 2\n"
+        "property list ushort uint b\nend_header\n";
+    (void) state;
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0"),
+                         "line 7: the file is cut off, or this count is wrong: there is room for "
+                         "0 at most");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\1\0\0\0"),
+                         "byte 190 (face 0): index 1 is no vertex: there are 1, counted from 0");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\377\377\377\377\0\0\0\0"),
+                         "byte 186 (face 0): index -1 is no vertex: there are 1, counted from 0");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\200\177\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0"),
+                         "byte 173 (vertex 0): y is not finite");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\300\377\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0"),
+                         "byte 173 (vertex 0): y is not finite");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\4\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"),
+                         "byte 181 (face 0): a face of 4 vertices: triangulate it first");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\2\0\0\0\0\0\0\0\0\0\0\0\0"),
+                         "byte 181 (face 0): a face of 2 vertices: remove it first");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0 \r\n.."),
+                         "byte 194: 5 bytes behind the last element: a count is wrong, or "
+                         "something was added");
+    expect_refused_bytes(zero, BYTES("\0\3\77\0\0\0\0\0\0\0\0\0\0\0"),
+                         "byte 170 (face 0): index 0.5 is no vertex: there are 0, counted from 0");
+    expect_refused_bytes(zero, BYTES("\377\377\0\0\0\0\0\0\0\0\0\0\0\0"),
+                         "byte 168 (face 0): a list of -1 values");
+    expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0\1\0\0\0"),
+                         "byte 95 (element 1): the file ends here");
+    expect_refused_bytes(lists, BYTES("\377\377\0\0\0\0"),
+                         "byte 90 (element 0): the file ends here");
+    expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0"), "byte 91 (element 1): the file ends here");
+}
+
+/* All that white space may do behind the end. */
+static void test_ply_ends(void **state)
+{
+    static const char one[] = VERTICES("binary_little_endian", "1") "end_header\n"
+                                                                    "\0\0\0\0\0\0\0\0\0\0\0\0 \r\n\t";
+    static const double origin[][3] = {{0, 0, 0}};
+    (void) state;
+    expect_mesh(read_good(one, sizeof one - 1, ""), 1, origin, 0, NULL);
+    expect_mesh(read_text(VERTICES("ascii", "1") "end_header\n0 0 0\n \r\n\t"), 1, origin, 0, NULL);
+}
+
+/* Counts for which no memory is asked, as there are no bytes for them. */
+static void test_ply_promises(void **state)
+{
+    static const char *const formats_of_ply[] = {"ascii", "binary_little_endian",
+                                                 "binary_big_endian"};
+    static const struct {
+        const char *lines;
+        int line;
+    } promises[] = {
+        {"element vertex 4294967294\nproperty char x\nproperty char y\nproperty char z\n", 3},
+        {"element face 4294967294\nproperty list uchar uchar vertex_indices\n", 3},
+        {"element a 4294967294\nproperty list uchar uchar b\n", 3},
+        {"element vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
+         "element face 1000000000\nproperty list double double vertex_index\n",
+         7},
+    };
+    (void) state;
+    for (size_t f = 0; f < 3; f++) {
+        for (size_t i = 0; i < sizeof promises / sizeof *promises; i++) {
+            char text[512], expected[256];
+            sprintf(text, "ply\nformat %s 1.0\n%send_header\n1 1 1 1 1 1 1 1 1 1 1 1 ",
+                    formats_of_ply[f], promises[i].lines);
+            sprintf(expected,
+                    "line %d: the file is cut off, or this count is wrong: ", promises[i].line);
+            struct mesh mesh;
+            char error[MESH_ERROR_MAX];
+            assert_false(parse(text, strlen(text), "", &mesh, error));
+            error[strlen(expected)] = '\0';
+            assert_string_equal(error, expected);
+        }
+    }
+}
+
+/* ---- STL ------------------------------------------------------------------------------------- */
+
+static const char stl_ascii[] =
+    "solid a name of some words\n"
+    "  facet normal 0 0 nan\n"
+    "    outer loop\n"
+    "      vertex 0 0 0\n"
+    "      vertex 1 0 0.1\r\n"
+    "      vertex 0 1 -1e-3\n"
+    "    endloop\n"
+    "  endfacet\n"
+    "FACET NORMAL 0 0 1 Outer Loop\n"
+    "VERTEX 1 1 50000000000000000000000 VERTEX -0 1 -1e-3 VERTEX 1 -0.0 1e-1\n"
+    "ENDLOOP ENDFACET\n"
+    "endsolid a name of some words\n";
+
+static void test_stl_ascii(void **state)
+{
+    (void) state;
+    expect_mesh(read_text(stl_ascii), 4, square, 2, halves);
+    struct file *file = calloc(1, sizeof *file);
+    add_text(file, "\xef\xbb\xbf");
+    add_text(file, stl_ascii);
+    add_text(file, "solid\nendsolid"); /* another solid, without facets */
+    expect_mesh(read_good(file->bytes, file->size, "a.obj"), 4, square, 2, halves);
+    free(file);
+    expect_mesh(read_text("solid\nendsolid"), 0, NULL, 0, NULL);
+}
+
+static void test_stl_ascii_that_is_refused(void **state)
+{
+    static const char *const cases[][2] = {
+        {"solid", "line 1: the file ends where facet or endsolid should stand"},
+        {"solid a\nfacet\n", "line 3: the file ends where normal should stand"},
+        {"solid a\nfacets\n", "line 2: 'facets' stands where facet or endsolid should"},
+        {"solid a\nfacet normal 0 0\nouter loop", "line 3: 'outer' stands where a number should"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 1e999", "line 4: z is not finite"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex nan 0 0", "line 4: x is not finite"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0.5.5 0",
+         "line 4: '0.5.5' stands where a number should"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop",
+         "line 6: a facet of 2 vertices: remove it first"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n"
+         "vertex 0 0 0\n",
+         "line 7: a facet of more than 3 vertices: triangulate it first"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nendloop",
+         "line 4: 'endloop' stands where vertex should"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n"
+         "endloop\nouter loop",
+         "line 8: 'outer' stands where endfacet should"},
+        {"solid a\nendsolid a\nfacet", "line 3: 'facet' stands where solid should"},
+    };
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_refused(cases[i][0], "", cases[i][1]);
+}
+
+/* The square, in floats. */
+static void make_stl(struct file *file, const char *header)
+{
+    file->size = 0;
+    add_text(file, header);
+    file->size = 80;
+    add_bits(file, 2, 4, false);
+    for (int facet = 0; facet < 2; facet++) {
+        for (int axis = 0; axis < 3; axis++)
+            add_float(file, NAN, false);
+        for (int corner = 0; corner < 3; corner++) {
+            const double *at = square[halves[facet][corner]];
+            for (int axis = 0; axis < 3; axis++)
+                add_float(file, at[axis] == 0 && facet ? -0.0f : (float) at[axis], false);
+        }
+        add_bits(file, 0xffff, 2, false);
+    }
+}
+
+static void test_stl_binary(void **state)
+{
+    static const char *const headers[] = {"", "binary", "solid, which it is not", "solid\nfacet"};
+    double vertex[4][3];
+    struct file *file = calloc(1, sizeof *file);
+    (void) state;
+    for (int i = 0; i < 12; i++)
+        vertex[i / 3][i % 3] = (float) square[i / 3][i % 3];
+    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
+        make_stl(file, headers[i]);
+        expect_mesh(read_good(file->bytes, file->size, "a.obj"), 4, (const double(*)[3]) vertex, 2,
+                    halves);
+    }
+    memset(file->bytes + 80, 0, 4);
+    expect_mesh(read_good(file->bytes, 84, ""), 0, NULL, 0, NULL);
+    free(file);
+}
+
+static void test_stl_binary_that_is_refused(void **state)
+{
+    struct file *file = calloc(1, sizeof *file);
+    (void) state;
+    make_stl(file, "solid");
+    expect_error(file->bytes, file->size - 1, "a.stl",
+                 "byte 80: 2 facets of binary STL are 184 bytes with their header, the file has "
+                 "183: it is cut off, or the count is wrong");
+    expect_error(file->bytes, file->size + 1, "A.STL",
+                 "byte 80: 2 facets of binary STL are 184 bytes with their header, the file has "
+                 "185: it is cut off, or the count is wrong");
+    expect_error(file->bytes, 83, "A.STL",
+                 "byte 83: the file ends within the 84 bytes that begin a binary STL file");
+    memset(file->bytes + 80, 0xff, 4);
+    expect_error(file->bytes, file->size, "a.stl",
+                 "byte 80: 4294967295 facets of binary STL are 214748364834 bytes with their "
+                 "header, the file has 184: it is cut off, or the count is wrong");
+    make_stl(file, "");
+    memcpy(file->bytes + 84 + 50 + 12 + 12 + 8, "\0\0\200\377", 4);
+    expect_error(file->bytes, file->size, "", "byte 166 (face 1): z is not finite");
+    free(file);
+}
+
+/* ---- OBJ ------------------------------------------------------------------------------------- */
+
+static const char obj[] =
+    "# a comment that ends in a backslash \\\n"
+    "mtllib a b c.mtl\n"
+    "o name\n"
+    "v 0 0 0\n"
+    "v 1 0 0.1 1\n"
+    "vt 0.5 0.5\nvn 0 0 1\n\n"
+    "  v\t0 1 -1e-3 0.5 0.5 0.5 # with a colour\r\n"
+    "f 1 2/7 3/7/7\n"
+    "g a b\nusemtl c:\\folder\ns off\nl 1 2 \\\n3\np 1\ncstype bezier\n"
+    "f 4//1 \\\n -1//1 \\\r\n -2//1 # what is no number\n"
+    "v 1 1\\\n5e22 1 2 3 4";
+
+static void test_obj(void **state)
+{
+    (void) state;
+    expect_mesh(read_text(obj), 4, square, 2, halves);
+    expect_mesh(read_good(obj, sizeof obj - 1, "a.stl.OBJ"), 4, square, 2, halves);
+    expect_mesh(read_good("# nothing", 9, "a.obj"), 0, NULL, 0, NULL);
+    expect_mesh(read_good("fo 1 1 1\nv 0 0 0", 16, "a.obj"), 1, square, 1,
+                (const unsigned[][3]){{0, 0, 0}});
+    expect_mesh(read_good("\n \n# no\n \nv 0 0 0", 17, ""), 1, square, 0, NULL);
+}
+
+static void test_obj_that_is_refused(void **state)
+{
+    static const char *const cases[][2] = {
+        {"foo 1\n", "line 4: 'foo' is no statement of OBJ"},
+        {"curv 0 1 1 2\n", "line 4: curv defines what is no triangle: make triangles of it first"},
+        {"surf 0 1 0 1 1\n",
+         "line 4: surf defines what is no triangle: make triangles of it first"},
+        {"call a.obj\n", "line 4: call defines what is no triangle: make triangles of it first"},
+        {"v 1 2\n",
+         "line 4: a vertex of 2 numbers: it has 3, and 1 more for a weight, 3 more for a "
+         "colour"},
+        {"v 1 2 3 4 5\n",
+         "line 4: a vertex of 5 numbers: it has 3, and 1 more for a weight, 3 more "
+         "for a colour"},
+        {"v 1 2 3x\n", "line 4: '3x' is no number"},
+        {"v 1 2 \\\n\\\n x\n", "line 6: 'x' is no number"},
+        {"v 1 2 1e400\n", "line 4: z is not finite"},
+        {"v -nan 2 1\n", "line 4: x is not finite"},
+        {"f 1 2 3 1\n", "line 4: a face of 4 vertices: triangulate it first"},
+        {"f 1 2\n", "line 4: a face of 2 vertices: remove it first"},
+        {"f\n", "line 4: a face of 0 vertices: remove it first"},
+        {"f 1 2 3/\n", "line 4: '3/' is no corner of a face"},
+        {"f 1 2 3/1/\n", "line 4: '3/1/' is no corner of a face"},
+        {"f 1 2 3//\n", "line 4: '3//' is no corner of a face"},
+        {"f 1 2 3/1/1/1\n", "line 4: '3/1/1/1' is no corner of a face"},
+        {"f 1 2 1.5\n", "line 4: '1.5' is no corner of a face"},
+        {"f 1 2 x\n", "line 4: 'x' is no corner of a face"},
+        {"f 1 2 0\n", "line 4: index 0 is no vertex: they count from 1"},
+        {"f 1 2 -4\n", "line 4: index -4 is no vertex: there are 3 before it"},
+        {"f -99999999999999999999 2 3\n",
+         "line 4: index -99999999999999999999 is no vertex: there are 3 before it"},
+        {"f 1 2 6/1\nf 1 5 2\nv 0 0 0\n",
+         "line 4: index 6/1 is no vertex: there are 4, counted from 1"},
+        {"f 1 2 4294967297\n",
+         "line 4: index 4294967297 is no vertex: there are 3, counted from 1"},
+        {"f 1 2 18446744073709551617\n",
+         "line 4: index 18446744073709551617 is no vertex: there are 3, counted from 1"},
+    };
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\n", cases[i][0], cases[i][1]);
+    expect_error("v 0 0 0\0 1", 10, "", "line 1: '0?' is no number");
+}
+
+/* ---- What is none of them -------------------------------------------------------------------- */
+
+static void test_what_is_no_mesh(void **state)
+{
+    static const char none[] = "byte 0: no PLY, STL or OBJ file, by its name nor by its contents";
+    (void) state;
+    expect_error("", 0, "a.obj", "byte 0: the file is empty");
+    expect_error("hello", 5, "a.txt", none);
+    expect_error("\0\0\0", 3, "", none);
+    expect_error("vv 1", 4, "", none);
+    expect_error("solids\n", 7, "", none);
+    expect_error("# v\n#", 5, "", none);
+}
+
+static void expect_unread(const char *path, const char *expected)
+{
+    struct mesh mesh;
+    char error[MESH_ERROR_MAX];
+    assert_false(mesh_read(path, NULL, &mesh, error));
+    assert_string_equal(error, expected);
+    assert_true(!mesh.vertex && !mesh.face);
+}
+
+static void write_file(const char *path, const void *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_true(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
+}
+
+struct heard {
+    int times;
+    uint64_t done, total;
+};
+
+static void hear(void *context, uint64_t done, uint64_t total)
+{
+    struct heard *heard = context;
+    assert_true(done >= heard->done && done <= total);
+    heard->times++;
+    heard->done = done;
+    heard->total = total;
+}
+
+static void test_files(void **state)
+{
+    char folder[] = "/tmp/fmb-test-XXXXXX", path[64], error[MESH_ERROR_MAX];
+    struct heard heard = {0};
+    const struct mesh_watch watch = {.told = hear, .context = &heard};
+    struct mesh mesh;
+    (void) state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/mesh.obj", folder);
+    expect_unread(path, strerror(ENOENT));
+    expect_unread(folder, "a folder, not a file");
+    expect_unread("/dev/null", "no regular file: write what it gives into one first");
+    assert_int_equal(mkfifo(path, 0600), 0);
+    expect_unread(path, "no regular file: write what it gives into one first");
+    unlink(path);
+    write_file(path, "", 0);
+    expect_unread(path, "byte 0: the file is empty");
+    write_file(path, "v 0", 3);
+    expect_unread(path,
+                  "line 1: a vertex of 1 numbers: it has 3, and 1 more for a weight, 3 more "
+                  "for a colour");
+    write_file(path, obj, sizeof obj - 1);
+    assert_true(mesh_read(path, &watch, &mesh, error));
+    expect_mesh(mesh, 4, square, 2, halves);
+    assert_true(heard.times > 0 && heard.total == sizeof obj - 1 && heard.done == heard.total);
+    unlink(path);
+    rmdir(folder);
+}
+
+/* ---- Made and written ------------------------------------------------------------------------ */
+
+static struct mesh read_back(const struct mesh *mesh,
+                             void (*write)(FILE *out, const struct mesh *mesh))
+{
+    char *bytes, error[MESH_ERROR_MAX];
+    size_t size;
+    struct mesh again;
+    FILE *file = open_memstream(&bytes, &size);
+    assert_non_null(file);
+    write(file, mesh);
+    assert_int_equal(fclose(file), 0);
+    if (!mesh_parse(bytes, size, "", NULL, &again, error))
+        fail_msg("%s", error);
+    free(bytes);
+    return again;
+}
+
+/* Each edge has just one face on each of its sides. */
+static void expect_closed(const struct mesh *mesh)
+{
+    const size_t n = mesh->vertex_count;
+    unsigned char *edges = calloc(n * n, 1);
+    assert_non_null(edges);
+    for (size_t i = 0; i < mesh->face_count; i++)
+        for (int corner = 0; corner < 3; corner++)
+            edges[mesh->face[i][corner] * n + mesh->face[i][(corner + 1) % 3]]++;
+    for (size_t from = 0; from < n; from++)
+        for (size_t to = 0; to < n; to++)
+            assert_true(edges[from * n + to] == edges[to * n + from] && edges[from * n + to] <= 1);
+    free(edges);
+}
+
+/* STL has vertices in another order; what the corners are is the same, but for floats. */
+static void expect_same_corners(const struct mesh *a, const struct mesh *b, double most)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->face_count, b->face_count);
+    for (size_t i = 0; i < a->face_count; i++)
+        for (int corner = 0; corner < 3; corner++)
+            for (int axis = 0; axis < 3; axis++)
+                assert_true(fabs(a->vertex[a->face[i][corner]][axis] -
+                                 b->vertex[b->face[i][corner]][axis]) <= most);
+}
+
+static void test_all_formats_are_the_same_mesh(void **state)
+{
+    static const unsigned counts[] = {8, 1000, 5000};
+    (void) state;
+    for (int made = 0; made < 3; made++) {
+        struct mesh mesh;
+        bumpy_make(counts[made], (uint64_t) made, &mesh);
+        expect_closed(&mesh);
+        for (size_t i = 0; i < FORMAT_COUNT; i++) {
+            struct mesh again = read_back(&mesh, formats[i].write);
+            if (strncmp(formats[i].name, "stl", 3) != 0)
+                expect_same(&mesh, &again);
+            /* A float is nearer than half of its last bit: 2^-24 of 2 at most. */
+            expect_same_corners(&mesh, &again,
+                                strcmp(formats[i].name, "stl-binary") == 0 ? 0x1p-23 : 0);
+            expect_closed(&again);
+            mesh_free(&again);
+        }
+        mesh_free(&mesh);
+    }
+}
+
+static void write_plain(FILE *out, const struct mesh *mesh)
+{
+    mesh_write_ply(out, mesh, NULL);
+}
+
+static void write_coloured(FILE *out, const struct mesh *mesh)
+{
+    static const unsigned char colours[][3] = {{1, 2, 3}, {254, 255, 0}};
+    mesh_write_ply(out, mesh, colours);
+}
+
+static void test_what_is_written_is_read(void **state)
+{
+    static double vertex[][3] = {{-0.0, 0x1p-1074, -0x1.fffffffffffffp1023}, {0.1, 1e22, 0}};
+    static unsigned face[][3] = {{0, 1, 0}, {1, 1, 1}};
+    struct mesh mesh = {.vertex_count = 2, .face_count = 2, .vertex = vertex, .face = face};
+    (void) state;
+    expect_mesh(read_back(&mesh, write_plain), 2, (const double(*)[3]) vertex, 2,
+                (const unsigned(*)[3]) face);
+    expect_mesh(read_back(&mesh, write_coloured), 2, (const double(*)[3]) vertex, 2,
+                (const unsigned(*)[3]) face);
+    mesh.face_count = 0;
+    expect_mesh(read_back(&mesh, write_plain), 2, (const double(*)[3]) vertex, 0, NULL);
+    mesh.vertex_count = 0;
+    expect_mesh(read_back(&mesh, write_plain), 0, NULL, 0, NULL);
+}
+
+static void test_bytes_that_are_written(void **state)
+{
+    static double vertex[][3] = {{1, -2, 0.5}};
+    static unsigned face[][3] = {{0, 0, 0}};
+    static const unsigned char colour[][3] = {{1, 2, 255}};
+    static const char expected[] =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 1\n"
+        "property double x\nproperty double y\nproperty double z\n"
+        "element face 1\nproperty list uchar uint vertex_indices\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+        "end_header\n"
+        "\0\0\0\0\0\0\360\77\0\0\0\0\0\0\0\300\0\0\0\0\0\0\340\77"
+        "\3\0\0\0\0\0\0\0\0\0\0\0\0\1\2\377";
+    const struct mesh mesh = {.vertex_count = 1, .face_count = 1, .vertex = vertex, .face = face};
+    char *bytes;
+    size_t size;
+    FILE *file = open_memstream(&bytes, &size);
+    (void) state;
+    mesh_write_ply(file, &mesh, colour);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(size, sizeof expected - 1);
+    assert_memory_equal(bytes, expected, size);
+    free(bytes);
+}
+
+/* ---- Every place of small files -------------------------------------------------------------- */
+
+/* Refused with a place, or a mesh that is one. */
+static void check_any(const struct file *file, const char *name)
+{
+    struct mesh mesh;
+    char error[MESH_ERROR_MAX];
+    if (!parse(file->bytes, file->size, name, &mesh, error)) {
+        assert_true(strncmp(error, "line ", 5) == 0 || strncmp(error, "byte ", 5) == 0);
+        assert_true(error[5] >= '0' && error[5] <= '9' && strchr(error, ':'));
+        return;
+    }
+    for (size_t i = 0; i < mesh.vertex_count; i++)
+        assert_true(isfinite(mesh.vertex[i][0] + 0 * mesh.vertex[i][1] + 0 * mesh.vertex[i][2]));
+    for (size_t i = 0; i < mesh.face_count; i++)
+        for (int corner = 0; corner < 3; corner++)
+            assert_true(mesh.face[i][corner] < mesh.vertex_count);
+    mesh_free(&mesh);
+}
+
+static void spoil(struct file *file, const char *name)
+{
+    static const unsigned char values[] = {0,   ' ', '\n', '\r', '\\', '/', '#', '-',
+                                           '.', '0', '1',  '9',  'e',  'f', 'n', 'v',
+                                           3,   4,   0x7f, 0x80, 0xf0, 0xff};
+    const size_t size = file->size;
+    for (size_t at = 0; at < size; at++) {
+        const unsigned char byte = file->bytes[at];
+        file->size = at;
+        check_any(file, name); /* cut off */
+        file->size = size;
+        for (size_t i = 0; i < sizeof values; i++) {
+            file->bytes[at] = values[i];
+            check_any(file, name);
+        }
+        file->bytes[at] = byte;
+        memmove(file->bytes + at, file->bytes + at + 1, size - at - 1); /* left out */
+        file->size = size - 1;
+        check_any(file, name);
+        memmove(file->bytes + at + 1, file->bytes + at, size - at - 1);
+        file->bytes[at] = byte;
+        file->size = size;
+    }
+}
+
+static void test_every_place_of_each_format(void **state)
+{
+    static const char *const names[] = {"", "a.stl", "a.obj"};
+    static const double triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}};
+    struct file *file = calloc(1, sizeof *file);
+    (void) state;
+    for (size_t name = 0; name < sizeof names / sizeof *names; name++) {
+        const char *const texts[] = {ply_ascii, ply_order, stl_ascii, obj};
+        for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+            file->size = 0;
+            add_text(file, texts[i]);
+            spoil(file, names[name]);
+        }
+        make_stl(file, "solid");
+        spoil(file, names[name]);
+        for (int big_endian = 0; big_endian < 2; big_endian++) {
+            make_binary(file, FLOAT, UCHAR, INT, 0, big_endian, triangle);
+            spoil(file, names[name]);
+            make_binary(file, SHORT, FLOAT, DOUBLE, 1, big_endian, triangle);
+            spoil(file, names[name]);
+        }
+    }
+    free(file);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ply_ascii),
+        cmocka_unit_test(test_ply_binary),
+        cmocka_unit_test(test_ply_headers_that_are_refused),
+        cmocka_unit_test(test_ply_headers_that_are_too_long),
+        cmocka_unit_test(test_ply_bodies_that_are_refused),
+        cmocka_unit_test(test_ply_bytes_that_are_refused),
+        cmocka_unit_test(test_ply_ends),
+        cmocka_unit_test(test_ply_promises),
+        cmocka_unit_test(test_stl_ascii),
+        cmocka_unit_test(test_stl_ascii_that_is_refused),
+        cmocka_unit_test(test_stl_binary),
+        cmocka_unit_test(test_stl_binary_that_is_refused),
+        cmocka_unit_test(test_obj),
+        cmocka_unit_test(test_obj_that_is_refused),
+        cmocka_unit_test(test_what_is_no_mesh),
+        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_all_formats_are_the_same_mesh),
+        cmocka_unit_test(test_what_is_written_is_read),
+        cmocka_unit_test(test_bytes_that_are_written),
+        cmocka_unit_test(test_every_place_of_each_format),
+    };
+    return cmocka_run_group_tests_name("mesh_read", tests, NULL, NULL);
+}
