@@ -398,12 +398,15 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 
 # ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
 
-fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json event_log mesh
+fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json event_log \
+	replay_log mesh
 replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
 fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair.o results_scene.o \
 	model.o)
 fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
 fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
+fuzz_pieces_replay_log := $(O)/tests/fuzz/replay_small.o \
+	$(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
 
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),fuzz)
@@ -440,13 +443,13 @@ $(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
 
-$(B)/fuzz_seeds: $(O)/tests/fuzz/seeds.o $(O)/fuzz_parts.a
+$(B)/fuzz_seeds: $(O)/tests/fuzz/seeds.o $(O)/tests/unit/log_draft.o $(O)/fuzz_parts.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ $(fuzz_libraries)
 
 $(O)/tests/fuzz/%.o: tests/fuzz/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) $(clients_see) -Itests/fuzz -Itests/hostile -I$(GEN)
+	$(compile) $(clients_see) -Itests/fuzz -Itests/unit -Itests/hostile -I$(GEN)
 
 .PHONY: fuzzers fuzz fuzz-afl fuzz-merge deps-fuzz
 fuzzers: $(fuzzers) $(planted_fuzzers) $(B)/fuzz_seeds

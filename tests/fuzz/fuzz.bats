@@ -10,7 +10,7 @@ setup() {
 fuzz() {
     local options=(-use_value_profile=1)
     case $2 in
-    answer | scene_json) options=(-entropic=0 -use_counters=0) ;;
+    answer | scene_json | replay_log) options=(-entropic=0 -use_counters=0) ;;
     mesh) options=(-use_counters=0) ;; # as value profiles, counters make too many inputs new
     esac
     [ ! -f "tests/fuzz/$2.dict" ] || options+=("-dict=tests/fuzz/$2.dict")
@@ -75,6 +75,10 @@ finds() {
 
 @test "mesh finds bytes behind the end that are read" {
     finds mesh-bytes "AddressSanitizer: heap-buffer-overflow"
+}
+
+@test "replay_log finds a key that is taken for another" {
+    finds replay_log "!replay_report_differ(report, &again)"
 }
 
 @test "every plant is looked for" {

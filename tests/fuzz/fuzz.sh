@@ -2,7 +2,8 @@
 # Fuzzing that takes longer than a test may:
 #
 #   fuzz.sh fuzz         all targets with libFuzzer, side by side on all cores: FUZZ_RUNS executions
-#                        of each (10,000,000), a tenth of that guided by values too, and a hundredth
+#                        of each (10,000,000; of replay_log, each of which replays a log several
+#                        times, a hundredth), a tenth of that guided by values too, and a hundredth
 #                        with inputs of a datagram's size. Exit code 1 if anything was found
 #   fuzz.sh fuzz-afl     likewise with AFL++, FUZZ_SECONDS of each (60)
 #   fuzz.sh fuzz-merge   makes tests/fuzz/corpus anew: the seeds, what has a name of its own there,
@@ -17,7 +18,8 @@ cd "$(dirname "$0")/../.." || exit
 self=tests/fuzz/fuzz.sh
 out=build/fuzz
 # Those that take longest first.
-targets='answer scene_json event_log mesh scene_query scene_result pair_result pair_query status'
+targets='replay_log answer scene_json event_log mesh scene_query scene_result pair_result pair_query
+    status'
 runs=${FUZZ_RUNS:-10000000}
 seconds=${FUZZ_SECONDS:-60}
 large=66000 # bytes: a little more than a datagram
@@ -26,13 +28,21 @@ large=66000 # bytes: a little more than a datagram
 length_of() {
     case $1 in
     answer | scene_json) echo 1024 ;;
+    replay_log) echo 4096 ;;
     *) echo 2048 ;;
+    esac
+}
+
+runs_of() {
+    case $1 in
+    replay_log) echo $((runs / 100)) ;;
+    *) echo "$runs" ;;
     esac
 }
 
 # Where the whole engine is in the program, how often a branch was taken makes too many inputs new.
 options_of() {
-    case $1 in answer | scene_json) echo -entropic=0 -use_counters=0 ;; esac
+    case $1 in answer | scene_json | replay_log) echo -entropic=0 -use_counters=0 ;; esac
     [ ! -f "tests/fuzz/$1.dict" ] || echo "-dict=tests/fuzz/$1.dict"
 }
 
@@ -74,9 +84,9 @@ say() {
 
 # leg TARGET LOG RUNS OPTIONS...
 leg() {
-    target=$1 log=$2 count=$3
+    target=$1 log=$2 executions=$3
     shift 3
-    libfuzzer "$target" -runs="$count" -artifact_prefix="$out/findings/$target-" "$@" \
+    libfuzzer "$target" -runs="$executions" -artifact_prefix="$out/findings/$target-" "$@" \
         "$out/corpus/$target" "tests/fuzz/corpus/$target" > "$out/log/$log" 2>&1
 }
 
@@ -84,9 +94,10 @@ leg() {
 fuzz_one() {
     mkdir -p "$out/corpus/$1"
     begun=$(date +%s)
-    leg "$1" "$1" "$runs" -max_len="$(length_of "$1")" &&
-        leg "$1" "$1.values" $((runs / 10)) -max_len="$(length_of "$1")" -use_value_profile=1 &&
-        leg "$1" "$1.large" $((runs / 100)) -max_len=$large -len_control=0
+    count=$(runs_of "$1")
+    leg "$1" "$1" "$count" -max_len="$(length_of "$1")" &&
+        leg "$1" "$1.values" $((count / 10)) -max_len="$(length_of "$1")" -use_value_profile=1 &&
+        leg "$1" "$1.large" $((count / 100)) -max_len=$large -len_control=0
     failed=$?
     found=$(count_files "$out/findings" "$1-*")
     [ $failed = 0 ] || [ "$found" != 0 ] || found=1 # it could not even begin
