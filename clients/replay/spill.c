@@ -8,17 +8,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of each side so many files, by a hash of the ids: of one at a time the ids are in memory. */
-enum { PARTS = 64 };
+/* Of each side so many files, by a hash of the ids: of one at a time the ids are in memory. A part
+ * with more queries than these is parted once more, by other bits of the hash, and so on, as far as
+ * these go: so memory stays the same, unless that many queries have the same ids. */
+#ifndef SPILL_QUERIES_AT_ONCE
+#define SPILL_QUERIES_AT_ONCE (1 << 16) /* some 10 MB */
+#define SPILL_PART_BITS 6
+#endif
+enum { PARTS = 1 << SPILL_PART_BITS, LEVELS = 8 };
 
 struct spill {
+    int level;                      /* how often what is here has been parted before */
     FILE *file[SPILL_SIDES][PARTS]; /* NULL: nothing there */
-    int error;                      /* errno of the first failure; 0: none */
+    int64_t queries[PARTS];
+    int error; /* errno of the first failure; 0: none */
 };
+
+static struct spill *open_level(int level)
+{
+    struct spill *spill = allocate(1, sizeof *spill);
+    spill->level = level;
+    return spill;
+}
 
 struct spill *spill_open(void)
 {
-    return allocate(1, sizeof(struct spill));
+    return open_level(0);
 }
 
 void spill_close(struct spill *spill)
@@ -38,16 +53,20 @@ static bool fail(struct spill *spill)
     return false;
 }
 
-/* Without utime, which may differ. */
-static int part_of(const struct match_item *item)
+/* Without utime, which may differ. Mixed until all of the upper bits depend on all of the ids. */
+static int part_of(const struct match_item *item, int level)
 {
-    const uint64_t mixed = query_id_mix(item->ids.client_id) + item->kind;
-    return (int) (query_id_mix((int64_t) mixed ^ item->ids.sequence_number) >> 40) % PARTS;
+    uint64_t mixed = query_id_mix(item->ids.client_id) + item->kind;
+    mixed = query_id_mix((int64_t) mixed ^ item->ids.sequence_number);
+    mixed = query_id_mix((int64_t) (mixed ^ mixed >> 32));
+    return (int) (mixed >> (64 - SPILL_PART_BITS * (level + 1)) & (PARTS - 1));
 }
 
 void spill_put(struct spill *spill, enum spill_side side, const struct match_item *item)
 {
-    FILE **file = &spill->file[side][part_of(item)];
+    const int part = part_of(item, spill->level);
+    FILE **file = &spill->file[side][part];
+    spill->queries[part] += side == SPILL_QUERIES;
     if (!*file && !(*file = temporary_open())) {
         fail(spill);
         return;
@@ -238,6 +257,32 @@ static void tell_all_alone(struct joining *joining, FILE *queries)
         joining->sink->query_alone(joining->sink->user, &query);
 }
 
+/* What a file holds goes to another spill, and the file is gone. */
+static void pass_on(struct joining *joining, enum spill_side side, int part, struct spill *to)
+{
+    FILE **file = &joining->spill->file[side][part];
+    struct match_item item;
+    rewind(*file);
+    while (read_item(joining->spill, *file, joining->buffer[side], &item))
+        spill_put(to, side, &item);
+    fclose(*file);
+    *file = NULL;
+}
+
+/* What is in memory goes first: each level has its own. */
+static void join_again(struct joining *joining, int part)
+{
+    struct spill *next = open_level(joining->spill->level + 1);
+    for (int side = 0; side < SPILL_SIDES; side++)
+        pass_on(joining, (enum spill_side) side, part, next);
+    free(joining->entry);
+    joining->entry = NULL;
+    joining->room = 0;
+    if (!joining->spill->error && !spill_join(next, joining->sink))
+        fail(joining->spill);
+    spill_close(next);
+}
+
 static void join_part(struct joining *joining, int part)
 {
     FILE *queries = joining->spill->file[SPILL_QUERIES][part];
@@ -245,6 +290,11 @@ static void join_part(struct joining *joining, int part)
     joining->count = 0;
     if (queries && !results) {
         tell_all_alone(joining, queries);
+        return;
+    }
+    if (queries && joining->spill->queries[part] > SPILL_QUERIES_AT_ONCE &&
+        joining->spill->level + 1 < LEVELS) {
+        join_again(joining, part);
         return;
     }
     if (queries)

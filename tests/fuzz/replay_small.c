@@ -65,6 +65,10 @@ static struct recent_item *put(struct recent *recent, const struct match_item *i
 
 /* ---- What goes to files ---- */
 
+#define SPILL_QUERIES_AT_ONCE 1
+#define SPILL_PART_BITS 1
+#include "spill.c"
+
 /* In memory, where making one takes no disk. */
 FILE *temporary_open(void)
 {

@@ -1,5 +1,5 @@
 /* What a replay keeps in memory, made so small that small inputs meet its limits: this file's
- * object takes the place of match.o, known_bodies.o and temporary.o. */
+ * object takes the place of match.o, spill.o, known_bodies.o and temporary.o. */
 #ifndef REPLAY_SMALL_H
 #define REPLAY_SMALL_H
 
