@@ -35,7 +35,8 @@ struct replay {
     struct match *recorded, *compared;
     /* Places of queries that came by keys which nothing before them explains: they are asked once
      * more at the end, when all of the log is known, and brought together with their results there.
-     * Until then they have no answer (more). NULL: none so far. */
+     * Until then they have no answer (more). Others may have the same ids: here their places stand
+     * for these, so that each gets the results that were found for it. NULL: none so far. */
     FILE *later;
     struct match *late;
     int64_t first_utime, at, told;
@@ -78,13 +79,22 @@ static bool is_put_off(const struct match_item *query)
     return query->place.mine && query->more_size == 0;
 }
 
+static struct match_item by_place(const struct match_item *item, const struct match_place *query)
+{
+    struct match_item out = *item;
+    out.ids = (struct query_header){.client_id = query->log, .sequence_number = query->offset};
+    return out;
+}
+
 static void settle(struct replay *replay, const struct match_item *query,
                    const struct match_item *result)
 {
-    if (is_put_off(query))
-        match_result(replay->late, result);
-    else
+    if (is_put_off(query)) {
+        const struct match_item late = by_place(result, &query->place);
+        match_result(replay->late, &late);
+    } else {
         judge_both(replay->judge, query, result);
+    }
 }
 
 static void on_recorded(void *user, const struct match_item *query, const struct match_item *result)
@@ -125,6 +135,35 @@ static void on_result_without(void *user, const struct match_item *result)
     judge_result_alone(((struct replay *) user)->judge, result);
 }
 
+/* With the ids that its bytes have; they could be read before. */
+static struct match_item by_ids(const struct match_item *late)
+{
+    const struct log_event event = {.data = late->bytes, .size = late->size, .kept = late->size};
+    struct match_item out = *late;
+    message_read_ids(late->kind, &event, &out);
+    out.more = late->more;
+    out.more_size = late->more_size;
+    return out;
+}
+
+static void on_late(void *user, const struct match_item *query, const struct match_item *result)
+{
+    const struct match_item own = by_ids(query);
+    judge_both(((struct replay *) user)->judge, &own, result);
+}
+
+static void on_late_without(void *user, const struct match_item *query)
+{
+    const struct match_item own = by_ids(query);
+    judge_query_alone(((struct replay *) user)->judge, &own);
+}
+
+static void match_late(struct replay *replay, const struct match_item *query)
+{
+    const struct match_item late = by_place(query, &query->place);
+    match_query(replay->late, &late);
+}
+
 static void match_all(struct replay *replay, const struct match_item *query)
 {
     match_query(replay->recorded, query);
@@ -143,7 +182,7 @@ static void refuse(struct replay *replay, enum log_kind kind, const struct match
 
 static void ask_later(struct replay *replay, const struct match_place *place)
 {
-    const struct match_sink late = {on_compared, on_query_without, on_result_without, replay};
+    const struct match_sink late = {on_late, on_late_without, on_result_without, replay};
     if (!replay->late)
         replay->late = match_open(&late);
     if (!replay->later)
@@ -284,7 +323,7 @@ static void on_answered(void *user, struct match_item *query, const struct answe
     struct replay *replay = user;
     take_answer(replay, query, answered);
     if (replay->asks_again) {
-        match_query(replay->late, query);
+        match_late(replay, query);
         return;
     }
     match_all(replay, query);
@@ -540,7 +579,7 @@ static void ask_again(struct replay *replay, const struct match_place *place)
     if (replay->bus)
         return;
     take_answer(replay, &query, &answered);
-    match_query(replay->late, &query);
+    match_late(replay, &query);
 }
 
 static void ask_all_again(struct replay *replay)

@@ -242,6 +242,23 @@ static void test_keys_that_are_explained_later(void **state)
     replay_report_free(&report);
 }
 
+/* Each keeps the results that were found for it. */
+static void test_the_same_ids_and_keys_that_are_explained_later(void **state)
+{
+    (void) state;
+    const struct pair_query one = pair(1, by_key(3, 302, 0), frame(2, 1, 2));
+    const struct pair_query other = pair(1, by_key(3, 302, 0), frame(2, 1, 9));
+    const struct pair_result result = result_of(&one);
+    log_both(0, one);
+    log_pair_result(0, &result);
+    log_pair(1, &other);
+    log_both(2, pair(2, frame(3, 2, 0), frame(2, 1, 1)));
+    struct replay_report report = replay(false);
+    assert_int_equal(outcome(&report, REPLAY_SAME), 3);
+    assert_int_equal(outcome(&report, REPLAY_ALONE), 1);
+    replay_report_free(&report);
+}
+
 static void push_out(void)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
@@ -767,6 +784,7 @@ int main(void)
         TEST(a_clock_that_goes_back),
         TEST(differences_are_where_they_are),
         TEST(keys_that_are_explained_later),
+        TEST(the_same_ids_and_keys_that_are_explained_later),
         TEST(keys_that_are_told_beside_unknown_ones),
         TEST(keys_beside_components),
         TEST(the_same_again_before_it_can_be_answered),
