@@ -3,6 +3,7 @@
  * and one with so little memory that most of it goes through files. */
 #include "fuzz.h"
 
+#include "definition.h"
 #include "log_draft.h"
 #include "message.h"
 #include "replay_junit.h"
@@ -29,10 +30,12 @@ enum { RECENT_MANY = 1 << 18, BODIES_MANY = 64, BODIES_FEW = 2 };
 
 /* A first look at the events. */
 struct look {
-    bool slow; /* answering may take long */
-    bool once; /* no two results have the same ids, and no two queries */
-    bool keys; /* there are some in queries */
-    int count; /* queries and results */
+    bool slow;                    /* answering may take long */
+    bool once;                    /* no two results have the same ids, and no two queries */
+    bool keys;                    /* there are some in queries */
+    int64_t events[LOG_KINDS];    /* [enum log_kind] */
+    int64_t definitions, results; /* of these, those; and results whose ids can be read */
+    int count;                    /* queries and results */
     struct {
         enum log_kind kind;
         struct query_header ids;
@@ -82,6 +85,7 @@ static void look_at_query(struct look *look, enum log_kind kind, const struct lo
         look->slow = true;
     else
         look_at_frames(look, scene.frame, scene.frame_count);
+    look->definitions += scene.client_id == DEFINITION_CLIENT && definition_is(&scene);
 }
 
 static void look_at_ids(struct look *look, enum log_kind kind, const struct query_header *ids)
@@ -97,10 +101,13 @@ static void look_at_ids(struct look *look, enum log_kind kind, const struct quer
 static void look_at_event(struct look *look, enum log_kind kind, const struct log_event *event)
 {
     struct match_item item;
+    look->events[kind]++;
     look_at_query(look, kind, event);
-    if ((message_is_query(kind) || message_is_result(kind)) &&
-        !message_read_ids(kind, event, &item))
-        look_at_ids(look, kind, &item.ids);
+    if (!(message_is_query(kind) || message_is_result(kind)) ||
+        message_read_ids(kind, event, &item))
+        return;
+    look->results += message_is_result(kind);
+    look_at_ids(look, kind, &item.ids);
 }
 
 static struct look look_at(const char *path)
@@ -252,12 +259,30 @@ static void check_same(const struct replay_report *report, struct replay_report 
     replay_report_free(&again);
 }
 
+/* Each event is counted, as what it is. */
+static void check_counts(const struct tally *tally, const struct look *look)
+{
+    int64_t results = 0, events = 0, asked = look->definitions;
+    for (int i = 0; i < TALLY_CHANNELS; i++) {
+        results += tally->channel[i].results;
+        asked += tally->channel[i].queries + tally->channel[i].unreadable[0];
+    }
+    for (int kind = 0; kind < LOG_KINDS; kind++)
+        events += look->events[kind];
+    FUZZ_CHECK(tally->events == events);
+    FUZZ_CHECK(tally->statuses == look->events[LOG_STATUS]);
+    FUZZ_CHECK(tally->other_events == look->events[LOG_OTHER]);
+    FUZZ_CHECK(asked == look->events[LOG_PAIR_QUERY] + look->events[LOG_SCENE_QUERY]);
+    FUZZ_CHECK(results == look->results);
+}
+
 static struct replay_report report_all(const struct replay_options *options, int64_t size,
                                        const struct look *look)
 {
     struct replay_report report = replay_report_in(options, 1);
     FUZZ_CHECK(report.good);
     FUZZ_CHECK(!replay_report_odd(&report, size, look->once));
+    check_counts(&report.tally, look);
     return report;
 }
 

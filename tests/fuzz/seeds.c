@@ -2,6 +2,8 @@
  * something in it that the others lack, short talks with the service, logs, and meshes. Texts of
  * scenes there are enough in the tree. */
 #include "answer.h"
+#include "answer.h"
+#include "definition.h"
 #include "fuzz.h"
 #include "hostile.h"
 #include "log_draft.h"
@@ -671,6 +673,15 @@ static void write_replays_of_keys(void)
     keys.frame[0].components = cube.components;
     ask_pair(keys);
     end_replayed("keys-unknown");
+    struct scene_query *definition = fuzz_room(sizeof *definition);
+    definition_begin(definition);
+    definition_add(definition, &keys.frame[1], &other.components);
+    ask_scene(definition);
+    ask_pair(keys);
+    keys.frame[1] = other;
+    log_pair_result(keys, FMB_OK, true);
+    end_replayed("keys-defined");
+    free(definition);
 }
 
 static void write_replays_of_scenes(void)
