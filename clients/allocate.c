@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { ROOM_MIN = 16 };
 
@@ -22,6 +23,15 @@ static void *or_exit(void *memory)
 void *allocate(size_t count, size_t size)
 {
     return or_exit(calloc(count ? count : 1, size));
+}
+
+void *allocate_in_lines(size_t count, size_t size)
+{
+    const size_t line = 64;
+    if (size == 0 || count > (SIZE_MAX - line) / size)
+        allocate_failed();
+    const size_t bytes = (count * size + line - 1) / line * line;
+    return memset(or_exit(aligned_alloc(line, bytes ? bytes : line)), 0, bytes);
 }
 
 void *allocate_room(void *memory, size_t *room, size_t needed, size_t size)

@@ -9,6 +9,10 @@
  * frees it. */
 void *allocate(size_t count, size_t size);
 
+/* The same, from where a cache line begins: elements whose size divides that of a line lie in one.
+ */
+void *allocate_in_lines(size_t count, size_t size);
+
 /* On input: memory of allocate() or NULL. On output: the same contents with room for at least
  * `needed` elements; *room tells for how many, and grows at least twofold, so that a list that
  * is filled one by one is copied a few times only. */

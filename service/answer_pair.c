@@ -30,27 +30,44 @@ static bool check_pair(struct checking *checking, const struct pair_query *query
            check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
 }
 
-/* The bodies of a checked query. Copies, not pointers into the cache: the second body may evict
- * the first. Keys come first: one that is not held leaves the cache as it was. */
+/* The bodies of a checked query, in the cache or in room. */
+struct bodies {
+    const struct fmb_body *of[2];
+    struct fmb_body room[2];
+};
+
+/* One that the other frame may drive out of the cache is copied: that of the same id, which other
+ * components may replace; and any, where there is room for one alone. */
+static void take_body(const struct cache *cache, const struct pair_query *query, int f,
+                      const struct fmb_body *found, struct bodies *out)
+{
+    const bool may_go =
+        query->frame[0].body_id == query->frame[1].body_id || cache_capacity(cache) == 1;
+    if (may_go && found != &out->room[f])
+        out->room[f] = *found;
+    out->of[f] = may_go ? &out->room[f] : found;
+}
+
+/* Keys come first: one that is not held leaves the cache as it was. */
 static bool find_bodies(struct cache *cache, struct checking *checking,
-                        const struct pair_query *query, struct fmb_body body[2], int64_t key[2])
+                        const struct pair_query *query, struct bodies *out, int64_t key[2])
 {
     const struct fmb_body *found;
+    for (int f = 0; f < 2; f++)
+        cache_expect(cache, query->frame[f].body_id);
     for (int f = 0; f < 2; f++) {
         if (!check_by_key(&query->frame[f]))
             continue;
         set_side(checking, f);
         if (!(found = bodies_find(cache, &query->frame[f])))
             return check_refuse(checking, FMB_UNKNOWN_BODY, "key", "not held; send the components");
-        body[f] = *found;
+        take_body(cache, query, f, found, out);
     }
     for (int f = 0; f < 2; f++) {
         key[f] = query->frame[f].key;
-        if (check_by_key(&query->frame[f]))
-            continue;
-        found = bodies_keep(cache, &query->frame[f], &body[f], &key[f]);
-        if (found != &body[f])
-            body[f] = *found;
+        if (!check_by_key(&query->frame[f]))
+            take_body(cache, query, f, bodies_keep(cache, &query->frame[f], &out->room[f], &key[f]),
+                      out);
     }
     return true;
 }
@@ -68,11 +85,11 @@ static void certify(struct answerer *answerer, const struct fmb_pair *pair,
 }
 
 static void decide(struct answerer *answerer, struct pair_result *result,
-                   const struct pair_query *query, const struct fmb_body body[2])
+                   const struct pair_query *query, const struct bodies *bodies)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    const struct fmb_pair pair = {.a = bodies_place(&query->frame[0], &body[0]),
-                                  .b = bodies_place(&query->frame[1], &body[1]),
+    const struct fmb_pair pair = {.a = bodies_place(&query->frame[0], bodies->of[0]),
+                                  .b = bodies_place(&query->frame[1], bodies->of[1]),
                                   .duration = query->duration};
     unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     result->status = (int32_t) fmb_decide(method, &pair, want, &result->answer);
@@ -82,7 +99,7 @@ static void decide(struct answerer *answerer, struct pair_result *result,
         return;
     }
     result->method = method->number;
-    result->dim = result->answer.has_box ? body[0].dim : 0;
+    result->dim = result->answer.has_box ? bodies->of[0]->dim : 0;
     if (query->want & QUERY_WANT_CERTIFICATE)
         certify(answerer, &pair, result);
 }
@@ -104,10 +121,10 @@ void answer_pair(struct answerer *answerer, const struct pair_query *query,
 {
     begin_result(answerer, query, result);
     struct checking checking = {.status = &result->status, .detail = result->detail};
-    struct fmb_body body[2];
+    struct bodies bodies;
     if (check_pair(&checking, query) &&
-        find_bodies(answerer->cache, &checking, query, body, result->key))
-        decide(answerer, result, query, body);
+        find_bodies(answerer->cache, &checking, query, &bodies, result->key))
+        decide(answerer, result, query, &bodies);
     if (result->status != FMB_OK)
         memset(result->key, 0, sizeof result->key);
 }

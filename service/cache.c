@@ -25,13 +25,20 @@ struct entry {
     int32_t newer, older; /* in the order of use */
 };
 
+/* What most pairs need of a body is in its first two lines. */
+enum { LINE = 64 };
+
+struct held {
+    _Alignas(LINE) struct fmb_body body;
+};
+
 struct cache {
     int64_t next_key;
     uint64_t multiplier; /* odd, random */
     int bucket_shift;
-    int32_t *bucket;       /* [2^(64 - bucket_shift)]: first entry of each */
-    struct entry *entry;   /* [capacity + 1] */
-    struct fmb_body *body; /* [capacity + 1] */
+    int32_t *bucket;     /* [2^(64 - bucket_shift)]: first entry of each */
+    struct entry *entry; /* [capacity + 1] */
+    struct held *held;   /* [capacity + 1] */
     struct cache_counts counts;
 };
 
@@ -42,6 +49,12 @@ static void touch_pages(void *memory, size_t size)
         page[at] = 0;
 }
 
+/* So that no entry lies in two lines, nor a body in more than it has to. */
+static void *in_lines(size_t size)
+{
+    return aligned_alloc(LINE, (size + LINE - 1) / LINE * LINE);
+}
+
 struct cache *cache_create(size_t capacity, int64_t first_key)
 {
     assert(capacity >= 1 && capacity <= CACHE_BODIES_MAX);
@@ -50,13 +63,13 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
         bucket_bits++;
     const size_t entries = capacity + 1, buckets = (size_t) 1 << bucket_bits;
     struct cache *cache = malloc(sizeof *cache);
-    struct entry *entry = malloc(entries * sizeof *entry);
-    struct fmb_body *body = malloc(entries * sizeof *body);
+    struct entry *entry = in_lines(entries * sizeof *entry);
+    struct held *held = in_lines(entries * sizeof *held);
     int32_t *bucket = calloc(buckets, sizeof *bucket);
-    if (!cache || !entry || !body || !bucket) {
+    if (!cache || !entry || !held || !bucket) {
         free(cache);
         free(entry);
-        free(body);
+        free(held);
         free(bucket);
         return NULL;
     }
@@ -65,13 +78,13 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
                             .bucket_shift = 64 - bucket_bits,
                             .bucket = bucket,
                             .entry = entry,
-                            .body = body,
+                            .held = held,
                             .counts = {.capacity = (int64_t) capacity}};
-    const size_t sizes[] = {entries * sizeof *entry, entries * sizeof *body,
+    const size_t sizes[] = {entries * sizeof *entry, entries * sizeof *held,
                             buckets * sizeof *bucket};
     if (sizes[0] + sizes[1] + sizes[2] <= TOUCHED_MAX) {
         touch_pages(entry, sizes[0]);
-        touch_pages(body, sizes[1]);
+        touch_pages(held, sizes[1]);
         touch_pages(bucket, sizes[2]);
     }
     entry[ENDS].newer = entry[ENDS].older = ENDS;
@@ -84,7 +97,7 @@ void cache_destroy(struct cache *cache)
         return;
     free(cache->bucket);
     free(cache->entry);
-    free(cache->body);
+    free(cache->held);
     free(cache);
 }
 
@@ -101,6 +114,15 @@ static int32_t find(struct cache *cache, int64_t id)
     while (e != NONE && cache->entry[e].id != id)
         e = cache->entry[e].next;
     return e;
+}
+
+void cache_expect(const struct cache *cache, int64_t id)
+{
+    const int32_t e = cache->bucket[(uint64_t) id * cache->multiplier >> cache->bucket_shift];
+    const char *body = (const char *) &cache->held[e];
+    __builtin_prefetch(&cache->entry[e]);
+    __builtin_prefetch(body);
+    __builtin_prefetch(body + LINE);
 }
 
 static void unlink_use(struct cache *cache, int32_t e)
@@ -167,7 +189,7 @@ const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int 
                                   const double *components, int64_t *key)
 {
     int32_t e = find(cache, id);
-    if (e != NONE && same_body(&cache->body[e], dim, shape, components)) {
+    if (e != NONE && same_body(&cache->held[e].body, dim, shape, components)) {
         cache->counts.hits++;
     } else {
         cache->counts.misses++;
@@ -176,25 +198,30 @@ const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int 
         else
             cache->counts.replacements++;
         size_t count = (size_t) (fmb_component_count(dim, shape) * dim);
-        enum fmb_status status = fmb_body_make(dim, shape, components, count, &cache->body[e]);
+        enum fmb_status status = fmb_body_make(dim, shape, components, count, &cache->held[e].body);
         assert(status == FMB_OK);
         (void) status;
         cache->entry[e].key = cache->next_key++;
     }
     touch(cache, e);
     *key = cache->entry[e].key;
-    return &cache->body[e];
+    return &cache->held[e].body;
 }
 
 const struct fmb_body *cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape)
 {
     int32_t e = find(cache, id);
-    if (e == NONE || cache->entry[e].key != key || cache->body[e].dim != dim ||
-        (int) cache->body[e].shape != shape)
+    if (e == NONE || cache->entry[e].key != key || cache->held[e].body.dim != dim ||
+        (int) cache->held[e].body.shape != shape)
         return NULL;
     cache->counts.hits++;
     touch(cache, e);
-    return &cache->body[e];
+    return &cache->held[e].body;
+}
+
+size_t cache_capacity(const struct cache *cache)
+{
+    return (size_t) cache->counts.capacity;
 }
 
 struct cache_counts cache_counts(const struct cache *cache)

@@ -34,6 +34,12 @@ void cache_destroy(struct cache *cache);
 
 /* Both return a body that is good until the cache is asked again. */
 
+size_t cache_capacity(const struct cache *cache);
+
+/* A hint: this id will be asked for soon. Bodies are anywhere in memory, and the next two of them
+ * can be on their way at once. */
+void cache_expect(const struct cache *cache, int64_t id);
+
 /* Finds the body with these components (bitwise), or keeps it. On input: id > 0, the rest as
  * fmb_body_make() accepts it. On output: never NULL; *key. */
 const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int shape,

@@ -106,6 +106,8 @@ static bool translate_all(struct answer_now *now, struct query_frame *frame, int
 {
     bool all = true;
     for (int32_t i = 0; i < count; i++)
+        known_bodies_expect(now->known, frame[i].body_id, frame[i].key);
+    for (int32_t i = 0; i < count; i++)
         all = translate(now, &frame[i], &now->key_then[i]) && all;
     return all;
 }

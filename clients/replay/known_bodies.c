@@ -38,7 +38,7 @@ struct known_bodies *known_bodies_create(size_t capacity)
     for (int i = 0; i < 2; i++)
         known->multiplier[i] = query_id_mix(random_id());
     known->bucket = allocate((size_t) 1 << known->bucket_bits, sizeof *known->bucket);
-    known->slot = allocate(capacity + 1, sizeof *known->slot);
+    known->slot = allocate_in_lines(capacity + 1, sizeof *known->slot);
     known->body = allocate(capacity + 1, sizeof *known->body);
     return known;
 }
@@ -68,6 +68,13 @@ static uint32_t find(const struct known_bodies *known, int64_t body_id, int64_t 
     while (s != NONE && (known->slot[s].body_id != body_id || known->slot[s].key != key))
         s = known->slot[s].next;
     return s;
+}
+
+void known_bodies_expect(const struct known_bodies *known, int64_t body_id, int64_t key)
+{
+    const uint32_t s = *bucket_of(known, body_id, key);
+    __builtin_prefetch(&known->slot[s]);
+    __builtin_prefetch(&known->body[s]);
 }
 
 static void link_slot(struct known_bodies *known, uint32_t s)

@@ -28,6 +28,9 @@ enum { KNOWN_BODIES_USUAL = 1 << 18 };
 struct known_bodies *known_bodies_create(size_t capacity);
 void known_bodies_destroy(struct known_bodies *known); /* may be NULL */
 
+/* A hint: this one will be asked for soon. */
+void known_bodies_expect(const struct known_bodies *known, int64_t body_id, int64_t key);
+
 /* NULL: it is not known. Good until something is learned. */
 struct known_body *known_bodies_find(struct known_bodies *known, int64_t body_id, int64_t key);
 

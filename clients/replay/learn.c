@@ -51,6 +51,9 @@ static bool pair_tells_news(const struct learner *learner, const struct match_it
     if (result->size < KEYS_END)
         return false;
     const int64_t server_id = int64_at(result->bytes + SERVER_AT);
+    for (int f = 0; f < 2; f++)
+        known_bodies_expect(learner->known, int64_at(result->bytes + BODIES_AT + 8 * f),
+                            int64_at(result->bytes + KEYS_AT + 8 * f));
     for (int f = 0; f < 2; f++) {
         const int64_t body_id = int64_at(result->bytes + BODIES_AT + 8 * f);
         const int64_t key = int64_at(result->bytes + KEYS_AT + 8 * f);

@@ -102,23 +102,20 @@ struct fmb_body {
     int count;     /* of components */
     bool flat;     /* exactly zero volume (every face is): no inverse */
     bool inverted; /* the inverse is there: not flat, and all its entries finite */
+    /* Whether doubles can say anything of it: not flat, or a face with an area, and no number so
+     * large or so small that a product of a few of them might overflow or vanish. */
+    bool in_range;
+    bool rounded;            /* not all of rest is 0 */
+    int bits[2];             /* all components are multiples of 2^bits[0] below 2^bits[1] */
+    unsigned long long head; /* of frames with this body at rest, prepared (below) */
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
-    /* Of a face made by fmb_body_make_triangle(): its components are component + rest, exactly.
-     * rounded: not all of rest is 0. */
-    bool rounded;
-    double rest[2][FMB_DIM_MAX];
+    double size[FMB_DIM_MAX];                   /* the largest magnitude in each component */
     /* [axis][component], rounded, of a nearly flat body too: x_i = sum_axis inverse[axis][i]
      * p[axis] for p = sum x_i c_i. The article's invComp (Listing 1, PROJ). Zero where not
      * inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
-    /* What the certified method keeps: the largest magnitude in each component; whether doubles can
-     * say anything of it: not flat, or a face with an area, and no number so large or so small that
-     * a product of a few of them might overflow or vanish. All components are multiples of
-     * 2^bits[0] below 2^bits[1]. */
-    double size[FMB_DIM_MAX];
-    bool in_range;
-    int bits[2];
-    unsigned long long head; /* of frames with this body at rest, prepared (below) */
+    /* Of a face made by fmb_body_make_triangle(): its components are component + rest, exactly. */
+    double rest[2][FMB_DIM_MAX];
 };
 
 /* On input: dim; shape; count numbers, components one after the other, number
