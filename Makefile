@@ -553,7 +553,7 @@ $(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
 # ---- Meshes: closed ones of any size, for tests and benchmarks --------------------------------
 
 mesh_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/mesh/*.c)) \
-	$(addprefix $(O)/clients/,allocate.o number.o) $(O)/service/clock.o
+	$(addprefix $(O)/clients/,allocate.o number.o) $(addprefix $(O)/service/,clock.o random_id.o)
 
 $(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)

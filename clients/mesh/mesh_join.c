@@ -1,5 +1,8 @@
 #include "mesh_join.h"
 
+#include "query.h"
+#include "random_id.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,9 +17,8 @@ static uint64_t bits_of(double value)
 
 /* Coordinates of meshes differ in few bits, often the first ones: a product moves what differs to
  * the front, from where a shift takes it back to the bits that slots are counted with. */
-static size_t hash_of(const double position[3])
+static size_t hash_of(uint64_t factor, const double position[3])
 {
-    const uint64_t factor = UINT64_C(0x9e3779b97f4a7c15); /* odd, 2^64 by the golden ratio */
     uint64_t hash = 0;
     for (int axis = 0; axis < 3; axis++) {
         hash = (hash ^ bits_of(position[axis])) * factor;
@@ -29,7 +31,7 @@ static size_t hash_of(const double position[3])
 static size_t find(const struct mesh_join *join, const double position[3])
 {
     const double(*vertex)[3] = (const double(*)[3]) join->build->mesh->vertex;
-    size_t at = hash_of(position) & (join->slot_count - 1);
+    size_t at = hash_of(join->factor, position) & (join->slot_count - 1);
     while (join->slot[at] != 0 && memcmp(vertex[join->slot[at] - 1], position, sizeof *vertex) != 0)
         at = (at + 1) & (join->slot_count - 1);
     return at;
@@ -38,6 +40,8 @@ static size_t find(const struct mesh_join *join, const double position[3])
 static bool make_slots(struct mesh_join *join)
 {
     const struct mesh *mesh = join->build->mesh;
+    if (!join->slot)
+        join->factor = query_id_mix(random_id()) | 1;
     if (join->slot && mesh->vertex_count < join->slot_count / 2)
         return true;
     const size_t wanted = join->slot ? 2 * join->slot_count : SLOTS_MIN;

@@ -7,6 +7,7 @@
 struct mesh_join {
     struct mesh_build *build; /* whose vertices all came from here */
     unsigned *slot;           /* owned; index of a vertex + 1; 0: none */
+    uint64_t factor;          /* random and odd: no file knows which vertices share a slot */
     size_t slot_count;        /* 0 or a power of 2, at least twice as many as there are vertices */
 };
 
