@@ -103,7 +103,7 @@ void cache_destroy(struct cache *cache)
 
 /* Multiplicative hashing: the upper bits of the product. The multiplier is random, lest somebody
  * chooses ids that all fall into one bucket. */
-static int32_t *bucket_of(struct cache *cache, int64_t id)
+static int32_t *bucket_of(const struct cache *cache, int64_t id)
 {
     return &cache->bucket[(uint64_t) id * cache->multiplier >> cache->bucket_shift];
 }
@@ -116,9 +116,14 @@ static int32_t find(struct cache *cache, int64_t id)
     return e;
 }
 
+void cache_expect_soon(const struct cache *cache, int64_t id)
+{
+    __builtin_prefetch(bucket_of(cache, id));
+}
+
 void cache_expect(const struct cache *cache, int64_t id)
 {
-    const int32_t e = cache->bucket[(uint64_t) id * cache->multiplier >> cache->bucket_shift];
+    const int32_t e = *bucket_of(cache, id);
     const char *body = (const char *) &cache->held[e];
     __builtin_prefetch(&cache->entry[e]);
     __builtin_prefetch(body);

@@ -36,8 +36,9 @@ void cache_destroy(struct cache *cache);
 
 size_t cache_capacity(const struct cache *cache);
 
-/* A hint: this id will be asked for soon. Bodies are anywhere in memory, and the next two of them
- * can be on their way at once. */
+/* Hints: this id will be asked for soon, and, later, sooner. Bodies are anywhere in memory, and the
+ * next two of them can be on their way at once. */
+void cache_expect_soon(const struct cache *cache, int64_t id);
 void cache_expect(const struct cache *cache, int64_t id);
 
 /* Finds the body with these components (bitwise), or keeps it. On input: id > 0, the rest as

@@ -28,8 +28,8 @@ static bool check_count(struct checking *checking, const char *field, int expect
     return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
 }
 
-static bool check_finite(struct checking *checking, const char *field,
-                         const struct query_numbers *numbers)
+static bool refuse_not_finite(struct checking *checking, const char *field,
+                              const struct query_numbers *numbers)
 {
     for (int i = 0; i < numbers->count; i++)
         if (!isfinite(numbers->number[i])) {
@@ -38,6 +38,16 @@ static bool check_finite(struct checking *checking, const char *field,
             return check_refuse(checking, FMB_NOT_FINITE, place, NULL);
         }
     return true;
+}
+
+/* 0 times a number that is not finite is not 0; numbers beyond the count are. */
+static bool check_finite(struct checking *checking, const char *field,
+                         const struct query_numbers *numbers)
+{
+    double nothing = 0;
+    for (int i = 0; i < FMB_COMPONENTS_MAX; i++)
+        nothing += 0 * numbers->number[i];
+    return nothing == 0 || refuse_not_finite(checking, field, numbers);
 }
 
 bool check_by_key(const struct query_frame *frame)

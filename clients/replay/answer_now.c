@@ -106,7 +106,8 @@ static bool translate_all(struct answer_now *now, struct query_frame *frame, int
 {
     bool all = true;
     for (int32_t i = 0; i < count; i++)
-        known_bodies_expect(now->known, frame[i].body_id, frame[i].key);
+        if (check_by_key(&frame[i]))
+            known_bodies_expect(now->known, frame[i].body_id, frame[i].key);
     for (int32_t i = 0; i < count; i++)
         all = translate(now, &frame[i], &now->key_then[i]) && all;
     return all;
@@ -127,6 +128,13 @@ static void keep_all(struct answer_now *now, struct query_frame *frame, int32_t 
         keep(now, known);
         frame[i].key = known->key_now;
     }
+}
+
+static void expect_soon(const struct answer_now *now, const struct query_frame *frame)
+{
+    cache_expect_soon(now->answerer.cache, frame->body_id);
+    if (check_by_key(frame))
+        known_bodies_expect_soon(now->known, frame->body_id, frame->key);
 }
 
 /* ---- Pairs ---- */
@@ -162,6 +170,8 @@ static enum answer_now_outcome answer_pair_now(struct answer_now *now, const uns
     bool known = true;
     if ((out->error = read_pair(bytes, size, query)))
         return ANSWER_NOW_UNREADABLE;
+    expect_soon(now, &query->frame[0]);
+    expect_soon(now, &query->frame[1]);
     if (size > QUERY_BYTES_MAX) {
         answer_pair_refused(&now->answerer, query, FMB_OVER_LIMIT, &now->result.pair);
     } else {

@@ -70,6 +70,11 @@ static uint32_t find(const struct known_bodies *known, int64_t body_id, int64_t 
     return s;
 }
 
+void known_bodies_expect_soon(const struct known_bodies *known, int64_t body_id, int64_t key)
+{
+    __builtin_prefetch(bucket_of(known, body_id, key));
+}
+
 void known_bodies_expect(const struct known_bodies *known, int64_t body_id, int64_t key)
 {
     const uint32_t s = *bucket_of(known, body_id, key);

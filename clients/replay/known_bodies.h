@@ -28,7 +28,8 @@ enum { KNOWN_BODIES_USUAL = 1 << 18 };
 struct known_bodies *known_bodies_create(size_t capacity);
 void known_bodies_destroy(struct known_bodies *known); /* may be NULL */
 
-/* A hint: this one will be asked for soon. */
+/* Hints, as those of cache.h. */
+void known_bodies_expect_soon(const struct known_bodies *known, int64_t body_id, int64_t key);
 void known_bodies_expect(const struct known_bodies *known, int64_t body_id, int64_t key);
 
 /* NULL: it is not known. Good until something is learned. */

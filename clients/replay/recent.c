@@ -13,6 +13,9 @@
  * their order, and the others, with the one that was matched last in front. */
 enum { UNIT = 8, NONE = 0, BUCKET_BITS = 13, BUCKETS = 1 << BUCKET_BITS };
 
+/* Of memory that will be needed soon, bytes that are fetched at a time, and at most. */
+enum { LINE = 64, EXPECTED = 1024 };
+
 struct chain {
     uint32_t first, last;
 };
@@ -118,17 +121,29 @@ static void link_last(struct recent *recent, struct recent_item *item)
 
 /* ---- The ring ---- */
 
+/* The next item to go is somewhere else in a larger memory than caches are, and what will be put in
+ * its place is written all through. */
+static void expect_next(const struct recent *recent, size_t length)
+{
+    const unsigned char *at = recent->ring + recent->begin;
+    for (size_t i = 0; i < length && i < EXPECTED; i += LINE)
+        __builtin_prefetch(at + i, 1);
+}
+
 static void let_go(struct recent *recent)
 {
     struct recent_item *item = (struct recent_item *) (recent->ring + recent->begin);
     unlink_item(recent, item);
     recent->gone(recent->user, item);
-    recent->begin += item->length;
+    const size_t length = item->length;
+    recent->begin += length;
     recent->count--;
     if (recent->wraps && recent->begin == recent->wrap) {
         recent->begin = 0;
         recent->wraps = false;
     }
+    if (recent->begin + EXPECTED <= recent->room)
+        expect_next(recent, length);
 }
 
 /* A place for so many bytes, or false. */
@@ -177,6 +192,8 @@ struct recent_item *recent_put(struct recent *recent, const struct match_item *i
 static struct recent_item *first_of(const struct recent *recent, bool matched, enum log_kind kind,
                                     const struct query_header *ids)
 {
+    if (recent->count == 0) /* of results it mostly is */
+        return NULL;
     const struct bucket *bucket = &recent->bucket[bucket_of(recent, kind, ids)];
     struct recent_item *item = item_of(recent, bucket->chain[matched].first);
     while (item && !(item->item.kind == kind && item->item.ids.client_id == ids->client_id &&
