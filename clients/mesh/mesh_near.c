@@ -9,12 +9,14 @@
  * common if p, q, r, s lie in no plane. If they do, and r and s lie on different sides of the line
  * pq, they touch, and on the same side they overlap: the engine tells.
  *
- * Orientations are those of doubles with a bound; what they leave open, the engine decides, of
- * triangles, and of segments as triangles without an area. */
+ * Most of them are known from what they look like along an axis (mesh_flat.h). Orientations in
+ * space are those of doubles with a bound; what they leave open, the engine decides, of triangles,
+ * and of segments as triangles without an area. */
 #include "mesh_near.h"
 
 #include "allocate.h"
 #include "mesh_face.h"
+#include "mesh_flat.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -170,10 +172,12 @@ static enum mesh_nearness nearness_of_edge(const struct mesh_near *near,
                                            enum fmb_verdict *verdict)
 {
     double corner[2][3][3];
-    if (common->own_count[0] && common->own_count[1] &&
-        side_of(at(near, common->shared[0]), at(near, common->shared[1]),
-                at(near, common->own[0][0]), at(near, common->own[1][0])) != 0)
-        return MESH_SHARE_EDGE;
+    if (common->own_count[0] && common->own_count[1]) {
+        const double *p = at(near, common->shared[0]), *q = at(near, common->shared[1]);
+        const double *r = at(near, common->own[0][0]), *s = at(near, common->own[1][0]);
+        if (mesh_flat_share_edge(p, q, r, s) || side_of(p, q, r, s) != 0)
+            return MESH_SHARE_EDGE;
+    }
     for (int f = 0; f < 2; f++)
         mesh_face_vertices(near->mesh, face[f], corner[f]);
     *verdict = verdict_of((const double(*)[3]) corner[0], (const double(*)[3]) corner[1]);
@@ -187,6 +191,11 @@ static enum mesh_nearness nearness_of_vertex(const struct mesh_near *near,
 {
     double corner[2][3][3];
     bool open[2] = {false, false}, meet = false;
+    if (common->own_count[0] == 2 && common->own_count[1] == 2 &&
+        mesh_flat_share_vertex(at(near, common->shared[0]), at(near, common->own[0][0]),
+                               at(near, common->own[0][1]), at(near, common->own[1][0]),
+                               at(near, common->own[1][1])))
+        return MESH_SHARE_VERTEX;
     for (int f = 0; f < 2; f++)
         mesh_face_vertices(near->mesh, face[f], corner[f]);
     for (int f = 0; f < 2; f++) {
