@@ -88,8 +88,10 @@ supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
 answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_pairs.o check.o \
 	bodies.o cache.o histogram.o)
 server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
+page_names := replay
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
-	clients/log/*.c clients/mesh/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) $(O)/page/template.o
+	clients/log/*.c clients/mesh/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) \
+	$(page_names:%=$(O)/page/%.o)
 asking_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/lib/*.c))
 
 programs := $(B)/fmbd $(B)/fmb
@@ -178,29 +180,34 @@ $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Itests/hostile
 
-# The page of a replay without its data: its text, style and scripts in one, and then numbers of C. Its
+# The pages without their data: text, style and scripts of each in one, and then numbers of C. Their
 # policy lets nothing run but what has the hash of all between the tags, line ends included.
 page_source := clients/page/template/
-page_scripts := $(addprefix $(page_source),numbers.js data.js dom.js clock.js timeline.js \
-	world.js camera.js canvas.js stage.js window.js panel.js main.js)
+page_styles_replay := $(addprefix $(page_source),page.css timeline.css)
+page_scripts_replay := $(addprefix $(page_source),numbers.js verdict.js data.js dom.js clock.js timeline.js \
+	world.js camera.js canvas.js scene.js stage.js play.js hands.js window.js panel.js main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
-build/page/page.html: $(page_source)page.html $(page_source)page.css $(page_scripts) Makefile
-	@mkdir -p $(@D)
-	@! grep -n -e '</' -e '<!--' $(page_scripts) $(page_source)page.css
-	@cat $(page_scripts) > $(@D)/scripts
-	sed -e "s|@SCRIPT_HASH@|$(call page_hash,$(@D)/scripts)|" \
-		-e "s|@STYLE_HASH@|$(call page_hash,$(page_source)page.css)|" \
-		-e '/^@STYLE@$$/{r $(page_source)page.css' -e 'd;}' \
-		-e '/^@SCRIPT@$$/{r $(@D)/scripts' -e 'd;}' $< > $@
-	@[ "$$(grep -c '@[A-Z_]*@' $@)" = 1 ] # @DATA@
+define page_rule
+build/page/$1.html: $$(page_source)$1.html $$(page_styles_$1) $$(page_scripts_$1) Makefile
+	@mkdir -p $$(@D)
+	@! grep -n -e '</' -e '<!--' $$(page_scripts_$1) $$(page_styles_$1)
+	@cat $$(page_scripts_$1) > $$(@D)/$1.scripts
+	@cat $$(page_styles_$1) > $$(@D)/$1.styles
+	sed -e "s|@SCRIPT_HASH@|$$(call page_hash,$$(@D)/$1.scripts)|" \
+		-e "s|@STYLE_HASH@|$$(call page_hash,$$(@D)/$1.styles)|" \
+		-e '/^@STYLE@$$$$/{r $$(@D)/$1.styles' -e 'd;}' \
+		-e '/^@SCRIPT@$$$$/{r $$(@D)/$1.scripts' -e 'd;}' $$< > $$@
+	@[ "$$$$(grep -c '@[A-Z_]*@' $$@)" = 1 ] # @DATA@
+endef
+$(foreach name,$(page_names),$(eval $(call page_rule,$(name))))
 
-build/page/template.c: build/page/page.html
-	@{ echo '#include "page_template.h"'; echo 'const unsigned char page_template[] = {'; \
+build/page/%.c: build/page/%.html
+	@{ echo '#include "page_template.h"'; echo 'static const unsigned char bytes[] = {'; \
 		od -An -v -tu1 $< | sed 's/ *\([0-9]\{1,\}\)/\1,/g'; echo '};'; \
-		echo 'const size_t page_template_size = sizeof page_template;'; } > $@
+		echo 'const struct page_template page_template_$* = {bytes, sizeof bytes};'; } > $@
 
-$(O)/page/template.o: build/page/template.c $(O)/settings
+$(O)/page/%.o: build/page/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Iclients/page
 

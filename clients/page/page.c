@@ -180,21 +180,9 @@ static void write_data(const struct page *page, FILE *out)
     fputs("\n]}", out);
 }
 
-/* The build has seen that the mark is there, once. */
-static size_t find_mark(void)
-{
-    const size_t length = strlen(PAGE_TEMPLATE_MARK);
-    size_t at = 0;
-    while (at + length < page_template_size &&
-           memcmp(page_template + at, PAGE_TEMPLATE_MARK, length) != 0)
-        at++;
-    return at;
-}
-
 void page_write(const struct page *page, FILE *out)
 {
-    const size_t mark = find_mark(), after = mark + strlen(PAGE_TEMPLATE_MARK);
-    fwrite(page_template, 1, mark, out);
+    page_template_begin(&page_template_replay, out);
     write_data(page, out);
-    fwrite(page_template + after, 1, page_template_size - after, out);
+    page_template_end(&page_template_replay, out);
 }

@@ -1,13 +1,19 @@
-/* The page without its data, put together from the files of page/ when the program is built. */
+/* Pages without their data, put together from the files of template/ when the program is built. */
 #ifndef PAGE_TEMPLATE_H
 #define PAGE_TEMPLATE_H
 
 #include <stddef.h>
+#include <stdio.h>
 
-/* Where the data belong. */
-#define PAGE_TEMPLATE_MARK "@DATA@"
+struct page_template {
+    const unsigned char *bytes;
+    size_t size; /* no 0 at the end */
+};
 
-extern const unsigned char page_template[];
-extern const size_t page_template_size; /* bytes; no 0 at the end */
+extern const struct page_template page_template_replay;
+
+/* What stands before the data, and what behind them: the data are JSON, of page_json.h. */
+void page_template_begin(const struct page_template *page, FILE *out);
+void page_template_end(const struct page_template *page, FILE *out);
 
 #endif

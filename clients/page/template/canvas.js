@@ -1,5 +1,26 @@
 /* Tools to draw with on the canvas; the grid and the axes. */
 
+function measureStage() {
+    const canvas = find("stage");
+    stage.width = canvas.clientWidth || 600;
+    stage.height = canvas.clientHeight || 400;
+}
+
+/* The canvas as large as it is on the screen, in its pixels, and empty. */
+function clearStage() {
+    const canvas = find("stage"), ratio = window.devicePixelRatio || 1;
+    measureStage();
+    const wanted = [Math.round(stage.width * ratio), Math.round(stage.height * ratio)];
+    if (canvas.width !== wanted[0] || canvas.height !== wanted[1])
+        [canvas.width, canvas.height] = wanted;
+    const context = canvas.getContext("2d");
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, stage.width, stage.height);
+    return context;
+}
+
+/* ---- Colours ---- */
+
 /* Lit and dark, for each verdict; frames of no pair are grey. */
 const COLOURS = {
     [-1]: [[214, 219, 226], [122, 130, 141]], 0: [[214, 219, 226], [122, 130, 141]],
@@ -9,7 +30,7 @@ const COLOURS = {
 
 function readTheme() {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ["card", "ink", "dim", "grid", "box", "diff", "rule"])
+    for (const name of ["card", "ink", "dim", "grid", "box", "diff", "rule", "link"])
         stage.theme[name] = style.getPropertyValue(`--${name}`).trim();
     stage.theme.dark = matchMedia("(prefers-color-scheme: dark)").matches;
 }
@@ -23,6 +44,8 @@ function colourOf(verdict, light, alpha) {
 function strokeOf(verdict, alpha) {
     return colourOf(verdict, stage.theme.dark ? 0.65 : 0, alpha);
 }
+
+/* ---- Lines and text ---- */
 
 /* The part of the polygon that may be seen; false: there is none. */
 function addToPath(context, points) {
@@ -64,6 +87,18 @@ function drawText(context, text, x, y, colour, align) {
     context.textAlign = align;
     context.fillStyle = colour;
     context.fillText(text, x, y);
+}
+
+const RING_BELOW = 7;   /* pixels: a smaller box gets a ring, to be found */
+
+function drawRing(context, points) {
+    const xs = points.map((p) => p[0]), ys = points.map((p) => p[1]);
+    const low = [Math.min(...xs), Math.min(...ys)], high = [Math.max(...xs), Math.max(...ys)];
+    if (Math.max(high[0] - low[0], high[1] - low[1]) >= RING_BELOW)
+        return;
+    context.beginPath();
+    context.arc((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, RING_BELOW, 0, 2 * Math.PI);
+    context.stroke();
 }
 
 /* ---- Grid and axes ---- */

@@ -3,10 +3,6 @@
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
-/* By the numbers of the messages; where there is no verdict, none. */
-const VERDICTS = ["not decided", "separated", "touching", "overlapping"];
-const NO_VERDICT = -1, SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
-
 /* enum replay_outcome. */
 const SAME = 0, DIFFERENT = 1, BUSY = 2, UNKNOWN = 3, ALONE = 4;
 const OUTCOMES = ["same", "different", "busy", "unknown", "without result"];
@@ -21,10 +17,6 @@ const OUTCOME_SAID = [
 
 const WANT_BOX = 1, WANT_CERTIFICATE = 2, WANT_TIMES = 4;
 const KIND_PAIR = 0, KIND_LISTED = 1, KIND_ALL = 2, KIND_ACROSS = 3;
-
-function verdictName(verdict) {
-    return verdict < 0 ? "no answer" : VERDICTS[verdict];
-}
 
 /* ---- Events ---- */
 

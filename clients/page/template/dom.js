@@ -62,6 +62,13 @@ function listenToDrags(element, begin) {
     });
 }
 
+const WHEEL_ZOOM = 0.0015; /* a notch of 100 pixels: some 15 % */
+
+/* Above 1 where the wheel is turned towards the reader. */
+function wheelFactor(wheel) {
+    return Math.exp(clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM);
+}
+
 /* Calls the function once before the next picture, however often it was asked for. */
 function onceAFrame(work) {
     let waiting = false;

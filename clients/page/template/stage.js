@@ -4,7 +4,6 @@
 
 const LABELS_MAX = 80;  /* more bodies cannot be labelled: their ids show when pointed at */
 const BOXES_MAX = 2000;
-const RING_BELOW = 7;   /* pixels: a smaller box gets a ring, to be found */
 const ARROW_MIN = 5;
 
 /* ---- Frames ---- */
@@ -134,16 +133,6 @@ function drawMotion(context, project, frame, outline) {
 
 /* ---- Boxes ---- */
 
-function drawRing(context, points) {
-    const xs = points.map((p) => p[0]), ys = points.map((p) => p[1]);
-    const low = [Math.min(...xs), Math.min(...ys)], high = [Math.max(...xs), Math.max(...ys)];
-    if (Math.max(high[0] - low[0], high[1] - low[1]) >= RING_BELOW)
-        return;
-    context.beginPath();
-    context.arc((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, RING_BELOW, 0, 2 * Math.PI);
-    context.stroke();
-}
-
 /* Many boxes are drawn lightly. */
 const CROWD = 150;
 
@@ -238,25 +227,6 @@ function drawLabels(context, project) {
 }
 
 /* ---- The picture ---- */
-
-function measureStage() {
-    const canvas = find("stage");
-    stage.width = canvas.clientWidth || 600;
-    stage.height = canvas.clientHeight || 400;
-}
-
-/* The canvas as large as it is on the screen, in its pixels, and empty. */
-function clearStage() {
-    const canvas = find("stage"), ratio = window.devicePixelRatio || 1;
-    measureStage();
-    const wanted = [Math.round(stage.width * ratio), Math.round(stage.height * ratio)];
-    if (canvas.width !== wanted[0] || canvas.height !== wanted[1])
-        [canvas.width, canvas.height] = wanted;
-    const context = canvas.getContext("2d");
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, stage.width, stage.height);
-    return context;
-}
 
 function drawStage() {
     const context = clearStage();

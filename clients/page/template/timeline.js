@@ -10,7 +10,6 @@ const SHORTEST_BAR = 3, DOT_ROOM = 9, FLAG_ROOM = 13;
 const PAUSE_OF_ROW = 6;          /* the median step of the row: a longer one ends a bar */
 const ROWS_FIRST = 8, ROWS_MORE = 40;
 const SHORTEST_VIEW = 2e-5;      /* seconds */
-const WHEEL_ZOOM = 0.0015;       /* a notch of 100 pixels: some 15 % */
 
 const clock = makeClock(events.map((event) => event.seconds));
 const places = events.map((event) => clock.at(event.seconds));
@@ -439,11 +438,6 @@ function listenToDrag(plot) {
         else
             clickPlot(mouse);
     });
-}
-
-/* Above 1 where the wheel is turned towards the reader. */
-function wheelFactor(wheel) {
-    return Math.exp(clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM);
 }
 
 function listenToPlot() {

@@ -1,0 +1,70 @@
+/* The mouse on the stage, and the buttons around it. The page says what they lead to: fitAll(),
+ * fitPair(), redrawStage(), and point() of a place on the stage, or of none. */
+
+function stagePoint(mouse) {
+    const box = find("stage").getBoundingClientRect();
+    return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
+}
+
+const TURN = 0.008; /* radians a pixel */
+
+function dragStage(begin, point, pans) {
+    const { camera } = stage, moved = [point.x - begin.x, point.y - begin.y];
+    if (stage.units.dim === 2 || pans) {
+        camera.pan = begin.pan.map((pan, axis) => pan + moved[axis]);
+    } else {
+        stage.azimuth = begin.azimuth - moved[0] * TURN;
+        stage.elevation = clamp(begin.elevation + moved[1] * TURN, -Math.PI / 2, Math.PI / 2);
+    }
+    redrawStage();
+}
+
+function listenToStageDrag(canvas) {
+    listenToDrags(canvas, (mouse) => {
+        const { azimuth, elevation, camera } = stage, pans = mouse.shiftKey || mouse.button !== 0;
+        const begin = camera && { ...stagePoint(mouse), pan: camera.pan, azimuth, elevation };
+        point(null);
+        return begin && ((moved) => {
+            if (stage.camera === camera)
+                dragStage(begin, stagePoint(moved), pans);
+        });
+    });
+    canvas.addEventListener("pointermove", (mouse) => {
+        point(mouse.buttons ? null : stagePoint(mouse));
+    });
+    canvas.addEventListener("pointerleave", () => point(null));
+    canvas.addEventListener("contextmenu", (mouse) => mouse.preventDefault());
+}
+
+function setDirection(name) {
+    Object.assign(stage, VIEWS[name]);
+    if (stage.camera)
+        fit(stage.camera.bounds);
+    redrawStage();
+}
+
+function startStage() {
+    const canvas = find("stage");
+    readTheme();
+    listenToStageDrag(canvas);
+    canvas.addEventListener("wheel", (wheel) => {
+        wheel.preventDefault();
+        const { x, y } = stagePoint(wheel);
+        if (stage.camera)
+            zoomStage(1 / wheelFactor(wheel), x, y);
+    }, { passive: false });
+    canvas.addEventListener("dblclick", fitAll);
+    find("fit-all").addEventListener("click", fitAll);
+    find("fit-pair").addEventListener("click", fitPair);
+    for (const button of find("views").children)
+        button.addEventListener("click", () => setDirection(button.dataset.view));
+    find("moment").addEventListener("input", (input) => {
+        setMoment(Number(input.target.value) / 1000);
+    });
+    find("play").addEventListener("click", togglePlaying);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+        readTheme();
+        redrawStage();
+    });
+    new ResizeObserver(redrawStage).observe(canvas);
+}

@@ -1,0 +1,7 @@
+/* By the numbers of the messages; where there is no verdict, none. */
+const VERDICTS = ["not decided", "separated", "touching", "overlapping"];
+const NO_VERDICT = -1, SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
+
+function verdictName(verdict) {
+    return verdict < 0 ? "no answer" : VERDICTS[verdict];
+}
