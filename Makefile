@@ -88,7 +88,7 @@ supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
 answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_pairs.o check.o \
 	bodies.o cache.o histogram.o)
 server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
-page_names := replay
+page_names := replay mesh
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
 	clients/log/*.c clients/mesh/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) \
 	$(page_names:%=$(O)/page/%.o)
@@ -186,6 +186,9 @@ page_source := clients/page/template/
 page_styles_replay := $(addprefix $(page_source),page.css timeline.css)
 page_scripts_replay := $(addprefix $(page_source),numbers.js verdict.js data.js dom.js clock.js timeline.js \
 	world.js camera.js canvas.js scene.js stage.js play.js hands.js window.js panel.js main.js)
+page_styles_mesh := $(addprefix $(page_source),page.css mesh.css)
+page_scripts_mesh := $(addprefix $(page_source),numbers.js verdict.js mesh_data.js dom.js world.js camera.js \
+	canvas.js mesh_raster.js mesh_paint.js mesh_stage.js play.js hands.js mesh_panel.js mesh_main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
 define page_rule
@@ -559,7 +562,7 @@ $(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
 
 # ---- Meshes: closed ones of any size, for tests and benchmarks --------------------------------
 
-mesh_objects := $(patsubst %.c,$(O)/%.o,$(wildcard clients/mesh/*.c)) \
+mesh_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/mesh_page.c,$(wildcard clients/mesh/*.c))) \
 	$(addprefix $(O)/clients/,allocate.o number.o) $(addprefix $(O)/service/,clock.o random_id.o)
 
 $(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects) $(B)/libfmb.a

@@ -3,6 +3,7 @@
 
 #include "args.h"
 #include "mesh_meet.h"
+#include "mesh_page.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
 #include "progress.h"
@@ -46,7 +47,9 @@ static const char usage[] =
     "  --json               one line of JSON: counts, and all pairs\n"
     "  --list               all pairs, a line each\n"
     "  --ply FILE           write both meshes as one, in colours: red what overlaps, yellow what\n"
-    "                       touches, grey (A) and blue (B) the rest\n" ARGS_COMMON_USAGE
+    "                       touches, grey (A) and blue (B) the rest\n"
+    "  --html FILE          write a page that shows them, and the pairs: for any browser, with\n"
+    "                       nothing to install or to fetch\n" ARGS_COMMON_USAGE
     "\n"
     "Two faces overlap where inner points of both are the same, and touch where they only have\n"
     "points of their rims in common. Coordinates in text are taken for the doubles next to them;\n"
@@ -317,6 +320,7 @@ static int tell(const struct options *options, const struct mesh_report *report)
     else
         mesh_report_text(stdout, report, options->list);
     int code = write_file(options->ply, mesh_report_ply, report);
+    code = worse(code, write_file(options->html, mesh_page_write, report));
     if (fflush(stdout) != 0 || ferror(stdout))
         code = worse(code, file_error("standard output"));
     return code;
@@ -346,8 +350,10 @@ static int meet(const struct options *options, const struct mesh *a, const struc
                     : fmb_status_text((int) status));
         return ARGS_FAILED;
     }
-    const struct mesh_report report = {
-        .mesh = {a, b}, .name = {names[0], names[a != b]}, .meeting = &meeting};
+    const struct mesh_report report = {.question = &question,
+                                       .mesh = {a, b},
+                                       .name = {names[0], names[a != b]},
+                                       .meeting = &meeting};
     const int code = tell(options, &report);
     mesh_meeting_free(&meeting);
     return code;

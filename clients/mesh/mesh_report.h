@@ -7,7 +7,8 @@
 #include <stdio.h>
 
 struct mesh_report {
-    const struct mesh *mesh[2]; /* the same: one with itself */
+    const struct mesh_question *question; /* what was asked */
+    const struct mesh *mesh[2];           /* the same: one with itself */
     const char *name[2];
     const struct mesh_meeting *meeting;
 };

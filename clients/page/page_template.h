@@ -10,7 +10,7 @@ struct page_template {
     size_t size; /* no 0 at the end */
 };
 
-extern const struct page_template page_template_replay;
+extern const struct page_template page_template_replay, page_template_mesh;
 
 /* What stands before the data, and what behind them: the data are JSON, of page_json.h. */
 void page_template_begin(const struct page_template *page, FILE *out);

@@ -1,0 +1,161 @@
+/* What is said: counts, notes, the list of the pairs. */
+
+const ROWS_MORE = 100;
+const panel = { rows: ROWS_MORE, list: pairs };
+
+/* ---- Counts and notes ---- */
+
+function makeCount(kind, count, one, many) {
+    return make("div", { class: `count ${kind} ${count === 0 ? "zero" : ""}` },
+        make("b", {}, grouped(count)), make("span", {}, count === 1 ? one : many));
+}
+
+function fillHeader() {
+    const names = meshes.map((mesh) => baseName(mesh.name));
+    const title = isSelf ? `${names[0]} with itself` : `${names[0]} and ${names[1]}`;
+    document.title = `Meshes: ${title}`;
+    find("title").textContent = title;
+    find("said").textContent = `Faces that meet${isMoving ? `, at some time of ${short(data.T)} s` : ""}`;
+    show(find("counts"), makeCount("pairs", data.count, "pair of faces meets", "pairs of faces meet"),
+        makeCount("overlapping", data.overlapping, "overlaps", "overlap"),
+        makeCount("touching", data.touching, "touches", "touch"));
+}
+
+function leftOut(mesh) {
+    return mesh.faces - shownFaces(mesh);
+}
+
+/* Every note says what is not here. */
+function notesOf() {
+    const notes = [];
+    if (data.count > pairs.length)
+        notes.push(`The list has the first ${grouped(pairs.length)} of ${grouped(data.count)} pairs; `
+            + "the program has them all.");
+    for (const mesh of meshes.filter((of) => leftOut(of) > 0))
+        notes.push(`${grouped(leftOut(mesh))} of ${grouped(mesh.faces)} faces of `
+            + `${meshLetter(mesh.index)} are not drawn, to keep the page small: ${thinnedText(mesh)}.`);
+    if (data.as === "tetrahedra")
+        notes.push("What was asked are tetrahedra over the faces; what is drawn are the faces.");
+    return notes;
+}
+
+function thinnedText(mesh) {
+    const met = mesh.colour.reduce((sum, colour) => sum + (colour ? 1 : 0), 0);
+    return met === mesh.met ? "all that meet are" : `of ${grouped(mesh.met)} that meet, `
+        + `${grouped(met)} are`;
+}
+
+function fillNotes() {
+    show(find("notes"), ...notesOf().map((note) => make("p", { class: "warn" }, note)));
+}
+
+/* ---- Facts ---- */
+
+function fact(name, ...said) {
+    return [make("dt", {}, name), make("dd", {}, ...said)];
+}
+
+/* Over all pairs that are listed. */
+function timesOfAll() {
+    let first = Infinity, last = -Infinity;
+    for (const { times } of pairs) {
+        first = Math.min(first, times[0]);
+        last = Math.max(last, times[1]);
+    }
+    return [first, last];
+}
+
+function fillFacts() {
+    const facts = meshes.flatMap((mesh) => fact(meshLetter(mesh.index),
+        make("i", { class: `swatch mesh-${mesh.index}` }), ` ${mesh.name}: `
+        + `${grouped(mesh.met)} of ${counted(mesh.faces, "face", "faces")} in these pairs`));
+    if (isSelf)
+        facts.push(...fact("beside", `${counted(data.sharing_edge, "pair shares", "pairs share")} an edge, `
+            + `${grouped(data.sharing_vertex)} a vertex, and nothing else: not counted above`));
+    if (data.moving && pairs.length > 0)
+        facts.push(...fact("contact", `${intervalText(...timesOfAll())} s, of a window of `
+            + `${short(data.T)} s`));
+    show(find("facts"), ...facts);
+}
+
+function fillLegend() {
+    const key = (kind, text) => make("span", { class: "key" }, make("i", { class: `swatch ${kind}` }), text);
+    show(find("stage-legend"), key("met-overlapping", "overlaps"), key("met-touching", "touches"),
+        isMoving ? key("met-later", "meets at another time") : null,
+        ...meshes.map((mesh) => key(`mesh-${mesh.index}`, `the rest of ${meshLetter(mesh.index)}`)));
+}
+
+/* ---- The list ---- */
+
+/* Pairs with the face of this number, of either mesh, and with this verdict. */
+function filtered() {
+    const number = /^\s*\d+\s*$/.test(find("filter").value) ? Number(find("filter").value) : null;
+    const verdict = Number(find("verdict").value);
+    return pairs.filter((pair) => (number === null || pair.numbers.includes(number))
+        && (verdict === 0 || pair.verdict === verdict));
+}
+
+function pairName({ numbers }) {
+    return `${meshLetter(0)} ${numbers[0]} – ${meshLetter(1)} ${numbers[1]}`;
+}
+
+function rowOfPair(pair) {
+    const isChosen = pair === chosen.pair;
+    return make("tr", { class: isChosen ? "chosen" : null, "data-pair": pair.index },
+        make("td", {}, make("button", { class: "pair", "aria-pressed": String(isChosen) }, pairName(pair))),
+        make("td", {}, verdictChip(pair.verdict)),
+        pair.times ? make("td", { title: `${intervalExact(...pair.times)} s` }, intervalText(...pair.times)) : null);
+}
+
+function fillList() {
+    const { list } = panel, rows = list.slice(0, panel.rows), more = list.length - rows.length;
+    show(find("list"), ...rows.map(rowOfPair));
+    find("times-head").hidden = !data.moving;
+    find("list-said").textContent = list.length === pairs.length
+        ? counted(list.length, "pair", "pairs")
+        : `${grouped(list.length)} of ${counted(pairs.length, "pair", "pairs")}`;
+    find("more").hidden = more === 0;
+    find("more").textContent = `show ${grouped(Math.min(more, ROWS_MORE))} more of ${grouped(more)}`;
+}
+
+function applyFilter() {
+    panel.list = filtered();
+    panel.rows = ROWS_MORE;
+    fillList();
+}
+
+/* The row of the chosen pair can be seen, where the list has it. */
+function showChosenRow() {
+    const at = panel.list.indexOf(chosen.pair);
+    panel.rows = Math.max(panel.rows, at + 1);
+    fillList();
+    find("list").querySelector(".chosen")?.scrollIntoView({ block: "nearest" });
+}
+
+/* ---- When there is contact ---- */
+
+/* The chosen pair's time; else all times at which any pair is in contact. */
+function contactTimes() {
+    if (chosen.pair)
+        return [chosen.pair.times];
+    const joined = [];
+    for (const [first, last] of pairs.map((pair) => pair.times).sort((a, b) => a[0] - b[0])) {
+        const before = joined[joined.length - 1];
+        if (before && first <= before[1])
+            before[1] = Math.max(before[1], last);
+        else
+            joined.push([first, last]);
+    }
+    return joined;
+}
+
+const BANDS_MAX = 500;
+
+function drawBands() {
+    find("window").hidden = !isMoving;
+    if (!isMoving)
+        return;
+    const kind = chosen.pair ? VERDICTS[chosen.pair.verdict] : "overlapping";
+    show(find("bands"), ...contactTimes().slice(0, BANDS_MAX).map((times) =>
+        makeBand(kind, times, data.T, `in contact ${intervalText(...times)} s`)));
+}

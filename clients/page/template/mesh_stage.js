@@ -1,0 +1,180 @@
+/* The picture: the meshes at a moment of the window, the chosen pair of faces on top of them, and
+ * what of it the camera sees. While it moves it is coarse; when it rests, it is drawn again, with
+ * finer pixels. */
+
+const FINE = 2;               /* pixels of the raster for one of the page */
+const FINE_PIXELS = 6e6;      /* no more of them */
+const REST_AFTER = 150;       /* milliseconds */
+const SLOW = 90, COARSEST = 0.35;
+const NEAR_PAIR = 0.35;       /* the part of the canvas that a pair fills, of what all fills */
+const BOUND_POINTS = 3000;    /* vertices of a mesh that tell where it is */
+
+const picture = { canvas: document.createElement("canvas"), image: null, scale: 1, coarse: 1 };
+
+function chosenPair() {
+    return chosen.pair;
+}
+
+/* ---- Bounds ---- */
+
+function pointsOf(mesh, moment) {
+    const { corner, shift } = mesh, points = [];
+    const step = 3 * Math.max(1, Math.floor(corner.length / 3 / BOUND_POINTS));
+    for (let at = 0; at < corner.length; at += step)
+        points.push([0, 1, 2].map((axis) => corner[at + axis] + moment * shift[axis]));
+    return points;
+}
+
+function boundsNow() {
+    const points = meshes.flatMap((mesh) => pointsOf(mesh, stage.moment));
+    return boundsOfPoints(points.length ? points : [[0, 0, 0]]);
+}
+
+function fitAll() {
+    stage.camera.bounds = boundsNow();
+    fit(stage.camera.bounds);
+    redrawStage();
+}
+
+/* The two faces in the middle, with what is around them. How far one may zoom is still told by
+ * the whole. */
+function fitPair() {
+    const pair = chosenPair(), { camera } = stage, { fitted } = camera;
+    if (!pair)
+        return;
+    fit(boundsOfPoints([pair.a, pair.b].flatMap((id) => cornersOf(id, stage.moment))));
+    camera.zoom *= NEAR_PAIR;
+    camera.pan = camera.pan.map((pan) => pan * NEAR_PAIR);
+    camera.fitted = fitted;
+    redrawStage();
+}
+
+/* ---- Drawing ---- */
+
+function meanEdge() {
+    let sum = 0, count = 0;
+    const step = Math.max(1, Math.floor(faceCount / BOUND_POINTS));
+    for (let id = 0; id < faceCount; id += step, count++) {
+        const [a, b] = cornersOf(id, 0);
+        sum += Math.hypot(...minus(a, b));
+    }
+    return count ? sum / count : 0;
+}
+
+/* Edges are drawn where there is room between them: in pixels. */
+const EDGES_FROM = 7, EDGES_FULL = 24;
+
+function edgeStrength() {
+    const size = picture.edge * stage.camera.zoom;
+    return clamp((size - EDGES_FROM) / (EDGES_FULL - EDGES_FROM), 0, 1);
+}
+
+function sizePicture(wanted) {
+    const most = Math.sqrt(FINE_PIXELS / (stage.width * stage.height));
+    picture.scale = Math.min(wanted, most);
+    const width = Math.max(1, Math.round(stage.width * picture.scale));
+    const height = Math.max(1, Math.round(stage.height * picture.scale));
+    sizeRaster(width, height);
+    if (picture.image?.width === width && picture.image.height === height)
+        return;
+    picture.canvas.width = width;
+    picture.canvas.height = height;
+    picture.image = picture.canvas.getContext("2d").createImageData(width, height);
+}
+
+function drawMeshes(context, project, wanted) {
+    sizePicture(wanted);
+    clearRaster();
+    for (const mesh of meshes)
+        rasterise(mesh, project, picture.scale, stage.moment);
+    if (picture.shaded !== stage.moment && (isMoving || picture.shaded === null))
+        shadeFaces(stage.moment);
+    picture.shaded = stage.moment;
+    paintPixels(picture.image.data, edgeStrength());
+    picture.canvas.getContext("2d").putImageData(picture.image, 0, 0);
+    context.drawImage(picture.canvas, 0, 0, stage.width, stage.height);
+}
+
+function drawStage(wanted) {
+    const context = clearStage(), project = projection(), begin = performance.now();
+    drawGrid3D(context, project);
+    drawMeshes(context, project, wanted);
+    drawTriad(context);
+    context.lineJoin = "round";
+    drawPair(context, project);
+    if (wanted < FINE && performance.now() - begin > SLOW)
+        picture.coarse = Math.max(COARSEST, picture.coarse * 0.75);
+}
+
+const redrawStage = onceAFrame(() => {
+    drawStage(picture.coarse);
+    clearTimeout(picture.resting);
+    picture.resting = setTimeout(() => drawStage(Math.max(FINE, devicePixelRatio)), REST_AFTER);
+});
+
+/* ---- The chosen pair ---- */
+
+function strokeHalo(context, colour, width) {
+    context.strokeStyle = stage.theme.card;
+    context.lineWidth = width + 2.5;
+    context.stroke();
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.stroke();
+}
+
+function drawName(context, text, x, y, colour) {
+    context.font = "700 12px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.strokeStyle = stage.theme.card;
+    context.lineWidth = 4;
+    context.strokeText(text, x, y);
+    drawText(context, text, x, y, colour, "center");
+}
+
+/* One face's name stands above it, the other's below. */
+function drawPair(context, project) {
+    const pair = chosenPair();
+    if (!pair)
+        return;
+    [pair.a, pair.b].forEach((id, which) => {
+        const points = cornersOf(id, stage.moment).map(project);
+        const ys = points.map((p) => p[1]), x = points.reduce((sum, p) => sum + p[0], 0) / 3;
+        const colour = which ? stage.theme.link : stage.theme.ink;
+        if (!tracePolygon(context, points))
+            return;
+        context.setLineDash(which ? [6, 3] : []);
+        strokeHalo(context, colour, 2);
+        context.setLineDash([]);
+        context.strokeStyle = colour;
+        drawRing(context, points);
+        const text = `${meshLetter(which)} ${pair.numbers[which]}`;
+        drawName(context, text, x, which ? Math.max(...ys) + 18 : Math.min(...ys) - 9, colour);
+    });
+}
+
+/* ---- What is pointed at ---- */
+
+function faceBelow({ x, y }) {
+    return faceAt(Math.floor(x * picture.scale), Math.floor(y * picture.scale));
+}
+
+function point(at) {
+    const id = at ? faceBelow(at) : NO_FACE, tip = find("pointed");
+    tip.hidden = id === NO_FACE;
+    if (id === NO_FACE)
+        return;
+    const mesh = meshOfFace(id), colour = mesh.colour[id - mesh.first];
+    const count = pairsOfFace.get(id)?.length ?? 0;
+    tip.textContent = `${meshLetter(mesh.index)} ${numberOfFace(id)}`
+        + (colour ? `: ${verdictName(colour)}, ${counted(count, "pair", "pairs")}` : "");
+    tip.style.left = `${clamp(at.x + 14, 0, stage.width - 200)}px`;
+    tip.style.top = `${clamp(at.y + 14, 0, stage.height - 40)}px`;
+}
+
+/* A click on a face that meets chooses its pairs one after the other. */
+function chooseBelow(at) {
+    const list = pairsOfFace.get(faceBelow(at)) ?? [];
+    if (list.length > 0)
+        choosePair(list[(list.indexOf(chosen.pair) + 1) % list.length], false);
+}
