@@ -43,6 +43,23 @@ static void paint(const struct page *page)
         mark(page, page->colour, &meeting->pair[i], (unsigned char) meeting->pair[i].verdict);
 }
 
+/* What has a vertex in common with a face that meets lies beside it. Owned by the caller. */
+static unsigned char *roles_of(const struct mesh *mesh, const unsigned char *colour)
+{
+    unsigned char *role = allocate(mesh->face_count, 1);
+    bool *is_met = allocate(mesh->vertex_count, sizeof *is_met);
+    for (size_t f = 0; f < mesh->face_count; f++)
+        for (int corner = 0; corner < 3 && colour[f]; corner++)
+            is_met[mesh->face[f][corner]] = true;
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const unsigned *face = mesh->face[f];
+        const bool beside = is_met[face[0]] || is_met[face[1]] || is_met[face[2]];
+        role[f] = colour[f] ? MESH_THIN_MET : beside ? MESH_THIN_BESIDE : MESH_THIN_REST;
+    }
+    free(is_met);
+    return role;
+}
+
 /* The faces of the listed pairs are needed: whoever chooses a pair wants to see them. */
 static void thin(struct page *page)
 {
@@ -52,12 +69,8 @@ static void thin(struct page *page)
                                                .number = 6};
     const struct mesh_report *report = page->report;
     unsigned char *role[2] = {NULL, NULL};
-    for (int m = 0; m < page->count; m++) {
-        const size_t faces = report->mesh[m]->face_count;
-        role[m] = allocate(faces, 1);
-        for (size_t f = 0; f < faces; f++)
-            role[m][f] = page->colour[m][f] ? MESH_THIN_MET : MESH_THIN_REST;
-    }
+    for (int m = 0; m < page->count; m++)
+        role[m] = roles_of(report->mesh[m], page->colour[m]);
     for (size_t i = 0; i < page->pairs; i++)
         mark(page, role, &report->meeting->pair[i], MESH_THIN_NEEDED);
     mesh_thin(report->mesh, page->count, role, &cost, MESH_PAGE_BYTES_MAX, page->kept);

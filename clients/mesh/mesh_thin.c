@@ -7,7 +7,7 @@
 
 static const unsigned none = (unsigned) -1; /* no vertex: there are fewer (mesh.h) */
 
-/* Of the rest, and of what meets, every so manieth face. */
+/* Of each role but the last: of so many faces one is kept. */
 struct steps {
     size_t of[MESH_THIN_NEEDED];
 };
@@ -58,13 +58,22 @@ static size_t longer(size_t step, size_t used, size_t limit)
     return step + 1 + (size_t) ((times > 1 ? times - 1 : 0) * (double) step * 0.9);
 }
 
-/* The rest first; it keeps a few of its faces. */
-enum { REST_LEAST = 20000 };
+/* What is thinned next: what matters least and is not yet as thin as it may get. One face of each
+ * mesh is always kept. */
+static int next_to_thin(const struct tally *tally)
+{
+    static const size_t least[] = {
+        [MESH_THIN_REST] = 20000, [MESH_THIN_BESIDE] = 2, [MESH_THIN_MET] = 2};
+    int role = MESH_THIN_REST;
+    while (role < MESH_THIN_NEEDED && tally->of[role] <= least[role])
+        role++;
+    return role;
+}
 
 void mesh_thin(const struct mesh *const mesh[2], int count, unsigned char *const role[2],
                const struct mesh_thin_cost *cost, size_t limit, struct mesh_thinned kept[2])
 {
-    struct steps steps = {{1, 1}};
+    struct steps steps = {{1, 1, 1}};
     for (int m = 0; m < count; m++) {
         kept[m].face = allocate(mesh[m]->face_count, sizeof *kept[m].face);
         kept[m].vertex = allocate(mesh[m]->vertex_count, sizeof *kept[m].vertex);
@@ -77,11 +86,10 @@ void mesh_thin(const struct mesh *const mesh[2], int count, unsigned char *const
             keep(mesh[m], role[m], &steps, &kept[m], &tally);
             used += bytes(mesh[m], &kept[m], cost);
         }
-        const bool few = tally.of[MESH_THIN_REST] <= REST_LEAST;
-        const int which = few && tally.of[MESH_THIN_MET] > 2 ? MESH_THIN_MET : MESH_THIN_REST;
-        if (used <= limit || tally.of[which] <= 2) /* one of each mesh is always kept */
+        const int thinner = next_to_thin(&tally);
+        if (used <= limit || thinner == MESH_THIN_NEEDED)
             return;
-        steps.of[which] = longer(steps.of[which], used, limit);
+        steps.of[thinner] = longer(steps.of[thinner], used, limit);
     }
 }
 

@@ -1,13 +1,13 @@
-/* Which faces of two meshes a picture of limited size shows: those that it cannot do without; of
- * those that meet as many as have room; and of the rest, which is there to be recognised, every
- * second, third, ... one. */
+/* Which faces of two meshes a picture of limited size shows: those that it cannot do without; and
+ * of the others, those first that matter least, every one, every second, every third, ... */
 #ifndef MESH_THIN_H
 #define MESH_THIN_H
 
 #include "mesh.h"
 
-/* What a face is to the picture. */
-enum { MESH_THIN_REST, MESH_THIN_MET, MESH_THIN_NEEDED };
+/* What a face is to the picture: what is there to be recognised, what lies beside faces that meet,
+ * what meets; and what is never left out. */
+enum { MESH_THIN_REST, MESH_THIN_BESIDE, MESH_THIN_MET, MESH_THIN_NEEDED };
 
 /* What is kept of a mesh: its faces in their order, and the vertices of these alone. */
 struct mesh_thinned {

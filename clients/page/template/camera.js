@@ -5,6 +5,7 @@ const FIT = 0.88; /* part of the canvas that is filled */
 const stage = {
     width: 600, height: 400,
     azimuth: OBLIQUE.azimuth, elevation: OBLIQUE.elevation,
+    up: 2,                  /* the axis that is: z, or y where somebody says so; in 3D */
     event: null, frames: [], units: null, bounds: null, pairs: [],
     moment: 0,              /* of the window, 0 to 1 */
     camera: null,           /* {target, zoom, pan}; one for each group of bodies */
@@ -14,8 +15,24 @@ const stage = {
 
 /* ---- The camera ---- */
 
-function projection() {
+/* Turned about x so that the axis that is up becomes z. */
+function upright([x, y, z]) {
+    return stage.up === 2 ? [x, y, z] : [x, -z, y];
+}
+
+function rotation() {
     const rotate = turn(stage.units.dim, stage.azimuth, stage.elevation);
+    return (p) => rotate(upright(p));
+}
+
+/* Along an axis of the world, or oblique. */
+function viewOf(name) {
+    const others = { y: "z", z: "y" };
+    return VIEWS[stage.up === 2 ? name : others[name] ?? name];
+}
+
+function projection() {
+    const rotate = rotation();
     const { target, zoom, pan } = stage.camera;
     return (p) => {
         const [right, up, depth] = rotate(minus(p, target));
@@ -31,7 +48,7 @@ function inner() {
 
 /* Turns nothing; sees the bounds. */
 function fit(bounds) {
-    const { camera } = stage, rotate = turn(stage.units.dim, stage.azimuth, stage.elevation);
+    const { camera } = stage, rotate = rotation();
     camera.target = bounds.low.map((low, axis) => (low + bounds.high[axis]) / 2);
     const points = bounds.points.map((point) => rotate(minus(point, camera.target)));
     const ends = [0, 1].map((axis) => points.map((point) => point[axis]))

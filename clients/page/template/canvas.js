@@ -162,23 +162,28 @@ function drawAxes2D(context, step) {
 
 /* The floor below all. */
 function drawGrid3D(context, project) {
-    const { low, high } = stage.camera.bounds, { theme } = stage;
-    const size = Math.max(high[0] - low[0], high[1] - low[1]);
+    const { low, high } = stage.camera.bounds, { theme, up } = stage;
+    const axes = [0, 3 - up];
+    const size = Math.max(...axes.map((axis) => high[axis] - low[axis]));
     const step = gridStep(Math.max(size, 1e-9) / 5);
     if (step === 0 || size === 0)
         return;
     const unit = scaled(stage.units, step);
-    const ends = [0, 1].map((axis) => [low[axis] - unit / 2, high[axis] + unit / 2]);
+    const ends = axes.map((axis) => [low[axis] - unit / 2, high[axis] + unit / 2]);
     context.strokeStyle = theme.grid;
     context.lineWidth = 1;
-    for (const axis of [0, 1]) {
-        const other = ends[1 - axis];
-        for (const { place } of gridLines(axis, ends[axis][0], ends[axis][1], step)) {
-            const points = other.map((end) => axis === 0 ? [place, end] : [end, place])
-                .map((point) => project([...point, low[2]]));
+    axes.forEach((axis, k) => {
+        const other = 1 - k;
+        for (const { place } of gridLines(axis, ends[k][0], ends[k][1], step)) {
+            const points = ends[other].map((end) => {
+                const point = [...low];
+                point[axis] = place;
+                point[axes[other]] = end;
+                return project(point);
+            });
             drawLine(context, points[0], points[1]);
         }
-    }
+    });
     context.font = "11px system-ui, sans-serif";
     drawText(context, `grid ${short(step)}`, stage.width - 10, stage.height - 10, theme.dim,
         "right");
@@ -186,7 +191,7 @@ function drawGrid3D(context, project) {
 
 /* The directions of the axes, in the lower left corner. */
 function drawTriad(context) {
-    const rotate = turn(3, stage.azimuth, stage.elevation), at = [40, stage.height - 38];
+    const rotate = rotation(), at = [40, stage.height - 38];
     context.strokeStyle = stage.theme.dim;
     context.lineWidth = 1.4;
     context.font = "11px system-ui, sans-serif";

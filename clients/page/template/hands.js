@@ -37,7 +37,7 @@ function listenToStageDrag(canvas) {
 }
 
 function setDirection(name) {
-    Object.assign(stage, VIEWS[name]);
+    Object.assign(stage, viewOf(name));
     if (stage.camera)
         fit(stage.camera.bounds);
     redrawStage();

@@ -91,6 +91,8 @@ function listen() {
         panel.rows += ROWS_MORE;
         fillList();
     });
+    find("up-y").addEventListener("click", () => setUp(1));
+    find("up-z").addEventListener("click", () => setUp(2));
     find("previous").addEventListener("click", () => stepPair(-1));
     find("next").addEventListener("click", () => stepPair(1));
 }
@@ -109,12 +111,10 @@ function start() {
     fillLegend();
     fillList();
     readUnits();
-    lightFaces();
-    shadeFaces(stage.moment);
     picture.edge = meanEdge();
     measureStage();
     stage.camera = { bounds: boundsNow() };
-    fit(stage.camera.bounds);
+    setUp(2);
     find("fit-pair").disabled = true;
     for (const id of ["filter", "verdict", "previous", "next"])
         find(id).disabled = pairs.length === 0;

@@ -25,24 +25,25 @@ function leftOut(mesh) {
     return mesh.faces - shownFaces(mesh);
 }
 
+function thinnedText(mesh) {
+    const met = mesh.colour.reduce((sum, colour) => sum + (colour ? 1 : 0), 0);
+    const ofMet = met === mesh.met ? "none that meets"
+        : `${grouped(mesh.met - met)} of ${grouped(mesh.met)} that meet`;
+    return `of ${meshLetter(mesh.index)} ${grouped(leftOut(mesh))} of ${grouped(mesh.faces)}, ${ofMet}`;
+}
+
 /* Every note says what is not here. */
 function notesOf() {
     const notes = [];
     if (data.count > pairs.length)
         notes.push(`The list has the first ${grouped(pairs.length)} of ${grouped(data.count)} pairs; `
             + "the program has them all.");
-    for (const mesh of meshes.filter((of) => leftOut(of) > 0))
-        notes.push(`${grouped(leftOut(mesh))} of ${grouped(mesh.faces)} faces of `
-            + `${meshLetter(mesh.index)} are not drawn, to keep the page small: ${thinnedText(mesh)}.`);
+    const thinned = meshes.filter((mesh) => leftOut(mesh) > 0).map(thinnedText);
+    if (thinned.length > 0)
+        notes.push(`To keep the page small some faces are not drawn: ${thinned.join("; ")}.`);
     if (data.as === "tetrahedra")
         notes.push("What was asked are tetrahedra over the faces; what is drawn are the faces.");
     return notes;
-}
-
-function thinnedText(mesh) {
-    const met = mesh.colour.reduce((sum, colour) => sum + (colour ? 1 : 0), 0);
-    return met === mesh.met ? "all that meet are" : `of ${grouped(mesh.met)} that meet, `
-        + `${grouped(met)} are`;
 }
 
 function fillNotes() {
@@ -68,7 +69,7 @@ function timesOfAll() {
 function fillFacts() {
     const facts = meshes.flatMap((mesh) => fact(meshLetter(mesh.index),
         make("i", { class: `swatch mesh-${mesh.index}` }), ` ${mesh.name}: `
-        + `${grouped(mesh.met)} of ${counted(mesh.faces, "face", "faces")} in these pairs`));
+        + `${grouped(mesh.met)} of ${counted(mesh.faces, "face meets", "faces meet")}`));
     if (isSelf)
         facts.push(...fact("beside", `${counted(data.sharing_edge, "pair shares", "pairs share")} an edge, `
             + `${grouped(data.sharing_vertex)} a vertex, and nothing else: not counted above`));
@@ -107,13 +108,18 @@ function rowOfPair(pair) {
         pair.times ? make("td", { title: `${intervalExact(...pair.times)} s` }, intervalText(...pair.times)) : null);
 }
 
+function listText(count) {
+    const all = counted(pairs.length, "pair", "pairs");
+    if (pairs.length === 0)
+        return "No faces meet.";
+    return count === pairs.length ? all : `${grouped(count)} of ${all}`;
+}
+
 function fillList() {
     const { list } = panel, rows = list.slice(0, panel.rows), more = list.length - rows.length;
     show(find("list"), ...rows.map(rowOfPair));
     find("times-head").hidden = !data.moving;
-    find("list-said").textContent = list.length === pairs.length
-        ? counted(list.length, "pair", "pairs")
-        : `${grouped(list.length)} of ${counted(pairs.length, "pair", "pairs")}`;
+    find("list-said").textContent = listText(list.length);
     find("more").hidden = more === 0;
     find("more").textContent = `show ${grouped(Math.min(more, ROWS_MORE))} more of ${grouped(more)}`;
 }

@@ -24,7 +24,8 @@ function clearRaster() {
     }
 }
 
-/* A face that is too small to cover the middle of a pixel is a dot: a crowd of them is seen. */
+/* What is too small to cover the middle of a pixel: where its neighbours are not drawn, a crowd of
+ * dots is still seen as what it is. */
 function fillDot(near, ids, id, x, y, z) {
     const column = Math.floor(x), row = Math.floor(y);
     if (column < 0 || row < 0 || column >= raster.width || row >= raster.height)
@@ -36,22 +37,26 @@ function fillDot(near, ids, id, x, y, z) {
     }
 }
 
-/* Pixels from low to high whose middles are on the left side of the line from p to q; the span is
- * narrowed. e - d * x >= 0 is what this asks of x. */
-const span = { low: 0, high: 0 };
+/* The edges of a face that are not level. In a row at y the face lies between those that go down,
+ * on its right, and those that go up; each is at x + slope * (y - its y). */
+const edges = { count: 0, x: new Float64Array(3), y: new Float64Array(3),
+    slope: new Float64Array(3), down: new Uint8Array(3) };
 
-function narrow(px, py, qx, qy, y) {
-    const d = qy - py, e = d * px - (qx - px) * (py - y);
-    if (d > 0)
-        span.high = Math.min(span.high, e / d);
-    else if (d < 0)
-        span.low = Math.max(span.low, e / d);
-    else if (e < 0)
-        span.high = -Infinity;
+/* Of the edge from p to q of a face whose corners go around clockwise, as it is seen. */
+function addEdge(px, py, qx, qy) {
+    const { count } = edges;
+    if (qy === py)
+        return;
+    edges.x[count] = px;
+    edges.y[count] = py;
+    edges.slope[count] = (qx - px) / (qy - py);
+    edges.down[count] = qy > py ? 1 : 0;
+    edges.count = count + 1;
 }
 
-/* p: 9 numbers, x and y in pixels and z towards the viewer of each corner. */
-function fillFace(near, ids, id, p) {
+/* p: 9 numbers, x and y in pixels and z towards the viewer of each corner. dots: it is seen, however
+ * small it is. */
+function fillFace(near, ids, id, p, dots) {
     const { width, height } = raster;
     const ax = p[0], ay = p[1], az = p[2];
     let bx = p[3], by = p[4], bz = p[5], cx = p[6], cy = p[7], cz = p[8];
@@ -70,15 +75,22 @@ function fillFace(near, ids, id, p) {
         const zx = (uz * vy - vz * uy) / area, zy = (vz * ux - uz * vx) / area;
         const first = Math.max(0, Math.ceil(top - 0.5));
         const last = Math.min(height - 1, Math.floor(bottom - 0.5));
+        edges.count = 0;
+        addEdge(ax, ay, bx, by);
+        addEdge(bx, by, cx, cy);
+        addEdge(cx, cy, ax, ay);
         for (let row = first; row <= last; row++) {
             const y = row + 0.5;
-            span.low = left;
-            span.high = right;
-            narrow(ax, ay, bx, by, y);
-            narrow(bx, by, cx, cy, y);
-            narrow(cx, cy, ax, ay, y);
-            const from = Math.max(0, Math.ceil(span.low - 0.5));
-            const to = Math.min(width - 1, Math.floor(span.high - 0.5));
+            let low = left, high = right;
+            for (let k = 0; k < edges.count; k++) {
+                const x = edges.x[k] + edges.slope[k] * (y - edges.y[k]);
+                if (edges.down[k])
+                    high = x < high ? x : high;
+                else
+                    low = x > low ? x : low;
+            }
+            const from = Math.max(0, Math.ceil(low - 0.5));
+            const to = Math.min(width - 1, Math.floor(high - 0.5));
             let z = az + zx * (from + 0.5 - ax) + zy * (y - ay);
             for (let at = row * width + from, end = row * width + to; at <= end; at++, z += zx) {
                 drawn = true;
@@ -89,7 +101,7 @@ function fillFace(near, ids, id, p) {
             }
         }
     }
-    if (!drawn)
+    if (!drawn && dots)
         fillDot(near, ids, id, (ax + bx + cx) / 3, (ay + by + cy) / 3, (az + bz + cz) / 3);
 }
 
@@ -131,7 +143,8 @@ function rasterise(mesh, project, scale, moment) {
             corners[3 * k + 2] = seen[from + 2];
         }
         const layer = colour[f] ? MET_LAYER : mesh.index;
-        fillFace(raster.near[layer], raster.id[layer], mesh.first + f, corners);
+        const dots = layer === MET_LAYER || mesh.number !== null;
+        fillFace(raster.near[layer], raster.id[layer], mesh.first + f, corners, dots);
     }
 }
 

@@ -5,11 +5,12 @@
 const FINE = 2;               /* pixels of the raster for one of the page */
 const FINE_PIXELS = 6e6;      /* no more of them */
 const REST_AFTER = 150;       /* milliseconds */
-const SLOW = 90, COARSEST = 0.35;
+const SLOW = 90;              /* milliseconds that a picture may take */
+const COARSEST = 0.35;
 const NEAR_PAIR = 0.35;       /* the part of the canvas that a pair fills, of what all fills */
 const BOUND_POINTS = 3000;    /* vertices of a mesh that tell where it is */
 
-const picture = { canvas: document.createElement("canvas"), image: null, scale: 1, coarse: 1 };
+const picture = { canvas: document.createElement("canvas"), image: null, scale: 1, coarse: 1, shaded: null };
 
 function chosenPair() {
     return chosen.pair;
@@ -46,6 +47,17 @@ function fitPair() {
     camera.zoom *= NEAR_PAIR;
     camera.pan = camera.pan.map((pan) => pan * NEAR_PAIR);
     camera.fitted = fitted;
+    redrawStage();
+}
+
+/* The axis that is up: y is where meshes are made for pictures, z where they are for machines. */
+function setUp(axis) {
+    stage.up = axis;
+    for (const [id, of] of [["up-y", 1], ["up-z", 2]])
+        find(id).setAttribute("aria-pressed", String(of === axis));
+    lightFaces();
+    picture.shaded = null;
+    fit(stage.camera.bounds);
     redrawStage();
 }
 
@@ -87,11 +99,12 @@ function drawMeshes(context, project, wanted) {
     clearRaster();
     for (const mesh of meshes)
         rasterise(mesh, project, picture.scale, stage.moment);
-    if (picture.shaded !== stage.moment && (isMoving || picture.shaded === null))
+    if (picture.shaded !== stage.moment)
         shadeFaces(stage.moment);
     picture.shaded = stage.moment;
-    paintPixels(picture.image.data, edgeStrength());
+    paintPixels(picture.image.data, edgeStrength() * Math.min(1, picture.scale / FINE));
     picture.canvas.getContext("2d").putImageData(picture.image, 0, 0);
+    context.imageSmoothingQuality = "high";
     context.drawImage(picture.canvas, 0, 0, stage.width, stage.height);
 }
 
@@ -102,12 +115,18 @@ function drawStage(wanted) {
     drawTriad(context);
     context.lineJoin = "round";
     drawPair(context, project);
-    if (wanted < FINE && performance.now() - begin > SLOW)
-        picture.coarse = Math.max(COARSEST, picture.coarse * 0.75);
+    return performance.now() - begin;
+}
+
+/* Coarser where pictures take long, and less coarse again where they do not. */
+function drawMoving() {
+    const taken = drawStage(picture.coarse);
+    const times = taken > SLOW ? 0.75 : taken < SLOW / 3 ? 1.25 : 1;
+    picture.coarse = clamp(picture.coarse * times, COARSEST, 1);
 }
 
 const redrawStage = onceAFrame(() => {
-    drawStage(picture.coarse);
+    drawMoving();
     clearTimeout(picture.resting);
     picture.resting = setTimeout(() => drawStage(Math.max(FINE, devicePixelRatio)), REST_AFTER);
 });

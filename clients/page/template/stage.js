@@ -25,13 +25,13 @@ function isFront(points, middle, solid) {
 }
 
 /* Right, up, depth, for the sake of isFront: y grows downwards on the canvas. */
-function upright(point) {
+function standing(point) {
     return [point[0], -point[1], point[2] * stage.camera.zoom];
 }
 
 /* Faces, and how near they are. */
 function facetsOf(project, frame, outline) {
-    const points = outline.corners.map(project), middle = upright(project(outline.middle));
+    const points = outline.corners.map(project), middle = standing(project(outline.middle));
     const solid = outline.faces.length > 1;
     return outline.faces.map((face) => {
         const corners = face.map((k) => points[k]), world = face.map((k) => outline.corners[k]);
@@ -39,7 +39,7 @@ function facetsOf(project, frame, outline) {
             index: frame.index, face, points: corners, flat: stage.units.dim === 2,
             depth: corners.reduce((sum, p) => sum + p[2], 0) / corners.length,
             light: stage.units.dim === 2 ? 0.8 : lightOf(world[0], world[1], world[2]),
-            front: isFront(corners.map(upright), middle, solid),
+            front: isFront(corners.map(standing), middle, solid),
         };
     });
 }
