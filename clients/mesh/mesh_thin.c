@@ -12,7 +12,7 @@ struct steps {
     size_t of[MESH_THIN_NEEDED];
 };
 
-/* Faces that are kept, by their classes. */
+/* Faces that are kept, by their roles. */
 struct tally {
     size_t of[MESH_THIN_NEEDED + 1];
 };

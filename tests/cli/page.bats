@@ -3,35 +3,14 @@
 
 bats_require_minimum_version 1.5.0
 
-# as_chromium COLOURS PART: opens the driver; stops when it has found all. Nothing leaves the machine:
-# no name is known.
-as_chromium() {
-    local log=$BATS_FILE_TMPDIR/$1.log pid
-    : > "$log"
-    timeout 120 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-sync \
-        --disable-background-networking --disable-component-update --disable-extensions \
-        --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir="$BATS_FILE_TMPDIR/$1" \
-        --allow-file-access-from-files --enable-logging=stderr --v=0 --remote-debugging-port=0 \
-        --window-size=1500,1200 --blink-settings="preferredColorScheme=$2" \
-        "file://$BATS_FILE_TMPDIR/drive.html#$1" > "$log" 2>&1 < /dev/null 3>&- &
-    pid=$!
-    for _ in $(seq 1000); do
-        if grep -aq ' END"' "$log" || ! kill -0 $pid 2> /dev/null; then break; fi
-        sleep 0.1
-    done
-    kill $pid 2> /dev/null || true
-    wait $pid || true
-    sed -n 's/.*"FOUND \(.*\) END", source: .*/\1/p' "$log" > "$BATS_FILE_TMPDIR/$1.json"
-    # What the pages themselves have to say: errors, refusals.
-    grep -a 'CONSOLE:.*source: file:' "$log" | grep -av 'source: [^ ]*drive\.js' > "$BATS_FILE_TMPDIR/$1.console" || true
-}
+load ../page/chromium
 
 setup_file() {
     cd "$BATS_TEST_DIRNAME/../.." || return
     for page in mixed arm many crowd empty; do
         "${FMB_BUILD:-build}/make-page" $page > "$BATS_FILE_TMPDIR/$page.html"
     done
-    cp tests/page/drive.html tests/page/drive.js "$BATS_FILE_TMPDIR"
+    cp tests/page/drive.html tests/page/drive.js tests/page/tools.js "$BATS_FILE_TMPDIR"
     cd "$BATS_FILE_TMPDIR" || return
     sed 's/^start();$/start(); start;/' arm.html > changed.html
     sed 's/^"pairs":.*/"pairs":[/' arm.html > cut.html
@@ -44,27 +23,6 @@ setup_file() {
 
 setup() {
     cd "$BATS_FILE_TMPDIR" || return
-}
-
-# found PART FILTER: jq has to say true of what was found.
-found() {
-    command -v chromium > /dev/null || skip 'there is no chromium'
-    jq -e "$2" "$1.json" > /dev/null || {
-        echo "not so: $2"
-        jq -c "${2%%[^.a-zA-Z]*}" "$1.json" | head -c 3000
-        [ -s "$1.json" ] || tail -n 20 "$1.log"
-        return 1
-    }
-}
-
-data() {
-    sed -n '/^<script type="application\/json"/,/^<\/script>/p' "$1" | sed '1d;$d'
-}
-
-# hash_of FILE ELEMENT: of all between the tags, as a policy names it.
-hash_of() {
-    { echo; sed -n "/^<$2>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
-        tr a-f A-F | basenc --base16 -d | base64
 }
 
 # ---- What it holds ---------------------------------------------------------------------------

@@ -15,8 +15,10 @@ function fillHeader() {
     const title = isSelf ? `${names[0]} with itself` : `${names[0]} and ${names[1]}`;
     document.title = `Meshes: ${title}`;
     find("title").textContent = title;
-    find("said").textContent = `Faces that meet${isMoving ? `, at some time of ${short(data.T)} s` : ""}`;
-    show(find("counts"), makeCount("pairs", data.count, "pair of faces meets", "pairs of faces meet"),
+    find("said").textContent = data.moving
+        ? `Faces that meet, at some time of ${short(data.T)} s` : "Faces that meet";
+    show(find("counts"),
+        makeCount("pairs", data.count, "pair of faces meets", "pairs of faces meet"),
         makeCount("overlapping", data.overlapping, "overlaps", "overlap"),
         makeCount("touching", data.touching, "touches", "touch"));
 }
@@ -29,15 +31,16 @@ function thinnedText(mesh) {
     const met = mesh.colour.reduce((sum, colour) => sum + (colour ? 1 : 0), 0);
     const ofMet = met === mesh.met ? "none that meets"
         : `${grouped(mesh.met - met)} of ${grouped(mesh.met)} that meet`;
-    return `of ${meshLetter(mesh.index)} ${grouped(leftOut(mesh))} of ${grouped(mesh.faces)}, ${ofMet}`;
+    return `of ${meshLetter(mesh.index)} ${grouped(leftOut(mesh))} of ${grouped(mesh.faces)}, `
+        + ofMet;
 }
 
 /* Every note says what is not here. */
 function notesOf() {
     const notes = [];
     if (data.count > pairs.length)
-        notes.push(`The list has the first ${grouped(pairs.length)} of ${grouped(data.count)} pairs; `
-            + "the program has them all.");
+        notes.push(`The list has the first ${grouped(pairs.length)} of ${grouped(data.count)} `
+            + "pairs; the program tells them all.");
     const thinned = meshes.filter((mesh) => leftOut(mesh) > 0).map(thinnedText);
     if (thinned.length > 0)
         notes.push(`To keep the page small some faces are not drawn: ${thinned.join("; ")}.`);
@@ -71,8 +74,9 @@ function fillFacts() {
         make("i", { class: `swatch mesh-${mesh.index}` }), ` ${mesh.name}: `
         + `${grouped(mesh.met)} of ${counted(mesh.faces, "face meets", "faces meet")}`));
     if (isSelf)
-        facts.push(...fact("beside", `${counted(data.sharing_edge, "pair shares", "pairs share")} an edge, `
-            + `${grouped(data.sharing_vertex)} a vertex, and nothing else: not counted above`));
+        facts.push(...fact("beside", `${counted(data.sharing_edge, "pair shares", "pairs share")} `
+            + `an edge, ${grouped(data.sharing_vertex)} a vertex, and nothing else: not counted `
+            + "above"));
     if (data.moving && pairs.length > 0)
         facts.push(...fact("contact", `${intervalText(...timesOfAll())} s, of a window of `
             + `${short(data.T)} s`));
@@ -80,10 +84,11 @@ function fillFacts() {
 }
 
 function fillLegend() {
-    const key = (kind, text) => make("span", { class: "key" }, make("i", { class: `swatch ${kind}` }), text);
+    const key = (kind, text) =>
+        make("span", { class: "key" }, make("i", { class: `swatch ${kind}` }), text);
     show(find("stage-legend"), key("met-overlapping", "overlaps"), key("met-touching", "touches"),
         isMoving ? key("met-later", "meets at another time") : null,
-        ...meshes.map((mesh) => key(`mesh-${mesh.index}`, `the rest of ${meshLetter(mesh.index)}`)));
+        ...meshes.map(({ index }) => key(`mesh-${index}`, `the rest of ${meshLetter(index)}`)));
 }
 
 /* ---- The list ---- */
@@ -101,11 +106,12 @@ function pairName({ numbers }) {
 }
 
 function rowOfPair(pair) {
-    const isChosen = pair === chosen.pair;
-    return make("tr", { class: isChosen ? "chosen" : null, "data-pair": pair.index },
-        make("td", {}, make("button", { class: "pair", "aria-pressed": String(isChosen) }, pairName(pair))),
-        make("td", {}, verdictChip(pair.verdict)),
-        pair.times ? make("td", { title: `${intervalExact(...pair.times)} s` }, intervalText(...pair.times)) : null);
+    const { index, verdict, times } = pair, isChosen = pair === chosen.pair;
+    const pressed = { class: "pair", "aria-pressed": String(isChosen) };
+    return make("tr", { class: isChosen ? "chosen" : null, "data-pair": index },
+        make("td", {}, make("button", pressed, pairName(pair))),
+        make("td", {}, verdictChip(verdict)),
+        times && make("td", { title: `${intervalExact(...times)} s` }, intervalText(...times)));
 }
 
 function listText(count) {
@@ -121,7 +127,7 @@ function fillList() {
     find("times-head").hidden = !data.moving;
     find("list-said").textContent = listText(list.length);
     find("more").hidden = more === 0;
-    find("more").textContent = `show ${grouped(Math.min(more, ROWS_MORE))} more of ${grouped(more)}`;
+    find("more").textContent = `show ${Math.min(more, ROWS_MORE)} more of ${grouped(more)}`;
 }
 
 function applyFilter() {

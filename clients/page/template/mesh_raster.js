@@ -39,8 +39,10 @@ function fillDot(near, ids, id, x, y, z) {
 
 /* The edges of a face that are not level. In a row at y the face lies between those that go down,
  * on its right, and those that go up; each is at x + slope * (y - its y). */
-const edges = { count: 0, x: new Float64Array(3), y: new Float64Array(3),
-    slope: new Float64Array(3), down: new Uint8Array(3) };
+const edges = {
+    count: 0, x: new Float64Array(3), y: new Float64Array(3), slope: new Float64Array(3),
+    down: new Uint8Array(3),
+};
 
 /* Of the edge from p to q of a face whose corners go around clockwise, as it is seen. */
 function addEdge(px, py, qx, qy) {
@@ -54,55 +56,71 @@ function addEdge(px, py, qx, qy) {
     edges.count = count + 1;
 }
 
-/* p: 9 numbers, x and y in pixels and z towards the viewer of each corner. dots: it is seen, however
- * small it is. */
-function fillFace(near, ids, id, p, dots) {
+/* The change of depth from pixel to pixel: across, and down. ux and uy are the way from the first
+ * corner to the second, vx and vy that to the third, area is twice the face's. */
+function slopes(p, ux, uy, vx, vy, area) {
+    const uz = p[5] - p[2], vz = p[8] - p[2];
+    return [(uz * vy - vz * uy) / area, (vz * ux - uz * vx) / area];
+}
+
+/* True where the face covers the middle of a pixel. */
+function fillRows(near, ids, id, p, [across, down]) {
     const { width, height } = raster;
-    const ax = p[0], ay = p[1], az = p[2];
-    let bx = p[3], by = p[4], bz = p[5], cx = p[6], cy = p[7], cz = p[8];
-    const left = Math.min(ax, bx, cx), right = Math.max(ax, bx, cx);
-    const top = Math.min(ay, by, cy), bottom = Math.max(ay, by, cy);
-    if (!(right >= 0 && left <= width && bottom >= 0 && top <= height))
-        return;
-    let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-    if (area < 0) {
-        [bx, by, bz, cx, cy, cz] = [cx, cy, cz, bx, by, bz];
-        area = -area;
-    }
+    const left = Math.min(p[0], p[3], p[6]), right = Math.max(p[0], p[3], p[6]);
+    const top = Math.max(0, Math.ceil(Math.min(p[1], p[4], p[7]) - 0.5));
+    const bottom = Math.min(height - 1, Math.floor(Math.max(p[1], p[4], p[7]) - 0.5));
     let drawn = false;
-    if (area > 1e-9) {
-        const ux = bx - ax, uy = by - ay, uz = bz - az, vx = cx - ax, vy = cy - ay, vz = cz - az;
-        const zx = (uz * vy - vz * uy) / area, zy = (vz * ux - uz * vx) / area;
-        const first = Math.max(0, Math.ceil(top - 0.5));
-        const last = Math.min(height - 1, Math.floor(bottom - 0.5));
-        edges.count = 0;
-        addEdge(ax, ay, bx, by);
-        addEdge(bx, by, cx, cy);
-        addEdge(cx, cy, ax, ay);
-        for (let row = first; row <= last; row++) {
-            const y = row + 0.5;
-            let low = left, high = right;
-            for (let k = 0; k < edges.count; k++) {
-                const x = edges.x[k] + edges.slope[k] * (y - edges.y[k]);
-                if (edges.down[k])
-                    high = x < high ? x : high;
-                else
-                    low = x > low ? x : low;
-            }
-            const from = Math.max(0, Math.ceil(low - 0.5));
-            const to = Math.min(width - 1, Math.floor(high - 0.5));
-            let z = az + zx * (from + 0.5 - ax) + zy * (y - ay);
-            for (let at = row * width + from, end = row * width + to; at <= end; at++, z += zx) {
-                drawn = true;
-                if (z > near[at]) {
-                    near[at] = z;
-                    ids[at] = id;
-                }
+    for (let row = top; row <= bottom; row++) {
+        const y = row + 0.5;
+        let low = left, high = right;
+        for (let k = 0; k < edges.count; k++) {
+            const x = edges.x[k] + edges.slope[k] * (y - edges.y[k]);
+            if (edges.down[k])
+                high = x < high ? x : high;
+            else
+                low = x > low ? x : low;
+        }
+        const from = Math.max(0, Math.ceil(low - 0.5));
+        const to = Math.min(width - 1, Math.floor(high - 0.5));
+        let z = p[2] + across * (from + 0.5 - p[0]) + down * (y - p[1]);
+        for (let at = row * width + from, end = row * width + to; at <= end; at++, z += across) {
+            drawn = true;
+            if (z > near[at]) {
+                near[at] = z;
+                ids[at] = id;
             }
         }
     }
+    return drawn;
+}
+
+function isOutside(p) {
+    const { width, height } = raster;
+    return !(Math.max(p[0], p[3], p[6]) >= 0 && Math.min(p[0], p[3], p[6]) <= width
+        && Math.max(p[1], p[4], p[7]) >= 0 && Math.min(p[1], p[4], p[7]) <= height);
+}
+
+const FLAT = 1e-9; /* square pixels */
+
+/* p: 9 numbers, x and y in pixels and z towards the viewer of each corner. dots: it is seen,
+ * however small it is. */
+function fillFace(near, ids, id, p, dots) {
+    if (isOutside(p))
+        return;
+    const ux = p[3] - p[0], uy = p[4] - p[1], vx = p[6] - p[0], vy = p[7] - p[1];
+    const area = ux * vy - uy * vx;
+    let drawn = false;
+    if (Math.abs(area) > FLAT) {
+        const second = area > 0 ? 3 : 6, third = 9 - second; /* clockwise */
+        edges.count = 0;
+        addEdge(p[0], p[1], p[second], p[second + 1]);
+        addEdge(p[second], p[second + 1], p[third], p[third + 1]);
+        addEdge(p[third], p[third + 1], p[0], p[1]);
+        drawn = fillRows(near, ids, id, p, slopes(p, ux, uy, vx, vy, area));
+    }
     if (!drawn && dots)
-        fillDot(near, ids, id, (ax + bx + cx) / 3, (ay + by + cy) / 3, (az + bz + cz) / 3);
+        fillDot(near, ids, id, (p[0] + p[3] + p[6]) / 3, (p[1] + p[4] + p[7]) / 3,
+            (p[2] + p[5] + p[8]) / 3);
 }
 
 /* Where the mesh's vertices are, in pixels of the raster: rows of a matrix with a shift. */

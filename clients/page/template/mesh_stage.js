@@ -10,7 +10,13 @@ const COARSEST = 0.35;
 const NEAR_PAIR = 0.35;       /* the part of the canvas that a pair fills, of what all fills */
 const BOUND_POINTS = 3000;    /* vertices of a mesh that tell where it is */
 
-const picture = { canvas: document.createElement("canvas"), image: null, scale: 1, coarse: 1, shaded: null };
+const picture = {
+    canvas: document.createElement("canvas"), image: null, /* the raster's pixels */
+    scale: 1, coarse: 1,    /* pixels for one of the page: now, and while it moves */
+    shaded: null,           /* the moment that the colours of faces are of */
+    edge: 0,                /* how long edges are */
+    resting: 0,             /* the timer */
+};
 
 function chosenPair() {
     return chosen.pair;

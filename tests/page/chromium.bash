@@ -1,0 +1,45 @@
+# For suites that have Chromium open pages; without Chromium their tests are skipped.
+
+# as_chromium PART COLOURS [PAGE]: opens the driver; stops when it has found all. Nothing leaves the machine:
+# no name is known.
+as_chromium() {
+    local log=$BATS_FILE_TMPDIR/$1.log pid
+    : > "$log"
+    timeout 120 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-sync \
+        --disable-background-networking --disable-component-update --disable-extensions \
+        --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir="$BATS_FILE_TMPDIR/$1" \
+        --allow-file-access-from-files --enable-logging=stderr --v=0 --remote-debugging-port=0 \
+        --window-size=1500,1200 --blink-settings="preferredColorScheme=$2" \
+        "file://$BATS_FILE_TMPDIR/${3:-drive.html}#$1" > "$log" 2>&1 < /dev/null 3>&- &
+    pid=$!
+    for _ in $(seq 1000); do
+        if grep -aq ' END"' "$log" || ! kill -0 $pid 2> /dev/null; then break; fi
+        sleep 0.1
+    done
+    kill $pid 2> /dev/null || true
+    wait $pid || true
+    sed -n 's/.*"FOUND \(.*\) END", source: .*/\1/p' "$log" > "$BATS_FILE_TMPDIR/$1.json"
+    # What the pages themselves have to say: errors, refusals.
+    grep -a 'CONSOLE:.*source: file:' "$log" | grep -av 'source: [^ ]*\(drive\|drive_mesh\|tools\)\.js' > "$BATS_FILE_TMPDIR/$1.console" || true
+}
+
+# found PART FILTER: jq has to say true of what was found.
+found() {
+    command -v chromium > /dev/null || skip 'there is no chromium'
+    jq -e "$2" "$1.json" > /dev/null || {
+        echo "not so: $2"
+        jq -c "${2%%[^.a-zA-Z]*}" "$1.json" | head -c 3000
+        [ -s "$1.json" ] || tail -n 20 "$1.log"
+        return 1
+    }
+}
+
+data() {
+    sed -n '/^<script type="application\/json"/,/^<\/script>/p' "$1" | sed '1d;$d'
+}
+
+# hash_of FILE ELEMENT: of all between the tags, as a policy names it.
+hash_of() {
+    { echo; sed -n "/^<$2>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
+        tr a-f A-F | basenc --base16 -d | base64
+}

@@ -1,0 +1,96 @@
+/* What drivers of pages need: they open pages one after the other in a frame, do in each what a reader
+ * does, and write what they found as JSON to the console. The page is another document, with a
+ * policy of its own, that knows nothing of this. */
+"use strict";
+
+const frame = document.getElementById("page");
+const found = {};
+let page, view;
+
+function drawn() {
+    return new Promise((done) => view.requestAnimationFrame(() => setTimeout(done)));
+}
+
+async function open(name) {
+    await new Promise((done) => {
+        frame.onload = done;
+        frame.src = name;
+    });
+    page = frame.contentDocument;
+    view = frame.contentWindow;
+    await drawn();
+}
+
+function one(selector) {
+    const element = page.querySelector(selector);
+    if (!element)
+        throw new Error(`there is no ${selector}`);
+    return element;
+}
+
+function all(selector) {
+    return [...page.querySelectorAll(selector)];
+}
+
+function text(selector) {
+    return one(selector).textContent;
+}
+
+function texts(selector) {
+    return all(selector).map((element) => element.textContent);
+}
+
+/* Presses, moves if asked to, and lets go; x and y: parts of the element's size. */
+async function mouse(element, x = 0.5, y = 0.5, move = null) {
+    const box = element.getBoundingClientRect();
+    const at = { x: box.left + box.width * x, y: box.top + box.height * y };
+    const send = (type, Kind) => element.dispatchEvent(new Kind(type,
+        { bubbles: true, cancelable: true, clientX: at.x, clientY: at.y, button: 0, buttons: 1 }));
+    send("pointerdown", view.PointerEvent);
+    if (move) {
+        at.x += move[0];
+        at.y += move[1];
+        send("pointermove", view.PointerEvent);
+    }
+    send("pointerup", view.PointerEvent);
+    send("click", view.MouseEvent);
+    await drawn();
+}
+
+async function wheel(element, deltaY) {
+    const box = element.getBoundingClientRect();
+    element.dispatchEvent(new view.WheelEvent("wheel", {
+        bubbles: true, cancelable: true, deltaY,
+        clientX: box.left + box.width / 2, clientY: box.top + box.height / 2,
+    }));
+    await drawn();
+}
+
+async function press(key, shiftKey = false) {
+    page.body.dispatchEvent(new view.KeyboardEvent("keydown",
+        { key, shiftKey, bubbles: true, cancelable: true }));
+    await drawn();
+}
+
+async function type(selector, value, event = "input") {
+    one(selector).value = value;
+    one(selector).dispatchEvent(new view.Event(event, { bubbles: true }));
+    await drawn();
+}
+
+function pixels() {
+    const canvas = one("#stage");
+    return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+}
+
+async function drive(parts) {
+    const all = async () => {
+        for (const part of parts)
+            await part();
+        found.done = true;
+    };
+    await all().catch((error) => {
+        found.error = String(error.stack ?? error);
+    });
+    console.log(`FOUND ${JSON.stringify(found)} END`);
+}
