@@ -1,7 +1,7 @@
 # For suites that have Chromium open pages; without Chromium their tests are skipped.
 
-# as_chromium PART COLOURS [PAGE]: opens the driver; stops when it has found all. Nothing leaves the machine:
-# no name is known.
+# as_chromium PART COLOURS [DRIVER]: opens the driver; stops when it has found all. Nothing leaves the
+# machine: no name is known.
 as_chromium() {
     local log=$BATS_FILE_TMPDIR/$1.log pid
     : > "$log"
@@ -42,4 +42,21 @@ data() {
 hash_of() {
     { echo; sed -n "/^<$2>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
         tr a-f A-F | basenc --base16 -d | base64
+}
+
+# is_alone FILE: it refers to nothing else.
+is_alone() {
+    sed '/^<script type="application\/json"/,/^<\/script>/d' "$1" > rest
+    [ "$(grep -c '<script>' rest)" = 1 ] || return
+    [ "$(tail -n 1 rest)" = '</html>' ] || return
+    run grep -noE '(src|href|action)="[^#"]*[^#",:a-z]|@import|url\(| on[a-z]+="|style="' rest
+    [ "$status" = 1 ] || return
+    run grep -noE 'https?://[^ "]*' rest
+    [ "$(echo "$output" | sed 's/^[0-9]*://' | sort -u)" = 'http://www.w3.org/2000/svg' ]
+}
+
+# has_policy FILE: its own script and style may run, and nothing else.
+has_policy() {
+    policy=$(grep -o 'Content-Security-Policy" content="[^"]*"' "$1")
+    [[ $policy == *"default-src 'none'; script-src 'sha256-$(hash_of "$1" script)'; style-src 'sha256-$(hash_of "$1" style)'; img-src data:;"* ]]
 }

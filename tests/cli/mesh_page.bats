@@ -1,0 +1,193 @@
+# The page of meshes that meet: what it holds, and what a browser shows of it. Chromium opens it,
+# clicks and presses keys in it (tests/page/drive_mesh.js); without Chromium these tests are skipped.
+
+bats_require_minimum_version 1.5.0
+
+load ../page/chromium
+
+hostile='</script><script>throw 1;<!--'
+
+# tetrahedron FILE: four faces, at the origin.
+tetrahedron() {
+    printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' '0 0 1' > "$1"
+    printf 'f %s\n' '1 3 2' '1 2 4' '1 4 3' '2 3 4' >> "$1"
+}
+
+# page NAME ARGUMENTS: NAME.html, and what the program says as JSON in NAME.told.
+page() {
+    "$fmb" mesh --json --html "$1.html" "${@:2}" > "$1.told"
+}
+
+setup_file() {
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    local build=${FMB_BUILD:-build}
+    fmb=$PWD/$build/fmb
+    "$build/mesh/make-mesh" --faces 200 "$BATS_FILE_TMPDIR/a.ply"
+    "$build/mesh/make-mesh" --faces 200 --seed 2 "$BATS_FILE_TMPDIR/b.ply"
+    "$build/mesh/make-mesh" --faces 2000 "$BATS_FILE_TMPDIR/same.ply"
+    "$build/mesh/make-mesh" --faces 900000 --format ply-le "$BATS_FILE_TMPDIR/fine.ply"
+    cp tests/page/drive_mesh.html tests/page/drive_mesh.js tests/page/tools.js "$BATS_FILE_TMPDIR"
+    cd "$BATS_FILE_TMPDIR" || return
+    mkdir -p "x$hostile"
+    tetrahedron corner.obj
+    tetrahedron "x$hostile/\"q'.obj"
+    printf 'ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n' > none.ply
+    page small a.ply b.ply --translate 1.3,0.4,0.2
+    page touching corner.obj "x$hostile/\"q'.obj" --translate 1,0,0
+    page moving a.ply --velocity 1,0,0 b.ply --translate 2.6,0.4,0.2
+    page self --self a.ply
+    page empty none.ply none.ply
+    page large same.ply same.ply
+    page thin fine.ply b.ply --translate 1.3,0.4,0.2
+    page huge --scale 1e300 a.ply b.ply --translate 1.3e300,0,0
+    page tiny --scale 1e-300 a.ply b.ply --translate 1.3e-300,0,0
+    command -v chromium > /dev/null || return 0
+    as_chromium meshes 1 drive_mesh.html
+}
+
+setup() {
+    fmb=$(realpath "$BATS_TEST_DIRNAME/../../${FMB_BUILD:-build}/fmb")
+    cd "$BATS_FILE_TMPDIR" || return
+}
+
+# ---- What it holds ---------------------------------------------------------------------------
+
+@test "one file that refers to nothing else, and lets nothing else run" {
+    for page in small touching moving self empty large thin; do
+        data $page.html | jq -e '.pairs | type == "array"' > /dev/null
+        is_alone $page.html
+    done
+    has_policy small.html
+}
+
+@test "hostile names end neither script nor page" {
+    [ "$(grep -c '</script>' touching.html)" = 2 ]
+    [ "$(grep -c '<!--' touching.html)" = 0 ]
+    data touching.html | jq -e --arg name "x$hostile/\"q'.obj" '.meshes[1].name == $name'
+}
+
+@test "the pairs are those that the program tells" {
+    for page in small touching moving; do
+        data $page.html | jq -c '[.count, .overlapping, .touching, .pairs]' > held
+        jq -c '[.overlapping + .touching, .overlapping, .touching,
+            [.pairs[] | [.[0], .[1], (if .[2] == "overlapping" then 3 else 2 end)] + (.[3] // [])]]' \
+            $page.told > told
+        [ "$(jq '.[0]' told)" -gt 0 ]
+        diff told held
+    done
+}
+
+# numbers PAGE WHICH MEMBER FORMAT: what is packed, a row each.
+numbers() {
+    data "$1.html" | jq -r ".meshes[$2].$3" | base64 -d | od -An -v -t "$4" -w"$5" |
+        sed 's/^ *//; s/  */ /g'
+}
+
+@test "faces, their colours and their vertices are there, rounded" {
+    [ "$(numbers small 1 face u4 12 | wc -l)" = 200 ]
+    data small.html | jq -r '.pairs[][1]' | sort -un > met
+    numbers small 1 colour u1 1 | awk '$1 == 3 { print NR - 1 }' > coloured
+    diff met coloured
+    # The third corner of the last face, from the file and from the page.
+    face=$(tail -n 1 b.ply | cut -d ' ' -f 4)
+    vertex=$(sed '1,/end_header/d' b.ply | sed -n "$((face + 1))p")
+    place=$(numbers small 1 face u4 12 | tail -n 1 | cut -d ' ' -f 3)
+    numbers small 1 corner f4 12 | sed -n "$((place + 1))p" > corner
+    data small.html | jq -r '"\(.centre | join(" ")) \(.exponent)"' >> corner
+    echo "$vertex" | awk '
+        NR == FNR && FNR == 1 { for (i = 1; i <= 3; i++) at[i] = $i; next }
+        NR == FNR { for (i = 1; i <= 3; i++) at[i] = $i + 2 ^ $4 * at[i]; next }
+        { split("1.3 0.4 0.2", by)
+          for (i = 1; i <= 3; i++) { off = at[i] - $i - by[i]; if (off > 1e-6 || off < -1e-6) exit 1 } }' corner -
+}
+
+@test "what is left out is counted, and the page stays small" {
+    data large.html | jq -e '.count > 20000 and (.pairs | length) == 20000'
+    [ "$(stat -c %s thin.html)" -lt $((16 << 20)) ]
+    [ "$(stat -c %s thin.html)" -gt $((8 << 20)) ]
+    numbers thin 0 number u4 4 > kept
+    sort -nuc kept
+    [ "$(wc -l < kept)" -lt 900000 ]
+    data thin.html | jq -r '.pairs[][0]' | sort -nu > met
+    [ "$(wc -l < met)" -gt 100 ]
+    # Each face that meets is among them.
+    [ -z "$(awk 'NR == FNR { kept[$1] = 1; next } !kept[$1]' kept met)" ]
+    data thin.html | jq -e '.meshes[1].number == null'
+}
+
+@test "a file that cannot be written is said" {
+    run -1 --separate-stderr "$fmb" mesh --html missing/x.html a.ply b.ply
+    [[ $stderr == "fmb: missing/x.html: "* ]]
+}
+
+# ---- In a browser ----------------------------------------------------------------------------
+
+@test "it opens, and nothing goes wrong in it" {
+    found meshes '.done and .error == null'
+    [ ! -s meshes.console ] || {
+        cat meshes.console
+        return 1
+    }
+    found meshes '.opened | .scripts == 2 and .resources == 0 and .title == "a.ply and b.ply"'
+}
+
+# counts PAGE: as they stand in the head of a page.
+counts() {
+    jq -c '[.overlapping + .touching, .overlapping, .touching | tostring]' "$1.told"
+}
+
+@test "the counts are those that the program tells" {
+    found meshes ".opened.counts == $(counts small) and .touch.counts == $(counts touching)"
+    found meshes ".moving.counts == $(counts moving) and .self.counts == $(counts self)"
+    found meshes ".opened.facts == \"A a.ply: $(jq .faces_a small.told) of 200 faces meet\" +
+        \"B b.ply: $(jq .faces_b small.told) of 200 faces meet\" or (.opened.facts | error)"
+}
+
+@test "overlapping faces are red, touching ones yellow, others of the second mesh blue" {
+    found meshes '.opened | .drawn > 50000 and .red > 3000 and .yellow < 50 and .blue > 10000'
+    found meshes '.touch | .yellow > 10000 and .red < 50 and .notes == []'
+    found meshes '.self | .red < 50 and .yellow < 50 and .drawn > 50000'
+}
+
+@test "a click on a pair chooses it, and shows it near" {
+    name=$(jq -r '.pairs[2] | "A \(.[0]) – B \(.[1])"' small.told)
+    next=$(jq -r '.pairs[3] | "A \(.[0]) – B \(.[1])"' small.told)
+    found meshes ".clicked | .row == [\"$name\"] and .said == \"$name: overlapping\""
+    found meshes '.clicked.red > .opened.red and .clicked.sum != .opened.sum'
+    found meshes ".next.row == [\"$next\"] and .none.row == [] and .back.sum == .opened.sum"
+    face=$(jq -r '.pairs[2][0] | "A \(.): overlapping, "' small.told)
+    found meshes ".pointed | any(startswith(\"$face\"))"
+}
+
+@test "the mouse, the wheel and keys turn it; y may be up" {
+    found meshes '[.opened, .turned, .zoomed, .keys, .up] | map(.sum) | unique | length == 5'
+    found meshes '.zoomed.blue > 1.2 * .turned.blue'
+}
+
+@test "the list: by face, by verdict" {
+    found meshes '.filtered.names | length > 0 and all(test("\\b3\\b"))'
+    count=$(jq '[.pairs[] | select(.[0] == 3 or .[1] == 3)] | length' small.told)
+    found meshes ".filtered.said == \"$count of $(jq '.pairs | length' small.told) pairs\""
+    found meshes '.touching == 0 and .all == (.opened.rows)'
+}
+
+@test "a hostile name is shown as it is" {
+    found meshes ".touch.title == \"corner.obj and \\\"q'.obj\" and (.touch.facts | contains(\"x$hostile/\"))"
+}
+
+@test "time: the slider moves a mesh, and the faces in contact are red" {
+    found meshes '.moving.moment | startswith("0.731051 s of 1 s")'
+    found meshes '.moving.bands == 1 and .before.moment == "0 s of 1 s" and .after.moment == "1 s of 1 s"'
+    found meshes '.before.red < 50 and .after.red > 3000 and .before.sum != .after.sum'
+    first=$(jq -r '.pairs[0][3][0]' moving.told)
+    found meshes ".movingPair.moment | startswith(\"$(printf %.6g "$first") s\")"
+    found meshes ".movingPair.times | startswith(\"$(printf %.6g "$first") .. \")"
+    found meshes '.playing == "❚❚"'
+}
+
+@test "much, nothing, and numbers of all sizes" {
+    found meshes '.large | .notes == ["The list has the first 20,000 of " + .counts[0]
+        + " pairs; the program tells them all."] and .rows == 100 and .then == 200 and .red > 10000'
+    found meshes '.empty | .counts == ["0", "0", "0"] and .list == "No faces meet." and .rows == 0'
+    found meshes '[.huge, .tiny] | all(.drawn > 50000 and .red > 3000)'
+}
