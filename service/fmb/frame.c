@@ -183,12 +183,13 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *components, size
     return FMB_OK;
 }
 
-/* The error of a difference of doubles is a double (Knuth, The Art of Computer Programming, volume
- * 2, 4.2.2, theorem B). */
+/* The error of a difference of doubles is a double, and what is computed here is exact: the larger
+ * of them and the difference are near each other, or the smaller one is what they differ by
+ * (Dekker, A floating-point technique for extending the available precision, 1971). Nothing is
+ * beyond the doubles where the difference is not, be they among the largest. */
 static double difference_error(double x, double y, double difference)
 {
-    const double part = difference - x;
-    return (x - (difference - part)) - (y + part);
+    return fabs(x) >= fabs(y) ? (x - difference) - y : x - (difference + y);
 }
 
 enum fmb_status fmb_body_make_triangle(const double vertex[3][FMB_DIM_MAX], struct fmb_body *out)

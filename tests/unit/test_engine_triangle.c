@@ -535,12 +535,433 @@ static void batches_leave_open_what_is_rounded_or_are_right(void **state)
     assert_true(open > 0 && open < count * CROWD_PAIRS / 2);
 }
 
+/* ---- Boxes ---- */
+
+static void a_box_holds_all_vertices_at_all_times(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct drawn drawn;
+    mpq_t way, at, time;
+    draw_begin(&draw, "a_box_holds_all_vertices_at_all_times");
+    mpq_inits(way, at, time, NULL);
+    for (long n = draw_sample(20000); n > 0; n--) {
+        struct asked asked;
+        struct fmb_prepared prepared;
+        double box[2][FMB_DIM_MAX];
+        draw_pair(&draw, draw_coin(&draw), &drawn);
+        set_asked(&drawn, draw_int(&draw, 0, TURNS / 2 - 1), &asked);
+        assert_int_equal(fmb_prepare(&asked.pair.a, &prepared), FMB_OK);
+        fmb_box_of(&prepared, drawn.duration, box);
+        const struct triangle *triangle = &drawn.triangle[0];
+        for (int k = 0; k < 18; k++) { /* a corner, an axis, an end of the window */
+            const int corner = k % 3, axis = k / 3 % 3;
+            mpq_set_d(way, triangle->moving ? triangle->velocity[axis] : 0);
+            mpq_set_d(time, k / 9 ? drawn.duration : 0);
+            mpq_mul(way, way, time);
+            mpq_set_d(at, triangle->vertex[corner][axis]);
+            mpq_add(at, at, way);
+            if (!is_beyond(box[0][axis], -1, at) || !is_beyond(box[1][axis], 1, at))
+                fail_of(&drawn, k, "box", axis, corner);
+        }
+    }
+    mpq_clears(way, at, time, NULL);
+}
+
+/* No larger than the rounding of its numbers makes it. */
+static void a_box_is_tight(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "a_box_is_tight");
+    for (long n = draw_sample(20000); n > 0; n--) {
+        struct drawn drawn;
+        struct asked asked;
+        struct fmb_prepared prepared;
+        double box[2][FMB_DIM_MAX];
+        draw_pair(&draw, false, &drawn);
+        set_asked(&drawn, 0, &asked);
+        assert_int_equal(fmb_prepare(&asked.pair.a, &prepared), FMB_OK);
+        fmb_box_of(&prepared, 1, box);
+        for (int axis = 0; axis < 3; axis++) {
+            const double(*v)[3] = (const double(*)[3]) drawn.triangle[0].vertex;
+            const double least = fmin(v[0][axis], fmin(v[1][axis], v[2][axis]));
+            const double most = fmax(v[0][axis], fmax(v[1][axis], v[2][axis]));
+            const double size = fmax(fabs(least), fabs(most));
+            const double slack = asked.body[0].rounded ? 4 * 0x1p-52 * size + 0x1p-1073 : 0;
+            assert_true(box[0][axis] >= least - slack && box[1][axis] <= most + slack);
+        }
+    }
+}
+
+/* ---- Trees of boxes ---- */
+
+/* Boxes that stand in an array, or are made of triangles. */
+struct world {
+    size_t count;
+    double duration;
+    bool moving;
+    double velocity[3];
+    double (*box)[2][FMB_DIM_MAX];
+    struct triangle *triangle;
+    struct fmb_prepared *prepared;
+    struct fmb_tree boxes, frames;
+    void *memory[2];
+};
+
+static void put_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const struct world *world = context;
+    assert_true(index < world->count);
+    memcpy(box, world->box[index], sizeof world->box[index]);
+}
+
+static void *room(size_t count, size_t size)
+{
+    void *memory = calloc(count + 1, size);
+    assert_non_null(memory);
+    return memory;
+}
+
+/* The triangles have one velocity, and so do their boxes. */
+static void open_world(struct draw *draw, point *pool, size_t count, double duration,
+                       struct world *out)
+{
+    struct triangle motion = {.moving = draw_coin(draw)};
+    if (motion.moving)
+        draw_motion(draw, pool, &motion);
+    *out = (struct world){.count = count, .duration = duration, .moving = motion.moving};
+    memcpy(out->velocity, motion.velocity, sizeof out->velocity);
+    out->box = room(count, sizeof *out->box);
+    out->triangle = room(count, sizeof *out->triangle);
+    out->prepared = room(count, sizeof *out->prepared);
+    for (size_t i = 0; i < count; i++) {
+        struct fmb_body body;
+        struct fmb_frame frame;
+        struct triangle *triangle = &out->triangle[i];
+        draw_triangle(draw, pool, triangle);
+        triangle->moving = motion.moving;
+        memcpy(triangle->velocity, motion.velocity, sizeof motion.velocity);
+        set_frame(triangle, 0, &body, &frame);
+        assert_int_equal(fmb_prepare(&frame, &out->prepared[i]), FMB_OK);
+        for (int axis = 0; axis < 3; axis++) {
+            const double(*v)[3] = (const double(*)[3]) triangle->vertex;
+            out->box[i][0][axis] = fmin(v[0][axis], fmin(v[1][axis], v[2][axis]));
+            out->box[i][1][axis] = fmax(v[0][axis], fmax(v[1][axis], v[2][axis]));
+        }
+        if (draw_int(draw, 0, 30) == 0)
+            out->box[i][0][draw_int(draw, 0, 2)] = -INFINITY;
+        if (draw_int(draw, 0, 30) == 0)
+            out->box[i][1][draw_int(draw, 0, 2)] = INFINITY;
+    }
+    const struct fmb_boxes boxes = {3, put_box, out, motion.moving ? out->velocity : NULL};
+    for (int t = 0; t < 2; t++)
+        out->memory[t] = room(1, fmb_tree_bytes(count));
+    assert_int_equal(fmb_tree_build_boxes(&boxes, count, duration, out->memory[0], &out->boxes),
+                     FMB_OK);
+    assert_int_equal(fmb_tree_build(out->prepared, count, duration, out->memory[1], &out->frames),
+                     FMB_OK);
+}
+
+static void close_world(struct world *world)
+{
+    free(world->box);
+    free(world->triangle);
+    free(world->prepared);
+    free(world->memory[0]);
+    free(world->memory[1]);
+}
+
+/* The box over the window, at least: sum is rounded to one double that is beyond it or is next to
+ * it. Returns 1 where what both trees may find is not told by doubles. */
+static void sweep(const struct world *world, size_t i, mpq_t out[2][3], bool endless[2][3])
+{
+    mpq_t way;
+    mpq_init(way);
+    for (int end = 0; end < 2; end++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double x = world->box[i][end][axis], v = world->velocity[axis];
+            endless[end][axis] = isinf(x);
+            mpq_set_d(out[end][axis], isinf(x) ? 0 : x);
+            if (!world->moving || (end ? v < 0 : v > 0))
+                continue;
+            mpq_set_d(way, v);
+            mpq_t time;
+            mpq_init(time);
+            mpq_set_d(time, world->duration);
+            mpq_mul(way, way, time);
+            mpq_add(out[end][axis], out[end][axis], way);
+            mpq_clear(time);
+        }
+    mpq_clear(way);
+}
+
+/* Whether the exact boxes meet. */
+static bool boxes_meet(const struct world *a, size_t i, const struct world *b, size_t j)
+{
+    mpq_t box[2][2][3];
+    bool endless[2][2][3], meet = true;
+    for (int k = 0; k < 12; k++)
+        mpq_init(box[k / 6][k / 3 % 2][k % 3]);
+    sweep(a, i, box[0], endless[0]);
+    sweep(b, j, box[1], endless[1]);
+    for (int axis = 0; axis < 3; axis++)
+        for (int f = 0; f < 2; f++)
+            meet = meet && (endless[f][0][axis] || endless[!f][1][axis] ||
+                            mpq_cmp(box[f][0][axis], box[!f][1][axis]) <= 0);
+    for (int k = 0; k < 12; k++)
+        mpq_clear(box[k / 6][k / 3 % 2][k % 3]);
+    return meet;
+}
+
+/* How often each pair is told. */
+static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsigned char *times)
+{
+    enum { ROOM = FMB_TREE_ROOM + 5 };
+    unsigned pairs[ROOM][2];
+    struct fmb_tree_place place = {0};
+    for (size_t count = 1; count > 0;) {
+        assert_int_equal(fmb_tree_pairs(a, b, &place, pairs, ROOM, &count), FMB_OK);
+        for (size_t k = 0; k < count; k++)
+            times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
+    }
+}
+
+/* Those whose exact boxes meet, each once; no others where the boxes stand still. */
+static void assert_pairs_of(const struct world *a, const struct world *b)
+{
+    unsigned char *times = room(a->count * b->count, 1);
+    count_pairs(&a->boxes, &b->boxes, times);
+    for (size_t i = 0; i < a->count; i++)
+        for (size_t j = 0; j < b->count; j++) {
+            const int found = times[i * b->count + j];
+            const bool meet = (a != b || i < j) && boxes_meet(a, i, b, j);
+            assert_true(found == 1 || (found == 0 && !meet));
+            assert_true(meet || found == 0 || ((a->moving || b->moving) && (a != b || i < j)));
+        }
+    free(times);
+}
+
+/* Trees of boxes and of frames, in any order: no two triangles that meet are lost. */
+static void assert_none_lost(const struct world *a, const struct world *b)
+{
+    struct triangles_answer truth;
+    triangles_init(&truth);
+    for (int kinds = 0; kinds < 4; kinds++) {
+        unsigned char *times = room(a->count * b->count, 1);
+        count_pairs(kinds & 1 ? &a->frames : &a->boxes, kinds & 2 ? &b->frames : &b->boxes, times);
+        for (size_t i = 0; i < a->count; i++)
+            for (size_t j = 0; j < b->count; j++) {
+                const struct triangle pair[2] = {a->triangle[i], b->triangle[j]};
+                assert_true(times[i * b->count + j] <= 1);
+                if (times[i * b->count + j])
+                    continue;
+                triangles_decide(pair, a->duration, false, &truth);
+                assert_int_equal(truth.verdict, FMB_SEPARATED);
+            }
+        free(times);
+    }
+    triangles_clear(&truth);
+}
+
+static void trees_of_boxes_lose_nothing(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "trees_of_boxes_lose_nothing");
+    for (long n = draw_sample(400); n > 0; n--) {
+        point pool[POOL];
+        struct world a, b;
+        const double duration = draw_coin(&draw) ? 1 : draw_int(&draw, 0, 4) * 0.3;
+        draw_pool(&draw, pool);
+        scale_pool(&draw, pool);
+        open_world(&draw, pool, (size_t) draw_int(&draw, 0, 40), duration, &a);
+        open_world(&draw, pool, (size_t) draw_int(&draw, 0, 40), duration, &b);
+        assert_pairs_of(&a, &b);
+        assert_pairs_of(&a, &a);
+        if (n % 4 == 0)
+            assert_none_lost(&a, &b);
+        close_world(&a);
+        close_world(&b);
+    }
+}
+
+/* In the plane the third numbers of boxes are not read. */
+static void put_flat_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const double(*at)[2] = context;
+    for (int axis = 0; axis < 2; axis++)
+        box[0][axis] = box[1][axis] = at[index][axis];
+    box[0][2] = NAN;
+    box[1][2] = -INFINITY;
+}
+
+static void boxes_in_the_plane(void **state)
+{
+    (void) state;
+    static const double at[4][2] = {{0, 0}, {1, 0}, {0, 0}, {1, -0.0}};
+    static const unsigned expected[2][2] = {{0, 2}, {1, 3}};
+    const struct fmb_boxes boxes = {2, put_flat_box, at, NULL};
+    struct fmb_tree tree;
+    struct fmb_tree_place place = {0};
+    unsigned pairs[FMB_TREE_ROOM][2];
+    size_t count;
+    void *memory = room(1, fmb_tree_bytes(4));
+    assert_int_equal(fmb_tree_build_boxes(&boxes, 4, 1, memory, &tree), FMB_OK);
+    assert_int_equal(fmb_tree_pairs(&tree, &tree, &place, pairs, FMB_TREE_ROOM, &count), FMB_OK);
+    assert_int_equal(count, 2);
+    assert_memory_equal(pairs, expected, sizeof expected);
+    free(memory);
+}
+
+static void boxes_that_cannot_be_are_refused(void **state)
+{
+    (void) state;
+    static const double bad[] = {-1, -0x1p-1074, INFINITY, NAN};
+    struct fmb_boxes boxes = {3, put_flat_box, NULL, NULL};
+    struct fmb_tree tree;
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        tree.frame_count = 7;
+        assert_int_equal(fmb_tree_build_boxes(&boxes, 3, bad[i], NULL, &tree), FMB_BAD_DURATION);
+        assert_int_equal(tree.frame_count, 0);
+    }
+    assert_int_equal(fmb_tree_build_boxes(&boxes, UINT_MAX, 1, NULL, &tree), FMB_OVER_LIMIT);
+    assert_int_equal(fmb_tree_build_boxes(&boxes, 0, 1, NULL, &tree), FMB_OK);
+    assert_int_equal(tree.frame_count, 0);
+    boxes.dim = 4;
+    assert_int_equal(fmb_tree_build_boxes(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
+    boxes.dim = 1;
+    assert_int_equal(fmb_tree_build_boxes(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
+}
+
+/* ---- Bodies ---- */
+
+/* component + rest is the difference of the vertices, and component the double next to it. */
+static void assert_edges_exact(const double vertex[3][3], const struct fmb_body *body)
+{
+    mpq_t edge, other;
+    mpq_inits(edge, other, NULL);
+    bool rounded = false;
+    for (int k = 0; k < 6; k++) {
+        const int i = k / 3, axis = k % 3;
+        mpq_set_d(edge, body->component[i][axis]);
+        mpq_set_d(other, body->rest[i][axis]);
+        mpq_add(edge, edge, other);
+        mpq_set_d(other, vertex[0][axis]);
+        mpq_add(edge, edge, other);
+        mpq_set_d(other, vertex[i + 1][axis]);
+        assert_int_equal(mpq_cmp(edge, other), 0);
+        assert_true(body->component[i][axis] == vertex[i + 1][axis] - vertex[0][axis]);
+        rounded = rounded || body->rest[i][axis] != 0;
+    }
+    assert_int_equal(body->rounded, rounded);
+    mpq_clears(edge, other, NULL);
+}
+
+static double any_size(struct draw *draw)
+{
+    switch (draw_int(draw, 0, 4)) {
+    case 0: return draw_log(draw, 1018, 1023);
+    case 1: return draw_coin(draw) ? DBL_MAX : -DBL_MAX;
+    case 2: return ldexp(draw_int(draw, -5, 5), -1074);
+    case 3: return draw_int(draw, -1, 1);
+    default: return draw_finite(draw);
+    }
+}
+
+static void bodies_hold_their_edges_exactly(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long refused = 0, made = 0;
+    draw_begin(&draw, "bodies_hold_their_edges_exactly");
+    for (long n = draw_sample(100000); n > 0; n--) {
+        double vertex[3][3];
+        struct fmb_body body;
+        bool finite = true;
+        for (int k = 0; k < 9; k++)
+            vertex[k / 3][k % 3] = any_size(&draw);
+        for (int k = 3; k < 9; k++)
+            finite = finite && isfinite(vertex[k / 3][k % 3] - vertex[0][k % 3]);
+        const enum fmb_status status = fmb_body_make_triangle((const double(*)[3]) vertex, &body);
+        assert_int_equal(status, finite ? FMB_OK : FMB_NOT_FINITE);
+        refused += !finite;
+        made += finite;
+        if (finite)
+            assert_edges_exact((const double(*)[3]) vertex, &body);
+    }
+    assert_true(refused > 0 && made > 0);
+    for (int k = 0; k < 9; k++) {
+        double vertex[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        struct fmb_body body;
+        vertex[k / 3][k % 3] = k % 2 ? NAN : -INFINITY;
+        assert_int_equal(fmb_body_make_triangle((const double(*)[3]) vertex, &body),
+                         FMB_NOT_FINITE);
+    }
+}
+
+/* Edges that doubles hold: the body is the same as that of its components, to the byte. */
+static void what_does_not_round_is_an_ordinary_face(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "what_does_not_round_is_an_ordinary_face");
+    for (long n = draw_sample(2000); n > 0; n--) {
+        double vertex[3][3], component[2][3];
+        struct fmb_body body, ordinary;
+        for (int k = 0; k < 9; k++)
+            vertex[k / 3][k % 3] = draw_int(&draw, -4, 4) * 0.125;
+        for (int k = 0; k < 6; k++)
+            component[k / 3][k % 3] = vertex[1 + k / 3][k % 3] - vertex[0][k % 3];
+        assert_int_equal(fmb_body_make_triangle((const double(*)[3]) vertex, &body), FMB_OK);
+        assert_int_equal(fmb_body_make(3, FMB_FACE, component[0], 6, &ordinary), FMB_OK);
+        assert_memory_equal(&body, &ordinary, sizeof body);
+    }
+}
+
+/* Coordinates up to the largest double, and subnormal ones, in one pair. */
+static void pairs_at_the_ends_of_the_doubles(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct triangles_answer truth;
+    long asked = 0;
+    draw_begin(&draw, "pairs_at_the_ends_of_the_doubles");
+    triangles_init(&truth);
+    for (long n = draw_sample(1500); n > 0; n--) {
+        struct drawn drawn = {.duration = 1};
+        double pool[6];
+        for (int k = 0; k < 6; k++)
+            pool[k] = any_size(&draw) * 0.5;
+        for (int f = 0; f < 2; f++)
+            for (int k = 0; k < 9; k++)
+                drawn.triangle[f].vertex[k / 3][k % 3] = pool[draw_int(&draw, 0, 5)];
+        triangles_decide(drawn.triangle, 1, true, &truth);
+        asked += truth.verdict != FMB_SEPARATED;
+        for (int turn = 0; turn < TURNS; turn += 5) {
+            assert_answer(&drawn, turn, "certified", &truth);
+            assert_answer(&drawn, turn, "exact", &truth);
+        }
+        assert_certificate(&drawn, draw_int(&draw, 0, TURNS - 1), truth.verdict);
+    }
+    triangles_clear(&truth);
+    assert_true(asked > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pairs_at_rest_are_what_their_vertices_say),
         cmocka_unit_test(moving_pairs_are_what_their_vertices_say),
         cmocka_unit_test(batches_leave_open_what_is_rounded_or_are_right),
+        cmocka_unit_test(pairs_at_the_ends_of_the_doubles),
+        cmocka_unit_test(a_box_holds_all_vertices_at_all_times),
+        cmocka_unit_test(a_box_is_tight),
+        cmocka_unit_test(trees_of_boxes_lose_nothing),
+        cmocka_unit_test(boxes_in_the_plane),
+        cmocka_unit_test(boxes_that_cannot_be_are_refused),
+        cmocka_unit_test(bodies_hold_their_edges_exactly),
+        cmocka_unit_test(what_does_not_round_is_an_ordinary_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
