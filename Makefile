@@ -295,6 +295,10 @@ $(live_tests:%=$(B)/tests/%): $(O)/tests/unit/world.o
 
 $(B)/tests/test_mesh_read: $(addprefix $(O)/tests/mesh/,bumpy.o formats.o)
 
+# Meshes against the oracle of triangles.
+$(B)/tests/test_mesh_meet: $(addprefix $(O)/tests/oracle/,triangles.o lp.o draw.o) \
+	$(O)/tests/mesh/bumpy.o
+
 $(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
@@ -389,11 +393,13 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -I$(GEN)
 
-# Tests of the engine see it and the oracle, those of scenes the service too, all others no oracle.
+# Tests of the engine see it and the oracle, those of scenes the service too; of all others that
+# of meshes alone an oracle.
 engine_views := $(engine_tests) $(internal_tests) slab_truth pair_draw
 scene_views := $(scene_tests) scene_truth
 family_views := $(family_tests) $(scene_views) pair_draw
-unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views)),-Itests/oracle) \
+unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views) test_mesh_meet),-Itests/oracle) \
+	$(if $(filter $1,test_mesh_meet),-Itests/mesh) \
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
 	$(if $(filter $1,$(engine_views)),,-Iservice) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\

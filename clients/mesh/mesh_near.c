@@ -5,9 +5,14 @@
  * one side; or, of a triangle pqr that it passes, if two of the tetrahedra (d e p q), (d e q r),
  * (d e r p) have strictly opposite orientations: the line passes beside an edge.
  *
+ * A face without an area may have a between b and c. Then it is the segment bc, which a ray from a
+ * leaves in b or in c: in place of bc these are asked.
+ *
  * Faces with two vertices p, q in common and one each besides, r and s, have no more than pq in
  * common if p, q, r, s lie in no plane. If they do, and r and s lie on different sides of the line
- * pq, they touch, and on the same side they overlap: the engine tells.
+ * pq, they touch, and on the same side they overlap: the engine tells. A face without an area has no
+ * more than pq in common with one that has one, and they touch. Two without an area overlap, and
+ * have more in common just if both go on beyond p, or both beyond q.
  *
  * Most of them are known from what they look like along an axis (mesh_flat.h). Orientations in
  * space are those of doubles with a bound; what they leave open, the engine decides, of triangles,
@@ -128,6 +133,22 @@ static bool segment_meets(const double *d, const double *e, const double corner[
     return verdict_of(segment, corner) != FMB_SEPARATED;
 }
 
+/* Whether p is on the segment de, ends included. */
+static bool is_between(const double *d, const double *p, const double *e)
+{
+    const double point[3][3] = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}, {p[0], p[1], p[2]}};
+    return segment_meets(d, e, point);
+}
+
+/* Whether bc, across from a in its face, has a point in common with the other face, in which a is
+ * too, that is not a. */
+static bool edge_meets(const double *a, const double *b, const double *c, const double corner[3][3])
+{
+    if (!segment_meets(b, c, corner))
+        return false;
+    return !is_between(b, a, c) || segment_meets(b, b, corner) || segment_meets(c, c, corner);
+}
+
 /* ---- Faces ---- */
 
 /* Of each face which corners are also the other's, and which are not: by vertex, each once. */
@@ -167,6 +188,24 @@ static const double *at(const struct mesh_near *near, unsigned vertex)
     return near->mesh->vertex[vertex];
 }
 
+/* Of faces that overlap and share p and q: whether they have no area, and do not both go on beyond
+ * p, nor both beyond q. */
+static bool end_at_edge(const struct mesh_near *near, const struct common *common)
+{
+    const double *p = at(near, common->shared[0]), *q = at(near, common->shared[1]);
+    bool beyond_p = true, beyond_q = true;
+    for (int f = 0; f < 2; f++) {
+        const double *r = common->own_count[f] ? at(near, common->own[f][0]) : p;
+        const bool here = is_between(p, r, q), past_p = !here && is_between(r, p, q);
+        const bool past_q = !here && is_between(p, q, r);
+        if (!here && !past_p && !past_q) /* it has an area, and so has the other */
+            return false;
+        beyond_p = beyond_p && past_p;
+        beyond_q = beyond_q && past_q;
+    }
+    return !beyond_p && !beyond_q;
+}
+
 static enum mesh_nearness nearness_of_edge(const struct mesh_near *near,
                                            const struct common *common, const unsigned face[2],
                                            enum fmb_verdict *verdict)
@@ -181,7 +220,9 @@ static enum mesh_nearness nearness_of_edge(const struct mesh_near *near,
     for (int f = 0; f < 2; f++)
         mesh_face_vertices(near->mesh, face[f], corner[f]);
     *verdict = verdict_of((const double(*)[3]) corner[0], (const double(*)[3]) corner[1]);
-    return *verdict == FMB_OVERLAPPING ? MESH_SHARE_AND_MEET : MESH_SHARE_EDGE;
+    const bool more =
+        *verdict == FMB_OVERLAPPING && (common->shared_count == 3 || !end_at_edge(near, common));
+    return more ? MESH_SHARE_AND_MEET : MESH_SHARE_EDGE;
 }
 
 /* Each face's edge across from the vertex that is shared, against the other face. */
@@ -190,7 +231,8 @@ static enum mesh_nearness nearness_of_vertex(const struct mesh_near *near,
                                              enum fmb_verdict *verdict)
 {
     double corner[2][3][3];
-    bool open[2] = {false, false}, meet = false;
+    const double *end[2][2];
+    bool open[2], meet = false;
     if (common->own_count[0] == 2 && common->own_count[1] == 2 &&
         mesh_flat_share_vertex(at(near, common->shared[0]), at(near, common->own[0][0]),
                                at(near, common->own[0][1]), at(near, common->own[1][0]),
@@ -199,16 +241,16 @@ static enum mesh_nearness nearness_of_vertex(const struct mesh_near *near,
     for (int f = 0; f < 2; f++)
         mesh_face_vertices(near->mesh, face[f], corner[f]);
     for (int f = 0; f < 2; f++) {
-        const int last = common->own_count[f] - 1;
-        if (last < 0) /* a point, which is the shared one */
+        if (common->own_count[f] == 0) /* a point, which is the shared one */
             return MESH_SHARE_VERTEX;
         const double *const other[3] = {corner[!f][0], corner[!f][1], corner[!f][2]};
-        open[f] = !misses(at(near, common->own[f][0]), at(near, common->own[f][last]), other);
+        end[f][0] = at(near, common->own[f][0]);
+        end[f][1] = at(near, common->own[f][common->own_count[f] - 1]);
+        open[f] = !misses(end[f][0], end[f][1], other);
     }
     for (int f = 0; f < 2 && !meet; f++)
-        meet = open[f] && segment_meets(at(near, common->own[f][0]),
-                                        at(near, common->own[f][common->own_count[f] - 1]),
-                                        (const double(*)[3]) corner[!f]);
+        meet = open[f] && edge_meets(at(near, common->shared[0]), end[f][0], end[f][1],
+                                     (const double(*)[3]) corner[!f]);
     if (!meet)
         return MESH_SHARE_VERTEX;
     *verdict = verdict_of((const double(*)[3]) corner[0], (const double(*)[3]) corner[1]);

@@ -1,0 +1,516 @@
+/* Which faces of meshes meet: against asking every pair, by an oracle that knows the vertices
+ * alone; what faces of one mesh share; where steps put a mesh. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+
+#include "bumpy.h"
+#include "draw.h"
+#include "mesh_face.h"
+#include "mesh_meet.h"
+#include "mesh_near.h"
+#include "mesh_transform.h"
+#include "triangles.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* ---- Meshes ---- */
+
+static void *room(size_t count, size_t size)
+{
+    void *memory = calloc(count + 1, size);
+    assert_non_null(memory);
+    return memory;
+}
+
+static void make_mesh(size_t vertices, size_t faces, struct mesh *out)
+{
+    *out = (struct mesh){.vertex_count = vertices, .face_count = faces};
+    out->vertex = room(vertices, sizeof *out->vertex);
+    out->face = room(faces, sizeof *out->face);
+}
+
+/* How far apart the points of a grid are, and where it begins. */
+struct grid {
+    double pitch, from;
+};
+
+static const struct grid grids[] = {{1, 0},      {0.1, 0},     {0.1, 1000},     {0.7, -0.35},
+                                    {1e150, 0},  {1e-160, 0},  {0x1p-1074, 0},  {0x1p-30, 1},
+                                    {0.1e30, 1}, {1 / 3.0, 0}, {0.1, -0x1p-40}, {0.1, 1e12}};
+
+/* Faces of any vertices of a small grid, some vertices there twice, and some beside the grid. */
+static void draw_soup(struct draw *draw, const struct grid *grid, int most, int vertices, int faces,
+                      struct mesh *out)
+{
+    make_mesh((size_t) vertices, (size_t) faces, out);
+    for (int v = 0; v < vertices; v++) {
+        for (int axis = 0; axis < 3; axis++)
+            out->vertex[v][axis] = draw_int(draw, 0, most) * grid->pitch + grid->from;
+        const double *p = out->vertex[draw_int(draw, 0, v)], *q = out->vertex[draw_int(draw, 0, v)];
+        const int kind = draw_int(draw, 0, 9);
+        for (int axis = 0; axis < 3 && kind < 2; axis++)
+            out->vertex[v][axis] = kind ? p[axis] * 0.5 + q[axis] * 0.5 : p[axis];
+        double *x = &out->vertex[v][draw_int(draw, 0, 2)];
+        if (kind == 2)
+            *x = nextafter(*x, HUGE_VAL);
+        if (*x == 0 && draw_coin(draw))
+            *x = -0.0;
+    }
+    for (int f = 0; f < faces; f++)
+        for (int corner = 0; corner < 3; corner++)
+            out->face[f][corner] = (unsigned) draw_int(draw, 0, vertices - 1);
+    for (int n = 0; n < faces / 8; n++) /* some twice, round another way */
+        for (int corner = 0, from = draw_int(draw, 0, faces - 1), turn = draw_int(draw, 0, 2);
+             corner < 3; corner++)
+            out->face[n][corner] = out->face[from][(corner + turn) % 3];
+}
+
+static void draw_any_soup(struct draw *draw, struct mesh *out)
+{
+    const struct grid *grid = &grids[draw_int(draw, 0, (int) COUNT(grids) - 1)];
+    draw_soup(draw, grid, draw_int(draw, 1, 3), draw_int(draw, 3, 24), draw_int(draw, 1, 30), out);
+}
+
+/* On the same grid, so that they have much in common. */
+static void draw_soups(struct draw *draw, struct mesh out[2])
+{
+    const struct grid *grid = &grids[draw_int(draw, 0, (int) COUNT(grids) - 1)];
+    const int most = draw_int(draw, 1, 3);
+    for (int m = 0; m < 2; m++)
+        draw_soup(draw, grid, most, draw_int(draw, 3, 24), draw_int(draw, 0, 30), &out[m]);
+}
+
+static void set_triangle(const struct mesh *mesh, size_t face, const double *velocity,
+                         struct triangle *out)
+{
+    memset(out, 0, sizeof *out);
+    for (int corner = 0; corner < 3; corner++)
+        memcpy(out->vertex[corner], mesh->vertex[mesh->face[face][corner]],
+               sizeof out->vertex[corner]);
+    out->moving = velocity != NULL;
+    if (velocity)
+        memcpy(out->velocity, velocity, sizeof out->velocity);
+}
+
+/* ---- Every pair ---- */
+
+static void fail_of(const struct mesh *a, size_t i, const struct mesh *b, size_t j,
+                    const char *what)
+{
+    for (int f = 0; f < 2; f++) {
+        struct triangle t;
+        set_triangle(f ? b : a, f ? j : i, NULL, &t);
+        printf("# face %zu:", f ? j : i);
+        for (int k = 0; k < 9; k++)
+            printf(" %a%s", t.vertex[k / 3][k % 3], k % 3 == 2 ? "," : "");
+        printf("\n");
+    }
+    fail_msg("%s", what);
+}
+
+/* The next pair of the meeting, if it is this one. */
+static const struct mesh_pair *take_pair(const struct mesh_meeting *meeting, size_t *at, size_t i,
+                                         size_t j)
+{
+    const struct mesh_pair *pair = *at < meeting->count ? &meeting->pair[*at] : NULL;
+    if (!pair || pair->a != i || pair->b != j)
+        return NULL;
+    ++*at;
+    return pair;
+}
+
+/* Whether sign * (end - exact) >= 0. */
+static bool is_beyond(double end, int sign, const mpq_t exact)
+{
+    mpq_t number;
+    mpq_init(number);
+    mpq_set_d(number, end);
+    const int order = mpq_cmp(number, exact);
+    mpq_clear(number);
+    return sign * order >= 0;
+}
+
+static void assert_contact(const struct mesh_pair *pair, double duration,
+                           const struct triangles_answer *truth)
+{
+    for (int end = 0; end < 2; end++) {
+        const int sign = end ? 1 : -1;
+        const double x = pair->contact[end], in = x - sign * (1e-12 * duration);
+        assert_true(x >= 0 && x <= duration && is_beyond(x, sign, truth->contact[end]));
+        assert_true(!is_beyond(in, sign, truth->contact[end]) || duration == 0);
+    }
+}
+
+/* Counts again what the meeting says of itself. */
+static void assert_counts(const struct mesh_question *question, const struct mesh_meeting *meeting)
+{
+    const bool self = question->a == question->b;
+    size_t of[4] = {0}, faces[2] = {0};
+    unsigned char *in[2] = {room(question->a->face_count, 1), room(question->b->face_count, 1)};
+    for (size_t k = 0; k < meeting->count; k++) {
+        of[meeting->pair[k].verdict]++;
+        in[0][meeting->pair[k].a] = 1;
+        in[!self][meeting->pair[k].b] = 1;
+    }
+    for (size_t i = 0; i < question->a->face_count; i++)
+        faces[0] += in[0][i];
+    for (size_t i = 0; i < question->b->face_count; i++)
+        faces[1] += in[!self][i];
+    assert_int_equal(of[FMB_OVERLAPPING], meeting->overlapping);
+    assert_int_equal(of[FMB_TOUCHING], meeting->touching);
+    assert_int_equal(of[FMB_OVERLAPPING] + of[FMB_TOUCHING], meeting->count);
+    assert_int_equal(faces[0], meeting->faces[0]);
+    assert_int_equal(faces[1], meeting->faces[1]);
+    assert_true(meeting->candidates >= meeting->count);
+    free(in[0]);
+    free(in[1]);
+}
+
+static void assert_meeting_of_two(const struct mesh_question *question)
+{
+    struct mesh_meeting meeting;
+    struct triangles_answer truth;
+    size_t at = 0;
+    triangles_init(&truth);
+    assert_int_equal(mesh_meet(question, &meeting), FMB_OK);
+    const bool moving = question->velocity[0] || question->velocity[1];
+    assert_int_equal(meeting.moving, moving);
+    for (size_t i = 0; i < question->a->face_count; i++)
+        for (size_t j = 0; j < question->b->face_count; j++) {
+            struct triangle pair[2];
+            set_triangle(question->a, i, question->velocity[0], &pair[0]);
+            set_triangle(question->b, j, question->velocity[1], &pair[1]);
+            triangles_decide(pair, question->duration, moving, &truth);
+            const struct mesh_pair *found = take_pair(&meeting, &at, i, j);
+            if ((found ? found->verdict : FMB_SEPARATED) != truth.verdict)
+                fail_of(question->a, i, question->b, j, "another verdict");
+            if (found && moving)
+                assert_contact(found, question->duration, &truth);
+        }
+    assert_int_equal(at, meeting.count);
+    assert_int_equal(meeting.sharing_edge, 0);
+    assert_int_equal(meeting.sharing_vertex, 0);
+    assert_counts(question, &meeting);
+    mesh_meeting_free(&meeting);
+    triangles_clear(&truth);
+}
+
+static void meshes_meet_where_every_pair_says(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "meshes_meet_where_every_pair_says");
+    for (long n = draw_sample(150); n > 0; n--) {
+        struct mesh mesh[2];
+        draw_soups(&draw, mesh);
+        const struct mesh_question question = {
+            .a = &mesh[0],
+            .b = &mesh[1],
+            .duration = 1,
+            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+        assert_meeting_of_two(&question);
+        mesh_free(&mesh[0]);
+        mesh_free(&mesh[1]);
+    }
+}
+
+static void moving_meshes_meet_where_every_pair_says(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "moving_meshes_meet_where_every_pair_says");
+    for (long n = draw_sample(80); n > 0; n--) {
+        struct mesh mesh[2];
+        double velocity[2][3];
+        const int who = draw_int(&draw, 1, 3);
+        draw_soups(&draw, mesh);
+        for (int k = 0; k < 6; k++) {
+            const double *vertex = mesh[0].vertex[draw_int(&draw, 0, 2)];
+            velocity[k / 3][k % 3] =
+                draw_int(&draw, -2, 2) * 0.5 * (vertex[k % 3] - mesh[0].vertex[0][k % 3]);
+        }
+        const struct mesh_question question = {
+            .a = &mesh[0],
+            .b = &mesh[1],
+            .velocity = {who & 1 ? velocity[0] : NULL, who & 2 ? velocity[1] : NULL},
+            .duration = n % 4 ? 1 : draw_int(&draw, 0, 3) * 0.7,
+            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+        assert_meeting_of_two(&question);
+        mesh_free(&mesh[0]);
+        mesh_free(&mesh[1]);
+    }
+}
+
+/* More candidates than are decided at a time, of faces that are as large as the mesh. */
+static void soups_of_more_than_a_block(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct mesh mesh[2];
+    draw_begin(&draw, "soups_of_more_than_a_block");
+    for (int m = 0; m < 2; m++)
+        draw_soup(&draw, &grids[1], 3, 40, 90, &mesh[m]);
+    const struct mesh_question question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
+    assert_meeting_of_two(&question);
+    mesh_free(&mesh[0]);
+    mesh_free(&mesh[1]);
+}
+
+/* Closed ones, one of them pushed into the other. */
+static void closed_meshes_meet_where_every_pair_says(void **state)
+{
+    (void) state;
+    static const double way[][3] = {{0, 0, 0}, {0.1, 0.2, 0.3}, {1.9, 0, 0}, {0, 0, 5}};
+    for (size_t n = 0; n < COUNT(way); n++) {
+        struct mesh mesh[2];
+        struct mesh_transform transform = {.count = 1, .step = {{.kind = MESH_TRANSLATE}}};
+        memcpy(transform.step[0].number, way[n], sizeof way[n]);
+        bumpy_make(72, 1, &mesh[0]);
+        bumpy_make(72, n == 0 ? 1 : 2, &mesh[1]);
+        assert_true(mesh_transform(&transform, &mesh[1]) == SIZE_MAX);
+        const struct mesh_question question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
+        assert_meeting_of_two(&question);
+        mesh_free(&mesh[0]);
+        mesh_free(&mesh[1]);
+    }
+}
+
+/* ---- One mesh with itself ---- */
+
+static bool same_place(const double x[3], const double y[3])
+{
+    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
+}
+
+/* The places that are corners of both, each once. */
+static int shared_places(const struct triangle pair[2], double out[3][3])
+{
+    int count = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            bool is_new = same_place(pair[0].vertex[i], pair[1].vertex[j]);
+            for (int k = 0; k < count; k++)
+                is_new = is_new && !same_place(out[k], pair[0].vertex[i]);
+            if (is_new)
+                memcpy(out[count++], pair[0].vertex[i], sizeof out[0]);
+        }
+    return count;
+}
+
+struct shared {
+    uint64_t edge, vertex;
+};
+
+/* Returns whether the faces belong to the pairs that meet. */
+static bool is_met(const struct triangle pair[2], struct shared *shared,
+                   struct triangles_answer *truth)
+{
+    double place[3][3];
+    const int places = shared_places(pair, place);
+    triangles_decide(pair, 0, false, truth);
+    const bool only = (places == 1 || places == 2) &&
+                      triangles_share_only(pair, (const double(*)[3]) place, places);
+    shared->edge += only && places == 2;
+    shared->vertex += only && places == 1;
+    return !only && truth->verdict != FMB_SEPARATED;
+}
+
+static void assert_meeting_with_itself(const struct mesh *mesh, const struct fmb_method *method)
+{
+    const struct mesh_question question = {.a = mesh, .b = mesh, .duration = 1, .method = method};
+    struct mesh_meeting meeting;
+    struct triangles_answer truth;
+    struct shared shared = {0};
+    size_t at = 0;
+    triangles_init(&truth);
+    assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+    assert_false(meeting.moving);
+    for (size_t i = 0; i < mesh->face_count; i++)
+        for (size_t j = i + 1; j < mesh->face_count; j++) {
+            struct triangle pair[2];
+            set_triangle(mesh, i, NULL, &pair[0]);
+            set_triangle(mesh, j, NULL, &pair[1]);
+            const bool met = is_met(pair, &shared, &truth);
+            const struct mesh_pair *found = take_pair(&meeting, &at, i, j);
+            if (met != (found != NULL))
+                fail_of(mesh, i, mesh, j, met ? "a pair is missing" : "a pair too much");
+            if (found && found->verdict != truth.verdict)
+                fail_of(mesh, i, mesh, j, "another verdict");
+        }
+    assert_int_equal(at, meeting.count);
+    assert_int_equal(meeting.sharing_edge, shared.edge);
+    assert_int_equal(meeting.sharing_vertex, shared.vertex);
+    assert_counts(&question, &meeting);
+    mesh_meeting_free(&meeting);
+    triangles_clear(&truth);
+}
+
+static void a_mesh_meets_itself_where_every_pair_says(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "a_mesh_meets_itself_where_every_pair_says");
+    for (long n = draw_sample(300); n > 0; n--) {
+        struct mesh mesh;
+        draw_any_soup(&draw, &mesh);
+        assert_meeting_with_itself(&mesh, n % 8 ? NULL : fmb_method_by_name("exact"));
+        mesh_free(&mesh);
+    }
+}
+
+/* On a line most faces have no area, and lie upon each other. */
+static void faces_on_a_line_or_in_a_plane(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "faces_on_a_line_or_in_a_plane");
+    for (long n = draw_sample(200); n > 0; n--) {
+        struct mesh mesh;
+        draw_any_soup(&draw, &mesh);
+        for (size_t v = 0; v < mesh.vertex_count; v++) {
+            mesh.vertex[v][0] = mesh.vertex[0][0];
+            if (n % 2)
+                mesh.vertex[v][1] = v % 5 ? mesh.vertex[0][1] : mesh.vertex[v][1];
+        }
+        assert_meeting_with_itself(&mesh, NULL);
+        mesh_free(&mesh);
+    }
+}
+
+/* What is closed shares edges and vertices, and where it does not meet itself nothing else. */
+static void a_closed_mesh_shares_edges_and_vertices(void **state)
+{
+    (void) state;
+    for (uint64_t seed = 1; seed < 4; seed++) {
+        struct mesh mesh;
+        struct mesh_meeting meeting;
+        bumpy_make(128, seed, &mesh);
+        const struct mesh_question question = {.a = &mesh, .b = &mesh, .duration = 1};
+        assert_meeting_with_itself(&mesh, NULL);
+        assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+        if (meeting.count == 0) /* three edges a face, each of two */
+            assert_int_equal(meeting.sharing_edge, 3 * mesh.face_count / 2);
+        mesh_meeting_free(&meeting);
+        mesh_free(&mesh);
+    }
+}
+
+/* Two faces, by coordinates: what mesh_near_of() says of them. */
+struct near_case {
+    const char *name;
+    double vertex[2][3][3];
+    enum mesh_nearness nearness;
+    enum fmb_verdict verdict; /* where they meet */
+};
+
+static const struct near_case near_cases[] = {
+    {"a fan",
+     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {-1, 0, 0}, {0, 0, 1}}},
+     MESH_SHARE_VERTEX,
+     0},
+    {"through a face from its vertex",
+     {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 0}, {1, 1, 1}, {1, 1, -1}}},
+     MESH_SHARE_AND_MEET,
+     FMB_OVERLAPPING},
+    {"along an edge from a vertex",
+     {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
+     MESH_SHARE_AND_MEET,
+     FMB_TOUCHING},
+    {"a hinge",
+     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
+     MESH_SHARE_EDGE,
+     0},
+    {"a hinge that is open",
+     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}},
+     MESH_SHARE_EDGE,
+     0},
+    {"a hinge that is shut",
+     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}},
+     MESH_SHARE_AND_MEET,
+     FMB_OVERLAPPING},
+    {"the same",
+     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 0}, {1, 0, 0}}},
+     MESH_SHARE_AND_MEET,
+     FMB_OVERLAPPING},
+    {"no vertex in common",
+     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}},
+     MESH_APART,
+     0},
+    {"a point and its face",
+     {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+     MESH_SHARE_VERTEX,
+     0},
+    {"a segment beside a face, their vertex within it",
+     {{{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+     MESH_SHARE_VERTEX,
+     0},
+    {"segments that cross at their vertex",
+     {{{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {0, -1, 0}}},
+     MESH_SHARE_VERTEX,
+     0},
+    {"a segment into a face, their vertex within it",
+     {{{0, 0, 0}, {-1, -1, 0}, {1, 1, 0}}, {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}},
+     MESH_SHARE_AND_MEET,
+     FMB_OVERLAPPING},
+    {"segments that go on from what they share, to either side",
+     {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}}},
+     MESH_SHARE_EDGE,
+     0},
+    {"segments that go on from what they share, to one side",
+     {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}},
+     MESH_SHARE_AND_MEET,
+     FMB_OVERLAPPING},
+    {"a segment as a face twice",
+     {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}},
+     MESH_SHARE_EDGE,
+     0},
+};
+
+static void cases_of_two_faces(void **state)
+{
+    (void) state;
+    for (size_t n = 0; n < COUNT(near_cases) * 18; n++) {
+        const struct near_case *c = &near_cases[n / 18];
+        const int turn = (int) (n % 18), swapped = turn / 9;
+        struct mesh mesh;
+        struct mesh_near near;
+        enum fmb_verdict verdict = 0;
+        make_mesh(6, 2, &mesh);
+        for (unsigned k = 0; k < 6; k++) {
+            const unsigned by = (unsigned) (k / 3 ? turn / 3 : turn);
+            memcpy(mesh.vertex[k], c->vertex[k / 3][(k + by) % 3], sizeof mesh.vertex[k]);
+            mesh.face[k / 3][k % 3] = k;
+        }
+        mesh_near_open(&mesh, &near);
+        if (mesh_near_of(&near, (unsigned) swapped, (unsigned) !swapped, &verdict) != c->nearness ||
+            (c->nearness == MESH_SHARE_AND_MEET && verdict != c->verdict))
+            fail_msg("%s, turn %d", c->name, turn);
+        mesh_near_close(&near);
+        mesh_free(&mesh);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(meshes_meet_where_every_pair_says),
+        cmocka_unit_test(moving_meshes_meet_where_every_pair_says),
+        cmocka_unit_test(soups_of_more_than_a_block),
+        cmocka_unit_test(closed_meshes_meet_where_every_pair_says),
+        cmocka_unit_test(a_mesh_meets_itself_where_every_pair_says),
+        cmocka_unit_test(faces_on_a_line_or_in_a_plane),
+        cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
+        cmocka_unit_test(cases_of_two_faces),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
