@@ -10,8 +10,8 @@
  *
  * Faces with two vertices p, q in common and one each besides, r and s, have no more than pq in
  * common if p, q, r, s lie in no plane. If they do, and r and s lie on different sides of the line
- * pq, they touch, and on the same side they overlap: the engine tells. A face without an area has no
- * more than pq in common with one that has one, and they touch. Two without an area overlap, and
+ * pq, they touch, and on the same side they overlap: the engine tells. A face without an area has
+ * no more than pq in common with one that has one, and they touch. Two without an area overlap, and
  * have more in common just if both go on beyond p, or both beyond q.
  *
  * Most of them are known from what they look like along an axis (mesh_flat.h). Orientations in

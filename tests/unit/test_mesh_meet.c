@@ -500,6 +500,297 @@ static void cases_of_two_faces(void **state)
     }
 }
 
+/* ---- Tetrahedra ---- */
+
+/* The article's: from the first vertex, and its unit normal, in this order of operations. */
+static enum fmb_status article_body(const struct triangle *t, struct fmb_body *out)
+{
+    double c[9];
+    for (int axis = 0; axis < 3; axis++) {
+        c[axis] = t->vertex[1][axis] - t->vertex[0][axis];
+        c[3 + axis] = t->vertex[2][axis] - t->vertex[0][axis];
+    }
+    c[6] = c[4] * c[2] - c[5] * c[1];
+    c[7] = c[5] * c[0] - c[3] * c[2];
+    c[8] = c[3] * c[1] - c[4] * c[0];
+    const double length = sqrt(c[6] * c[6] + c[7] * c[7] + c[8] * c[8]);
+    for (int axis = 0; axis < 3; axis++)
+        c[6 + axis] = length == 0 ? 0 : c[6 + axis] / length;
+    return fmb_body_make(3, FMB_TETRAHEDRON, c, 9, out);
+}
+
+static void set_article_frame(const struct mesh *mesh, size_t face, const double *velocity,
+                              struct fmb_body *body, struct fmb_frame *out)
+{
+    struct triangle t;
+    set_triangle(mesh, face, velocity, &t);
+    assert_int_equal(article_body(&t, body), FMB_OK);
+    *out = (struct fmb_frame){.body = body, .moving = t.moving};
+    memcpy(out->origin, t.vertex[0], sizeof out->origin);
+    memcpy(out->velocity, t.velocity, sizeof out->velocity);
+}
+
+static void assert_tetrahedra(const struct mesh_question *question)
+{
+    struct mesh_meeting meeting;
+    size_t at = 0;
+    assert_int_equal(mesh_meet(question, &meeting), FMB_OK);
+    for (size_t i = 0; i < question->a->face_count; i++)
+        for (size_t j = 0; j < question->b->face_count; j++) {
+            struct fmb_body body[2];
+            struct fmb_pair pair = {.duration = question->duration};
+            struct fmb_answer answer;
+            set_article_frame(question->a, i, question->velocity[0], &body[0], &pair.a);
+            set_article_frame(question->b, j, question->velocity[1], &body[1], &pair.b);
+            assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &pair, 0, &answer), FMB_OK);
+            const struct mesh_pair *found = take_pair(&meeting, &at, i, j);
+            if ((found ? found->verdict : FMB_SEPARATED) != answer.verdict)
+                fail_of(question->a, i, question->b, j, "another verdict");
+            if (found && meeting.moving)
+                assert_true(found->contact[0] <= answer.contact[0] &&
+                            found->contact[1] >= answer.contact[1]);
+        }
+    assert_int_equal(at, meeting.count);
+    assert_counts(question, &meeting);
+    mesh_meeting_free(&meeting);
+}
+
+static void tetrahedra_are_those_of_the_article(void **state)
+{
+    (void) state;
+    static const double velocity[3] = {0.3, -1, 0.1};
+    struct draw draw;
+    draw_begin(&draw, "tetrahedra_are_those_of_the_article");
+    for (long n = draw_sample(60); n > 0; n--) {
+        struct mesh mesh[2];
+        const struct grid *grid = &grids[n % 4];
+        for (int m = 0; m < 2; m++)
+            draw_soup(&draw, grid, 3, draw_int(&draw, 3, 24), draw_int(&draw, 1, 24), &mesh[m]);
+        const struct mesh_question question = {
+            .a = &mesh[0],
+            .b = &mesh[1],
+            .as = MESH_TETRAHEDRA,
+            .velocity = {n % 3 == 0 ? velocity : NULL, n % 4 == 0 ? velocity : NULL},
+            .duration = 2,
+            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+        assert_tetrahedra(&question);
+        mesh_free(&mesh[0]);
+        mesh_free(&mesh[1]);
+    }
+}
+
+/* One face of that size, and one of another mesh that is near it. */
+static enum fmb_status ask_of_size(double size, enum mesh_as as)
+{
+    struct mesh mesh[2];
+    struct mesh_meeting meeting;
+    for (int m = 0; m < 2; m++) {
+        make_mesh(3, 1, &mesh[m]);
+        for (unsigned corner = 0; corner < 3; corner++) {
+            mesh[m].face[0][corner] = corner;
+            mesh[m].vertex[corner][corner] = size;
+        }
+    }
+    const struct mesh_question question = {.a = &mesh[0], .b = &mesh[1], .as = as, .duration = 1};
+    const enum fmb_status status = mesh_meet(&question, &meeting);
+    if (status == FMB_OK) {
+        assert_int_equal(meeting.overlapping, 1);
+        mesh_meeting_free(&meeting);
+    }
+    mesh_free(&mesh[0]);
+    mesh_free(&mesh[1]);
+    return status;
+}
+
+static void normals_beyond_the_doubles_are_told(void **state)
+{
+    (void) state;
+    assert_int_equal(ask_of_size(1, MESH_TETRAHEDRA), FMB_OK);
+    assert_int_equal(ask_of_size(1e200, MESH_TETRAHEDRA), FMB_NOT_FINITE);
+    assert_int_equal(ask_of_size(DBL_MAX / 2, MESH_TETRAHEDRA), FMB_NOT_FINITE);
+    assert_int_equal(ask_of_size(DBL_MAX / 2, MESH_FACES), FMB_OK);
+    assert_int_equal(ask_of_size(0x1p-1074, MESH_FACES), FMB_OK);
+}
+
+/* ---- How far it is ---- */
+
+struct heard {
+    uint64_t done, total;
+    int times;
+};
+
+static void hear(void *context, uint64_t done, uint64_t total)
+{
+    struct heard *heard = context;
+    assert_true(heard->times == 0 || (done >= heard->done && total == heard->total));
+    assert_true(done <= total);
+    *heard = (struct heard){done, total, heard->times + 1};
+}
+
+static void progress_goes_on_to_its_end(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct mesh mesh[2];
+    struct heard heard = {0};
+    struct mesh_meeting meeting;
+    draw_begin(&draw, "progress_goes_on_to_its_end");
+    for (int m = 0; m < 2; m++)
+        draw_soup(&draw, &grids[0], 3, 100, 200, &mesh[m]);
+    const struct mesh_question question = {
+        .a = &mesh[0], .b = &mesh[1], .duration = 1, .told = hear, .context = &heard};
+    assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+    assert_true(heard.times > 10 && heard.done > 0);
+    mesh_meeting_free(&meeting);
+    mesh_free(&mesh[0]);
+    mesh_free(&mesh[1]);
+}
+
+static void empty_meshes_meet_nothing(void **state)
+{
+    (void) state;
+    struct mesh mesh[3] = {{0}};
+    bumpy_make(8, 1, &mesh[1]);
+    make_mesh(5, 0, &mesh[2]); /* vertices alone */
+    for (int k = 0; k < 9; k++) {
+        const struct mesh_question question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
+        struct mesh_meeting meeting;
+        assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+        assert_int_equal(meeting.count, 0);
+        assert_int_equal(meeting.sharing_edge, k == 4 ? 12 : 0);
+        mesh_meeting_free(&meeting);
+    }
+    for (int m = 0; m < 3; m++)
+        mesh_free(&mesh[m]);
+}
+
+/* ---- Steps ---- */
+
+static size_t put(const struct mesh_step *step, int count, const double from[3], double out[3])
+{
+    struct mesh_transform transform = {.count = count};
+    struct mesh mesh;
+    make_mesh(2, 0, &mesh); /* the first one stays near */
+    memcpy(mesh.vertex[1], from, sizeof mesh.vertex[1]);
+    if (count > 0)
+        memcpy(transform.step, step, (size_t) count * sizeof *step);
+    const size_t far = mesh_transform(&transform, &mesh);
+    memcpy(out, mesh.vertex[1], sizeof mesh.vertex[1]);
+    mesh_free(&mesh);
+    return far;
+}
+
+static void assert_put(const struct mesh_step *step, int count, const double from[3], double x,
+                       double y, double z)
+{
+    double at[3];
+    assert_true(put(step, count, from, at) == SIZE_MAX);
+    assert_true(at[0] == x && at[1] == y && at[2] == z);
+}
+
+static void right_angles_are_exact(void **state)
+{
+    (void) state;
+    static const double p[3] = {0.1, 1e300, -0x1p-1074};
+    static const struct {
+        double degrees;
+        int quarters;
+    } angle[] = {{0, 0},     {90, 1},   {180, 2},  {270, 3},   {360, 0},        {450, 1},
+                 {-90, 3},   {-180, 2}, {-270, 1}, {-360, 0},  {36000090, 1},   {-0.0, 0},
+                 {36e15, 0}, {810, 1},  {540, 2},  {-1350, 1}, {0x1p60 * 45, 0}};
+    for (int axis = 0; axis < 3; axis++)
+        for (size_t n = 0; n < COUNT(angle); n++) {
+            const struct mesh_step step = {MESH_ROTATE, axis, {angle[n].degrees}};
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            double expected[3] = {p[0], p[1], p[2]};
+            for (int k = 0; k < angle[n].quarters; k++) { /* the right hand: u goes to v */
+                const double x = expected[u];
+                expected[u] = -expected[v];
+                expected[v] = x;
+            }
+            assert_put(&step, 1, p, expected[0], expected[1], expected[2]);
+        }
+}
+
+static void other_angles_are_near(void **state)
+{
+    (void) state;
+    struct draw draw;
+    const double pi = acos(-1);
+    draw_begin(&draw, "other_angles_are_near");
+    for (long n = draw_sample(20000); n > 0; n--) {
+        const double degrees = n % 2 ? draw_uniform(&draw, -720, 720) : draw_int(&draw, -300, 300);
+        const double p[3] = {draw_uniform(&draw, -1, 1), draw_uniform(&draw, -1, 1), 5};
+        const struct mesh_step step = {MESH_ROTATE, 2, {degrees}};
+        const double c = cos(degrees / 180 * pi), s = sin(degrees / 180 * pi);
+        double at[3];
+        assert_true(put(&step, 1, p, at) == SIZE_MAX);
+        assert_true(fabs(at[0] - (c * p[0] - s * p[1])) < 1e-14);
+        assert_true(fabs(at[1] - (s * p[0] + c * p[1])) < 1e-14);
+        assert_true(at[2] == 5);
+    }
+}
+
+static void steps_follow_each_other(void **state)
+{
+    (void) state;
+    static const double p[3] = {1, 2, 3};
+    const struct mesh_step turn = {MESH_ROTATE, 2, {90}}, way = {MESH_TRANSLATE, 0, {10, 0, 0.5}};
+    const struct mesh_step twice = {MESH_SCALE, 0, {2, 3, -1}}, mirror = {MESH_MIRROR, 1, {0}};
+    assert_put(NULL, 0, p, 1, 2, 3);
+    assert_put((struct mesh_step[]){turn, way}, 2, p, 8, 1, 3.5);
+    assert_put((struct mesh_step[]){way, turn}, 2, p, -2, 11, 3.5);
+    assert_put((struct mesh_step[]){twice, way}, 2, p, 12, 6, -2.5);
+    assert_put((struct mesh_step[]){way, twice}, 2, p, 22, 6, -3.5);
+    assert_put((struct mesh_step[]){mirror, way, mirror}, 3, p, 11, 2, 3.5);
+    for (int axis = 0; axis < 3; axis++) {
+        const struct mesh_step one = {MESH_MIRROR, axis, {0}};
+        assert_put(&one, 1, p, axis == 0 ? -1 : 1, axis == 1 ? -2 : 2, axis == 2 ? -3 : 3);
+    }
+}
+
+/* Each coordinate is rounded once in a translation, and in a scale. */
+static void steps_round_once(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "steps_round_once");
+    for (long n = draw_sample(2000); n > 0; n--) {
+        struct mesh_step step = {.kind = n % 2 ? MESH_TRANSLATE : MESH_SCALE};
+        double p[3], x[3];
+        for (int axis = 0; axis < 3; axis++) {
+            p[axis] = draw_log(&draw, -40, 40);
+            step.number[axis] = draw_log(&draw, -40, 40);
+            x[axis] = n % 2 ? p[axis] + step.number[axis] : p[axis] * step.number[axis];
+        }
+        assert_put(&step, 1, p, x[0], x[1], x[2]);
+    }
+}
+
+static void what_goes_too_far_is_told(void **state)
+{
+    (void) state;
+    static const double p[3] = {1, 0, -1}, half[3] = {DBL_MAX / 2, -DBL_MAX / 2, 0};
+    const double beyond = nextafter(DBL_MAX / 2, INFINITY);
+    double at[3];
+    assert_true(put(NULL, 0, half, at) == SIZE_MAX);
+    for (int axis = 0; axis < 3; axis++) {
+        struct mesh_step far = {.kind = MESH_TRANSLATE};
+        far.number[axis] = axis == 1 ? -beyond : beyond;
+        assert_int_equal(put(&far, 1, (const double[3]){0, 0, 0}, at), 0); /* all vertices move */
+        double one[3] = {0};
+        one[axis] = far.number[axis];
+        assert_int_equal(put(NULL, 0, one, at), 1);
+    }
+    const struct mesh_step large = {MESH_SCALE, 0, {DBL_MAX, 1, 1}};
+    const struct mesh_step none = {MESH_SCALE, 0, {0, 0, 0}};
+    const struct mesh_step back = {MESH_SCALE, 0, {0x1p-1000, 1, 1}};
+    assert_int_equal(put(&large, 1, p, at), 1);
+    assert_int_equal(put((struct mesh_step[]){large, large, back}, 3, p, at), 1);
+    assert_int_equal(put((struct mesh_step[]){large, large, none}, 3, p, at), 1); /* no number */
+    assert_true(put((struct mesh_step[]){large, none}, 2, p, at) == SIZE_MAX);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -511,6 +802,15 @@ int main(void)
         cmocka_unit_test(faces_on_a_line_or_in_a_plane),
         cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
         cmocka_unit_test(cases_of_two_faces),
+        cmocka_unit_test(tetrahedra_are_those_of_the_article),
+        cmocka_unit_test(normals_beyond_the_doubles_are_told),
+        cmocka_unit_test(progress_goes_on_to_its_end),
+        cmocka_unit_test(empty_meshes_meet_nothing),
+        cmocka_unit_test(right_angles_are_exact),
+        cmocka_unit_test(other_angles_are_near),
+        cmocka_unit_test(steps_follow_each_other),
+        cmocka_unit_test(steps_round_once),
+        cmocka_unit_test(what_goes_too_far_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
