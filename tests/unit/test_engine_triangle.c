@@ -48,9 +48,10 @@ static double of_two_sizes(struct draw *draw)
     return ldexp(draw_int(draw, -3, 3), exponent[draw_int(draw, 0, (int) COUNT(exponent) - 1)]);
 }
 
+/* Each with a last place of its own, on both sides of 0. */
 static double full_mantissa(struct draw *draw)
 {
-    return draw_uniform(draw, -1, 1);
+    return draw_log(draw, -4, 0);
 }
 
 /* A grid with holes of an ulp. */
@@ -128,10 +129,9 @@ static void draw_pool(struct draw *draw, point *pool)
 /* In no special position, so that doubles can mostly tell; edges round. */
 static void draw_loose_pool(struct draw *draw, point *pool)
 {
-    const double far = draw_int(draw, -2, 2) * 1e3 / 3;
     for (int i = 0; i < POOL; i++)
         for (int axis = 0; axis < 3; axis++)
-            pool[i][axis] = full_mantissa(draw) + far;
+            pool[i][axis] = full_mantissa(draw);
 }
 
 /* To any size: exactly, or, where it comes out below the normal numbers, into their grid. */
