@@ -409,15 +409,14 @@ static void set_solid(struct draw *draw, point *pool, bool moving, struct fmb_bo
 static void draw_crowd(struct draw *draw, struct crowd *out)
 {
     point pool[POOL];
-    if (draw_coin(draw))
-        draw_pool(draw, pool);
-    else
-        draw_loose_pool(draw, pool);
+    const bool loose = draw_coin(draw), moving = draw_coin(draw);
+    draw_pool(draw, pool);
     scale_pool(draw, pool);
-    const bool moving = draw_coin(draw);
     out->duration = draw_coin(draw) ? 1 : draw_int(draw, 0, 4) * 0.3;
     for (int i = 0; i < CROWD; i++) {
         const bool moves = moving && draw_coin(draw);
+        if (loose && draw_coin(draw)) /* not of the vertices of others */
+            draw_loose_pool(draw, pool);
         out->is_triangle[i] = draw_int(draw, 0, 3) > 0;
         if (out->is_triangle[i]) {
             draw_triangle(draw, pool, &out->triangle[i]);
