@@ -63,7 +63,7 @@ static int numbers_of(struct question *question, double *out[NUMBERS_MAX])
     int count = 0;
     for (int f = 0; f < 2; f++)
         for (int axis = 0; axis < solids[f]->dim; axis++) {
-            for (int i = 0; i < solids[f]->dim; i++)
+            for (int i = 0; i < solid_count(solids[f]); i++)
                 out[count++] = &solids[f]->component[i][axis];
             out[count++] = &solids[f]->origin[axis];
             if (solids[f]->moving)
@@ -101,19 +101,23 @@ struct kind {
     enum fmb_shape a, b;
 };
 
-enum { KINDS = 16 };
+enum { SHAPES = 3, KINDS = 2 * SHAPES * SHAPES + 2 * 2 * 2 };
 
+/* Those in space, with faces, then those in the plane. */
 static struct kind kind_at(int i)
 {
-    return (struct kind){i & 8 ? 2 : 3, i & 4, i & 2 ? FMB_TETRAHEDRON : FMB_CUBOID,
-                         i & 1 ? FMB_TETRAHEDRON : FMB_CUBOID};
+    const int space = 2 * SHAPES * SHAPES, shapes = i < space ? SHAPES : 2;
+    const int n = i < space ? i : i - space;
+    return (struct kind){i < space ? 3 : 2, n / (shapes * shapes),
+                         (enum fmb_shape)(FMB_CUBOID + n / shapes % shapes),
+                         (enum fmb_shape)(FMB_CUBOID + n % shapes)};
 }
 
 static const char *kind_text(struct kind kind)
 {
-    static char text[40];
-    snprintf(text, sizeof text, "%dD %s %c%c", kind.dim, kind.moving ? "moving" : "static",
-             kind.a == FMB_CUBOID ? 'C' : 'T', kind.b == FMB_CUBOID ? 'C' : 'T');
+    static char text[80];
+    snprintf(text, sizeof text, "%dD %s %s %s", kind.dim, kind.moving ? "moving" : "static",
+             fmb_shape_name((int) kind.a), fmb_shape_name((int) kind.b));
     return text;
 }
 
@@ -149,13 +153,13 @@ static int list_of(const struct subject *subject, const struct fmb_pair *pair,
                            : subject->list(slabs, true, out);
 }
 
-/* A pair as a subject may be asked it: kernels want the cuboid first. */
+/* A pair as a subject may be asked it: kernels want the cuboid first, and the face last. */
 static void set_pair(const struct subject *subject, const struct question *question,
                      struct ready *out)
 {
     referee_ready(question, out);
     const struct fmb_pair pair = out->pair;
-    if ((subject->kernel || subject->axes) && pair.a.body->shape == FMB_TETRAHEDRON)
+    if ((subject->kernel || subject->axes) && pair.a.body->shape > pair.b.body->shape)
         out->pair = (struct fmb_pair){pair.b, pair.a, pair.duration};
 }
 
@@ -238,14 +242,16 @@ static struct climb search_kind(struct draw *draw, const struct subject *subject
     return best;
 }
 
-/* Searches all kinds (of axes: those in space, the first half); each must come to the ratio that is
+/* Searches all kinds (of axes: those in space); each must come to the ratio that is
  * asked, and none beyond 1. */
 static void attack(const struct subject *subject)
 {
     struct draw draw;
     draw_begin(&draw, subject->name);
-    for (int i = 0; i < (subject->axes ? KINDS / 2 : KINDS); i++) {
+    for (int i = 0; i < KINDS; i++) {
         const struct kind kind = kind_at(i);
+        if (subject->axes && kind.dim == 2)
+            continue;
         const struct climb worst = search_kind(&draw, subject, kind, draw_sample(30), HUGE_VAL);
         printf("# %s, %s: largest error %.4g of the bound\n", subject->name, kind_text(kind),
                worst.ratio);
