@@ -49,7 +49,8 @@ static const char usage[] =
     "  --ply FILE           write both meshes as one, in colours: red what overlaps, yellow what\n"
     "                       touches, grey (A) and blue (B) the rest\n"
     "  --html FILE          write a page that shows them, and the pairs: for any browser, with\n"
-    "                       nothing to install or to fetch\n" ARGS_COMMON_USAGE
+    "                       nothing to install or to fetch\n"
+    "  -h, --help\n"
     "\n"
     "Two faces overlap where inner points of both are the same, and touch where they only have\n"
     "points of their rims in common. Coordinates in text are taken for the doubles next to them;\n"
@@ -257,7 +258,7 @@ static bool check(const struct args *args, const struct options *options)
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
-static void tell_progress(void *context, uint64_t done, uint64_t total)
+static void tell_bytes(void *context, uint64_t done, uint64_t total)
 {
     struct progress *progress = context;
     if (progress->total != total)
@@ -265,11 +266,20 @@ static void tell_progress(void *context, uint64_t done, uint64_t total)
     progress_to(progress, done);
 }
 
+/* Of the tree of the first mesh. */
+static void tell_boxes(void *context, uint64_t done, uint64_t total)
+{
+    struct progress *progress = context;
+    if (progress->total != total)
+        *progress = progress_begin_of(total, "boxes");
+    progress_to(progress, done);
+}
+
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
     struct progress progress = {0};
-    const struct mesh_watch watch = {tell_progress, &progress};
+    const struct mesh_watch watch = {tell_bytes, &progress};
     const bool good = mesh_read(path, &watch, out, error);
     progress_end(&progress);
     if (!good) {
@@ -338,7 +348,7 @@ static int meet(const struct options *options, const struct mesh *a, const struc
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration,
         .method = options->method,
-        .told = tell_progress,
+        .told = tell_boxes,
         .context = &progress};
     struct mesh_meeting meeting;
     const enum fmb_status status = mesh_meet(&question, &meeting);

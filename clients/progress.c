@@ -24,7 +24,12 @@ struct progress progress_begin(uint64_t total)
 
 struct progress progress_begin_bytes(uint64_t total)
 {
-    return begin(isatty(STDERR_FILENO), "bytes", total);
+    return progress_begin_of(total, "bytes");
+}
+
+struct progress progress_begin_of(uint64_t total, const char *unit)
+{
+    return begin(isatty(STDERR_FILENO), unit, total);
 }
 
 static void show(struct progress *progress)

@@ -21,6 +21,9 @@ struct progress progress_begin(uint64_t total);
  * before the end. */
 struct progress progress_begin_bytes(uint64_t total);
 
+/* Likewise of other things: "boxes". unit lives as long as the progress. */
+struct progress progress_begin_of(uint64_t total, const char *unit);
+
 /* One more is done; or so many are now. Shows after the first second, then a few times a second. */
 void progress_step(struct progress *progress);
 void progress_to(struct progress *progress, uint64_t done);
