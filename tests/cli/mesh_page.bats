@@ -179,6 +179,7 @@ counts() {
     found meshes '.moving.moment | startswith("0.731051 s of 1 s")'
     found meshes '.moving.bands == 1 and .before.moment == "0 s of 1 s" and .after.moment == "1 s of 1 s"'
     found meshes '.before.red < 50 and .after.red > 3000 and .before.sum != .after.sum'
+    found meshes '.after.grey > .before.grey + 50'
     first=$(jq -r '.pairs[0][3][0]' moving.told)
     found meshes ".movingPair.moment | startswith(\"$(printf %.6g "$first") s\")"
     found meshes ".movingPair.times | startswith(\"$(printf %.6g "$first") .. \")"

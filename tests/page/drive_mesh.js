@@ -10,9 +10,12 @@ async function rested() {
 }
 
 /* How many pixels are covered at all; how many are nearly of the colour of faces that overlap, that
- * touch, of mesh B; and a sum that another picture hardly has. */
+ * touch, of mesh B; in which column those that are grey are in the mean; and a sum that another picture
+ * hardly has. */
 function picture() {
-    const data = pixels(), count = { drawn: 0, red: 0, yellow: 0, blue: 0, sum: 0 };
+    const data = pixels(), { width } = one("#stage");
+    const count = { drawn: 0, red: 0, yellow: 0, blue: 0, grey: 0, sum: 0 };
+    let grey = 0;
     for (let i = 0; i < data.length; i += 4) {
         const [red, green, blue, cover] = data.subarray(i, i + 4);
         if (cover < 60)
@@ -21,8 +24,12 @@ function picture() {
         count.red += red > green + 90 && red > blue + 90 ? 1 : 0;
         count.yellow += red > 150 && green > 120 && blue < 100 ? 1 : 0;
         count.blue += blue > red + 25 ? 1 : 0;
+        const isGrey = Math.max(red, green, blue) - Math.min(red, green, blue) < 20;
+        grey += isGrey ? 1 : 0;
+        count.grey += isGrey ? (i / 4) % width : 0;
         count.sum = (count.sum * 31 + red + 2 * green + 3 * blue + i) % 1000000007;
     }
+    count.grey /= grey;
     return count;
 }
 
