@@ -40,12 +40,12 @@ static bool refuse_not_finite(struct checking *checking, const char *field,
     return true;
 }
 
-/* 0 times a number that is not finite is not 0; numbers beyond the count are. */
+/* 0 times a number that is not finite is not 0. On input: a count that was checked. */
 static bool check_finite(struct checking *checking, const char *field,
                          const struct query_numbers *numbers)
 {
     double nothing = 0;
-    for (int i = 0; i < FMB_COMPONENTS_MAX; i++)
+    for (int i = 0; i < numbers->count; i++)
         nothing += 0 * numbers->number[i];
     return nothing == 0 || refuse_not_finite(checking, field, numbers);
 }
