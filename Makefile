@@ -51,6 +51,11 @@ flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-co
 link_flags := $(mode_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
 compile = $(CC) $(flags) -MMD -MP -c $< -o $@
 
+# What each query goes through, from its bytes to those of its result: a tenth faster so.
+ifeq ($(MODE),release)
+$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: flags += -O3
+endif
+
 # ---- The parts, and who may see whom: an arrow in the wrong direction fails to build ----
 
 # run.c is there three times for each instruction set: for verdicts, with fused operations where there
