@@ -276,34 +276,38 @@ enum run_shape { RUN_C, RUN_T, RUN_F }; /* cuboid, tetrahedron, face */
     RUN_KIND(FUNCTION, name##_cc, dimension, RUN_C, RUN_C, drift, parallel) \
     RUN_KIND(FUNCTION, name##_ct, dimension, RUN_C, RUN_T, drift, parallel) \
     RUN_KIND(FUNCTION, name##_tt, dimension, RUN_T, RUN_T, drift, parallel)
-#define RUN_SHAPES(FUNCTION, name, drift, parallel)                 \
-    RUN_SOLIDS(FUNCTION, name, 3, drift, parallel)                  \
-    RUN_KIND(FUNCTION, name##_cf, 3, RUN_C, RUN_F, drift, parallel) \
-    RUN_KIND(FUNCTION, name##_tf, 3, RUN_T, RUN_F, drift, parallel) \
-    RUN_KIND(FUNCTION, name##_ff, 3, RUN_F, RUN_F, drift, parallel)
-#define RUN_DRIFTING(FUNCTION)                  \
-    RUN_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0) \
-    RUN_SHAPES(FUNCTION, space_drifts, 1, 0)    \
-    RUN_SHAPES(FUNCTION, space_drifts_along, 1, 1)
-#define RUN_AT_REST(FUNCTION)            \
-    RUN_SOLIDS(FUNCTION, plane, 2, 0, 0) \
-    RUN_SHAPES(FUNCTION, space, 0, 0)    \
-    RUN_SHAPES(FUNCTION, space_along, 0, 1)
+/* Of faces, which are often parallel to something, one function for both. */
+#define RUN_FACES(FUNCTION, name, drift)                     \
+    RUN_KIND(FUNCTION, name##_cf, 3, RUN_C, RUN_F, drift, 1) \
+    RUN_KIND(FUNCTION, name##_tf, 3, RUN_T, RUN_F, drift, 1) \
+    RUN_KIND(FUNCTION, name##_ff, 3, RUN_F, RUN_F, drift, 1)
+#define RUN_DRIFTING(FUNCTION)                        \
+    RUN_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)       \
+    RUN_SOLIDS(FUNCTION, space_drifts, 3, 1, 0)       \
+    RUN_SOLIDS(FUNCTION, space_drifts_along, 3, 1, 1) \
+    RUN_FACES(FUNCTION, space_drifts, 1)
+#define RUN_AT_REST(FUNCTION)                  \
+    RUN_SOLIDS(FUNCTION, plane, 2, 0, 0)       \
+    RUN_SOLIDS(FUNCTION, space, 3, 0, 0)       \
+    RUN_SOLIDS(FUNCTION, space_along, 3, 0, 1) \
+    RUN_FACES(FUNCTION, space, 0)
 
 #define RUN_SOLID_ENTRIES(name, kind)                           \
     [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON] = name##_ct, \
     [(kind) + RUN_TETRAHEDRON + RUN_ALIKE] = name##_tt
-#define RUN_ENTRIES(name, kind)                                                                 \
-    RUN_SOLID_ENTRIES(name, kind), [(kind) + RUN_FACE] = name##_cf,                             \
-                                             [(kind) + RUN_FACE + RUN_TETRAHEDRON] = name##_tf, \
-                                             [(kind) + RUN_FACE + RUN_ALIKE] = name##_ff
-#define RUN_DRIFTING_ENTRIES                               \
-    RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),           \
-        RUN_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS), \
-        RUN_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG)
-#define RUN_AT_REST_ENTRIES                                     \
-    RUN_SOLID_ENTRIES(plane, 0), RUN_ENTRIES(space, RUN_SPACE), \
-        RUN_ENTRIES(space_along, RUN_SPACE + RUN_ALONG)
+#define RUN_FACE_ENTRIES(name, kind)                                                    \
+    [(kind) + RUN_FACE] = name##_cf, [(kind) + RUN_FACE + RUN_TETRAHEDRON] = name##_tf, \
+              [(kind) + RUN_FACE + RUN_ALIKE] = name##_ff
+#define RUN_DRIFTING_ENTRIES                                                       \
+    RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),                                   \
+        RUN_SOLID_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS),                   \
+        RUN_SOLID_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG), \
+        RUN_FACE_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS),                    \
+        RUN_FACE_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS + RUN_ALONG)
+#define RUN_AT_REST_ENTRIES                                                                        \
+    RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(space, RUN_SPACE),                              \
+        RUN_SOLID_ENTRIES(space_along, RUN_SPACE + RUN_ALONG), RUN_FACE_ENTRIES(space, RUN_SPACE), \
+        RUN_FACE_ENTRIES(space, RUN_SPACE + RUN_ALONG)
 
 #if defined(RUN_TIMES)
 #define RUN_FUNCTIONS(FUNCTION) RUN_DRIFTING(FUNCTION)
