@@ -136,12 +136,17 @@ function applyFilter() {
     fillList();
 }
 
-/* The row of the chosen pair can be seen, where the list has it. */
+/* The row of the chosen pair can be seen, where the list has it; the page stays where it is. */
 function showChosenRow() {
     const at = panel.list.indexOf(chosen.pair);
     panel.rows = Math.max(panel.rows, at + 1);
     fillList();
-    find("list").querySelector(".chosen")?.scrollIntoView({ block: "nearest" });
+    const row = find("list").querySelector(".chosen"), frame = find("list-frame");
+    if (!row)
+        return;
+    const head = frame.querySelector("thead").offsetHeight, top = row.offsetTop - head;
+    const bottom = row.offsetTop + row.offsetHeight - frame.clientHeight;
+    frame.scrollTop = clamp(frame.scrollTop, bottom, top);
 }
 
 /* ---- When there is contact ---- */

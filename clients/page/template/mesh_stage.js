@@ -131,10 +131,12 @@ function drawMoving() {
     picture.coarse = clamp(picture.coarse * times, COARSEST, 1);
 }
 
+const drawFine = onceAFrame(() => drawStage(Math.max(FINE, devicePixelRatio)));
+
 const redrawStage = onceAFrame(() => {
     drawMoving();
     clearTimeout(picture.resting);
-    picture.resting = setTimeout(() => drawStage(Math.max(FINE, devicePixelRatio)), REST_AFTER);
+    picture.resting = setTimeout(drawFine, REST_AFTER);
 });
 
 /* ---- The chosen pair ---- */
