@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -266,15 +267,6 @@ static void tell_bytes(void *context, uint64_t done, uint64_t total)
     progress_to(progress, done);
 }
 
-/* Of the tree of the first mesh. */
-static void tell_boxes(void *context, uint64_t done, uint64_t total)
-{
-    struct progress *progress = context;
-    if (progress->total != total)
-        *progress = progress_begin_of(total, "boxes");
-    progress_to(progress, done);
-}
-
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
@@ -336,6 +328,14 @@ static int tell(const struct options *options, const struct mesh_report *report)
     return code;
 }
 
+static void tell_faces(void *context, uint64_t done, uint64_t total)
+{
+    struct progress *progress = context;
+    if (progress->total != total)
+        *progress = progress_begin_of(total, "faces");
+    progress_to(progress, done);
+}
+
 static int meet(const struct options *options, const struct mesh *a, const struct mesh *b,
                 char **names)
 {
@@ -348,7 +348,7 @@ static int meet(const struct options *options, const struct mesh *a, const struc
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration,
         .method = options->method,
-        .told = tell_boxes,
+        .told = tell_faces,
         .context = &progress};
     struct mesh_meeting meeting;
     const enum fmb_status status = mesh_meet(&question, &meeting);
@@ -371,9 +371,13 @@ static int meet(const struct options *options, const struct mesh *a, const struc
 
 int cmd_mesh(int argc, char **argv)
 {
-    struct args args = {
-        "mesh",          usage, own_options, take_option, .operand = "mesh", .operands_max = 2,
-        .in_order = true};
+    struct args args = {"mesh",
+                        usage,
+                        own_options,
+                        take_option,
+                        .operand = "mesh",
+                        .operands_max = INT_MAX,
+                        .in_order = true}; /* check() counts them */
     struct options options = {.duration = 1};
     struct mesh mesh[2] = {{0}};
     int code = args_parse(&args, argc, argv, &options);

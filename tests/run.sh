@@ -19,7 +19,7 @@ unsanitized="$unsanitized cli/mesh_page.bats"
 # Where one of them is enough.
 sanitized_once='system/soak.bats system/fairness.bats system/supervisor.bats'
 sanitized_once="$sanitized_once system/record.bats system/replay_bus.bats cli/log.bats"
-sanitized_once="$sanitized_once cli/log_cut.bats cli/log_scene.bats cli/replay.bats"
+sanitized_once="$sanitized_once cli/log_cut.bats cli/log_scene.bats cli/replay.bats cli/mesh.bats"
 slow="$sanitized_once system/examples.bats system/bus.bats cli/page.bats cli/mesh_page.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.

@@ -211,6 +211,14 @@ static void take_block(struct meeter *meeter)
         decide_block(meeter);
 }
 
+/* In faces of the first mesh: about as many as there are in so many nodes of its tree. */
+static void tell(const struct meeter *meeter, uint64_t nodes)
+{
+    const struct mesh_question *question = meeter->question;
+    const uint64_t faces = question->a->face_count;
+    question->told(question->context, faces * nodes / meeter->tree[0].node_count, faces);
+}
+
 static void take_all(struct meeter *meeter)
 {
     const struct mesh_question *question = meeter->question;
@@ -223,7 +231,7 @@ static void take_all(struct meeter *meeter)
          clear_block(meeter)) {
         take_block(meeter);
         if (question->told)
-            question->told(question->context, place.leaf, meeter->tree[0].node_count);
+            tell(meeter, place.leaf);
     }
 }
 

@@ -21,7 +21,7 @@ struct mesh_question {
     const double *velocity[2];       /* [3] of a and of b, finite; or NULL: at rest */
     double duration;                 /* of the window, seconds; not negative, finite */
     const struct fmb_method *method; /* NULL: certified, many at a time */
-    /* NULL, or who wants to know how much of the work is done. */
+    /* NULL, or who wants to know how much of the work is done: about how many faces of a. */
     void (*told)(void *context, uint64_t done, uint64_t total);
     void *context;
 };

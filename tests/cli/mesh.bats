@@ -1,0 +1,445 @@
+# fmb mesh: what is typed, what is printed, exit codes. What is true of meshes is tested in
+# tests/unit/test_mesh_meet.c.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    local build=${FMB_BUILD:-build}
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    FMB=$(realpath "$build")/fmb
+    MAKE_MESH=$(realpath "$build")/mesh/make-mesh
+    [ -x "$MAKE_MESH" ] || MAKE_MESH=$(realpath build)/mesh/make-mesh
+    cd "$BATS_TEST_TMPDIR" || return
+    # A triangle; one through it, and one that touches it in a vertex.
+    obj a.obj '0 0 0' '1 0 0' '0 1 0' -- '1 2 3'
+    obj b.obj '0.25 0.25 -1' '0.25 0.25 1' '0.25 5 0' '0 0 0' '-1 0 0' '0 0 -1' -- '1 2 3' '4 5 6'
+}
+
+# obj FILE VERTEX... -- FACE...
+obj() {
+    local file=$1 kind=v
+    shift
+    : > "$file"
+    for line; do
+        if [ "$line" = -- ]; then kind=f; else echo "$kind $line" >> "$file"; fi
+    done
+}
+
+mesh() {
+    run --separate-stderr "$FMB" mesh "$@"
+}
+
+is() {
+    [ "$output" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $output ($stderr)"
+        return 1
+    }
+}
+
+said() {
+    [ "$stderr" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status"
+        return 1
+    }
+}
+
+# answers JSON ARGUMENTS...
+answers() {
+    local expected=$1
+    shift
+    mesh --json "$@"
+    ended 0
+    said ''
+    is "$expected"
+}
+
+# wrong TEXT ARGUMENTS...: wrong usage is one line, and a hint.
+wrong() {
+    local text=$1
+    shift
+    mesh "$@"
+    ended 2
+    is ''
+    said "fmb mesh: $text
+Try 'fmb mesh --help'."
+}
+
+# cannot_read TEXT ARGUMENTS...
+cannot_read() {
+    local text=$1
+    shift
+    mesh "$@"
+    ended 2
+    is ''
+    said "fmb: $text"
+}
+
+nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": []}'
+
+# ---- Answers ---------------------------------------------------------------------------------
+
+@test "one line of JSON: counts, and the pairs in order" {
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping"], [0, 1, "touching"]]}' a.obj b.obj
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 1, "pairs": [[0, 0, "overlapping"], [1, 0, "touching"]]}' b.obj a.obj
+    answers "$nothing" a.obj b.obj --translate 0,0,5
+    [ "$(wc -l <<< "$output")" = 1 ]
+}
+
+@test "text for people, and with --list every pair before it" {
+    mesh a.obj b.obj
+    ended 0
+    said ''
+    is '             2  pairs of faces meet:
+             1  overlap
+             1  touch
+in them are
+             1  of 1 faces of a.obj
+             2  of 2 faces of b.obj'
+    counts=$output
+    mesh a.obj --list b.obj
+    is "0 0 overlapping
+0 1 touching
+$counts"
+}
+
+@test "moving meshes: when each pair meets, and when the first and the last do" {
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0.5, 2]], [0, 1, "touching", [1.5, 2]]]}' \
+        a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2
+    mesh a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2 --list
+    ended 0
+    [ "${lines[0]}" = '0 0 overlapping 0.5 2' ]
+    [ "${lines[1]}" = '0 1 touching 1.5 2' ]
+    [ "${lines[-1]}" = 'faces meet first at 0.5 s, and last at 2 s' ]
+    # A window of no length; a velocity of 0; nothing meets, and there are no times.
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0, 0]], [0, 1, "touching", [0, 0]]]}' \
+        a.obj b.obj --velocity 1,1,1 --duration 0
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0, 1]], [0, 1, "touching", [0, 1]]]}' \
+        a.obj b.obj --velocity 0,0,-0
+    answers "$nothing" a.obj b.obj --translate 0,0,5 --velocity 0,0,1
+    mesh a.obj b.obj --translate 0,0,5 --velocity 0,0,1
+    ended 0
+    [[ $output != *'first at'* ]]
+}
+
+@test "what is nearest to decimals decides: a tenth three times is not three tenths" {
+    obj low.obj '0 0 0.1' '1 0 0.1' '0 1 0.1' -- '1 2 3'
+    obj high.obj '0 0 0.3' '1 0 0.3' '0 1 0.3' -- '1 2 3'
+    answers "$nothing" low.obj --scale 1,1,3 high.obj
+    answers '{"overlapping": 1, "touching": 0, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "overlapping"]]}' \
+        high.obj --scale 1,1,1 high.obj
+}
+
+@test "edges that no double holds: faces that share a vertex touch, an ulp beside it they do not" {
+    # 1e16 + 2 is the next double.
+    obj far.obj '10000000000000000 0.1 0.3' '-0.1 0.7 0.2' '0.3 1e-17 -5' -- '1 2 3'
+    obj shares.obj '-7 -7.3 9' '-0.1 0.7 0.2' '-8 0.1 0.1' -- '1 2 3'
+    answers '{"overlapping": 0, "touching": 1, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "touching"]]}' far.obj shares.obj
+    answers '{"overlapping": 0, "touching": 1, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "touching"]]}' far.obj shares.obj --method exact
+    obj beside.obj '-7 -7.3 9' '-0.10000000000000002 0.7 0.2' '-8 0.1 0.1' -- '1 2 3'
+    answers "$nothing" far.obj beside.obj
+}
+
+@test "--method exact says the same" {
+    "$MAKE_MESH" --faces 200 one.ply
+    for options in '' '--translate 0.1,0.2,0.3' '--as tetrahedra' '--velocity 0.1,0,0.05'; do
+        # shellcheck disable=SC2086
+        mesh one.ply one.ply $options --json
+        ended 0
+        [[ $output == *overlapping\"[],]* ]]
+        expected=$(jq -c 'del(.pairs[][3])' <<< "$output") # its times are the tightest
+        # shellcheck disable=SC2086
+        mesh one.ply one.ply $options --json --method exact
+        ended 0
+        [ "$(jq -c 'del(.pairs[][3])' <<< "$output")" = "$expected" ]
+    done
+    answers "$output" one.ply one.ply --velocity 0.1,0,0.05 --method exact
+}
+
+@test "--as tetrahedra: on one side of the face, as high as a unit normal" {
+    obj below.obj '0 0 -1' '1 0 -1' '0 1 -1' -- '1 2 3'
+    answers "$nothing" a.obj below.obj
+    answers "$nothing" --as faces a.obj below.obj --translate 0,0,0.5
+    answers '{"overlapping": 1, "touching": 0, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "overlapping"]]}' --as tetrahedra a.obj below.obj --translate 0,0,0.5
+    answers '{"overlapping": 0, "touching": 1, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "touching"]]}' --as tetrahedra a.obj below.obj
+    answers "$nothing" --as tetrahedra a.obj below.obj --translate 0,0,-0x1p-52
+}
+
+@test "empty meshes meet nothing" {
+    printf 'ply\nformat ascii 1.0\nend_header\n' > empty.ply
+    printf 'solid nothing\nendsolid nothing\n' > empty.stl
+    for empty in empty.ply empty.stl; do
+        answers "$nothing" $empty b.obj
+        answers "$nothing" b.obj $empty
+        answers "$nothing" $empty $empty --velocity 1,0,0
+        answers "${nothing/\"pairs/\"sharing_edge\": 0, \"sharing_vertex\": 0, \"pairs}" --self $empty
+        mesh $empty b.obj --list --ply out.ply
+        ended 0
+        is "             0  pairs of faces meet:
+             0  overlap
+             0  touch
+in them are
+             0  of 0 faces of $empty
+             0  of 2 faces of b.obj"
+    done
+}
+
+# ---- Where meshes are --------------------------------------------------------------------------
+
+meets() {
+    mesh --json "$@"
+    ended 0
+    jq -e '.overlapping + .touching > 0' <<< "$output" > /dev/null
+}
+
+apart() {
+    mesh --json "$@"
+    ended 0
+    jq -e '.overlapping + .touching == 0' <<< "$output" > /dev/null
+}
+
+@test "steps are for the file before them, or for both" {
+    meets a.obj a.obj
+    apart a.obj --translate 0,0,1 a.obj
+    apart a.obj a.obj --translate 0,0,1
+    meets a.obj --translate 0,0,1 a.obj --translate 0,0,1
+    meets --translate 0,0,1 a.obj a.obj
+    meets --translate 0,0,1 a.obj a.obj --translate 1,0,0
+    apart --json --velocity 0,0,1 a.obj a.obj --translate 0,0,1
+    meets a.obj --velocity 0,0,1 a.obj --translate 0,0,1
+    apart a.obj a.obj --velocity 0,0,1 --translate 0,0,1
+    meets a.obj a.obj --velocity 0,0,1 --velocity 0,0,-1 --translate 0,0,1 # the last one counts
+    meets -- a.obj b.obj
+}
+
+@test "steps follow each other, in the order in which they are typed" {
+    obj point.obj '8 1 0' '8 1 0' '8 1 0' -- '1 1 1'
+    obj from.obj '1 2 0' '1 2 0' '1 2 0' -- '1 2 3'
+    meets from.obj --rotate z,90 --translate 10,0,0 point.obj
+    apart from.obj --translate 10,0,0 --rotate z,90 point.obj
+    meets from.obj --translate 10,0,0 --rotate z,90 point.obj --translate -10,10,0
+    meets from.obj --scale 2 point.obj --translate -6,3,0
+    meets from.obj --scale 2,0.5,7 point.obj --translate -6,0,0
+    meets from.obj --mirror x --mirror y --rotate z,-180 point.obj --translate -7,1,0
+    meets --rotate x,90 from.obj --rotate x,-90 point.obj --rotate x,270 --translate -7,1,0
+}
+
+@test "at most 32 steps for a mesh" {
+    steps=$(printf -- '--mirror x %.0s' $(seq 32))
+    # shellcheck disable=SC2086
+    meets a.obj a.obj $steps
+    # shellcheck disable=SC2086
+    meets a.obj $steps a.obj $steps
+    # shellcheck disable=SC2086
+    wrong 'more than 32 steps for a mesh' a.obj a.obj $steps --mirror x
+}
+
+@test "what goes beyond the doubles is told" {
+    cannot_read 'a.obj: vertex 1 is farther out than edges in doubles go: scale the mesh' a.obj --scale 1e308 b.obj
+    cannot_read 'b.obj: vertex 2 is farther out than edges in doubles go: scale the mesh' a.obj b.obj --scale 8e307
+    meets a.obj --scale 8e307 a.obj
+    mesh --as tetrahedra --scale 1e200 a.obj a.obj
+    ended 1
+    is ''
+    said 'fmb: the normal of a face is beyond the doubles: scale the meshes'
+}
+
+# ---- A mesh with itself ------------------------------------------------------------------------
+
+@test "--self: what meets, and beside it what is shared" {
+    # A tetrahedron whose last face is there twice, and a triangle through it.
+    obj self.obj '0 0 0' '1 0 0' '0 1 0' '0 0 1' '0.1 0.1 -1' '0.1 0.1 0.5' '9 9 9' -- \
+        '1 3 2' '1 2 4' '1 4 3' '2 3 4' '4 2 3' '5 6 7' '2 7 7'
+    answers '{"overlapping": 4, "touching": 0, "faces_a": 4, "faces_b": 4, "sharing_edge": 9, "sharing_vertex": 5, "pairs": [[0, 5, "overlapping"], [3, 4, "overlapping"], [3, 5, "overlapping"], [4, 5, "overlapping"]]}' --self self.obj
+    mesh self.obj --self --list
+    ended 0
+    is '0 5 overlapping
+3 4 overlapping
+3 5 overlapping
+4 5 overlapping
+             4  pairs of faces meet:
+             4  overlap
+             0  touch
+in them are
+             4  of 7 faces of self.obj
+and beside each other, with nothing else in common, are
+             9  pairs that share an edge
+             5  pairs that share a vertex'
+}
+
+@test "--self refuses what it does not go with" {
+    wrong 'expected one mesh with --self, found 2' --self a.obj b.obj
+    wrong 'expected one mesh with --self, found 0' --self
+    wrong '--self asks faces, not tetrahedra' --self --as tetrahedra a.obj
+    wrong '--self and --velocity: a mesh does not move against itself' --self a.obj --velocity 0,0,1
+    wrong '--self and --velocity: a mesh does not move against itself' --velocity 0,0,1 --self a.obj
+}
+
+@test "a closed mesh shares three edges for every two faces" {
+    "$MAKE_MESH" --faces 1000 one.ply
+    mesh --self --json one.ply
+    ended 0
+    faces=$("$MAKE_MESH" --faces 1000 | sed -n 's/^element face //p')
+    jq -e --argjson n "$faces" '.sharing_edge == $n * 3 / 2' <<< "$output"
+}
+
+# ---- Files -------------------------------------------------------------------------------------
+
+@test "--ply: both meshes in one, which reads back, and colours" {
+    mesh a.obj b.obj --translate 0,0,0.5 --ply out.ply
+    ended 0
+    grep -a -q 'element vertex 9' out.ply
+    grep -a -q 'element face 3' out.ply
+    # A and B of it are where they were put.
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 3, "faces_b": 3, "sharing_edge": 0, "sharing_vertex": 0, "pairs": [[0, 1, "overlapping"], [0, 2, "touching"]]}' --self out.ply
+    mesh a.obj b.obj --ply out.ply
+    # The last bytes are faces: 3, three indices, three colours: red, red, yellow.
+    colours() {
+        tail -c $((16 * $1)) out.ply | od -An -v -tu1 -w16 | awk '{print $14, $15, $16}'
+    }
+    [ "$(colours 3)" = "220 40 40
+220 40 40
+240 200 40" ]
+    mesh a.obj b.obj --translate 0,0,5 --ply out.ply
+    [ "$(colours 3)" = "190 190 190
+120 160 220
+120 160 220" ]
+    mesh --self b.obj --ply out.ply
+    grep -a -q 'element vertex 6' out.ply
+    [ "$(colours 2)" = "190 190 190
+190 190 190" ]
+}
+
+@test "all formats, and every mixture, give the same answer" {
+    for format in ply-ascii ply-le ply-be stl-ascii obj; do
+        "$MAKE_MESH" --faces 800 --format $format one.$format
+        mesh one.$format one.$format --translate 0.1,0.2,0.3 --json
+        ended 0
+        [ "${expected:=$output}" = "$output" ]
+        answers "$expected" one.ply-ascii one.$format --translate 0.1,0.2,0.3
+        mesh --self one.$format --json
+        [ "${shared:=$output}" = "$output" ]
+    done
+    jq -e '.overlapping > 100' <<< "$expected"
+    # Floats: the same mesh, as near as they have it.
+    "$MAKE_MESH" --faces 800 --format stl-binary one.stl
+    mesh --self one.stl --json
+    [ "$shared" = "$output" ]
+    mesh one.stl one.stl --translate 0.1,0.2,0.3 --json
+    [ "$(jq -c .overlapping <<< "$output")" = "$(jq -c .overlapping <<< "$expected")" ]
+}
+
+@test "files that cannot be read, and what is broken, with the place" {
+    cannot_read 'no.obj: No such file or directory' no.obj b.obj
+    cannot_read 'no.obj: No such file or directory' a.obj no.obj
+    cannot_read "$BATS_TEST_TMPDIR: a folder, not a file" a.obj "$BATS_TEST_TMPDIR"
+    : > nothing.obj
+    cannot_read 'nothing.obj: byte 0: the file is empty' --self nothing.obj
+    printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' > broken.obj
+    mesh a.obj broken.obj --json
+    ended 2
+    is ''
+    [[ $stderr == 'fmb: broken.obj: line 3: '* ]]
+    printf 'v 0 0 nan\n' > broken.obj
+    mesh broken.obj a.obj
+    ended 2
+    [[ $stderr == 'fmb: broken.obj: line 1: '* ]]
+    "$MAKE_MESH" --faces 8 --format ply-le whole.ply
+    head -c -1 whole.ply > cut.ply
+    mesh cut.ply a.obj
+    ended 2
+    is ''
+    [[ $stderr == 'fmb: cut.ply: '* ]]
+    [ "$(wc -l <<< "$stderr")" = 1 ]
+}
+
+@test "what cannot be written is told" {
+    mesh a.obj b.obj --json --ply "$BATS_TEST_TMPDIR/no/out.ply"
+    ended 1
+    said "fmb: $BATS_TEST_TMPDIR/no/out.ply: No such file or directory"
+    jq -e .overlapping <<< "$output"
+    mesh a.obj b.obj --ply /dev/full
+    ended 1
+    said 'fmb: /dev/full: No space left on device'
+    run bash -c "'$FMB' mesh a.obj b.obj --json 2>&1 > /dev/full"
+    ended 1
+    is 'fmb: standard output: No space left on device'
+}
+
+# ---- Usage -------------------------------------------------------------------------------------
+
+@test "wrong usage is one line and a hint" {
+    wrong 'expected two meshes, found 0; or one and --self'
+    wrong 'expected two meshes, found 1; or one and --self' a.obj
+    wrong 'expected two meshes, found 3; or one and --self' a.obj b.obj a.obj
+    wrong 'expected two meshes, found 4; or one and --self' a.obj b.obj -- --json a.obj
+    wrong "--scale: expected a number, or three X,Y,Z, found '1,2'" a.obj --scale 1,2 b.obj
+    wrong "--scale: expected a number, or three X,Y,Z, found ''" a.obj --scale= b.obj
+    wrong "--scale: expected a number, or three X,Y,Z, found 'inf'" a.obj --scale inf b.obj
+    wrong "--scale: expected a number, or three X,Y,Z, found '1,2,3,4'" a.obj --scale 1,2,3,4 b.obj
+    wrong "--scale: expected a number, or three X,Y,Z, found '1e999'" a.obj --scale 1e999 b.obj
+    wrong "--translate: expected three numbers X,Y,Z, found '1'" a.obj --translate 1 b.obj
+    wrong "--translate: expected three numbers X,Y,Z, found '1,nan,3'" a.obj --translate 1,nan,3 b.obj
+    wrong "--velocity: expected three numbers X,Y,Z, found '1,2,3x'" a.obj --velocity 1,2,3x b.obj
+    wrong "--rotate: expected an axis and degrees, such as z,90, found '90'" a.obj --rotate 90 b.obj
+    wrong "--rotate: expected an axis and degrees, such as z,90, found 'z'" a.obj --rotate z b.obj
+    wrong "--rotate: expected an axis and degrees, such as z,90, found 'w,1'" a.obj --rotate w,1 b.obj
+    wrong "--rotate: expected an axis and degrees, such as z,90, found ''" a.obj --rotate '' b.obj
+    wrong "--mirror: expected x, y or z, found 'xy'" a.obj --mirror xy b.obj
+    wrong "--mirror: expected x, y or z, found ''" a.obj --mirror '' b.obj
+    wrong "--as: there are faces and tetrahedra, not 'cubes'" a.obj --as cubes b.obj
+    wrong "--method: there are certified and exact, not 'sat'" a.obj --method sat b.obj
+    wrong "--method: there are certified and exact, not 'guess'" a.obj --method guess b.obj
+    wrong "--duration: expected a number from 0 to 1.79769e+308, found '-1'" a.obj --duration -1 b.obj
+    wrong "--duration: expected a number from 0 to 1.79769e+308, found 'nan'" a.obj --duration nan b.obj
+    wrong "unknown option '--bogus'" a.obj b.obj --bogus
+    wrong "unknown option '-x'" a.obj -x b.obj
+    wrong "option '--translate' needs a value" a.obj b.obj --translate
+    wrong "option '--json=1' takes no value" a.obj --json=1 b.obj
+}
+
+@test "--help, and fmb help mesh" {
+    mesh --help
+    ended 0
+    said ''
+    [ "${lines[0]}" = 'usage: fmb mesh [OPTIONS] A B' ]
+    help=$output
+    mesh a.obj no.obj --help
+    ended 0
+    is "$help"
+    run "$FMB" help mesh
+    ended 0
+    is "$help"
+    run "$FMB" help
+    [[ $output == *'mesh'*'which faces of two triangle meshes meet'* ]]
+    # Every option is there, once.
+    for option in scale rotate mirror translate velocity duration self as method json list ply; do
+        [ "$(grep -c "^  --$option" <<< "$help")" = 1 ]
+    done
+}
+
+# ---- The terminal ------------------------------------------------------------------------------
+
+@test "on a terminal it shows how far it is, elsewhere it does not" {
+    "$MAKE_MESH" --faces 100000 large.ply
+    script -qfc "$FMB mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
+    script=$!
+    for _ in $(seq 600); do
+        grep -q 'of 100,352 faces' screen && break
+        sleep 0.1
+    done
+    kill "$script"
+    wait "$script" || true
+    grep -q 'fmb: [0-9,]* of 100,352 faces' screen
+    run --separate-stderr timeout 2 "$FMB" mesh --method exact large.ply large.ply
+    ended 124
+    said ''
+}
