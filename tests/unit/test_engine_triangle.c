@@ -66,6 +66,14 @@ static double near_whole(struct draw *draw)
     }
 }
 
+/* From one far out, near ones that differ by an ulp seem to be the same. */
+static double hidden(struct draw *draw)
+{
+    static const double some[] = {
+        0x1p54, 0, 1, 0.5, 0.1, 0x1.999999999999bp-4, 0x1.9999999999999p-4};
+    return some[draw_int(draw, 0, (int) COUNT(some) - 1)];
+}
+
 static double sparse(struct draw *draw)
 {
     return draw_int(draw, 0, 3) ? draw_int(draw, -1, 1) : full_mantissa(draw);
@@ -78,7 +86,7 @@ static double of_every_size(struct draw *draw)
 
 static numbers *const all_numbers[] = {whole,        tenth,         tenth_of_thousands,
                                        of_two_sizes, full_mantissa, near_whole,
-                                       sparse,       of_every_size};
+                                       sparse,       of_every_size, hidden};
 
 enum { POOL = 10 };
 
