@@ -116,10 +116,10 @@ static void add_integer(struct page_json *json, const char *name, uint64_t value
     page_json_integer(json, (int64_t) value);
 }
 
-static void add_numbers(struct page_json *json, const char *name, const double *number, int count)
+static void add_numbers(struct page_json *json, const char *name, const double number[3])
 {
     page_json_raw(json, name);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < 3; i++) {
         page_json_raw(json, i ? "," : "[");
         page_json_number(json, number[i]);
     }
@@ -140,8 +140,9 @@ static void put_head(FILE *out, const struct page *page)
         add_integer(&json, ",\"sharing_vertex\":", meeting->sharing_vertex);
     }
     page_json_raw(&json, meeting->moving ? ",\"moving\":true" : ",\"moving\":false");
-    add_numbers(&json, ",\"T\":", &page->report->question->duration, 1);
-    add_numbers(&json, ",\n\"centre\":", page->units.centre, 3);
+    page_json_raw(&json, ",\"T\":");
+    page_json_number(&json, page->report->question->duration);
+    add_numbers(&json, ",\n\"centre\":", page->units.centre);
     page_json_raw(&json, ",\"exponent\":");
     page_json_integer(&json, page->units.exponent);
     page_json_raw(&json, ",\n\"meshes\":[");
@@ -211,7 +212,7 @@ static void put_mesh(FILE *out, const struct page *page, int which)
     page_json_string(&json, report->name[which]);
     add_integer(&json, ",\"faces\":", report->mesh[which]->face_count);
     add_integer(&json, ",\"met\":", report->meeting->faces[which]);
-    add_numbers(&json, ",\"shift\":", shift, 3);
+    add_numbers(&json, ",\"shift\":", shift);
     page_json_raw(&json, ",\n\"corner\":\"");
     put(out, &json);
     put_coordinates(out, page, which);
