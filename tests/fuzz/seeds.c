@@ -2,7 +2,6 @@
  * something in it that the others lack, short talks with the service, logs, and meshes. Texts of
  * scenes there are enough in the tree. */
 #include "answer.h"
-#include "answer.h"
 #include "definition.h"
 #include "fuzz.h"
 #include "hostile.h"
@@ -576,173 +575,173 @@ static void write_meshes(void)
     write_ply_lists();
     write_stls();
     write_objs();
-    /* ---- Logs that are replayed ---- */
+}
 
-    static struct log_draft replayed;
-    static struct answerer service;
+/* ---- Logs that are replayed ---- */
 
-    static void end_replayed(const char *name)
-    {
-        write_seed("replay_log", name, replayed.bytes, replayed.size);
-        log_draft_free(&replayed);
-        cache_destroy(service.cache);
-        service.cache = cache_create(8, 1);
+static struct log_draft replayed;
+static struct answerer service;
+
+static void end_replayed(const char *name)
+{
+    write_seed("replay_log", name, replayed.bytes, replayed.size);
+    log_draft_free(&replayed);
+    cache_destroy(service.cache);
+    service.cache = cache_create(8, 1);
+}
+
+static void ask_pair(struct pair_query query)
+{
+    unsigned char bytes[WIRE_BYTES_MAX];
+    log_draft_event(&replayed, WIRE_PAIR_QUERY, 1000, bytes, wire_write_pair_query(&query, bytes));
+}
+
+static void log_pair_result(struct pair_query query, int32_t status, bool right)
+{
+    static unsigned char bytes[WIRE_RESULT_BYTES_MAX];
+    struct pair_result result;
+    if (status == FMB_OK)
+        answer_pair(&service, &query, &result);
+    else
+        answer_pair_refused(&service, &query, (enum fmb_status) status, &result);
+    if (!right)
+        result.answer.verdict = FMB_TOUCHING;
+    log_draft_event(&replayed, WIRE_PAIR_RESULT, 1000, bytes,
+                    wire_write_pair_result(&result, bytes));
+}
+
+static void ask_scene(const struct scene_query *query)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    static struct scene_result result;
+    log_draft_event(&replayed, WIRE_SCENE_QUERY, 1000, bytes, wire_write_scene_query(query, bytes));
+    answer_scene(&service, query, &result);
+    log_draft_event(&replayed, WIRE_SCENE_RESULT, 1000, bytes,
+                    wire_write_scene_result(&result, bytes));
+}
+
+/* More than there is memory for in a small replay. */
+enum { APART = 6 };
+
+static void write_replays_of_order(void)
+{
+    const struct pair_query one = pair_number(1), two = pair_number(2), three = pair_number(6);
+    ask_pair(one);
+    log_pair_result(one, FMB_OK, true);
+    ask_pair(two);
+    log_pair_result(two, FMB_OK, false);
+    end_replayed("pairs");
+    ask_pair(one);
+    ask_pair(two);
+    log_pair_result(three, FMB_OK, true);
+    log_pair_result(two, FMB_OK, true);
+    ask_pair(three);
+    log_pair_result(one, FMB_OK, true);
+    end_replayed("out-of-order");
+    struct pair_query many[APART];
+    for (size_t i = 0; i < APART; i++)
+        ask_pair(many[i] = pair_number(i));
+    for (size_t i = 0; i < APART; i++)
+        log_pair_result(many[i], FMB_OK, i != 1);
+    end_replayed("apart");
+    ask_pair(one);
+    ask_pair(one);
+    log_pair_result(one, FMB_BUSY, true);
+    log_pair_result(one, FMB_OK, true);
+    log_pair_result(one, FMB_OK, false);
+    end_replayed("again");
+}
+
+/* As the cache of a replay gives them too. */
+static void write_replays_of_keys(void)
+{
+    const struct query_frame cube = frame(1, FMB_CUBOID, 3, 0, 0);
+    const struct query_frame other = frame(2, FMB_TETRAHEDRON, 3, 0.5, 0);
+    const struct pair_query whole = pair(cube, other, 0, 0);
+    struct pair_query keys = pair(by_key(cube, 1), by_key(other, 2), 0, BOX);
+    ask_pair(whole);
+    log_pair_result(whole, FMB_OK, true);
+    ask_pair(keys);
+    log_pair_result(keys, FMB_OK, true);
+    end_replayed("keys");
+    ask_pair(keys);
+    ask_pair(whole);
+    log_pair_result(whole, FMB_OK, true);
+    log_pair_result(keys, FMB_OK, true);
+    end_replayed("keys-before");
+    ask_pair(keys);
+    log_pair_result(keys, FMB_OK, true);
+    keys.frame[0].components = cube.components;
+    ask_pair(keys);
+    end_replayed("keys-unknown");
+    struct scene_query *definition = fuzz_room(sizeof *definition);
+    definition_begin(definition);
+    definition_add(definition, &keys.frame[1], &other.components);
+    ask_scene(definition);
+    ask_pair(keys);
+    keys.frame[1] = other;
+    log_pair_result(keys, FMB_OK, true);
+    end_replayed("keys-defined");
+    free(definition);
+}
+
+static void write_replays_of_scenes(void)
+{
+    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    static const char *const names[] = {"scenes-listed", "scenes-all", "scenes-across"};
+    for (int i = 0; i < 3; i++) {
+        ask_scene(scene(4, which[i], BOX | TIMES));
+        ask_scene(scene(5, which[i], 0));
+        end_replayed(names[i]);
     }
+}
 
-    static void ask_pair(struct pair_query query)
-    {
-        unsigned char bytes[WIRE_BYTES_MAX];
-        log_draft_event(&replayed, WIRE_PAIR_QUERY, 1000, bytes,
-                        wire_write_pair_query(&query, bytes));
+static void write_replays_of_damage(void)
+{
+    const struct pair_query one = pair_number(1);
+    unsigned char begin[100];
+    ask_pair(one);
+    memcpy(begin, replayed.bytes, sizeof begin);
+    log_draft_raw(&replayed, "any bytes", 9);
+    log_pair_result(one, FMB_OK, true);
+    log_draft_event(&replayed, WIRE_STATUS, 1000, "any bytes", 9);
+    log_draft_event(&replayed, WIRE_PAIR_QUERY, INT64_MIN, "any bytes", 9);
+    log_draft_event(&replayed, "POSE", INT64_MAX, begin, sizeof begin);
+    ask_pair(one);
+    replayed.size -= 7;
+    end_replayed("damage");
+}
+
+static void write_replays(void)
+{
+    service.cache = cache_create(8, 1);
+    if (!service.cache || !answer_prepare(&service)) {
+        fprintf(stderr, "out of memory\n");
+        exit(1);
     }
+    write_replays_of_order();
+    write_replays_of_keys();
+    write_replays_of_scenes();
+    write_replays_of_damage();
+    cache_destroy(service.cache);
+    answer_release(&service);
+}
 
-    static void log_pair_result(struct pair_query query, int32_t status, bool right)
-    {
-        static unsigned char bytes[WIRE_RESULT_BYTES_MAX];
-        struct pair_result result;
-        if (status == FMB_OK)
-            answer_pair(&service, &query, &result);
-        else
-            answer_pair_refused(&service, &query, (enum fmb_status) status, &result);
-        if (!right)
-            result.answer.verdict = FMB_TOUCHING;
-        log_draft_event(&replayed, WIRE_PAIR_RESULT, 1000, bytes,
-                        wire_write_pair_result(&result, bytes));
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+        return 2;
     }
-
-    static void ask_scene(const struct scene_query *query)
-    {
-        static unsigned char bytes[QUERY_BYTES_MAX];
-        static struct scene_result result;
-        log_draft_event(&replayed, WIRE_SCENE_QUERY, 1000, bytes,
-                        wire_write_scene_query(query, bytes));
-        answer_scene(&service, query, &result);
-        log_draft_event(&replayed, WIRE_SCENE_RESULT, 1000, bytes,
-                        wire_write_scene_result(&result, bytes));
-    }
-
-    /* More than there is memory for in a small replay. */
-    enum { APART = 6 };
-
-    static void write_replays_of_order(void)
-    {
-        const struct pair_query one = pair_number(1), two = pair_number(2), three = pair_number(6);
-        ask_pair(one);
-        log_pair_result(one, FMB_OK, true);
-        ask_pair(two);
-        log_pair_result(two, FMB_OK, false);
-        end_replayed("pairs");
-        ask_pair(one);
-        ask_pair(two);
-        log_pair_result(three, FMB_OK, true);
-        log_pair_result(two, FMB_OK, true);
-        ask_pair(three);
-        log_pair_result(one, FMB_OK, true);
-        end_replayed("out-of-order");
-        struct pair_query many[APART];
-        for (size_t i = 0; i < APART; i++)
-            ask_pair(many[i] = pair_number(i));
-        for (size_t i = 0; i < APART; i++)
-            log_pair_result(many[i], FMB_OK, i != 1);
-        end_replayed("apart");
-        ask_pair(one);
-        ask_pair(one);
-        log_pair_result(one, FMB_BUSY, true);
-        log_pair_result(one, FMB_OK, true);
-        log_pair_result(one, FMB_OK, false);
-        end_replayed("again");
-    }
-
-    /* As the cache of a replay gives them too. */
-    static void write_replays_of_keys(void)
-    {
-        const struct query_frame cube = frame(1, FMB_CUBOID, 3, 0, 0);
-        const struct query_frame other = frame(2, FMB_TETRAHEDRON, 3, 0.5, 0);
-        const struct pair_query whole = pair(cube, other, 0, 0);
-        struct pair_query keys = pair(by_key(cube, 1), by_key(other, 2), 0, BOX);
-        ask_pair(whole);
-        log_pair_result(whole, FMB_OK, true);
-        ask_pair(keys);
-        log_pair_result(keys, FMB_OK, true);
-        end_replayed("keys");
-        ask_pair(keys);
-        ask_pair(whole);
-        log_pair_result(whole, FMB_OK, true);
-        log_pair_result(keys, FMB_OK, true);
-        end_replayed("keys-before");
-        ask_pair(keys);
-        log_pair_result(keys, FMB_OK, true);
-        keys.frame[0].components = cube.components;
-        ask_pair(keys);
-        end_replayed("keys-unknown");
-        struct scene_query *definition = fuzz_room(sizeof *definition);
-        definition_begin(definition);
-        definition_add(definition, &keys.frame[1], &other.components);
-        ask_scene(definition);
-        ask_pair(keys);
-        keys.frame[1] = other;
-        log_pair_result(keys, FMB_OK, true);
-        end_replayed("keys-defined");
-        free(definition);
-    }
-
-    static void write_replays_of_scenes(void)
-    {
-        static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
-        static const char *const names[] = {"scenes-listed", "scenes-all", "scenes-across"};
-        for (int i = 0; i < 3; i++) {
-            ask_scene(scene(4, which[i], BOX | TIMES));
-            ask_scene(scene(5, which[i], 0));
-            end_replayed(names[i]);
-        }
-    }
-
-    static void write_replays_of_damage(void)
-    {
-        const struct pair_query one = pair_number(1);
-        unsigned char begin[100];
-        ask_pair(one);
-        memcpy(begin, replayed.bytes, sizeof begin);
-        log_draft_raw(&replayed, "any bytes", 9);
-        log_pair_result(one, FMB_OK, true);
-        log_draft_event(&replayed, WIRE_STATUS, 1000, "any bytes", 9);
-        log_draft_event(&replayed, WIRE_PAIR_QUERY, INT64_MIN, "any bytes", 9);
-        log_draft_event(&replayed, "POSE", INT64_MAX, begin, sizeof begin);
-        ask_pair(one);
-        replayed.size -= 7;
-        end_replayed("damage");
-    }
-
-    static void write_replays(void)
-    {
-        service.cache = cache_create(8, 1);
-        if (!service.cache || !answer_prepare(&service)) {
-            fprintf(stderr, "out of memory\n");
-            exit(1);
-        }
-        write_replays_of_order();
-        write_replays_of_keys();
-        write_replays_of_scenes();
-        write_replays_of_damage();
-        cache_destroy(service.cache);
-        answer_release(&service);
-    }
-
-    int main(int argc, char **argv)
-    {
-        if (argc != 2) {
-            fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
-            return 2;
-        }
-        folder = argv[1];
-        write_pair_queries();
-        write_pair_results();
-        write_scene_queries();
-        write_scene_results();
-        write_statuses();
-        write_talks();
-        write_logs();
-        write_meshes();
-        write_replays();
-        return 0;
-    }
+    folder = argv[1];
+    write_pair_queries();
+    write_pair_results();
+    write_scene_queries();
+    write_scene_results();
+    write_statuses();
+    write_talks();
+    write_logs();
+    write_meshes();
+    write_replays();
+    return 0;
+}
