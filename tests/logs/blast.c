@@ -72,8 +72,7 @@ static bool choose(struct draw *draw, int option, bool either)
     return either ? draw_coin(draw) : option;
 }
 
-/* The bodies of 2D come first, so many. Of the others one in so many is a face: those take the
- * exact step, and with it longer than all that is to be measured. */
+/* The bodies of 2D come first, so many. Of the others one in so many is a face. */
 enum { BODIES_2D = BLAST_BODIES / 2, FACES_ONE_IN = 32 };
 
 static void draw_bodies(struct blasting *blasting)
@@ -103,7 +102,8 @@ static void draw_pair(struct blasting *blasting, struct pair_query *query)
     struct draw *draw = &blasting->draw;
     const bool flat = choose(draw, blast->dim == 2, blast->dim == 0);
     const bool moving = choose(draw, blast->moving, blast->moving < 0);
-    const int first = flat ? 0 : BODIES_2D, last = flat ? BODIES_2D - 1 : BLAST_BODIES - 1;
+    const int first = flat ? 0 : BODIES_2D;
+    const int last = first + (blast->bodies ? blast->bodies / 2 : BODIES_2D) - 1;
     const int movers = moving ? draw_int(draw, 1, 3) : 0;
     for (int f = 0; f < 2; f++)
         draw_frame(blasting, draw_int(draw, first, last), movers >> f & 1, &query->frame[f]);

@@ -18,6 +18,7 @@ struct blast {
     int by_key; /* bodies that have a key go by key: 0, or 1; -1: one time in two. (A body that has
                    none yet goes whole.) */
     int32_t want; /* QUERY_WANT_ bits, of pairs */
+    int bodies;   /* from 2 to BLAST_BODIES: of each dimension half as many; 0: BLAST_BODIES */
 };
 
 /* Pairs of BLAST_BODIES bodies of all shapes, drawn anew for each query, each body at a place of

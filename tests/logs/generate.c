@@ -44,6 +44,7 @@ static const char usage[] =
     "\n"
     "  --blast WHAT N  N different queries, of pairs or of scenes of 100 bodies\n"
     "  --seed N        of what is drawn (1)\n"
+    "  --bodies N      pairs of N bodies, half of them 2D (8192)\n"
     "  --dim 2|3       pairs of this dimension alone\n"
     "  --static        pairs at rest alone\n"
     "  --moving        pairs that move alone\n"
@@ -63,6 +64,7 @@ struct options {
 enum {
     BLAST = 1,
     SEED,
+    BODIES,
     DIM,
     STATIC,
     MOVING,
@@ -77,6 +79,7 @@ enum {
 
 static const struct option long_options[] = {{"blast", required_argument, NULL, BLAST},
                                              {"seed", required_argument, NULL, SEED},
+                                             {"bodies", required_argument, NULL, BODIES},
                                              {"dim", required_argument, NULL, DIM},
                                              {"static", no_argument, NULL, STATIC},
                                              {"moving", no_argument, NULL, MOVING},
@@ -114,6 +117,11 @@ static bool take(int option, char **argv, struct options *out)
         if (!read_integer(optarg, 0, INT64_MAX, &number))
             return false;
         out->blast.seed = (uint64_t) number;
+        return true;
+    case BODIES:
+        if (!read_integer(optarg, 2, BLAST_BODIES, &number))
+            return false;
+        out->blast.bodies = (int) number;
         return true;
     case DIM:
         if (!read_integer(optarg, 2, 3, &number))
