@@ -31,22 +31,10 @@ const unsigned char *cursor_too_short(struct cursor *cursor)
     return NULL;
 }
 
-static double double_at(const unsigned char *b)
+int32_t cursor_wrong_count(struct cursor *cursor, int32_t count)
 {
-    const uint64_t bits = big_endian_64(b);
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-int32_t cursor_count(struct cursor *cursor, uint64_t size)
-{
-    int32_t count = cursor_int32(cursor);
-    if (count < 0)
-        cursor_fail(cursor, "negative count");
-    else if ((uint64_t) count * size > cursor->left)
-        cursor_fail(cursor, too_short);
-    return cursor->error ? 0 : count;
+    cursor_fail(cursor, count < 0 ? "negative count" : too_short);
+    return 0;
 }
 
 /* A counted list of things of so many bytes. Returns the count; *kept: how many the caller wants.
@@ -66,7 +54,7 @@ int32_t cursor_doubles(struct cursor *cursor, double *out, int max)
     int kept;
     const int32_t count = take_list(cursor, 8, max, &bytes, &kept);
     for (int i = 0; i < kept; i++)
-        out[i] = double_at(bytes + 8 * i);
+        out[i] = cursor_double_at(bytes + 8 * i);
     return count;
 }
 

@@ -63,8 +63,25 @@ static inline double cursor_double(struct cursor *cursor)
     return value;
 }
 
+static inline double cursor_double_at(const unsigned char *bytes)
+{
+    const uint64_t bits = big_endian_64(bytes);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* The error of a count that is negative, or of more than there is. Always 0. */
+int32_t cursor_wrong_count(struct cursor *cursor, int32_t count);
+
 /* A count of things of at least size bytes each: they are there, or it is an error, and 0. */
-int32_t cursor_count(struct cursor *cursor, uint64_t size);
+static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
+{
+    const int32_t count = cursor_int32(cursor);
+    if (count < 0 || (uint64_t) count * size > cursor->left || cursor->error)
+        return cursor_wrong_count(cursor, count);
+    return count;
+}
 
 /* Counted lists: all of it is walked, the first max of it put into out. Returns the count. */
 int32_t cursor_doubles(struct cursor *cursor, double *out, int max);

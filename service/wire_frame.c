@@ -1,7 +1,8 @@
 #include "wire_frame.h"
 
-const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
-                             struct query_header *out)
+/* Of what is too short, or of another type: what comes first of both. */
+static const char *read_wrong_header(const void *bytes, uint32_t size, int64_t fingerprint,
+                                     struct query_header *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, fingerprint);
     out->utime = cursor_int64(&cursor);
@@ -10,12 +11,30 @@ const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerpri
     return cursor.error;
 }
 
-/* The first numbers of a list, which may be of any length. */
+const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
+                             struct query_header *out)
+{
+    const unsigned char *at = bytes;
+    if (size < 32 || size > INT32_MAX || (int64_t) big_endian_64(at) != fingerprint)
+        return read_wrong_header(bytes, size, fingerprint, out);
+    out->utime = (int64_t) big_endian_64(at + 8);
+    out->client_id = (int64_t) big_endian_64(at + 16);
+    out->sequence_number = (int64_t) big_endian_64(at + 24);
+    return NULL;
+}
+
+/* The first numbers of a list, which may be of any length; 0 beyond them. */
 static void read_numbers(struct cursor *cursor, struct query_numbers *out)
 {
-    out->count = cursor_doubles(cursor, out->number, FMB_COMPONENTS_MAX);
-    for (int i = out->count; i < FMB_COMPONENTS_MAX; i++)
+    const int32_t count = cursor_count(cursor, sizeof(double));
+    const unsigned char *bytes = cursor_take(cursor, (uint64_t) count * sizeof(double));
+    const int kept = !bytes ? 0 : count < FMB_COMPONENTS_MAX ? count : FMB_COMPONENTS_MAX;
+    int i = 0;
+    for (; i < kept; i++)
+        out->number[i] = cursor_double_at(bytes + sizeof(double) * (size_t) i);
+    for (; i < FMB_COMPONENTS_MAX; i++)
         out->number[i] = 0;
+    out->count = count;
 }
 
 void wire_read_frame(struct cursor *cursor, struct query_frame *out)
