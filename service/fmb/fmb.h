@@ -94,8 +94,8 @@ const char *fmb_verdict_name(int verdict);
 int fmb_component_count(int dim, int shape);
 
 /* What does not change while a rigid body moves without turning: worth keeping by id.
- * Fill it with fmb_body_make() only. Axes beyond dim and components beyond the shape's count
- * hold 0. */
+ * Fill it with fmb_body_make() or fmb_body_make_triangle() only. Axes beyond dim and components
+ * beyond the shape's count hold 0. */
 struct fmb_body {
     int dim; /* 2 or 3 */
     enum fmb_shape shape;
@@ -234,7 +234,8 @@ struct fmb_prepared {
 };
 
 /* There is no room for the rest of a body that is rounded: pairs with it that doubles leave open,
- * few but where they touch or nearly, get the verdict 0. fmb_decide() is to be asked of them.
+ * few but where they touch or nearly, get the verdict 0; and where boxes are wanted, all that are
+ * not surely separated. fmb_decide() is to be asked of them.
  * On output: OK, or NOT_FINITE and *out all 0: pairs with it are refused. */
 enum fmb_status fmb_prepare(const struct fmb_frame *frame, struct fmb_prepared *out);
 
@@ -423,8 +424,8 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
 enum fmb_status fmb_certificate(const struct fmb_pair *pair, char *text, size_t size,
                                 size_t *length);
 
-/* On input: any pair of bodies made by fmb_body_make(), any number for a verdict, any text ended
- * by a 0.
+/* On input: any pair of bodies made by fmb_body_make() or fmb_body_make_triangle(), any number for
+ * a verdict, any text ended by a 0.
  * On output: whether the text proves that this is the verdict of this pair. It is checked in
  * rational numbers, by code that shares nothing with fmb_certificate(), nor with any method. If
  * not, why says in one line what is wrong; it has room for size bytes, and may be NULL if that

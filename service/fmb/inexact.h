@@ -13,8 +13,8 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
 enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);
 
 /* The same, told no more than whether they meet: the yardstick of the benchmark.
- * On input: of one dimension, both usable (PREPARED_USABLE), and the duration is legal. Where
- * numbers overflow the answer may be either. */
+ * On input: of one dimension, both usable (PREPARED_USABLE) and neither a face, and the duration is
+ * legal. Where numbers overflow the answer may be either. */
 bool sat_meets(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration);
 
 /* Bounds of one variable, from inequalities that come in one by one: of the time of a moving
