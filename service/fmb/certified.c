@@ -154,9 +154,13 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     const enum fmb_verdict verdict = verdict_of_slabs(certified);
     const bool faces =
         certified->pair->a.body->shape == FMB_FACE && certified->pair->b.body->shape == FMB_FACE;
-    return faces && verdict == FMB_TOUCHING && certified->path != CERTIFIED_EXACT
-               ? verdict_of_planes(certified)
-               : verdict;
+    if (!faces)
+        return verdict;
+    if (certified->path == CERTIFIED_EXACT) {
+        certified->planes = FACES_ELSE; /* they may be parallel: nobody looked */
+        return verdict;
+    }
+    return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;
 }
 
 /* False if doubles can say nothing of the pair. */
