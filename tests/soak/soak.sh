@@ -101,7 +101,7 @@ run_trial() {
     crowd) ask --clients 16 --pairs 40 ;;
     killed) start every 1 kill_worker; ask --clients 4 --pairs 40 ;;
     poisoned | crashed) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
-    hostile) start every 0 damage; ask --clients 4 --pairs 40 ;;
+    hostile) damage >> "$log" 2>&1; start every 0 damage; ask --clients 4 --pairs 40 ;;
     lossy) lose_in_kernel || lose_in_relay; ask --clients 4 --pairs 40 ;;
     ids) "$build/soak-memory" ids "$(worker)" "$ids" ;;
     channels | filtered) "$build/soak-memory" channels "$(worker)" "$channels" ;;
