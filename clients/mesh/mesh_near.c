@@ -29,41 +29,39 @@
 
 /* ---- Vertices of equal coordinates ---- */
 
-struct place {
-    double at[3];
-    unsigned vertex;
-};
+typedef const double (*place)[3]; /* a vertex of the mesh */
 
+/* Of the same coordinates the first one of the mesh comes first. */
 static int compare(const void *x, const void *y)
 {
-    const struct place *p = x, *q = y;
+    const place p = *(const place *) x, q = *(const place *) y;
     for (int axis = 0; axis < 3; axis++)
-        if (p->at[axis] != q->at[axis])
-            return p->at[axis] < q->at[axis] ? -1 : 1;
-    return (p->vertex > q->vertex) - (p->vertex < q->vertex);
+        if ((*p)[axis] != (*q)[axis])
+            return (*p)[axis] < (*q)[axis] ? -1 : 1;
+    return (p > q) - (p < q);
 }
 
-static bool same_place(const struct place *x, const struct place *y)
+static bool same_place(place p, place q)
 {
-    return x->at[0] == y->at[0] && x->at[1] == y->at[1] && x->at[2] == y->at[2];
+    return (*p)[0] == (*q)[0] && (*p)[1] == (*q)[1] && (*p)[2] == (*q)[2];
 }
 
 void mesh_near_open(const struct mesh *mesh, struct mesh_near *out)
 {
+    const place vertex = (place) mesh->vertex;
     const size_t count = mesh->vertex_count;
-    struct place *place = allocate(count, sizeof *place);
+    place *sorted = allocate(count, sizeof *sorted);
     out->mesh = mesh;
     out->first = allocate(count, sizeof *out->first);
-    for (size_t v = 0; v < count; v++) {
-        memcpy(place[v].at, mesh->vertex[v], sizeof place[v].at);
-        place[v].vertex = (unsigned) v;
-    }
-    qsort(place, count, sizeof *place, compare);
+    for (size_t v = 0; v < count; v++)
+        sorted[v] = vertex + v;
+    qsort(sorted, count, sizeof *sorted, compare);
     for (size_t i = 0; i < count; i++) {
-        const bool again = i > 0 && same_place(&place[i], &place[i - 1]);
-        out->first[place[i].vertex] = again ? out->first[place[i - 1].vertex] : place[i].vertex;
+        const bool again = i > 0 && same_place(sorted[i], sorted[i - 1]);
+        const unsigned v = (unsigned) (sorted[i] - vertex);
+        out->first[v] = again ? out->first[sorted[i - 1] - vertex] : v;
     }
-    free(place);
+    free(sorted);
 }
 
 void mesh_near_close(struct mesh_near *near)
