@@ -1,5 +1,7 @@
 #include "wire_frame.h"
 
+#include <string.h>
+
 /* Of what is too short, or of another type: what comes first of both. */
 static const char *read_wrong_header(const void *bytes, uint32_t size, int64_t fingerprint,
                                      struct query_header *out)
@@ -29,11 +31,9 @@ static void read_numbers(struct cursor *cursor, struct query_numbers *out)
     const int32_t count = cursor_count(cursor, sizeof(double));
     const unsigned char *bytes = cursor_take(cursor, (uint64_t) count * sizeof(double));
     const int kept = !bytes ? 0 : count < FMB_COMPONENTS_MAX ? count : FMB_COMPONENTS_MAX;
-    int i = 0;
-    for (; i < kept; i++)
+    memset(out->number, 0, sizeof out->number);
+    for (int i = 0; i < kept; i++)
         out->number[i] = cursor_double_at(bytes + sizeof(double) * (size_t) i);
-    for (; i < FMB_COMPONENTS_MAX; i++)
-        out->number[i] = 0;
     out->count = count;
 }
 
