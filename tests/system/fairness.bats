@@ -21,7 +21,7 @@ is_flooded() {
 
 # The scene's answers are right, all of them, within so many tries for each.
 ask_beside() {
-    "$FMB" query --json --box --timeout 0.3 --retries 40 "$1" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --box --timeout 0.3 --retries 150 "$1" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --box --local "$1" | cmp - "$BATS_TEST_TMPDIR/bus"
 }
 
