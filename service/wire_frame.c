@@ -28,13 +28,8 @@ const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerpri
 /* The first numbers of a list, which may be of any length; 0 beyond them. */
 static void read_numbers(struct cursor *cursor, struct query_numbers *out)
 {
-    const int32_t count = cursor_count(cursor, sizeof(double));
-    const unsigned char *bytes = cursor_take(cursor, (uint64_t) count * sizeof(double));
-    const int kept = !bytes ? 0 : count < FMB_COMPONENTS_MAX ? count : FMB_COMPONENTS_MAX;
     memset(out->number, 0, sizeof out->number);
-    for (int i = 0; i < kept; i++)
-        out->number[i] = cursor_double_at(bytes + sizeof(double) * (size_t) i);
-    out->count = count;
+    out->count = cursor_doubles(cursor, out->number, FMB_COMPONENTS_MAX);
 }
 
 void wire_read_frame(struct cursor *cursor, struct query_frame *out)

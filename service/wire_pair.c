@@ -42,6 +42,7 @@ const char *wire_read_pair_result_header(const void *bytes, uint32_t size, struc
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_query_t_get_hash());
+    memset(out, 0, sizeof *out);
     out->utime = cursor_int64(&cursor);
     out->client_id = cursor_int64(&cursor);
     out->sequence_number = cursor_int64(&cursor);
