@@ -1,5 +1,5 @@
-/* Numbers as LCM writes them, in messages and in logs: the highest byte first. Inline: they are
- * looked at by the million, and the shifts are one instruction to a compiler that sees them. */
+/* Numbers as LCM writes them, in messages and in logs: the highest byte first. Inline: they go by
+ * in millions, and the shifts are one instruction to a compiler that sees them. */
 #ifndef BIG_ENDIAN_H
 #define BIG_ENDIAN_H
 
@@ -18,6 +18,26 @@ static inline uint32_t big_endian_32(const unsigned char *b)
 static inline uint64_t big_endian_64(const unsigned char *b)
 {
     return (uint64_t) big_endian_32(b) << 32 | big_endian_32(b + 4);
+}
+
+static inline void big_endian_put_16(unsigned char *b, uint16_t value)
+{
+    b[0] = (unsigned char) (value >> 8);
+    b[1] = (unsigned char) value;
+}
+
+static inline void big_endian_put_32(unsigned char *b, uint32_t value)
+{
+    b[0] = (unsigned char) (value >> 24);
+    b[1] = (unsigned char) (value >> 16);
+    b[2] = (unsigned char) (value >> 8);
+    b[3] = (unsigned char) value;
+}
+
+static inline void big_endian_put_64(unsigned char *b, uint64_t value)
+{
+    for (int i = 0; i < 8; i++)
+        b[i] = (unsigned char) (value >> (56 - 8 * i));
 }
 
 #endif

@@ -1,69 +1,10 @@
 #include "cursor.h"
 
-static const char too_short[] = "shorter than its fields";
-
-struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint)
-{
-    struct cursor cursor = {.at = bytes, .left = size};
-    if (size > INT32_MAX)
-        cursor.error = "size out of range";
-    else if (cursor_int64(&cursor) != fingerprint)
-        cursor_fail(&cursor, "another message type, or another version of it");
-    return cursor;
-}
-
-const char *cursor_end(const struct cursor *cursor)
-{
-    if (cursor->error)
-        return cursor->error;
-    return cursor->left ? "longer than its fields" : NULL;
-}
-
-void cursor_fail(struct cursor *cursor, const char *error)
-{
-    if (!cursor->error)
-        cursor->error = error;
-}
-
-const unsigned char *cursor_too_short(struct cursor *cursor)
-{
-    cursor_fail(cursor, too_short);
-    return NULL;
-}
-
-int32_t cursor_wrong_count(struct cursor *cursor, int32_t count)
-{
-    cursor_fail(cursor, count < 0 ? "negative count" : too_short);
-    return 0;
-}
-
-/* A counted list of things of so many bytes. Returns the count; *kept: how many the caller wants.
- */
-static int32_t take_list(struct cursor *cursor, uint64_t size, int max, const unsigned char **bytes,
-                         int *kept)
-{
-    int32_t count = cursor_count(cursor, size);
-    *bytes = cursor_take(cursor, (uint64_t) count * size);
-    *kept = !*bytes ? 0 : count < max ? count : max;
-    return count;
-}
-
-int32_t cursor_doubles(struct cursor *cursor, double *out, int max)
-{
-    const unsigned char *bytes;
-    int kept;
-    const int32_t count = take_list(cursor, 8, max, &bytes, &kept);
-    for (int i = 0; i < kept; i++)
-        out[i] = cursor_double_at(bytes + 8 * i);
-    return count;
-}
-
 int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max)
 {
     const unsigned char *bytes;
-    int kept;
-    const int32_t count = take_list(cursor, 8, max, &bytes, &kept);
-    for (int i = 0; i < kept; i++)
+    const int32_t count = cursor_list(cursor, 8, &bytes);
+    for (int i = 0; i < count && i < max; i++)
         out[i] = (int64_t) big_endian_64(bytes + 8 * i);
     return count;
 }
@@ -80,8 +21,8 @@ static void read_indices(const unsigned char *restrict bytes, unsigned *restrict
 int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max)
 {
     const unsigned char *bytes;
-    int kept;
-    const int32_t count = take_list(cursor, 2, max, &bytes, &kept);
+    const int32_t count = cursor_list(cursor, 2, &bytes);
+    const int kept = count < max ? count : max;
     int i = 0;
     for (; i + INDICES <= kept; i += INDICES)
         read_indices(bytes + 2 * i, out + i);
@@ -93,21 +34,18 @@ int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max)
 int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max)
 {
     const unsigned char *bytes;
-    int kept;
-    const int32_t count = take_list(cursor, 1, max, &bytes, &kept);
-    if (kept > 0)
-        memcpy(out, bytes, (size_t) kept);
+    const int32_t count = cursor_list(cursor, 1, &bytes);
+    if (count > 0)
+        memcpy(out, bytes, (size_t) (count < max ? count : max));
     return count;
 }
 
 size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes)
 {
-    int32_t size = cursor_count(cursor, 1);
-    const unsigned char *at = cursor_take(cursor, (uint64_t) size);
-    if (!at)
-        return 0;
+    const unsigned char *at;
+    const int32_t size = cursor_list(cursor, 1, &at);
     if (size == 0 || memchr(at, 0, (size_t) size) != at + size - 1) {
-        cursor->error = "string without an end, or with two";
+        cursor_fail(cursor, "string without an end, or with two");
         return 0;
     }
     *bytes = at;

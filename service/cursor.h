@@ -1,8 +1,10 @@
 /* A walk over bytes that nobody vouches for, in LCM's encoding: big-endian, no padding. Sizes are
- * of 64 bits, so that no count can make them wrap. The first error ends the walk: everything
- * read after it is 0.
+ * of 64 bits, so that no count can make them wrap. The first error ends the walk: there is nothing
+ * left, and everything read after it is 0.
  *
- * Numbers are inline: a replay reads tens of millions of them a second. */
+ * Numbers and lists of them are inline: a replay reads tens of millions of them a second. Nothing
+ * here gives the address of a cursor away, so that of one in a local variable a compiler makes
+ * registers. */
 #ifndef CURSOR_H
 #define CURSOR_H
 
@@ -15,29 +17,25 @@
 
 struct cursor {
     const unsigned char *at;
-    uint64_t left;
+    uint64_t left;     /* bytes; 0 after an error */
     const char *error; /* static; NULL: none so far */
 };
 
-/* On input: size bytes as LCM gives them (it is unsigned there, and can be a negative number of
- * ints: that is an error); what type they should be of. */
-struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint);
+/* An error; the first one stays. */
+static inline void cursor_fail(struct cursor *cursor, const char *error)
+{
+    cursor->error = cursor->error ? cursor->error : error;
+    cursor->left = 0;
+}
 
-/* The error, also that something is left over; or NULL. */
-const char *cursor_end(const struct cursor *cursor);
-
-/* An error of the caller's finding; the first one stays. */
-void cursor_fail(struct cursor *cursor, const char *error);
-
-/* The error where there are fewer bytes than asked for, or one came before. Always NULL. */
-const unsigned char *cursor_too_short(struct cursor *cursor);
-
-/* The next so many bytes; NULL after an error. */
+/* The next so many bytes, 1 or more; NULL where they are not there, which is an error. */
 static inline const unsigned char *cursor_take(struct cursor *cursor, uint64_t size)
 {
     const unsigned char *bytes = cursor->at;
-    if (size > cursor->left || cursor->error)
-        return cursor_too_short(cursor);
+    if (size > cursor->left) {
+        cursor_fail(cursor, "shorter than its fields");
+        return NULL;
+    }
     cursor->at += size;
     cursor->left -= size;
     return bytes;
@@ -55,14 +53,6 @@ static inline int32_t cursor_int32(struct cursor *cursor)
     return bytes ? (int32_t) big_endian_32(bytes) : 0;
 }
 
-static inline double cursor_double(struct cursor *cursor)
-{
-    const uint64_t bits = (uint64_t) cursor_int64(cursor); /* 0 is the double 0 */
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 static inline double cursor_double_at(const unsigned char *bytes)
 {
     const uint64_t bits = big_endian_64(bytes);
@@ -71,20 +61,61 @@ static inline double cursor_double_at(const unsigned char *bytes)
     return value;
 }
 
-/* The error of a count that is negative, or of more than there is. Always 0. */
-int32_t cursor_wrong_count(struct cursor *cursor, int32_t count);
+static inline double cursor_double(struct cursor *cursor)
+{
+    const unsigned char *bytes = cursor_take(cursor, 8);
+    return bytes ? cursor_double_at(bytes) : 0;
+}
+
+/* On input: size bytes as LCM gives them (it is unsigned there, and can be a negative number of
+ * ints: that is an error); what type they should be of. */
+static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint)
+{
+    /* Of no bytes there may be no address, to which not even 0 can be added. */
+    struct cursor cursor = {.at = bytes ? bytes : (const void *) "", .left = size};
+    if (size > INT32_MAX)
+        cursor_fail(&cursor, "size out of range");
+    else if (cursor_int64(&cursor) != fingerprint)
+        cursor_fail(&cursor, "another message type, or another version of it");
+    return cursor;
+}
+
+/* The error, also that something is left over; or NULL. */
+static inline const char *cursor_end(const struct cursor *cursor)
+{
+    return cursor->left ? "longer than its fields" : cursor->error;
+}
 
 /* A count of things of at least size bytes each: they are there, or it is an error, and 0. */
 static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
 {
     const int32_t count = cursor_int32(cursor);
-    if (count < 0 || (uint64_t) count * size > cursor->left || cursor->error)
-        return cursor_wrong_count(cursor, count);
+    if (count >= 0 && (uint64_t) count * size <= cursor->left)
+        return count;
+    cursor_fail(cursor, count < 0 ? "negative count" : "shorter than its fields");
+    return 0;
+}
+
+/* A counted list of things of so many bytes: all of it is walked. Returns the count. */
+static inline int32_t cursor_list(struct cursor *cursor, uint64_t size, const unsigned char **bytes)
+{
+    const int32_t count = cursor_count(cursor, size);
+    *bytes = cursor->at;
+    cursor->at += (uint64_t) count * size;
+    cursor->left -= (uint64_t) count * size;
     return count;
 }
 
 /* Counted lists: all of it is walked, the first max of it put into out. Returns the count. */
-int32_t cursor_doubles(struct cursor *cursor, double *out, int max);
+static inline int32_t cursor_doubles(struct cursor *cursor, double *out, int max)
+{
+    const unsigned char *bytes;
+    const int32_t count = cursor_list(cursor, 8, &bytes);
+    for (int i = 0; i < count && i < max; i++)
+        out[i] = cursor_double_at(bytes + 8 * i);
+    return count;
+}
+
 int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max);
 int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max);
 

@@ -25,37 +25,34 @@ const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerpri
     return NULL;
 }
 
-/* The first numbers of a list, which may be of any length; 0 beyond them. */
+/* The first numbers of a list, which may be of any length. */
 static void read_numbers(struct cursor *cursor, struct query_numbers *out)
 {
-    memset(out->number, 0, sizeof out->number);
     out->count = cursor_doubles(cursor, out->number, FMB_COMPONENTS_MAX);
 }
 
 void wire_read_frame(struct cursor *cursor, struct query_frame *out)
 {
-    out->body_id = cursor_int64(cursor);
-    out->key = cursor_int64(cursor);
-    out->shape = cursor_int32(cursor);
-    read_numbers(cursor, &out->origin);
+    struct cursor own = *cursor;
+    memset(out, 0, sizeof *out);
+    out->body_id = cursor_int64(&own);
+    out->key = cursor_int64(&own);
+    out->shape = cursor_int32(&own);
+    read_numbers(&own, &out->origin);
     out->dim = out->origin.count;
-    read_numbers(cursor, &out->components);
-    read_numbers(cursor, &out->velocity);
+    read_numbers(&own, &out->components);
+    read_numbers(&own, &out->velocity);
+    *cursor = own;
 }
 
-fmb_msgs_frame_t wire_frame_message(const struct query_frame *frame)
+void wire_write_frame(struct writer *writer, const struct query_frame *frame)
 {
-    return (fmb_msgs_frame_t){
-        .body_id = frame->body_id,
-        .key = frame->key,
-        .shape = frame->shape,
-        .dim = frame->origin.count,
-        .origin = (double *) frame->origin.number,
-        .num_components = frame->components.count,
-        .components = (double *) frame->components.number,
-        .num_velocity = frame->velocity.count,
-        .velocity = (double *) frame->velocity.number,
-    };
+    writer_int64(writer, frame->body_id);
+    writer_int64(writer, frame->key);
+    writer_int32(writer, frame->shape);
+    writer_doubles(writer, frame->origin.number, frame->origin.count);
+    writer_doubles(writer, frame->components.number, frame->components.count);
+    writer_doubles(writer, frame->velocity.number, frame->velocity.count);
 }
 
 size_t wire_frame_bytes(const struct query_frame *frame)

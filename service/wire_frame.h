@@ -4,8 +4,7 @@
 
 #include "cursor.h"
 #include "wire.h"
-
-#include "fmb_msgs_frame_t.h"
+#include "writer.h"
 
 /* Bytes of a frame without numbers. */
 enum { WIRE_FRAME_BYTES_MIN = 32 };
@@ -13,9 +12,9 @@ enum { WIRE_FRAME_BYTES_MIN = 32 };
 const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
                              struct query_header *out);
 
+/* Numbers beyond the counts are 0. */
 void wire_read_frame(struct cursor *cursor, struct query_frame *out);
 
-/* For the generated encoders, which do not know const. Points into the frame. */
-fmb_msgs_frame_t wire_frame_message(const struct query_frame *frame);
+void wire_write_frame(struct writer *writer, const struct query_frame *frame);
 
 #endif

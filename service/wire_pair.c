@@ -1,6 +1,5 @@
 #include "wire.h"
 
-#include "wire_encoded.h"
 #include "wire_frame.h"
 
 #include "fmb_msgs_pair_query_t.h"
@@ -42,7 +41,6 @@ const char *wire_read_pair_result_header(const void *bytes, uint32_t size, struc
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_query_t_get_hash());
-    memset(out, 0, sizeof *out);
     out->utime = cursor_int64(&cursor);
     out->client_id = cursor_int64(&cursor);
     out->sequence_number = cursor_int64(&cursor);
@@ -125,46 +123,47 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
 
 size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[WIRE_BYTES_MAX])
 {
-    fmb_msgs_pair_query_t message = {
-        .utime = query->utime,
-        .client_id = query->client_id,
-        .sequence_number = query->sequence_number,
-        .duration = query->duration,
-        .method = query->method,
-        .want = query->want,
-        .a = wire_frame_message(&query->frame[0]),
-        .b = wire_frame_message(&query->frame[1]),
-    };
-    return wire_encoded(fmb_msgs_pair_query_t_encode(out, 0, WIRE_BYTES_MAX, &message));
+    struct writer writer = writer_begin(out, WIRE_BYTES_MAX, __fmb_msgs_pair_query_t_get_hash());
+    writer_int64(&writer, query->utime);
+    writer_int64(&writer, query->client_id);
+    writer_int64(&writer, query->sequence_number);
+    writer_double(&writer, query->duration);
+    writer_int32(&writer, query->method);
+    writer_int32(&writer, query->want);
+    wire_write_frame(&writer, &query->frame[0]);
+    wire_write_frame(&writer, &query->frame[1]);
+    return writer_end(&writer, out);
+}
+
+static void write_box(struct writer *writer, const struct pair_result *result)
+{
+    const int dim = result->answer.has_box ? result->dim : 0;
+    writer_int32(writer, 2 * dim);
+    for (int side = 0; side < 2; side++)
+        for (int axis = 0; axis < dim; axis++)
+            writer_double(writer, result->answer.box[side][axis]);
 }
 
 size_t wire_write_pair_result(const struct pair_result *result,
                               unsigned char out[WIRE_RESULT_BYTES_MAX])
 {
-    double box[2 * FMB_DIM_MAX];
-    int dim = result->answer.has_box ? result->dim : 0;
-    for (int side = 0; side < 2; side++)
-        for (int axis = 0; axis < dim; axis++)
-            box[side * dim + axis] = result->answer.box[side][axis];
-    fmb_msgs_pair_result_t message = {
-        .utime = result->utime,
-        .client_id = result->client_id,
-        .sequence_number = result->sequence_number,
-        .server_id = result->server_id,
-        .body_a = result->body_id[0],
-        .body_b = result->body_id[1],
-        .key_a = result->key[0],
-        .key_b = result->key[1],
-        .status = result->status,
-        .detail = (char *) result->detail,
-        .method = result->method,
-        .verdict = (int32_t) result->answer.verdict,
-        .num_contact = result->answer.has_contact ? 2 : 0,
-        .contact = (double *) result->answer.contact,
-        .num_box = 2 * dim,
-        .box = box,
-        .certificate = (char *) (result->certificate ? result->certificate : ""),
-        .compute_ns = result->compute_ns,
-    };
-    return wire_encoded(fmb_msgs_pair_result_t_encode(out, 0, WIRE_RESULT_BYTES_MAX, &message));
+    struct writer writer =
+        writer_begin(out, WIRE_RESULT_BYTES_MAX, __fmb_msgs_pair_result_t_get_hash());
+    writer_int64(&writer, result->utime);
+    writer_int64(&writer, result->client_id);
+    writer_int64(&writer, result->sequence_number);
+    writer_int64(&writer, result->server_id);
+    for (int f = 0; f < 2; f++)
+        writer_int64(&writer, result->body_id[f]);
+    for (int f = 0; f < 2; f++)
+        writer_int64(&writer, result->key[f]);
+    writer_int32(&writer, result->status);
+    writer_string(&writer, result->detail);
+    writer_int32(&writer, result->method);
+    writer_int32(&writer, (int32_t) result->answer.verdict);
+    writer_doubles(&writer, result->answer.contact, result->answer.has_contact ? 2 : 0);
+    write_box(&writer, result);
+    writer_string(&writer, result->certificate ? result->certificate : "");
+    writer_int64(&writer, result->compute_ns);
+    return writer_end(&writer, out);
 }

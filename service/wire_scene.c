@@ -1,6 +1,5 @@
 #include "wire.h"
 
-#include "wire_encoded.h"
 #include "wire_frame.h"
 
 #include "fmb_msgs_pair_query_t.h"
@@ -61,35 +60,23 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
     return cursor_end(&cursor);
 }
 
-static void indices_of(const unsigned (*pair)[2], int32_t count, int16_t *out)
-{
-    for (int32_t i = 0; i < count; i++)
-        out[i] = (int16_t) pair[i / 2][i % 2];
-}
-
 size_t wire_write_scene_query(const struct scene_query *query, unsigned char out[QUERY_BYTES_MAX])
 {
-    fmb_msgs_frame_t frame[QUERY_FRAMES_MAX];
-    int16_t index[2 * QUERY_PAIRS_MAX];
+    struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_scene_query_t_get_hash());
+    writer_int64(&writer, query->utime);
+    writer_int64(&writer, query->client_id);
+    writer_int64(&writer, query->sequence_number);
+    writer_double(&writer, query->duration);
+    writer_int32(&writer, query->method);
+    writer_int32(&writer, query->want);
+    writer_int32(&writer, query->which);
+    writer_int32(&writer, query->split);
+    writer_int32(&writer, query->first_pair);
+    writer_int32(&writer, query->frame_count);
     for (int32_t i = 0; i < query->frame_count; i++)
-        frame[i] = wire_frame_message(&query->frame[i]);
-    indices_of(query->pair, query->index_count, index);
-    fmb_msgs_scene_query_t message = {
-        .utime = query->utime,
-        .client_id = query->client_id,
-        .sequence_number = query->sequence_number,
-        .duration = query->duration,
-        .method = query->method,
-        .want = query->want,
-        .which = query->which,
-        .split = query->split,
-        .first_pair = query->first_pair,
-        .num_frames = query->frame_count,
-        .frames = frame,
-        .num_indices = query->index_count,
-        .indices = index,
-    };
-    return wire_encoded(fmb_msgs_scene_query_t_encode(out, 0, QUERY_BYTES_MAX, &message));
+        wire_write_frame(&writer, &query->frame[i]);
+    writer_indices(&writer, query->pair[0], query->index_count);
+    return writer_end(&writer, out);
 }
 
 /* ---- Results ---- */
@@ -191,30 +178,22 @@ const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scen
 size_t wire_write_scene_result(const struct scene_result *result,
                                unsigned char out[QUERY_BYTES_MAX])
 {
-    int16_t index[2 * QUERY_FOUND_MAX];
-    const int32_t named = result->names_pairs ? 2 * result->verdict_count : 0;
-    indices_of(result->pair, named, index);
-    fmb_msgs_scene_result_t message = {
-        .utime = result->utime,
-        .client_id = result->client_id,
-        .sequence_number = result->sequence_number,
-        .server_id = result->server_id,
-        .status = result->status,
-        .detail = (char *) result->detail,
-        .method = result->method,
-        .lost = result->lost,
-        .num_keys = result->key_count,
-        .keys = (int64_t *) result->key,
-        .end_pair = result->end_pair,
-        .num_verdicts = result->verdict_count,
-        .verdicts = (uint8_t *) result->verdict,
-        .num_indices = named,
-        .indices = index,
-        .num_times = result->has_times ? 2 * result->contact_count : 0,
-        .times = (double *) result->times,
-        .num_boxes = result->has_boxes ? 2 * result->dim * result->contact_count : 0,
-        .boxes = (double *) result->boxes,
-        .compute_ns = result->compute_ns,
-    };
-    return wire_encoded(fmb_msgs_scene_result_t_encode(out, 0, QUERY_BYTES_MAX, &message));
+    const int32_t contacts = result->contact_count;
+    struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_scene_result_t_get_hash());
+    writer_int64(&writer, result->utime);
+    writer_int64(&writer, result->client_id);
+    writer_int64(&writer, result->sequence_number);
+    writer_int64(&writer, result->server_id);
+    writer_int32(&writer, result->status);
+    writer_string(&writer, result->detail);
+    writer_int32(&writer, result->method);
+    writer_int64(&writer, result->lost);
+    writer_int64s(&writer, result->key, result->key_count);
+    writer_int32(&writer, result->end_pair);
+    writer_bytes(&writer, result->verdict, result->verdict_count);
+    writer_indices(&writer, result->pair[0], result->names_pairs ? 2 * result->verdict_count : 0);
+    writer_doubles(&writer, result->times, result->has_times ? 2 * contacts : 0);
+    writer_doubles(&writer, result->boxes, result->has_boxes ? 2 * result->dim * contacts : 0);
+    writer_int64(&writer, result->compute_ns);
+    return writer_end(&writer, out);
 }

@@ -1,7 +1,7 @@
 #include "wire.h"
 
 #include "cursor.h"
-#include "wire_encoded.h"
+#include "writer.h"
 
 #include "fmb_msgs_status_t.h"
 
@@ -33,19 +33,16 @@ const char *wire_read_status(const void *bytes, uint32_t size, struct wire_statu
 
 size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX])
 {
-#define X(name) status->name,
-    const int64_t more[] = {WIRE_COUNTERS_MORE(X)};
+    struct writer writer = writer_begin(out, WIRE_BYTES_MAX, __fmb_msgs_status_t_get_hash());
+    writer_int64(&writer, status->utime);
+    writer_int64(&writer, status->server_id);
+    writer_string(&writer, status->version);
+#define X(name) writer_int64(&writer, status->name);
+    WIRE_COUNTERS_BEFORE(X)
+    writer_int64s(&writer, status->results, FMB_STATUS_COUNT);
+    WIRE_COUNTERS_AFTER(X)
+    writer_int32(&writer, MORE_COUNT);
+    WIRE_COUNTERS_MORE(X)
 #undef X
-    fmb_msgs_status_t message = {.utime = status->utime,
-                                 .server_id = status->server_id,
-                                 .version = (char *) status->version,
-                                 .num_results = FMB_STATUS_COUNT,
-                                 .results = (int64_t *) status->results,
-                                 .num_more = MORE_COUNT,
-                                 .more = (int64_t *) more,
-#define X(name) .name = status->name,
-                                 WIRE_COUNTERS_BEFORE(X) WIRE_COUNTERS_AFTER(X)
-#undef X
-    };
-    return wire_encoded(fmb_msgs_status_t_encode(out, 0, WIRE_BYTES_MAX, &message));
+    return writer_end(&writer, out);
 }

@@ -1,4 +1,6 @@
-/* The walker: reads back what the generated encoders write, and refuses everything else. */
+/* The walker: reads back what is written, here or by the generated encoders, which write the same,
+ * and refuses everything else. */
+#include "as_lcm.h"
 #include "hostile.h"
 #include "wire.h"
 
@@ -160,12 +162,7 @@ static void test_pair_query_round_trip(void **state)
     size_t size = wire_write_pair_query(&query, bytes);
     assert_null(wire_read_pair_query(bytes, (uint32_t) size, &read));
     assert_memory_equal(&query, &read, sizeof query);
-
-    fmb_msgs_pair_query_t message;
-    assert_int_equal(fmb_msgs_pair_query_t_decode(bytes, 0, (int) size, &message), size);
-    assert_int_equal(message.b.num_components, 6);
-    assert_int_equal(message.b.key, 77);
-    fmb_msgs_pair_query_t_decode_cleanup(&message);
+    ASSERT_AS_LCM_WRITES(fmb_msgs_pair_query_t, bytes, size);
 }
 
 /* A count that no frame has is an answerable query, not a malformed one: the walker keeps what
@@ -233,6 +230,7 @@ static void test_pair_result_round_trip(void **state)
         size = wire_write_pair_result(&result, bytes);
         assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
         assert_same_result(&result, &read, bytes, size);
+        ASSERT_AS_LCM_WRITES(fmb_msgs_pair_result_t, bytes, size);
     }
 }
 
@@ -306,6 +304,7 @@ static void test_refusal_round_trip(void **state)
     assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
     assert_int_equal(read.status, FMB_NOT_FINITE);
     assert_string_equal(read.detail, "a.origin[1]: bad");
+    ASSERT_AS_LCM_WRITES(fmb_msgs_pair_result_t, bytes, size);
 }
 
 static void test_status_round_trip(void **state)
@@ -323,6 +322,7 @@ static void test_status_round_trip(void **state)
     size_t size = wire_write_status(&status, bytes);
     assert_null(wire_read_status(bytes, (uint32_t) size, &read));
     assert_memory_equal(&status, &read, sizeof status);
+    ASSERT_AS_LCM_WRITES(fmb_msgs_status_t, bytes, size);
 }
 
 /* A newer service may know more statuses, or a longer version. */

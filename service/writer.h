@@ -1,0 +1,94 @@
+/* A message on its way to bytes, in LCM's encoding: what cursor.h reads. The caller has counted:
+ * there is room for all of it. */
+#ifndef WRITER_H
+#define WRITER_H
+
+#include "big_endian.h"
+
+#include <assert.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+struct writer {
+    unsigned char *at;
+    size_t left; /* bytes */
+};
+
+static inline unsigned char *writer_take(struct writer *writer, size_t size)
+{
+    unsigned char *at = writer->at;
+    assert(size <= writer->left);
+    writer->at += size;
+    writer->left -= size;
+    return at;
+}
+
+static inline void writer_int64(struct writer *writer, int64_t value)
+{
+    big_endian_put_64(writer_take(writer, 8), (uint64_t) value);
+}
+
+static inline void writer_int32(struct writer *writer, int32_t value)
+{
+    big_endian_put_32(writer_take(writer, 4), (uint32_t) value);
+}
+
+static inline void writer_double(struct writer *writer, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    big_endian_put_64(writer_take(writer, 8), bits);
+}
+
+/* On input: room for so many bytes; the type that the message is of. */
+static inline struct writer writer_begin(unsigned char *out, size_t room, int64_t fingerprint)
+{
+    struct writer writer = {.at = out, .left = room};
+    writer_int64(&writer, fingerprint);
+    return writer;
+}
+
+/* On input: where it began. Returns the size of the message. */
+static inline size_t writer_end(const struct writer *writer, const unsigned char *out)
+{
+    return (size_t) (writer->at - out);
+}
+
+/* Lists: the count, then the numbers. */
+
+static inline void writer_doubles(struct writer *writer, const double *number, int32_t count)
+{
+    writer_int32(writer, count);
+    for (int32_t i = 0; i < count; i++)
+        writer_double(writer, number[i]);
+}
+
+static inline void writer_int64s(struct writer *writer, const int64_t *number, int32_t count)
+{
+    writer_int32(writer, count);
+    for (int32_t i = 0; i < count; i++)
+        writer_int64(writer, number[i]);
+}
+
+/* The lower 16 bits of each. */
+static inline void writer_indices(struct writer *writer, const unsigned *index, int32_t count)
+{
+    writer_int32(writer, count);
+    for (int32_t i = 0; i < count; i++)
+        big_endian_put_16(writer_take(writer, 2), (uint16_t) index[i]);
+}
+
+static inline void writer_bytes(struct writer *writer, const unsigned char *byte, int32_t count)
+{
+    writer_int32(writer, count);
+    memcpy(writer_take(writer, (size_t) count), byte, (size_t) count);
+}
+
+/* The final 0 is one of the bytes that are counted. */
+static inline void writer_string(struct writer *writer, const char *text)
+{
+    writer_bytes(writer, (const unsigned char *) text, (int32_t) strlen(text) + 1);
+}
+
+#endif
