@@ -7,11 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const side_name[2] = {"a", "b"};
-
 static void set_side(struct checking *checking, int side)
 {
-    strcpy(checking->place, side_name[side]);
+    checking->part = side == 0 ? "a" : "b";
+    checking->index = -1;
 }
 
 static bool check_pair(struct checking *checking, const struct pair_query *query)
@@ -25,7 +24,7 @@ static bool check_pair(struct checking *checking, const struct pair_query *query
         if (!check_frame(checking, &query->frame[f]))
             return false;
     }
-    checking->place[0] = '\0';
+    checking->part = NULL;
     return query->frame[0].dim == query->frame[1].dim ||
            check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
 }

@@ -48,15 +48,16 @@ void answer_release(struct answerer *answerer)
 
 static bool check_frames(struct checking *checking, const struct scene_query *query)
 {
+    checking->part = "frames";
     for (int32_t i = 0; i < query->frame_count; i++) {
         const struct query_frame *frame = &query->frame[i];
-        snprintf(checking->place, sizeof checking->place, "frames[%d]", (int) i);
+        checking->index = i;
         if (!check_frame(checking, frame))
             return false;
         if (frame->dim != query->frame[0].dim)
             return check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
     }
-    checking->place[0] = '\0';
+    checking->part = NULL;
     return true;
 }
 

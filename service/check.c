@@ -6,9 +6,14 @@
 bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
                   const char *reason)
 {
+    char place[24] = "";
+    if (checking->part && checking->index >= 0)
+        snprintf(place, sizeof place, "%s[%d].", checking->part, (int) checking->index);
+    else if (checking->part)
+        snprintf(place, sizeof place, "%s.", checking->part);
     *checking->status = (int32_t) status;
-    snprintf(checking->detail, QUERY_TEXT_MAX, "%s%s%s: %s", checking->place,
-             checking->place[0] ? "." : "", field, reason ? reason : fmb_status_text(status));
+    snprintf(checking->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
+             reason ? reason : fmb_status_text(status));
     return false;
 }
 
@@ -17,15 +22,17 @@ static bool check_id(struct checking *checking, const char *field, int64_t id)
     return query_id_ok(id) || check_refuse(checking, FMB_BAD_ID, field, "not from 0 to 2^53 - 1");
 }
 
+static bool refuse_count(struct checking *checking, const char *field, int expected, int found)
+{
+    char reason[64];
+    snprintf(reason, sizeof reason, "expected %d numbers, found %d", expected, found);
+    return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
+}
+
 static bool check_count(struct checking *checking, const char *field, int expected,
                         const struct query_numbers *numbers)
 {
-    if (numbers->count == expected)
-        return true;
-    char reason[64];
-    snprintf(reason, sizeof reason, "expected %d numbers, found %d", expected,
-             (int) numbers->count);
-    return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
+    return numbers->count == expected || refuse_count(checking, field, expected, numbers->count);
 }
 
 static bool refuse_not_finite(struct checking *checking, const char *field,
@@ -41,38 +48,45 @@ static bool refuse_not_finite(struct checking *checking, const char *field,
 }
 
 /* 0 times a number that is not finite is not 0. On input: a count that was checked. */
-static bool check_finite(struct checking *checking, const char *field,
-                         const struct query_numbers *numbers)
+static inline double nothing_of(const struct query_numbers *numbers)
 {
     double nothing = 0;
     for (int i = 0; i < numbers->count; i++)
         nothing += 0 * numbers->number[i];
-    return nothing == 0 || refuse_not_finite(checking, field, numbers);
+    return nothing;
 }
 
-bool check_by_key(const struct query_frame *frame)
+static bool check_finite(struct checking *checking, const struct query_frame *frame)
 {
-    return frame->components.count == 0 && frame->key != 0;
+    return nothing_of(&frame->origin) + nothing_of(&frame->components) +
+                   nothing_of(&frame->velocity) ==
+               0 ||
+           (refuse_not_finite(checking, "origin", &frame->origin) &&
+            refuse_not_finite(checking, "components", &frame->components) &&
+            refuse_not_finite(checking, "velocity", &frame->velocity));
+}
+
+static bool refuse_shape(struct checking *checking, const struct query_frame *frame)
+{
+    if (!fmb_shape_name(frame->shape))
+        return check_refuse(checking, FMB_UNKNOWN_SHAPE, "shape", NULL);
+    return check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
+                        frame->dim == 2 ? "a face is in 3D" : "neither 2 nor 3");
 }
 
 bool check_frame(struct checking *checking, const struct query_frame *frame)
 {
     if (!check_id(checking, "body_id", frame->body_id) || !check_id(checking, "key", frame->key))
         return false;
-    if (!fmb_shape_name(frame->shape))
-        return check_refuse(checking, FMB_UNKNOWN_SHAPE, "shape", NULL);
-    int vectors = fmb_component_count(frame->dim, frame->shape);
+    const int vectors = fmb_component_count(frame->dim, frame->shape);
     if (vectors == 0)
-        return check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
-                            frame->dim == 2 ? "a face is in 3D" : "neither 2 nor 3");
+        return refuse_shape(checking, frame);
     return check_count(checking, "origin", frame->dim, &frame->origin) &&
            (check_by_key(frame) ||
             check_count(checking, "components", vectors * frame->dim, &frame->components)) &&
            (frame->velocity.count == 0 ||
             check_count(checking, "velocity", frame->dim, &frame->velocity)) &&
-           check_finite(checking, "origin", &frame->origin) &&
-           check_finite(checking, "components", &frame->components) &&
-           check_finite(checking, "velocity", &frame->velocity);
+           check_finite(checking, frame);
 }
 
 bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number)

@@ -5,11 +5,13 @@
 
 #include "query.h"
 
-/* A query on its way. */
+/* A query on its way. The place is that of the frame that is looked at: it is put into words where
+ * something is wrong. */
 struct checking {
-    int32_t *status; /* of the result */
-    char *detail;    /* [QUERY_TEXT_MAX] of the result */
-    char place[24];  /* "a", "frames[7]"; "" for the query itself */
+    int32_t *status;  /* of the result */
+    char *detail;     /* [QUERY_TEXT_MAX] of the result */
+    const char *part; /* "a", "frames"; NULL: the query itself */
+    int32_t index;    /* of several in the part, from 0; -1: it is one */
 };
 
 /* Says what is wrong and where: "b.components[4]: not a finite number". Always false. reason NULL:
@@ -23,7 +25,10 @@ bool check_question(struct checking *checking, double duration, int32_t method, 
                     int32_t wants);
 bool check_frame(struct checking *checking, const struct query_frame *frame);
 
-/* Whether the frame names its components by key. */
-bool check_by_key(const struct query_frame *frame);
+/* Whether the frame names its components by key. Inline: asked several times of each. */
+static inline bool check_by_key(const struct query_frame *frame)
+{
+    return frame->components.count == 0 && frame->key != 0;
+}
 
 #endif
