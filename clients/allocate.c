@@ -3,7 +3,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { ROOM_MIN = 16 };
 
@@ -31,7 +30,7 @@ void *allocate_in_lines(size_t count, size_t size)
     if (size == 0 || count > (SIZE_MAX - line) / size)
         allocate_failed();
     const size_t bytes = (count * size + line - 1) / line * line;
-    return memset(or_exit(aligned_alloc(line, bytes ? bytes : line)), 0, bytes);
+    return or_exit(aligned_alloc(line, bytes ? bytes : line));
 }
 
 void *allocate_room(void *memory, size_t *room, size_t needed, size_t size)

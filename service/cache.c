@@ -12,11 +12,6 @@
  * zeros that calloc() has without touching them. */
 enum { NONE = 0, ENDS = 0 };
 
-/* Memory up to here is touched at the start, which takes some milliseconds, so that the service
- * takes no more than it had when it was ready. A larger cache is there at once all the same, and
- * takes memory as bodies come. */
-enum { TOUCHED_MAX = 64 << 20, PAGE = 4096 };
-
 /* Apart from its body: each use of a body changes its neighbours in the order of use, and these are
  * anywhere; entries are small and lie together. */
 struct entry {
@@ -41,13 +36,6 @@ struct cache {
     struct held *held;   /* [capacity + 1] */
     struct cache_counts counts;
 };
-
-static void touch_pages(void *memory, size_t size)
-{
-    volatile char *page = memory;
-    for (size_t at = 0; at < size; at += PAGE)
-        page[at] = 0;
-}
 
 /* So that no entry lies in two lines, nor a body in more than it has to. */
 static void *in_lines(size_t size)
@@ -80,15 +68,31 @@ struct cache *cache_create(size_t capacity, int64_t first_key)
                             .entry = entry,
                             .held = held,
                             .counts = {.capacity = (int64_t) capacity}};
-    const size_t sizes[] = {entries * sizeof *entry, entries * sizeof *held,
-                            buckets * sizeof *bucket};
-    if (sizes[0] + sizes[1] + sizes[2] <= TOUCHED_MAX) {
-        touch_pages(entry, sizes[0]);
-        touch_pages(held, sizes[1]);
-        touch_pages(bucket, sizes[2]);
-    }
     entry[ENDS].newer = entry[ENDS].older = ENDS;
     return cache;
+}
+
+/* Memory is there when it has been written to. */
+static void touch_pages(void *memory, size_t size)
+{
+    enum { PAGE = 4096 };
+    volatile char *page = memory;
+    for (size_t at = 0; at < size; at += PAGE)
+        page[at] = page[at];
+}
+
+void cache_take_memory(struct cache *cache)
+{
+    enum { TAKEN_MAX = 64 << 20 };
+    const size_t entries = (size_t) cache->counts.capacity + 1;
+    const size_t of_entries = entries * sizeof *cache->entry,
+                 of_held = entries * sizeof *cache->held;
+    const size_t of_buckets = sizeof *cache->bucket << (64 - cache->bucket_shift);
+    if (of_entries + of_held + of_buckets > TAKEN_MAX)
+        return;
+    touch_pages(cache->entry, of_entries);
+    touch_pages(cache->held, of_held);
+    touch_pages(cache->bucket, of_buckets);
 }
 
 void cache_destroy(struct cache *cache)
@@ -179,13 +183,19 @@ static int32_t insert(struct cache *cache, int64_t id)
     return e;
 }
 
-/* Number by number, since components are stored with gaps in 2D. -0 and 0 are different. */
+/* Component by component, since they are stored with gaps in 2D. -0 and 0 are different. Of a size
+ * that a compiler knows it needs no call. */
+static bool same_component(const double *a, const double *b, int dim)
+{
+    return dim == 3 ? memcmp(a, b, 3 * sizeof *a) == 0 : memcmp(a, b, 2 * sizeof *a) == 0;
+}
+
 static bool same_body(const struct fmb_body *body, int dim, int shape, const double *components)
 {
     if (body->dim != dim || body->shape != (enum fmb_shape) shape)
         return false;
     for (int i = 0; i < body->count; i++)
-        if (memcmp(body->component[i], components + i * dim, (size_t) dim * sizeof *components))
+        if (!same_component(body->component[i], components + i * dim, dim))
             return false;
     return true;
 }

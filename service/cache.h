@@ -30,6 +30,10 @@ struct cache_counts {
  * anywhere among 2^52 numbers.
  * On output: a cache, to be freed with cache_destroy(); NULL: out of memory. */
 struct cache *cache_create(size_t capacity, int64_t first_key);
+
+/* For a service, that takes no more memory later than it had when it was ready. Takes milliseconds.
+ * A very large cache is left alone: it takes memory as bodies come. */
+void cache_take_memory(struct cache *cache);
 void cache_destroy(struct cache *cache);
 
 /* Both return a body that is good until the cache is asked again. */

@@ -401,6 +401,7 @@ static bool open_server(struct server *server, const struct server_options *opti
     server->ready_ns = clock_ns();
     if (!server->answerer.cache || !answer_prepare(&server->answerer))
         return false;
+    cache_take_memory(server->answerer.cache);
     for (int kind = 0; kind < KINDS; kind++)
         if (!open_intake(server, (enum kind) kind, options))
             return false;

@@ -8,24 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Linked by index; 0 ends the chains of the buckets. Who goes for another is found by a hand that
- * walks round: it spares those that were used since it came by, once. So to use a body touches its
- * own slot alone, not its neighbours in some order; slots are small and lie together, and there are
- * no more buckets than there is use for: most logs ask for every frame, and have few bodies. */
+/* Linked by index, next in the bucket; 0 ends the chains. Who goes for another is found by a hand
+ * that walks round: it spares those that were used since it came by, once. So to use a body touches
+ * its own line alone, not its neighbours in some order; and there are no more buckets than there is
+ * use for: most logs ask for every frame, and have few bodies. */
 enum { NONE = 0, BUCKET_BITS_MIN = 8 };
-
-struct slot {
-    int64_t body_id, key, server_id;
-    uint32_t next; /* in the bucket */
-    bool used;     /* since the hand came by */
-};
 
 struct known_bodies {
     uint32_t capacity, count, hand;
     uint64_t multiplier[2]; /* random */
     int bucket_bits;
-    uint32_t *bucket;        /* [2^bucket_bits]: first slot of each */
-    struct slot *slot;       /* [capacity + 1] */
+    uint32_t *bucket;        /* [2^bucket_bits]: the first of each */
     struct known_body *body; /* [capacity + 1] */
 };
 
@@ -38,8 +31,7 @@ struct known_bodies *known_bodies_create(size_t capacity)
     for (int i = 0; i < 2; i++)
         known->multiplier[i] = query_id_mix(random_id());
     known->bucket = allocate((size_t) 1 << known->bucket_bits, sizeof *known->bucket);
-    known->slot = allocate_in_lines(capacity + 1, sizeof *known->slot);
-    known->body = allocate(capacity + 1, sizeof *known->body);
+    known->body = allocate_in_lines(capacity + 1, sizeof *known->body);
     return known;
 }
 
@@ -48,7 +40,6 @@ void known_bodies_destroy(struct known_bodies *known)
     if (!known)
         return;
     free(known->bucket);
-    free(known->slot);
     free(known->body);
     free(known);
 }
@@ -65,8 +56,8 @@ static uint32_t *bucket_of(const struct known_bodies *known, int64_t body_id, in
 static uint32_t find(const struct known_bodies *known, int64_t body_id, int64_t key)
 {
     uint32_t s = *bucket_of(known, body_id, key);
-    while (s != NONE && (known->slot[s].body_id != body_id || known->slot[s].key != key))
-        s = known->slot[s].next;
+    while (s != NONE && (known->body[s].body_id != body_id || known->body[s].key != key))
+        s = known->body[s].next;
     return s;
 }
 
@@ -78,23 +69,22 @@ void known_bodies_expect_soon(const struct known_bodies *known, int64_t body_id,
 void known_bodies_expect(const struct known_bodies *known, int64_t body_id, int64_t key)
 {
     const uint32_t s = *bucket_of(known, body_id, key);
-    __builtin_prefetch(&known->slot[s]);
     __builtin_prefetch(&known->body[s]);
 }
 
-static void link_slot(struct known_bodies *known, uint32_t s)
+static void link_body(struct known_bodies *known, uint32_t s)
 {
-    uint32_t *bucket = bucket_of(known, known->slot[s].body_id, known->slot[s].key);
-    known->slot[s].next = *bucket;
+    uint32_t *bucket = bucket_of(known, known->body[s].body_id, known->body[s].key);
+    known->body[s].next = *bucket;
     *bucket = s;
 }
 
-static void unlink_slot(struct known_bodies *known, uint32_t s)
+static void unlink_body(struct known_bodies *known, uint32_t s)
 {
-    uint32_t *link = bucket_of(known, known->slot[s].body_id, known->slot[s].key);
+    uint32_t *link = bucket_of(known, known->body[s].body_id, known->body[s].key);
     while (*link != s)
-        link = &known->slot[*link].next;
-    *link = known->slot[s].next;
+        link = &known->body[*link].next;
+    *link = known->body[s].next;
 }
 
 /* Twice as many buckets. */
@@ -104,10 +94,10 @@ static void grow(struct known_bodies *known)
     known->bucket_bits++;
     known->bucket = allocate((size_t) 1 << known->bucket_bits, sizeof *known->bucket);
     for (uint32_t s = 1; s <= known->count; s++)
-        link_slot(known, s);
+        link_body(known, s);
 }
 
-static uint32_t free_slot(struct known_bodies *known)
+static uint32_t free_place(struct known_bodies *known)
 {
     if (known->count < known->capacity) {
         if (known->count >> known->bucket_bits > 0)
@@ -116,26 +106,18 @@ static uint32_t free_slot(struct known_bodies *known)
     }
     for (;;) {
         known->hand = known->hand % known->capacity + 1;
-        if (!known->slot[known->hand].used)
+        if (!known->body[known->hand].used)
             break;
-        known->slot[known->hand].used = false;
+        known->body[known->hand].used = false;
     }
-    unlink_slot(known, known->hand);
+    unlink_body(known, known->hand);
     return known->hand;
-}
-
-static uint32_t insert(struct known_bodies *known, int64_t body_id, int64_t key)
-{
-    const uint32_t s = free_slot(known);
-    known->slot[s] = (struct slot){.body_id = body_id, .key = key};
-    link_slot(known, s);
-    return s;
 }
 
 static uint32_t use(struct known_bodies *known, int64_t body_id, int64_t key)
 {
     const uint32_t s = find(known, body_id, key);
-    known->slot[s].used = true; /* that of none too */
+    known->body[s].used = true; /* that of none too */
     return s;
 }
 
@@ -148,8 +130,8 @@ struct known_body *known_bodies_find(struct known_bodies *known, int64_t body_id
 bool known_bodies_has(struct known_bodies *known, int64_t body_id, int64_t key, int64_t server_id,
                       bool mine)
 {
-    const uint32_t s = use(known, body_id, key);
-    return s != NONE && known->slot[s].server_id == server_id && (!mine || known->body[s].mine);
+    const struct known_body *body = known_bodies_find(known, body_id, key);
+    return body && body->server_id == server_id && (!mine || body->mine);
 }
 
 bool known_bodies_half_full(const struct known_bodies *known)
@@ -172,15 +154,19 @@ struct known_body *known_bodies_learn(struct known_bodies *known, const struct q
     if (!can_have_key(frame))
         return NULL;
     uint32_t s = use(known, frame->body_id, key);
-    if (s == NONE)
-        s = insert(known, frame->body_id, key);
-    known->slot[s].server_id = server_id;
+    const bool is_new = s == NONE;
+    if (is_new)
+        s = free_place(known);
     known->body[s] = (struct known_body){.body_id = frame->body_id,
                                          .key = key,
                                          .server_id = server_id,
+                                         .used = !is_new,
+                                         .next = is_new ? NONE : known->body[s].next,
                                          .dim = frame->dim,
                                          .shape = frame->shape,
                                          .components = frame->components};
+    if (is_new)
+        link_body(known, s);
     return &known->body[s];
 }
 

@@ -10,11 +10,15 @@
 
 #include "query.h"
 
+/* All but the components in one line of the cache. */
 struct known_body {
-    int64_t body_id, key;
-    int64_t server_id;  /* who told the key; 0: nobody */
-    int64_t key_now;    /* for the user of this: 0 where it was just learned */
-    bool mine;          /* likewise, false; learn.h sets it */
+    _Alignas(64) int64_t body_id;
+    int64_t key;
+    int64_t server_id; /* who told the key; 0: nobody */
+    int64_t key_now;   /* for the user of this: 0 where it was just learned */
+    bool mine;         /* likewise, false; learn.h sets it */
+    bool used;         /* this and next: of known_bodies.c */
+    uint32_t next;
     int32_t dim, shape; /* as the frame said, which may be anything */
     struct query_numbers components;
 };
