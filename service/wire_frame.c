@@ -25,16 +25,16 @@ const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerpri
     return NULL;
 }
 
-/* The first numbers of a list, which may be of any length. */
+/* The first numbers of a list, which may be of any length; 0 beyond them. */
 static void read_numbers(struct cursor *cursor, struct query_numbers *out)
 {
+    memset(out, 0, sizeof *out);
     out->count = cursor_doubles(cursor, out->number, FMB_COMPONENTS_MAX);
 }
 
 void wire_read_frame(struct cursor *cursor, struct query_frame *out)
 {
     struct cursor own = *cursor;
-    memset(out, 0, sizeof *out);
     out->body_id = cursor_int64(&own);
     out->key = cursor_int64(&own);
     out->shape = cursor_int32(&own);

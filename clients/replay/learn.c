@@ -45,15 +45,21 @@ static int64_t int64_at(const unsigned char *b)
     return (int64_t) big_endian_64(b);
 }
 
+void learn_expect(const struct learner *learner, const struct match_item *result)
+{
+    if (result->kind != LOG_PAIR_QUERY || result->size < KEYS_END)
+        return;
+    for (int f = 0; f < 2; f++)
+        known_bodies_expect(learner->known, int64_at(result->bytes + BODIES_AT + 8 * f),
+                            int64_at(result->bytes + KEYS_AT + 8 * f));
+}
+
 static bool pair_tells_news(const struct learner *learner, const struct match_item *result,
                             bool mine)
 {
     if (result->size < KEYS_END)
         return false;
     const int64_t server_id = int64_at(result->bytes + SERVER_AT);
-    for (int f = 0; f < 2; f++)
-        known_bodies_expect(learner->known, int64_at(result->bytes + BODIES_AT + 8 * f),
-                            int64_at(result->bytes + KEYS_AT + 8 * f));
     for (int f = 0; f < 2; f++) {
         const int64_t body_id = int64_at(result->bytes + BODIES_AT + 8 * f);
         const int64_t key = int64_at(result->bytes + KEYS_AT + 8 * f);

@@ -11,6 +11,9 @@ struct learner;
 struct learner *learner_open(struct known_bodies *known);
 void learner_close(struct learner *learner); /* may be NULL */
 
+/* A hint: learn() will soon be asked about this result. */
+void learn_expect(const struct learner *learner, const struct match_item *result);
+
 /* Whether a result may teach something, seen from its bytes alone. */
 bool learn_may(const struct learner *learner, const struct match_item *result);
 

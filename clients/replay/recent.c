@@ -178,9 +178,10 @@ struct recent_item *recent_put(struct recent *recent, const struct match_item *i
     recent->count++;
     struct recent_item *put = (struct recent_item *) (recent->ring + at);
     unsigned char *copy = (unsigned char *) (put + 1);
-    *put = (struct recent_item){.item = *item,
-                                .bucket = bucket_of(recent, item->kind, &item->ids),
-                                .length = (uint32_t) length};
+    put->item = *item;
+    put->matched = false;
+    put->bucket = bucket_of(recent, item->kind, &item->ids);
+    put->length = (uint32_t) length;
     put->item.bytes = memcpy(copy, item->bytes, item->size);
     put->item.more = copy + item->size;
     if (item->more_size > 0)

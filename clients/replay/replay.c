@@ -369,6 +369,7 @@ static void take_query(struct replay *replay, struct match_item *query)
 static void take_result(struct replay *replay, const struct match_item *result)
 {
     channel_of(replay, result)->results += result->place.mine && !replay->golden;
+    learn_expect(replay->learner, result);
     if (replay->bus)
         answer_bus_pass(replay->bus, result,
                         learn_may(replay->learner, result) ? ANSWER_BUS_NEWS : ANSWER_BUS_RESULT);
@@ -378,7 +379,8 @@ static void take_result(struct replay *replay, const struct match_item *result)
 
 static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
-    struct match_item item = {.place = place_of(replay, event)};
+    struct match_item item; /* not set: message_read_ids() does */
+    item.place = place_of(replay, event);
     const char *error = message_read_ids(kind, event, &item);
     if (error && item.place.mine)
         refuse(replay, kind, &item, error);

@@ -57,14 +57,14 @@ void prepared_set(const struct fmb_frame *frame, struct fmb_prepared *out)
     const uint64_t moving = frame->moving ? PREPARED_MOVING : 0;
     double *number = out->number;
     out->head = body->head | moving << 3 * PREPARED_SIZE_BITS;
-    memset(number, 0, sizeof out->number);
     if (body->dim == 3) {
         memcpy(number, frame->origin, 3 * sizeof *number);
         memcpy(number + 3, c, 9 * sizeof *number);
-        if (frame->moving)
-            memcpy(number + 12, frame->velocity, 3 * sizeof *number);
+        for (int axis = 0; axis < 3; axis++)
+            number[12 + axis] = frame->moving ? frame->velocity[axis] : 0;
         return;
     }
+    memset(number, 0, sizeof out->number);
     memcpy(number, frame->origin, 2 * sizeof *number);
     memcpy(number + 2, c[0], 2 * sizeof *number);
     memcpy(number + 4, c[1], 2 * sizeof *number);
