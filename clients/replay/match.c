@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/* Of both what the second cache of most machines holds, and far more than is ever under way. */
+/* Of both far more than is ever under way. */
 enum { RECENT_BYTES = 4 << 20 };
 
 struct match {

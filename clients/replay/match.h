@@ -2,9 +2,9 @@
  *
  * A result belongs to the query with the same client id and sequence number, and of several such,
  * to one with the same utime too (the service echoes it) that has no result yet. Most stand near
- * each other: the latest few megabytes of both are in memory. What finds no partner there goes into
- * temporary files, by a hash of its ids, and is brought together at the end, piece by piece. So
- * memory stays the same whatever the size of the log, and nothing is lost.
+ * each other: the latest megabyte of both is in memory, and up to four of what waits. What finds no
+ * partner there goes into temporary files, by a hash of its ids, and is brought together at the
+ * end, piece by piece. So memory stays the same whatever the size of the log, and nothing is lost.
  *
  * A result that comes again, when all such queries have one, is given again with the one that got
  * one last; if that is no longer in memory, the result is alone. */

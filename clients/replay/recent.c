@@ -8,10 +8,15 @@
 #include <string.h>
 
 /* Items lie one behind the other in a ring, each in one piece: where the next does not fit before
- * the end, the rest stays empty and it begins at 0. Links are places in units of UNIT bytes, plus
- * 1, so that 0 is none. A bucket holds its items in two chains: those that are not matched, in
- * their order, and the others, with the one that was matched last in front. */
+ * the end, the rest stays empty and it begins at 0. The ring is small at first, as caches are;
+ * where it would go on at 0, and the oldest item is not matched yet, it becomes twice as long
+ * instead, up to all that was asked for: more is under way than there was room for. Links are
+ * places in units of UNIT bytes, plus 1, so that 0 is none. A bucket holds its items in two chains:
+ * those that are not matched, in their order, and the others, with the one that was matched last in
+ * front. */
 enum { UNIT = 8, NONE = 0, BUCKET_BITS = 13, BUCKETS = 1 << BUCKET_BITS };
+
+enum { ROOM_FIRST = 1 << 20 };
 
 /* Of memory that will be needed soon, bytes that are fetched at a time, and at most. */
 enum { LINE = 64, EXPECTED = 1024 };
@@ -29,7 +34,7 @@ enum { HASHED = 4 };
 
 struct recent {
     unsigned char *ring;
-    size_t room;
+    size_t room, room_max;
     size_t begin,
         end; /* of what is used: from begin to end, or if it wraps to the wrap and on from 0 */
     size_t wrap;
@@ -47,7 +52,8 @@ struct recent *recent_open(size_t bytes, void (*gone)(void *user, const struct r
     struct recent *recent = allocate(1, sizeof *recent);
     assert(bytes / UNIT < UINT32_MAX);
     *recent = (struct recent){.ring = allocate(bytes, 1),
-                              .room = bytes,
+                              .room = bytes < ROOM_FIRST ? bytes : ROOM_FIRST,
+                              .room_max = bytes,
                               .bucket = allocate(BUCKETS, sizeof *recent->bucket),
                               .gone = gone,
                               .user = user};
@@ -130,9 +136,14 @@ static void expect_next(const struct recent *recent, size_t length)
         __builtin_prefetch(at + i, 1);
 }
 
+static struct recent_item *oldest(const struct recent *recent)
+{
+    return (struct recent_item *) (recent->ring + recent->begin);
+}
+
 static void let_go(struct recent *recent)
 {
-    struct recent_item *item = (struct recent_item *) (recent->ring + recent->begin);
+    struct recent_item *item = oldest(recent);
     unlink_item(recent, item);
     recent->gone(recent->user, item);
     const size_t length = item->length;
@@ -156,6 +167,9 @@ static bool find_place(struct recent *recent, size_t length, size_t *at)
     *at = recent->end;
     if (recent->wraps)
         return recent->begin - recent->end >= length;
+    while (recent->room - recent->end < length && recent->room < recent->room_max &&
+           !oldest(recent)->matched)
+        recent->room = 2 * recent->room < recent->room_max ? 2 * recent->room : recent->room_max;
     if (recent->room - recent->end >= length)
         return true;
     if (recent->begin < length)
@@ -171,7 +185,7 @@ struct recent_item *recent_put(struct recent *recent, const struct match_item *i
     const size_t bytes = sizeof(struct recent_item) + item->size + item->more_size;
     const size_t length = (bytes + UNIT - 1) / UNIT * UNIT;
     size_t at;
-    assert(length <= recent->room);
+    assert(length <= recent->room_max);
     while (!find_place(recent, length, &at))
         let_go(recent);
     recent->end = at + length;

@@ -13,8 +13,9 @@ struct recent_item {
 
 struct recent;
 
-/* Keeps so many bytes, at least several times the longest item. On an item that has to go for
- * others calls gone, which must not call back. Never NULL. */
+/* Keeps so many bytes of items, at least several times the longest, as long as they are not
+ * matched; of those that are, it may be a megabyte. On an item that has to go for others calls
+ * gone, which must not call back. Never NULL. */
 struct recent *recent_open(size_t bytes, void (*gone)(void *user, const struct recent_item *item),
                            void *user);
 void recent_close(struct recent *recent); /* may be NULL; gone is not called */
