@@ -694,11 +694,16 @@ $(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
 
-bench_logs := $(addprefix $(B)/replay/,scenes.log pairs.log pairs-whole.log pairs-by-key.log)
+blast_scenes := scenes 400
+blast_pairs := pairs 500000
+blast_pairs-64-bodies := pairs 500000 --bodies 64
+blast_pairs-whole := pairs 500000 --whole
+blast_pairs-by-key := pairs 500000 --by-key
+bench_log_names := scenes pairs pairs-64-bodies pairs-whole pairs-by-key
+bench_logs := $(bench_log_names:%=$(B)/replay/%.log)
 $(B)/replay/%.log: $(B)/logs/generate
 	@mkdir -p $(@D)
-	$< --blast $(firstword $(subst -, ,$*)) $(if $(filter scenes,$*),400,500000) \
-		$(patsubst pairs-%,--%,$(filter pairs-%,$*)) $@
+	$< --blast $(blast_$*) $@
 
 .PHONY: bench-replay
 bench-replay: $(B)/replay/bench-replay $(B)/fmb $(bench_logs)
