@@ -245,31 +245,35 @@ static int compare(const void *x, const void *y)
     return (p->b > q->b) - (p->b < q->b);
 }
 
-static size_t count_bits(const unsigned char *is_in, size_t count)
+static void mark(unsigned char *worst, enum fmb_verdict verdict)
+{
+    if (*worst < verdict)
+        *worst = (unsigned char) verdict;
+}
+
+static size_t count_marked(const unsigned char *worst, size_t count)
 {
     size_t sum = 0;
     for (size_t i = 0; i < count; i++)
-        sum += is_in[i];
+        sum += worst[i] > 0;
     return sum;
 }
 
-static void count_faces(const struct mesh_question *question, struct mesh_meeting *meeting)
+static void mark_faces(const struct mesh_question *question, struct mesh_meeting *meeting)
 {
-    unsigned char *is_in[2];
-    for (int which = 0; which < 2; which++)
-        is_in[which] = allocate(mesh_of(question, which)->face_count, 1);
+    meeting->worst[0] = allocate(question->a->face_count, 1);
+    meeting->worst[1] =
+        is_self(question) ? meeting->worst[0] : allocate(question->b->face_count, 1);
     for (size_t i = 0; i < meeting->count; i++) {
         const struct mesh_pair *pair = &meeting->pair[i];
-        is_in[0][pair->a] = 1;
-        is_in[!is_self(question)][pair->b] = 1;
+        mark(&meeting->worst[0][pair->a], pair->verdict);
+        mark(&meeting->worst[1][pair->b], pair->verdict);
         meeting->overlapping += pair->verdict == FMB_OVERLAPPING;
         meeting->touching += pair->verdict == FMB_TOUCHING;
     }
     for (int which = 0; which < 2; which++)
         meeting->faces[which] =
-            count_bits(is_in[which && !is_self(question)], mesh_of(question, which)->face_count);
-    free(is_in[0]);
-    free(is_in[1]);
+            count_marked(meeting->worst[which], mesh_of(question, which)->face_count);
 }
 
 enum fmb_status mesh_meet(const struct mesh_question *question, struct mesh_meeting *out)
@@ -303,12 +307,15 @@ enum fmb_status mesh_meet(const struct mesh_question *question, struct mesh_meet
     }
     if (out->count > 0)
         qsort(out->pair, out->count, sizeof *out->pair, compare);
-    count_faces(question, out);
+    mark_faces(question, out);
     return FMB_OK;
 }
 
 void mesh_meeting_free(struct mesh_meeting *meeting)
 {
     free(meeting->pair);
+    if (meeting->worst[1] != meeting->worst[0])
+        free(meeting->worst[1]);
+    free(meeting->worst[0]);
     memset(meeting, 0, sizeof *meeting);
 }

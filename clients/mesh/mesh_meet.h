@@ -37,7 +37,10 @@ struct mesh_meeting {
     size_t count, room;
     size_t overlapping, touching; /* of them */
     size_t faces[2];              /* of a and of b that are in a pair; of one mesh both the same */
-    uint64_t candidates;          /* pairs that were decided */
+    /* Owned; [face] of a and of b: OVERLAPPING where it overlaps another, else TOUCHING where it
+     * touches one, else 0. Of one mesh both the same. */
+    unsigned char *worst[2];
+    uint64_t candidates; /* pairs that were decided */
     /* Of one mesh: pairs of faces that have an edge in common, or a vertex, and no other point.
      * They are in no other number. */
     uint64_t sharing_edge, sharing_vertex;

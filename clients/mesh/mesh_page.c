@@ -18,43 +18,26 @@ struct units {
 
 struct page {
     const struct mesh_report *report;
-    int count;                /* of meshes */
-    size_t pairs;             /* that it holds */
-    unsigned char *colour[2]; /* owned; [face]: FMB_OVERLAPPING, FMB_TOUCHING, or 0 */
+    int count;    /* of meshes */
+    size_t pairs; /* that it holds */
     struct mesh_thinned kept[2];
     struct units units;
 };
 
 /* ---- What is shown --------------------------------------------------------------------------- */
 
-/* Of mesh a, and of b: there is one where a mesh meets itself. */
-static void mark(const struct page *page, unsigned char *const of[2], const struct mesh_pair *pair,
-                 unsigned char value)
-{
-    unsigned char *const ends[2] = {&of[0][pair->a], &of[page->count - 1][pair->b]};
-    for (int i = 0; i < 2; i++)
-        *ends[i] = *ends[i] > value ? *ends[i] : value;
-}
-
-static void paint(const struct page *page)
-{
-    const struct mesh_meeting *meeting = page->report->meeting;
-    for (size_t i = 0; i < meeting->count; i++)
-        mark(page, page->colour, &meeting->pair[i], (unsigned char) meeting->pair[i].verdict);
-}
-
 /* What has a vertex in common with a face that meets lies beside it. Owned by the caller. */
-static unsigned char *roles_of(const struct mesh *mesh, const unsigned char *colour)
+static unsigned char *roles_of(const struct mesh *mesh, const unsigned char *worst)
 {
     unsigned char *role = allocate(mesh->face_count, 1);
     bool *is_met = allocate(mesh->vertex_count, sizeof *is_met);
     for (size_t f = 0; f < mesh->face_count; f++)
-        for (int corner = 0; corner < 3 && colour[f]; corner++)
+        for (int corner = 0; corner < 3 && worst[f]; corner++)
             is_met[mesh->face[f][corner]] = true;
     for (size_t f = 0; f < mesh->face_count; f++) {
         const unsigned *face = mesh->face[f];
         const bool beside = is_met[face[0]] || is_met[face[1]] || is_met[face[2]];
-        role[f] = colour[f] ? MESH_THIN_MET : beside ? MESH_THIN_BESIDE : MESH_THIN_REST;
+        role[f] = worst[f] ? MESH_THIN_MET : beside ? MESH_THIN_BESIDE : MESH_THIN_REST;
     }
     free(is_met);
     return role;
@@ -70,9 +53,11 @@ static void thin(struct page *page)
     const struct mesh_report *report = page->report;
     unsigned char *role[2] = {NULL, NULL};
     for (int m = 0; m < page->count; m++)
-        role[m] = roles_of(report->mesh[m], page->colour[m]);
-    for (size_t i = 0; i < page->pairs; i++)
-        mark(page, role, &report->meeting->pair[i], MESH_THIN_NEEDED);
+        role[m] = roles_of(report->mesh[m], report->meeting->worst[m]);
+    for (size_t i = 0; i < page->pairs; i++) {
+        role[0][report->meeting->pair[i].a] = MESH_THIN_NEEDED;
+        role[page->count - 1][report->meeting->pair[i].b] = MESH_THIN_NEEDED;
+    }
     mesh_thin(report->mesh, page->count, role, &cost, MESH_PAGE_BYTES_MAX, page->kept);
     for (int m = 0; m < page->count; m++)
         free(role[m]);
@@ -190,7 +175,7 @@ static void put_colours(FILE *out, const struct page *page, int which)
     const struct mesh_thinned *kept = &page->kept[which];
     struct page_base64 text = {.out = out};
     for (size_t f = 0; f < kept->face_count; f++)
-        page_base64_byte(&text, page->colour[which][kept->face[f]]);
+        page_base64_byte(&text, page->report->meeting->worst[which][kept->face[f]]);
     page_base64_end(&text);
 }
 
@@ -257,9 +242,6 @@ void mesh_page_write(FILE *out, const struct mesh_report *report)
     struct page page = {.report = report,
                         .count = report->mesh[0] == report->mesh[1] ? 1 : 2,
                         .pairs = pairs < MESH_PAGE_PAIRS_MAX ? pairs : MESH_PAGE_PAIRS_MAX};
-    for (int m = 0; m < page.count; m++)
-        page.colour[m] = allocate(report->mesh[m]->face_count, 1);
-    paint(&page);
     thin(&page);
     page.units = units_of(&page);
     page_template_begin(&page_template_mesh, out);
@@ -268,8 +250,6 @@ void mesh_page_write(FILE *out, const struct mesh_report *report)
         put_mesh(out, &page, m);
     put_pairs(out, &page);
     page_template_end(&page_template_mesh, out);
-    for (int m = 0; m < page.count; m++) {
+    for (int m = 0; m < page.count; m++)
         mesh_thinned_free(&page.kept[m]);
-        free(page.colour[m]);
-    }
 }

@@ -107,23 +107,15 @@ void mesh_report_json(FILE *out, const struct mesh_report *report)
 
 typedef unsigned char colour[3];
 
-static const colour of_mesh[2] = {{190, 190, 190}, {120, 160, 220}};
-static const colour of_touching = {240, 200, 40}, of_overlapping = {220, 40, 40};
-
-static void paint(const struct mesh_report *report, colour *face)
+static const unsigned char *colour_of(const struct mesh_report *report, int which, size_t face)
 {
-    const struct mesh_meeting *meeting = report->meeting;
-    const size_t first[2] = {0, is_self(report) ? 0 : report->mesh[0]->face_count};
-    for (int pass = 0; pass < 2; pass++) /* a face that overlaps another stays red */
-        for (size_t i = 0; i < meeting->count; i++) {
-            const struct mesh_pair *pair = &meeting->pair[i];
-            const bool overlaps = pair->verdict == FMB_OVERLAPPING;
-            if (overlaps != (pass == 1))
-                continue;
-            const unsigned char *to = overlaps ? of_overlapping : of_touching;
-            memcpy(face[first[0] + pair->a], to, sizeof *face);
-            memcpy(face[first[1] + pair->b], to, sizeof *face);
-        }
+    static const colour of_mesh[2] = {{190, 190, 190}, {120, 160, 220}};
+    static const colour of_touching = {240, 200, 40}, of_overlapping = {220, 40, 40};
+    switch (report->meeting->worst[which][face]) {
+    case FMB_OVERLAPPING: return of_overlapping;
+    case FMB_TOUCHING: return of_touching;
+    default: return of_mesh[which];
+    }
 }
 
 /* Owned by the caller. */
@@ -144,7 +136,7 @@ static struct mesh join(const struct mesh_report *report, colour **face_colour)
         for (size_t f = 0; f < mesh->face_count; f++, face++) {
             for (int corner = 0; corner < 3; corner++)
                 out.face[face][corner] = (unsigned) vertex + mesh->face[f][corner];
-            memcpy((*face_colour)[face], of_mesh[m], sizeof **face_colour);
+            memcpy((*face_colour)[face], colour_of(report, m, f), sizeof **face_colour);
         }
         if (mesh->vertex_count > 0)
             memcpy(out.vertex + vertex, mesh->vertex, mesh->vertex_count * sizeof *out.vertex);
@@ -157,7 +149,6 @@ void mesh_report_ply(FILE *out, const struct mesh_report *report)
 {
     colour *face_colour;
     struct mesh both = join(report, &face_colour);
-    paint(report, face_colour);
     mesh_write_ply(out, &both, (const unsigned char(*)[3]) face_colour);
     free(face_colour);
     mesh_free(&both);
