@@ -4,6 +4,7 @@
 #include "args.h"
 #include "log_cut.h"
 #include "number.h"
+#include "output.h"
 #include "progress.h"
 #include "query.h"
 
@@ -189,11 +190,7 @@ static int run_cut(const struct options *options)
         print_json(&counts, code);
     else if (good)
         print_text(&counts);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        perror("fmb: standard output");
-        return ARGS_USAGE;
-    }
-    return code;
+    return output_flush() ? code : ARGS_USAGE;
 }
 
 static bool check_options(const struct args *args, const struct options *options)

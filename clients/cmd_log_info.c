@@ -4,6 +4,7 @@
 #include "args.h"
 #include "log_info.h"
 #include "log_info_report.h"
+#include "output.h"
 #include "progress.h"
 
 #include <errno.h>
@@ -121,8 +122,5 @@ int cmd_log_info(int argc, char **argv)
         const int one = open_and_report(&options, args.operands[i]);
         code = one > code ? one : code;
     }
-    if (fflush(stdout) == 0 && !ferror(stdout))
-        return code;
-    perror("fmb: standard output");
-    return code > ARGS_FAILED ? code : ARGS_FAILED;
+    return output_flush() || code != ARGS_ANSWERED ? code : ARGS_FAILED;
 }

@@ -5,6 +5,7 @@
 #include "allocate.h"
 #include "args.h"
 #include "log_query.h"
+#include "output.h"
 #include "progress.h"
 #include "scene_json.h"
 #include "scene_of_query.h"
@@ -199,10 +200,7 @@ static int print_scene(struct log_query *query)
     tell_ids(&query->query, &scene);
     tell_command(query);
     scene_clear(&scene);
-    if (fflush(stdout) == 0 && !ferror(stdout))
-        return ARGS_ANSWERED;
-    perror("fmb: standard output");
-    return ARGS_USAGE;
+    return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
 static int run_scene(struct options *options)

@@ -6,9 +6,9 @@
 #include "mesh_page.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
+#include "output.h"
 #include "progress.h"
 
-#include <errno.h>
 #include <float.h>
 #include <limits.h>
 #include <math.h>
@@ -289,30 +289,16 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 
 /* ---- The run --------------------------------------------------------------------------------- */
 
-static int file_error(const char *name)
-{
-    fprintf(stderr, "fmb: %s: %s\n", name, strerror(errno));
-    return ARGS_FAILED;
-}
-
 typedef void write_function(FILE *out, const struct mesh_report *report);
 
 /* name: NULL: not wanted. */
-static int write_file(const char *name, write_function *write, const struct mesh_report *report)
+static bool write_file(const char *name, write_function *write, const struct mesh_report *report)
 {
-    FILE *out = name ? fopen(name, "wb") : NULL;
-    if (!name)
-        return ARGS_ANSWERED;
+    FILE *out = name ? output_open(name) : NULL;
     if (!out)
-        return file_error(name);
+        return !name;
     write(out, report);
-    const bool good = !ferror(out);
-    return fclose(out) == 0 && good ? ARGS_ANSWERED : file_error(name);
-}
-
-static int worse(int code, int other)
-{
-    return code > other ? code : other;
+    return output_close(out, name);
 }
 
 static int tell(const struct options *options, const struct mesh_report *report)
@@ -321,11 +307,10 @@ static int tell(const struct options *options, const struct mesh_report *report)
         mesh_report_json(stdout, report);
     else
         mesh_report_text(stdout, report, options->list);
-    int code = write_file(options->ply, mesh_report_ply, report);
-    code = worse(code, write_file(options->html, mesh_page_write, report));
-    if (fflush(stdout) != 0 || ferror(stdout))
-        code = worse(code, file_error("standard output"));
-    return code;
+    bool good = write_file(options->ply, mesh_report_ply, report);
+    good = write_file(options->html, mesh_page_write, report) && good;
+    good = output_flush() && good;
+    return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
 static void tell_faces(void *context, uint64_t done, uint64_t total)

@@ -4,6 +4,7 @@
 #include "answers.h"
 #include "args.h"
 #include "json.h"
+#include "output.h"
 #include "progress.h"
 #include "report.h"
 #include "svg.h"
@@ -185,27 +186,13 @@ static int answer_scenes(struct run *run, int fd)
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-static int file_error(const char *name)
+static bool write_picture(const struct svg *svg, const char *name)
 {
-    fprintf(stderr, "fmb: %s: %s\n", name, strerror(errno));
-    return ARGS_FAILED;
-}
-
-static int worse(int code, int other)
-{
-    return code > other ? code : other;
-}
-
-static int write_picture(const struct svg *svg, const char *name)
-{
-    FILE *out = fopen(name, "w");
+    FILE *out = output_open(name);
     if (!out)
-        return file_error(name);
+        return false;
     svg_write(svg, out);
-    bool good = !ferror(out);
-    if (fclose(out) != 0 || !good)
-        return file_error(name);
-    return ARGS_ANSWERED;
+    return output_close(out, name);
 }
 
 /* file: NULL for standard input. */
@@ -223,13 +210,10 @@ static int run_query(const struct options *options, const struct args_bus *bus, 
     int code = answer_scenes(&run, fd);
     if (run.bus)
         answers_bus_close(run.bus);
-    if (svg) {
-        code = worse(code, write_picture(svg, options->svg));
-        svg_close(svg);
-    }
-    if (fflush(stdout) != 0 || ferror(stdout))
-        code = worse(code, file_error("standard output"));
-    return code;
+    bool good = !svg || write_picture(svg, options->svg);
+    svg_close(svg);
+    good = output_flush() && good;
+    return good || code != ARGS_ANSWERED ? code : ARGS_FAILED;
 }
 
 int cmd_query(int argc, char **argv)
@@ -244,7 +228,7 @@ int cmd_query(int argc, char **argv)
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;
     if (fd < 0) {
-        file_error(file);
+        fprintf(stderr, "fmb: %s: %s\n", file, strerror(errno));
         return ARGS_USAGE;
     }
     code = run_query(&options, &args.bus, file, fd);

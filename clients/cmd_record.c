@@ -4,6 +4,7 @@
 #include "args.h"
 #include "clock.h"
 #include "log_spool.h"
+#include "output.h"
 #include "record_bus.h"
 #include "record_line.h"
 #include "record_report.h"
@@ -260,9 +261,8 @@ static int end_of_recording(struct recording *recording, enum end end)
         log_write_complain(recording->parts.name, state.error);
     record_report_losses(&recorded);
     (recording->options->json ? record_report_json : record_report_text)(&recorded);
-    if (fflush(stdout) != 0)
-        perror("fmb: standard output");
-    return state.error || ferror(stdout) || end == END_BUS_FAILED ? ARGS_FAILED : ARGS_ANSWERED;
+    const bool good = output_flush() && !state.error && end != END_BUS_FAILED;
+    return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
 /* The thread that writes must be begun behind the signals, lest it be the one that gets them. A

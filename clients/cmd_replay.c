@@ -5,6 +5,7 @@
 #include "args.h"
 #include "cache.h"
 #include "input.h"
+#include "output.h"
 #include "progress.h"
 #include "replay_bus.h"
 #include "replay_jobs.h"
@@ -13,7 +14,6 @@
 #include "replay_text.h"
 #include "listing.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -208,37 +208,23 @@ static int64_t first_utime(const struct replay_options *options)
     return outcome == LOG_EVENT ? event.utime : 0;
 }
 
-/* False: it has been said. */
-static bool close_written(FILE *file, const char *path)
-{
-    const bool good = !ferror(file);
-    if (fclose(file) == 0 && good)
-        return true;
-    fprintf(stderr, "fmb: %s: %s\n", path, strerror(errno));
-    return false;
-}
-
 static bool write_junit(const struct run *run, const struct tally *tally)
 {
     const struct options *options = run->options;
-    FILE *file = fopen(options->junit, "w");
-    if (!file) {
-        fprintf(stderr, "fmb: %s: %s\n", options->junit, strerror(errno));
+    FILE *file = output_open(options->junit);
+    if (!file)
         return false;
-    }
     replay_junit(file, &options->replay, run->told, tally, run->first_utime);
-    return close_written(file, options->junit);
+    return output_close(file, options->junit);
 }
 
 static bool write_page(const struct options *options)
 {
-    FILE *file = fopen(options->html, "w");
-    if (!file) {
-        fprintf(stderr, "fmb: %s: %s\n", options->html, strerror(errno));
+    FILE *file = output_open(options->html);
+    if (!file)
         return false;
-    }
     page_write(options->replay.page, file);
-    return close_written(file, options->html);
+    return output_close(file, options->html);
 }
 
 /* Why nothing was compared, for people; NULL: something was, or nothing had to be. */
@@ -326,11 +312,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     if (options->html && !write_page(options))
         code = ARGS_USAGE;
     tell_all(run, &all, code);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        perror("fmb: standard output");
-        code = ARGS_USAGE;
-    }
-    return code;
+    return output_flush() ? code : ARGS_USAGE;
 }
 
 static int run_replay(struct options *options)

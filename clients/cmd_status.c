@@ -4,6 +4,7 @@
 #include "args.h"
 #include "listen.h"
 #include "number.h"
+#include "output.h"
 #include "report.h"
 
 #include <inttypes.h>
@@ -157,10 +158,7 @@ static int print_heartbeat(const struct options *options, const struct fmb_clien
         print_json(status);
     else
         print_text(status);
-    if (fflush(stdout) == 0)
-        return ARGS_ANSWERED;
-    perror("fmb: standard output");
-    return ARGS_FAILED;
+    return output_flush() ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
 int cmd_status(int argc, char **argv)

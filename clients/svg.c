@@ -49,6 +49,8 @@ struct svg *svg_open(void)
 
 void svg_close(struct svg *svg)
 {
+    if (!svg)
+        return;
     for (size_t i = 0; i < svg->panel_count; i++)
         panel_clear(&svg->panel[i]);
     free(svg);

@@ -18,7 +18,7 @@ enum { SVG_PANELS_MAX = 60, SVG_BODIES_MAX = 2000, SVG_BOXES_MAX = 2000 };
 struct svg;
 
 struct svg *svg_open(void);
-void svg_close(struct svg *svg);
+void svg_close(struct svg *svg); /* may be NULL */
 
 /* Takes in scenes; owned by svg. Beyond SVG_PANELS_MAX scenes, and within a scene beyond
  * SVG_BODIES_MAX bodies and SVG_BOXES_MAX boxes, nothing more is kept, and the picture says so. */

@@ -1,0 +1,29 @@
+#include "output.h"
+
+#include <errno.h>
+#include <string.h>
+
+static bool failed(const char *name)
+{
+    fprintf(stderr, "fmb: %s: %s\n", name, strerror(errno));
+    return false;
+}
+
+FILE *output_open(const char *path)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        failed(path);
+    return file;
+}
+
+bool output_close(FILE *file, const char *path)
+{
+    const bool good = !ferror(file);
+    return (fclose(file) == 0 && good) || failed(path);
+}
+
+bool output_flush(void)
+{
+    return (fflush(stdout) == 0 && !ferror(stdout)) || failed("standard output");
+}
