@@ -72,12 +72,6 @@ static bool has_word(struct mesh_source *source)
     return source->at < source->end && *source->at != '\n' && *source->at != '#';
 }
 
-static void skip_line(struct mesh_source *source)
-{
-    const unsigned char *end = memchr(source->at, '\n', mesh_left(source));
-    source->at = end ? end : source->end;
-}
-
 /* All lines of the statement. */
 static void skip_statement(struct mesh_source *source)
 {
@@ -240,7 +234,7 @@ static bool read_statements(struct obj *obj)
     while ((source->at = mesh_skip_spaces(skip(source->at))) < source->end) {
         if (*source->at != '#' && !read_statement(obj))
             return false;
-        skip_line(source); /* what is left of it is a comment */
+        mesh_skip_line(source); /* what is left of it is a comment */
         mesh_tell(source);
     }
     return true;

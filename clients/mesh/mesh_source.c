@@ -70,6 +70,12 @@ void *mesh_room(size_t count, size_t size)
     return count > SIZE_MAX / size ? NULL : malloc(count * size);
 }
 
+void mesh_skip_line(struct mesh_source *source)
+{
+    const unsigned char *end = memchr(source->at, '\n', mesh_left(source));
+    source->at = end ? end : source->end;
+}
+
 void mesh_tell_now(struct mesh_source *source)
 {
     const struct mesh_watch *watch = source->watch;

@@ -35,6 +35,9 @@ const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
 /* Room for count elements, NULL where there is none. The caller frees it. */
 void *mesh_room(size_t count, size_t size);
 
+/* To the end of the line, which stays what comes next, or of the file. */
+void mesh_skip_line(struct mesh_source *source);
+
 void mesh_tell_now(struct mesh_source *source);
 
 /* To be called for every few bytes. */

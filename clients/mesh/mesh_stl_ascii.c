@@ -43,12 +43,6 @@ static bool take(struct mesh_source *source, const char *word)
     return true;
 }
 
-static void skip_line(struct mesh_source *source)
-{
-    const unsigned char *end = memchr(source->at, '\n', mesh_left(source));
-    source->at = end ? end : source->end;
-}
-
 /* Any numbers: some programs write normals that are not. */
 static bool skip_normal(struct mesh_source *source)
 {
@@ -108,7 +102,7 @@ static bool read_solid(struct mesh_join *join)
     struct mesh_source *source = join->build->source;
     if (!take(source, "solid"))
         return false;
-    skip_line(source);
+    mesh_skip_line(source);
     while (!is_next(source, "endsolid")) {
         if (!is_next(source, "facet"))
             return refuse_next(source, "facet or endsolid");
@@ -116,7 +110,7 @@ static bool read_solid(struct mesh_join *join)
             return false;
         mesh_tell(source);
     }
-    skip_line(source);
+    mesh_skip_line(source);
     return true;
 }
 
