@@ -417,17 +417,29 @@ static enum fmb_status check(const struct fmb_prepared *frames, size_t count, do
                                         : FMB_OK;
 }
 
-/* Each at a multiple of what its numbers need: the nodes, the boxes, the order. */
-static void lay_out(void *memory, size_t count, struct fmb_tree *out)
+/* Each at a multiple of what its numbers need: the nodes, the boxes, the order. On output: a tree
+ * whose boxes are to be set. */
+static void lay_out(void *memory, size_t count, int dim, double duration, struct fmb_tree *out)
 {
     char *at = memory;
     at += -(uintptr_t) at % CACHE_LINE;
     out->frame_count = count;
+    out->dim = dim;
+    out->duration = duration;
     out->nodes = (void *) at;
     at += most_nodes(count) * sizeof *out->nodes;
     out->boxes = (void *) at;
     at += count * sizeof *out->boxes;
     out->order = (void *) at;
+    for (size_t i = 0; i < count; i++)
+        out->order[i] = (unsigned) i;
+}
+
+/* On input: all boxes, in the order of the frames. */
+static void grow(struct fmb_tree *tree)
+{
+    set_nodes(tree);
+    set_boxes(tree);
 }
 
 enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, double duration,
@@ -438,15 +450,10 @@ enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, 
         count < UINT_MAX ? check(frames, count, duration) : FMB_OVER_LIMIT;
     if (status != FMB_OK || count == 0)
         return status;
-    lay_out(memory, count, out);
-    out->dim = dimension_of(frames);
-    out->duration = duration;
-    for (size_t i = 0; i < count; i++) {
+    lay_out(memory, count, dimension_of(frames), duration, out);
+    for (size_t i = 0; i < count; i++)
         out->boxes[i].box = swept_of(&frames[i], duration);
-        out->order[i] = (unsigned) i;
-    }
-    set_nodes(out);
-    set_boxes(out);
+    grow(out);
     return FMB_OK;
 }
 
@@ -473,15 +480,10 @@ enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count
         return FMB_WRONG_DIMENSION;
     if (count == 0)
         return FMB_OK;
-    lay_out(memory, count, out);
-    out->dim = boxes->dim;
-    out->duration = duration;
-    for (size_t i = 0; i < count; i++) {
+    lay_out(memory, count, boxes->dim, duration, out);
+    for (size_t i = 0; i < count; i++)
         out->boxes[i].box = swept_box(boxes, (unsigned) i, duration);
-        out->order[i] = (unsigned) i;
-    }
-    set_nodes(out);
-    set_boxes(out);
+    grow(out);
     return FMB_OK;
 }
 
