@@ -106,7 +106,8 @@ demo_programs := $(B)/netns $(B)/arm
 test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
 	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-relay $(B)/logs/generate \
-	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/mesh/bench-mesh $(B)/make-page $(B)/edit-log $(B)/events $(capped_programs)
+	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/mesh/bench-mesh $(B)/make-page $(B)/edit-log \
+	$(B)/events $(capped_programs)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -171,7 +172,8 @@ $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -Iservice -I$(GEN)
 
-clients_see := -Iclients -Iclients/lib -Iclients/log -Iclients/mesh -Iclients/page -Iclients/record -Iclients/replay -Iservice -Iservice/fmb
+clients_see := -Iclients $(addprefix -Iclients/,lib log mesh page record replay) -Iservice \
+	-Iservice/fmb
 
 $(O)/clients/lib/%.o: clients/lib/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
@@ -404,7 +406,6 @@ engine_views := $(engine_tests) $(internal_tests) slab_truth pair_draw
 scene_views := $(scene_tests) scene_truth
 family_views := $(family_tests) $(scene_views) pair_draw
 unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views) test_mesh_meet),-Itests/oracle) \
-	$(if $(filter $1,test_mesh_meet),-Itests/mesh) \
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
 	$(if $(filter $1,$(engine_views)),,-Iservice) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\
@@ -711,7 +712,7 @@ bench-replay: $(B)/replay/bench-replay $(B)/fmb $(bench_logs)
 
 # Meshes: the article's scene, of MESH, whose coordinates it multiplies by 1000 as the article does
 # with the Stanford Bunny; or of a mesh that is made, about as large and of as many faces. A minute.
-$(B)/mesh/bench-mesh: $(addprefix $(O)/tests/mesh/,bench_mesh.o bumpy.o sweep.o) \
+$(B)/mesh/bench-mesh: $(addprefix $(O)/tests/mesh/,bench_mesh.o sweep.o) \
 		$(addprefix $(O)/tests/bench/,child.o machine.o stopwatch.o) $(mesh_objects) \
 		$(B)/libfmb.a
 	@mkdir -p $(@D)

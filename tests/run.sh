@@ -4,8 +4,8 @@
 #   N passed, N failed[, N skipped]
 #
 # Exit code 0 only if none failed. With FMB_FAST set: the release build alone, smaller samples, and
-# without the suites that take long. Needs what 'make deps-test' installs. The output of each suite stays in
-# build/tests.log/.
+# without the suites that take long. Needs what 'make deps-test' installs. The output of each suite
+# stays in build/tests.log/.
 set -u
 cd "$(dirname "$0")/.." || exit
 
@@ -17,12 +17,12 @@ limit=600 # seconds a suite may take before it has failed
 # installed, what is measured, the command lines of what unit tests go through.
 unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report.bats cli/page.bats'
 unsanitized="$unsanitized cli/mesh_page.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats"
-# Where one of them is enough; those that take long.
-sanitized_once='system/soak.bats system/fairness.bats system/supervisor.bats system/record.bats'
-sanitized_once="$sanitized_once system/replay_bus.bats cli/replay.bats cli/mesh.bats"
-slow="$sanitized_once cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats"
-slow="$slow system/bus.bats cli/page.bats cli/mesh_page.bats"
-sanitized_once="$sanitized_once system/service.bats"
+# Those that take long, and of them where one sanitizer is enough.
+long='system/soak.bats system/fairness.bats system/supervisor.bats system/record.bats'
+long="$long system/replay_bus.bats cli/replay.bats cli/mesh.bats"
+sanitized_once="$long system/service.bats"
+slow="$long cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/bus.bats"
+slow="$slow cli/page.bats cli/mesh_page.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
