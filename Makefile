@@ -51,10 +51,16 @@ flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-co
 link_flags := $(mode_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
 compile = $(CC) $(flags) -MMD -MP -c $< -o $@
 
-# What each query goes through, from its bytes to those of its result: a tenth faster so.
+# What each query goes through, from its bytes to those of its result: faster by a tenth with -O3, and
+# by another where a compiler sees all of a program. All else is linked from what it saw of files.
 ifeq ($(MODE),release)
-$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: flags += -O3
+whole_flags := $(if $(filter gcc%,$(compiler)),-flto=auto)
+link_flags += $(if $(whole_flags),-fno-lto)
+$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: \
+	flags += -O3 $(if $(whole_flags),$(whole_flags) -ffat-lto-objects)
+$(O)/service/fmb/%.o: flags += -fno-lto
 endif
+link_whole = $(CC) $(link_flags) $(if $(whole_flags),$(whole_flags) -O3)
 
 # ---- The parts, and who may see whom: an arrow in the wrong direction fails to build ----
 
@@ -117,8 +123,8 @@ all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
 names := $(O)/service/fmb/names.o
 define archive
 	@mkdir -p $(@D)
-	$(CC) -r -nostdlib -o $(O)/$(@F:.a=.o) $(filter-out $(names),$^)
-	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' $(O)/$(@F:.a=.o)
+	$(CC) -r -nostdlib -fno-lto -o $(O)/$(@F:.a=.o) $(filter-out $(names),$^)
+	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(O)/$(@F:.a=.o)
 	rm -f $@
 	$(AR) rcs $@ $(O)/$(@F:.a=.o) $(names)
 endef
@@ -132,13 +138,13 @@ $(B)/libfmb-client.a: $(asking_objects) $(wire_objects) $(message_objects) $(nam
 fmbd_objects := $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
 	$(message_objects)
 $(B)/fmbd: $(fmbd_objects) $(B)/libfmb.a
-	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+	$(link_whole) -o $@ $^ -llcm -lgmp -lm
 
 # It asks the bus through the library alone; logs it reads, answers and plays itself.
 fmb_objects := $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
 	$(O)/service/senders.o $(message_objects)
 $(B)/fmb: $(fmb_objects) $(B)/libfmb-client.a $(B)/libfmb.a
-	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 $(B)/arm: $(O)/clients/demo/arm.o
 	@mkdir -p $(@D)
@@ -693,7 +699,7 @@ $(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
 		$(addprefix $(O)/tests/bench/,child.o machine.o stopwatch.o) $(client_objects) \
 		$(answer_objects) $(bus_objects) $(message_objects) $(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 blast_scenes := scenes 400
 blast_pairs := pairs 500000
