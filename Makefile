@@ -55,12 +55,12 @@ compile = $(CC) $(flags) -MMD -MP -c $< -o $@
 # by another where a compiler sees all of a program. All else is linked from what it saw of files.
 ifeq ($(MODE),release)
 whole_flags := $(if $(filter gcc%,$(compiler)),-flto=auto)
-link_flags += $(if $(whole_flags),-fno-lto)
 $(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: \
 	flags += -O3 $(if $(whole_flags),$(whole_flags) -ffat-lto-objects)
 $(O)/service/fmb/%.o: flags += -fno-lto
 endif
-link_whole = $(CC) $(link_flags) $(if $(whole_flags),$(whole_flags) -O3)
+link_whole := $(link_flags) $(if $(whole_flags),$(whole_flags) -O3)
+link_flags += $(if $(whole_flags),-fno-lto)
 
 # ---- The parts, and who may see whom: an arrow in the wrong direction fails to build ----
 
@@ -138,13 +138,13 @@ $(B)/libfmb-client.a: $(asking_objects) $(wire_objects) $(message_objects) $(nam
 fmbd_objects := $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
 	$(message_objects)
 $(B)/fmbd: $(fmbd_objects) $(B)/libfmb.a
-	$(link_whole) -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ -llcm -lgmp -lm
 
 # It asks the bus through the library alone; logs it reads, answers and plays itself.
 fmb_objects := $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
 	$(O)/service/senders.o $(message_objects)
 $(B)/fmb: $(fmb_objects) $(B)/libfmb-client.a $(B)/libfmb.a
-	$(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 $(B)/arm: $(O)/clients/demo/arm.o
 	@mkdir -p $(@D)
@@ -699,7 +699,7 @@ $(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
 		$(addprefix $(O)/tests/bench/,child.o machine.o stopwatch.o) $(client_objects) \
 		$(answer_objects) $(bus_objects) $(message_objects) $(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
 
 blast_scenes := scenes 400
 blast_pairs := pairs 500000

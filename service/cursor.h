@@ -16,28 +16,31 @@
 #include <string.h>
 
 struct cursor {
-    const unsigned char *at;
-    uint64_t left;     /* bytes; 0 after an error */
-    const char *error; /* static; NULL: none so far */
+    const unsigned char *at, *end; /* what is left; nothing after an error */
+    const char *error;             /* static; NULL: none so far */
 };
+
+static inline uint64_t cursor_left(const struct cursor *cursor)
+{
+    return (uint64_t) (cursor->end - cursor->at);
+}
 
 /* An error; the first one stays. */
 static inline void cursor_fail(struct cursor *cursor, const char *error)
 {
     cursor->error = cursor->error ? cursor->error : error;
-    cursor->left = 0;
+    cursor->end = cursor->at;
 }
 
 /* The next so many bytes, 1 or more; NULL where they are not there, which is an error. */
 static inline const unsigned char *cursor_take(struct cursor *cursor, uint64_t size)
 {
     const unsigned char *bytes = cursor->at;
-    if (size > cursor->left) {
+    if (size > cursor_left(cursor)) {
         cursor_fail(cursor, "shorter than its fields");
         return NULL;
     }
     cursor->at += size;
-    cursor->left -= size;
     return bytes;
 }
 
@@ -72,7 +75,8 @@ static inline double cursor_double(struct cursor *cursor)
 static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint)
 {
     /* Of no bytes there may be no address, to which not even 0 can be added. */
-    struct cursor cursor = {.at = bytes ? bytes : (const void *) "", .left = size};
+    struct cursor cursor = {.at = bytes ? bytes : (const void *) ""};
+    cursor.end = cursor.at + size;
     if (size > INT32_MAX)
         cursor_fail(&cursor, "size out of range");
     else if (cursor_int64(&cursor) != fingerprint)
@@ -83,14 +87,14 @@ static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64
 /* The error, also that something is left over; or NULL. */
 static inline const char *cursor_end(const struct cursor *cursor)
 {
-    return cursor->left ? "longer than its fields" : cursor->error;
+    return cursor_left(cursor) ? "longer than its fields" : cursor->error;
 }
 
 /* A count of things of at least size bytes each: they are there, or it is an error, and 0. */
 static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
 {
     const int32_t count = cursor_int32(cursor);
-    if (count >= 0 && (uint64_t) count * size <= cursor->left)
+    if (count >= 0 && (uint64_t) count * size <= cursor_left(cursor))
         return count;
     cursor_fail(cursor, count < 0 ? "negative count" : "shorter than its fields");
     return 0;
@@ -102,7 +106,6 @@ static inline int32_t cursor_list(struct cursor *cursor, uint64_t size, const un
     const int32_t count = cursor_count(cursor, size);
     *bytes = cursor->at;
     cursor->at += (uint64_t) count * size;
-    cursor->left -= (uint64_t) count * size;
     return count;
 }
 
