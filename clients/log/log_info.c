@@ -1,6 +1,7 @@
 #include "log_info.h"
 
 #include "allocate.h"
+#include "big_endian.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -57,18 +58,11 @@ static void add(struct log_tally *sum, const struct log_tally *tally)
 
 /* ---- Rows ------------------------------------------------------------------------------------ */
 
-static uint64_t word_at(const unsigned char *bytes)
-{
-    return (uint64_t) bytes[0] << 24 | (uint64_t) bytes[1] << 16 | (uint64_t) bytes[2] << 8 |
-           bytes[3];
-}
-
 static struct log_type type_of(const struct log_event *event)
 {
     if (event->kept < 8)
         return (struct log_type){.known = false};
-    return (struct log_type){true,
-                             (int64_t) (word_at(event->data) << 32 | word_at(event->data + 4))};
+    return (struct log_type){true, (int64_t) big_endian_64(event->data)};
 }
 
 static bool is_row_of(const struct log_row *row, const struct log_event *event,

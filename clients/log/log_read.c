@@ -31,6 +31,8 @@
 #define _FILE_OFFSET_BITS 64
 #include "log_read.h"
 
+#include "big_endian.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -121,24 +123,13 @@ static bool hold(struct log_reader *reader, int64_t offset, size_t count)
 
 /* ---- Events, as headers have them ------------------------------------------------------------ */
 
-static inline uint32_t word_at(const unsigned char *bytes)
-{
-    return (uint32_t) bytes[0] << 24 | (uint32_t) bytes[1] << 16 | (uint32_t) bytes[2] << 8 |
-           bytes[3];
-}
-
-static inline int64_t long_at(const unsigned char *bytes)
-{
-    return (int64_t) ((uint64_t) word_at(bytes) << 32 | word_at(bytes + 4));
-}
-
 struct lengths {
     uint32_t channel, data;
 };
 
 static inline struct lengths lengths_at(const unsigned char *header)
 {
-    return (struct lengths){word_at(header + 20), word_at(header + 24)};
+    return (struct lengths){big_endian_32(header + 20), big_endian_32(header + 24)};
 }
 
 /* Negative ones are beyond the limits too. */
@@ -299,15 +290,15 @@ static void take_channel(struct log_reader *reader, const unsigned char *name, s
 }
 
 /* On input: all that is kept of the event is in the buffer. */
-static enum log_outcome take_event(struct log_reader *reader, struct log_event *event)
+static enum log_outcome take_event(struct log_reader *reader, struct lengths lengths,
+                                   struct log_event *event)
 {
     const unsigned char *header = held(reader, reader->at);
-    const struct lengths lengths = lengths_at(header);
     take_channel(reader, header + LOG_HEADER_BYTES, lengths.channel);
     event->offset = reader->at;
     event->length = whole_length(lengths);
-    event->number = long_at(header + 4);
-    event->utime = long_at(header + 12);
+    event->number = (int64_t) big_endian_64(header + 4);
+    event->utime = (int64_t) big_endian_64(header + 12);
     event->channel = reader->channel;
     event->channel_length = lengths.channel;
     event->data = header + LOG_HEADER_BYTES + lengths.channel;
@@ -338,39 +329,40 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
 }
 
 /* Whether an event is there that is believed; then what is kept of it is in the buffer. */
-static bool is_event(struct log_reader *reader)
+static bool is_event(struct log_reader *reader, struct lengths *out)
 {
     const int64_t at = reader->at;
     if (!is_believed(reader, at) || reader->error || !hold(reader, at, LOG_HEADER_BYTES))
         return false;
-    const struct lengths lengths = lengths_at(held(reader, at));
-    return hold(reader, at, LOG_HEADER_BYTES + lengths.channel + kept_data(lengths));
+    *out = lengths_at(held(reader, at));
+    return hold(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
 }
 
 /* What nearly every event is: all in the buffer, and followed by a sync word there. This decides
  * nothing that is_event() does not decide alike, and is quick. */
-static bool is_plain_event(const struct log_reader *reader)
+static bool is_plain_event(const struct log_reader *reader, struct lengths *out)
 {
     const int64_t left = reader->begin + (int64_t) reader->used - reader->at;
     if (reader->at < reader->begin || left < LOG_HEADER_BYTES)
         return false;
     const unsigned char *header = held(reader, reader->at);
-    const struct lengths lengths = lengths_at(header);
-    return is_sync(header) && lengths_can_be(lengths) &&
-           whole_length(lengths) <= left - SYNC_BYTES && is_sync(header + whole_length(lengths));
+    *out = lengths_at(header);
+    return is_sync(header) && lengths_can_be(*out) && whole_length(*out) <= left - SYNC_BYTES &&
+           is_sync(header + whole_length(*out));
 }
 
 enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
                           struct log_damage *damage)
 {
     const bool sought = reader->sought;
+    struct lengths lengths;
     if (reader->error)
         return failed(reader);
     reader->sought = false;
     if (reader->at == reader->size)
         return LOG_END;
-    if (is_plain_event(reader) || is_event(reader))
-        return take_event(reader, event);
+    if (is_plain_event(reader, &lengths) || is_event(reader, &lengths))
+        return take_event(reader, lengths, event);
     if (reader->error)
         return failed(reader);
     if (!sought)
