@@ -1,20 +1,13 @@
 # The campaigns, in small: they run, find nothing wrong, and find what is planted.
 
+load ran
+
 setup() {
     BUILD=${FMB_BUILD:-build}
     JSON=$BATS_TEST_TMPDIR/report.json
     cd "$BATS_TEST_DIRNAME/../.." || return
     pairs=25
     case ${FMB_FAST:-0} in 0) ;; *) pairs=4 ;; esac
-}
-
-# ended CODE: as the last run did.
-ended() {
-    [ "$status" = "$1" ] || {
-        echo "expected exit code $1, found $status"
-        echo "$output" | tail -n 20
-        return 1
-    }
 }
 
 @test "accuracy: no method is wrong that never must be, and the families are what they say" {

@@ -1,5 +1,7 @@
 # fmb log: what event logs are said to hold, good ones and broken ones; exit codes.
 
+load ran
+
 setup() {
     FMB=${FMB_BUILD:-build}/fmb
     cd "$BATS_TEST_DIRNAME/../.." || return
@@ -7,8 +9,6 @@ setup() {
     pair_query=1704231dbc74a72c
     status=98458447f1c5ee86
 }
-
-bats_require_minimum_version 1.5.0
 
 # bytes HEX
 bytes() {
@@ -43,29 +43,6 @@ info() {
 # field FILTER: of the JSON.
 field() {
     jq -c "$1" <<< "$output"
-}
-
-is() {
-    [ "$output" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $output"
-        return 1
-    }
-}
-
-said() {
-    [ "$stderr" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $stderr"
-        return 1
-    }
-}
-
-ended() {
-    [ "$status" = "$1" ] || {
-        echo "expected exit code $1, found $status"
-        return 1
-    }
 }
 
 # ---- Good logs -------------------------------------------------------------------------------

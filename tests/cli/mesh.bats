@@ -1,7 +1,7 @@
 # fmb mesh: what is typed, what is printed, exit codes. What is true of meshes is tested in
 # tests/unit/test_mesh_meet.c.
 
-bats_require_minimum_version 1.5.0
+load ran
 
 setup() {
     local build=${FMB_BUILD:-build}
@@ -27,29 +27,6 @@ obj() {
 
 mesh() {
     run --separate-stderr "$FMB" mesh "$@"
-}
-
-is() {
-    [ "$output" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $output ($stderr)"
-        return 1
-    }
-}
-
-said() {
-    [ "$stderr" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $stderr"
-        return 1
-    }
-}
-
-ended() {
-    [ "$status" = "$1" ] || {
-        echo "expected exit code $1, found $status"
-        return 1
-    }
 }
 
 # answers JSON ARGUMENTS...

@@ -1,5 +1,7 @@
 # fmb query --local, and the command around it: what is typed, what is printed, exit codes.
 
+load ran
+
 setup() {
     FMB=${FMB_BUILD:-build}/fmb
     CASES=$BATS_TEST_DIRNAME/../cases
@@ -17,31 +19,6 @@ query() {
     shift
     run --separate-stderr "$FMB" query --local --json "$@" <<< "$text"
 }
-
-is() {
-    [ "$output" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $output"
-        return 1
-    }
-}
-
-said() {
-    [ "$stderr" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $stderr"
-        return 1
-    }
-}
-
-ended() {
-    [ "$status" = "$1" ] || {
-        echo "expected exit code $1, found $status"
-        return 1
-    }
-}
-
-bats_require_minimum_version 1.5.0
 
 # ---- Answers ---------------------------------------------------------------------------------
 

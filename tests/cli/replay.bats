@@ -1,7 +1,7 @@
 # fmb replay: what is typed, what is printed, exit codes; on logs that are made here, and spoiled by
 # edit-log in one way each.
 
-bats_require_minimum_version 1.5.0
+load ran
 
 setup_file() {
     cd "$BATS_FILE_TMPDIR" || return
@@ -19,13 +19,6 @@ setup() {
     EDIT=$build/edit-log
     cd "$BATS_TEST_TMPDIR" || return
     ln -s "$BATS_FILE_TMPDIR"/*.log .
-}
-
-ended() {
-    [ "$status" = "$1" ] || {
-        echo "expected exit code $1, found $status: $output $stderr"
-        return 1
-    }
 }
 
 # edit EDIT... LOG: the copy is spoiled.log.

@@ -1,5 +1,7 @@
 # The report: a page and a picture from small reports that tests/report/fixture/ holds.
 
+load ran
+
 setup() {
     cd "$BATS_TEST_DIRNAME/../report" || return
     OUT=$BATS_TEST_TMPDIR/out
@@ -8,28 +10,8 @@ setup() {
     BUS=fixture/bus.json
 }
 
-bats_require_minimum_version 1.5.0
-
 report() {
     run --separate-stderr ./report.sh "$BENCH" "$ACCURACY" "$OUT" "$BUS"
-}
-
-# ended CODE: as the last run did.
-ended() {
-    [ "$status" = "$1" ] || {
-        echo "expected exit code $1, found $status"
-        echo "$output"
-        echo "$stderr"
-        return 1
-    }
-}
-
-said() {
-    [ "$stderr" = "$1" ] || {
-        echo "expected: $1"
-        echo "found:    $stderr"
-        return 1
-    }
 }
 
 has() {
