@@ -156,7 +156,7 @@ static void copy_patched(struct cut *cut, const struct log_event *event,
         return;
     }
     struct query_frame *frame = any_query_frames(&cut->query, &count);
-    if (!fits(patch, count))
+    if (!any_query_is_whole(&cut->query) || !fits(patch, count))
         fail_input(cut, ENODATA);
     else if (patch->define)
         define(cut, event, frame, patch);
