@@ -9,8 +9,8 @@
  * frees it. */
 void *allocate(size_t count, size_t size);
 
-/* The same, from where a cache line begins: elements whose size divides that of a line lie in one.
- */
+/* Likewise, but not cleared, and from where a cache line begins: elements whose size divides that
+ * of a line lie in one. */
 void *allocate_in_lines(size_t count, size_t size);
 
 /* On input: memory of allocate() or NULL. On output: the same contents with room for at least

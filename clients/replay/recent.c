@@ -8,12 +8,11 @@
 #include <string.h>
 
 /* Items lie one behind the other in a ring, each in one piece: where the next does not fit before
- * the end, the rest stays empty and it begins at 0. The ring is small at first, as caches are;
- * where it would go on at 0, and the oldest item is not matched yet, it becomes twice as long
- * instead, up to all that was asked for: more is under way than there was room for. Links are
- * places in units of UNIT bytes, plus 1, so that 0 is none. A bucket holds its items in two chains:
- * those that are not matched, in their order, and the others, with the one that was matched last in
- * front. */
+ * the end, the rest stays empty and it begins at 0. The ring is small at first, so that it fits
+ * into a cache; it becomes twice as long, up to all that was asked for, where one that is not
+ * matched would have to go: more is under way than there was room for. Links are places in units of
+ * UNIT bytes, plus 1, so that 0 is none. A bucket holds its items in two chains: those that are not
+ * matched, in their order, and the others, with the one that was matched last in front. */
 enum { UNIT = 8, NONE = 0, BUCKET_BITS = 13, BUCKETS = 1 << BUCKET_BITS };
 
 enum { ROOM_FIRST = 1 << 20 };
@@ -50,6 +49,7 @@ struct recent *recent_open(size_t bytes, void (*gone)(void *user, const struct r
                            void *user)
 {
     struct recent *recent = allocate(1, sizeof *recent);
+    bytes -= bytes % UNIT;
     assert(bytes / UNIT < UINT32_MAX);
     *recent = (struct recent){.ring = allocate(bytes, 1),
                               .room = bytes < ROOM_FIRST ? bytes : ROOM_FIRST,
@@ -157,6 +157,58 @@ static void let_go(struct recent *recent)
         expect_next(recent, length);
 }
 
+/* What lies from there on goes so much farther on, bytes. */
+struct shift {
+    size_t from, by;
+};
+
+static uint32_t shifted(struct shift shift, uint32_t link)
+{
+    const bool moves = link != NONE && (size_t) (link - 1) * UNIT >= shift.from;
+    return moves ? link + (uint32_t) (shift.by / UNIT) : link;
+}
+
+static void shift_buckets(const struct recent *recent, struct shift shift)
+{
+    for (int i = 0; i < BUCKETS; i++)
+        for (int matched = 0; matched < 2; matched++) {
+            struct chain *chain = &recent->bucket[i].chain[matched];
+            chain->first = shifted(shift, chain->first);
+            chain->last = shifted(shift, chain->last);
+        }
+}
+
+/* Those from begin to before end, where they are now. */
+static void shift_items(const struct recent *recent, struct shift shift, size_t begin, size_t end)
+{
+    while (begin < end) {
+        struct recent_item *item = (struct recent_item *) (recent->ring + begin);
+        item->next = shifted(shift, item->next);
+        item->before = shifted(shift, item->before);
+        if (begin >= shift.from) {
+            item->item.bytes += shift.by;
+            item->item.more += shift.by;
+        }
+        begin += item->length;
+    }
+}
+
+/* Of a ring that wraps, the older part goes to the new end. */
+static void grow(struct recent *recent)
+{
+    recent->room = recent->room > recent->room_max / 2 ? recent->room_max : 2 * recent->room;
+    if (!recent->wraps)
+        return;
+    const struct shift shift = {recent->begin, recent->room - recent->wrap};
+    unsigned char *old = recent->ring + recent->begin;
+    memmove(old + shift.by, old, recent->wrap - recent->begin);
+    recent->begin += shift.by;
+    recent->wrap = recent->room;
+    shift_items(recent, shift, 0, recent->end);
+    shift_items(recent, shift, recent->begin, recent->wrap);
+    shift_buckets(recent, shift);
+}
+
 /* A place for so many bytes, or false. */
 static bool find_place(struct recent *recent, size_t length, size_t *at)
 {
@@ -167,9 +219,6 @@ static bool find_place(struct recent *recent, size_t length, size_t *at)
     *at = recent->end;
     if (recent->wraps)
         return recent->begin - recent->end >= length;
-    while (recent->room - recent->end < length && recent->room < recent->room_max &&
-           !oldest(recent)->matched)
-        recent->room = 2 * recent->room < recent->room_max ? 2 * recent->room : recent->room_max;
     if (recent->room - recent->end >= length)
         return true;
     if (recent->begin < length)
@@ -186,8 +235,12 @@ struct recent_item *recent_put(struct recent *recent, const struct match_item *i
     const size_t length = (bytes + UNIT - 1) / UNIT * UNIT;
     size_t at;
     assert(length <= recent->room_max);
-    while (!find_place(recent, length, &at))
-        let_go(recent);
+    while (!find_place(recent, length, &at)) {
+        if (recent->room < recent->room_max && (recent->count == 0 || !oldest(recent)->matched))
+            grow(recent);
+        else
+            let_go(recent);
+    }
     recent->end = at + length;
     recent->count++;
     struct recent_item *put = (struct recent_item *) (recent->ring + at);

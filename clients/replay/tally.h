@@ -12,7 +12,7 @@ struct tally_channel {
     int64_t outcome[REPLAY_ALONE + 1]; /* [enum replay_outcome] */
     int64_t differences[DIFFERENT_KINDS];
     int64_t results;       /* recorded, or in the golden */
-    int64_t results_alone; /* whose query is not in the log */
+    int64_t results_alone; /* whose query is not in the log, or has had one long before */
     int64_t unreadable[2]; /* [query, result] */
 };
 

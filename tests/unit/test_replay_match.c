@@ -504,6 +504,44 @@ static void test_delays_beyond_what_is_in_memory(void **state)
     assert_in_range(far, 500, 100000);
 }
 
+/* Three megabytes under way, some of it long, wherever the ring of what is in memory has come to
+ * before: with items that were matched long ago, and then suddenly none. */
+static void add_much(int64_t before, bool results_first)
+{
+    enum { WAIT = 9000 };
+    for (int64_t i = 0; i < before; i++) {
+        add_query(1, i, 0);
+        add_result(1, i, 0);
+    }
+    for (int64_t i = 0; i < WAIT; i++) {
+        struct match_item *item = results_first ? add_result(2, i, 0) : add_query(2, i, 0);
+        if (i % 100 == 0)
+            item->size = 10000;
+    }
+    for (int64_t i = 0; i < WAIT; i++)
+        if (results_first)
+            add_query(2, i * 7 % WAIT, 0);
+        else
+            add_result(2, i * 7 % WAIT, 0);
+}
+
+static void test_what_waits_is_in_memory(void **state)
+{
+    (void) state;
+    for (int64_t before = 0; before < 16000; before += 1237)
+        for (int first = 0; first < 2; first++) {
+            stream.count = 0;
+            add_much(before, first);
+            run();
+            for (int64_t i = 0; i < stream.count; i++) {
+                assert_int_equal(stream.fate[i].both, 1);
+                if (stream.event[i].is_result)
+                    assert_int_equal(stream.fate[i].told_at,
+                                     1 + (stream.fate[i].partner > i ? stream.fate[i].partner : i));
+            }
+        }
+}
+
 /* Not even the longest items, one after the other, push out what has just come. */
 static void test_the_longest(void **state)
 {
@@ -696,6 +734,7 @@ int main(void)
         TEST(of_nothing),
         TEST(counts_what_is_mine_and_may_be_told_of),
         TEST(delays_beyond_what_is_in_memory),
+        TEST(what_waits_is_in_memory),
         TEST(the_longest),
         TEST(the_same_ids_one_by_one),
         TEST(the_same_ids_a_few_under_way),
