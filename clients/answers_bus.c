@@ -1,8 +1,8 @@
 #include "answers.h"
 
 #include "allocate.h"
+#include "bus_client.h"
 #include "complain.h"
-#include "fmb_client.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -30,17 +30,13 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      int retries)
 {
     struct answers_bus *answers = allocate(1, sizeof *answers);
-    const struct fmb_client_options options = {
-        .url = bus->url, .prefix = bus->prefix, .timeout = timeout, .tries = retries + 1};
-    char why[FMB_CLIENT_WHY_MAX];
+    const struct fmb_client_options options = {.timeout = timeout, .tries = retries + 1};
     answers->bus = *bus;
     answers->question = *question;
     answers->patience = timeout * (retries + 1);
-    answers->client = fmb_client_open(&options, why, sizeof why);
-    if (answers->client)
-        return answers;
-    complain(why);
-    complain("to decide without a bus: fmb query --local");
+    answers->client = bus_client_open(bus, options);
+    if (!answers->client)
+        complain("to decide without a bus: fmb query --local");
     return answers;
 }
 

@@ -1,7 +1,7 @@
 #include "listen.h"
 
+#include "bus_client.h"
 #include "clock.h"
-#include "complain.h"
 #include "signals.h"
 
 #include <errno.h>
@@ -14,15 +14,11 @@
 bool listen_open(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
                  struct listener *out)
 {
-    const struct fmb_client_options options = {.url = bus->url, .prefix = bus->prefix};
-    char why[FMB_CLIENT_WHY_MAX];
     out->signals = -1;
-    out->client = fmb_client_open(&options, why, sizeof why);
-    if (!out->client) {
-        complain(why);
-    } else if (fmb_client_watch(out->client, watcher) != FMB_OK) {
+    out->client = bus_client_open(bus, (struct fmb_client_options){0});
+    if (out->client && fmb_client_watch(out->client, watcher) != FMB_OK) {
         fprintf(stderr, "fmb: cannot listen on %s\n", args_bus_name(bus));
-    } else {
+    } else if (out->client) {
         out->signals = signals_open();
         if (out->signals >= 0)
             return true;

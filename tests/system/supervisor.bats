@@ -82,6 +82,26 @@ log_event() {
     done
 }
 
+@test "packets that crash LCM reach neither who watches, nor who waits for an answer" {
+    random_scene 3 4 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" watch --prefix P --json --count 6 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+    watch=$!
+    "$FMB" query --prefix P --timeout 0.3 --retries 100 "$BATS_TEST_TMPDIR/scene.json" \
+        > "$BATS_TEST_TMPDIR/answers" 3>&- &
+    query=$!
+    started="$watch $query"
+    sleep 1 # until both listen
+    for poison in wrap short; do
+        "$FMB_BUILD/poison" $poison PFMB_SCENE_RESULT
+        "$FMB_BUILD/poison" $poison PFMB_STATUS
+    done
+    start_fmbd --prefix P
+    wait $query
+    "$FMB" query --prefix P "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/answers"
+    wait $watch
+    stop_fmbd
+}
+
 @test "packets that crash LCM, where they reach it, cost a worker each, and no more" {
     start_fmbd --unfiltered
     random_scene 3 4 > "$BATS_TEST_TMPDIR/scene.json"
