@@ -1,26 +1,25 @@
 /* A message on its way to bytes, in LCM's encoding: what cursor.h reads. The caller has counted:
- * there is room for all of it. */
+ * there is room for all of it. A caller that has not is ended rather than believed. */
 #ifndef WRITER_H
 #define WRITER_H
 
 #include "big_endian.h"
 
-#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct writer {
-    unsigned char *at;
-    size_t left; /* bytes */
+    unsigned char *at, *end; /* the room that is left */
 };
 
 static inline unsigned char *writer_take(struct writer *writer, size_t size)
 {
     unsigned char *at = writer->at;
-    assert(size <= writer->left);
+    if (size > (size_t) (writer->end - at))
+        abort();
     writer->at += size;
-    writer->left -= size;
     return at;
 }
 
@@ -44,7 +43,7 @@ static inline void writer_double(struct writer *writer, double value)
 /* On input: room for so many bytes; the type that the message is of. */
 static inline struct writer writer_begin(unsigned char *out, size_t room, int64_t fingerprint)
 {
-    struct writer writer = {.at = out, .left = room};
+    struct writer writer = {.at = out, .end = out + room};
     writer_int64(&writer, fingerprint);
     return writer;
 }
@@ -75,8 +74,9 @@ static inline void writer_int64s(struct writer *writer, const int64_t *number, i
 static inline void writer_indices(struct writer *writer, const unsigned *index, int32_t count)
 {
     writer_int32(writer, count);
+    unsigned char *at = writer_take(writer, 2 * (size_t) count);
     for (int32_t i = 0; i < count; i++)
-        big_endian_put_16(writer_take(writer, 2), (uint16_t) index[i]);
+        big_endian_put_16(at + 2 * i, (uint16_t) index[i]);
 }
 
 static inline void writer_bytes(struct writer *writer, const unsigned char *byte, int32_t count)
