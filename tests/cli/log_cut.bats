@@ -182,7 +182,7 @@ split_at() {
     has '.kept_events == 3 and .kept_bytes == 3065624'
     tail -c 3000000 "$log" | cmp - <(tail -c 3000000 "$cut")
     # The number of the event is another one.
-    tail -c 3000029 "$log" | cmp - <(tail -c 3000029 "$cut") | grep -q 'byte 12,'
+    tail -c 3000029 "$log" | cmp - <(tail -c 3000029 "$cut") | grep -qE '(byte|char) 12,'
 }
 
 # ---- Damage ----------------------------------------------------------------------------------
