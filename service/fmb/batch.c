@@ -9,6 +9,13 @@
 /* Pairs sorted at a time: their frames should stay in the first cache. */
 enum { BLOCK = 128 };
 
+/* Pairs of a block that are decided alone at most where the time of a call is bounded. Integers of
+ * 128 bits take some 12 us a pair. */
+enum { ALONE_MAX = 32 };
+
+/* In place of the verdict of a pair that will be listed as open. */
+enum { VERDICT_OPEN = 0xff };
+
 /* What blocks have in common. */
 struct job {
     const struct fmb_batch *batch;
@@ -26,6 +33,7 @@ struct block {
     const unsigned char *slot; /* whose pair it is, after first: sorted, or in_order */
     unsigned char outcome[BLOCK + RUN_LANES];
     double contact[BLOCK + RUN_LANES][2];
+    int alone;              /* pairs decided alone so far */
     enum fmb_status status; /* of the first pair refused */
 };
 
@@ -142,6 +150,7 @@ static void set_block(const struct job *job, size_t first, struct block *block)
     block->batch = job->batch;
     block->first = first;
     block->count = left < BLOCK ? left : BLOCK;
+    block->alone = 0;
     block->status = FMB_OK;
     block->slot = job->in_order;
     const bool like_first = set_pairs(block);
@@ -171,10 +180,21 @@ static bool is_rounded(const struct fmb_prepared *a, const struct fmb_prepared *
     return (prepared_kind(a) | prepared_kind(b)) & PREPARED_ROUNDED;
 }
 
-/* A pair by itself, with all that is wanted of it; or left open. */
-static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepared *const pair[2],
-                         size_t i)
+/* Counts a pair to be decided alone. False: it is left open instead, since enough have been. Boxes
+ * are no reason: frames that move have theirs from nowhere else. */
+static bool may_decide_alone(struct block *block)
 {
+    const struct fmb_batch *batch = block->batch;
+    return !batch->open || batch->boxes || block->alone++ < ALONE_MAX;
+}
+
+/* Pair k by itself, with all that is wanted of it; or left open. On input: its contact and box are
+ * NAN. */
+static void decide_alone(struct block *block, size_t k)
+{
+    const struct fmb_batch *batch = block->batch;
+    const struct fmb_prepared *const *pair = block->pair[k];
+    const size_t i = block->first + block->slot[k];
     struct fmb_body body[2];
     struct fmb_answer answer = {0};
     const struct fmb_pair one = {prepared_frame(pair[0], &body[0]),
@@ -183,7 +203,12 @@ static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepare
         batch->verdicts[i] = 0;
         return;
     }
-    certified_decide(&one, batch->boxes ? FMB_WANT_BOX : 0, &answer);
+    const unsigned want = batch->boxes ? FMB_WANT_BOX : 0;
+    if (!may_decide_alone(block) ||
+        (batch->open ? certified_decide_quick : certified_decide)(&one, want, &answer) != FMB_OK) {
+        batch->verdicts[i] = VERDICT_OPEN;
+        return;
+    }
     batch->verdicts[i] = (unsigned char) answer.verdict;
     if (batch->contacts && answer.has_contact)
         memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
@@ -191,20 +216,33 @@ static void decide_alone(const struct fmb_batch *batch, const struct fmb_prepare
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
-/* The verdict of a pair of which the filter is unsure, or that it cannot be asked. Not inlined: the
- * door has no room of its own to set up then. */
+/* The verdict of a pair for which the filter is unsure or cannot be used; 0 where it is left open.
+ * Not inlined: fmb_meet() needs no stack frame of its own then. */
 static enum fmb_verdict __attribute__((noinline))
-verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
+verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+              bool quick)
 {
     struct fmb_body body[2];
     if (is_rounded(a, b))
         return 0;
     const struct fmb_pair pair = {prepared_frame(a, &body[0]), prepared_frame(b, &body[1]),
                                   duration};
-    return certified_unsure(&pair);
+    return certified_unsure(&pair, quick);
 }
 
-static void put_verdicts(const struct block *block, size_t start, size_t end)
+static void put_verdict_alone(struct block *block, size_t k)
+{
+    const struct fmb_batch *batch = block->batch;
+    const struct fmb_prepared *const *pair = block->pair[k];
+    const bool rounded = is_rounded(pair[0], pair[1]);
+    enum fmb_verdict verdict = 0;
+    if (!rounded && may_decide_alone(block))
+        verdict = verdict_alone(pair[0], pair[1], batch->duration, batch->open);
+    batch->verdicts[block->first + block->slot[k]] =
+        verdict || rounded ? (unsigned char) verdict : VERDICT_OPEN;
+}
+
+static void put_verdicts(struct block *block, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     unsigned char *verdicts = batch->verdicts + block->first;
@@ -217,8 +255,7 @@ static void put_verdicts(const struct block *block, size_t start, size_t end)
         return;
     for (size_t k = start; k < end; k++)
         if (block->outcome[k] == SLABS_UNSURE)
-            verdicts[block->slot[k]] = (unsigned char) verdict_alone(
-                block->pair[k][0], block->pair[k][1], batch->duration);
+            put_verdict_alone(block, k);
 }
 
 /* The contact of pair k, as far as the filter knows it: NAN where it does not, or there is none. */
@@ -234,7 +271,7 @@ static const double *contact_at(const struct block *block, enum run_kind kind, s
     return prepared_one_moves(a, b) ? whole : none; /* together */
 }
 
-static void put_contacts(const struct block *block, enum run_kind kind, size_t start, size_t end)
+static void put_contacts(struct block *block, enum run_kind kind, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     const double whole[2] = {0, batch->duration + 0.0}; /* never -0 */
@@ -245,7 +282,7 @@ static void put_contacts(const struct block *block, enum run_kind kind, size_t s
         batch->verdicts[i] = block->outcome[k];
         if (block->outcome[k] == SLABS_UNSURE ||
             (block->outcome[k] == SLABS_OVERLAPPING && kind & RUN_DRIFTS && isnan(contact[0])))
-            decide_alone(batch, block->pair[k], i);
+            decide_alone(block, k);
     }
 }
 
@@ -264,8 +301,8 @@ static bool has_plain_box(const struct block *block, enum run_kind kind, size_t 
            !prepared_both_plain(a, b) && !prepared_one_moves(a, b);
 }
 
-static void put_boxes(const struct block *block, run_function *boxes, enum run_kind kind,
-                      size_t start, size_t end)
+static void put_boxes(struct block *block, run_function *boxes, enum run_kind kind, size_t start,
+                      size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     struct overlaps overlaps;
@@ -279,7 +316,7 @@ static void put_boxes(const struct block *block, run_function *boxes, enum run_k
             overlaps.pair[overlaps.count][1] = block->pair[k][1];
             overlaps.of[overlaps.count++] = k;
         } else if (block->outcome[k] != SLABS_SEPARATED) {
-            decide_alone(batch, block->pair[k], i);
+            decide_alone(block, k);
         }
     }
     if (overlaps.count == 0)
@@ -291,7 +328,7 @@ static void put_boxes(const struct block *block, run_function *boxes, enum run_k
     for (size_t n = 0; n < overlaps.count; n++) {
         const size_t k = overlaps.of[n], i = block->first + block->slot[k];
         if (isnan(overlaps.box[n][0][0]))
-            decide_alone(batch, block->pair[k], i);
+            decide_alone(block, k);
         else
             memcpy(batch->boxes[i], overlaps.box[n], sizeof overlaps.box[n]);
     }
@@ -332,7 +369,7 @@ static void answer_odd(struct block *block)
         const size_t i = block->first + block->slot[k];
         put_nothing(block->batch, i);
         if (k < block->start[RUN_REFUSED]) {
-            decide_alone(block->batch, block->pair[k], i);
+            decide_alone(block, k);
             continue;
         }
         block->batch->verdicts[i] = 0;
@@ -352,13 +389,27 @@ static enum fmb_status decide_block(const struct job *job, size_t first)
     return block.status;
 }
 
-/* ---- The door ---- */
+/* ---- All blocks ---- */
 
 #ifdef _OPENMP
 static const bool has_threads = true;
 #else
 static const bool has_threads = false;
 #endif
+
+/* Lists the pairs that the blocks left open, in ascending order, and gives them the verdict 0. */
+static void list_open(const struct fmb_batch *batch)
+{
+    unsigned char *at = batch->verdicts;
+    /* There may be no array of verdicts for no pairs. */
+    const unsigned char *const end = batch->pair_count > 0 ? at + batch->pair_count : at;
+    size_t count = 0;
+    while (at < end && (at = memchr(at, VERDICT_OPEN, (size_t) (end - at)))) {
+        batch->open[count++] = (size_t) (at - batch->verdicts);
+        *at++ = 0;
+    }
+    *batch->open_count = count;
+}
 
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
 {
@@ -387,6 +438,8 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
             status = of_block;
         }
     }
+    if (batch->open)
+        list_open(batch);
     return status;
 }
 
@@ -403,5 +456,6 @@ enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepare
         kind == RUN_ODD
             ? SLABS_UNSURE
             : run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
-    return outcome == SLABS_UNSURE ? verdict_alone(a, b, duration) : (enum fmb_verdict) outcome;
+    return outcome == SLABS_UNSURE ? verdict_alone(a, b, duration, false)
+                                   : (enum fmb_verdict) outcome;
 }

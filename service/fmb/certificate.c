@@ -47,8 +47,9 @@ enum {
 /* A direction that certificates can name. */
 struct named {
     char name[3];
-    int owner;     /* 0, 1: an edge of that frame; 2: of neither */
-    mpz_t *vector; /* not 0 */
+    int owner; /* 0, 1: an edge of that frame; 2: of neither */
+    /* Not 0. Of z, which is no vector of the pair, plus is -1. */
+    struct exact_edge edge;
 };
 
 struct range {
@@ -60,10 +61,9 @@ struct search {
     enum fmb_verdict verdict;
     int directions; /* those of edges first; the last is d, if that is not 0 */
     struct named direction[DIRECTIONS_MAX];
-    int vertices[2];
-    mpz_t vertex[2][EXACT_VERTICES_MAX][3]; /* [frame][vertex][axis] */
     mpz_t z[3];
     mpz_t plane[3], normal[3];
+    mpz_t value[EXACT_VECTORS]; /* normal . each vector of the pair */
     struct range range[2], way; /* of the normal over the frames, and over W */
     mpz_t scratch[2];
     char text[NORMAL_TEXT_SIZE];
@@ -78,9 +78,6 @@ static void range_each(struct range *range, void (*call)(mpz_ptr))
 static void search_each(struct search *search, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
-        for (int v = 0; v < EXACT_VERTICES_MAX; v++)
-            for (int axis = 0; axis < 3; axis++)
-                call(search->vertex[f][v][axis]);
         range_each(&search->range[f], call);
         call(search->scratch[f]);
     }
@@ -89,25 +86,22 @@ static void search_each(struct search *search, void (*call)(mpz_ptr))
         call(search->plane[axis]);
         call(search->normal[axis]);
     }
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        call(search->value[k]);
     range_each(&search->way, call);
 }
 
-static bool is_zero(mpz_t v[3])
-{
-    return mpz_sgn(v[0]) == 0 && mpz_sgn(v[1]) == 0 && mpz_sgn(v[2]) == 0;
-}
-
 static void add_direction(struct search *search, char letter, int number, int owner,
-                          mpz_t vector[3])
+                          struct exact_edge edge)
 {
-    if (is_zero(vector))
+    if (integer_is_zero(edge.vector))
         return;
     struct named *named = &search->direction[search->directions++];
     named->name[0] = letter;
     named->name[1] = number < 0 ? '\0' : (char) ('0' + number);
     named->name[2] = '\0';
     named->owner = owner;
-    named->vector = vector;
+    named->edge = edge;
 }
 
 static void set_directions(struct search *search, int dim)
@@ -115,34 +109,22 @@ static void set_directions(struct search *search, int dim)
     struct exact_pair *pair = search->pair;
     for (int f = 0; f < 2; f++)
         for (int e = 0; e < pair->frame[f].edges; e++)
-            add_direction(search, "ab"[f], e, f, pair -> frame[f].edge[e]);
-    add_direction(search, 'v', -1, 2, pair->drift);
+            add_direction(search, f ? 'b' : 'a', e, f, pair->frame[f].edge[e]);
+    add_direction(search, 'v', -1, 2, (struct exact_edge){EXACT_DRIFT, -1, pair->drift});
     mpz_set_ui(search->z[2], dim == 2);
-    add_direction(search, 'z', -1, 2, search->z);
-    add_direction(search, 'd', -1, 2, pair->offset);
-}
-
-static void widen(struct range *range, const mpz_t value, bool first)
-{
-    if (first || mpz_cmp(value, range->low) < 0)
-        mpz_set(range->low, value);
-    if (first || mpz_cmp(value, range->high) > 0)
-        mpz_set(range->high, value);
+    add_direction(search, 'z', -1, 2, (struct exact_edge){-1, -1, search->z});
+    add_direction(search, 'd', -1, 2, (struct exact_edge){EXACT_OFFSET, -1, pair->offset});
 }
 
 static void set_ranges(struct search *search)
 {
-    mpz_t *value = search->scratch;
+    mpz_t *value = search->value;
     for (int f = 0; f < 2; f++)
-        for (int v = 0; v < search->vertices[f]; v++) {
-            integer_dot(value[0], search->normal, search->vertex[f][v]);
-            widen(&search->range[f], value[0], v == 0);
-        }
-    integer_dot(value[0], search->normal, search->pair->offset);
-    integer_dot(value[1], search->normal, search->pair->drift);
-    mpz_add(value[1], value[1], value[0]);
-    widen(&search->way, value[0], true);
-    widen(&search->way, value[1], false);
+        exact_extent(search->pair, f, value, search->range[f].low, search->range[f].high);
+    mpz_add(search->scratch[0], value[EXACT_OFFSET], value[EXACT_DRIFT]);
+    const bool rises = mpz_sgn(value[EXACT_DRIFT]) > 0;
+    mpz_set(rises ? search->way.low : search->way.high, value[EXACT_OFFSET]);
+    mpz_set(rises ? search->way.high : search->way.low, search->scratch[0]);
 }
 
 static bool varies(const struct range *range)
@@ -167,8 +149,15 @@ static int proving_sign(struct search *search)
     return mpz_sgn(*least) >= 0 ? 1 : mpz_sgn(*most) <= 0 ? -1 : 0;
 }
 
-/* Whether search->normal, or its opposite, proves the verdict; if so, search->text says which. */
-static bool try_normal(struct search *search, const char *format, ...)
+static void set_values(struct search *search)
+{
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        exact_dot(search->pair, search->value[k], search->normal, k);
+}
+
+/* Whether the normal of search->value, or its opposite, proves the verdict; if so, search->text
+ * says which. */
+static bool try_values(struct search *search, const char *format, ...)
 {
     int sign = proving_sign(search);
     if (sign == 0)
@@ -182,6 +171,17 @@ static bool try_normal(struct search *search, const char *format, ...)
     return true;
 }
 
+static void set_product_values(struct search *search, const struct exact_edge *u,
+                               const struct exact_edge *v)
+{
+    if (u->plus >= 0 && v->plus >= 0) {
+        exact_cross_values(search->pair, u, v, search->value);
+        return;
+    }
+    integer_cross(search->normal, u->vector, v->vector, search->scratch[0]);
+    set_values(search);
+}
+
 /* u x v: first the faces of each frame; then an edge of one with one of the other, with v, or
  * with z. */
 static bool try_products(struct search *search)
@@ -190,10 +190,10 @@ static bool try_products(struct search *search)
         for (int i = 0; i < search->directions; i++)
             for (int j = i + 1; j < search->directions; j++) {
                 const struct named *u = &search->direction[i], *v = &search->direction[j];
-                if ((u->owner != v->owner) != mixed || v->vector == search->pair->offset)
+                if ((u->owner != v->owner) != mixed || v->edge.plus == EXACT_OFFSET)
                     continue;
-                integer_cross(search->normal, u->vector, v->vector, search->scratch[0]);
-                if (try_normal(search, "%s x %s", u->name, v->name))
+                set_product_values(search, &u->edge, &v->edge);
+                if (try_values(search, "%s x %s", u->name, v->name))
                     return true;
             }
     return false;
@@ -204,8 +204,9 @@ static bool try_directions(struct search *search)
     for (int i = 0; i < search->directions; i++) {
         const struct named *u = &search->direction[i];
         for (int axis = 0; axis < 3; axis++)
-            mpz_set(search->normal[axis], u->vector[axis]);
-        if (try_normal(search, "%s", u->name))
+            mpz_set(search->normal[axis], u->edge.vector[axis]);
+        set_values(search);
+        if (try_values(search, "%s", u->name))
             return true;
     }
     return false;
@@ -219,12 +220,13 @@ static bool try_within_plane(struct search *search)
     do {
         v++;
         assert(v < u + search->directions);
-        integer_cross(search->plane, u->vector, v->vector, search->scratch[0]);
-    } while (is_zero(search->plane));
+        integer_cross(search->plane, u->edge.vector, v->edge.vector, search->scratch[0]);
+    } while (integer_is_zero(search->plane));
     for (int i = 0; i < search->directions; i++) {
         const struct named *w = &search->direction[i];
-        integer_cross(search->normal, search->plane, w->vector, search->scratch[0]);
-        if (try_normal(search, "(%s x %s) x %s", u->name, v->name, w->name))
+        integer_cross(search->normal, search->plane, w->edge.vector, search->scratch[0]);
+        set_values(search);
+        if (try_values(search, "(%s x %s) x %s", u->name, v->name, w->name))
             return true;
     }
     return false;
@@ -236,8 +238,6 @@ static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdi
 {
     struct search search = {.pair = pair, .verdict = verdict};
     search_each(&search, mpz_init);
-    for (int f = 0; f < 2; f++)
-        search.vertices[f] = frame_vertices(&pair->frame[f], search.vertex[f]);
     set_directions(&search, dim);
     bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);
     assert(found);
@@ -286,11 +286,11 @@ static void write_normal(struct writer *writer, struct exact_pair *exact, int di
 }
 
 static void write_point(struct writer *writer, struct exact_pair *exact,
-                        const struct fmb_pair *pair)
+                        const struct fmb_pair *pair, bool touching)
 {
     struct certificate_point point;
     certificate_point_init(&point);
-    certificate_point_find(&point, exact, pair);
+    certificate_point_find(&point, exact, pair, touching);
     write_text(writer, " at ");
     write_number(writer, point.time);
     for (int axis = 0; axis < pair->a.body->dim; axis++) {
@@ -303,15 +303,14 @@ static void write_point(struct writer *writer, struct exact_pair *exact,
 
 static void write_certificate(struct writer *writer, const struct fmb_pair *pair)
 {
-    struct fmb_answer answer = {0};
-    exact_decide(pair, 0, &answer);
     struct exact_pair exact;
     exact_pair_init(&exact, pair);
-    write_text(writer, fmb_verdict_name(answer.verdict));
-    if (answer.verdict != FMB_OVERLAPPING)
-        write_normal(writer, &exact, pair->a.body->dim, answer.verdict);
-    if (answer.verdict != FMB_SEPARATED)
-        write_point(writer, &exact, pair);
+    const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
+    write_text(writer, fmb_verdict_name(verdict));
+    if (verdict != FMB_OVERLAPPING)
+        write_normal(writer, &exact, pair->a.body->dim, verdict);
+    if (verdict != FMB_SEPARATED)
+        write_point(writer, &exact, pair, verdict == FMB_TOUCHING);
     exact_pair_clear(&exact);
 }
 

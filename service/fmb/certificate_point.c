@@ -54,9 +54,7 @@ static void simplest_of_positive(mpq_t out, mpz_t a, mpz_t b, mpz_t c, mpz_t d)
     mpz_clears(term, last_num, last_den, NULL);
 }
 
-/* out := the simplest number strictly between low and high > low: 0 if that is, else the one of
- * least denominator, and of these the one next to 0. low and high are overwritten. */
-static void simplest_between(mpq_t out, mpq_t low, mpq_t high)
+void simplest_between(mpq_t out, mpq_t low, mpq_t high)
 {
     bool negative = mpq_sgn(high) <= 0;
     if (mpq_sgn(low) < 0 && mpq_sgn(high) > 0) {
@@ -256,6 +254,7 @@ static void dot(mpq_t out, mpz_t normal[3], mpq_t v[3], mpq_t scratch)
 static bool shorten_to_slab(void *context, struct slab *slab)
 {
     struct chord *chord = context;
+    slab_set_normal(slab, chord->exact->scratch[0]);
     dot(chord->value, slab->normal, chord->place, chord->number);
     dot(chord->slope, slab->normal, chord->way, chord->number);
     mpq_set_z(chord->bound[0], slab->low);
@@ -265,8 +264,7 @@ static bool shorten_to_slab(void *context, struct slab *slab)
 }
 
 /* At the time t the point p lies at p - t v - o from the origin of the frame. */
-static void shorten_to_frame(struct chord *chord, const struct fmb_frame *frame,
-                             const struct exact_frame *exact)
+static void shorten_to_frame(struct chord *chord, const struct fmb_frame *frame, enum slabs_of of)
 {
     for (int axis = 0; axis < frame->body->dim; axis++) {
         mpq_set_d(chord->number, frame->moving ? frame->velocity[axis] : 0);
@@ -279,7 +277,7 @@ static void shorten_to_frame(struct chord *chord, const struct fmb_frame *frame,
         scale(chord->place[axis], -chord->exact->unit);
         scale(chord->way[axis], -chord->exact->unit);
     }
-    slabs_walk(exact, NULL, shorten_to_slab, chord, chord->exact->scratch);
+    slabs_walk(chord->exact, of, shorten_to_slab, chord);
 }
 
 /* Moves the point along its line to where coordinate k, which is 1 in the direction, is the
@@ -307,8 +305,8 @@ static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pa
         chord.direction = hull->direction[k];
         chord.bounded = false;
         shorten_to_window(&chord, pair->duration);
-        shorten_to_frame(&chord, &pair->a, &exact->frame[0]);
-        shorten_to_frame(&chord, &pair->b, &exact->frame[1]);
+        shorten_to_frame(&chord, &pair->a, SLABS_OF_A);
+        shorten_to_frame(&chord, &pair->b, SLABS_OF_B);
         assert(chord.bounded && mpq_cmp(chord.low, chord.high) < 0);
         simplify(&chord, k);
     }
@@ -331,9 +329,32 @@ void certificate_point_clear(struct certificate_point *point)
         mpq_clear(point->place[axis]);
 }
 
-void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
-                            const struct fmb_pair *pair)
+/* Most bits of a number of the pair, in its unit: beyond these, reducing fractions takes
+ * milliseconds each. */
+enum { BITS_MAX = 512 };
+
+static bool is_wide(struct exact_pair *exact)
 {
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < 3; axis++) {
+            struct exact_frame *frame = &exact->frame[f];
+            if (mpz_sizeinbase(frame->origin[axis], 2) > BITS_MAX ||
+                mpz_sizeinbase(frame->displacement[axis], 2) > BITS_MAX)
+                return true;
+            for (int i = 0; i < frame->count; i++)
+                if (mpz_sizeinbase(frame->component[i][axis], 2) > BITS_MAX)
+                    return true;
+        }
+    return false;
+}
+
+void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
+                            const struct fmb_pair *pair, bool touching)
+{
+    if (is_wide(exact)) {
+        certificate_point_wide(point, exact, pair, touching);
+        return;
+    }
     struct hull hull = {.unit = exact->unit};
     hull_each(&hull, mpq_init);
     mpq_set_d(hull.duration, pair->duration);

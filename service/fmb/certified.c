@@ -11,6 +11,8 @@
 /* What is known of a pair, found when it is needed. */
 struct certified {
     const struct fmb_pair *pair;
+    bool quick;                   /* integers wider than QUICK_LIMBS are not used */
+    bool open;                    /* only with quick: the verdict needs such integers */
     struct fmb_prepared frame[2]; /* in the places that kind wants */
     enum run_kind kind;
     bool slabs_known, slabs_good; /* slabs_good: doubles can say something of the pair */
@@ -22,9 +24,15 @@ struct certified {
     struct faces_shadow shadow; /* where they are SHARED */
 };
 
-static void begin(struct certified *certified, const struct fmb_pair *pair)
+/* The widest lengths of a quick decision, in limbs: 128 bits. A slab then takes about 200 products
+ * of limbs, and a pair has at most SLABS_MAX of them: tens of microseconds. */
+enum { QUICK_LIMBS = 2 };
+
+static void begin(struct certified *certified, const struct fmb_pair *pair, bool quick)
 {
     certified->pair = pair;
+    certified->quick = quick;
+    certified->open = false;
     certified->slabs_known = certified->span_known = false;
     certified->planes = FACES_CROSSING;
 }
@@ -99,10 +107,14 @@ static enum fmb_verdict verdict_of_outcome(enum slabs_outcome outcome)
     return outcome == SLABS_UNSURE ? FMB_TOUCHING : (enum fmb_verdict) outcome;
 }
 
-static enum fmb_verdict exact_verdict(const struct fmb_pair *pair)
+/* By the exact method; 0 where the decision is quick. */
+static enum fmb_verdict verdict_in_full(struct certified *certified)
 {
     struct fmb_answer answer = {0};
-    exact_decide(pair, 0, &answer);
+    certified->path = CERTIFIED_EXACT;
+    certified->open = certified->quick;
+    if (!certified->quick)
+        exact_decide(certified->pair, 0, &answer);
     return answer.verdict;
 }
 
@@ -123,13 +135,14 @@ static enum fmb_verdict verdict_of_slabs(struct certified *certified)
     certified->path = CERTIFIED_REFINED;
     if (separated || count == 0)
         return separated ? FMB_SEPARATED : FMB_OVERLAPPING;
-    if (fits) {
+    if (fits && (!certified->quick || limbs.limbs <= QUICK_LIMBS)) {
         certified->path = CERTIFIED_LIMBS;
         return verdict_in_limbs(&limbs, open, count);
     }
-    certified->path = CERTIFIED_EXACT;
-    return exact_verdict(certified->pair);
+    return verdict_in_full(certified);
 }
+
+static enum fmb_verdict shadow_verdict(struct certified *certified);
 
 /* Of two faces that no slab separates, and that do not lie strictly within all of them: they touch
  * unless their planes are parallel. */
@@ -139,18 +152,14 @@ static enum fmb_verdict verdict_of_planes(struct certified *certified)
         faces_planes_of(certified->pair, &certified->slabs, certified->span, &certified->shadow);
     if (certified->planes == FACES_CROSSING)
         return FMB_TOUCHING;
-    if (certified->planes == FACES_SHARED)
-        return certified_verdict(&certified->shadow.pair, &certified->path);
-    certified->path = CERTIFIED_EXACT;
-    return exact_verdict(certified->pair);
+    return certified->planes == FACES_SHARED ? shadow_verdict(certified)
+                                             : verdict_in_full(certified);
 }
 
 static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
-    if (!find_slabs(certified)) {
-        certified->path = CERTIFIED_EXACT;
-        return exact_verdict(certified->pair);
-    }
+    if (!find_slabs(certified))
+        return verdict_in_full(certified);
     const enum fmb_verdict verdict = verdict_of_slabs(certified);
     const bool faces =
         certified->pair->a.body->shape == FMB_FACE && certified->pair->b.body->shape == FMB_FACE;
@@ -188,6 +197,22 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
 }
 
+/* contact: as in verdict_of(). */
+static enum fmb_verdict verdict_of_any(struct certified *certified, double contact[2])
+{
+    return prepare(certified) ? verdict_of(certified, contact) : verdict_in_full(certified);
+}
+
+static enum fmb_verdict shadow_verdict(struct certified *certified)
+{
+    struct certified shadow;
+    begin(&shadow, &certified->shadow.pair, certified->quick);
+    const enum fmb_verdict verdict = verdict_of_any(&shadow, NULL);
+    certified->path = shadow.path;
+    certified->open = shadow.open;
+    return verdict;
+}
+
 /* Components of few bits, as people write them: it is likely that nothing rounds, and the times are
  * exact then. */
 static bool is_plain(const struct certified *certified)
@@ -204,6 +229,9 @@ static bool never_rounds(struct certified *certified)
     return !certified->rounds;
 }
 
+static enum fmb_status decide(const struct fmb_pair *pair, unsigned want, bool quick,
+                              struct fmb_answer *answer);
+
 /* On input: answer->contact, of a pair that drifts, as the filter found it. A pair that does not is
  * in contact over the whole window. False: ask the exact method. Which step gives the times depends
  * on the numbers of the pair alone, so that they are the same bits wherever they are asked. */
@@ -217,9 +245,10 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
     }
     if (certified->planes == FACES_SHARED) {
         struct fmb_answer shadow = {0};
-        certified_decide(&certified->shadow.pair, 0, &shadow);
+        const enum fmb_status status =
+            decide(&certified->shadow.pair, 0, certified->quick, &shadow);
         memcpy(answer->contact, shadow.contact, sizeof shadow.contact);
-        return true;
+        return status == FMB_OK;
     }
     if (!never_rounds(certified) && !isnan(answer->contact[0]))
         return true;
@@ -227,7 +256,7 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
         return false;
     find_span(certified);
     return contact_of(certified->pair, &certified->slabs, certified->rounds, certified->span,
-                      answer->contact);
+                      !certified->quick, answer->contact);
 }
 
 /* Where frames only touch, and numbers round, doubles cannot be sure of a single common point. */
@@ -266,14 +295,16 @@ static void complete(const struct fmb_pair *pair, unsigned want, bool good_conta
         memcpy(answer->box, exact.box, sizeof exact.box);
 }
 
-enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
-                                 struct fmb_answer *answer)
+static enum fmb_status decide(const struct fmb_pair *pair, unsigned want, bool quick,
+                              struct fmb_answer *answer)
 {
     struct certified certified;
-    begin(&certified, pair);
+    begin(&certified, pair, quick);
     if (!prepare(&certified))
-        return exact_decide(pair, want, answer);
+        return quick ? FMB_CANNOT_DECIDE : exact_decide(pair, want, answer);
     answer->verdict = verdict_of(&certified, certified.kind & RUN_DRIFTS ? answer->contact : NULL);
+    if (certified.open)
+        return FMB_CANNOT_DECIDE;
     if (answer->verdict == FMB_SEPARATED) {
         answer->contact[0] = answer->contact[1] = 0;
         return FMB_OK;
@@ -281,27 +312,38 @@ enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
     const bool moving = pair->a.moving || pair->b.moving;
     const bool good_contact = !moving || answer_contact(&certified, answer);
     const bool good_box = !(want & FMB_WANT_BOX) || answer_box(&certified, answer);
-    if (!good_contact || !good_box)
-        complete(pair, want, good_contact, good_box, answer);
+    if (good_contact && good_box)
+        return FMB_OK;
+    if (quick)
+        return FMB_CANNOT_DECIDE;
+    complete(pair, want, good_contact, good_box, answer);
     return FMB_OK;
+}
+
+enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
+                                 struct fmb_answer *answer)
+{
+    return decide(pair, want, false, answer);
+}
+
+enum fmb_status certified_decide_quick(const struct fmb_pair *pair, unsigned want,
+                                       struct fmb_answer *answer)
+{
+    return decide(pair, want, true, answer);
 }
 
 enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path)
 {
     struct certified certified;
-    begin(&certified, pair);
-    if (!prepare(&certified)) {
-        *path = CERTIFIED_EXACT;
-        return exact_verdict(pair);
-    }
-    const enum fmb_verdict verdict = verdict_of(&certified, NULL);
+    begin(&certified, pair, false);
+    const enum fmb_verdict verdict = verdict_of_any(&certified, NULL);
     *path = certified.path;
     return verdict;
 }
 
-enum fmb_verdict certified_unsure(const struct fmb_pair *pair)
+enum fmb_verdict certified_unsure(const struct fmb_pair *pair, bool quick)
 {
     struct certified certified;
-    begin(&certified, pair);
+    begin(&certified, pair, quick);
     return verdict_of_unsure(&certified);
 }

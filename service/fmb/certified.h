@@ -22,6 +22,11 @@
 enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
+/* The same answer, or CANNOT_DECIDE and *answer unspecified where it needs GMP or lengths of more
+ * than 128 bits. Takes tens of microseconds at most and allocates nothing. */
+enum fmb_status certified_decide_quick(const struct fmb_pair *pair, unsigned want,
+                                       struct fmb_answer *answer);
+
 /* Which step decides the verdict of a pair: the filter; the same slabs in doubles that are known
  * not to round; those left open, in doubles with bounds of their own; integers of fixed width;
  * GMP. For tests and reports. */
@@ -36,13 +41,15 @@ enum certified_path {
 /* The verdict of a checked pair, and who found it. */
 enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path);
 
-/* The same of a pair of which the filter is known to be unsure. */
-enum fmb_verdict certified_unsure(const struct fmb_pair *pair);
+/* The same of a pair of which the filter is known to be unsure. quick: 0 where it needs GMP or
+ * lengths of more than 128 bits. */
+enum fmb_verdict certified_unsure(const struct fmb_pair *pair, bool quick);
 
 /* For a pair in contact that drifts: answer->contact. rounds: whether operations on these numbers
- * may round; span: of the pair. False if neither doubles nor limbs give it within its limit. */
+ * may round; span: of the pair; exact: where doubles do not give an end within its limit, integers
+ * may. False if nothing that may be used does. */
 bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
-                struct dyadic_span span, double contact[2]);
+                struct dyadic_span span, bool exact, double contact[2]);
 
 /* For a pair in contact: the box. False if doubles do not give it within its limit. */
 bool box_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,

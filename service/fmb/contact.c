@@ -156,7 +156,7 @@ static void settle(const struct slabs *slabs, const struct limbs_pair *limbs,
 }
 
 bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
-                struct dyadic_span span, double contact[2])
+                struct dyadic_span span, bool exact, double contact[2])
 {
     struct slabs slabs;
     struct times times;
@@ -173,7 +173,7 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair
     contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))
         return true;
-    if (!limbs_prepare(pair, span, &limbs))
+    if (!exact || !limbs_prepare(pair, span, &limbs))
         return false;
     for (int end = 0; end < 2; end++)
         if (!good_end(&times, end))

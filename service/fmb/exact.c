@@ -1,6 +1,8 @@
 #include "exact.h"
 #include "integer.h"
 
+#include <string.h>
+
 /* The largest power of two of which every length of the pair is a multiple. */
 static long pair_unit(const struct fmb_pair *pair)
 {
@@ -22,10 +24,11 @@ static long pair_unit(const struct fmb_pair *pair)
     return unit;
 }
 
-static void set_edges(struct exact_frame *frame)
+static void set_edges(struct exact_frame *frame, int f)
 {
+    const int first = f * EXACT_OF_B;
     for (int i = 0; i < frame->count; i++)
-        frame->edge[i] = frame->component[i];
+        frame->edge[i] = (struct exact_edge){first + i, -1, frame->component[i]};
     frame->edges = frame->count;
     if (!frame->simplex)
         return;
@@ -34,7 +37,7 @@ static void set_edges(struct exact_frame *frame)
             mpz_t *difference = frame->difference[frame->edges - frame->count];
             for (int axis = 0; axis < 3; axis++)
                 mpz_sub(difference[axis], frame->component[j][axis], frame->component[i][axis]);
-            frame->edge[frame->edges++] = difference;
+            frame->edge[frame->edges++] = (struct exact_edge){first + j, first + i, difference};
         }
     }
 }
@@ -69,7 +72,6 @@ static void frame_set(struct exact_frame *out, const struct fmb_frame *frame, do
     }
     if (body->rounded)
         add_rest(out, body, unit);
-    set_edges(out);
 }
 
 /* Calls one of mpz_init and mpz_clear for every number of the frame. */
@@ -93,8 +95,113 @@ static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
         call(pair->offset[axis]);
         call(pair->drift[axis]);
     }
+    for (int t = 0; t < EXACT_TRIPLES; t++)
+        call(pair->triple[t]);
     for (int i = 0; i < EXACT_SCRATCH; i++)
         call(pair->scratch[i]);
+}
+
+/* ---- Products ----
+ *
+ * A vector of the pair is a double, or the product of two, on each axis: one or two limbs, and then
+ * zeros. Only offset and drift, differences of two of these, may fill the space between; their
+ * products are taken apart. So of the 56 triple products only those of both offset and drift have
+ * factors that are wide, and these have one wide vector product in common. */
+
+mpz_t *exact_vector(struct exact_pair *pair, int number)
+{
+    if (number == EXACT_OFFSET)
+        return pair->offset;
+    if (number == EXACT_DRIFT)
+        return pair->drift;
+    return pair->frame[number / EXACT_OF_B].component[number % EXACT_OF_B];
+}
+
+void exact_dot(struct exact_pair *pair, mpz_t out, mpz_t normal[3], int k)
+{
+    struct exact_frame *frame = pair->frame;
+    mpz_t *scratch = &pair->scratch[EXACT_SCRATCH - 1];
+    if (k < EXACT_OFFSET) {
+        integer_dot(out, normal, exact_vector(pair, k), *scratch);
+        return;
+    }
+    mpz_set_ui(out, 0);
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < 3; axis++)
+            integer_add_product(out, f ? 1 : -1, normal[axis],
+                                (k == EXACT_OFFSET ? frame[f].origin : frame[f].displacement)[axis],
+                                *scratch);
+}
+
+/* The place of (i x j) . k, i < j < k, in the table: all triples below k, all pairs below j. */
+static int triple_at(int i, int j, int k)
+{
+    return k * (k - 1) * (k - 2) / 6 + j * (j - 1) / 2 + i;
+}
+
+/* On input: all triples are 0, and those of vectors that are 0 stay so. */
+static void set_triples(struct exact_pair *pair)
+{
+    bool zero[EXACT_VECTORS];
+    mpz_t normal[3];
+    mpz_inits(normal[0], normal[1], normal[2], NULL);
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        zero[k] = integer_is_zero(exact_vector(pair, k));
+    for (int j = 1; j < EXACT_OFFSET; j++)
+        for (int i = 0; i < j; i++) {
+            if (zero[i] || zero[j])
+                continue;
+            integer_cross(normal, exact_vector(pair, i), exact_vector(pair, j), pair->scratch[0]);
+            for (int k = j + 1; k < EXACT_VECTORS; k++)
+                if (!zero[k])
+                    exact_dot(pair, pair->triple[triple_at(i, j, k)], normal, k);
+        }
+    if (zero[EXACT_OFFSET] || zero[EXACT_DRIFT]) {
+        mpz_clears(normal[0], normal[1], normal[2], NULL);
+        return;
+    }
+    /* (offset x drift) . i = (i x offset) . drift */
+    integer_cross(normal, pair->offset, pair->drift, pair->scratch[0]);
+    for (int i = 0; i < EXACT_OFFSET; i++)
+        if (!zero[i])
+            exact_dot(pair, pair->triple[triple_at(i, EXACT_OFFSET, EXACT_DRIFT)], normal, i);
+    mpz_clears(normal[0], normal[1], normal[2], NULL);
+}
+
+/* value[k] += sign (i x j) . k */
+static void add_triples(const struct exact_pair *pair, int sign, int i, int j,
+                        mpz_t value[EXACT_VECTORS])
+{
+    if (i == j)
+        return;
+    const int low = i < j ? i : j, high = i < j ? j : i;
+    for (int k = 0; k < EXACT_VECTORS; k++) {
+        if (k == i || k == j)
+            continue;
+        /* Moving k to its place passes low, high or both. */
+        const bool between = k > low && k < high;
+        const mpz_t *triple = &pair->triple[k < low   ? triple_at(k, low, high)
+                                            : between ? triple_at(low, k, high)
+                                                      : triple_at(low, high, k)];
+        if ((sign > 0) == ((i < j) != between))
+            mpz_add(value[k], value[k], *triple);
+        else
+            mpz_sub(value[k], value[k], *triple);
+    }
+}
+
+void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
+                        const struct exact_edge *v, mpz_t value[EXACT_VECTORS])
+{
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        mpz_set_ui(value[k], 0);
+    add_triples(pair, 1, u->plus, v->plus, value);
+    if (u->minus >= 0)
+        add_triples(pair, -1, u->minus, v->plus, value);
+    if (v->minus >= 0)
+        add_triples(pair, -1, u->plus, v->minus, value);
+    if (u->minus >= 0 && v->minus >= 0)
+        add_triples(pair, 1, u->minus, v->minus, value);
 }
 
 void exact_pair_init(struct exact_pair *out, const struct fmb_pair *pair)
@@ -104,11 +211,15 @@ void exact_pair_init(struct exact_pair *out, const struct fmb_pair *pair)
     out->moving = pair->a.moving || pair->b.moving;
     frame_set(&out->frame[0], &pair->a, pair->duration, out->unit);
     frame_set(&out->frame[1], &pair->b, pair->duration, out->unit);
+    for (int f = 0; f < 2; f++)
+        set_edges(&out->frame[f], f);
     for (int axis = 0; axis < 3; axis++) {
         mpz_sub(out->offset[axis], out->frame[1].origin[axis], out->frame[0].origin[axis]);
         mpz_sub(out->drift[axis], out->frame[1].displacement[axis],
                 out->frame[0].displacement[axis]);
     }
+    if (pair->a.body->dim == 3) /* in 2D all vectors lie in one plane */
+        set_triples(out);
 }
 
 void exact_pair_clear(struct exact_pair *pair)
@@ -116,71 +227,151 @@ void exact_pair_clear(struct exact_pair *pair)
     pair_each(pair, mpz_clear);
 }
 
-struct offset_walk {
-    struct exact_pair *pair;
-    struct span span;
-    mpz_t f0, f1;
-};
-
-/* The offset of the frames moves along a segment, offset + tau drift. */
-static bool apply_to_offset(void *context, struct slab *slab)
-{
-    struct offset_walk *walk = context;
-    struct exact_pair *pair = walk->pair;
-    integer_dot(walk->f0, slab->normal, pair->offset);
-    if (!pair->moving)
-        return span_apply(&walk->span, walk->f0, walk->f0, slab->low, slab->high, slab->pins);
-    integer_dot(walk->f1, slab->normal, pair->drift);
-    mpz_add(walk->f1, walk->f1, walk->f0);
-    return span_apply(&walk->span, walk->f0, walk->f1, slab->low, slab->high, slab->pins);
-}
+/* ---- Verdict and times ----
+ *
+ * Bound on the work, for any input. Let a number of the pair, in its unit, have at most W limbs of
+ * 64 bits. The unit is at least 2^-2148, the lowest of v T, and a coordinate lies below 2^1024:
+ * W <= 50. (A displacement has fewer than 3,172 bits: T is common to all, and where it is large the
+ * unit is no lower than 2^-1074.) A triple product has 3 W limbs; numbers of the pair without their
+ * zeros have 3 at most.
+ *
+ *   The triple products: 15 vector products of 6 short products, 50 dot products of at most 6
+ *   factors of 3 limbs with 2 W; one vector product of 6 W^2 limbs. Together 60,000 products of
+ *   limbs.
+ *   The verdict of a solid difference: at most 44 + 12 slabs of 8 values, each a sum of at most 4
+ *   triple products, and as many comparisons of their sums: 56 8 4 3 W = 270,000 limbs added.
+ *   Times: at most 2 quotients a slab, of 53 bits: 44 2 2 3 W = 26,000.
+ *   A flat difference: at most 13 slabs with normals of 2 W limbs, 6 short factors for each value;
+ *   and 5 comparisons of quotients a slab, of two products of (3 W)^2 limbs at most: 13 5 2 (3 W)^2
+ *   = 3 million, if the leading bits of none differ. A few are that close in practice; the others
+ *   have normals of W limbs.
+ *   The box: exact_box.c.
+ *
+ * A product of limbs takes half a nanosecond. test_engine_work.c counts them. */
 
 /* tau in windows, as seconds. */
-static double seconds(const struct ratio *tau, double duration, enum round_direction direction,
-                      mpz_t scratch[EXACT_SCRATCH])
+static double seconds(const mpz_t num, const mpz_t den, double duration,
+                      enum round_direction direction, mpz_t scratch[EXACT_SCRATCH])
 {
     struct dyadic window = dyadic_of(duration);
     if (window.mantissa == 0)
         return 0.0;
-    mpz_mul_si(scratch[2], tau->num, window.mantissa);
-    return integer_ratio_round(scratch[2], tau->den, window.exponent, direction, scratch);
+    mpz_mul_si(scratch[2], num, window.mantissa);
+    return integer_ratio_round(scratch[2], den, window.exponent, direction, scratch);
 }
 
-static void answer_contact(struct offset_walk *walk, double duration, struct fmb_answer *answer)
+/* The offset of the frames moves along a segment, offset + tau drift. */
+struct offset_walk {
+    struct exact_pair *pair;
+    struct span span; /* of a flat difference */
+    bool strict;      /* of a solid one: strictly within all slabs so far */
+    double duration, *contact;
+    mpz_t f0, f1, num, den;
+};
+
+static void set_way(struct offset_walk *walk, struct slab *slab)
 {
-    mpz_t *scratch = walk->pair->scratch;
-    answer->has_contact = true;
-    answer->contact[0] = seconds(span_lower(&walk->span), duration, ROUND_DOWN, scratch);
-    answer->contact[1] = seconds(span_upper(&walk->span), duration, ROUND_UP, scratch);
+    mpz_set(walk->f0, slab->value[EXACT_OFFSET]);
+    mpz_add(walk->f1, slab->value[EXACT_OFFSET], slab->value[EXACT_DRIFT]);
 }
 
-/* Bound on the work, for any input: at most 44 slabs, whose normals are of degree 2 and bounds
- * of degree 3 in the numbers of the pair, and less than 1,000 points for the box
- * (exact_box.c), each compared with a few others by products of degree 7. All numbers of a
- * pair share a unit of at least 2^-2148, the lowest of v T, and a coordinate lies below 2^1024:
- * at most 3,172 bits. A displacement has fewer: T is common to all, and where it is large the
- * unit is no lower than 2^-1074. */
+static bool apply_to_span(void *context, struct slab *slab)
+{
+    struct offset_walk *walk = context;
+    set_way(walk, slab);
+    return span_apply(&walk->span, walk->f0, walk->f1, slab->low, slab->high, slab->pins);
+}
+
+/* Moves an end of the contact to where the offset crosses a bound. Rounding keeps order: the last
+ * of the rounded times is the rounded last time. */
+static void cross_bound(struct offset_walk *walk, const mpz_t bound, int end)
+{
+    mpz_sub(walk->num, bound, walk->f0);
+    mpz_sub(walk->den, walk->f1, walk->f0);
+    if (mpz_sgn(walk->den) < 0) {
+        mpz_neg(walk->num, walk->num);
+        mpz_neg(walk->den, walk->den);
+    }
+    const double time = seconds(walk->num, walk->den, walk->duration, end ? ROUND_UP : ROUND_DOWN,
+                                walk->pair->scratch);
+    if (end ? time < walk->contact[1] : time > walk->contact[0])
+        walk->contact[end] = time;
+}
+
+/* A slab of a solid difference, or of one that is swept. Along the way, normal . w goes from f0 to
+ * f1. Where all of that is beyond a bound, the frames are apart; where none of it is strictly
+ * inside of a bound, the offset is on the bound of what is swept (slabs.h). */
+static bool apply_to_solid(void *context, struct slab *slab)
+{
+    struct offset_walk *walk = context;
+    set_way(walk, slab);
+    const int low0 = mpz_cmp(walk->f0, slab->low), low1 = mpz_cmp(walk->f1, slab->low);
+    const int high0 = mpz_cmp(walk->f0, slab->high), high1 = mpz_cmp(walk->f1, slab->high);
+    if ((low0 < 0 && low1 < 0) || (high0 > 0 && high1 > 0))
+        return false;
+    if ((low0 <= 0 && low1 <= 0) || (high0 >= 0 && high1 >= 0))
+        walk->strict = false;
+    if (walk->contact && (low0 < 0 || high0 > 0))
+        cross_bound(walk, low0 < 0 ? slab->low : slab->high, 0);
+    if (walk->contact && (low1 < 0 || high1 > 0))
+        cross_bound(walk, low1 < 0 ? slab->low : slab->high, 1);
+    return true;
+}
+
+static enum fmb_verdict verdict_of_solid(struct offset_walk *walk)
+{
+    walk->strict = true;
+    if (!slabs_walk(walk->pair, SLABS_OF_DIFFERENCE, apply_to_solid, walk) ||
+        !slabs_walk(walk->pair, SLABS_OF_SWEPT, apply_to_solid, walk))
+        return FMB_SEPARATED;
+    return walk->strict ? FMB_OVERLAPPING : FMB_TOUCHING;
+}
+
+static enum fmb_verdict verdict_of_flat(struct offset_walk *walk)
+{
+    span_init(&walk->span);
+    enum fmb_verdict verdict = FMB_SEPARATED;
+    if (slabs_walk(walk->pair, SLABS_OF_DIFFERENCE, apply_to_span, walk)) {
+        verdict = span_has_interior(&walk->span) ? FMB_OVERLAPPING : FMB_TOUCHING;
+        const struct ratio *first = span_lower(&walk->span), *last = span_upper(&walk->span);
+        mpz_t *scratch = walk->pair->scratch;
+        if (walk->contact) {
+            walk->contact[0] = seconds(first->num, first->den, walk->duration, ROUND_DOWN, scratch);
+            walk->contact[1] = seconds(last->num, last->den, walk->duration, ROUND_UP, scratch);
+        }
+    }
+    span_clear(&walk->span);
+    return verdict;
+}
+
+enum fmb_verdict exact_verdict(struct exact_pair *exact, double duration, double contact[2])
+{
+    struct offset_walk walk = {.pair = exact, .duration = duration, .contact = contact};
+    if (contact) {
+        contact[0] = 0;
+        contact[1] = duration + 0.0; /* never -0 */
+    }
+    mpz_inits(walk.f0, walk.f1, walk.num, walk.den, NULL);
+    const bool solid = slabs_solid(exact);
+    const enum fmb_verdict verdict = solid ? verdict_of_solid(&walk) : verdict_of_flat(&walk);
+    mpz_clears(walk.f0, walk.f1, walk.num, walk.den, NULL);
+    return verdict;
+}
+
 enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
 {
     struct exact_pair exact;
+    double contact[2];
     exact_pair_init(&exact, pair);
-    struct offset_walk walk = {.pair = &exact};
-    span_init(&walk.span);
-    mpz_inits(walk.f0, walk.f1, NULL);
-
-    if (!slabs_walk(&exact.frame[0], &exact.frame[1], apply_to_offset, &walk, exact.scratch)) {
-        answer->verdict = FMB_SEPARATED;
-    } else {
-        answer->verdict = span_has_interior(&walk.span) ? FMB_OVERLAPPING : FMB_TOUCHING;
+    answer->verdict = exact_verdict(&exact, pair->duration, exact.moving ? contact : NULL);
+    if (answer->verdict != FMB_SEPARATED) {
+        answer->has_contact = exact.moving;
         if (exact.moving)
-            answer_contact(&walk, pair->duration, answer);
+            memcpy(answer->contact, contact, sizeof contact);
         answer->has_box = want & FMB_WANT_BOX;
         if (answer->has_box)
             exact_box(&exact, answer->box);
     }
-
-    mpz_clears(walk.f0, walk.f1, NULL);
-    span_clear(&walk.span);
     exact_pair_clear(&exact);
     return FMB_OK;
 }

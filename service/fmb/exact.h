@@ -22,17 +22,34 @@ enum {
     EXACT_SCRATCH = 4
 };
 
+/* The vectors of a pair, by number: the components of frame 0 and of frame 1, the offset, the
+ * drift. All that the exact step needs is linear in them: edges, vertices, normals, what is along
+ * these. */
+enum {
+    EXACT_OF_B = 3,
+    EXACT_OFFSET = 6,
+    EXACT_DRIFT = 7,
+    EXACT_VECTORS = 8,
+    EXACT_TRIPLES = 56 /* of 8 */
+};
+
+/* A direction of edges: vector plus - vector minus, or vector plus where minus < 0. */
+struct exact_edge {
+    int plus, minus;
+    mpz_t *vector; /* [axis] */
+};
+
 /* A frame at tau = 0. Integers, times 2^unit of the pair; vectors are [axis]. */
 struct exact_frame {
     int count;             /* components: 2 or 3 */
     bool simplex;          /* tetrahedron or face; else cuboid */
-    mpz_t component[3][3]; /* [component][axis] */
+    mpz_t component[3][3]; /* [component][axis]; 0 beyond count */
     mpz_t origin[3];
     mpz_t displacement[3]; /* v T */
     /* The distinct directions of edges: the components; of a simplex also the differences
      * c_j - c_i, i < j, which are held in difference. */
     int edges;
-    mpz_t *edge[EXACT_EDGES_MAX]; /* each points to a vector of three */
+    struct exact_edge edge[EXACT_EDGES_MAX];
     mpz_t difference[3][3];
 };
 
@@ -42,6 +59,8 @@ struct exact_pair {
     struct exact_frame frame[2];
     mpz_t offset[3]; /* origin of frame[1] - origin of frame[0] */
     mpz_t drift[3];  /* displacement of frame[1] - displacement of frame[0]; 0 if not moving */
+    /* (u x v) . w of all vectors u < v < w, in the order of exact_triple(). */
+    mpz_t triple[EXACT_TRIPLES];
     mpz_t scratch[EXACT_SCRATCH];
 };
 
@@ -55,24 +74,53 @@ void exact_pair_clear(struct exact_pair *pair);
 bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
                    double inverse[FMB_DIM_MAX][FMB_DIM_MAX]);
 
+/* By the number of a vector. [axis] */
+mpz_t *exact_vector(struct exact_pair *pair, int number);
+
+/* out := normal . vector number k of the pair. */
+void exact_dot(struct exact_pair *pair, mpz_t out, mpz_t normal[3], int k);
+
+/* value[k] := (u x v) . vector k, for all vectors k of the pair. */
+void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
+                        const struct exact_edge *v, mpz_t value[EXACT_VECTORS]);
+
+/* [low, high] := the values of a normal over frame f with its origin at 0. */
+void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTORS], mpz_t low,
+                  mpz_t high);
+
 /* One slab: { w : low <= normal . w <= high }. A slab that pins has low = high: it belongs to
  * the affine hull of the polytope, every point of which lies on it. */
 struct slab {
-    mpz_t normal[3];
+    mpz_t value[EXACT_VECTORS]; /* normal . each vector of the pair */
     mpz_t low, high;
     bool pins;
+    const struct exact_edge *u, *v; /* the normal is u x v; where u is NULL it is normal */
+    mpz_t normal[3];
 };
 
 /* Called for each slab in turn; false ends the walk. The slab is the walker's. */
 typedef bool (*slab_visit)(void *context, struct slab *slab);
 
-/* Walks the slabs whose intersection is the Minkowski difference a - b of two frames, both
- * with their origins at 0; false if the visitor ended the walk. So the frames have a point in
- * common where the offset w = origin of b - origin of a lies in all slabs, and their relative
- * interiors have one where w lies strictly between the bounds of all slabs that do not pin.
- * b = NULL is the point 0: the slabs are those of a itself. scratch is overwritten. */
-bool slabs_walk(const struct exact_frame *a, const struct exact_frame *b, slab_visit visit,
-                void *context, mpz_t scratch[EXACT_SCRATCH]);
+/* Calls one of mpz_init and mpz_clear for every number. */
+void slab_each(struct slab *slab, void (*call)(mpz_ptr));
+
+/* Sets slab->normal where it is not yet. */
+void slab_set_normal(struct slab *slab, mpz_t scratch);
+
+/* Whose slabs are walked. */
+enum slabs_of { SLABS_OF_A, SLABS_OF_B, SLABS_OF_DIFFERENCE, SLABS_OF_SWEPT };
+
+/* Whether the difference of the frames, a - b, has a volume. */
+bool slabs_solid(const struct exact_pair *pair);
+
+/* Walks the slabs whose intersection is one frame with its origin at 0, or the Minkowski difference
+ * a - b of both with their origins at 0; false if the visitor ended the walk. So the frames have a
+ * point in common where the offset w = origin of b - origin of a lies in all slabs of the
+ * difference, and their relative interiors have one where w lies strictly between the bounds of all
+ * that do not pin.
+ * SLABS_OF_SWEPT: only those that a solid difference gets when it is swept along the drift, besides
+ * its own; the drift is constant in them, and the bounds are those of the difference. */
+bool slabs_walk(struct exact_pair *pair, enum slabs_of of, slab_visit visit, void *context);
 
 /* num / den, den > 0. */
 struct ratio {
@@ -99,8 +147,6 @@ struct span {
 
 void span_init(struct span *span);
 void span_clear(struct span *span);
-/* Back to all of [0,1]. */
-void span_reset(struct span *span);
 
 /* Applies a slab to a segment along which normal . w goes from f0 (s = 0) to f1 (s = 1).
  * Returns false if nothing is left of the segment; the span must then not be asked. */
@@ -113,9 +159,6 @@ const struct ratio *span_upper(struct span *span);
 
 /* Whether some s of the window lies strictly within all slabs that do not pin. */
 bool span_has_interior(struct span *span);
-
-/* The vertices of a frame with its origin at 0, [vertex][axis], and how many there are. */
-int frame_vertices(const struct exact_frame *frame, mpz_t vertex[EXACT_VERTICES_MAX][3]);
 
 /* A place in the world and a time of the window, as fractions. */
 struct exact_point {
@@ -133,6 +176,10 @@ void points_walk(struct exact_pair *pair, point_visit visit, void *context);
 
 /* The box of the intersection of a pair in contact, over the window, ends rounded outward. */
 void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX]);
+
+/* The verdict; of a pair in contact that moves also the times, where contact is not NULL: [first,
+ * last], in seconds, rounded outward. */
+enum fmb_verdict exact_verdict(struct exact_pair *exact, double duration, double contact[2]);
 
 /* The method. */
 enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);

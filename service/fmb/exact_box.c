@@ -20,11 +20,21 @@
  *   2. the ends of the path of each vertex of A clipped to B, and of B to A (relative motion);
  *   3. the points and times where an edge of A crosses an edge of B.
  * All of these lie in Q, and every vertex of Q is among them: in 1 and 2 since a vertex of Q is
- * no inner point of a segment in Q. */
+ * no inner point of a segment in Q.
+ *
+ * Work, with numbers of W limbs as in exact.c: what each slab says of the vertices, and what each
+ * crossing is, are sums of triple products. Signs alone reject most segments. Of one that is left,
+ * at most 3 slabs of a cuboid (4 of a tetrahedron, 7 of a flat frame) move an end; each compares
+ * two quotients, in doubles unless these agree in 48 bits, and then by two products of (3 W)^2
+ * limbs. A point takes 15 products with numbers of at most 3 limbs and up to 6 quotients of 53
+ * bits, less than 20,000 products of limbs. Q has at most 77 vertices (14 facets in 4 dimensions);
+ * some are found more than once. */
 #include "exact.h"
 #include "integer.h"
 
 #include <assert.h>
+#include <math.h>
+#include <string.h>
 
 enum {
     /* Slabs of one frame: 4 faces of a tetrahedron; flat, the plane and 6 edges; 3 of a
@@ -35,7 +45,9 @@ enum {
 /* The slabs of one frame, and how far the vertices of the other lie along their normals. */
 struct clipper {
     int slabs;
-    struct slab slab[FRAME_SLABS_MAX];
+    struct bounds {
+        mpz_t low, high;
+    } slab[FRAME_SLABS_MAX];
     /* [end of the window][slab][vertex of the other frame]: normal . w, w the vertex relative
      * to the origin of this frame. */
     mpz_t at[2][FRAME_SLABS_MAX][EXACT_VERTICES_MAX];
@@ -45,60 +57,54 @@ struct walk {
     struct exact_pair *pair;
     point_visit visit;
     void *context;
-    int ends; /* of the window: 2 if the pair is moving, else 1 */
+    int clipping; /* the clipper that is being filled */
+    int ends;     /* of the window: 2 if the pair is moving, else 1 */
     int vertices[2];
-    mpz_t vertex[2][EXACT_VERTICES_MAX][3]; /* [frame][vertex][axis], origin of the frame at 0 */
-    struct clipper clipper[2];              /* [frame]: its slabs, the other's vertices */
-    struct span span;
-    mpz_t point[3], path[3];
+    struct clipper clipper[2]; /* [frame]: its slabs, the other's vertices */
+    struct ratio part[2];      /* of a segment: from [0] to [1] */
+    struct ratio crossing;
+    mpz_t weight[3];
     struct exact_point found;
-    mpz_t scratch[EXACT_SCRATCH];
+    mpz_t *scratch;
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */
 static void walk_each(struct walk *walk, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
-        for (int v = 0; v < EXACT_VERTICES_MAX; v++)
-            for (int axis = 0; axis < 3; axis++)
-                call(walk->vertex[f][v][axis]);
+        call(walk->part[f].num);
+        call(walk->part[f].den);
         for (int s = 0; s < FRAME_SLABS_MAX; s++) {
-            struct slab *slab = &walk->clipper[f].slab[s];
-            call(slab->low);
-            call(slab->high);
-            for (int axis = 0; axis < 3; axis++)
-                call(slab->normal[axis]);
+            call(walk->clipper[f].slab[s].low);
+            call(walk->clipper[f].slab[s].high);
             for (int v = 0; v < EXACT_VERTICES_MAX; v++) {
                 call(walk->clipper[f].at[0][s][v]);
                 call(walk->clipper[f].at[1][s][v]);
             }
         }
     }
+    call(walk->crossing.num);
+    call(walk->crossing.den);
     for (int axis = 0; axis < 3; axis++) {
-        call(walk->point[axis]);
-        call(walk->path[axis]);
+        call(walk->weight[axis]);
         call(walk->found.at[axis]);
     }
     call(walk->found.tau);
     call(walk->found.den);
-    for (int i = 0; i < EXACT_SCRATCH; i++)
-        call(walk->scratch[i]);
 }
 
-/* Vertex v of a cuboid: the sum of the components whose bits are set in v; of a simplex: the
- * origin, then the end of each component. */
-int frame_vertices(const struct exact_frame *frame, mpz_t vertex[EXACT_VERTICES_MAX][3])
+/* ---- Vertices ---- */
+
+static int vertex_count(const struct exact_frame *frame)
 {
-    int vertices = frame->simplex ? frame->count + 1 : 1 << frame->count;
-    for (int v = 0; v < vertices; v++)
-        for (int axis = 0; axis < 3; axis++)
-            mpz_set_ui(vertex[v][axis], 0);
-    for (int v = 1; v < vertices; v++)
-        for (int i = 0; i < frame->count; i++)
-            if (frame->simplex ? v == i + 1 : v >> i & 1)
-                for (int axis = 0; axis < 3; axis++)
-                    mpz_add(vertex[v][axis], vertex[v][axis], frame->component[i][axis]);
-    return vertices;
+    return frame->simplex ? frame->count + 1 : 1 << frame->count;
+}
+
+/* Vertex v of a cuboid is the sum of the components whose bits are set in v; of a simplex, the
+ * origin, then the end of each component. */
+static bool has_component(const struct exact_frame *frame, int v, int i)
+{
+    return frame->simplex ? v == i + 1 : v >> i & 1;
 }
 
 static bool is_edge(const struct exact_frame *frame, int v, int w)
@@ -107,121 +113,158 @@ static bool is_edge(const struct exact_frame *frame, int v, int w)
     return frame->simplex || (bits & (bits - 1)) == 0;
 }
 
-static bool keep_slab(void *context, struct slab *slab)
+/* out += sign normal . vertex v of frame f, its origin at 0 */
+static void add_vertex(const struct exact_pair *pair, int sign, int f, int v,
+                       mpz_t value[EXACT_VECTORS], mpz_t out)
 {
-    struct clipper *clipper = context;
-    assert(clipper->slabs < FRAME_SLABS_MAX);
-    struct slab *kept = &clipper->slab[clipper->slabs++];
-    for (int axis = 0; axis < 3; axis++)
-        mpz_set(kept->normal[axis], slab->normal[axis]);
-    mpz_set(kept->low, slab->low);
-    mpz_set(kept->high, slab->high);
-    kept->pins = slab->pins;
-    return true;
-}
-
-/* A vertex p of the other frame lies at w = p + offset + tau drift from the origin of frame 0,
- * and at w = p - offset - tau drift from that of frame 1. */
-static void set_clipper(struct walk *walk, int f)
-{
-    struct exact_pair *pair = walk->pair;
-    struct clipper *clipper = &walk->clipper[f];
-    mpz_t *shift = walk->scratch;
-    slabs_walk(&pair->frame[f], NULL, keep_slab, clipper, walk->scratch);
-    for (int s = 0; s < clipper->slabs; s++) {
-        mpz_t *normal = clipper->slab[s].normal;
-        integer_dot(shift[0], normal, pair->offset);
-        integer_dot(shift[1], normal, pair->drift);
-        if (f == 1) {
-            mpz_neg(shift[0], shift[0]);
-            mpz_neg(shift[1], shift[1]);
-        }
-        mpz_add(shift[1], shift[1], shift[0]);
-        for (int v = 0; v < walk->vertices[1 - f]; v++) {
-            integer_dot(shift[2], normal, walk->vertex[1 - f][v]);
-            for (int end = 0; end < walk->ends; end++)
-                mpz_add(clipper->at[end][s][v], shift[2], shift[end]);
-        }
+    const struct exact_frame *frame = &pair->frame[f];
+    for (int i = 0; i < frame->count; i++) {
+        if (!has_component(frame, v, i))
+            continue;
+        if (sign > 0)
+            mpz_add(out, out, value[f * EXACT_OF_B + i]);
+        else
+            mpz_sub(out, out, value[f * EXACT_OF_B + i]);
     }
 }
 
-/* Visits point + s path, at the time that found holds as tau: its numerator, over that of s. */
-static void visit_point(struct walk *walk, const struct ratio *s)
+/* ---- Points ---- */
+
+/* Visits vertex v of frame f plus s / den of the way to vertex w, at the time tau / den. In units,
+ * it is origin + sum weight_i component_i / den + tau displacement / den: products with the numbers
+ * of the pair alone, which are short (exact.c). */
+static void visit_point(struct walk *walk, int f, int v, int w, const mpz_t s, const mpz_t tau,
+                        const mpz_t den)
 {
+    struct exact_frame *frame = &walk->pair->frame[f];
     struct exact_point *found = &walk->found;
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_mul(found->at[axis], walk->point[axis], s->den);
-        mpz_addmul(found->at[axis], walk->path[axis], s->num);
+    for (int i = 0; i < frame->count; i++) {
+        const bool from = has_component(frame, v, i), to = has_component(frame, w, i);
+        mpz_set_ui(walk->weight[i], 0);
+        if (from)
+            mpz_set(walk->weight[i], den);
+        if (to && !from)
+            mpz_add(walk->weight[i], walk->weight[i], s);
+        else if (from && !to)
+            mpz_sub(walk->weight[i], walk->weight[i], s);
     }
-    mpz_set(found->den, s->den);
+    for (int axis = 0; axis < 3; axis++) {
+        integer_multiply(found->at[axis], den, frame->origin[axis]);
+        integer_add_product(found->at[axis], 1, tau, frame->displacement[axis], walk->scratch[0]);
+        for (int i = 0; i < frame->count; i++)
+            integer_add_product(found->at[axis], 1, walk->weight[i], frame->component[i][axis],
+                                walk->scratch[0]);
+    }
+    mpz_set(found->tau, tau);
+    mpz_set(found->den, den);
     walk->visit(walk->context, found);
 }
 
-/* Visits point + s path of a segment between two ends of the window. */
-static void visit_end(struct walk *walk, const struct ratio *s, int end_v, int end_w)
+/* ---- Kinds 1 and 2: segments cut by the slabs of the other frame ---- */
+
+/* Seen from frame f, the origin of the other frame is at the offset (f = 0) or at minus that. */
+static bool keep_slab(void *context, struct slab *slab)
 {
-    if (end_v != end_w) /* 0 and 1 */
-        mpz_set(walk->found.tau, s->num);
-    else
-        mpz_mul_si(walk->found.tau, s->den, end_v);
-    visit_point(walk, s);
+    struct walk *walk = context;
+    const int f = walk->clipping, other = 1 - f;
+    struct clipper *clipper = &walk->clipper[f];
+    assert(clipper->slabs < FRAME_SLABS_MAX);
+    const int s = clipper->slabs++;
+    mpz_set(clipper->slab[s].low, slab->low);
+    mpz_set(clipper->slab[s].high, slab->high);
+    for (int v = 0; v < walk->vertices[other]; v++) {
+        mpz_set(clipper->at[0][s][v], slab->value[EXACT_OFFSET]);
+        if (f == 1)
+            mpz_neg(clipper->at[0][s][v], clipper->at[0][s][v]);
+        add_vertex(walk->pair, 1, other, v, slab->value, clipper->at[0][s][v]);
+        if (f == 0)
+            mpz_add(clipper->at[1][s][v], clipper->at[0][s][v], slab->value[EXACT_DRIFT]);
+        else
+            mpz_sub(clipper->at[1][s][v], clipper->at[0][s][v], slab->value[EXACT_DRIFT]);
+    }
+    return true;
 }
 
-/* Clips the segment point + s path of frame f, which goes from vertex v at one end of the
- * window to vertex w at the same or the other end, to the other frame, and visits the ends of what
- * is left. */
+static void set_clippers(struct walk *walk)
+{
+    for (walk->clipping = 0; walk->clipping < 2; walk->clipping++)
+        slabs_walk(walk->pair, walk->clipping ? SLABS_OF_B : SLABS_OF_A, keep_slab, walk);
+}
+
+/* Moves an end of the part of a segment to where it crosses a bound, if that is further inside. */
+static void cut(struct walk *walk, int end, const mpz_t f0, const mpz_t f1, const mpz_t bound)
+{
+    struct ratio *at = &walk->crossing;
+    mpz_sub(at->num, bound, f0);
+    mpz_sub(at->den, f1, f0);
+    if (mpz_sgn(at->den) < 0) {
+        mpz_neg(at->num, at->num);
+        mpz_neg(at->den, at->den);
+    }
+    const int sign = ratio_compare(at, &walk->part[end], walk->scratch);
+    if (end ? sign < 0 : sign > 0)
+        ratio_copy(&walk->part[end], at);
+}
+
+/* Sets walk->part of the segment on which normal . w goes from f0 to f1 for each slab; false if
+ * nothing is left of it. */
+static bool clip(struct walk *walk, const struct clipper *clipper, int v, int end_v, int w,
+                 int end_w)
+{
+    for (int end = 0; end < 2; end++) {
+        mpz_set_ui(walk->part[end].num, (unsigned long) end);
+        mpz_set_ui(walk->part[end].den, 1);
+    }
+    for (int pass = 0; pass < 2; pass++) /* signs alone leave few segments to be cut */
+        for (int s = 0; s < clipper->slabs; s++) {
+            const struct bounds *slab = &clipper->slab[s];
+            const mpz_t *f0 = &clipper->at[end_v][s][v], *f1 = &clipper->at[end_w][s][w];
+            const bool below0 = mpz_cmp(*f0, slab->low) < 0, below1 = mpz_cmp(*f1, slab->low) < 0;
+            const bool above0 = mpz_cmp(*f0, slab->high) > 0, above1 = mpz_cmp(*f1, slab->high) > 0;
+            if ((below0 && below1) || (above0 && above1))
+                return false;
+            if (pass == 1 && (below0 || above0))
+                cut(walk, 0, *f0, *f1, below0 ? slab->low : slab->high);
+            if (pass == 1 && (below1 || above1))
+                cut(walk, 1, *f0, *f1, below1 ? slab->low : slab->high);
+        }
+    return ratio_compare(&walk->part[0], &walk->part[1], walk->scratch) <= 0;
+}
+
+/* Clips the segment of frame f that goes from vertex v at one end of the window to vertex w at the
+ * same or the other end to the other frame, and visits the ends of what is left. */
 static void visit_segment(struct walk *walk, int f, int v, int end_v, int w, int end_w)
 {
-    struct clipper *clipper = &walk->clipper[1 - f];
-    span_reset(&walk->span);
-    for (int s = 0; s < clipper->slabs; s++) {
-        struct slab *slab = &clipper->slab[s];
-        if (!span_apply(&walk->span, clipper->at[end_v][s][v], clipper->at[end_w][s][w], slab->low,
-                        slab->high, slab->pins))
-            return;
-    }
-    visit_end(walk, span_lower(&walk->span), end_v, end_w);
-    visit_end(walk, span_upper(&walk->span), end_v, end_w);
-}
-
-/* point := vertex v of frame f in the world, at an end of the window. */
-static void set_point(struct walk *walk, int f, int v, int end)
-{
-    const struct exact_frame *frame = &walk->pair->frame[f];
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_add(walk->point[axis], frame->origin[axis], walk->vertex[f][v][axis]);
-        if (end)
-            mpz_add(walk->point[axis], walk->point[axis], frame->displacement[axis]);
+    if (!clip(walk, &walk->clipper[1 - f], v, end_v, w, end_w))
+        return;
+    for (int end = 0; end < 2; end++) {
+        const struct ratio *s = &walk->part[end];
+        mpz_t *tau = &walk->scratch[1];
+        if (end_v != end_w) /* 0 and 1 */
+            mpz_set(*tau, s->num);
+        else
+            mpz_mul_si(*tau, s->den, end_v);
+        visit_point(walk, f, v, w, s->num, *tau, s->den);
     }
 }
 
-/* Kind 1. */
 static void visit_edges(struct walk *walk, int f, int end)
 {
-    for (int v = 0; v < walk->vertices[f]; v++) {
-        set_point(walk, f, v, end);
-        for (int w = v + 1; w < walk->vertices[f]; w++) {
-            if (!is_edge(&walk->pair->frame[f], v, w))
-                continue;
-            for (int axis = 0; axis < 3; axis++)
-                mpz_sub(walk->path[axis], walk->vertex[f][w][axis], walk->vertex[f][v][axis]);
-            visit_segment(walk, f, v, end, w, end);
-        }
-    }
+    for (int v = 0; v < walk->vertices[f]; v++)
+        for (int w = v + 1; w < walk->vertices[f]; w++)
+            if (is_edge(&walk->pair->frame[f], v, w))
+                visit_segment(walk, f, v, end, w, end);
 }
 
-/* Kind 2. */
 static void visit_paths(struct walk *walk, int f)
 {
-    for (int axis = 0; axis < 3; axis++)
-        mpz_set(walk->path[axis], walk->pair->frame[f].displacement[axis]);
-    for (int v = 0; v < walk->vertices[f]; v++) {
-        set_point(walk, f, v, 0);
+    for (int v = 0; v < walk->vertices[f]; v++)
         visit_segment(walk, f, v, 0, v, 1);
-    }
 }
 
-/* The crossing of an edge p + s e of A with an edge q + u f + offset + tau drift of B, with
+/* ---- Kind 3 ----
+ *
+ * The crossing of an edge p + s e of A with an edge q + u f + offset + tau drift of B, with
  * r = q + offset - p (all relative to the origin of A):
  *
  *     s e - u f - tau drift = r.
@@ -234,26 +277,22 @@ static void visit_paths(struct walk *walk, int f)
  * Where det is 0 the directions and the drift are dependent: no vertex that is not of kind 1 or 2.
  */
 struct crossing {
-    mpz_t ef[3], fd[3], ed[3]; /* e x f, f x drift, e x drift; signs turned so that det > 0 */
-    mpz_t det;
-    mpz_t r[3];
-    mpz_t s, u;
-    struct ratio tau;
+    /* Of e x f, f x drift, e x drift, signs turned so that det > 0. */
+    mpz_t ef[EXACT_VECTORS], fd[EXACT_VECTORS], ed[EXACT_VECTORS];
+    mpz_t det, s, u, tau;
 };
 
 static void crossing_each(struct crossing *crossing, void (*call)(mpz_ptr))
 {
-    for (int axis = 0; axis < 3; axis++) {
-        call(crossing->ef[axis]);
-        call(crossing->fd[axis]);
-        call(crossing->ed[axis]);
-        call(crossing->r[axis]);
+    for (int k = 0; k < EXACT_VECTORS; k++) {
+        call(crossing->ef[k]);
+        call(crossing->fd[k]);
+        call(crossing->ed[k]);
     }
     call(crossing->det);
     call(crossing->s);
     call(crossing->u);
-    call(crossing->tau.num);
-    call(crossing->tau.den);
+    call(crossing->tau);
 }
 
 static bool in_unit(const mpz_t num, const mpz_t den)
@@ -262,83 +301,62 @@ static bool in_unit(const mpz_t num, const mpz_t den)
 }
 
 /* Sets what depends on the directions alone; false if they never cross in one point. */
-static bool crossing_set(struct crossing *crossing, mpz_t e[3], mpz_t f[3], mpz_t drift[3],
-                         mpz_t scratch)
+static bool crossing_set(struct crossing *crossing, struct exact_pair *pair,
+                         const struct exact_edge *e, const struct exact_edge *f)
 {
-    integer_cross(crossing->ef, e, f, scratch);
-    integer_dot(crossing->det, crossing->ef, drift);
-    int sign = mpz_sgn(crossing->det);
+    const struct exact_edge drift = {EXACT_DRIFT, -1, pair->drift};
+    exact_cross_values(pair, e, f, crossing->ef);
+    const int sign = mpz_sgn(crossing->ef[EXACT_DRIFT]);
     if (sign == 0)
         return false;
-    integer_cross(crossing->fd, f, drift, scratch);
-    integer_cross(crossing->ed, e, drift, scratch);
-    mpz_abs(crossing->det, crossing->det);
-    for (int axis = 0; axis < 3; axis++) {
+    mpz_abs(crossing->det, crossing->ef[EXACT_DRIFT]);
+    exact_cross_values(pair, f, &drift, crossing->fd);
+    exact_cross_values(pair, e, &drift, crossing->ed);
+    for (int k = 0; k < EXACT_VECTORS; k++) {
         if (sign > 0) {
-            mpz_neg(crossing->ef[axis], crossing->ef[axis]);
+            mpz_neg(crossing->ef[k], crossing->ef[k]);
         } else {
-            mpz_neg(crossing->fd[axis], crossing->fd[axis]);
-            mpz_neg(crossing->ed[axis], crossing->ed[axis]);
+            mpz_neg(crossing->fd[k], crossing->fd[k]);
+            mpz_neg(crossing->ed[k], crossing->ed[k]);
         }
     }
     return true;
 }
 
-/* p and q: the vertices in which the edges start. True if they cross, at crossing->tau. */
-static bool crossing_at(struct crossing *crossing, mpz_t p[3], mpz_t q[3], mpz_t offset[3])
+/* out := r . the normal of these values; false if that is not from 0 to det. */
+static bool crossing_number(const struct crossing *crossing, const struct exact_pair *pair, int v,
+                            int w, mpz_t value[EXACT_VECTORS], mpz_t out)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_add(crossing->r[axis], q[axis], offset[axis]);
-        mpz_sub(crossing->r[axis], crossing->r[axis], p[axis]);
-    }
-    integer_dot(crossing->tau.num, crossing->r, crossing->ef);
-    if (!in_unit(crossing->tau.num, crossing->det))
-        return false;
-    integer_dot(crossing->s, crossing->r, crossing->fd);
-    if (!in_unit(crossing->s, crossing->det))
-        return false;
-    integer_dot(crossing->u, crossing->r, crossing->ed);
-    return in_unit(crossing->u, crossing->det);
+    mpz_set(out, value[EXACT_OFFSET]);
+    add_vertex(pair, 1, 1, w, value, out);
+    add_vertex(pair, -1, 0, v, value, out);
+    return in_unit(out, crossing->det);
 }
 
-/* Visits p + s e + tau displacement of A. All have the denominator det: with the
- * path s e + tau displacement, taken times det, the parameter is 1 / det. */
-static void visit_crossing(struct walk *walk, struct crossing *crossing, int v, mpz_t e[3])
-{
-    const struct exact_frame *a = &walk->pair->frame[0];
-    set_point(walk, 0, v, 0);
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_mul(walk->path[axis], crossing->s, e[axis]);
-        mpz_addmul(walk->path[axis], crossing->tau.num, a->displacement[axis]);
-    }
-    mpz_set(walk->found.tau, crossing->tau.num);
-    mpz_set_ui(crossing->tau.num, 1);
-    mpz_set(crossing->tau.den, crossing->det);
-    visit_point(walk, &crossing->tau);
-}
-
-/* Whether an edge in direction number e starts in vertex v: of a cuboid where the bit of the
- * component is not set; of a simplex in the vertex from which the direction was taken. */
-static bool starts_in(const struct exact_frame *frame, int e, int v)
+/* Where the direction number e starts in vertex v, the vertex where that edge ends; else -1. */
+static int end_of_edge(const struct exact_frame *frame, int e, int v)
 {
     if (!frame->simplex)
-        return (v >> e & 1) == 0;
-    static const int start_of_two[3] = {0, 0, 1};
-    static const int start_of_three[EXACT_EDGES_MAX] = {0, 0, 0, 1, 1, 2};
-    return v == (frame->count == 2 ? start_of_two[e] : start_of_three[e]);
+        return v >> e & 1 ? -1 : v | 1 << e;
+    const struct exact_edge *edge = &frame->edge[e];
+    const int first = frame->edge[0].plus, start = edge->minus < 0 ? 0 : edge->minus - first + 1;
+    return v == start ? edge->plus - first + 1 : -1;
 }
 
-/* Kind 3, for one direction of A and one of B. */
+/* Visits the crossings of all edges in one direction of A with all in one of B. */
 static void visit_parallel_crossings(struct walk *walk, struct crossing *crossing, int e, int f)
 {
     struct exact_pair *pair = walk->pair;
     for (int v = 0; v < walk->vertices[0]; v++) {
-        if (!starts_in(&pair->frame[0], e, v))
+        const int end = end_of_edge(&pair->frame[0], e, v);
+        if (end < 0)
             continue;
         for (int w = 0; w < walk->vertices[1]; w++)
-            if (starts_in(&pair->frame[1], f, w) &&
-                crossing_at(crossing, walk->vertex[0][v], walk->vertex[1][w], pair->offset))
-                visit_crossing(walk, crossing, v, pair->frame[0].edge[e]);
+            if (end_of_edge(&pair->frame[1], f, w) >= 0 &&
+                crossing_number(crossing, pair, v, w, crossing->ef, crossing->tau) &&
+                crossing_number(crossing, pair, v, w, crossing->fd, crossing->s) &&
+                crossing_number(crossing, pair, v, w, crossing->ed, crossing->u))
+                visit_point(walk, 0, v, end, crossing->s, crossing->tau, crossing->det);
     }
 }
 
@@ -349,92 +367,84 @@ static void visit_crossings(struct walk *walk)
     crossing_each(&crossing, mpz_init);
     for (int e = 0; e < pair->frame[0].edges; e++)
         for (int f = 0; f < pair->frame[1].edges; f++)
-            if (crossing_set(&crossing, pair->frame[0].edge[e], pair->frame[1].edge[f], pair->drift,
-                             walk->scratch[0]))
+            if (crossing_set(&crossing, pair, &pair->frame[0].edge[e], &pair->frame[1].edge[f]))
                 visit_parallel_crossings(walk, &crossing, e, f);
     crossing_each(&crossing, mpz_clear);
 }
 
-static void visit_all(struct walk *walk)
-{
-    for (int f = 0; f < 2; f++)
-        walk->vertices[f] = frame_vertices(&walk->pair->frame[f], walk->vertex[f]);
-    for (int f = 0; f < 2; f++)
-        set_clipper(walk, f);
-    for (int f = 0; f < 2; f++) {
-        for (int end = 0; end < walk->ends; end++)
-            visit_edges(walk, f, end);
-        if (walk->pair->moving)
-            visit_paths(walk, f);
-    }
-    if (walk->pair->moving)
-        visit_crossings(walk);
-}
-
 void points_walk(struct exact_pair *pair, point_visit visit, void *context)
 {
-    struct walk walk = {
-        .pair = pair, .visit = visit, .context = context, .ends = pair->moving ? 2 : 1};
+    struct walk walk = {.pair = pair,
+                        .visit = visit,
+                        .context = context,
+                        .ends = pair->moving ? 2 : 1,
+                        .scratch = pair->scratch};
     walk_each(&walk, mpz_init);
-    span_init(&walk.span);
-    visit_all(&walk);
-    span_clear(&walk.span);
+    for (int f = 0; f < 2; f++)
+        walk.vertices[f] = vertex_count(&pair->frame[f]);
+    set_clippers(&walk);
+    for (int f = 0; f < 2; f++) {
+        for (int end = 0; end < walk.ends; end++)
+            visit_edges(&walk, f, end);
+        if (pair->moving)
+            visit_paths(&walk, f);
+    }
+    if (pair->moving)
+        visit_crossings(&walk);
     walk_each(&walk, mpz_clear);
 }
 
+/* ---- The box ---- */
+
 struct boxing {
-    struct ratio bound[2][3]; /* [0] lower and [1] upper ends so far */
-    bool bounded;
-    struct ratio coordinate;
+    long unit;
+    double box[2][3]; /* of the points so far; lower > upper: none yet */
     mpz_t scratch[2];
 };
 
-static void boxing_each(struct boxing *boxing, void (*call)(mpz_ptr))
+/* Whether num / den 2^unit surely lies strictly inside of the box along an axis. Numerators and
+ * denominators are cut off at 53 bits: their quotient is off by less than 2^-50 of itself. */
+static bool surely_inside(const struct boxing *boxing, int axis, const mpz_t num, const mpz_t den)
 {
-    for (int axis = 0; axis < 3; axis++)
-        for (int side = 0; side < 2; side++) {
-            call(boxing->bound[side][axis].num);
-            call(boxing->bound[side][axis].den);
-        }
-    call(boxing->coordinate.num);
-    call(boxing->coordinate.den);
-    call(boxing->scratch[0]);
-    call(boxing->scratch[1]);
+    long of_num, of_den;
+    const double mantissa = mpz_get_d_2exp(&of_num, num) / mpz_get_d_2exp(&of_den, den);
+    const long exponent = of_num - of_den + boxing->unit;
+    if (exponent < -1000 || exponent > 1000)
+        return false;
+    const double x = ldexp(mantissa, (int) exponent), error = 0x1p-48 * fabs(x);
+    return x - error > boxing->box[0][axis] && x + error < boxing->box[1][axis];
 }
 
-/* Widens the box by boxing->coordinate along an axis. */
-static void include_coordinate(struct boxing *boxing, int axis)
-{
-    for (int side = 0; side < 2; side++) {
-        struct ratio *bound = &boxing->bound[side][axis];
-        int sign = boxing->bounded ? ratio_compare(&boxing->coordinate, bound, boxing->scratch) : 0;
-        if (!boxing->bounded || (side == 0 ? sign < 0 : sign > 0))
-            ratio_copy(bound, &boxing->coordinate);
-    }
-}
-
+/* Rounding keeps order: the least of the rounded coordinates is the rounded least one. A coordinate
+ * that is rounded down to less than the upper end is not above that when it is rounded up. */
 static void include_point(void *context, const struct exact_point *point)
 {
     struct boxing *boxing = context;
-    mpz_set(boxing->coordinate.den, point->den);
     for (int axis = 0; axis < 3; axis++) {
-        mpz_set(boxing->coordinate.num, point->at[axis]);
-        include_coordinate(boxing, axis);
+        double *low = &boxing->box[0][axis], *high = &boxing->box[1][axis];
+        if (surely_inside(boxing, axis, point->at[axis], point->den))
+            continue;
+        const double down = integer_ratio_round(point->at[axis], point->den, boxing->unit,
+                                                ROUND_DOWN, boxing->scratch);
+        *low = down < *low ? down : *low;
+        if (down < *high)
+            continue;
+        const double up = integer_ratio_round(point->at[axis], point->den, boxing->unit, ROUND_UP,
+                                              boxing->scratch);
+        *high = up > *high ? up : *high;
     }
-    boxing->bounded = true;
 }
 
 void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX])
 {
-    struct boxing boxing = {.bounded = false};
-    boxing_each(&boxing, mpz_init);
+    struct boxing boxing = {.unit = pair->unit};
+    for (int axis = 0; axis < 3; axis++) {
+        boxing.box[0][axis] = INFINITY;
+        boxing.box[1][axis] = -INFINITY;
+    }
+    mpz_inits(boxing.scratch[0], boxing.scratch[1], NULL);
     points_walk(pair, include_point, &boxing);
-    assert(boxing.bounded);
-    for (int axis = 0; axis < 3; axis++)
-        for (int side = 0; side < 2; side++) {
-            const struct ratio *bound = &boxing.bound[side][axis];
-            box[side][axis] = integer_ratio_round(bound->num, bound->den, pair->unit,
-                                                  side ? ROUND_UP : ROUND_DOWN, boxing.scratch);
-        }
-    boxing_each(&boxing, mpz_clear);
+    mpz_clears(boxing.scratch[0], boxing.scratch[1], NULL);
+    assert(boxing.box[0][0] <= boxing.box[1][0]);
+    memcpy(box, boxing.box, sizeof boxing.box);
 }

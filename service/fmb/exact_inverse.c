@@ -32,7 +32,7 @@ bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
     long unit = set_components(dim, component, c);
     for (int i = 0; i < 3; i++)
         integer_cross(k[i], c[(i + 1) % 3], c[(i + 2) % 3], scratch[0]);
-    integer_dot(determinant, c[2], k[2]);
+    integer_dot(determinant, c[2], k[2], scratch[0]);
     int sign = mpz_sgn(determinant);
     mpz_abs(determinant, determinant);
     for (int i = 0; sign && i < dim; i++)

@@ -35,16 +35,18 @@
 #include "integer.h"
 
 struct walk {
-    const struct exact_frame *frame[2]; /* frame[1] may be NULL: the point 0 */
+    struct exact_pair *pair;
+    enum slabs_of of;
     struct slab slab;
     slab_visit visit;
     void *context;
-    mpz_t *scratch; /* EXACT_SCRATCH */
 };
 
-static bool is_zero(mpz_t v[3])
+void slab_set_normal(struct slab *slab, mpz_t scratch)
 {
-    return mpz_sgn(v[0]) == 0 && mpz_sgn(v[1]) == 0 && mpz_sgn(v[2]) == 0;
+    if (slab->u)
+        integer_cross(slab->normal, slab->u->vector, slab->v->vector, scratch);
+    slab->u = NULL;
 }
 
 /* Widens [low, high], which bounds normal . x over a part of the frame, by one component. */
@@ -60,27 +62,24 @@ static void add_component(const struct exact_frame *frame, mpz_t low, mpz_t high
     }
 }
 
-/* [low, high] := the values of normal . x over the frame with its origin at 0. */
-static void extent(const struct exact_frame *frame, mpz_t normal[3], mpz_t low, mpz_t high,
-                   mpz_t scratch)
+void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTORS], mpz_t low,
+                  mpz_t high)
 {
+    const struct exact_frame *frame = &pair->frame[f];
     mpz_set_ui(low, 0);
     mpz_set_ui(high, 0);
-    for (int i = 0; i < frame->count; i++) {
-        /* C17 knows no way from mpz_t * to const mpz_t *; nothing is written. */
-        integer_dot(scratch, normal, (mpz_t *) frame->component[i]);
-        add_component(frame, low, high, scratch);
-    }
+    for (int i = 0; i < frame->count; i++)
+        add_component(frame, low, high, value[f * EXACT_OF_B + i]);
 }
 
-/* Visits the slab of the normal that walk->slab holds. */
+/* Visits the slab whose values walk->slab holds. */
 static bool visit_slab(struct walk *walk, bool pins)
 {
     struct slab *slab = &walk->slab;
-    mpz_t *scratch = walk->scratch;
-    extent(walk->frame[0], slab->normal, slab->low, slab->high, scratch[0]);
-    if (walk->frame[1]) {
-        extent(walk->frame[1], slab->normal, scratch[1], scratch[2], scratch[0]);
+    mpz_t *scratch = walk->pair->scratch;
+    exact_extent(walk->pair, walk->of == SLABS_OF_B, slab->value, slab->low, slab->high);
+    if (walk->of >= SLABS_OF_DIFFERENCE) {
+        exact_extent(walk->pair, 1, slab->value, scratch[1], scratch[2]);
         mpz_sub(slab->low, slab->low, scratch[2]);
         mpz_sub(slab->high, slab->high, scratch[1]);
     }
@@ -88,46 +87,89 @@ static bool visit_slab(struct walk *walk, bool pins)
     return walk->visit(walk->context, slab);
 }
 
-/* Visits the slab of the plane of two directions, if they span one. */
-static bool visit_plane(struct walk *walk, mpz_t u[3], mpz_t v[3])
+/* Visits the slab of the normal that walk->slab holds. */
+static bool visit_normal(struct walk *walk, bool pins)
 {
-    integer_cross(walk->slab.normal, u, v, walk->scratch[0]);
-    return is_zero(walk->slab.normal) || visit_slab(walk, false);
+    struct slab *slab = &walk->slab;
+    slab->u = NULL;
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        exact_dot(walk->pair, slab->value[k], slab->normal, k);
+    return visit_slab(walk, pins);
+}
+
+/* Visits the slab of the plane of two directions, if it is not constant on all of a solid. */
+static bool visit_plane(struct walk *walk, const struct exact_edge *u, const struct exact_edge *v)
+{
+    struct slab *slab = &walk->slab;
+    bool varies = false;
+    exact_cross_values(walk->pair, u, v, slab->value);
+    for (int k = 0; k < EXACT_OFFSET; k++)
+        varies = varies || mpz_sgn(slab->value[k]) != 0;
+    slab->u = u;
+    slab->v = v;
+    return !varies || visit_slab(walk, false);
 }
 
 /* Edges of a simplex of three components: c0, c1, c2, c1 - c0, c2 - c0, c2 - c1. */
 static bool visit_faces(struct walk *walk, const struct exact_frame *frame)
 {
-    if (!visit_plane(walk, frame->edge[0], frame->edge[1]))
+    const struct exact_edge *edge = frame->edge;
+    if (!visit_plane(walk, &edge[0], &edge[1]))
         return false;
     if (frame->count == 2)
         return true;
-    return visit_plane(walk, frame->edge[1], frame->edge[2]) &&
-           visit_plane(walk, frame->edge[2], frame->edge[0]) &&
-           (!frame->simplex || visit_plane(walk, frame->edge[3], frame->edge[4]));
+    return visit_plane(walk, &edge[1], &edge[2]) && visit_plane(walk, &edge[2], &edge[0]) &&
+           (!frame->simplex || visit_plane(walk, &edge[3], &edge[4]));
+}
+
+static int first_frame(enum slabs_of of)
+{
+    return of == SLABS_OF_B;
+}
+
+static int last_frame(enum slabs_of of)
+{
+    return of != SLABS_OF_A;
 }
 
 static bool visit_solid(struct walk *walk)
 {
-    const struct exact_frame *a = walk->frame[0], *b = walk->frame[1];
-    if (!visit_faces(walk, a) || (b && !visit_faces(walk, b)))
-        return false;
-    for (int i = 0; b && i < a->edges; i++)
+    const struct exact_frame *a = &walk->pair->frame[0], *b = &walk->pair->frame[1];
+    for (int f = first_frame(walk->of); f <= last_frame(walk->of); f++)
+        if (!visit_faces(walk, &walk->pair->frame[f]))
+            return false;
+    for (int i = 0; walk->of == SLABS_OF_DIFFERENCE && i < a->edges; i++)
         for (int j = 0; j < b->edges; j++)
-            if (!visit_plane(walk, a->edge[i], b->edge[j]))
+            if (!visit_plane(walk, &a->edge[i], &b->edge[j]))
                 return false;
     return true;
 }
 
-static int edge_count(const struct walk *walk)
+/* The planes of each edge with the drift. */
+static bool visit_swept(struct walk *walk)
 {
-    return walk->frame[0]->edges + (walk->frame[1] ? walk->frame[1]->edges : 0);
+    const struct exact_edge drift = {EXACT_DRIFT, -1, walk->pair->drift};
+    for (int f = 0; f < 2; f++)
+        for (int e = 0; e < walk->pair->frame[f].edges; e++)
+            if (!visit_plane(walk, &walk->pair->frame[f].edge[e], &drift))
+                return false;
+    return true;
 }
 
-static mpz_t *edge_at(const struct walk *walk, int i)
+/* ---- Flat ---- */
+
+static int edge_count(const struct exact_pair *pair, enum slabs_of of)
 {
-    int first = walk->frame[0]->edges;
-    return i < first ? walk->frame[0]->edge[i] : walk->frame[1]->edge[i - first];
+    int count = 0;
+    for (int f = first_frame(of); f <= last_frame(of); f++)
+        count += pair->frame[f].edges;
+    return count;
+}
+
+static mpz_t *edge_at(const struct exact_pair *pair, enum slabs_of of, int i)
+{
+    const struct exact_frame *frame = &pair->frame[first_frame(of)];
+    return i < frame->edges ? frame->edge[i].vector : frame[1].edge[i - frame->edges].vector;
 }
 
 static int nonzero_axis(mpz_t v[3])
@@ -141,14 +183,14 @@ static bool visit_flat(struct walk *walk, mpz_t normal[3])
     int k = nonzero_axis(normal), i = (k + 1) % 3, j = (k + 2) % 3;
     for (int axis = 0; axis < 3; axis++)
         mpz_set(walk->slab.normal[axis], normal[axis]);
-    if (!visit_slab(walk, true))
+    if (!visit_normal(walk, true))
         return false;
-    for (int e = 0; e < edge_count(walk); e++) {
-        mpz_t *edge = edge_at(walk, e);
+    for (int e = 0; e < edge_count(walk->pair, walk->of); e++) {
+        mpz_t *edge = edge_at(walk->pair, walk->of, e);
         mpz_neg(walk->slab.normal[i], edge[j]);
         mpz_set(walk->slab.normal[j], edge[i]);
         mpz_set_ui(walk->slab.normal[k], 0);
-        if (!is_zero(walk->slab.normal) && !visit_slab(walk, false))
+        if (!integer_is_zero(walk->slab.normal) && !visit_normal(walk, false))
             return false;
     }
     return true;
@@ -160,14 +202,14 @@ static bool visit_segment(struct walk *walk, mpz_t direction[3])
     int k = nonzero_axis(direction);
     for (int axis = 0; axis < 3; axis++)
         mpz_set_ui(walk->slab.normal[axis], axis == k);
-    if (!visit_slab(walk, false))
+    if (!visit_normal(walk, false))
         return false;
     for (int step = 1; step < 3; step++) {
         int j = (k + step) % 3, other = (k + 3 - step) % 3;
         mpz_set(walk->slab.normal[j], direction[k]);
         mpz_neg(walk->slab.normal[k], direction[j]);
         mpz_set_ui(walk->slab.normal[other], 0);
-        if (!visit_slab(walk, true))
+        if (!visit_normal(walk, true))
             return false;
     }
     return true;
@@ -178,50 +220,81 @@ static bool visit_point(struct walk *walk)
     for (int k = 0; k < 3; k++) {
         for (int axis = 0; axis < 3; axis++)
             mpz_set_ui(walk->slab.normal[axis], axis == k);
-        if (!visit_slab(walk, true))
+        if (!visit_normal(walk, true))
             return false;
     }
     return true;
 }
 
-/* The rank of all edges together; where it is 1, *direction is one of them; where it is 2,
+/* ---- Rank ---- */
+
+/* Whether three of the components are independent. The triples of the components of both frames are
+ * the first 20, those of frame 0 the first of these. */
+static bool is_solid(const struct exact_pair *pair, enum slabs_of of)
+{
+    enum { OF_A = 0, OF_B = 19, OF_BOTH = 20 };
+    if (of != SLABS_OF_DIFFERENCE)
+        return mpz_sgn(pair->triple[of == SLABS_OF_A ? OF_A : OF_B]) != 0;
+    for (int t = 0; t < OF_BOTH; t++)
+        if (mpz_sgn(pair->triple[t]))
+            return true;
+    return false;
+}
+
+/* The rank where it is below 3; where it is 1, *direction is one of the edges; where it is 2,
  * normal is that of their plane. */
-static int rank_of(const struct walk *walk, mpz_t **direction, mpz_t normal[3])
+static int flat_rank(struct exact_pair *pair, enum slabs_of of, mpz_t **direction, mpz_t normal[3])
 {
     int rank = 0;
-    for (int i = 0; i < edge_count(walk) && rank < 3; i++) {
-        mpz_t *edge = edge_at(walk, i);
-        if (rank == 0 && !is_zero(edge)) {
+    for (int i = 0; i < edge_count(pair, of) && rank < 2; i++) {
+        mpz_t *edge = edge_at(pair, of, i);
+        if (rank == 0 && !integer_is_zero(edge)) {
             *direction = edge;
             rank = 1;
         } else if (rank == 1) {
-            integer_cross(normal, *direction, edge, walk->scratch[0]);
-            rank = is_zero(normal) ? 1 : 2;
-        } else if (rank == 2) {
-            integer_dot(walk->scratch[0], normal, edge);
-            rank = mpz_sgn(walk->scratch[0]) ? 3 : 2;
+            integer_cross(normal, *direction, edge, pair->scratch[0]);
+            rank = integer_is_zero(normal) ? 1 : 2;
         }
     }
     return rank;
 }
 
-bool slabs_walk(const struct exact_frame *a, const struct exact_frame *b, slab_visit visit,
-                void *context, mpz_t scratch[EXACT_SCRATCH])
+bool slabs_solid(const struct exact_pair *pair)
 {
-    struct walk walk = {.frame = {a, b}, .visit = visit, .context = context, .scratch = scratch};
+    return is_solid(pair, SLABS_OF_DIFFERENCE);
+}
+
+static bool walk_flat(struct walk *walk)
+{
     mpz_t normal[3], *direction = NULL;
-    mpz_inits(normal[0], normal[1], normal[2], walk.slab.low, walk.slab.high, NULL);
-    mpz_inits(walk.slab.normal[0], walk.slab.normal[1], walk.slab.normal[2], NULL);
-
     bool whole = false;
-    switch (rank_of(&walk, &direction, normal)) {
-    case 3: whole = visit_solid(&walk); break;
-    case 2: whole = visit_flat(&walk, normal); break;
-    case 1: whole = visit_segment(&walk, direction); break;
-    case 0: whole = visit_point(&walk); break;
+    mpz_inits(normal[0], normal[1], normal[2], NULL);
+    switch (flat_rank(walk->pair, walk->of, &direction, normal)) {
+    case 2: whole = visit_flat(walk, normal); break;
+    case 1: whole = visit_segment(walk, direction); break;
+    case 0: whole = visit_point(walk); break;
     }
+    mpz_clears(normal[0], normal[1], normal[2], NULL);
+    return whole;
+}
 
-    mpz_clears(normal[0], normal[1], normal[2], walk.slab.low, walk.slab.high, NULL);
-    mpz_clears(walk.slab.normal[0], walk.slab.normal[1], walk.slab.normal[2], NULL);
+void slab_each(struct slab *slab, void (*call)(mpz_ptr))
+{
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        call(slab->value[k]);
+    for (int axis = 0; axis < 3; axis++)
+        call(slab->normal[axis]);
+    call(slab->low);
+    call(slab->high);
+}
+
+bool slabs_walk(struct exact_pair *pair, enum slabs_of of, slab_visit visit, void *context)
+{
+    struct walk walk = {.pair = pair, .of = of, .visit = visit, .context = context};
+    slab_each(&walk.slab, mpz_init);
+    const bool whole = of == SLABS_OF_SWEPT ? visit_swept(&walk)
+                       : is_solid(pair, of) ? visit_solid(&walk)
+                                            : walk_flat(&walk);
+    slab_each(&walk.slab, mpz_clear);
     return whole;
 }

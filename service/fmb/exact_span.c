@@ -1,4 +1,5 @@
 #include "exact.h"
+#include "integer.h"
 
 #include <assert.h>
 
@@ -20,9 +21,7 @@ void ratio_copy(struct ratio *out, const struct ratio *r)
 
 int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2])
 {
-    mpz_mul(scratch[0], x->num, y->den);
-    mpz_mul(scratch[1], y->num, x->den);
-    return mpz_cmp(scratch[0], scratch[1]);
+    return integer_compare_products(x->num, y->den, y->num, x->den, scratch);
 }
 
 void span_init(struct span *span)
@@ -33,7 +32,12 @@ void span_init(struct span *span)
         mpz_init(span->scratch[i]);
     }
     ratio_init(&span->at);
-    span_reset(span);
+    for (int i = 0; i < 2; i++) {
+        mpz_set_ui(span->window[i].num, (unsigned long) i);
+        mpz_set_ui(span->window[i].den, 1);
+        span->bounded[i] = false;
+    }
+    span->interior = true;
 }
 
 void span_clear(struct span *span)
@@ -44,16 +48,6 @@ void span_clear(struct span *span)
         mpz_clear(span->scratch[i]);
     }
     ratio_clear(&span->at);
-}
-
-void span_reset(struct span *span)
-{
-    for (int i = 0; i < 2; i++) {
-        mpz_set_ui(span->window[i].num, (unsigned long) i);
-        mpz_set_ui(span->window[i].den, 1);
-        span->bounded[i] = false;
-    }
-    span->interior = true;
 }
 
 /* span->at := (bound - f0) / (f1 - f0), where the segment crosses the bound. */

@@ -1,6 +1,7 @@
 #include "faces.h"
 
 #include "limbs.h"
+#include "prepared.h"
 #include "weighed.h"
 
 /* In doubles: whether the normal of a surely has an extent along b. */
@@ -35,14 +36,15 @@ static bool set_shadow(const struct fmb_frame *frame, int axis, struct fmb_body 
 {
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     const double(*c)[FMB_DIM_MAX] = frame->body->component;
-    const double components[4] = {c[0][x], c[0][y], c[1][x], c[1][y]};
+    const double components[2][2] = {{c[0][x], c[0][y]}, {c[1][x], c[1][y]}};
     *out = (struct fmb_frame){
         .body = body, .origin = {frame->origin[x], frame->origin[y]}, .moving = frame->moving};
     if (frame->moving) {
         out->velocity[0] = frame->velocity[x];
         out->velocity[1] = frame->velocity[y];
     }
-    return fmb_body_make(2, FMB_TETRAHEDRON, components, 4, body) == FMB_OK && !body->flat;
+    body_set_plane_triangle(components, body);
+    return !body->flat;
 }
 
 /* The same axis the other way round. */

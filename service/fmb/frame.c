@@ -158,6 +158,19 @@ void body_measure(struct fmb_body *body)
     body->bits[1] = (int) span.top;
 }
 
+void body_set_plane_triangle(const double components[2][2], struct fmb_body *out)
+{
+    memset(out, 0, sizeof *out);
+    out->dim = 2;
+    out->shape = FMB_TETRAHEDRON;
+    out->count = 2;
+    for (int i = 0; i < 2; i++)
+        memcpy(out->component[i], components[i], sizeof components[i]);
+    out->flat = are_equal(components[0][0], components[1][1], components[0][1], components[1][0]);
+    body_measure(out);
+    out->head = prepared_head_of(out);
+}
+
 enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
                               struct fmb_body *out)
 {

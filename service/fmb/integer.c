@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <float.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,21 +71,92 @@ void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit)
         mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent + y.exponent - unit));
 }
 
+/* x without its low limbs that are 0; returns how many there are. x is not 0. */
+static mp_size_t strip(mpz_t out, const mpz_t x)
+{
+    const mp_limb_t *limbs = mpz_limbs_read(x);
+    const mp_size_t size = (mp_size_t) mpz_size(x);
+    mp_size_t zeros = 0;
+    while (limbs[zeros] == 0)
+        zeros++;
+    mpz_roinit_n(out, limbs + zeros, mpz_sgn(x) < 0 ? zeros - size : size - zeros);
+    return zeros;
+}
+
+bool integer_is_zero(mpz_t v[3])
+{
+    return mpz_sgn(v[0]) == 0 && mpz_sgn(v[1]) == 0 && mpz_sgn(v[2]) == 0;
+}
+
+void integer_multiply(mpz_t out, const mpz_t x, const mpz_t y)
+{
+    mpz_t u, v;
+    if (mpz_sgn(x) == 0 || mpz_sgn(y) == 0) {
+        mpz_set_ui(out, 0);
+        return;
+    }
+    const mp_size_t zeros = strip(u, x) + strip(v, y);
+    mpz_mul(out, u, v);
+    if (zeros)
+        mpz_mul_2exp(out, out, (mp_bitcnt_t) zeros * GMP_NUMB_BITS);
+}
+
+void integer_add_product(mpz_t out, int sign, const mpz_t x, const mpz_t y, mpz_t scratch)
+{
+    integer_multiply(scratch, x, y);
+    if (sign > 0)
+        mpz_add(out, out, scratch);
+    else
+        mpz_sub(out, out, scratch);
+}
+
 void integer_cross(mpz_t out[3], mpz_t u[3], mpz_t v[3], mpz_t scratch)
 {
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        mpz_mul(out[i], u[j], v[k]);
-        mpz_mul(scratch, u[k], v[j]);
-        mpz_sub(out[i], out[i], scratch);
+        integer_multiply(out[i], u[j], v[k]);
+        integer_add_product(out[i], -1, u[k], v[j], scratch);
     }
 }
 
-void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3])
+void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3], mpz_t scratch)
 {
-    mpz_mul(out, u[0], v[0]);
-    mpz_addmul(out, u[1], v[1]);
-    mpz_addmul(out, u[2], v[2]);
+    integer_multiply(out, u[0], v[0]);
+    integer_add_product(out, 1, u[1], v[1], scratch);
+    integer_add_product(out, 1, u[2], v[2], scratch);
+}
+
+/* x y = mantissa 2^*exponent, but for a factor of 1 +- 2^-50: each factor is cut off at 53 bits,
+ * and the product rounds. */
+static double leading_product(const mpz_t x, const mpz_t y, long *exponent)
+{
+    long of_x, of_y;
+    const double mantissa = mpz_get_d_2exp(&of_x, x) * mpz_get_d_2exp(&of_y, y);
+    *exponent = of_x + of_y;
+    return mantissa;
+}
+
+/* Below this, products are computed no slower than compared. */
+enum { FEW_LIMBS = 6 };
+
+/* Mantissas lie in [1/4, 1): scaled by 2^-4 or less, one is surely the smaller in magnitude. */
+int integer_compare_products(const mpz_t x, const mpz_t y, const mpz_t z, const mpz_t w,
+                             mpz_t scratch[2])
+{
+    const int sign = mpz_sgn(x) * mpz_sgn(y), other = mpz_sgn(z) * mpz_sgn(w);
+    if (sign != other || sign == 0)
+        return sign > other ? 1 : sign < other ? -1 : 0;
+    if (mpz_size(x) + mpz_size(y) + mpz_size(z) + mpz_size(w) > FEW_LIMBS) {
+        long one, two;
+        const double xy = leading_product(x, y, &one), zw = leading_product(z, w, &two);
+        const long apart = one - two;
+        const double scaled = ldexp(xy, apart > 4 ? 4 : apart < -4 ? -4 : (int) apart);
+        if (fabs(scaled - zw) > 0x1p-48 * fabs(zw))
+            return scaled > zw ? 1 : -1;
+    }
+    integer_multiply(scratch[0], x, y);
+    integer_multiply(scratch[1], z, w);
+    return mpz_cmp(scratch[0], scratch[1]);
 }
 
 /* The largest q with q 2^step <= |num| / den * 2^unit, and whether it is the value itself. */

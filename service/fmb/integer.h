@@ -7,6 +7,7 @@
 #define FMB_INTEGER_H
 
 #include <gmp.h>
+#include <stdbool.h>
 
 /* value = mantissa * 2^exponent; the mantissa is odd, or 0 with exponent INTEGER_NO_EXPONENT. */
 struct dyadic {
@@ -40,12 +41,25 @@ void integer_set(mpz_t out, struct dyadic x, long unit);
 /* out := x y / 2^unit. unit <= x.exponent + y.exponent. */
 void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit);
 
+bool integer_is_zero(mpz_t v[3]);
+
+/* out := x y; out is none of the inputs. Numbers whose exponents are far apart end in many zero
+ * bits once they share a unit; those take no time here. */
+void integer_multiply(mpz_t out, const mpz_t x, const mpz_t y);
+
+/* out := out + sign x y, sign +1 or -1; scratch is overwritten, and is none of the others. */
+void integer_add_product(mpz_t out, int sign, const mpz_t x, const mpz_t y, mpz_t scratch);
+
 /* out := u x v, the cross product of vectors of three; out is none of the inputs; scratch is
  * overwritten. */
 void integer_cross(mpz_t out[3], mpz_t u[3], mpz_t v[3], mpz_t scratch);
 
-/* out := u . v; out is none of the inputs. */
-void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3]);
+/* out := u . v; out is none of the inputs; scratch is overwritten. */
+void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3], mpz_t scratch);
+
+/* The sign of x y - z w. Decided from the leading bits where these differ. */
+int integer_compare_products(const mpz_t x, const mpz_t y, const mpz_t z, const mpz_t w,
+                             mpz_t scratch[2]);
 
 enum round_direction { ROUND_DOWN, ROUND_UP };
 

@@ -60,6 +60,10 @@ static inline double prepared_size(unsigned long long head, int i)
  * inverse. */
 void body_measure(struct fmb_body *body);
 
+/* A tetrahedron in 2D without its inverse, [component][axis]. Its numbers are 0 or at least 2^-400
+ * and at most 2^200, so that doubles tell exactly whether it is flat. */
+void body_set_plane_triangle(const double components[2][2], struct fmb_body *out);
+
 /* Whether a window may last so long, in seconds: not negative, and finite. */
 bool prepared_is_duration(double duration);
 

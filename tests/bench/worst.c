@@ -1,12 +1,15 @@
-/* The worst that was found: pairs whose exponents differ most, one by one. */
+/* The worst that was found: pairs whose exponents differ most, one by one; and pairs that a search
+ * found to cost most. */
 #include "bench.h"
 
 #include <string.h>
 
+#include "climb.h"
 #include "family.h"
 #include "trial.h"
 
-/* What a call costs on pairs of a family one by one, in microseconds. */
+/* ---- Families ---- */
+
 struct cost {
     double mean, kind, worst; /* of all; of the kind of pair that costs most; of one pair */
 };
@@ -95,16 +98,99 @@ static void family_run(struct bench *bench, const char *name, size_t pairs)
     }
 }
 
+/* ---- Search ----
+ *
+ * The tests count the work of such pairs and hold it below a bound (test_engine_work.c); here it is
+ * timed. */
+
+enum { CERTIFICATE_MAX = 60000 };
+
+static double timed(double start)
+{
+    return (stopwatch_now() - start) / 1e3;
+}
+
+static double time_of_body(const struct question *question)
+{
+    struct trial trial;
+    const double start = stopwatch_now();
+    trial_begin(question, &trial);
+    return timed(start) / 2; /* for both orders: four bodies; a pair has two */
+}
+
+static double time_of_answer(const struct question *question, unsigned want)
+{
+    struct trial trial;
+    struct fmb_answer answer;
+    trial_begin(question, &trial);
+    const double start = stopwatch_now();
+    fmb_decide(fmb_method_default(), &trial.pair[0], want, &answer);
+    return timed(start);
+}
+
+static double time_of_verdict(const struct question *question)
+{
+    return time_of_answer(question, 0);
+}
+
+static double time_of_box(const struct question *question)
+{
+    return time_of_answer(question, FMB_WANT_BOX);
+}
+
+static double time_of_certificate(const struct question *question)
+{
+    static char text[CERTIFICATE_MAX];
+    struct trial trial;
+    struct fmb_answer answer;
+    size_t length;
+    trial_begin(question, &trial);
+    const double start = stopwatch_now();
+    fmb_decide(fmb_method_default(), &trial.pair[0], FMB_WANT_BOX, &answer);
+    fmb_certificate(&trial.pair[0], text, sizeof text, &length);
+    return timed(start);
+}
+
+static void search_run(struct bench *bench, const char *name, const char *key, climb_cost *cost,
+                       int climbs)
+{
+    const int steps = bench->quick ? 10 : 500;
+    struct draw draw = {.state = bench->seed};
+    struct climber climber = {&draw, cost, -1074, 1023};
+    struct question question;
+    bench_progress(name);
+    climb(&climber, bench->quick ? 1 : climbs, steps, &question);
+    double worst = cost(&question);
+    for (int again = 0; again < 8; again++) { /* what the machine adds is not there each time */
+        const double us = cost(&question);
+        worst = us < worst ? us : worst;
+    }
+    bench_progress(NULL);
+    printf("%-16s %-20s %10s %10s %10.1f\n", "", name, "", "", worst);
+    json_open(&bench->json, NULL, '{');
+    json_text(&bench->json, "name", "search");
+    json_text(&bench->json, "asked", key);
+    json_number(&bench->json, "worst_us", worst);
+    json_close(&bench->json, '}');
+}
+
 void worst_run(struct bench *bench)
 {
     if (!bench_wants(bench, "worst"))
         return;
     printf(
         "\ncertified where exponents differ most, microseconds a call: mean of all, mean of the\n"
-        "kind of pair that costs most, worst pair.\n\n");
+        "kind of pair that costs most, worst pair. Below: the worst pair that a search found.\n\n");
     printf("%-16s %-20s %10s %10s %10s\n", "", "", "mean", "kind", "worst");
     json_open(&bench->json, "worst", '[');
     family_run(bench, "exponents-200", bench->quick ? 20 : 2000);
     family_run(bench, "exponents-all", bench->quick ? 5 : 300);
+    json_close(&bench->json, ']');
+    printf("search\n");
+    json_open(&bench->json, "searched", '[');
+    search_run(bench, "two bodies", "bodies", time_of_body, 10);
+    search_run(bench, "verdict", "verdict", time_of_verdict, 30);
+    search_run(bench, "interval and box", "box", time_of_box, 30);
+    search_run(bench, "with certificate", "certificate", time_of_certificate, 15);
     json_close(&bench->json, ']');
 }

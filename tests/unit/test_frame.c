@@ -500,7 +500,10 @@ static void statuses(void **state)
     assert_int_equal(FMB_CANNOT_DECIDE, 13);
     assert_int_equal(FMB_NOT_SUPPORTED, 14);
     assert_int_equal(FMB_BAD_PAIR, 15);
-    assert_int_equal(FMB_STATUS_COUNT, 16);
+    assert_int_equal(FMB_BAD_ORIENTATION, 16);
+    assert_int_equal(FMB_BAD_SIZE, 17);
+    assert_int_equal(FMB_NO_FRAMES, 18);
+    assert_int_equal(FMB_STATUS_COUNT, 19);
 #define X(name, number, text) assert_string_equal(fmb_status_text(number), text);
     FMB_STATUS_MAP(X)
 #undef X

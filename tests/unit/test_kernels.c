@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -13,8 +14,10 @@
 #include <gmp.h>
 #include <math.h>
 
+#include "certified.h"
 #include "draw.h"
 #include "family.h"
+#include "limbs.h"
 #include "pair_draw.h"
 #include "prepared.h"
 #include "question.h"
@@ -777,6 +780,76 @@ static void ends_of_the_range(void **state)
             expect_stretched(&draw, kind, subject, subjects);
 }
 
+/* ---- Quick decisions ---- */
+
+static long allocations;
+
+static void *count_allocate(size_t size)
+{
+    allocations++;
+    return malloc(size);
+}
+
+static void *count_reallocate(void *memory, size_t old, size_t size)
+{
+    (void) old;
+    allocations++;
+    return realloc(memory, size);
+}
+
+static void release(void *memory, size_t size)
+{
+    (void) size;
+    free(memory);
+}
+
+/* The path of two faces may be that of their shadows, which are found after their slabs. */
+static bool needs_wide_limbs(const struct fmb_pair *pair)
+{
+    const bool faces = pair->a.body->shape == FMB_FACE && pair->b.body->shape == FMB_FACE;
+    enum certified_path path;
+    struct limbs_pair limbs;
+    certified_verdict(pair, &path);
+    return (faces || path == CERTIFIED_LIMBS) && limbs_prepare(pair, limbs_span_of(pair), &limbs) &&
+           limbs.limbs > 2;
+}
+
+/* Returns whether it is left open. */
+static bool expect_quick(const struct question *question, unsigned want)
+{
+    struct ready ready;
+    struct fmb_answer quick = {0}, answer = {0};
+    referee_ready(question, &ready);
+    const long before = allocations;
+    const enum fmb_status status = certified_decide_quick(&ready.pair, want, &quick);
+    if (allocations != before)
+        referee_fail(question, "a quick decision allocates");
+    assert_int_equal(certified_decide(&ready.pair, want, &answer), FMB_OK);
+    if (status == FMB_OK && !referee_same(&quick, &answer))
+        referee_fail(question, "a quick decision differs");
+    if (status != FMB_OK && allocations == before && !needs_wide_limbs(&ready.pair))
+        referee_fail(question, "a quick decision leaves open what needs no wide integers");
+    return status != FMB_OK;
+}
+
+static void quick_decisions_need_no_wide_integers(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long pairs = 0, open = 0, open_boxes = 0;
+    mp_set_memory_functions(count_allocate, count_reallocate, release);
+    draw_begin(&draw, "quick_decisions_need_no_wide_integers");
+    for (long n = draw_sample(20000); n > 0; n--, pairs++) {
+        const struct cell cell = pair_draw_cell(&draw);
+        struct question question;
+        (draw_int(&draw, 0, 7) ? pair_draw : pair_draw_stretched)(&draw, &cell, &question);
+        open += expect_quick(&question, 0);
+        open_boxes += expect_quick(&question, FMB_WANT_BOX);
+    }
+    printf("# of %ld pairs, %ld left open, %ld with boxes\n", pairs, open, open_boxes);
+    assert_true(open > 0 && open < open_boxes && open_boxes < pairs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -788,6 +861,7 @@ int main(void)
         cmocka_unit_test(times_hold_the_exact_ones),
         cmocka_unit_test(boxes_hold_the_exact_ones),
         cmocka_unit_test(ends_of_the_range),
+        cmocka_unit_test(quick_decisions_need_no_wide_integers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

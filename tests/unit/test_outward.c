@@ -422,8 +422,8 @@ static void ask_doubles(const struct ready *ready, const struct slabs_pair *slab
                         struct dyadic_span span, struct fmb_answer *answer, bool good[2])
 {
     struct fmb_answer doubles = *answer;
-    good[0] =
-        slabs->motion.drifts && contact_of(&ready->pair, slabs, rounds, span, doubles.contact);
+    good[0] = slabs->motion.drifts &&
+              contact_of(&ready->pair, slabs, rounds, span, true, doubles.contact);
     good[1] = box_of(&ready->pair, slabs, rounds, doubles.box);
     if (good[0])
         memcpy(answer->contact, doubles.contact, sizeof answer->contact);

@@ -1,0 +1,92 @@
+#include "gmp_work.h"
+
+#include <gmp.h>
+
+double gmp_work;
+
+static double larger(size_t x, size_t y)
+{
+    return (double) (x > y ? x : y);
+}
+
+static void count_product(mpz_srcptr x, mpz_srcptr y)
+{
+    gmp_work += (double) mpz_size(x) * (double) mpz_size(y);
+}
+
+static void count_quotient(mpz_srcptr num, mpz_srcptr den)
+{
+    if (mpz_size(num) >= mpz_size(den))
+        gmp_work += (double) (mpz_size(num) - mpz_size(den) + 1) * (double) mpz_size(den);
+}
+
+static double size_of(mpq_srcptr x)
+{
+    return larger(mpz_size(mpq_numref(x)), mpz_size(mpq_denref(x)));
+}
+
+static void count_fractions(mpq_srcptr x, mpq_srcptr y)
+{
+    const double size = size_of(x) > size_of(y) ? size_of(x) : size_of(y);
+    gmp_work += size * size;
+}
+
+#define PRODUCT(name)                                            \
+    void __real_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
+    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
+    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y)  \
+    {                                                            \
+        count_product(x, y);                                     \
+        __real_##name(out, x, y);                                \
+    }
+PRODUCT(__gmpz_mul)
+PRODUCT(__gmpz_addmul)
+PRODUCT(__gmpz_submul)
+
+#define SUM(name)                                                \
+    void __real_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
+    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
+    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y)  \
+    {                                                            \
+        gmp_work += larger(mpz_size(x), mpz_size(y));            \
+        __real_##name(out, x, y);                                \
+    }
+SUM(__gmpz_add)
+SUM(__gmpz_sub)
+
+#define FRACTION(name)                                           \
+    void __real_##name(mpq_ptr out, mpq_srcptr x, mpq_srcptr y); \
+    void __wrap_##name(mpq_ptr out, mpq_srcptr x, mpq_srcptr y); \
+    void __wrap_##name(mpq_ptr out, mpq_srcptr x, mpq_srcptr y)  \
+    {                                                            \
+        count_fractions(x, y);                                   \
+        __real_##name(out, x, y);                                \
+    }
+FRACTION(__gmpq_mul)
+FRACTION(__gmpq_div)
+FRACTION(__gmpq_add)
+FRACTION(__gmpq_sub)
+
+void __real___gmpq_canonicalize(mpq_ptr x);
+void __wrap___gmpq_canonicalize(mpq_ptr x);
+void __wrap___gmpq_canonicalize(mpq_ptr x)
+{
+    count_fractions(x, x);
+    __real___gmpq_canonicalize(x);
+}
+
+void __real___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
+void __wrap___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
+void __wrap___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den)
+{
+    count_quotient(num, den);
+    __real___gmpz_fdiv_q(out, num, den);
+}
+
+void __real___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den);
+void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den);
+void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den)
+{
+    count_quotient(num, den);
+    __real___gmpz_tdiv_qr(q, r, num, den);
+}
