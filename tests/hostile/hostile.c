@@ -1,11 +1,15 @@
 #include "hostile.h"
 
+#include "fmb_msgs_body_t.h"
+#include "fmb_msgs_definition_query_t.h"
+#include "fmb_msgs_definition_t.h"
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
 #include "fmb_msgs_scene_query_t.h"
 #include "fmb_msgs_scene_result_t.h"
 #include "fmb_msgs_status_t.h"
 
+#include <glib.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,15 +17,23 @@
 #include <string.h>
 
 /* Layouts, after the fingerprint: l 8 bytes, i 4 bytes, n a count and its numbers of 8 bytes, h a
- * count and its numbers of 2, b a count and its bytes, f a count and its frames, s a string, p one
- * that is printable. */
-#define FRAME "llinnn"
+ * count and its numbers of 2, b a count and its bytes, d a dimension, c as many numbers as the last
+ * dimension says, f a count and its placements, o a count and its bodies, s a string, p one that is
+ * printable. */
+#define PLACEMENT "llldbncnn"
+#define BODY "lldbn"
 static const struct {
     const char *type, *layout;
 } layouts[] = {
-    {"pair_query", "llllii" FRAME FRAME},   {"pair_result", "llllllllisiinnpl"},
-    {"scene_query", "lllliiiiifh"},         {"scene_result", "llllisilnibhnnl"},
-    {"status", "llslllllllnlllllllllllln"},
+    {"pair_query", "llllii" PLACEMENT PLACEMENT},
+    {"pair_result", "llllllllllisiinnnnnpl"},
+    {"scene_query", "lllliiliiifhh"},
+    {"scene_result", "llllisihbibhnnnnnl"},
+    {"definition_query", "llllb"},
+    {"definition", "llllislo"},
+    {"status",
+     "llslllllllln"
+     "lllllllllllllll"},
 };
 
 static const char *layout_of(const char *type)
@@ -37,25 +49,29 @@ static const char *layout_of(const char *type)
     return layout;
 }
 
-static fmb_msgs_frame_t good_frame(void)
+/* A cube at the origin of its body. */
+static uint8_t shapes[1] = {FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID};
+static double cube[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+static fmb_msgs_placement_t good_placement(void)
 {
-    static double origin[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25};
-    static double cube[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    return (fmb_msgs_frame_t){.body_id = 7,
-                              .shape = FMB_MSGS_FRAME_T_SHAPE_CUBOID,
-                              .dim = 3,
-                              .origin = origin,
-                              .num_components = 9,
-                              .components = cube,
-                              .num_velocity = 3,
-                              .velocity = velocity};
+    static double position[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25};
+    return (fmb_msgs_placement_t){.body_id = 7,
+                                  .dim = 3,
+                                  .num_frames = 1,
+                                  .shapes = shapes,
+                                  .num_numbers = 12,
+                                  .numbers = cube,
+                                  .position = position,
+                                  .num_velocity = 3,
+                                  .velocity = velocity};
 }
 
 static size_t good_pair_query(unsigned char *out)
 {
-    fmb_msgs_frame_t frame = good_frame();
+    fmb_msgs_placement_t body = good_placement();
     fmb_msgs_pair_query_t query = {
-        .utime = 1, .client_id = 2, .sequence_number = 3, .duration = 1, .a = frame, .b = frame};
+        .utime = 1, .client_id = 2, .sequence_number = 3, .duration = 1, .a = body, .b = body};
     return (size_t) fmb_msgs_pair_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &query);
 }
 
@@ -75,19 +91,19 @@ static size_t good_pair_result(unsigned char *out)
     return (size_t) fmb_msgs_pair_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
 }
 
-/* The last frame comes by key. */
+/* The last body comes by its handle. */
 static size_t good_scene_query(unsigned char *out)
 {
     int16_t index[4] = {0, 1, 2, 1};
-    fmb_msgs_frame_t frames[3] = {good_frame(), good_frame(), good_frame()};
-    frames[2].key = 5;
-    frames[2].num_components = frames[2].num_velocity = 0;
+    fmb_msgs_placement_t placements[3] = {good_placement(), good_placement(), good_placement()};
+    memset(placements[2].handle, 0xa5, sizeof placements[2].handle);
+    placements[2].num_frames = placements[2].num_numbers = placements[2].num_velocity = 0;
     fmb_msgs_scene_query_t query = {.client_id = 2,
                                     .sequence_number = 3,
                                     .duration = 1,
                                     .want = FMB_MSGS_SCENE_QUERY_T_WANT_BOX,
-                                    .num_frames = 3,
-                                    .frames = frames,
+                                    .num_placements = 3,
+                                    .placements = placements,
                                     .num_indices = 4,
                                     .indices = index};
     return (size_t) fmb_msgs_scene_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &query);
@@ -96,7 +112,7 @@ static size_t good_scene_query(unsigned char *out)
 static size_t good_scene_result(unsigned char *out)
 {
     char detail[] = "";
-    int64_t keys[3] = {0, 501, 502};
+    uint8_t handles[32] = {1, 2, 3};
     uint8_t verdicts[2] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING,
                            FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING};
     int16_t indices[4] = {0, 1, 0, 2};
@@ -104,8 +120,8 @@ static size_t good_scene_result(unsigned char *out)
     fmb_msgs_scene_result_t result = {.client_id = 2,
                                       .detail = detail,
                                       .method = FMB_MSGS_PAIR_QUERY_T_METHOD_CERTIFIED,
-                                      .num_keys = 3,
-                                      .keys = keys,
+                                      .num_handle_bytes = 32,
+                                      .handles = handles,
                                       .end_pair = 3,
                                       .num_verdicts = 2,
                                       .verdicts = verdicts,
@@ -116,6 +132,42 @@ static size_t good_scene_result(unsigned char *out)
                                       .num_boxes = 12,
                                       .boxes = boxes};
     return (size_t) fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
+}
+
+static size_t good_definition_query(unsigned char *out)
+{
+    uint8_t handles[32] = {1, 2, 3};
+    fmb_msgs_definition_query_t query = {
+        .client_id = 2, .sequence_number = 3, .num_handle_bytes = 32, .handles = handles};
+    return (size_t) fmb_msgs_definition_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &query);
+}
+
+/* The handle of a body: the SHA-256 of what follows its handle and its fingerprint. */
+static void set_handle(fmb_msgs_body_t *body)
+{
+    unsigned char bytes[512];
+    guint8 digest[32];
+    gsize length = sizeof digest;
+    const int size = fmb_msgs_body_t_encode(bytes, 0, sizeof bytes, body);
+    const int fields_at = 8 + (int) sizeof body->handle;
+    GChecksum *sha256 = g_checksum_new(G_CHECKSUM_SHA256);
+    g_checksum_update(sha256, bytes + fields_at, size - fields_at);
+    g_checksum_get_digest(sha256, digest, &length);
+    g_checksum_free(sha256);
+    memcpy(body->handle, digest, sizeof body->handle);
+}
+
+static size_t good_definition(unsigned char *out)
+{
+    char detail[] = "";
+    fmb_msgs_body_t bodies[2] = {
+        {.dim = 3, .num_frames = 1, .shapes = shapes, .num_numbers = 12, .numbers = cube},
+        {.dim = 2, .num_frames = 1, .shapes = shapes, .num_numbers = 6, .numbers = cube}};
+    for (int i = 0; i < 2; i++)
+        set_handle(&bodies[i]);
+    fmb_msgs_definition_t definition = {
+        .client_id = 2, .detail = detail, .next = 5, .num_bodies = 2, .bodies = bodies};
+    return (size_t) fmb_msgs_definition_t_encode(out, 0, HOSTILE_BYTES_MAX, &definition);
 }
 
 static size_t good_status(unsigned char *out)
@@ -131,8 +183,12 @@ static const struct {
     const char *type;
     size_t (*write)(unsigned char *out);
 } goods[] = {
-    {"pair_query", good_pair_query},   {"pair_result", good_pair_result},
-    {"scene_query", good_scene_query}, {"scene_result", good_scene_result},
+    {"pair_query", good_pair_query},
+    {"pair_result", good_pair_result},
+    {"scene_query", good_scene_query},
+    {"scene_result", good_scene_result},
+    {"definition_query", good_definition_query},
+    {"definition", good_definition},
     {"status", good_status},
 };
 
@@ -233,21 +289,28 @@ static size_t damage_list(struct damage *damage, char field, size_t at)
     if (field == 'p')
         damage_text(damage, at);
     at += 4;
-    for (size_t i = 0; field == 'f' && i < count; i++)
-        at = damage_layout(damage, FRAME, at);
+    for (size_t i = 0; (field == 'f' || field == 'o') && i < count; i++)
+        at = damage_layout(damage, field == 'f' ? PLACEMENT : BODY, at);
     switch (field) {
     case 'n': return at + 8 * count;
     case 'h': return at + 2 * count;
-    case 'f': return at;
+    case 'f':
+    case 'o':
+    case 'd': return at;
     default: return at + count;
     }
 }
 
 static size_t damage_layout(struct damage *damage, const char *layout, size_t at)
 {
+    size_t dim = 0;
     for (const char *field = layout; *field; field++) {
+        if (*field == 'd')
+            dim = (size_t) get_int32(damage->good + at);
         if (*field == 'l' || *field == 'i')
             at += *field == 'l' ? 8 : 4;
+        else if (*field == 'c')
+            at += 8 * dim;
         else
             at = damage_list(damage, *field, at);
     }
@@ -300,18 +363,18 @@ size_t hostile_flood(const char *type, long long client_id, long long sequence_n
                      unsigned char out[HOSTILE_BYTES_MAX])
 {
     int16_t index[400];
-    fmb_msgs_frame_t frames[2] = {good_frame(), good_frame()};
+    fmb_msgs_placement_t bodies[2] = {good_placement(), good_placement()};
     fmb_msgs_pair_query_t pair = {.client_id = client_id,
                                   .sequence_number = sequence_number,
                                   .duration = 1,
-                                  .a = frames[0],
-                                  .b = frames[1]};
+                                  .a = bodies[0],
+                                  .b = bodies[1]};
     fmb_msgs_scene_query_t scene = {.client_id = client_id,
                                     .sequence_number = sequence_number,
                                     .duration = 1,
                                     .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
-                                    .num_frames = 2,
-                                    .frames = frames,
+                                    .num_placements = 2,
+                                    .placements = bodies,
                                     .num_indices = 400,
                                     .indices = index};
     for (int i = 0; i < 400; i++)
@@ -321,42 +384,69 @@ size_t hostile_flood(const char *type, long long client_id, long long sequence_n
     return (size_t) fmb_msgs_pair_query_t_encode(out, 0, HOSTILE_BYTES_MAX, &pair);
 }
 
+/* The handle that a true service would give the placement: of a body that came whole with an id. */
+static bool lie_handle(const fmb_msgs_placement_t *placement, uint8_t out[16])
+{
+    fmb_msgs_body_t body = {.dim = placement->dim,
+                            .num_frames = placement->num_frames,
+                            .shapes = placement->shapes,
+                            .num_numbers = placement->num_numbers,
+                            .numbers = placement->numbers};
+    if (placement->body_id == 0 || placement->num_frames == 0)
+        return false;
+    set_handle(&body);
+    memcpy(out, body.handle, sizeof body.handle);
+    return true;
+}
+
 size_t hostile_lie(const void *query, size_t size, char *certificate,
                    unsigned char out[HOSTILE_BYTES_MAX])
 {
-    fmb_msgs_pair_query_t asked;
+    fmb_msgs_pair_query_t query_read;
     char detail[] = "";
-    if (fmb_msgs_pair_query_t_decode(query, 0, (int) size, &asked) < 0)
+    if (fmb_msgs_pair_query_t_decode(query, 0, (int) size, &query_read) < 0)
         return 0;
-    fmb_msgs_pair_result_t result = {.client_id = asked.client_id,
-                                     .sequence_number = asked.sequence_number,
+    fmb_msgs_pair_result_t result = {.client_id = query_read.client_id,
+                                     .sequence_number = query_read.sequence_number,
                                      .detail = detail,
                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
                                      .verdict = FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
-                                     .certificate = certificate};
-    fmb_msgs_pair_query_t_decode_cleanup(&asked);
+                                     .certificate = certificate,
+                                     .body_a = query_read.a.body_id,
+                                     .body_b = query_read.b.body_id};
+    lie_handle(&query_read.a, result.handle_a);
+    lie_handle(&query_read.b, result.handle_b);
+    fmb_msgs_pair_query_t_decode_cleanup(&query_read);
     int written = fmb_msgs_pair_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
     return written < 0 ? 0 : (size_t) written;
 }
 
 size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTILE_BYTES_MAX])
 {
-    fmb_msgs_scene_query_t asked;
+    fmb_msgs_scene_query_t query_read;
     char detail[] = "";
     uint8_t verdict[] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING};
     int16_t pair[] = {0, 1};
-    if (fmb_msgs_scene_query_t_decode(query, 0, (int) size, &asked) < 0)
+    uint8_t handles[HOSTILE_BYTES_MAX];
+    int32_t handle_bytes = 0;
+    if (fmb_msgs_scene_query_t_decode(query, 0, (int) size, &query_read) < 0)
         return 0;
-    fmb_msgs_scene_result_t result = {.client_id = asked.client_id,
-                                      .sequence_number = asked.sequence_number,
-                                      .detail = detail,
-                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
-                                      .end_pair = asked.num_frames * (asked.num_frames - 1) / 2,
-                                      .num_verdicts = 1,
-                                      .verdicts = verdict,
-                                      .num_indices = 2,
-                                      .indices = pair};
-    fmb_msgs_scene_query_t_decode_cleanup(&asked);
+    for (int32_t i = 0; i < query_read.num_placements && handle_bytes < HOSTILE_BYTES_MAX; i++)
+        if (lie_handle(&query_read.placements[i], handles + handle_bytes))
+            handle_bytes += 16;
+    fmb_msgs_scene_result_t result = {
+        .client_id = query_read.client_id,
+        .sequence_number = query_read.sequence_number,
+        .detail = detail,
+        .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
+        .num_handle_bytes = handle_bytes,
+        .handles = handles,
+        .end_pair = query_read.num_placements * (query_read.num_placements - 1) / 2,
+        .num_verdicts = 1,
+        .verdicts = verdict,
+        .num_indices = 2,
+        .indices = pair};
+    fmb_msgs_scene_query_t_decode_cleanup(&query_read);
     int written = fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
     return written < 0 ? 0 : (size_t) written;
 }

@@ -1,5 +1,5 @@
-/* Messages that are wrong: each kind of damage that a decoder of LCM's format can fall for,
- * made from a good message. Knows the layout of the messages from here alone. */
+/* Malformed messages: each kind of damage that a decoder of LCM's format can mishandle, made from a
+ * good message. Shares no code with the codec. */
 #ifndef HOSTILE_H
 #define HOSTILE_H
 
@@ -11,7 +11,8 @@ enum { HOSTILE_BYTES_MAX = 2048 };
 typedef void (*hostile_visit)(void *context, const char *what, const unsigned char *bytes,
                               size_t size);
 
-/* type: "pair_query", "pair_result", "scene_query", "scene_result" or "status". Every message
+/* type: "pair_query", "pair_result", "scene_query", "scene_result", "definition_query",
+ * "definition" or "status". Every message
  * visited differs from what any encoder of that type can write; returns how many there were. */
 size_t hostile_each(const char *type, hostile_visit visit, void *context);
 
@@ -23,12 +24,12 @@ size_t hostile_good(const char *type, unsigned char out[HOSTILE_BYTES_MAX]);
 size_t hostile_flood(const char *type, long long client_id, long long sequence_number,
                      unsigned char out[HOSTILE_BYTES_MAX]);
 
-/* What a service that lies answers to a good pair_query: whatever the frames are, they overlap, and
- * this is the certificate. Returns its size; 0 where there is no room for it. */
+/* The forged answer to a good pair_query: whatever the bodies are, they overlap, with this
+ * certificate. Returns its size; 0 where it does not fit. */
 size_t hostile_lie(const void *query, size_t size, char *certificate,
                    unsigned char out[HOSTILE_BYTES_MAX]);
 
-/* The same to a good scene_query that asks for all pairs: the first one overlaps, no other does. */
+/* The forged answer to a good scene_query of all pairs: the first one overlaps, no other does. */
 size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTILE_BYTES_MAX]);
 
 #endif

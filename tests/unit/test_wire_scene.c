@@ -1,10 +1,11 @@
-/* Scenes on the wire: read back as they were written, of the sizes that were said, up to the last
- * byte of a datagram; and what a service that lies may not say. */
+/* Scenes on the wire: read back as they were written, of the sizes that wire.h gives, up to the
+ * last byte of a message; and inconsistent results, which are refused. */
 #include "as_lcm.h"
 #include "hostile.h"
+#include "sample_placement.h"
 #include "wire.h"
 
-#include "fmb_msgs_frame_t.h"
+#include "fmb_msgs_placement_t.h"
 #include "fmb_msgs_scene_query_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
@@ -32,25 +33,25 @@ static int set_up(void **state)
     return 0;
 }
 
-/* From a copy that ends where it ends, so that a sanitizer sees any byte read beyond it. */
+/* A copy that ends where the message ends, so that a sanitizer sees any byte read beyond it. It
+ * lives until the next one is made, since geometries point into it. */
+static const unsigned char *copy_of(size_t size)
+{
+    static unsigned char *copy;
+    free(copy);
+    copy = malloc(size);
+    assert_non_null(copy);
+    return memcpy(copy, bytes, size);
+}
+
 static const char *read_query(size_t size)
 {
-    unsigned char *copy = malloc(size);
-    assert_non_null(copy);
-    memcpy(copy, bytes, size);
-    const char *error = wire_read_scene_query(copy, (uint32_t) size, &query_read);
-    free(copy);
-    return error;
+    return wire_read_scene_query(copy_of(size), (uint32_t) size, &query_read);
 }
 
 static const char *read_result(size_t size)
 {
-    unsigned char *copy = malloc(size);
-    assert_non_null(copy);
-    memcpy(copy, bytes, size);
-    const char *error = wire_read_scene_result(copy, (uint32_t) size, &result_read);
-    free(copy);
-    return error;
+    return wire_read_scene_result(copy_of(size), (uint32_t) size, &result_read);
 }
 
 static void expect_read(const char *error)
@@ -61,23 +62,9 @@ static void expect_read(const char *error)
 
 /* ---- Queries ---- */
 
-/* By shape, dimension, by key or whole, at rest or moving. */
-static void set_frame(int i, struct query_frame *out)
-{
-    const int dim = 2 + i % 2;
-    *out = (struct query_frame){.body_id = i, .key = i % 3 ? 0 : 1000 + i, .shape = 1 + i % 3};
-    out->dim = out->origin.count = dim;
-    out->components.count = i % 3 ? dim * fmb_component_count(dim, out->shape) : 0;
-    out->velocity.count = i % 5 ? 0 : dim;
-    for (int k = 0; k < out->components.count; k++)
-        out->components.number[k] = k * 0.1 - 0x1p-1074;
-    for (int k = 0; k < dim; k++)
-        out->origin.number[k] = k ? -0.0 : 1.0 / (i + 1);
-    for (int k = 0; k < out->velocity.count; k++)
-        out->velocity.number[k] = k ? 1e308 : -i;
-}
+static unsigned char geometries[QUERY_PLACEMENTS_MAX][GEOMETRY_FRAME_BYTES_MAX];
 
-static void set_query(int32_t frames, int32_t indices)
+static void set_query(int32_t placements, int32_t indices, int32_t ignored)
 {
     query.utime = 1700000000000000;
     query.client_id = QUERY_ID_MAX;
@@ -88,25 +75,30 @@ static void set_query(int32_t frames, int32_t indices)
     query.which = QUERY_PAIRS_ACROSS;
     query.split = 3;
     query.first_pair = 7;
-    query.frame_count = frames;
+    query.margin = 0.25;
+    query.placement_count = placements;
     query.index_count = indices;
-    for (int32_t i = 0; i < frames; i++)
-        set_frame(i, &query.frame[i]);
+    query.ignored_count = ignored;
+    for (int32_t i = 0; i < placements; i++)
+        query.placement[i] = sample_placement(i, geometries[i]);
     for (int32_t i = 0; i < indices; i++)
         query.pair[i / 2][i % 2] = (unsigned) (i * 7 % 1400);
+    for (int32_t i = 0; i < ignored; i++)
+        query.ignored[i / 2][i % 2] = (unsigned) (i * 5 % 1400);
 }
 
 static size_t size_of_query(void)
 {
-    size_t size = WIRE_SCENE_QUERY_BYTES + (size_t) query.index_count / 2 * WIRE_PAIR_BYTES;
-    for (int32_t i = 0; i < query.frame_count; i++)
-        size += wire_frame_bytes(&query.frame[i]);
+    const size_t indices = (size_t) (query.index_count + query.ignored_count);
+    size_t size = WIRE_SCENE_QUERY_BYTES + indices * WIRE_PAIR_BYTES / 2;
+    for (int32_t i = 0; i < query.placement_count; i++)
+        size += wire_placement_bytes(&query.placement[i]);
     return size;
 }
 
 static void assert_same_query(void)
 {
-    const size_t frames = (size_t) query.frame_count, indices = (size_t) query.index_count;
+    const size_t indices = (size_t) query.index_count, ignored = (size_t) query.ignored_count;
     assert_int_equal(query.utime, query_read.utime);
     assert_int_equal(query.client_id, query_read.client_id);
     assert_int_equal(query.sequence_number, query_read.sequence_number);
@@ -116,70 +108,69 @@ static void assert_same_query(void)
     assert_int_equal(query.which, query_read.which);
     assert_int_equal(query.split, query_read.split);
     assert_int_equal(query.first_pair, query_read.first_pair);
-    assert_int_equal(query.frame_count, query_read.frame_count);
+    assert_true(query.margin == query_read.margin);
+    assert_int_equal(query.placement_count, query_read.placement_count);
     assert_int_equal(query.index_count, query_read.index_count);
-    assert_memory_equal(query.frame, query_read.frame, frames * sizeof query.frame[0]);
+    assert_int_equal(query.ignored_count, query_read.ignored_count);
+    for (int32_t i = 0; i < query.placement_count; i++)
+        assert_true(same_placement(&query.placement[i], &query_read.placement[i]));
+    assert_memory_equal(query.ignored, query_read.ignored, ignored * sizeof query.ignored[0][0]);
     assert_memory_equal(query.pair, query_read.pair, indices * sizeof query.pair[0][0]);
 }
 
 static void test_query_round_trip(void **state)
 {
     (void) state;
-    for (int32_t frames = 0; frames < 40; frames++)
-        for (int32_t indices = 0; indices < 7; indices++) { /* odd ones too, as they may come */
-            set_query(frames, indices);
+    for (int32_t placements = 0; placements < 40; placements++)
+        for (int32_t indices = 0; indices < 7; indices++) { /* odd counts too: they may come */
+            set_query(placements, indices, (indices + placements) % 4);
             const size_t size = wire_write_scene_query(&query, bytes);
-            assert_int_equal(size, size_of_query() + (size_t) indices % 2 * WIRE_PAIR_BYTES / 2);
+            assert_int_equal(size, size_of_query());
             expect_read(read_query(size));
             assert_same_query();
             ASSERT_AS_LCM_WRITES(fmb_msgs_scene_query_t, bytes, size);
         }
 }
 
-/* To the last byte: pairs alone, and frames alone. */
+/* To the last bytes: pairs alone, and placements alone. */
 static void test_largest_queries(void **state)
 {
     (void) state;
-    set_query(0, (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / 2);
+    const int placements = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
+    set_query(0, (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / 2, 0);
     assert_int_equal(wire_write_scene_query(&query, bytes), QUERY_BYTES_MAX);
     expect_read(read_query(QUERY_BYTES_MAX));
     assert_same_query();
-    set_query(1352, 0);
-    for (int i = 0; i < 1352; i++) {
-        query.frame[i].dim = query.frame[i].origin.count = 2;
-        query.frame[i].origin.number[2] = 0;
-        query.frame[i].components = query.frame[i].velocity = (struct query_numbers){0};
+    set_query(placements, 0, 0);
+    for (int i = 0; i < placements; i++) {
+        query.placement[i] = sample_placement(4, geometries[i]); /* 2D, by handle, at rest */
+        assert_int_equal(wire_placement_bytes(&query.placement[i]), QUERY_PLACEMENT_BYTES_MIN);
     }
-    query.frame[7].velocity.count = 3; /* 24 bytes more */
     const size_t size = wire_write_scene_query(&query, bytes);
-    assert_int_equal(size, WIRE_SCENE_QUERY_BYTES + 1352 * 48 + 24);
-    assert_true(size <= QUERY_BYTES_MAX);
+    assert_true(size <= QUERY_BYTES_MAX && size + QUERY_PLACEMENT_BYTES_MIN > QUERY_BYTES_MAX);
     expect_read(read_query(size));
     assert_same_query();
 }
 
-/* More frames than any good query has, and lists that are too long: read, walked over, and told. */
-static void test_more_than_there_is_room_for(void **state)
+/* More placements, and pairs, than the structs hold: all are read, the first are kept. */
+static void test_more_than_the_capacity(void **state)
 {
     (void) state;
-    static double many[64];
-    static fmb_msgs_frame_t frames[1600];
+    static fmb_msgs_placement_t placements[QUERY_PLACEMENTS_MAX + 200];
     static int16_t indices[2 * QUERY_PAIRS_MAX + 2];
-    for (int i = 0; i < 1600; i++)
-        frames[i] =
-            (fmb_msgs_frame_t){.body_id = i, .origin = many, .components = many, .velocity = many};
-    frames[3].dim = 40;
-    frames[3].num_components = 64;
-    fmb_msgs_scene_query_t message = {.num_frames = 1600, .frames = frames, .indices = indices};
+    const int count = QUERY_PLACEMENTS_MAX + 200;
+    for (int i = 0; i < count; i++)
+        placements[i] = (fmb_msgs_placement_t){.body_id = i};
+    fmb_msgs_scene_query_t message = {
+        .num_placements = count, .placements = placements, .indices = indices};
     int size = fmb_msgs_scene_query_t_encode(bytes, 0, sizeof bytes, &message);
     assert_true(size > 0);
     expect_read(read_query((size_t) size));
-    assert_int_equal(query_read.frame_count, 1600);
-    assert_int_equal(query_read.frame[3].dim, 40);
-    assert_int_equal(query_read.frame[3].components.count, 64);
-    assert_int_equal(query_read.frame[1399].body_id, 1399);
+    assert_int_equal(query_read.placement_count, count);
+    assert_int_equal(query_read.placement[QUERY_PLACEMENTS_MAX - 1].body_id,
+                     QUERY_PLACEMENTS_MAX - 1);
 
-    message.num_frames = 0;
+    message.num_placements = 0;
     message.num_indices = 2 * QUERY_PAIRS_MAX + 2;
     indices[2 * QUERY_PAIRS_MAX - 1] = -2;
     size = fmb_msgs_scene_query_t_encode(bytes, 0, sizeof bytes, &message);
@@ -191,29 +182,29 @@ static void test_more_than_there_is_room_for(void **state)
 
 /* ---- Results ---- */
 
-static void set_result(int dim, int32_t keys, int32_t verdicts, bool names, bool times, bool boxes)
+static void set_result(int dim, int32_t handles, int32_t verdicts, bool names, bool times,
+                       bool boxes)
 {
     result.utime = 1;
     result.client_id = 2;
     result.sequence_number = 3;
     result.server_id = QUERY_ID_MAX;
     result.method = 4;
-    result.lost = 5;
     result.compute_ns = 1234;
     result.dim = boxes ? dim : 0;
-    result.key_count = keys;
+    result.handle_count = handles;
     result.verdict_count = verdicts;
     result.end_pair = verdicts + 1000;
     result.contact_count = 0;
-    for (int32_t i = 0; i < keys; i++)
-        result.key[i] = 1000 + i;
+    for (int32_t i = 0; i < handles; i++)
+        memset(&result.handle[i], i % 255 + 1, sizeof result.handle[i]);
     for (int32_t i = 0; i < verdicts; i++) {
         result.verdict[i] = (unsigned char) (names ? 2 + i % 2 : i % 4);
         result.contact_count += result.verdict[i] >= 2;
         if (!names)
             continue;
-        result.pair[i][0] = (unsigned) i / 1000;
-        result.pair[i][1] = 100 + (unsigned) i % 1000;
+        result.pair[i][0] = (unsigned) i / 900;
+        result.pair[i][1] = 100 + (unsigned) i % 900;
     }
     for (int32_t i = 0; i < result.contact_count && times; i++) {
         result.times[2 * i] = i % 3 ? 0.25 : NAN;
@@ -231,7 +222,8 @@ static void set_result(int dim, int32_t keys, int32_t verdicts, bool names, bool
 static size_t bound_of_result(void)
 {
     const size_t contacts = (size_t) result.contact_count, verdicts = (size_t) result.verdict_count;
-    return WIRE_SCENE_RESULT_BYTES + 8 * (size_t) result.key_count + verdicts +
+    return WIRE_SCENE_RESULT_BYTES + 16 * (size_t) result.handle_count +
+           2 * (size_t) result.unknown_count + verdicts +
            (result.names_pairs ? WIRE_PAIR_BYTES * verdicts : 0) +
            (result.has_times ? 16 * contacts : 0) +
            (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0);
@@ -247,18 +239,20 @@ static void assert_same_result(void)
     assert_int_equal(result.status, result_read.status);
     assert_string_equal(result.detail, result_read.detail);
     assert_int_equal(result.method, result_read.method);
-    assert_int_equal(result.lost, result_read.lost);
     assert_int_equal(result.end_pair, result_read.end_pair);
     assert_int_equal(result.compute_ns, result_read.compute_ns);
     assert_int_equal(result.dim, result_read.dim);
-    assert_int_equal(result.key_count, result_read.key_count);
+    assert_int_equal(result.handle_count, result_read.handle_count);
+    assert_int_equal(result.unknown_count, result_read.unknown_count);
     assert_int_equal(result.verdict_count, result_read.verdict_count);
     assert_int_equal(result.contact_count, result_read.contact_count);
     assert_int_equal(result.names_pairs, result_read.names_pairs);
     assert_int_equal(result.has_times, result_read.has_times);
     assert_int_equal(result.has_boxes, result_read.has_boxes);
-    assert_memory_equal(result.key, result_read.key,
-                        (size_t) result.key_count * sizeof *result.key);
+    assert_memory_equal(result.handle, result_read.handle,
+                        (size_t) result.handle_count * sizeof *result.handle);
+    assert_memory_equal(result.unknown, result_read.unknown,
+                        (size_t) result.unknown_count * sizeof *result.unknown);
     assert_memory_equal(result.verdict, result_read.verdict, verdicts);
     if (result.names_pairs)
         assert_memory_equal(result.pair, result_read.pair, verdicts * sizeof result.pair[0]);
@@ -291,15 +285,15 @@ static void test_result_round_trip(void **state)
         }
 }
 
-/* As many of each kind of answer as the bound has room for, with the longest detail that there is:
- * one datagram, and nothing is left of it. */
-static void test_results_that_fill_a_datagram(void **state)
+/* As many of each kind of answer as the bound of wire.h admits, with the longest detail: the
+ * message fits, and the bound is not wasteful. */
+static void test_results_that_fill_a_message(void **state)
 {
     (void) state;
     for (int form = 0; form < 16; form++) {
         int32_t verdicts = 0;
         do
-            set_result(2 + form % 2, 1400, ++verdicts, form & 2, form & 4, form & 8);
+            set_result(2 + form % 2, 300, ++verdicts, form & 2, form & 4, form & 8);
         while (bound_of_result() + 5 + 16 + 48 < QUERY_BYTES_MAX && verdicts < QUERY_VERDICTS_MAX);
         memset(result.detail, 'x', QUERY_TEXT_MAX - 1);
         const size_t size = write_and_read();
@@ -310,12 +304,12 @@ static void test_results_that_fill_a_datagram(void **state)
     set_result(2, 0, QUERY_VERDICTS_MAX, false, false, false);
     write_and_read();
     /* To the very last byte. */
-    set_result(2, 0, QUERY_FOUND_MAX - 60, true, false, false);
+    set_result(2, 0, QUERY_NAMED_MAX - 60, true, false, false);
     const size_t left = QUERY_BYTES_MAX - wire_write_scene_result(&result, bytes);
-    assert_true(left < QUERY_TEXT_MAX + 80 && left / 8 <= QUERY_FRAMES_MAX);
-    result.key_count = (int32_t) (left / 8);
-    memset(result.detail, 'x', left % 8);
-    result.detail[left % 8] = '\0';
+    result.handle_count = (int32_t) (left / HANDLE_BYTES);
+    memset(result.handle, 1, left / HANDLE_BYTES * HANDLE_BYTES);
+    memset(result.detail, 'x', left % HANDLE_BYTES);
+    result.detail[left % HANDLE_BYTES] = '\0';
     assert_int_equal(write_and_read(), QUERY_BYTES_MAX);
 }
 
@@ -323,10 +317,27 @@ static void test_refusal_round_trip(void **state)
 {
     (void) state;
     result.status = FMB_UNKNOWN_BODY;
-    strcpy(result.detail, "frames: not held");
-    result.key_count = 3;
-    result.key[1] = 7;
+    strcpy(result.detail, "placements[1].handle: not held");
+    result.unknown_count = 3;
+    for (unsigned i = 0; i < 3; i++)
+        result.unknown[i] = 1 + 2 * i;
     write_and_read();
+    result.unknown[2] = 3; /* twice */
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
+    result.unknown[2] = QUERY_PLACEMENTS_MAX;
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
+    result.unknown_count = 0;
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
+    result.status = FMB_BUSY;
+    write_and_read();
+    result.unknown_count = 1;
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
+    result.unknown_count = 0;
+    result.handle_count = 1;
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
+    result.handle_count = 0;
+    result.end_pair = 1;
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
 }
 
 /* ---- Results that no service gives ---- */
@@ -335,9 +346,10 @@ static void test_refusal_round_trip(void **state)
 struct lie {
     fmb_msgs_scene_result_t message;
     char detail[8];
-    int64_t keys[QUERY_FRAMES_MAX + 1];
+    uint8_t handles[HANDLE_BYTES * (QUERY_PLACEMENTS_MAX + 1)];
+    double gaps[2];
     uint8_t verdicts[QUERY_VERDICTS_MAX + 1];
-    int16_t indices[2 * QUERY_FOUND_MAX + 2];
+    int16_t indices[2 * QUERY_NAMED_MAX + 2];
     double times[QUERY_NUMBERS_MAX + 8], boxes[QUERY_NUMBERS_MAX + 8];
 };
 
@@ -348,7 +360,8 @@ static void begin_lie(void)
     static const int16_t indices[6] = {0, 1, 0, 2, 1, 2};
     memset(&lie, 0, sizeof lie);
     lie.message = (fmb_msgs_scene_result_t){.detail = lie.detail,
-                                            .keys = lie.keys,
+                                            .handles = lie.handles,
+                                            .gaps = lie.gaps,
                                             .end_pair = 3,
                                             .num_verdicts = 3,
                                             .verdicts = lie.verdicts,
@@ -402,7 +415,9 @@ static void test_lies_about_verdicts(void **state)
     LIE((lie.verdicts[0] = FMB_SEPARATED, lie.message.num_times = 4, lie.message.num_boxes = 12));
     LIE((lie.verdicts[0] = 0, lie.message.num_times = 4, lie.message.num_boxes = 12));
     LIE((lie.message.num_verdicts = QUERY_VERDICTS_MAX + 1, lie.message.num_indices = 0));
-    LIE(lie.message.num_keys = QUERY_FRAMES_MAX + 1);
+    LIE(lie.message.num_handle_bytes = HANDLE_BYTES * (QUERY_PLACEMENTS_MAX + 1));
+    LIE(lie.message.num_handle_bytes = HANDLE_BYTES + 1);
+    LIE(lie.message.num_gaps = 2);
     LIE(lie.message.end_pair = -1);
     TRUE((lie.verdicts[0] = FMB_SEPARATED, lie.message.num_times = 4, lie.message.num_boxes = 12,
           lie.message.num_indices = 0));
@@ -413,7 +428,7 @@ static void test_lies_about_pairs(void **state)
     (void) state;
     LIE(lie.message.num_indices = 4);
     LIE(lie.message.num_indices = 5);
-    LIE(lie.indices[5] = QUERY_FRAMES_MAX);
+    LIE(lie.indices[5] = QUERY_PLACEMENTS_MAX);
     LIE(lie.indices[5] = -1);
     LIE(lie.indices[0] = -1);
     LIE(lie.indices[4] = 2);                       /* with itself */
@@ -422,7 +437,7 @@ static void test_lies_about_pairs(void **state)
     LIE(lie.indices[4] = 0);                       /* the same */
     LIE((lie.indices[2] = 1, lie.indices[4] = 0)); /* out of order */
     TRUE(lie.message.num_indices = 0);
-    TRUE(lie.indices[5] = QUERY_FRAMES_MAX - 1);
+    TRUE(lie.indices[5] = QUERY_PLACEMENTS_MAX - 1);
 }
 
 static void test_lies_about_times(void **state)
@@ -499,9 +514,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_query_round_trip),
         TEST(test_largest_queries),
-        TEST(test_more_than_there_is_room_for),
+        TEST(test_more_than_the_capacity),
         TEST(test_result_round_trip),
-        TEST(test_results_that_fill_a_datagram),
+        TEST(test_results_that_fill_a_message),
         TEST(test_refusal_round_trip),
         TEST(test_lies_about_verdicts),
         TEST(test_lies_about_pairs),

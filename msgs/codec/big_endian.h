@@ -1,5 +1,5 @@
-/* Numbers as LCM writes them, in messages and in logs: the highest byte first. Inline: they go by
- * in millions, and the shifts are one instruction to a compiler that sees them. */
+/* Big-endian integers, as LCM encodes them in messages and logs. Inline, so that compilers turn the
+ * shifts into one instruction: a replay reads millions of numbers a second. */
 #ifndef BIG_ENDIAN_H
 #define BIG_ENDIAN_H
 

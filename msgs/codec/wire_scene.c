@@ -1,6 +1,6 @@
 #include "wire.h"
 
-#include "wire_frame.h"
+#include "wire_placement.h"
 
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_scene_query_t.h"
@@ -17,8 +17,15 @@ static_assert((int) QUERY_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
               "which pairs");
 static_assert((int) QUERY_WANT_BOX == FMB_MSGS_SCENE_QUERY_T_WANT_BOX &&
                   (int) QUERY_WANT_TIMES == FMB_MSGS_SCENE_QUERY_T_WANT_TIMES &&
+                  (int) QUERY_WANT_GAP == FMB_MSGS_SCENE_QUERY_T_WANT_GAP &&
                   FMB_MSGS_SCENE_QUERY_T_WANT_TIMES != FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE,
               "wants");
+
+/* Bytes of a placement of dimension 0, the least that any takes. */
+enum { PLACEMENT_BYTES_LEAST = 44 };
+
+/* gaps, directions and witnesses, which this version leaves empty. */
+enum { GAP_LISTS = 3 };
 
 /* ---- Queries ---- */
 
@@ -27,13 +34,13 @@ const char *wire_read_scene_header(const void *bytes, uint32_t size, struct quer
     return wire_read_header(bytes, size, __fmb_msgs_scene_query_t_get_hash(), out);
 }
 
-/* Those that there is no room for are walked over. */
-static int32_t read_frames(struct cursor *cursor, struct query_frame *out)
+/* Placements beyond the capacity are read and dropped. */
+static int32_t read_placements(struct cursor *cursor, struct placement *out)
 {
-    const int32_t count = cursor_count(cursor, WIRE_FRAME_BYTES_MIN);
-    struct query_frame beyond;
+    const int32_t count = cursor_count(cursor, PLACEMENT_BYTES_LEAST);
+    struct placement beyond;
     for (int32_t i = 0; i < count && !cursor->error; i++)
-        wire_read_frame(cursor, i < QUERY_FRAMES_MAX ? &out[i] : &beyond);
+        wire_read_placement(cursor, i < QUERY_PLACEMENTS_MAX ? &out[i] : &beyond);
     return count;
 }
 
@@ -52,11 +59,13 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
     out->duration = cursor_double(&cursor);
     out->method = cursor_int32(&cursor);
     out->want = cursor_int32(&cursor);
+    out->margin = cursor_double(&cursor);
     out->which = cursor_int32(&cursor);
     out->split = cursor_int32(&cursor);
     out->first_pair = cursor_int32(&cursor);
-    out->frame_count = read_frames(&cursor, out->frame);
+    out->placement_count = read_placements(&cursor, out->placement);
     out->index_count = cursor_indices(&cursor, out->pair[0], 2 * QUERY_PAIRS_MAX);
+    out->ignored_count = cursor_indices(&cursor, out->ignored[0], 2 * QUERY_PAIRS_MAX);
     return cursor_end(&cursor);
 }
 
@@ -69,17 +78,32 @@ size_t wire_write_scene_query(const struct scene_query *query, unsigned char out
     writer_double(&writer, query->duration);
     writer_int32(&writer, query->method);
     writer_int32(&writer, query->want);
+    writer_double(&writer, query->margin);
     writer_int32(&writer, query->which);
     writer_int32(&writer, query->split);
     writer_int32(&writer, query->first_pair);
-    writer_int32(&writer, query->frame_count);
-    for (int32_t i = 0; i < query->frame_count; i++)
-        wire_write_frame(&writer, &query->frame[i]);
+    writer_int32(&writer, query->placement_count);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        wire_write_placement(&writer, &query->placement[i]);
     writer_indices(&writer, query->pair[0], query->index_count);
+    writer_indices(&writer, query->ignored[0], query->ignored_count);
     return writer_end(&writer, out);
 }
 
 /* ---- Results ---- */
+
+/* Ascending; some if and only if handles are not held. */
+static void read_unknown(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = cursor_indices(cursor, out->unknown, QUERY_PLACEMENTS_MAX);
+    if ((count > 0) != (out->status == FMB_UNKNOWN_BODY) || count > QUERY_PLACEMENTS_MAX)
+        cursor_fail(cursor, "unknown bodies and status do not go together");
+    for (int32_t i = 0; i < count && !cursor->error; i++)
+        if (out->unknown[i] >= QUERY_PLACEMENTS_MAX ||
+            (i > 0 && out->unknown[i] <= out->unknown[i - 1]))
+            cursor_fail(cursor, "unknown bodies out of order");
+    out->unknown_count = count;
+}
 
 /* Returns how many of the pairs are contacts. */
 static int32_t read_verdicts(struct cursor *cursor, struct scene_result *out)
@@ -87,30 +111,28 @@ static int32_t read_verdicts(struct cursor *cursor, struct scene_result *out)
     const int32_t count = cursor_bytes(cursor, out->verdict, QUERY_VERDICTS_MAX);
     int32_t contacts = 0;
     if (count > QUERY_VERDICTS_MAX)
-        cursor_fail(cursor, "more verdicts than a message has room for");
+        cursor_fail(cursor, "more verdicts than a message holds");
     for (int32_t i = 0; i < count && !cursor->error; i++) {
         if (out->verdict[i] > FMB_OVERLAPPING)
             cursor_fail(cursor, "a verdict that is none");
         contacts += out->verdict[i] >= FMB_TOUCHING;
     }
-    if (count > 0 && out->status != FMB_OK)
-        cursor_fail(cursor, "verdicts and status do not go together");
     out->verdict_count = count;
     return contacts;
 }
 
-/* Two different frames, and after the pair before them. */
+/* Two different placements, in the order of (a, b) after the pair before them. */
 static bool is_next_pair(const unsigned (*pair)[2], int32_t i)
 {
     const unsigned a = pair[i][0], b = pair[i][1];
-    return a < b && b < QUERY_FRAMES_MAX &&
+    return a < b && b < QUERY_PLACEMENTS_MAX &&
            (i == 0 || pair[i - 1][0] < a || (pair[i - 1][0] == a && pair[i - 1][1] < b));
 }
 
 static void read_pairs(struct cursor *cursor, struct scene_result *out)
 {
-    const int32_t count = cursor_indices(cursor, out->pair[0], 2 * QUERY_FOUND_MAX);
-    if (count != 0 && (count != 2 * out->verdict_count || count > 2 * QUERY_FOUND_MAX))
+    const int32_t count = cursor_indices(cursor, out->pair[0], 2 * QUERY_NAMED_MAX);
+    if (count != 0 && (count != 2 * out->verdict_count || count > 2 * QUERY_NAMED_MAX))
         cursor_fail(cursor, "as many pairs as verdicts, or none");
     for (int32_t i = 0; i < count / 2 && !cursor->error; i++)
         if (!is_next_pair((const unsigned(*)[2]) out->pair, i) || out->verdict[i] < FMB_TOUCHING)
@@ -118,7 +140,7 @@ static void read_pairs(struct cursor *cursor, struct scene_result *out)
     out->names_pairs = count > 0;
 }
 
-/* None: both NaN. */
+/* Both NaN: no interval. */
 static bool is_interval(const double times[2])
 {
     return (isnan(times[0]) && isnan(times[1])) ||
@@ -160,17 +182,21 @@ const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scen
     out->status = cursor_int32(&cursor);
     cursor_string(&cursor, out->detail, sizeof out->detail);
     out->method = cursor_int32(&cursor);
-    out->lost = cursor_int64(&cursor);
-    out->key_count = cursor_int64s(&cursor, out->key, QUERY_FRAMES_MAX);
-    if (out->key_count > QUERY_FRAMES_MAX)
-        cursor_fail(&cursor, "more keys than a query has frames");
+    read_unknown(&cursor, out);
+    out->handle_count = wire_read_handles(&cursor, out->handle, QUERY_PLACEMENTS_MAX);
+    if (out->handle_count > QUERY_PLACEMENTS_MAX)
+        cursor_fail(&cursor, "more handles than a query has placements");
     out->end_pair = cursor_int32(&cursor);
     if (out->end_pair < 0)
         cursor_fail(&cursor, "an end before the first pair");
     out->contact_count = read_verdicts(&cursor, out);
+    if (out->status != FMB_OK && (out->handle_count || out->end_pair || out->verdict_count))
+        cursor_fail(&cursor, "answers and status do not go together");
     read_pairs(&cursor, out);
     read_times(&cursor, out);
     read_boxes(&cursor, out);
+    for (int list = 0; list < GAP_LISTS; list++)
+        wire_read_empty(&cursor);
     out->compute_ns = cursor_int64(&cursor);
     return cursor_end(&cursor);
 }
@@ -187,13 +213,15 @@ size_t wire_write_scene_result(const struct scene_result *result,
     writer_int32(&writer, result->status);
     writer_string(&writer, result->detail);
     writer_int32(&writer, result->method);
-    writer_int64(&writer, result->lost);
-    writer_int64s(&writer, result->key, result->key_count);
+    writer_indices(&writer, result->unknown, result->unknown_count);
+    wire_write_handles(&writer, result->handle, result->handle_count);
     writer_int32(&writer, result->end_pair);
     writer_bytes(&writer, result->verdict, result->verdict_count);
     writer_indices(&writer, result->pair[0], result->names_pairs ? 2 * result->verdict_count : 0);
     writer_doubles(&writer, result->times, result->has_times ? 2 * contacts : 0);
     writer_doubles(&writer, result->boxes, result->has_boxes ? 2 * result->dim * contacts : 0);
+    for (int list = 0; list < GAP_LISTS; list++)
+        writer_int32(&writer, 0);
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);
 }

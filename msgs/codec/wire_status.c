@@ -5,12 +5,6 @@
 
 #include "fmb_msgs_status_t.h"
 
-enum {
-#define X(name) +1
-    MORE_COUNT = 0 WIRE_COUNTERS_MORE(X)
-#undef X
-};
-
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_status_t_get_hash());
@@ -22,18 +16,12 @@ const char *wire_read_status(const void *bytes, uint32_t size, struct wire_statu
     cursor_int64s(&cursor, out->results, FMB_STATUS_COUNT);
     WIRE_COUNTERS_AFTER(X)
 #undef X
-    int64_t more[MORE_COUNT] = {0};
-    cursor_int64s(&cursor, more, MORE_COUNT);
-    const int64_t *next = more;
-#define X(name) out->name = *next++;
-    WIRE_COUNTERS_MORE(X)
-#undef X
     return cursor_end(&cursor);
 }
 
-size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_BYTES_MAX])
+size_t wire_write_status(const struct wire_status *status, unsigned char out[WIRE_STATUS_BYTES_MAX])
 {
-    struct writer writer = writer_begin(out, WIRE_BYTES_MAX, __fmb_msgs_status_t_get_hash());
+    struct writer writer = writer_begin(out, WIRE_STATUS_BYTES_MAX, __fmb_msgs_status_t_get_hash());
     writer_int64(&writer, status->utime);
     writer_int64(&writer, status->server_id);
     writer_string(&writer, status->version);
@@ -41,8 +29,6 @@ size_t wire_write_status(const struct wire_status *status, unsigned char out[WIR
     WIRE_COUNTERS_BEFORE(X)
     writer_int64s(&writer, status->results, FMB_STATUS_COUNT);
     WIRE_COUNTERS_AFTER(X)
-    writer_int32(&writer, MORE_COUNT);
-    WIRE_COUNTERS_MORE(X)
 #undef X
     return writer_end(&writer, out);
 }

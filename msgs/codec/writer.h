@@ -1,5 +1,5 @@
-/* A message on its way to bytes, in LCM's encoding: what cursor.h reads. The caller has counted:
- * there is room for all of it. A caller that has not is ended rather than believed. */
+/* Writes LCM's encoding, which cursor.h reads. The caller makes sure that the message fits;
+ * otherwise the process is aborted. */
 #ifndef WRITER_H
 #define WRITER_H
 
@@ -11,7 +11,7 @@
 #include <string.h>
 
 struct writer {
-    unsigned char *at, *end; /* the room that is left */
+    unsigned char *at, *end; /* the free bytes */
 };
 
 static inline unsigned char *writer_take(struct writer *writer, size_t size)
@@ -40,21 +40,21 @@ static inline void writer_double(struct writer *writer, double value)
     big_endian_put_64(writer_take(writer, 8), bits);
 }
 
-/* On input: room for so many bytes; the type that the message is of. */
-static inline struct writer writer_begin(unsigned char *out, size_t room, int64_t fingerprint)
+/* On input: capacity bytes; the fingerprint of the type. */
+static inline struct writer writer_begin(unsigned char *out, size_t capacity, int64_t fingerprint)
 {
-    struct writer writer = {.at = out, .end = out + room};
+    struct writer writer = {.at = out, .end = out + capacity};
     writer_int64(&writer, fingerprint);
     return writer;
 }
 
-/* On input: where it began. Returns the size of the message. */
+/* On input: out of writer_begin(). Returns the size of the message. */
 static inline size_t writer_end(const struct writer *writer, const unsigned char *out)
 {
     return (size_t) (writer->at - out);
 }
 
-/* Lists: the count, then the numbers. */
+/* Lists: the count, then the elements. */
 
 static inline void writer_doubles(struct writer *writer, const double *number, int32_t count)
 {
@@ -70,7 +70,7 @@ static inline void writer_int64s(struct writer *writer, const int64_t *number, i
         writer_int64(writer, number[i]);
 }
 
-/* The lower 16 bits of each. */
+/* Writes the lower 16 bits of each index. */
 static inline void writer_indices(struct writer *writer, const unsigned *index, int32_t count)
 {
     writer_int32(writer, count);
@@ -85,7 +85,7 @@ static inline void writer_bytes(struct writer *writer, const unsigned char *byte
     memcpy(writer_take(writer, (size_t) count), byte, (size_t) count);
 }
 
-/* The final 0 is one of the bytes that are counted. */
+/* The count includes the final 0. */
 static inline void writer_string(struct writer *writer, const char *text)
 {
     writer_bytes(writer, (const unsigned char *) text, (int32_t) strlen(text) + 1);

@@ -1,6 +1,6 @@
 #include "wire.h"
 
-#include "wire_frame.h"
+#include "wire_placement.h"
 
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
@@ -9,24 +9,32 @@
 #include <float.h>
 #include <string.h>
 
-static_assert((int) WIRE_RESULT_BYTES_MAX < (int) QUERY_BYTES_MAX, "a result is one datagram");
+/* Fixed fields of a result, the longest of its lists, and its texts. */
+static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (2 + 2 * FMB_DIM_MAX) + QUERY_TEXT_MAX +
+                      QUERY_CERTIFICATE_MAX + 8 <=
+                  QUERY_BYTES_MAX,
+              "a result is one datagram");
 
 /* The numbers of the messages are those of the engine. */
-static_assert((int) FMB_CUBOID == FMB_MSGS_FRAME_T_SHAPE_CUBOID &&
-                  (int) FMB_TETRAHEDRON == FMB_MSGS_FRAME_T_SHAPE_TETRAHEDRON &&
-                  (int) FMB_FACE == FMB_MSGS_FRAME_T_SHAPE_FACE,
+static_assert((int) FMB_CUBOID == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID &&
+                  (int) FMB_TETRAHEDRON == FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON &&
+                  (int) FMB_FACE == FMB_MSGS_PLACEMENT_T_SHAPE_FACE,
               "shapes");
 static_assert((int) FMB_SEPARATED == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED &&
                   (int) FMB_TOUCHING == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING &&
                   (int) FMB_OVERLAPPING == FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
               "verdicts");
 static_assert((int) QUERY_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
-                  (int) QUERY_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE,
+                  (int) QUERY_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE &&
+                  (int) QUERY_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP,
               "wants");
 #define X(name, number, text) \
     static_assert((int) FMB_##name == FMB_MSGS_PAIR_RESULT_T_STATUS_##name, text);
 FMB_STATUS_MAP(X)
 #undef X
+
+/* gap, direction and witness, which this version leaves empty. */
+enum { GAP_LISTS = 3 };
 
 const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out)
 {
@@ -47,8 +55,8 @@ const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_q
     out->duration = cursor_double(&cursor);
     out->method = cursor_int32(&cursor);
     out->want = cursor_int32(&cursor);
-    wire_read_frame(&cursor, &out->frame[0]);
-    wire_read_frame(&cursor, &out->frame[1]);
+    wire_read_placement(&cursor, &out->placement[0]);
+    wire_read_placement(&cursor, &out->placement[1]);
     return cursor_end(&cursor);
 }
 
@@ -61,6 +69,8 @@ static void read_box(struct cursor *cursor, struct pair_result *out)
         cursor_fail(cursor, "a box of neither 4 nor 6 numbers");
     out->dim = count / 2;
     out->answer.has_box = count > 0;
+    if (out->answer.has_box && out->answer.verdict < FMB_TOUCHING)
+        cursor_fail(cursor, "a box without contact");
     for (int side = 0; side < 2 && !cursor->error; side++)
         for (int axis = 0; axis < out->dim; axis++)
             out->answer.box[side][axis] = ends[side * out->dim + axis];
@@ -77,6 +87,8 @@ static void read_contact(struct cursor *cursor, struct fmb_answer *out)
     if (!(0 <= out->contact[0] && out->contact[0] <= out->contact[1] && out->contact[1] <= DBL_MAX))
         cursor_fail(cursor, "a contact interval that is no interval");
     out->has_contact = count > 0;
+    if (out->has_contact && out->verdict < FMB_TOUCHING)
+        cursor_fail(cursor, "a contact interval without contact");
 }
 
 static void read_certificate(struct cursor *cursor, struct pair_result *out)
@@ -106,32 +118,34 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
     for (int f = 0; f < 2; f++)
         out->body_id[f] = cursor_int64(&cursor);
     for (int f = 0; f < 2; f++)
-        out->key[f] = cursor_int64(&cursor);
+        wire_read_handle(&cursor, &out->handle[f]);
     out->status = cursor_int32(&cursor);
     cursor_string(&cursor, out->detail, sizeof out->detail);
     out->method = cursor_int32(&cursor);
     int32_t verdict = cursor_int32(&cursor);
-    if ((out->status == FMB_OK) != (fmb_verdict_name(verdict) != NULL))
+    if (out->status == FMB_OK ? !fmb_verdict_name(verdict) : verdict != 0)
         cursor_fail(&cursor, "verdict and status do not go together");
     out->answer.verdict = (enum fmb_verdict) verdict;
     read_contact(&cursor, &out->answer);
     read_box(&cursor, out);
+    for (int list = 0; list < GAP_LISTS; list++)
+        wire_read_empty(&cursor);
     read_certificate(&cursor, out);
     out->compute_ns = cursor_int64(&cursor);
     return cursor_end(&cursor);
 }
 
-size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[WIRE_BYTES_MAX])
+size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[QUERY_BYTES_MAX])
 {
-    struct writer writer = writer_begin(out, WIRE_BYTES_MAX, __fmb_msgs_pair_query_t_get_hash());
+    struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_pair_query_t_get_hash());
     writer_int64(&writer, query->utime);
     writer_int64(&writer, query->client_id);
     writer_int64(&writer, query->sequence_number);
     writer_double(&writer, query->duration);
     writer_int32(&writer, query->method);
     writer_int32(&writer, query->want);
-    wire_write_frame(&writer, &query->frame[0]);
-    wire_write_frame(&writer, &query->frame[1]);
+    wire_write_placement(&writer, &query->placement[0]);
+    wire_write_placement(&writer, &query->placement[1]);
     return writer_end(&writer, out);
 }
 
@@ -144,11 +158,9 @@ static void write_box(struct writer *writer, const struct pair_result *result)
             writer_double(writer, result->answer.box[side][axis]);
 }
 
-size_t wire_write_pair_result(const struct pair_result *result,
-                              unsigned char out[WIRE_RESULT_BYTES_MAX])
+size_t wire_write_pair_result(const struct pair_result *result, unsigned char out[QUERY_BYTES_MAX])
 {
-    struct writer writer =
-        writer_begin(out, WIRE_RESULT_BYTES_MAX, __fmb_msgs_pair_result_t_get_hash());
+    struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_pair_result_t_get_hash());
     writer_int64(&writer, result->utime);
     writer_int64(&writer, result->client_id);
     writer_int64(&writer, result->sequence_number);
@@ -156,13 +168,15 @@ size_t wire_write_pair_result(const struct pair_result *result,
     for (int f = 0; f < 2; f++)
         writer_int64(&writer, result->body_id[f]);
     for (int f = 0; f < 2; f++)
-        writer_int64(&writer, result->key[f]);
+        wire_write_handle(&writer, &result->handle[f]);
     writer_int32(&writer, result->status);
     writer_string(&writer, result->detail);
     writer_int32(&writer, result->method);
     writer_int32(&writer, (int32_t) result->answer.verdict);
     writer_doubles(&writer, result->answer.contact, result->answer.has_contact ? 2 : 0);
     write_box(&writer, result);
+    for (int list = 0; list < GAP_LISTS; list++)
+        writer_int32(&writer, 0);
     writer_string(&writer, result->certificate ? result->certificate : "");
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);

@@ -1,9 +1,8 @@
-/* A walk over bytes that nobody vouches for, in LCM's encoding: big-endian, no padding. Sizes are
- * of 64 bits, so that no count can make them wrap. The first error ends the walk: there is nothing
- * left, and everything read after it is 0.
+/* Reads untrusted bytes in LCM's encoding: big-endian, no padding. Sizes have 64 bits, so that no
+ * count overflows them. After the first error no bytes are left, and everything read is 0.
  *
- * Numbers and lists of them are inline: a replay reads tens of millions of them a second. Nothing
- * here gives the address of a cursor away, so that of one in a local variable a compiler makes
+ * Numbers and lists of numbers are inline: a replay reads tens of millions of them a second. No
+ * inline function stores the address of a cursor, so that compilers can keep a local cursor in
  * registers. */
 #ifndef CURSOR_H
 #define CURSOR_H
@@ -16,8 +15,8 @@
 #include <string.h>
 
 struct cursor {
-    const unsigned char *at, *end; /* what is left; nothing after an error */
-    const char *error;             /* static; NULL: none so far */
+    const unsigned char *at, *end; /* the bytes left; none after an error */
+    const char *error;             /* static text of the first error; NULL: none */
 };
 
 static inline uint64_t cursor_left(const struct cursor *cursor)
@@ -25,14 +24,14 @@ static inline uint64_t cursor_left(const struct cursor *cursor)
     return (uint64_t) (cursor->end - cursor->at);
 }
 
-/* An error; the first one stays. */
+/* Sets the error, unless there is one already. */
 static inline void cursor_fail(struct cursor *cursor, const char *error)
 {
     cursor->error = cursor->error ? cursor->error : error;
     cursor->end = cursor->at;
 }
 
-/* The next so many bytes, 1 or more; NULL where they are not there, which is an error. */
+/* The next size bytes. NULL: fewer are left, which is an error. */
 static inline const unsigned char *cursor_take(struct cursor *cursor, uint64_t size)
 {
     const unsigned char *bytes = cursor->at;
@@ -70,13 +69,12 @@ static inline double cursor_double(struct cursor *cursor)
     return bytes ? cursor_double_at(bytes) : 0;
 }
 
-/* On input: size bytes as LCM gives them (it is unsigned there, and can be a negative number of
- * ints: that is an error); what type they should be of. */
+/* Begins to read a message and checks the fingerprint of its type. On input: size bytes, which may
+ * be NULL if size is 0. A size above INT32_MAX is an error. */
 static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint)
 {
-    /* Of no bytes there may be no address, to which not even 0 can be added. */
-    struct cursor cursor = {.at = bytes ? bytes : (const void *) ""};
-    cursor.end = cursor.at + size;
+    struct cursor cursor = {.at = bytes ? bytes : (const void *) ""}; /* NULL + 0 is undefined */
+    cursor.end = cursor.at + (size <= INT32_MAX ? size : 0);
     if (size > INT32_MAX)
         cursor_fail(&cursor, "size out of range");
     else if (cursor_int64(&cursor) != fingerprint)
@@ -84,13 +82,14 @@ static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64
     return cursor;
 }
 
-/* The error, also that something is left over; or NULL. */
+/* The first error, NULL for none. Bytes left over are an error too. */
 static inline const char *cursor_end(const struct cursor *cursor)
 {
     return cursor_left(cursor) ? "longer than its fields" : cursor->error;
 }
 
-/* A count of things of at least size bytes each: they are there, or it is an error, and 0. */
+/* A count of elements of at least size bytes each. It is an error if fewer bytes are left; the
+ * count is then 0. */
 static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
 {
     const int32_t count = cursor_int32(cursor);
@@ -100,7 +99,7 @@ static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
     return 0;
 }
 
-/* A counted list of things of so many bytes: all of it is walked. Returns the count. */
+/* A count, and that many elements of size bytes each. Returns the count; *bytes: the elements. */
 static inline int32_t cursor_list(struct cursor *cursor, uint64_t size, const unsigned char **bytes)
 {
     const int32_t count = cursor_count(cursor, size);
@@ -109,7 +108,7 @@ static inline int32_t cursor_list(struct cursor *cursor, uint64_t size, const un
     return count;
 }
 
-/* Counted lists: all of it is walked, the first max of it put into out. Returns the count. */
+/* A count, and that many numbers: all are read, the first max are stored. Returns the count. */
 static inline int32_t cursor_doubles(struct cursor *cursor, double *out, int max)
 {
     const unsigned char *bytes;
@@ -122,17 +121,18 @@ static inline int32_t cursor_doubles(struct cursor *cursor, double *out, int max
 int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max);
 int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max);
 
-/* Of 16 bits each; a negative number becomes one above 2^31. */
+/* The same for 16-bit integers; a negative one becomes a number above 2^31. */
 int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max);
 
-/* A string, where it stands. Returns its length, without the final 0; after an error 0, and *bytes
- * is left alone. */
+/* A string. Returns its length without the final 0, and in *bytes where it is in the message. After
+ * an error returns 0, and *bytes is unchanged. */
 size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes);
 
-/* A string; what does not fit into size bytes is cut, and what is not printable becomes '?'. */
+/* A string, truncated to size > 0 bytes, final 0 included; bytes that are not printable become '?'.
+ */
 void cursor_string(struct cursor *cursor, char *out, size_t size);
 
-/* ASCII; other bytes could do things to a terminal. */
+/* Whether the byte is printable ASCII. Other bytes could control a terminal. */
 bool cursor_is_printable(unsigned char byte);
 
 #endif

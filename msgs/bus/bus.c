@@ -1,0 +1,322 @@
+#define _GNU_SOURCE
+#include "bus.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "socket.h"
+#include "trim.h"
+#include "url.h"
+
+enum {
+    DATAGRAM_MAX = 65507, /* UDP's limit over IPv4 */
+    BUFFER_SIZE = 65536,
+    MAGIC_SIZE = 4,
+    HEADER_SIZE = 8 /* magic number, sequence number */
+};
+
+static const char short_magic[MAGIC_SIZE] = {'L', 'C', '0', '2'};
+
+/* Values of bus.spin_until besides a time. */
+enum { SPIN_NOT = 0, SPIN_FROM_NEXT_WAIT = -1 };
+
+/* Where another program keeps the core busy, sched_yield() gives it the core for a whole time slice
+ * (some milliseconds), while a process that sleeps in poll() is woken up at once. A yield that
+ * takes YIELD_LONG_NS is such a slice: until SPIN_PAUSE_NS later no wait spins, so that at most one
+ * wait a second is late. On an idle machine yields are that long less than once in 10,000 messages.
+ */
+enum { YIELD_LONG_NS = 1000000, SPIN_PAUSE_NS = 1000000000 };
+
+struct listener {
+    bool every; /* any channel */
+    char channel[BUS_CHANNEL_MAX];
+};
+
+struct bus {
+    struct bus_url url;
+    lcm_t *lcm;
+    int fd; /* -1 before bus_listen() */
+    int listener_count;
+    struct listener listeners[BUS_LISTENERS_MAX];
+    struct mmsghdr datagrams[BUS_BATCH];
+    struct iovec buffers[BUS_BATCH];
+    unsigned char *memory; /* of the buffers */
+    int64_t spin_until;    /* CLOCK_MONOTONIC, ns, or SPIN_* */
+    int64_t pause_until;   /* no spinning before this time */
+    struct bus_counts counts;
+    uint32_t drops_read; /* the kernel's counter when it was last read */
+};
+
+bool bus_prefix_ok(const char *prefix)
+{
+    static const char allowed[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+    const size_t length = strlen(prefix);
+    return length <= BUS_PREFIX_MAX && strspn(prefix, allowed) == length;
+}
+
+void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name)
+{
+    snprintf(out, BUS_CHANNEL_MAX, "%s%s", prefix, name);
+}
+
+/* ---- Opening and closing ---- */
+
+/* liblcm's part: it opens a socket to send with, and pipes that stay unused. */
+static lcm_t *open_publisher(const struct bus_url *url)
+{
+    char group[INET_ADDRSTRLEN], full[64];
+    inet_ntop(AF_INET, &url->group.sin_addr, group, sizeof group);
+    snprintf(full, sizeof full, "udpm://%s:%d?ttl=%d", group, ntohs(url->group.sin_port), url->ttl);
+    return lcm_create(full);
+}
+
+static struct bus *no_memory(char why[BUS_WHY_MAX])
+{
+    snprintf(why, BUS_WHY_MAX, "no memory for an LCM bus");
+    return NULL;
+}
+
+struct bus *bus_open(const char *url, char why[BUS_WHY_MAX])
+{
+    struct bus_url parsed;
+    if (!url || !*url)
+        url = getenv("LCM_DEFAULT_URL");
+    if (!url || !*url)
+        url = "udpm://";
+    /* The route is checked first: without one liblcm would print advice of its own. */
+    if (!bus_url_parse(url, &parsed, why) || !bus_socket_route(&parsed.group, why))
+        return NULL;
+    struct bus *bus = calloc(1, sizeof *bus);
+    if (!bus)
+        return no_memory(why);
+    bus->url = parsed;
+    bus->fd = -1;
+    bus->lcm = open_publisher(&parsed);
+    if (bus->lcm)
+        return bus;
+    snprintf(why, BUS_WHY_MAX, "liblcm cannot open the LCM bus (%s)", strerror(errno));
+    free(bus);
+    return NULL;
+}
+
+void bus_close(struct bus *bus)
+{
+    if (!bus)
+        return;
+    lcm_destroy(bus->lcm);
+    if (bus->fd >= 0)
+        close(bus->fd);
+    free(bus->memory);
+    free(bus);
+}
+
+/* Memory is touched when a datagram is first read into it. */
+static bool allocate_buffers(struct bus *bus)
+{
+    if (!bus->memory)
+        bus->memory = malloc((size_t) BUS_BATCH * BUFFER_SIZE);
+    if (!bus->memory)
+        return false;
+    for (size_t i = 0; i < BUS_BATCH; i++) {
+        bus->buffers[i] = (struct iovec){bus->memory + i * BUFFER_SIZE, BUFFER_SIZE};
+        bus->datagrams[i].msg_hdr = (struct msghdr){.msg_iov = &bus->buffers[i], .msg_iovlen = 1};
+    }
+    return true;
+}
+
+static bool start_receiving(struct bus *bus, char why[BUS_WHY_MAX])
+{
+    if (bus->fd >= 0)
+        return true;
+    if (!allocate_buffers(bus)) {
+        no_memory(why);
+        return false;
+    }
+    bus->fd = bus_socket_open(&bus->url, &bus->counts.receive_buffer, why);
+    return bus->fd >= 0;
+}
+
+static bool channel_ok(const char *channel)
+{
+    return *channel && memchr(channel, '\0', BUS_CHANNEL_MAX);
+}
+
+/* A listener to every channel needs all datagrams whole. */
+static void trim_others(const struct bus *bus)
+{
+    const char *channels[BUS_LISTENERS_MAX];
+    for (int i = 0; i < bus->listener_count; i++) {
+        if (bus->listeners[i].every) {
+            setsockopt(bus->fd, SOL_SOCKET, SO_DETACH_FILTER, NULL, 0);
+            return;
+        }
+        channels[i] = bus->listeners[i].channel;
+    }
+    trim_attach(bus->fd, channels, bus->listener_count);
+}
+
+bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
+{
+    if (bus->listener_count == BUS_LISTENERS_MAX) {
+        snprintf(why, BUS_WHY_MAX, "a bus receives at most %d channels", BUS_LISTENERS_MAX);
+        return false;
+    }
+    if (channel && !channel_ok(channel)) {
+        snprintf(why, BUS_WHY_MAX, "an LCM channel has a name of 1 to %d bytes",
+                 BUS_CHANNEL_MAX - 1);
+        return false;
+    }
+    if (!start_receiving(bus, why))
+        return false;
+    struct listener *listener = &bus->listeners[bus->listener_count++];
+    listener->every = !channel;
+    if (channel)
+        strcpy(listener->channel, channel);
+    trim_others(bus);
+    return true;
+}
+
+/* ---- Receiving ---- */
+
+static int64_t now(clockid_t clock, long unit_ns)
+{
+    struct timespec time;
+    clock_gettime(clock, &time);
+    return (int64_t) time.tv_sec * (1000000000 / unit_ns) + time.tv_nsec / unit_ns;
+}
+
+/* Finds channel and payload of a short datagram. An empty channel is malformed: no log can hold
+ * it, and its payload could exceed BUS_PAYLOAD_MAX. */
+static bool parse_datagram(const unsigned char *bytes, size_t size, struct bus_message *out)
+{
+    if (size < HEADER_SIZE || memcmp(bytes, short_magic, MAGIC_SIZE) != 0)
+        return false;
+    const size_t remaining = size - HEADER_SIZE;
+    const unsigned char *channel = bytes + HEADER_SIZE;
+    const unsigned char *end =
+        memchr(channel, '\0', remaining < BUS_CHANNEL_MAX ? remaining : BUS_CHANNEL_MAX);
+    if (!end || end == channel)
+        return false;
+    out->channel = (const char *) channel;
+    out->bytes = end + 1;
+    out->size = (size_t) (bytes + size - out->bytes);
+    return true;
+}
+
+/* The first listener that receives the channel; -1: none. */
+static int find_listener(const struct bus *bus, const char *channel)
+{
+    for (int i = 0; i < bus->listener_count; i++)
+        if (bus->listeners[i].every || strcmp(bus->listeners[i].channel, channel) == 0)
+            return i;
+    return -1;
+}
+
+static void handle_datagram(struct bus *bus, const struct mmsghdr *datagram,
+                            struct bus_message *message, bus_handler *handler, void *user)
+{
+    if (datagram->msg_hdr.msg_flags & MSG_TRUNC ||
+        !parse_datagram(datagram->msg_hdr.msg_iov->iov_base, datagram->msg_len, message)) {
+        bus->counts.malformed++;
+        return;
+    }
+    message->listener = find_listener(bus, message->channel);
+    if (message->listener < 0) {
+        bus->counts.foreign++;
+        return;
+    }
+    bus->counts.received++;
+    bus->spin_until = SPIN_FROM_NEXT_WAIT;
+    handler(user, message);
+}
+
+int bus_receive(struct bus *bus, bus_handler *handler, void *user)
+{
+    if (bus->fd < 0)
+        return 0;
+    const int count = recvmmsg(bus->fd, bus->datagrams, BUS_BATCH, MSG_DONTWAIT, NULL);
+    if (count < 0)
+        return errno == EAGAIN || errno == EINTR ? 0 : -1;
+    struct bus_message message = {.utime = now(CLOCK_REALTIME, 1000)};
+    for (int i = 0; i < count; i++)
+        handle_datagram(bus, &bus->datagrams[i], &message, handler, user);
+    return count;
+}
+
+/* ---- Waiting ---- */
+
+/* poll() of both; the result as bus_wait() returns it. */
+static int poll_both(const struct bus *bus, int other_fd, int timeout_ms)
+{
+    struct pollfd fds[] = {{.fd = bus->fd, .events = POLLIN}, {.fd = other_fd, .events = POLLIN}};
+    if (poll(fds, 2, timeout_ms) < 0)
+        return errno == EINTR ? 0 : -1;
+    return (fds[0].revents ? 1 : 0) | (fds[1].revents ? 2 : 0);
+}
+
+/* Waits actively. The time is taken from the first wait after the message, since what the caller
+ * did in between was no waiting. poll() costs no more than recv(MSG_PEEK) or recvmmsg() would, and
+ * looks at both descriptors. */
+static int spin(struct bus *bus, int other_fd)
+{
+    int64_t time = now(CLOCK_MONOTONIC, 1);
+    if (bus->spin_until == SPIN_FROM_NEXT_WAIT)
+        bus->spin_until = time < bus->pause_until ? SPIN_NOT : time + BUS_SPIN_NS;
+    while (time < bus->spin_until) {
+        const int ready = poll_both(bus, other_fd, 0);
+        if (ready)
+            return ready;
+        const int64_t before = time;
+        sched_yield();
+        time = now(CLOCK_MONOTONIC, 1);
+        if (time - before > YIELD_LONG_NS)
+            bus->pause_until = time + SPIN_PAUSE_NS;
+    }
+    bus->spin_until = SPIN_NOT;
+    return 0;
+}
+
+int bus_wait(struct bus *bus, int other_fd, int timeout_ms)
+{
+    const int ready = bus->spin_until != SPIN_NOT && timeout_ms != 0 ? spin(bus, other_fd) : 0;
+    return ready ? ready : poll_both(bus, other_fd, timeout_ms);
+}
+
+int bus_fileno(const struct bus *bus)
+{
+    return bus->fd;
+}
+
+/* ---- Publishing, counts ---- */
+
+bool bus_publish(struct bus *bus, const char *channel, const void *bytes, size_t size)
+{
+    if (!channel_ok(channel) || size > DATAGRAM_MAX - HEADER_SIZE - (strlen(channel) + 1))
+        return false;
+    bus->spin_until = SPIN_FROM_NEXT_WAIT;
+    return lcm_publish(bus->lcm, channel, bytes, (unsigned) size) == 0;
+}
+
+/* The kernel's counter is read when it is needed (SO_MEMINFO): to have it with each datagram
+ * (SO_RXQ_OVFL) would cost time there, and miss what was dropped after the last one. It also counts
+ * what a socket filter drops. So none drops anything (trim.h), and own echoes are dropped by
+ * channel. */
+struct bus_counts bus_counts(struct bus *bus)
+{
+    if (bus->fd >= 0) {
+        const uint32_t drops = bus_socket_drops(bus->fd);
+        bus->counts.dropped += (uint32_t) (drops - bus->drops_read);
+        bus->drops_read = drops;
+    }
+    return bus->counts;
+}

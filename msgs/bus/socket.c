@@ -1,0 +1,76 @@
+#define _GNU_SOURCE
+#include "socket.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <linux/sock_diag.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+bool bus_socket_route(const struct sockaddr_in *group, char why[BUS_WHY_MAX])
+{
+    char address[INET_ADDRSTRLEN];
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const bool ok = fd >= 0 && connect(fd, (const struct sockaddr *) group, sizeof *group) == 0;
+    const int error = errno;
+    if (fd >= 0)
+        close(fd);
+    if (ok)
+        return true;
+    inet_ntop(AF_INET, &group->sin_addr, address, sizeof address);
+    snprintf(why, BUS_WHY_MAX,
+             "no route to the multicast group %s (%s); to keep the bus on this host, run:\n"
+             "  sudo ip link set lo up multicast on && sudo ip route add 224.0.0.0/4 dev lo",
+             address, strerror(error));
+    return false;
+}
+
+/* Beyond the system's limit where the process may, else up to it. What was granted is read back. */
+static long set_receive_buffer(int fd, int bytes)
+{
+    int granted = 0;
+    socklen_t size = sizeof granted;
+    if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes) != 0)
+        setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+    getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+    return granted;
+}
+
+/* SO_REUSEADDR: every socket bound to the group receives each datagram. SO_REUSEPORT would let the
+ * kernel choose one of them. */
+static bool join(int fd, const struct sockaddr_in *group)
+{
+    const int on = 1;
+    const struct ip_mreq membership = {.imr_multiaddr = group->sin_addr,
+                                       .imr_interface = {htonl(INADDR_ANY)}};
+    return setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
+           bind(fd, (const struct sockaddr *) group, sizeof *group) == 0 &&
+           setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
+}
+
+int bus_socket_open(const struct bus_url *url, long *granted, char why[BUS_WHY_MAX])
+{
+    char address[INET_ADDRSTRLEN];
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (fd >= 0) {
+        *granted = set_receive_buffer(fd, url->receive_buffer);
+        if (join(fd, &url->group))
+            return fd;
+    }
+    const int error = errno;
+    if (fd >= 0)
+        close(fd);
+    inet_ntop(AF_INET, &url->group.sin_addr, address, sizeof address);
+    snprintf(why, BUS_WHY_MAX, "cannot receive from the multicast group %s:%d (%s)", address,
+             ntohs(url->group.sin_port), strerror(error));
+    return -1;
+}
+
+uint32_t bus_socket_drops(int fd)
+{
+    uint32_t info[SK_MEMINFO_VARS] = {0};
+    socklen_t size = sizeof info;
+    return getsockopt(fd, SOL_SOCKET, SO_MEMINFO, info, &size) == 0 ? info[SK_MEMINFO_DROPS] : 0;
+}

@@ -1,0 +1,205 @@
+/* Queries and results as plain structs: wire.h encodes and decodes them, and the code that answers
+ * queries needs no LCM. Fields mean what the message types in msgs/ say. */
+#ifndef QUERY_H
+#define QUERY_H
+
+#include "fmb.h"
+#include "handle.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The largest id and sequence number: doubles represent integers exactly up to here, and some LCM
+ * languages have no other numbers. */
+#define QUERY_ID_MAX ((INT64_C(1) << 53) - 1)
+
+static inline bool query_id_ok(int64_t id)
+{
+    return id >= 0 && id <= QUERY_ID_MAX;
+}
+
+enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2, QUERY_WANT_TIMES = 4, QUERY_WANT_GAP = 8 };
+
+/* Most bytes of a query or result: one datagram, which LCM's Java sends unfragmented. */
+enum { QUERY_BYTES_MAX = 63900 };
+
+/* Most bytes of a detail text, final 0 included. */
+enum { QUERY_TEXT_MAX = 160 };
+
+/* Most bytes of a certificate, final 0 included. */
+enum { QUERY_CERTIFICATE_MAX = 60000 };
+
+enum { QUERY_ORIENTATION_MAX = 4 };
+
+/* Fields that every query begins with. */
+struct query_header {
+    int64_t utime, client_id, sequence_number;
+};
+
+/* A body in body coordinates, encoded: the fields dim to numbers of placement_t. Two bodies are the
+ * same if and only if these bytes are (so -0 differs from 0); the handle is their hash. Not owned.
+ */
+struct geometry {
+    const unsigned char *bytes;
+    size_t size;
+};
+
+/* A body at a place. Counts are those of the message and may be anything from 0; of more numbers
+ * than an array holds, the first are kept. */
+struct placement {
+    int64_t body_id;      /* 0: anonymous */
+    struct handle handle; /* all 0: none */
+    int32_t dim;          /* not checked: any number from 0 */
+    int32_t frame_count;  /* 0 with a handle */
+    int32_t number_count; /* of all frames; 0 with a handle */
+    int32_t orientation_count;
+    int32_t velocity_count;
+    struct geometry geometry; /* in the message read, or of the caller that writes */
+    double position[FMB_DIM_MAX];
+    double orientation[QUERY_ORIENTATION_MAX];
+    double velocity[FMB_DIM_MAX];
+};
+
+/* Whether the body is given by its handle alone. */
+static inline bool placement_by_handle(const struct placement *placement)
+{
+    return placement->frame_count == 0 && placement->number_count == 0 &&
+           !handle_is_none(&placement->handle);
+}
+
+/* One frame of a geometry. */
+struct geometry_frame {
+    int shape;                             /* not checked */
+    int count;                             /* of components */
+    double origin[FMB_DIM_MAX];            /* body coordinates */
+    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis] */
+};
+
+/* Most bytes of a geometry of one frame. */
+enum { GEOMETRY_FRAME_BYTES_MAX = 4 + 4 + 1 + 4 + 8 * (FMB_DIM_MAX + FMB_COMPONENTS_MAX) };
+
+/* Encodes a body of one frame. On input: dim and a shape of that dimension; frame->count is not
+ * read. Returns the bytes of out used. */
+size_t geometry_write(int dim, const struct geometry_frame *frame,
+                      unsigned char out[GEOMETRY_FRAME_BYTES_MAX]);
+
+/* Encodes the geometry of a placement that names its body by handle: dim, and no frames. */
+enum { GEOMETRY_NONE_BYTES = 12 };
+void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES]);
+
+/* Reads the first frame. On input: a geometry of one frame or more, decoded by wire.h. Returns
+ * false if dim, shapes and numbers do not match. */
+bool geometry_read(const struct geometry *geometry, int *dim, struct geometry_frame *out);
+
+/* Shape of the first frame; 0: there is none. */
+int geometry_shape(const struct geometry *geometry);
+
+struct pair_query {
+    int64_t utime; /* microseconds since 1970 */
+    int64_t client_id;
+    int64_t sequence_number;
+    double duration; /* seconds */
+    int32_t method;  /* 0: the default */
+    int32_t want;
+    struct placement placement[2];
+};
+
+struct pair_result {
+    int64_t utime, client_id, sequence_number;
+    int64_t server_id;
+    int64_t body_id[2];
+    struct handle handle[2];     /* of bodies that came whole with an id; else all 0 */
+    int32_t status;              /* enum fmb_status */
+    char detail[QUERY_TEXT_MAX]; /* "" where OK */
+    int32_t method;              /* 0 where not OK */
+    int32_t dim;                 /* of the box, 2 or 3; 0 where there is none */
+    struct fmb_answer answer;    /* all 0 where not OK */
+    const char *certificate;     /* NULL: none. Owned by the answerer or the message */
+    int64_t compute_ns;
+};
+
+/* ---- Scenes ---- */
+
+enum { QUERY_PAIRS_LISTED = 0, QUERY_PAIRS_ALL = 1, QUERY_PAIRS_ACROSS = 2 };
+
+/* No query of QUERY_BYTES_MAX has more placements that are valid, nor more pairs listed: a
+ * placement takes 60 bytes (2D, by handle, at rest) or more, a pair 4. */
+enum {
+    QUERY_PLACEMENT_BYTES_MIN = 60,
+    QUERY_PLACEMENTS_MAX = QUERY_BYTES_MAX / QUERY_PLACEMENT_BYTES_MIN,
+    QUERY_PAIRS_MAX = QUERY_BYTES_MAX / 4
+};
+
+struct scene_query {
+    int64_t utime, client_id, sequence_number;
+    double duration;
+    int32_t method, want;
+    double margin;
+    int32_t which; /* QUERY_PAIRS_ */
+    int32_t split, first_pair;
+    /* Counts of the message; of more elements than an array holds, the first are kept. */
+    int32_t placement_count, index_count, ignored_count;
+    struct placement placement[QUERY_PLACEMENTS_MAX];
+    /* [pair][a, b], not checked; a negative index became a number beyond every count. */
+    unsigned pair[QUERY_PAIRS_MAX][2];
+    unsigned ignored[QUERY_PAIRS_MAX][2];
+};
+
+/* Capacity of a result: at least five bytes for each named pair, eight for each number. */
+enum {
+    QUERY_VERDICTS_MAX = QUERY_PAIRS_MAX,
+    QUERY_NAMED_MAX = QUERY_BYTES_MAX / 5,
+    QUERY_NUMBERS_MAX = QUERY_BYTES_MAX / 8
+};
+
+struct scene_result {
+    int64_t utime, client_id, sequence_number;
+    int64_t server_id;
+    int32_t status;              /* enum fmb_status */
+    char detail[QUERY_TEXT_MAX]; /* "" where OK */
+    int32_t method;              /* 0 where not OK */
+    int32_t end_pair;
+    int64_t compute_ns;
+    int dim;               /* of the boxes, 2 or 3; 0 where there are none */
+    int32_t unknown_count; /* placements whose handles are not held */
+    int32_t handle_count;  /* placements that came whole with an id */
+    int32_t verdict_count; /* of the named pairs, or of all pairs from first_pair on */
+    int32_t contact_count; /* verdicts that touch or overlap */
+    bool names_pairs, has_times, has_boxes;
+    unsigned unknown[QUERY_PLACEMENTS_MAX];     /* [unknown_count] indices, ascending */
+    struct handle handle[QUERY_PLACEMENTS_MAX]; /* [handle_count], in the order of placements */
+    unsigned char verdict[QUERY_VERDICTS_MAX];
+    unsigned pair[QUERY_NAMED_MAX][2]; /* [verdict_count][a, b] where names_pairs */
+    double times[QUERY_NUMBERS_MAX];   /* [contact][first, last], seconds, where has_times */
+    double boxes[QUERY_NUMBERS_MAX];   /* [contact][lower, upper][dim], where has_boxes */
+};
+
+/* ---- Definitions ---- */
+
+enum {
+    QUERY_HANDLES_MAX = QUERY_BYTES_MAX / (int) sizeof(struct handle),
+    /* A body takes its handle and a geometry of at least 6 numbers (2D). */
+    QUERY_BODIES_MAX = QUERY_BYTES_MAX / (16 + 4 + 4 + 1 + 4 + 48)
+};
+
+struct definition_query {
+    int64_t utime, client_id, sequence_number;
+    int64_t first;
+    int32_t handle_count; /* 0: all bodies held */
+    struct handle handle[QUERY_HANDLES_MAX];
+};
+
+struct definition {
+    int64_t utime, client_id, sequence_number;
+    int64_t server_id;
+    int32_t status;
+    char detail[QUERY_TEXT_MAX]; /* "" where OK */
+    int64_t next;                /* 0: complete */
+    int32_t body_count;
+    struct query_body {
+        struct handle handle;
+        struct geometry geometry; /* in the message read, or of the caller that writes */
+    } body[QUERY_BODIES_MAX];
+};
+
+#endif

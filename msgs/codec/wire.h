@@ -1,0 +1,128 @@
+/* Converts messages between bytes and plain structs, and checks untrusted bytes.
+ *
+ * LCM's encoding is big-endian without padding: 8 bytes of fingerprint, then the fields in order.
+ * An array is its elements; a string is its length with the final 0 (int32_t), then its bytes. The
+ * readers compute sizes in 64 bits and write into memory of the caller: whatever a count says, they
+ * never read beyond the message and never allocate. They accept exactly what lcm-gen's encoders
+ * write: the fingerprint of the type, counts from 0, strings that end where they say, and not one
+ * byte more or less. Results must be consistent besides:
+ *
+ * - A verdict is present if and only if the status is OK. Intervals and boxes are ordered, and only
+ *   present for bodies that meet. A certificate is only present with a verdict, is printable ASCII
+ *   and shorter than QUERY_CERTIFICATE_MAX.
+ * - A scene has as many named pairs, times and boxes as its verdicts require. Named pairs are in
+ *   order. Unknown bodies are present if and only if the status is UNKNOWN_BODY, and nothing else
+ *   where it is not OK.
+ * - The bodies of a definition have frames, and match their handle. The frames are not checked. */
+#ifndef WIRE_H
+#define WIRE_H
+
+#include "query.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Channel names, without a prefix (bus_channel()). */
+#define WIRE_PAIR_QUERY "FMB_PAIR_QUERY"
+#define WIRE_PAIR_RESULT "FMB_PAIR_RESULT"
+#define WIRE_SCENE_QUERY "FMB_SCENE_QUERY"
+#define WIRE_SCENE_RESULT "FMB_SCENE_RESULT"
+#define WIRE_DEFINITION_QUERY "FMB_DEFINITION_QUERY"
+#define WIRE_DEFINITION "FMB_DEFINITION"
+#define WIRE_STATUS "FMB_STATUS"
+
+/* Most bytes of a heartbeat. */
+enum { WIRE_STATUS_BYTES_MAX = 1400 };
+
+/* The counters of the heartbeat, int64_t each, in the order of status_t.lcm: those before results,
+ * and those after it. */
+#define WIRE_COUNTERS_BEFORE(X) \
+    X(uptime_us)                \
+    X(receive_buffer)           \
+    X(received)                 \
+    X(answered)                 \
+    X(unsent)                   \
+    X(scenes)                   \
+    X(definitions)              \
+    X(pairs)
+#define WIRE_COUNTERS_AFTER(X) \
+    X(malformed)               \
+    X(foreign)                 \
+    X(dropped)                 \
+    X(waiting)                 \
+    X(most_waiting)            \
+    X(bodies)                  \
+    X(frames)                  \
+    X(frame_capacity)          \
+    X(ids)                     \
+    X(hits)                    \
+    X(misses)                  \
+    X(evictions)               \
+    X(compute_p50_ns)          \
+    X(compute_p99_ns)          \
+    X(compute_max_ns)
+
+/* The heartbeat (status_t.lcm). */
+struct wire_status {
+    int64_t utime, server_id;
+    char version[32];
+#define X(name) int64_t name;
+    WIRE_COUNTERS_BEFORE(X)
+    int64_t results[FMB_STATUS_COUNT]; /* [status] */
+    WIRE_COUNTERS_AFTER(X)
+#undef X
+};
+
+/* Readers. On input: size bytes of payload.
+ * On output: NULL and *out; or a static text of what is wrong, and *out unspecified. Texts longer
+ * than the struct holds are truncated; counts of statuses from FMB_STATUS_COUNT on are ignored; of
+ * more placements, pairs or handles than the struct holds, the first are kept. Geometries and the
+ * certificate of *out point into bytes. */
+const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out);
+const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out);
+const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene_query *out);
+const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scene_result *out);
+const char *wire_read_definition_query(const void *bytes, uint32_t size,
+                                       struct definition_query *out);
+const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher *hasher,
+                                 struct definition *out);
+const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
+
+/* Read the header of a message of the type, and ignore the remainder. */
+const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out);
+const char *wire_read_scene_header(const void *bytes, uint32_t size, struct query_header *out);
+const char *wire_read_definition_header(const void *bytes, uint32_t size, struct query_header *out);
+const char *wire_read_pair_result_header(const void *bytes, uint32_t size,
+                                         struct query_header *out);
+const char *wire_read_scene_result_header(const void *bytes, uint32_t size,
+                                          struct query_header *out);
+
+/* Writers. Return the bytes of out used. On input: a message that fits (sizes below), with counts
+ * and dimensions within the arrays of its struct. */
+size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[QUERY_BYTES_MAX]);
+size_t wire_write_pair_result(const struct pair_result *result, unsigned char out[QUERY_BYTES_MAX]);
+size_t wire_write_scene_query(const struct scene_query *query, unsigned char out[QUERY_BYTES_MAX]);
+size_t wire_write_scene_result(const struct scene_result *result,
+                               unsigned char out[QUERY_BYTES_MAX]);
+size_t wire_write_definition_query(const struct definition_query *query,
+                                   unsigned char out[QUERY_BYTES_MAX]);
+size_t wire_write_definition(const struct definition *definition,
+                             unsigned char out[QUERY_BYTES_MAX]);
+size_t wire_write_status(const struct wire_status *status,
+                         unsigned char out[WIRE_STATUS_BYTES_MAX]);
+
+/* Sizes of messages without their lists. A pair query adds its placements; a scene query its
+ * placements, and WIRE_PAIR_BYTES for each pair listed or ignored. A scene result (size with the
+ * longest detail) adds 2 bytes for each unknown body, 16 for each handle, 1 for each verdict, 4 for
+ * each named pair, and 8 for each number of times and boxes. A definition adds 16 bytes and the
+ * geometry for each body. A pair result always fits. */
+enum {
+    WIRE_PAIR_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4,
+    WIRE_SCENE_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4 + 8 + 3 * 4 + 3 * 4,
+    WIRE_SCENE_RESULT_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 4 + 10 * 4 + 8,
+    WIRE_DEFINITION_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 8 + 4,
+    WIRE_PAIR_BYTES = 4
+};
+size_t wire_placement_bytes(const struct placement *placement);
+
+#endif

@@ -1,0 +1,38 @@
+/* Parts that messages share: header, placement, handles, geometry. Private to wire_*.c. */
+#ifndef WIRE_PLACEMENT_H
+#define WIRE_PLACEMENT_H
+
+#include "cursor.h"
+#include "wire.h"
+#include "writer.h"
+
+/* The fields that all queries and results begin with. */
+const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
+                             struct query_header *out);
+
+void wire_read_placement(struct cursor *cursor, struct placement *out);
+
+void wire_write_placement(struct writer *writer, const struct placement *placement);
+
+void wire_read_handle(struct cursor *cursor, struct handle *out);
+
+void wire_write_handle(struct writer *writer, const struct handle *handle);
+
+/* A count of bytes and the handles in them: all are read, the first max are stored. Returns the
+ * number of handles. */
+int32_t wire_read_handles(struct cursor *cursor, struct handle *out, int max);
+
+void wire_write_handles(struct writer *writer, const struct handle *handles, int32_t count);
+
+/* The fields dim to numbers. On output: *frames and *numbers are their counts. */
+void wire_read_geometry(struct cursor *cursor, struct geometry *out, int32_t *dim, int32_t *frames,
+                        int32_t *numbers);
+
+/* A list that this version does not use: an error unless it is empty. */
+static inline void wire_read_empty(struct cursor *cursor)
+{
+    if (cursor_int32(cursor) != 0)
+        cursor_fail(cursor, "a list that this version leaves empty");
+}
+
+#endif

@@ -1,0 +1,865 @@
+/* The bus beside liblcm, and against raw datagrams. Runs itself in a network of its own (netns);
+ * where there is none, it is skipped. */
+#define _GNU_SOURCE
+#include "bus.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <lcm/lcm.h>
+#include <sched.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "url.h"
+
+#define GROUP "239.255.76.67"
+enum { PATIENCE_MS = 5000, LARGEST = 65497 /* on a channel of one byte */ };
+
+static int port; /* of this process */
+
+/* ---- Helpers ---- */
+
+static struct bus *open_bus(const char *options)
+{
+    char url[128], why[BUS_WHY_MAX];
+    snprintf(url, sizeof url, "udpm://" GROUP ":%d?ttl=0%s", port, options);
+    struct bus *bus = bus_open(url, why);
+    if (!bus)
+        fail_msg("%s", why);
+    return bus;
+}
+
+static void listen_to(struct bus *bus, const char *channel)
+{
+    char why[BUS_WHY_MAX];
+    if (!bus_listen(bus, channel, why))
+        fail_msg("%s", why);
+}
+
+static struct bus *open_listening(const char *channel)
+{
+    struct bus *bus = open_bus("");
+    listen_to(bus, channel);
+    return bus;
+}
+
+/* What the handler was given last, and how often it was called. */
+struct latest {
+    int count, listener;
+    char channel[BUS_CHANNEL_MAX];
+    size_t size;
+    int64_t utime;
+    unsigned char bytes[BUS_PAYLOAD_MAX];
+};
+
+static struct latest latest;
+
+static void on_message(void *user, const struct bus_message *message)
+{
+    struct latest *out = user;
+    assert_true(message->size <= BUS_PAYLOAD_MAX);
+    assert_true(strlen(message->channel) < BUS_CHANNEL_MAX);
+    out->count++;
+    out->listener = message->listener;
+    out->utime = message->utime;
+    out->size = message->size;
+    strcpy(out->channel, message->channel);
+    memcpy(out->bytes, message->bytes, message->size);
+}
+
+/* Reads until so many datagrams were read. Datagrams are on loopback: they wait already. */
+static void receive_datagrams(struct bus *bus, int count)
+{
+    while (count > 0) {
+        assert_int_equal(bus_wait(bus, -1, PATIENCE_MS), 1);
+        const int received = bus_receive(bus, on_message, &latest);
+        assert_in_range(received, 1, count);
+        count -= received;
+    }
+    assert_int_equal(bus_receive(bus, on_message, &latest), 0);
+}
+
+static void expect_message(struct bus *bus, const char *channel, const void *bytes, size_t size)
+{
+    latest = (struct latest){0};
+    receive_datagrams(bus, 1);
+    assert_int_equal(latest.count, 1);
+    assert_string_equal(latest.channel, channel);
+    assert_int_equal(latest.size, size);
+    if (size)
+        assert_memory_equal(latest.bytes, bytes, size);
+}
+
+static int open_sender(void)
+{
+    const unsigned char ttl = 0;
+    const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+    assert_true(fd >= 0);
+    assert_int_equal(setsockopt(fd, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl), 0);
+    return fd;
+}
+
+static void send_raw(int fd, const char *address, const void *bytes, size_t size)
+{
+    struct sockaddr_in to = {.sin_family = AF_INET, .sin_port = htons((uint16_t) port)};
+    inet_pton(AF_INET, address, &to.sin_addr);
+    assert_int_equal(sendto(fd, bytes, size, 0, (const struct sockaddr *) &to, sizeof to), size);
+}
+
+static const unsigned char *noise(void)
+{
+    static unsigned char bytes[LARGEST + 1];
+    for (size_t i = 0; i < sizeof bytes; i++)
+        bytes[i] = (unsigned char) (i * 2654435761u >> 13);
+    return bytes;
+}
+
+/* ---- URLs ---- */
+
+static void test_urls_mean_what_they_mean_to_lcm(void **state)
+{
+    (void) state;
+    enum { DEFAULT_BUFFER = 4 << 20 };
+    static const struct {
+        const char *url, *group;
+        int port, ttl, receive_buffer;
+    } good[] = {
+        {"udpm://", GROUP, 7667, 0, DEFAULT_BUFFER},
+        {"udpm://?", GROUP, 7667, 0, DEFAULT_BUFFER},
+        {"udpm://?ttl=1", GROUP, 7667, 1, DEFAULT_BUFFER},
+        {"udpm://224.0.0.1:1", "224.0.0.1", 1, 0, DEFAULT_BUFFER},
+        {"udpm://239.255.255.255:65535?ttl=255", "239.255.255.255", 65535, 255, DEFAULT_BUFFER},
+        {"udpm://" GROUP ":7667?recv_buf_size=1", GROUP, 7667, 0, 1},
+        {"udpm://" GROUP ":7667?recv_buf_size=1073741823&ttl=2", GROUP, 7667, 2, 1073741823},
+        {"udpm://?ttl=0x10&recv_buf_size=010", GROUP, 7667, 16, 8},
+        {"udpm://?ttl=1&ttl=3", GROUP, 7667, 3, DEFAULT_BUFFER},
+    };
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        struct bus_url url;
+        char group[INET_ADDRSTRLEN], why[BUS_WHY_MAX];
+        if (!bus_url_parse(good[i].url, &url, why))
+            fail_msg("%s: %s", good[i].url, why);
+        assert_string_equal(inet_ntop(AF_INET, &url.group.sin_addr, group, sizeof group),
+                            good[i].group);
+        assert_int_equal(url.group.sin_family, AF_INET);
+        assert_int_equal(ntohs(url.group.sin_port), good[i].port);
+        assert_int_equal(url.ttl, good[i].ttl);
+        assert_int_equal(url.receive_buffer, good[i].receive_buffer);
+    }
+}
+
+static void test_bad_urls_are_refused_in_one_line(void **state)
+{
+    (void) state;
+    static const char *const bad[][2] = {
+        {"tcpq://127.0.0.1:7700", "write udpm://" GROUP ":7667"},
+        {"mpudpm://" GROUP ":7667", "write udpm://" GROUP ":7667"},
+        {"memq://", "write udpm://" GROUP ":7667"},
+        {"file:///p.log?mode=w", "write udpm://" GROUP ":7667"},
+        {"udpm", "write udpm://" GROUP ":7667"},
+        {"udpm:/" GROUP ":7667", "write udpm://" GROUP ":7667"},
+        {"udpm://127.0.0.1:7667", "'127.0.0.1' is not a multicast group"},
+        {"udpm://240.0.0.1:7667", "not a multicast group"},
+        {"udpm://223.255.255.255:7667", "not a multicast group"},
+        {"udpm://239.255.76:7667", "not a multicast group"},
+        {"udpm://239.255.76.67.1.2.3.4.5.6:7667", "not a multicast group"},
+        {"udpm://lo:7667", "not a multicast group"},
+        {"udpm://:7667", "'' is not a multicast group"},
+        {"udpm://" GROUP, "write udpm://" GROUP ":7667"},
+        {"udpm://" GROUP "?ttl=0", "has no port"},
+        {"udpm://" GROUP ":", "'' is not a port"},
+        {"udpm://" GROUP ":0", "'0' is not a port"},
+        {"udpm://" GROUP ":65536", "'65536' is not a port"},
+        {"udpm://" GROUP ":-1", "not a port"},
+        {"udpm://" GROUP ":7667 ", "not a port"},
+        {"udpm://" GROUP ":7667/", "not a port"},
+        {"udpm://" GROUP ":99999999999999999999", "not a port"},
+        {"udpm://?ttl=256", "'256' is not a ttl"},
+        {"udpm://?ttl=-1", "not a ttl"},
+        {"udpm://?ttl=", "'' is not a ttl"},
+        {"udpm://?ttl", "'' is not a ttl"},
+        {"udpm://?ttl=1x", "not a ttl"},
+        {"udpm://?ttl= 1", "not a ttl"},
+        {"udpm://?recv_buf_size=0", "'0' is not a recv_buf_size"},
+        {"udpm://?recv_buf_size=1073741824", "not a recv_buf_size"},
+        {"udpm://?recv_buf_size=4e6", "not a recv_buf_size"},
+        {"udpm://?ttl=0&", "unknown option ''"},
+        {"udpm://?TTL=0", "unknown option 'TTL=0'"},
+        {"udpm://?ttl=0&bogus=1", "unknown option 'bogus=1'"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct bus_url url;
+        char why[BUS_WHY_MAX] = "";
+        if (bus_url_parse(bad[i][0], &url, why) || !strstr(why, bad[i][1]))
+            fail_msg("%s: %s", bad[i][0], why);
+        assert_null(strchr(why, '\n'));
+        assert_null(bus_open(bad[i][0], why));
+    }
+}
+
+static void test_long_urls_fit_the_reason(void **state)
+{
+    (void) state;
+    static const char *const heads[] = {"", "udpm://", "udpm://" GROUP ":", "udpm://?",
+                                        "udpm://?ttl="};
+    char url[2000], why[BUS_WHY_MAX + 1];
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+        memset(url, 'x', sizeof url - 1);
+        url[sizeof url - 1] = '\0';
+        memcpy(url, heads[i], strlen(heads[i]));
+        why[BUS_WHY_MAX] = '!';
+        assert_null(bus_open(url, why));
+        assert_true(strlen(why) < BUS_WHY_MAX - 1);
+        assert_int_equal(why[BUS_WHY_MAX], '!');
+    }
+}
+
+static void test_environment_names_the_bus(void **state)
+{
+    (void) state;
+    char url[128], why[BUS_WHY_MAX];
+    setenv("LCM_DEFAULT_URL", "tcpq://here", 1);
+    assert_null(bus_open(NULL, why));
+    assert_non_null(strstr(why, "tcpq://here"));
+    snprintf(url, sizeof url, "udpm://" GROUP ":%d", port);
+    setenv("LCM_DEFAULT_URL", url, 1);
+    struct bus *other = open_listening("C"), *bus = bus_open("", why);
+    assert_non_null(bus);
+    assert_true(bus_publish(bus, "C", "x", 1));
+    expect_message(other, "C", "x", 1);
+    bus_close(bus);
+    bus_close(other);
+    unsetenv("LCM_DEFAULT_URL");
+    bus = bus_open(NULL, why);
+    assert_non_null(bus);
+    bus_close(bus);
+    bus_close(NULL);
+}
+
+/* In a network without routes. On output: the exit code: 0, or the number of what is wrong. */
+static int open_without_route(void)
+{
+    char why[BUS_WHY_MAX] = "";
+    char printed[16];
+    int ends[2];
+    if (unshare(CLONE_NEWNET) != 0)
+        return 77;
+    if (pipe2(ends, O_NONBLOCK) != 0 || dup2(ends[1], STDERR_FILENO) < 0)
+        return 1;
+    if (bus_open("udpm://239.1.2.3:7667", why))
+        return 2;
+    if (read(ends[0], printed, sizeof printed) >= 0)
+        return 3;
+    const char *end = strchr(why, '\n');
+    return strstr(why, "no route to the multicast group 239.1.2.3") && end &&
+                   strstr(end, "ip route add 224.0.0.0/4 dev lo") && !strchr(end + 1, '\n')
+               ? 0
+               : 4;
+}
+
+static void test_missing_route_is_explained_and_liblcm_prints_nothing(void **state)
+{
+    (void) state;
+    int status;
+    const pid_t child = fork();
+    if (child == 0)
+        _exit(open_without_route());
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    if (WEXITSTATUS(status) == 77)
+        skip();
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
+/* ---- Names ---- */
+
+static void test_prefixes_and_channels(void **state)
+{
+    (void) state;
+    char channel[BUS_CHANNEL_MAX];
+    assert_true(bus_prefix_ok(""));
+    assert_true(bus_prefix_ok("ROBOT-1_a"));
+    assert_true(bus_prefix_ok("12345678901234567890123456789012"));
+    assert_false(bus_prefix_ok("123456789012345678901234567890123"));
+    assert_false(bus_prefix_ok("A.*"));
+    assert_false(bus_prefix_ok("A B"));
+    bus_channel(channel, "ARM_", "FMB_STATUS");
+    assert_string_equal(channel, "ARM_FMB_STATUS");
+}
+
+static void test_listeners_are_checked_and_numbered(void **state)
+{
+    (void) state;
+    char name[BUS_CHANNEL_MAX + 1], why[BUS_WHY_MAX] = "";
+    struct bus *bus = open_bus("");
+    memset(name, 'n', BUS_CHANNEL_MAX);
+    name[BUS_CHANNEL_MAX] = '\0';
+    assert_int_equal(bus_fileno(bus), -1);
+    assert_false(bus_listen(bus, name, why));
+    assert_false(bus_listen(bus, "", why));
+    assert_int_equal(bus_fileno(bus), -1);
+    assert_int_equal(bus_receive(bus, on_message, &latest), 0);
+    name[BUS_CHANNEL_MAX - 1] = '\0';
+    listen_to(bus, "FIRST");
+    listen_to(bus, name);
+    listen_to(bus, "FIRST");
+    assert_true(fcntl(bus_fileno(bus), F_GETFD) & FD_CLOEXEC);
+    assert_true(bus_publish(bus, name, "", 0));
+    expect_message(bus, name, "", 0);
+    assert_int_equal(latest.listener, 1);
+    assert_true(bus_publish(bus, "FIRST", "", 0));
+    expect_message(bus, "FIRST", "", 0);
+    assert_int_equal(latest.listener, 0);
+    listen_to(bus, NULL);
+    assert_true(bus_publish(bus, "FIRS", "", 0));
+    expect_message(bus, "FIRS", "", 0);
+    assert_int_equal(latest.listener, 3);
+    for (int i = 4; i < BUS_LISTENERS_MAX; i++)
+        listen_to(bus, "MORE");
+    assert_false(bus_listen(bus, "ONE TOO MANY", why));
+    bus_close(bus);
+}
+
+/* ---- Messages ---- */
+
+static void test_messages_of_every_size_arrive(void **state)
+{
+    (void) state;
+    static const size_t sizes[] = {0, 1, 7, 1400, 65000, LARGEST};
+    struct bus *bus = open_listening("C");
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        assert_true(bus_publish(bus, "C", noise(), sizes[i]));
+        expect_message(bus, "C", noise(), sizes[i]);
+        assert_true(llabs(latest.utime - time(NULL) * INT64_C(1000000)) < 10000000);
+    }
+    bus_close(bus);
+}
+
+/* Longer messages would leave as fragments. */
+static void test_what_fits_no_datagram_is_not_published(void **state)
+{
+    (void) state;
+    char name[BUS_CHANNEL_MAX + 1];
+    struct bus *bus = open_listening(NULL);
+    memset(name, 'n', BUS_CHANNEL_MAX);
+    name[BUS_CHANNEL_MAX] = '\0';
+    assert_false(bus_publish(bus, "C", noise(), LARGEST + 1));
+    assert_false(bus_publish(bus, "CC", noise(), LARGEST));
+    assert_false(bus_publish(bus, "C", noise(), SIZE_MAX));
+    assert_false(bus_publish(bus, "", noise(), 1));
+    assert_false(bus_publish(bus, name, noise(), 1));
+    assert_int_equal(bus_receive(bus, on_message, &latest), 0);
+    name[BUS_CHANNEL_MAX - 1] = '\0';
+    assert_true(bus_publish(bus, name, noise(), LARGEST - 62));
+    expect_message(bus, name, noise(), LARGEST - 62);
+    bus_close(bus);
+}
+
+static void test_a_batch_ends_at_its_size(void **state)
+{
+    (void) state;
+    enum { SENT = BUS_BATCH + 36 };
+    struct bus *bus = open_listening("C");
+    latest.count = 0;
+    for (int i = 0; i < SENT; i++)
+        assert_true(bus_publish(bus, "C", &i, sizeof i));
+    assert_int_equal(bus_receive(bus, on_message, &latest), BUS_BATCH);
+    assert_int_equal(latest.bytes[0], BUS_BATCH - 1);
+    assert_int_equal(bus_receive(bus, on_message, &latest), SENT - BUS_BATCH);
+    assert_int_equal(latest.bytes[0], SENT - 1);
+    assert_int_equal(latest.count, SENT);
+    assert_int_equal(bus_counts(bus).received, SENT);
+    bus_close(bus);
+}
+
+static void test_buses_on_one_host_both_receive(void **state)
+{
+    (void) state;
+    struct bus *one = open_listening("C"), *two = open_listening("C");
+    assert_true(bus_publish(one, "C", "both", 4));
+    expect_message(one, "C", "both", 4);
+    expect_message(two, "C", "both", 4);
+    bus_close(one);
+    assert_true(bus_publish(two, "C", "two", 3));
+    expect_message(two, "C", "two", 3);
+    bus_close(two);
+}
+
+static void test_foreign_channels_are_counted(void **state)
+{
+    (void) state;
+    struct bus *bus = open_listening("CHANNEL");
+    static const char *const others[] = {"CHANNEL2", "CHANNE", "channel", "X"};
+    latest.count = 0;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        assert_true(bus_publish(bus, others[i], "x", 1));
+    receive_datagrams(bus, 4);
+    assert_int_equal(latest.count, 0);
+    const struct bus_counts counts = bus_counts(bus);
+    assert_int_equal(counts.foreign, 4);
+    assert_int_equal(counts.received + counts.malformed + counts.dropped, 0);
+    bus_close(bus);
+}
+
+/* Everything that kills or deceives liblcm. What the buffer held before must not decide: it holds a
+ * message when each arrives. */
+static void test_malformed_datagrams_are_counted_and_harmless(void **state)
+{
+    (void) state;
+#define LONG_63 "nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn"
+#define BYTES(text) text, sizeof text - 1
+    static const struct {
+        const char *bytes;
+        size_t size;
+    } malformed[] = {
+        {"", 0},
+        {BYTES("L")},
+        {BYTES("LC02")},
+        {BYTES("LC02\0\0\0")},
+        {BYTES("LC02\0\0\0\1")},
+        {BYTES("LC02\0\0\0\1C")},
+        {BYTES("LC02\0\0\0\1CHANNEL")},
+        {BYTES("LC02\0\0\0\1\0")},
+        {BYTES("LC02\0\0\0\1\0payload")},
+        {BYTES("LC02\0\0\0\1n" LONG_63 "\0payload")},
+        {BYTES("LC02\0\0\0\1" LONG_63 LONG_63 LONG_63)},
+        {BYTES("LC01\0\0\0\1C\0payload")},
+        {BYTES("lc02\0\0\0\1C\0payload")},
+        {BYTES("\0\0\0\0\0\0\0\1C\0payload")},
+        /* LC03, sequence number, size, offset, fragment, fragments */
+        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1C\0abcd")},
+        {BYTES("LC03\0\0\0\2\0\0\1\0\0\0\0\0\0\0\0\2C\0abcd")},
+        {BYTES("LC03\0\0\0\2\0\0\1\0\xff\xff\xff\xf0\0\1\0\2"
+               "0123456789abcdef0123456789abcdef")},
+        {BYTES("LC03\0\0\0\3\0\0\1\0\0\0\0\0\0\0\0\2C\0abcd")},
+        {BYTES("LC03\0\0\0\3")},
+    };
+    enum { COUNT = sizeof malformed / sizeof *malformed };
+    const int sender = open_sender();
+    struct bus *bus = open_listening(NULL);
+    for (uint64_t i = 0; i < COUNT; i++) {
+        send_raw(sender, GROUP, BYTES("LC02\0\0\0\1C\0C\0C\0C\0C\0C\0C\0C\0C\0C\0C\0C\0C\0C"));
+        receive_datagrams(bus, 1);
+        const struct bus_counts before = bus_counts(bus);
+        send_raw(sender, GROUP, malformed[i].bytes, malformed[i].size);
+        receive_datagrams(bus, 1);
+        assert_int_equal(bus_counts(bus).malformed, before.malformed + 1);
+        assert_int_equal(bus_counts(bus).received, before.received);
+    }
+    send_raw(sender, GROUP, BYTES("LC02\0\0\0\1" LONG_63 "\0payload"));
+    expect_message(bus, LONG_63, BYTES("payload"));
+    send_raw(sender, GROUP,
+             BYTES("LC02\xff\xff\xff\xff"
+                   "C\0"));
+    expect_message(bus, "C", "", 0);
+    assert_int_equal(bus_counts(bus).malformed, COUNT);
+    bus_close(bus);
+    close(sender);
+}
+
+static void test_unicast_does_not_arrive(void **state)
+{
+    (void) state;
+    const int sender = open_sender();
+    struct bus *bus = open_listening("C");
+    send_raw(sender, "127.0.0.1", BYTES("LC02\0\0\0\1C\0unicast"));
+    send_raw(sender, GROUP, BYTES("LC02\0\0\0\1C\0multicast"));
+    expect_message(bus, "C", BYTES("multicast"));
+    bus_close(bus);
+    close(sender);
+}
+
+static void test_ttl_is_that_of_the_url(void **state)
+{
+    (void) state;
+    static const int ttls[] = {0, 1, 7};
+    struct bus *listening = open_listening("C");
+    const int on = 1, fd = bus_fileno(listening);
+    assert_int_equal(setsockopt(fd, IPPROTO_IP, IP_RECVTTL, &on, sizeof on), 0);
+    for (size_t i = 0; i < sizeof ttls / sizeof *ttls; i++) {
+        char options[32], bytes[64];
+        _Alignas(struct cmsghdr) char control[64];
+        snprintf(options, sizeof options, "&ttl=%d", ttls[i]);
+        struct bus *bus = open_bus(options);
+        assert_true(bus_publish(bus, "C", "x", 1));
+        struct iovec buffer = {bytes, sizeof bytes};
+        struct msghdr header = {.msg_iov = &buffer,
+                                .msg_iovlen = 1,
+                                .msg_control = control,
+                                .msg_controllen = sizeof control};
+        assert_int_equal(recvmsg(fd, &header, 0), 11);
+        const struct cmsghdr *ttl = CMSG_FIRSTHDR(&header);
+        assert_non_null(ttl);
+        assert_int_equal(ttl->cmsg_type, IP_TTL);
+        assert_int_equal(*(const int *) CMSG_DATA(ttl), ttls[i]);
+        bus_close(bus);
+    }
+    bus_close(listening);
+}
+
+/* ---- What the kernel drops ---- */
+
+static uint32_t (*drops)(int fd);
+
+uint32_t __real_bus_socket_drops(int fd);
+uint32_t __wrap_bus_socket_drops(int fd);
+uint32_t __wrap_bus_socket_drops(int fd)
+{
+    return drops ? drops(fd) : __real_bus_socket_drops(fd);
+}
+
+static uint64_t receive_all(struct bus *bus)
+{
+    latest.count = 0;
+    while (bus_receive(bus, on_message, &latest) > 0)
+        ;
+    return (uint64_t) latest.count;
+}
+
+static void test_datagrams_dropped_by_the_kernel_are_counted(void **state)
+{
+    (void) state;
+    enum { SENT = 200, SIZE = 1400 };
+    struct bus *bus = open_bus("&recv_buf_size=20000");
+    listen_to(bus, "C");
+    assert_int_equal(bus_counts(bus).receive_buffer, 40000);
+    for (uint64_t burst = 1; burst <= 2; burst++) {
+        for (int i = 0; i < SENT; i++)
+            assert_true(bus_publish(bus, i % 2 ? "C" : "FOREIGN", noise(), SIZE));
+        const uint64_t dropped = bus_counts(bus).dropped;
+        assert_in_range(dropped, burst * SENT / 2, burst * SENT - 1);
+        receive_all(bus);
+        const struct bus_counts counts = bus_counts(bus);
+        assert_int_equal(counts.dropped, dropped);
+        assert_int_equal(counts.received + counts.foreign + dropped, burst * SENT);
+    }
+    bus_close(bus);
+}
+
+static uint32_t before_wrap(int fd)
+{
+    (void) fd;
+    return 0xfffffff0;
+}
+
+static uint32_t after_wrap(int fd)
+{
+    (void) fd;
+    return 5;
+}
+
+static void test_counter_of_drops_does_not_wrap(void **state)
+{
+    (void) state;
+    struct bus *bus = open_listening("C");
+    drops = before_wrap;
+    assert_int_equal(bus_counts(bus).dropped, 0xfffffff0);
+    drops = after_wrap;
+    assert_int_equal(bus_counts(bus).dropped, UINT64_C(0x100000005));
+    assert_int_equal(bus_counts(bus).dropped, UINT64_C(0x100000005));
+    drops = NULL;
+    bus_close(bus);
+}
+
+static void test_default_receive_buffer_is_4_mb_where_granted(void **state)
+{
+    (void) state;
+    int granted = 0;
+    const int wanted = 4 << 20, fd = open_sender();
+    socklen_t size = sizeof granted;
+    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
+    getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+    close(fd);
+    struct bus *bus = open_listening("C");
+    assert_in_range(bus_counts(bus).receive_buffer, granted, 2 * wanted);
+    bus_close(bus);
+}
+
+/* ---- Waiting ---- */
+
+static int64_t ms_of(clockid_t clock)
+{
+    struct timespec time;
+    clock_gettime(clock, &time);
+    return (int64_t) time.tv_sec * 1000 + time.tv_nsec / 1000000;
+}
+
+static void test_wait_says_what_is_ready(void **state)
+{
+    (void) state;
+    int ends[2];
+    struct bus *bus = open_listening("C");
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(bus_wait(bus, ends[0], 0), 0);
+    assert_int_equal(write(ends[1], "x", 1), 1);
+    assert_int_equal(bus_wait(bus, ends[0], -1), 2);
+    assert_true(bus_publish(bus, "C", "x", 1));
+    assert_int_equal(bus_wait(bus, ends[0], -1), 3);
+    assert_int_equal(bus_wait(bus, ends[0], 0), 3);
+    assert_int_equal(bus_wait(bus, -1, -1), 1);
+    receive_datagrams(bus, 1);
+    assert_int_equal(bus_wait(bus, ends[0], -1), 2);
+    close(ends[0]);
+    close(ends[1]);
+    bus_close(bus);
+}
+
+static void test_wait_before_listening_and_after_messages_sleeps(void **state)
+{
+    (void) state;
+    enum { WAIT_MS = 300 };
+    struct bus *bus = open_bus("");
+    for (int round = 0; round < 2; round++) {
+        const int64_t begin = ms_of(CLOCK_MONOTONIC), used = ms_of(CLOCK_THREAD_CPUTIME_ID);
+        assert_int_equal(bus_wait(bus, -1, WAIT_MS), 0);
+        assert_in_range(ms_of(CLOCK_MONOTONIC) - begin, WAIT_MS - 1, PATIENCE_MS);
+        assert_in_range(ms_of(CLOCK_THREAD_CPUTIME_ID) - used, 0, WAIT_MS / 3);
+        listen_to(bus, "C");
+        assert_true(bus_publish(bus, "C", "x", 1));
+        receive_datagrams(bus, 1);
+    }
+    bus_close(bus);
+}
+
+static int yields;
+static long yield_ns; /* that each takes */
+
+int __wrap_sched_yield(void);
+int __wrap_sched_yield(void)
+{
+    const struct timespec time = {.tv_nsec = yield_ns};
+    yields++;
+    return yield_ns ? nanosleep(&time, NULL) : 0;
+}
+
+static int count_yields(struct bus *bus, int timeout_ms)
+{
+    yields = 0;
+    assert_int_equal(bus_wait(bus, -1, timeout_ms), 0);
+    return yields;
+}
+
+static void test_waits_actively_once_after_publishing(void **state)
+{
+    (void) state;
+    struct bus *bus = open_listening("C");
+    assert_int_equal(count_yields(bus, 1), 0);
+    assert_true(bus_publish(bus, "FOREIGN", "x", 1));
+    assert_int_equal(bus_receive(bus, on_message, &latest), 1);
+    assert_int_equal(count_yields(bus, 0), 0);
+    assert_true(count_yields(bus, 1) > 0);
+    assert_int_equal(count_yields(bus, 1), 0);
+    bus_close(bus);
+}
+
+static void test_waits_actively_once_after_messages_of_its_channels(void **state)
+{
+    (void) state;
+    struct bus *bus = open_listening("C"), *other = open_bus("");
+    assert_true(bus_publish(other, "FOREIGN", "x", 1));
+    assert_int_equal(bus_receive(bus, on_message, &latest), 1);
+    assert_int_equal(count_yields(bus, 1), 0);
+    assert_true(bus_publish(other, "C", "x", 1));
+    assert_int_equal(bus_receive(bus, on_message, &latest), 1);
+    assert_true(count_yields(bus, 1) > 0);
+    assert_int_equal(count_yields(bus, 1), 0);
+    bus_close(bus);
+    bus_close(other);
+}
+
+/* There a yield takes a whole time slice. */
+static void test_does_not_wait_actively_on_a_busy_core(void **state)
+{
+    (void) state;
+    struct bus *bus = open_bus("");
+    yield_ns = 3000000;
+    assert_true(bus_publish(bus, "C", "x", 1));
+    assert_int_equal(count_yields(bus, 1), 1);
+    yield_ns = 0;
+    assert_true(bus_publish(bus, "C", "x", 1));
+    assert_int_equal(count_yields(bus, 1), 0);
+    usleep(1100000);
+    assert_true(bus_publish(bus, "C", "x", 1));
+    assert_true(count_yields(bus, 1) > 0);
+    bus_close(bus);
+}
+
+/* ---- Beside liblcm ---- */
+
+static void on_lcm(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct latest *out = user;
+    out->count++;
+    out->size = buffer->data_size;
+    assert_true(buffer->data_size <= sizeof out->bytes);
+    memcpy(out->bytes, buffer->data, buffer->data_size);
+    snprintf(out->channel, sizeof out->channel, "%s", channel);
+}
+
+static void test_plain_lcm_understands_both_ways(void **state)
+{
+    (void) state;
+    static const size_t sizes[] = {0, 1, 1400, LARGEST};
+    char url[128];
+    snprintf(url, sizeof url, "udpm://" GROUP ":%d?ttl=0", port);
+    lcm_t *lcm = lcm_create(url);
+    assert_non_null(lcm);
+    assert_non_null(lcm_subscribe(lcm, "B", on_lcm, &latest)); /* tests itself on the bus */
+    struct bus *bus = open_listening("L");
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        latest = (struct latest){0};
+        assert_true(bus_publish(bus, "B", noise(), sizes[i]));
+        assert_true(lcm_handle_timeout(lcm, PATIENCE_MS) > 0);
+        assert_int_equal(latest.count, 1);
+        assert_string_equal(latest.channel, "B");
+        assert_int_equal(latest.size, sizes[i]);
+        assert_memory_equal(latest.bytes, noise(), sizes[i]);
+        receive_datagrams(bus, 1);
+        assert_int_equal(lcm_publish(lcm, "L", noise(), (unsigned) sizes[i]), 0);
+        expect_message(bus, "L", noise(), sizes[i]);
+    }
+    bus_close(bus);
+    lcm_destroy(lcm);
+}
+
+static int count_threads(void)
+{
+    char line[128];
+    int threads = 0;
+    FILE *file = fopen("/proc/self/status", "r");
+    assert_non_null(file);
+    while (!threads && fgets(line, sizeof line, file))
+        sscanf(line, "Threads: %d", &threads);
+    fclose(file);
+    assert_true(threads > 0);
+    return threads;
+}
+
+static void test_liblcm_starts_no_thread(void **state)
+{
+    (void) state;
+    const int threads = count_threads();
+    struct bus *bus = open_listening("C");
+    for (int i = 0; i < 10; i++) {
+        assert_true(bus_publish(bus, "C", "x", 1));
+        expect_message(bus, "C", "x", 1);
+    }
+    assert_int_equal(count_threads(), threads);
+    bus_close(bus);
+}
+
+/* LCM's own select() ends the process there. */
+static void test_many_descriptors_are_open(void **state)
+{
+    (void) state;
+    enum { OPEN = 1100 };
+    static int open_fds[OPEN];
+    struct rlimit limit;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
+    if (limit.rlim_max < OPEN + 100)
+        skip();
+    limit.rlim_cur = limit.rlim_max;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
+    for (int i = 0; i < OPEN; i++)
+        assert_true((open_fds[i] = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0);
+    struct bus *bus = open_listening("C");
+    assert_true(bus_fileno(bus) > OPEN);
+    assert_true(bus_publish(bus, "C", "x", 1));
+    expect_message(bus, "C", "x", 1);
+    assert_int_equal(bus_wait(bus, open_fds[OPEN - 1], 10), 2);
+    bus_close(bus);
+    for (int i = 0; i < OPEN; i++)
+        close(open_fds[i]);
+}
+
+static void test_child_closes_and_the_parent_goes_on(void **state)
+{
+    (void) state;
+    int status;
+    struct bus *bus = open_listening("C");
+    assert_true(bus_publish(bus, "C", "before", 6));
+    const pid_t child = fork();
+    if (child == 0) {
+        bus_close(bus);
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    expect_message(bus, "C", "before", 6);
+    assert_true(bus_publish(bus, "C", "after", 5));
+    expect_message(bus, "C", "after", 5);
+    bus_close(bus);
+}
+
+/* ---- The network ---- */
+
+/* Runs this program again in a network of its own. On output: its exit code. */
+static int run_in_namespace(char *self)
+{
+    enum { SKIPPED = 77 };
+    char netns[4096];
+    int status;
+    const char *slash = strrchr(self, '/');
+    snprintf(netns, sizeof netns, "%.*s../netns", slash ? (int) (slash + 1 - self) : 0, self);
+    const pid_t child = fork();
+    if (child == 0) {
+        execl(netns, netns, self, (char *) NULL);
+        perror(netns);
+        _exit(EXIT_FAILURE);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status))
+        return EXIT_FAILURE;
+    if (WEXITSTATUS(status) != SKIPPED)
+        return WEXITSTATUS(status);
+    puts("1..1\nok 1 - test_bus # SKIP no network namespace, and no route for multicast");
+    return EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_urls_mean_what_they_mean_to_lcm),
+        cmocka_unit_test(test_bad_urls_are_refused_in_one_line),
+        cmocka_unit_test(test_long_urls_fit_the_reason),
+        cmocka_unit_test(test_environment_names_the_bus),
+        cmocka_unit_test(test_missing_route_is_explained_and_liblcm_prints_nothing),
+        cmocka_unit_test(test_prefixes_and_channels),
+        cmocka_unit_test(test_listeners_are_checked_and_numbered),
+        cmocka_unit_test(test_messages_of_every_size_arrive),
+        cmocka_unit_test(test_what_fits_no_datagram_is_not_published),
+        cmocka_unit_test(test_a_batch_ends_at_its_size),
+        cmocka_unit_test(test_buses_on_one_host_both_receive),
+        cmocka_unit_test(test_foreign_channels_are_counted),
+        cmocka_unit_test(test_malformed_datagrams_are_counted_and_harmless),
+        cmocka_unit_test(test_unicast_does_not_arrive),
+        cmocka_unit_test(test_ttl_is_that_of_the_url),
+        cmocka_unit_test(test_datagrams_dropped_by_the_kernel_are_counted),
+        cmocka_unit_test(test_counter_of_drops_does_not_wrap),
+        cmocka_unit_test(test_default_receive_buffer_is_4_mb_where_granted),
+        cmocka_unit_test(test_wait_says_what_is_ready),
+        cmocka_unit_test(test_wait_before_listening_and_after_messages_sleeps),
+        cmocka_unit_test(test_waits_actively_once_after_publishing),
+        cmocka_unit_test(test_waits_actively_once_after_messages_of_its_channels),
+        cmocka_unit_test(test_does_not_wait_actively_on_a_busy_core),
+        cmocka_unit_test(test_plain_lcm_understands_both_ways),
+        cmocka_unit_test(test_liblcm_starts_no_thread),
+        cmocka_unit_test(test_many_descriptors_are_open),
+        cmocka_unit_test(test_child_closes_and_the_parent_goes_on),
+    };
+    (void) argc;
+    if (!getenv("FMB_NETNS"))
+        return run_in_namespace(argv[0]);
+    port = 20000 + (int) getpid() % 40000;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
