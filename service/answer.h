@@ -1,49 +1,76 @@
-/* Query in, result out: checks what a query says, finds or keeps its bodies, and decides.
- * Knows no LCM and no clock; given the same queries in the same order it gives the same
- * results. */
+/* Query in, result out: checks a query, finds or keeps its bodies, and decides.
+ *
+ * Uses neither LCM nor a clock: the same queries in the same order get the same results. Pair and
+ * definition queries are answered by one call; a scene in steps, so that the caller can do other
+ * work between them. */
 #ifndef ANSWER_H
 #define ANSWER_H
 
 #include "cache.h"
 #include "query.h"
 
-struct scene_work;
+struct answerer;
 
-/* All 0 but for what the caller sets. */
-struct answerer {
-    struct cache *cache; /* not owned */
+struct answerer_options {
+    size_t frames; /* capacity of the cache, see cache_create() */
     int64_t server_id;
-    /* Called between the parts of a scene, which may take long, so that others need not wait; may
-     * answer pairs, not scenes. False: the scene has taken long enough, and its result is of the
-     * pairs decided so far. NULL: nobody waits. */
-    bool (*between)(void *user);
-    void *user;
-    struct scene_work *work;                 /* owned: answer_prepare() */
-    char certificate[QUERY_CERTIFICATE_MAX]; /* of the last result that has one */
+    uint64_t secret[2]; /* random */
 };
 
-/* Takes all memory that answers will need, to be freed with answer_release(). False: there is
- * none. */
-bool answer_prepare(struct answerer *answerer);
-void answer_release(struct answerer *answerer);
+/* Allocates all memory that answers need, except GMP's. NULL: out of memory. */
+struct answerer *answerer_create(const struct answerer_options *options);
+void answerer_destroy(struct answerer *answerer); /* may be NULL */
 
-/* On output: the result, complete but for compute_ns (0). A query that cannot be decided gets
- * its status, and detail names the place: "b.components[4]: not a finite number". A query
- * with a wrong field or a dead key leaves the cache as it was. A certificate is there where it is
- * wanted and fits, and holds until the next call. */
+struct cache *answerer_cache(struct answerer *answerer);
+
+/* Answers a pair query. The result is complete except for compute_ns (0). A query that is refused
+ * gets a status and a detail that names the place: "b.numbers[4]: not a finite number"; it leaves
+ * the cache unchanged. A certificate is present if it was wanted and fits; it is valid until the
+ * next call. One call decides at most one pair of frames. */
 void answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result);
 
-/* Likewise, complete but for compute_ns and lost (0). Of pairs that are not all to be had in one
- * datagram, or before between() says that it is enough, those that are, in their order, and at
- * least one; end_pair tells how many. */
-void answer_scene(struct answerer *answerer, const struct scene_query *query,
-                  struct scene_result *result);
+/* Answers a definition query with as many bodies as fit into one result; next is where the next
+ * page begins. Neither counts these bodies nor marks them as used. The geometries of the result
+ * belong to the cache, and are valid until a body is added. */
+void answer_definition(struct answerer *answerer, const struct definition_query *query,
+                       struct definition *result);
 
-/* The result of a query that nobody looked at. */
+/* The result of a query that is refused unchecked, for example as busy. */
 void answer_pair_refused(const struct answerer *answerer, const struct pair_query *query,
                          enum fmb_status status, struct pair_result *result);
 void answer_scene_refused(const struct answerer *answerer, const struct query_header *query,
                           enum fmb_status status, struct scene_result *result);
+void answer_definition_refused(const struct answerer *answerer, const struct query_header *query,
+                               enum fmb_status status, struct definition *result);
+
+/* ---- Scenes ---- */
+
+/* A scene in progress. One answerer may have several. */
+struct scene_job;
+
+/* Takes 1.2 MB of memory, all of which only large scenes touch. NULL: out of memory. */
+struct scene_job *scene_job_create(void);
+void scene_job_destroy(struct scene_job *job); /* may be NULL, or in progress */
+
+/* Begins to answer a message, which is copied; a query in progress is abandoned. Returns NULL; or
+ * what is wrong with the bytes (wire_read_scene_query()), and the job is idle. */
+const char *scene_job_begin(struct scene_job *job, const unsigned char *bytes, size_t size);
+
+/* Does the next part of the work: a few bodies, one block of pairs in doubles, or one pair of
+ * frames in exact arithmetic. Usually takes microseconds, a millisecond for the worst block.
+ * Returns whether the result is complete. On input: a job that has begun. */
+bool scene_job_step(struct scene_job *job, struct answerer *answerer);
+
+/* Whether scene_job_stop() may be called: at least one pair has been answered. */
+bool scene_job_can_stop(const struct scene_job *job);
+
+/* Completes the result with the pairs answered so far. */
+void scene_job_stop(struct scene_job *job);
+
+const struct scene_query *scene_job_query(const struct scene_job *job);
+
+/* The complete result; compute_ns is 0 and may be set. */
+struct scene_result *scene_job_result(struct scene_job *job);
 
 #endif

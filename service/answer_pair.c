@@ -1,6 +1,5 @@
-#include "answer.h"
+#include "answerer.h"
 
-#include "bodies.h"
 #include "check.h"
 
 #include <assert.h>
@@ -16,62 +15,67 @@ static void set_side(struct checking *checking, int side)
 static bool check_pair(struct checking *checking, const struct pair_query *query)
 {
     if (!check_ids(checking, query->client_id, query->sequence_number) ||
-        !check_question(checking, query->duration, query->method, query->want,
-                        QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE))
+        !check_request(checking, query->duration, query->method, query->want,
+                       QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE))
         return false;
     for (int f = 0; f < 2; f++) {
         set_side(checking, f);
-        if (!check_frame(checking, &query->frame[f]))
+        if (!check_placement(checking, &query->placement[f]))
             return false;
     }
     checking->part = NULL;
-    return query->frame[0].dim == query->frame[1].dim ||
+    return query->placement[0].dim == query->placement[1].dim ||
            check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
 }
 
-/* The bodies of a checked query, in the cache or in room. */
+/* The bodies of a checked query. */
 struct bodies {
-    const struct fmb_body *of[2];
-    struct fmb_body room[2];
+    const struct fmb_body *of[2]; /* in the cache, or copy[] */
+    struct fmb_body copy[2];
 };
 
-/* One that the other frame may drive out of the cache is copied: that of the same id, which other
- * components may replace; and any, where there is room for one alone. */
-static void take_body(const struct cache *cache, const struct pair_query *query, int f,
-                      const struct fmb_body *found, struct bodies *out)
+static bool find_body(struct cache *cache, struct checking *checking,
+                      const struct placement *placement, const struct fmb_body **out)
 {
-    const bool may_go =
-        query->frame[0].body_id == query->frame[1].body_id || cache_capacity(cache) == 1;
-    if (may_go && found != &out->room[f])
-        out->room[f] = *found;
-    out->of[f] = may_go ? &out->room[f] : found;
+    const struct cached *cached = cache_find(cache, &placement->handle);
+    if (!cached)
+        return check_refuse(checking, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
+    *out = &cached->body;
+    return check_body_dim(checking, placement, &cached->body);
 }
 
-/* Keys come first: one that is not held leaves the cache as it was. */
-static bool find_bodies(struct cache *cache, struct checking *checking,
-                        const struct pair_query *query, struct bodies *out, int64_t key[2])
+/* Keeping one body may evict the other. */
+static void copy_body(struct bodies *bodies, int f)
 {
-    const struct fmb_body *found;
-    for (int f = 0; f < 2; f++)
-        cache_expect(cache, query->frame[f].body_id);
+    if (bodies->of[f] != &bodies->copy[f])
+        bodies->copy[f] = *bodies->of[f];
+    bodies->of[f] = &bodies->copy[f];
+}
+
+/* Handles come first: a query with one that is not held leaves the cache as it was. */
+static bool find_bodies(struct answerer *answerer, struct checking *checking,
+                        const struct pair_query *query, struct bodies *out, struct handle handle[2])
+{
+    const bool named[2] = {placement_by_handle(&query->placement[0]),
+                           placement_by_handle(&query->placement[1])};
+    const bool keeps = !named[0] || !named[1];
     for (int f = 0; f < 2; f++) {
-        if (!check_by_key(&query->frame[f]))
-            continue;
         set_side(checking, f);
-        if (!(found = bodies_find(cache, &query->frame[f])))
-            return check_refuse(checking, FMB_UNKNOWN_BODY, "key", "not held; send the components");
-        take_body(cache, query, f, found, out);
+        if (named[f] && !find_body(answerer->cache, checking, &query->placement[f], &out->of[f]))
+            return false;
+        if (named[f] && keeps)
+            copy_body(out, f);
     }
     for (int f = 0; f < 2; f++) {
-        key[f] = query->frame[f].key;
-        if (!check_by_key(&query->frame[f]))
-            take_body(cache, query, f, bodies_keep(cache, &query->frame[f], &out->room[f], &key[f]),
-                      out);
+        if (named[f])
+            continue;
+        out->of[f] = answerer_keep(answerer, &query->placement[f], &out->copy[f], &handle[f]);
+        copy_body(out, f);
     }
     return true;
 }
 
-/* One that is too long is left out. */
+/* A certificate that is too long is left out. */
 static void certify(struct answerer *answerer, const struct fmb_pair *pair,
                     struct pair_result *result)
 {
@@ -87,8 +91,8 @@ static void decide(struct answerer *answerer, struct pair_result *result,
                    const struct pair_query *query, const struct bodies *bodies)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    const struct fmb_pair pair = {.a = bodies_place(&query->frame[0], bodies->of[0]),
-                                  .b = bodies_place(&query->frame[1], bodies->of[1]),
+    const struct fmb_pair pair = {.a = answerer_place(&query->placement[0], bodies->of[0]),
+                                  .b = answerer_place(&query->placement[1], bodies->of[1]),
                                   .duration = query->duration};
     unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     result->status = (int32_t) fmb_decide(method, &pair, want, &result->answer);
@@ -112,20 +116,20 @@ static void begin_result(const struct answerer *answerer, const struct pair_quer
     result->sequence_number = query->sequence_number;
     result->server_id = answerer->server_id;
     for (int f = 0; f < 2; f++)
-        result->body_id[f] = query->frame[f].body_id;
+        result->body_id[f] = query->placement[f].body_id;
 }
 
 void answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result)
 {
+    for (int f = 0; f < 2; f++) /* arrives while the query is checked */
+        cache_prefetch(answerer->cache, &query->placement[f]);
     begin_result(answerer, query, result);
     struct checking checking = {.status = &result->status, .detail = result->detail};
     struct bodies bodies;
     if (check_pair(&checking, query) &&
-        find_bodies(answerer->cache, &checking, query, &bodies, result->key))
+        find_bodies(answerer, &checking, query, &bodies, result->handle))
         decide(answerer, result, query, &bodies);
-    if (result->status != FMB_OK)
-        memset(result->key, 0, sizeof result->key);
 }
 
 void answer_pair_refused(const struct answerer *answerer, const struct pair_query *query,

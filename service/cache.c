@@ -1,78 +1,139 @@
 #include "cache.h"
 
-#include "query.h"
+#include "big_endian.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries are linked by index: each into the chain of its bucket, and all that are used into a
- * ring in the order of use. Entry 0 holds no body: it closes the ring, with the newest beyond it
- * on one side and the oldest on the other; and it ends the chains, so that buckets start as the
- * zeros that calloc() has without touching them. */
+/* Entries are linked by index: each into the chain of its bucket, and all that are used into a ring
+ * in the order of use. Entry 0 holds no body. It closes the ring, with the newest entry beyond it
+ * on one side and the oldest on the other, and it ends the chains: buckets start as the zeros that
+ * calloc() provides without touching them. Entries 1 to counts.bodies are used. */
 enum { NONE = 0, ENDS = 0 };
 
-/* Apart from its body: each use of a body changes its neighbours in the order of use, and these are
- * anywhere; entries are small and lie together. */
+/* Apart from the body: each use of a body changes its neighbours in the order of use, which may be
+ * any entries. Two entries share a cache line. */
 struct entry {
-    int64_t id, key;
+    struct handle handle;
     int32_t next;         /* in the bucket */
     int32_t newer, older; /* in the order of use */
+    uint32_t generation;  /* how many bodies have been here before */
 };
 
-/* What most pairs need of a body is in its first two lines. */
+/* What most pairs need of a body is in its first two cache lines. */
 enum { LINE = 64 };
 
 struct held {
-    _Alignas(LINE) struct fmb_body body;
+    _Alignas(LINE) struct cached cached;
+    int32_t ids; /* that lead to this entry */
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+};
+
+/* The latest entry of an id. It is stale once the entry holds another body. */
+struct latest {
+    int64_t id;    /* 0: not used */
+    int32_t entry; /* index */
+    uint32_t generation;
+};
+
+/* An id has one set, and any place in it. The one that came first is replaced. */
+enum { WAYS = LINE / sizeof(struct latest) };
+
+struct id_set {
+    _Alignas(LINE) struct latest way[WAYS]; /* the newest first */
 };
 
 struct cache {
-    int64_t next_key;
-    uint64_t multiplier; /* odd, random */
-    int bucket_shift;
-    int32_t *bucket;     /* [2^(64 - bucket_shift)]: first entry of each */
-    struct entry *entry; /* [capacity + 1] */
-    struct held *held;   /* [capacity + 1] */
+    uint64_t bucket_multiplier, set_multiplier; /* odd, secret */
+    int bucket_shift, set_shift;
+    int32_t *bucket;    /* [2^(64 - bucket_shift)]: first entry of each */
+    struct id_set *set; /* [2^(64 - set_shift)], in set_memory */
+    void *set_memory;
+    struct entry *entry; /* [frame_capacity + 1] */
+    struct held *held;   /* [frame_capacity + 1] */
+    struct hasher *hasher;
     struct cache_counts counts;
 };
 
-/* So that no entry lies in two lines, nor a body in more than it has to. */
-static void *in_lines(size_t size)
+/* ---- Memory ---- */
+
+/* Starts at a cache line, so that no entry straddles two lines. */
+static void *allocate_lines(size_t count, size_t size)
 {
-    return aligned_alloc(LINE, (size + LINE - 1) / LINE * LINE);
+    return aligned_alloc(LINE, (count * size + LINE - 1) / LINE * LINE);
 }
 
-struct cache *cache_create(size_t capacity, int64_t first_key)
+/* The least number of bits, from 1, that count so many things. */
+static int bits_for(size_t count)
 {
-    assert(capacity >= 1 && capacity <= CACHE_BODIES_MAX);
-    int bucket_bits = 1;
-    while (((size_t) 1 << bucket_bits) < capacity)
-        bucket_bits++;
-    const size_t entries = capacity + 1, buckets = (size_t) 1 << bucket_bits;
+    int bits = 1;
+    while (((size_t) 1 << bits) < count)
+        bits++;
+    return bits;
+}
+
+static size_t bucket_count(const struct cache *cache)
+{
+    return (size_t) 1 << (64 - cache->bucket_shift);
+}
+
+static size_t set_count(const struct cache *cache)
+{
+    return (size_t) 1 << (64 - cache->set_shift);
+}
+
+/* Zeros, not touched, from a cache line on. *memory: what is to be freed. */
+static void *allocate_zero_lines(size_t count, size_t size, void **memory)
+{
+    *memory = calloc(count * size + LINE, 1);
+    return *memory ? (char *) *memory + (LINE - (uintptr_t) *memory % LINE) : NULL;
+}
+
+/* Allocates what cache->counts and the shifts say; sets and buckets are empty. */
+static bool allocate(struct cache *cache)
+{
+    const size_t entries = (size_t) cache->counts.frame_capacity + 1;
+    cache->bucket = calloc(bucket_count(cache), sizeof *cache->bucket);
+    cache->set = allocate_zero_lines(set_count(cache), sizeof *cache->set, &cache->set_memory);
+    cache->entry = allocate_lines(entries, sizeof *cache->entry);
+    cache->held = allocate_lines(entries, sizeof *cache->held);
+    cache->hasher = hasher_create();
+    return cache->bucket && cache->set && cache->entry && cache->held && cache->hasher;
+}
+
+struct cache *cache_create(size_t frames, const uint64_t secret[2])
+{
+    assert(frames >= 1 && frames <= CACHE_FRAMES_MAX);
     struct cache *cache = malloc(sizeof *cache);
-    struct entry *entry = in_lines(entries * sizeof *entry);
-    struct held *held = in_lines(entries * sizeof *held);
-    int32_t *bucket = calloc(buckets, sizeof *bucket);
-    if (!cache || !entry || !held || !bucket) {
-        free(cache);
-        free(entry);
-        free(held);
-        free(bucket);
+    if (!cache)
+        return NULL;
+    *cache = (struct cache){.bucket_multiplier = secret[0] | 1,
+                            .set_multiplier = secret[1] | 1,
+                            .bucket_shift = 64 - bits_for(frames),
+                            .set_shift = 64 - bits_for((frames + 1) / 2),
+                            .counts = {.frame_capacity = (int64_t) frames}};
+    if (!allocate(cache)) {
+        cache_destroy(cache);
         return NULL;
     }
-    *cache = (struct cache){.next_key = first_key,
-                            .multiplier = query_id_mix(first_key) | 1,
-                            .bucket_shift = 64 - bucket_bits,
-                            .bucket = bucket,
-                            .entry = entry,
-                            .held = held,
-                            .counts = {.capacity = (int64_t) capacity}};
-    entry[ENDS].newer = entry[ENDS].older = ENDS;
+    cache->entry[ENDS].newer = cache->entry[ENDS].older = ENDS;
     return cache;
 }
 
-/* Memory is there when it has been written to. */
+void cache_destroy(struct cache *cache)
+{
+    if (!cache)
+        return;
+    hasher_destroy(cache->hasher);
+    free(cache->bucket);
+    free(cache->set_memory);
+    free(cache->entry);
+    free(cache->held);
+    free(cache);
+}
+
+/* A page is allocated when it is written to. */
 static void touch_pages(void *memory, size_t size)
 {
     enum { PAGE = 4096 };
@@ -84,55 +145,53 @@ static void touch_pages(void *memory, size_t size)
 void cache_take_memory(struct cache *cache)
 {
     enum { TAKEN_MAX = 64 << 20 };
-    const size_t entries = (size_t) cache->counts.capacity + 1;
-    const size_t of_entries = entries * sizeof *cache->entry,
-                 of_held = entries * sizeof *cache->held;
-    const size_t of_buckets = sizeof *cache->bucket << (64 - cache->bucket_shift);
-    if (of_entries + of_held + of_buckets > TAKEN_MAX)
+    const size_t entries = (size_t) cache->counts.frame_capacity + 1;
+    const size_t entry_bytes = entries * sizeof *cache->entry;
+    const size_t held_bytes = entries * sizeof *cache->held;
+    const size_t bucket_bytes = bucket_count(cache) * sizeof *cache->bucket;
+    const size_t set_bytes = set_count(cache) * sizeof *cache->set;
+    if (entry_bytes + held_bytes + bucket_bytes + set_bytes > TAKEN_MAX)
         return;
-    touch_pages(cache->entry, of_entries);
-    touch_pages(cache->held, of_held);
-    touch_pages(cache->bucket, of_buckets);
+    touch_pages(cache->entry, entry_bytes);
+    touch_pages(cache->held, held_bytes);
+    touch_pages(cache->bucket, bucket_bytes);
+    touch_pages(cache->set, set_bytes);
 }
 
-void cache_destroy(struct cache *cache)
+/* ---- Hashing ----
+ *
+ * Multiply-shift: the upper bits of x times a secret odd number, modulo 2^64. For any two different
+ * x of 64 bits, whatever the client knows of this code, they are equal for at most one in
+ * (buckets / 2) of all odd numbers (Dietzfelbinger, Hagerup, Katajainen, Penttonen, "A Reliable
+ * Randomized Algorithm for the Closest-Pair Problem", 1997). No result and no counter depends on
+ * the secret but through which ids are known, so that n bodies or ids that a client has chosen
+ * are, in the mean, each compared with fewer than 1 + 2 n / buckets.
+ *
+ * Of a handle x is the first half. The handles of bodies are hashes themselves: two bodies with the
+ * same first half take some 2^32 hashes to find, three some 2^43, and a set that would make a chain
+ * long is out of reach. Both halves in one sum of products would be no better: differences of 2^63
+ * in both would cancel for all odd numbers. */
+
+static int32_t *bucket_of(const struct cache *cache, const struct handle *handle)
 {
-    if (!cache)
-        return;
-    free(cache->bucket);
-    free(cache->entry);
-    free(cache->held);
-    free(cache);
+    const uint64_t half = big_endian_64(handle->bytes);
+    return &cache->bucket[half * cache->bucket_multiplier >> cache->bucket_shift];
 }
 
-/* Multiplicative hashing: the upper bits of the product. The multiplier is random, lest somebody
- * chooses ids that all fall into one bucket. */
-static int32_t *bucket_of(const struct cache *cache, int64_t id)
+static struct latest *ways_of(const struct cache *cache, int64_t id)
 {
-    return &cache->bucket[(uint64_t) id * cache->multiplier >> cache->bucket_shift];
+    return cache->set[(uint64_t) id * cache->set_multiplier >> cache->set_shift].way;
 }
 
-static int32_t find(struct cache *cache, int64_t id)
+static int32_t find(const struct cache *cache, const struct handle *handle)
 {
-    int32_t e = *bucket_of(cache, id);
-    while (e != NONE && cache->entry[e].id != id)
+    int32_t e = *bucket_of(cache, handle);
+    while (e != NONE && !handle_equal(&cache->entry[e].handle, handle))
         e = cache->entry[e].next;
     return e;
 }
 
-void cache_expect_soon(const struct cache *cache, int64_t id)
-{
-    __builtin_prefetch(bucket_of(cache, id));
-}
-
-void cache_expect(const struct cache *cache, int64_t id)
-{
-    const int32_t e = *bucket_of(cache, id);
-    const char *body = (const char *) &cache->held[e];
-    __builtin_prefetch(&cache->entry[e]);
-    __builtin_prefetch(body);
-    __builtin_prefetch(body + LINE);
-}
+/* ---- Order of use ---- */
 
 static void unlink_use(struct cache *cache, int32_t e)
 {
@@ -150,32 +209,121 @@ static void link_newest(struct cache *cache, int32_t e)
     cache->entry[ENDS].older = e;
 }
 
-static void touch(struct cache *cache, int32_t e)
+static const struct cached *use(struct cache *cache, int32_t e)
 {
     unlink_use(cache, e);
     link_newest(cache, e);
+    return &cache->held[e].cached;
 }
+
+/* ---- Ids ---- */
+
+static bool is_live(const struct cache *cache, const struct latest *latest)
+{
+    return latest->id != 0 && cache->entry[latest->entry].generation == latest->generation;
+}
+
+static int way_of(const struct latest *way, int64_t id)
+{
+    int w = 0;
+    while (w < WAYS && way[w].id != id)
+        w++;
+    return w;
+}
+
+/* The latest entry of the id, if it has this geometry. A stale one cannot mislead: whatever body is
+ * there now is the right one if its bytes are the same. */
+static int32_t find_latest(const struct cache *cache, int64_t id, const struct geometry *geometry)
+{
+    const struct latest *way = ways_of(cache, id);
+    const int w = way_of(way, id);
+    if (w == WAYS || !is_live(cache, &way[w]))
+        return NONE;
+    const struct geometry *held = &cache->held[way[w].entry].cached.geometry;
+    const bool same =
+        held->size == geometry->size && memcmp(held->bytes, geometry->bytes, geometry->size) == 0;
+    return same ? way[w].entry : NONE;
+}
+
+static void forget(struct cache *cache, const struct latest *latest)
+{
+    if (is_live(cache, latest)) {
+        cache->held[latest->entry].ids--;
+        cache->counts.ids--;
+    }
+}
+
+/* From now on the id leads to the entry. */
+static void set_latest(struct cache *cache, int64_t id, int32_t e)
+{
+    struct latest *way = ways_of(cache, id);
+    int w = way_of(way, id);
+    if (w == WAYS)
+        w = WAYS - 1;
+    forget(cache, &way[w]);
+    memmove(&way[1], &way[0], (size_t) w * sizeof *way);
+    way[0] = (struct latest){id, e, cache->entry[e].generation};
+    cache->held[e].ids++;
+    cache->counts.ids++;
+}
+
+/* ---- Bodies ---- */
 
 static int32_t evict_oldest(struct cache *cache)
 {
     int32_t e = cache->entry[ENDS].newer;
-    int32_t *link = bucket_of(cache, cache->entry[e].id);
+    int32_t *link = bucket_of(cache, &cache->entry[e].handle);
     while (*link != e)
         link = &cache->entry[*link].next;
     *link = cache->entry[e].next;
     unlink_use(cache, e);
+    cache->entry[e].generation++;
+    cache->counts.ids -= cache->held[e].ids;
     cache->counts.evictions++;
     cache->counts.bodies--;
     return e;
 }
 
-/* A new entry for the id, linked everywhere. */
-static int32_t insert(struct cache *cache, int64_t id)
+static int32_t take_entry(struct cache *cache)
 {
-    int32_t e = cache->counts.bodies < cache->counts.capacity ? (int32_t) cache->counts.bodies + 1
-                                                              : evict_oldest(cache);
-    int32_t *bucket = bucket_of(cache, id);
-    cache->entry[e].id = id;
+    if (cache->counts.bodies == cache->counts.frame_capacity)
+        return evict_oldest(cache);
+    const int32_t e = (int32_t) cache->counts.bodies + 1;
+    cache->entry[e].generation = 0;
+    return e;
+}
+
+void cache_make_body(const struct geometry *geometry, struct fmb_body *out)
+{
+    struct geometry_frame frame;
+    int dim;
+    const bool readable = geometry_read(geometry, &dim, &frame);
+    const enum fmb_status status =
+        fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), out);
+    assert(readable && status == FMB_OK);
+    (void) readable;
+    (void) status;
+}
+
+static void set_held(struct held *held, const struct handle *handle,
+                     const struct geometry *geometry)
+{
+    assert(geometry->size <= sizeof held->bytes);
+    cache_make_body(geometry, &held->cached.body);
+    held->cached.handle = *handle;
+    held->cached.geometry = (struct geometry){held->bytes, geometry->size};
+    memcpy(held->bytes, geometry->bytes, geometry->size);
+    held->ids = 0;
+}
+
+/* A new entry, linked everywhere. */
+static int32_t insert(struct cache *cache, const struct handle *handle,
+                      const struct geometry *geometry)
+{
+    const int32_t e = take_entry(cache);
+    int32_t *bucket = bucket_of(cache, handle);
+    set_held(&cache->held[e], handle, geometry);
+    cache->entry[e].handle = *handle;
     cache->entry[e].next = *bucket;
     *bucket = e;
     link_newest(cache, e);
@@ -183,63 +331,90 @@ static int32_t insert(struct cache *cache, int64_t id)
     return e;
 }
 
-/* Component by component, since they are stored with gaps in 2D. -0 and 0 are different. Of a size
- * that a compiler knows it needs no call. */
-static bool same_component(const double *a, const double *b, int dim)
+const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry)
 {
-    return dim == 3 ? memcmp(a, b, 3 * sizeof *a) == 0 : memcmp(a, b, 2 * sizeof *a) == 0;
-}
-
-static bool same_body(const struct fmb_body *body, int dim, int shape, const double *components)
-{
-    if (body->dim != dim || body->shape != (enum fmb_shape) shape)
-        return false;
-    for (int i = 0; i < body->count; i++)
-        if (!same_component(body->component[i], components + i * dim, dim))
-            return false;
-    return true;
-}
-
-const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int shape,
-                                  const double *components, int64_t *key)
-{
-    int32_t e = find(cache, id);
-    if (e != NONE && same_body(&cache->held[e].body, dim, shape, components)) {
+    int32_t e = id ? find_latest(cache, id, geometry) : NONE;
+    if (e != NONE) {
+        cache->counts.hits++;
+        return use(cache, e);
+    }
+    const struct handle handle = hasher_handle(cache->hasher, geometry->bytes, geometry->size);
+    e = find(cache, &handle);
+    if (e != NONE) {
         cache->counts.hits++;
     } else {
         cache->counts.misses++;
-        if (e == NONE)
-            e = insert(cache, id);
-        else
-            cache->counts.replacements++;
-        size_t count = (size_t) (fmb_component_count(dim, shape) * dim);
-        enum fmb_status status = fmb_body_make(dim, shape, components, count, &cache->held[e].body);
-        assert(status == FMB_OK);
-        (void) status;
-        cache->entry[e].key = cache->next_key++;
+        e = insert(cache, &handle, geometry);
     }
-    touch(cache, e);
-    *key = cache->entry[e].key;
-    return &cache->held[e].body;
+    if (id)
+        set_latest(cache, id, e);
+    return use(cache, e);
 }
 
-const struct fmb_body *cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape)
+const struct cached *cache_find(struct cache *cache, const struct handle *handle)
 {
-    int32_t e = find(cache, id);
-    if (e == NONE || cache->entry[e].key != key || cache->held[e].body.dim != dim ||
-        (int) cache->held[e].body.shape != shape)
+    const int32_t e = find(cache, handle);
+    if (e == NONE)
         return NULL;
     cache->counts.hits++;
-    touch(cache, e);
-    return &cache->held[e].body;
+    return use(cache, e);
 }
 
-size_t cache_capacity(const struct cache *cache)
+const struct cached *cache_peek(const struct cache *cache, const struct handle *handle)
 {
-    return (size_t) cache->counts.capacity;
+    const int32_t e = find(cache, handle);
+    return e == NONE ? NULL : &cache->held[e].cached;
+}
+
+/* ---- Prefetching ---- */
+
+static void prefetch_entry(const struct cache *cache, int32_t e)
+{
+    const char *body = (const char *) &cache->held[e];
+    __builtin_prefetch(&cache->entry[e]);
+    __builtin_prefetch(body);
+    __builtin_prefetch(body + LINE);
+}
+
+void cache_prefetch(const struct cache *cache, const struct placement *placement)
+{
+    if (placement_by_handle(placement)) {
+        prefetch_entry(cache, *bucket_of(cache, &placement->handle));
+        return;
+    }
+    const struct latest *way = ways_of(cache, placement->body_id);
+    const int w = way_of(way, placement->body_id);
+    if (w == WAYS)
+        return;
+    prefetch_entry(cache, way[w].entry);
+    for (size_t at = offsetof(struct held, bytes); at < sizeof(struct held); at += LINE)
+        __builtin_prefetch((const char *) &cache->held[way[w].entry] + at);
+}
+
+/* ---- All bodies, and counts ---- */
+
+const struct cached *cache_next(const struct cache *cache, int64_t *position)
+{
+    if (*position < 0 || *position >= cache->counts.bodies)
+        return NULL;
+    return &cache->held[++*position].cached;
 }
 
 struct cache_counts cache_counts(const struct cache *cache)
 {
-    return cache->counts;
+    struct cache_counts counts = cache->counts;
+    counts.frames = counts.bodies;
+    return counts;
+}
+
+int64_t cache_longest_chain(const struct cache *cache)
+{
+    int64_t longest = 0;
+    for (size_t b = 0; b < bucket_count(cache); b++) {
+        int64_t length = 0;
+        for (int32_t e = cache->bucket[b]; e != NONE; e = cache->entry[e].next)
+            length++;
+        longest = length > longest ? length : longest;
+    }
+    return longest;
 }

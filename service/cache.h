@@ -1,59 +1,72 @@
-/* The bodies that the service has met, by id: components, inverse and all that fmb_body holds.
+/* The bodies that the service holds, by handle: geometry and struct fmb_body with its inverse.
  *
- * A fixed number of bodies; the least recently used goes first. All memory is asked for at the
- * start, and touched as bodies come. Each set of components that is kept gets a key, a number
- * that no other set gets in the life of the cache: a frame may name its components by id and
- * key. A key dies when its body is replaced (same id, other components, shape or dimension) or
- * evicted. */
+ * The capacity is a fixed number of frames; the least recently used body is evicted first. All
+ * memory is allocated by cache_create(). Each geometry has one entry, whatever its ids: two clients
+ * that use the same id for different bodies do not disturb each other. A second table maps an id to
+ * its latest entry, so that a body that comes whole again under its id is found by comparing bytes,
+ * without SHA-256. Both tables are hashed with a secret, so that no client can choose bodies or ids
+ * that collide. For one thread at a time. */
 #ifndef CACHE_H
 #define CACHE_H
 
-#include "fmb/fmb.h"
+#include "query.h"
 
 #include <stdint.h>
 
-enum { CACHE_BODIES_MAX = 10000000 };
+enum { CACHE_FRAMES_MAX = 10000000 };
 
 struct cache;
 
 struct cache_counts {
-    int64_t bodies, capacity;
-    int64_t hits;
-    int64_t misses;
-    int64_t replacements; /* of the misses: the id was held with other components */
-    int64_t evictions;
+    int64_t bodies;
+    int64_t frames, frame_capacity;
+    int64_t ids; /* ids whose latest entry is known */
+    int64_t hits, misses, evictions;
 };
 
-/* On input: capacity from 1 to CACHE_BODIES_MAX; first_key, from 1 to 2^52: where the keys
- * start to count. With a random start, a key from another life of the service names nothing
- * here: a wrong hit would need the same id at the same place in two sequences that start
- * anywhere among 2^52 numbers.
- * On output: a cache, to be freed with cache_destroy(); NULL: out of memory. */
-struct cache *cache_create(size_t capacity, int64_t first_key);
-
-/* For a service, that takes no more memory later than it had when it was ready. Takes milliseconds.
- * A very large cache is left alone: it takes memory as bodies come. */
-void cache_take_memory(struct cache *cache);
+/* On input: frames from 1 to CACHE_FRAMES_MAX; secret: random. NULL: out of memory. cache_destroy()
+ * accepts NULL. */
+struct cache *cache_create(size_t frames, const uint64_t secret[2]);
 void cache_destroy(struct cache *cache);
 
-/* Both return a body that is good until the cache is asked again. */
+/* Touches the memory of a cache of up to 64 MB, so that the service's memory does not grow after it
+ * is ready. Takes milliseconds. */
+void cache_take_memory(struct cache *cache);
 
-size_t cache_capacity(const struct cache *cache);
+/* A body in the cache. Valid until the next cache_keep(). */
+struct cached {
+    struct fmb_body body;
+    struct handle handle;
+    struct geometry geometry; /* owned by the cache */
+};
 
-/* Hints: this id will be asked for soon, and, later, sooner. Bodies are anywhere in memory, and the
- * next two of them can be on their way at once. */
-void cache_expect_soon(const struct cache *cache, int64_t id);
-void cache_expect(const struct cache *cache, int64_t id);
+/* The body with this handle, which becomes the most recently used; counts a hit. NULL: not held;
+ * counts nothing. */
+const struct cached *cache_find(struct cache *cache, const struct handle *handle);
 
-/* Finds the body with these components (bitwise), or keeps it. On input: id > 0, the rest as
- * fmb_body_make() accepts it. On output: never NULL; *key. */
-const struct fmb_body *cache_keep(struct cache *cache, int64_t id, int dim, int shape,
-                                  const double *components, int64_t *key);
+/* The same, without counting or marking it as used. */
+const struct cached *cache_peek(const struct cache *cache, const struct handle *handle);
 
-/* Finds the body that the key was given for, if it has this dimension and shape. NULL: it is not
- * held (any more); that counts neither as hit nor as miss. */
-const struct fmb_body *cache_find(struct cache *cache, int64_t id, int64_t key, int dim, int shape);
+/* The body with this geometry, which becomes the most recently used; it is added if it was not
+ * held. On input: id, or 0 for none; a geometry of one frame that fmb_body_make() accepts. Never
+ * NULL. */
+const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry);
+
+/* Prepares a body without adding it. On input: a geometry as for cache_keep(). */
+void cache_make_body(const struct geometry *geometry, struct fmb_body *out);
+
+/* Prefetches the memory that a look-up will touch. On input: any placement. */
+void cache_prefetch(const struct cache *cache, const struct placement *placement);
+
+/* Iterates over all bodies: returns the first at *position (0 at first) or after it, and sets
+ * *position to the next one; NULL: there are no more. Look-ups do not change the order. A body
+ * added during the iteration may be missed if it takes the position of an evicted one. */
+const struct cached *cache_next(const struct cache *cache, int64_t *position);
 
 struct cache_counts cache_counts(const struct cache *cache);
+
+/* The most bodies in one bucket of the table by handle: the most that a look-up compares. For
+ * tests; takes time proportional to the capacity. */
+int64_t cache_longest_chain(const struct cache *cache);
 
 #endif

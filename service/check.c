@@ -1,12 +1,20 @@
 #include "check.h"
 
+#include "cursor.h"
+
 #include <math.h>
 #include <stdio.h>
+
+/* Of a query. One datagram has no space for so many. */
+enum { FRAMES_MAX = 65536 };
+
+/* A box is a centre and a size. The engine does not have it yet. */
+enum { SHAPE_BOX = 4 };
 
 bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
                   const char *reason)
 {
-    char place[24] = "";
+    char place[32] = "";
     if (checking->part && checking->index >= 0)
         snprintf(place, sizeof place, "%s[%d].", checking->part, (int) checking->index);
     else if (checking->part)
@@ -17,77 +25,155 @@ bool check_refuse(struct checking *checking, enum fmb_status status, const char 
     return false;
 }
 
+static bool refuse_at(struct checking *checking, enum fmb_status status, const char *list, int i,
+                      const char *reason)
+{
+    char field[32];
+    snprintf(field, sizeof field, "%s[%d]", list, i);
+    return check_refuse(checking, status, field, reason);
+}
+
 static bool check_id(struct checking *checking, const char *field, int64_t id)
 {
     return query_id_ok(id) || check_refuse(checking, FMB_BAD_ID, field, "not from 0 to 2^53 - 1");
 }
 
-static bool refuse_count(struct checking *checking, const char *field, int expected, int found)
+static bool check_count(struct checking *checking, const char *field, int64_t expected,
+                        int32_t found)
 {
     char reason[64];
-    snprintf(reason, sizeof reason, "expected %d numbers, found %d", expected, found);
+    if (found == expected)
+        return true;
+    snprintf(reason, sizeof reason, "expected %lld numbers, found %d", (long long) expected,
+             (int) found);
     return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
 }
 
-static bool check_count(struct checking *checking, const char *field, int expected,
-                        const struct query_numbers *numbers)
+/* 0, or what is expected. */
+static bool check_optional(struct checking *checking, const char *field, int expected,
+                           int32_t found)
 {
-    return numbers->count == expected || refuse_count(checking, field, expected, numbers->count);
+    return found == 0 || check_count(checking, field, expected, found);
 }
 
-static bool refuse_not_finite(struct checking *checking, const char *field,
-                              const struct query_numbers *numbers)
+static bool check_finite(struct checking *checking, const char *list, const double *number,
+                         int count)
 {
-    for (int i = 0; i < numbers->count; i++)
-        if (!isfinite(numbers->number[i])) {
-            char place[32];
-            snprintf(place, sizeof place, "%s[%d]", field, i);
-            return check_refuse(checking, FMB_NOT_FINITE, place, NULL);
-        }
+    for (int i = 0; i < count; i++)
+        if (!isfinite(number[i]))
+            return refuse_at(checking, FMB_NOT_FINITE, list, i, NULL);
     return true;
 }
 
-/* 0 times a number that is not finite is not 0. On input: a count that was checked. */
-static inline double nothing_of(const struct query_numbers *numbers)
+/* ---- Frames ---- */
+
+/* Where the lists of a geometry are (placement_t.lcm): dim and the count of shapes come before
+ * them, the count of numbers between them. */
+static const unsigned char *shapes_of(const struct placement *placement)
 {
-    double nothing = 0;
-    for (int i = 0; i < numbers->count; i++)
-        nothing += 0 * numbers->number[i];
-    return nothing;
+    return placement->geometry.bytes + 4 + 4;
 }
 
-static bool check_finite(struct checking *checking, const struct query_frame *frame)
+static double number_at(const struct placement *placement, int32_t i)
 {
-    return nothing_of(&frame->origin) + nothing_of(&frame->components) +
-                   nothing_of(&frame->velocity) ==
-               0 ||
-           (refuse_not_finite(checking, "origin", &frame->origin) &&
-            refuse_not_finite(checking, "components", &frame->components) &&
-            refuse_not_finite(checking, "velocity", &frame->velocity));
+    return cursor_double_at(shapes_of(placement) + placement->frame_count + 4 + 8 * (size_t) i);
 }
 
-static bool refuse_shape(struct checking *checking, const struct query_frame *frame)
+/* Numbers of a frame; 0: there is no such shape, or not in this dimension. */
+static int numbers_of(int dim, int shape)
 {
-    if (!fmb_shape_name(frame->shape))
-        return check_refuse(checking, FMB_UNKNOWN_SHAPE, "shape", NULL);
-    return check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
-                        frame->dim == 2 ? "a face is in 3D" : "neither 2 nor 3");
+    if (shape == SHAPE_BOX)
+        return 2 * dim;
+    const int components = fmb_component_count(dim, shape);
+    return components ? dim * (1 + components) : 0;
 }
 
-bool check_frame(struct checking *checking, const struct query_frame *frame)
+static bool check_shapes(struct checking *checking, const struct placement *placement)
 {
-    if (!check_id(checking, "body_id", frame->body_id) || !check_id(checking, "key", frame->key))
+    const unsigned char *shape = shapes_of(placement);
+    int64_t numbers = 0;
+    for (int32_t i = 0; i < placement->frame_count; i++) {
+        const int count = numbers_of(placement->dim, shape[i]);
+        if (count == 0)
+            return fmb_shape_name(shape[i])
+                       ? check_refuse(checking, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
+                       : refuse_at(checking, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+        numbers += count;
+    }
+    return check_count(checking, "num_numbers", numbers, placement->number_count);
+}
+
+static bool check_numbers(struct checking *checking, const struct placement *placement)
+{
+    for (int32_t i = 0; i < placement->number_count; i++)
+        if (!isfinite(number_at(placement, i)))
+            return refuse_at(checking, FMB_NOT_FINITE, "numbers", i, NULL);
+    return true;
+}
+
+/* What later versions support. */
+static bool check_support(struct checking *checking, const struct placement *placement)
+{
+    if (placement->orientation_count > 0)
+        return check_refuse(checking, FMB_NOT_SUPPORTED, "orientation", "not in this version");
+    if (placement->frame_count > 1)
+        return check_refuse(checking, FMB_NOT_SUPPORTED, "num_frames",
+                            "one frame a body in this version");
+    if (placement->frame_count == 0)
+        return true;
+    if (shapes_of(placement)[0] == SHAPE_BOX)
+        return check_refuse(checking, FMB_NOT_SUPPORTED, "shapes[0]",
+                            "a box is not in this version");
+    for (int axis = 0; axis < placement->dim; axis++)
+        if (number_at(placement, axis) != 0)
+            return refuse_at(checking, FMB_NOT_SUPPORTED, "numbers", axis,
+                             "the origin is 0 in this version");
+    return true;
+}
+
+/* ---- Placements ---- */
+
+/* A handle or frames. */
+static bool check_definition(struct checking *checking, const struct placement *placement)
+{
+    const bool named = !handle_is_none(&placement->handle);
+    if (named && placement->frame_count > 0)
+        return check_refuse(checking, FMB_WRONG_COUNT, "num_frames", "both a handle and frames");
+    if (named)
+        return check_count(checking, "num_numbers", 0, placement->number_count);
+    if (placement->frame_count == 0)
+        return check_refuse(checking, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
+    if (placement->frame_count > FRAMES_MAX)
+        return check_refuse(checking, FMB_OVER_LIMIT, "num_frames", "more than 65536");
+    return true;
+}
+
+bool check_placement(struct checking *checking, const struct placement *placement)
+{
+    const int dim = placement->dim;
+    if (!check_id(checking, "body_id", placement->body_id) ||
+        !check_definition(checking, placement))
         return false;
-    const int vectors = fmb_component_count(frame->dim, frame->shape);
-    if (vectors == 0)
-        return refuse_shape(checking, frame);
-    return check_count(checking, "origin", frame->dim, &frame->origin) &&
-           (check_by_key(frame) ||
-            check_count(checking, "components", vectors * frame->dim, &frame->components)) &&
-           (frame->velocity.count == 0 ||
-            check_count(checking, "velocity", frame->dim, &frame->velocity)) &&
-           check_finite(checking, frame);
+    if (dim != 2 && dim != 3)
+        return check_refuse(checking, FMB_WRONG_DIMENSION, "dim", "neither 2 nor 3");
+    return (placement_by_handle(placement) ||
+            (check_shapes(checking, placement) && check_numbers(checking, placement))) &&
+           check_finite(checking, "position", placement->position, dim) &&
+           check_optional(checking, "num_orientation", dim == 2 ? 2 : 4,
+                          placement->orientation_count) &&
+           check_optional(checking, "num_velocity", dim, placement->velocity_count) &&
+           check_finite(checking, "velocity", placement->velocity, placement->velocity_count) &&
+           check_support(checking, placement);
 }
+
+bool check_body_dim(struct checking *checking, const struct placement *placement,
+                    const struct fmb_body *body)
+{
+    return placement->dim == body->dim || check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
+                                                       "not that of the body with this handle");
+}
+
+/* ---- Queries ---- */
 
 bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number)
 {
@@ -95,8 +181,8 @@ bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_nu
            check_id(checking, "sequence_number", sequence_number);
 }
 
-bool check_question(struct checking *checking, double duration, int32_t method, int32_t want,
-                    int32_t wants)
+bool check_request(struct checking *checking, double duration, int32_t method, int32_t want,
+                   int32_t wants)
 {
     if (!(duration >= 0 && isfinite(duration)))
         return check_refuse(checking, FMB_BAD_DURATION, "duration", "negative or not finite");

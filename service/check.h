@@ -1,34 +1,36 @@
-/* What a query says, checked field by field: the first thing that is wrong ends it, and is named.
- */
+/* Checks queries field by field. The first field that is wrong ends the check and is named. */
 #ifndef CHECK_H
 #define CHECK_H
 
 #include "query.h"
 
-/* A query on its way. The place is that of the frame that is looked at: it is put into words where
- * something is wrong. */
+/* A check under way. The place is put into words only where something is wrong. */
 struct checking {
     int32_t *status;  /* of the result */
     char *detail;     /* [QUERY_TEXT_MAX] of the result */
-    const char *part; /* "a", "frames"; NULL: the query itself */
-    int32_t index;    /* of several in the part, from 0; -1: it is one */
+    const char *part; /* "a", "placements"; NULL: the query itself */
+    int32_t index;    /* of several in the part, from 0; -1: there is one */
 };
 
-/* Says what is wrong and where: "b.components[4]: not a finite number". Always false. reason NULL:
- * the text of the status. */
+/* Refuses the query: sets status and detail, "b.numbers[4]: not a finite number". reason NULL: the
+ * text of the status. Returns false. */
 bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
                   const char *reason);
 
-/* False after refusing. wants: all bits that may be wanted. */
-bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number);
-bool check_question(struct checking *checking, double duration, int32_t method, int32_t want,
-                    int32_t wants);
-bool check_frame(struct checking *checking, const struct query_frame *frame);
+/* All return whether the fields are right; if not, they have refused. */
 
-/* Whether the frame names its components by key. Inline: asked several times of each. */
-static inline bool check_by_key(const struct query_frame *frame)
-{
-    return frame->components.count == 0 && frame->key != 0;
-}
+bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number);
+
+/* wants: all bits that are allowed. */
+bool check_request(struct checking *checking, double duration, int32_t method, int32_t want,
+                   int32_t wants);
+
+/* A placement that comes whole is accepted if it has one frame that fmb_body_make() accepts, with
+ * the origin 0. */
+bool check_placement(struct checking *checking, const struct placement *placement);
+
+/* The dimension of a placement that names its body by handle. */
+bool check_body_dim(struct checking *checking, const struct placement *placement,
+                    const struct fmb_body *body);
 
 #endif

@@ -1,9 +1,8 @@
-/* fmbd: answers pairs of frames on an LCM bus. */
+/* fmbd: answers collision queries on an LCM bus. */
 #include "bus.h"
 #include "cache.h"
-#include "fmb/fmb.h"
-#include "supervisor.h"
-#include "worker.h"
+#include "daemon.h"
+#include "fmb.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,31 +14,27 @@
 #include <unistd.h>
 
 enum { EXIT_USAGE = 2 };
-enum { DEFAULT_BODIES = 65536 };
+enum { DEFAULT_FRAMES = 65536 };
 
 static const char usage[] =
     "usage: fmbd [options]\n"
     "\n"
-    "Answers pairs of frames (cuboids, tetrahedra, faces; 2D and 3D; at rest and moving) on an\n"
-    "LCM bus: separated, touching or overlapping, when, and in which box. Queries come on\n"
-    "FMB_PAIR_QUERY and FMB_SCENE_QUERY, results go to FMB_PAIR_RESULT and\n"
-    "FMB_SCENE_RESULT, once a second a heartbeat to FMB_STATUS.\n"
-    "Ask with 'fmb query'; ends on SIGINT and SIGTERM. It is a supervisor and a worker: a worker\n"
-    "that malformed packets crash (LCM lets them) is replaced at once, with an empty cache.\n"
+    "Answers queries about rigid bodies on an LCM bus, in 2D and 3D, at rest and moving: whether\n"
+    "they are separated, touch or overlap, when, and in which box. 'fmb query' sends queries.\n"
+    "Receives on FMB_PAIR_QUERY, FMB_SCENE_QUERY and FMB_DEFINITION_QUERY; sends results on\n"
+    "FMB_PAIR_RESULT, FMB_SCENE_RESULT and FMB_DEFINITION, and a heartbeat on FMB_STATUS once a\n"
+    "second. Ends on SIGINT and SIGTERM.\n"
     "\n"
-    "  -l, --lcm-url URL   the bus; else LCM_DEFAULT_URL; else this host alone\n"
-    "                      (udpm://239.255.76.67:7667?ttl=0)\n"
-    "  -p, --prefix P      put P in front of the channels' names: for a second service\n"
-    "  -b, --bodies N      keep the inverse matrices of N bodies (default %d, 1 to %d)\n"
-    "  -u, --unfiltered    let LCM see all that comes to its port. Without it the kernel drops "
-    "what\n"
-    "                      is not for this service before LCM reads it: results, channels of\n"
-    "                      others, and the pieces of large messages that can crash LCM\n"
+    "  -l, --lcm-url URL   the bus, udpm://GROUP:PORT?ttl=N; else LCM_DEFAULT_URL; else this host\n"
+    "                      alone (udpm://239.255.76.67:7667?ttl=0)\n"
+    "  -p, --prefix P      put P before the channel names, for a second service on the bus\n"
+    "  -f, --frames N      capacity of the cache of bodies, in frames (default %d, 1 to %d)\n"
+    "  -u, --user NAME     become this user once the bus is open (default nobody if started as\n"
+    "                      root)\n"
     "  -h, --help          print this\n"
     "  -V, --version       print the version\n"
     "\n"
-    "Exit codes: 0 ended by a signal, 1 no bus, no memory, or workers that die before they are\n"
-    "ready, 2 wrong options.\n";
+    "Exit codes: 0 ended by a signal, 1 no bus, no memory or no such user, 2 wrong options.\n";
 
 static int wrong_option(const char *option, const char *value, const char *expected)
 {
@@ -47,38 +42,38 @@ static int wrong_option(const char *option, const char *value, const char *expec
     return EXIT_USAGE;
 }
 
-static int wrong_bodies(const char *value)
+static int wrong_frames(const char *value)
 {
     char expected[48];
-    snprintf(expected, sizeof expected, "a number from 1 to %d", CACHE_BODIES_MAX);
-    return wrong_option("--bodies", value, expected);
+    snprintf(expected, sizeof expected, "a number from 1 to %d", CACHE_FRAMES_MAX);
+    return wrong_option("--frames", value, expected);
 }
 
-static bool parse_bodies(const char *text, size_t *out)
+static bool parse_frames(const char *text, size_t *out)
 {
     char *end;
     errno = 0;
     unsigned long long value = strtoull(text, &end, 10);
     bool digits = text[0] >= '0' && text[0] <= '9';
     *out = (size_t) value;
-    return digits && *end == '\0' && errno == 0 && value >= 1 && value <= CACHE_BODIES_MAX;
+    return digits && *end == '\0' && errno == 0 && value >= 1 && value <= CACHE_FRAMES_MAX;
 }
 
 /* Returns -1 to go on, or the code to exit with. */
-static int parse_options(int argc, char **argv, struct worker_options *out)
+static int parse_options(int argc, char **argv, struct daemon_options *out)
 {
     static const struct option long_options[] = {
         {"lcm-url", required_argument, NULL, 'l'},
         {"prefix", required_argument, NULL, 'p'},
-        {"bodies", required_argument, NULL, 'b'},
-        {"unfiltered", no_argument, NULL, 'u'},
+        {"frames", required_argument, NULL, 'f'},
+        {"user", required_argument, NULL, 'u'},
         {"help", no_argument, NULL, 'h'},
         {"version", no_argument, NULL, 'V'},
         {0},
     };
-    *out = (struct worker_options){.prefix = "", .bodies = DEFAULT_BODIES};
+    *out = (struct daemon_options){.prefix = "", .frames = DEFAULT_FRAMES};
     int option;
-    while ((option = getopt_long(argc, argv, ":l:p:b:uhV", long_options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, ":l:p:f:u:hV", long_options, NULL)) != -1) {
         switch (option) {
         case 'l': out->lcm_url = optarg; break;
         case 'p':
@@ -86,12 +81,12 @@ static int parse_options(int argc, char **argv, struct worker_options *out)
             if (!bus_prefix_ok(optarg))
                 return wrong_option("--prefix", optarg, "at most 32 letters, digits, _ or -");
             break;
-        case 'b':
-            if (!parse_bodies(optarg, &out->bodies))
-                return wrong_bodies(optarg);
+        case 'f':
+            if (!parse_frames(optarg, &out->frames))
+                return wrong_frames(optarg);
             break;
-        case 'u': out->unfiltered = true; break;
-        case 'h': printf(usage, DEFAULT_BODIES, CACHE_BODIES_MAX); return EXIT_SUCCESS;
+        case 'u': out->user = optarg; break;
+        case 'h': printf(usage, DEFAULT_FRAMES, CACHE_FRAMES_MAX); return EXIT_SUCCESS;
         case 'V': printf("fmbd %s\n", fmb_version()); return EXIT_SUCCESS;
         case ':': return wrong_option("option", argv[optind - 1], "a value after it");
         default: return wrong_option("option", argv[optind - 1], "one that there is");
@@ -102,8 +97,8 @@ static int parse_options(int argc, char **argv, struct worker_options *out)
     return -1;
 }
 
-/* A standard descriptor that is closed would be the number of what is opened next, and lines meant
- * for people would go there: to /dev/null instead. */
+/* A standard descriptor that is closed would be the number of what is opened next, and messages on
+ * stderr would go there: to /dev/null instead. */
 static void open_standard_descriptors(void)
 {
     int fd;
@@ -116,9 +111,9 @@ static void open_standard_descriptors(void)
 
 int main(int argc, char **argv)
 {
-    struct worker_options options;
+    struct daemon_options options;
     open_standard_descriptors();
     signal(SIGPIPE, SIG_IGN); /* a reader of stderr that goes away must not end the service */
-    int code = parse_options(argc, argv, &options);
-    return code >= 0 ? code : supervisor_run(worker_run, &options);
+    const int code = parse_options(argc, argv, &options);
+    return code >= 0 ? code : daemon_run(&options);
 }

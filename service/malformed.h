@@ -1,4 +1,4 @@
-/* Datagrams that cannot be read: counted, and said at a limited rate. */
+/* Messages that cannot be decoded: counted, and reported at most once a second. */
 #ifndef MALFORMED_H
 #define MALFORMED_H
 
@@ -7,18 +7,19 @@
 /* All 0 at the start. */
 struct malformed {
     int64_t count;
-    int64_t said_ns; /* 0: never */
-    int64_t unsaid;  /* how many came since */
-    /* The last one. */
+    int64_t said_ns; /* time of the last report; 0: none */
+    int64_t unsaid;  /* messages since then */
+    /* Of the last message. */
     const char *channel, *reason;
     uint32_t size;
 };
 
-/* On input: texts that stay. */
+/* Counts a message, and reports it if a report is due. On input: texts that outlive
+ * the struct. */
 void malformed_note(struct malformed *malformed, const char *channel, uint32_t size,
                     const char *reason);
 
-/* Says on stderr what is left to be said, if it may be said again. */
+/* Reports messages not reported yet on stderr, if a report is due. */
 void malformed_say(struct malformed *malformed);
 
 #endif

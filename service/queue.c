@@ -8,82 +8,70 @@
  *
  * Let C be the capacity, F the free chunks, h[c] what client c holds, and m the number of clients
  * that hold any, the sender s counted among them: C = F + sum of h[c]. A datagram of n chunks
- * comes; with it the sender would hold L = h[s] + n. It is refused where
+ * arrives; with it the sender would hold L = h[s] + n. It is refused where
  *
  *     F + sum over c of max(h[c] - L, 0) < n                                               (1)
  *
- * and otherwise, while F < n, the newest datagram of one that holds most is thrown out.
+ * and otherwise, while F < n, the newest datagram of a client that holds most is evicted.
  *
- * Nothing is thrown out in vain: each throw, of k chunks, raises F by k and lowers the sum in (1)
- * by k at most, so what was not refused is not refused afterwards. While F < n, the sum is
- * positive: who holds most holds more than L, and so is not the sender.
+ * No eviction is in vain: each, of k chunks, raises F by k and lowers the sum in (1) by at most k,
+ * so what was not refused is not refused afterwards. While F < n, the sum is positive: the client
+ * that holds most holds more than L, and so is not the sender.
  *
- * Who is refused wants more than a share, m * L > C: with h[c] <= L + max(h[c] - L, 0) for the
- * m - 1 others, and (1) in whole numbers,
+ * A client that is refused wants more than a share, m * L > C: with h[c] <= L + max(h[c] - L, 0)
+ * for the m - 1 others, and (1) in whole numbers,
  *
  *     C <= F + h[s] + (m - 1) * L + (n - 1 - F) = m * L - 1.
  *
- * Who has a datagram thrown out holds more than a share, m * h > C: it holds most, h >= L + 1, and
- * F <= n - 1, so that
+ * A client that has a datagram evicted holds more than a share, m * h > C: it holds most,
+ * h >= L + 1, and F <= n - 1, so that
  *
  *     C <= (n - 1) + h[s] + (m - 1) * h = L - 1 + (m - 1) * h <= m * h - 2.
  *
- * And it is its newest that goes: h counts that datagram and all older ones. What is left may be
- * less than a share, by less than the size of what went. */
+ * And its newest is evicted: h counts that datagram and all older ones. What is left may be less
+ * than a share, by less than the size of what was evicted. */
 
 /* Chunks and clients are linked by index. They count from 1: 0 is none, and what starts as 0 is
- * linked to nothing. A datagram is called by its first chunk. */
+ * linked to nothing. A datagram is named by its first chunk. */
 struct chunk {
     int32_t next; /* of the datagram, or of those that are free again */
     /* Of the first chunk: */
-    int32_t older, newer; /* datagram of the client */
+    int32_t older, newer; /* datagram of the line */
     int32_t size;         /* bytes of the datagram */
     int kind;
+    uint64_t arrival; /* ascending */
 };
 
 struct client {
-    int64_t id;
-    int32_t chunks;                    /* held */
-    int32_t oldest, newest;            /* datagrams */
-    int32_t next;                      /* in the bucket, or of those that are free again */
-    int32_t before, after;             /* in the ring of turns */
-    int32_t equal_before, equal_after; /* in the list of those that hold as many */
+    int32_t chunks;                                   /* held */
+    int32_t oldest[QUEUE_LINES], newest[QUEUE_LINES]; /* datagrams */
+    int32_t equal_before, equal_after;                /* in the list of those that hold as many */
 };
 
 struct queue {
     unsigned char (*bytes)[QUEUE_CHUNK]; /* of each chunk, from 0 */
     struct chunk *chunk;
     int32_t free_chunk; /* freed last */
-    /* Client 0 holds nothing and closes the ring of turns: after it comes who is next. */
     struct client *client;
-    int32_t free_client;
-    int32_t *bucket; /* first client of each */
-    uint64_t multiplier;
-    int bucket_shift;
     int32_t *level; /* by number of chunks: first client that holds so many */
     int32_t top;    /* the most that any client holds */
+    uint64_t arrivals;
     struct queue_counts counts;
 };
 
-struct queue *queue_create(size_t chunks, uint64_t seed)
+struct queue *queue_create(size_t chunks, int clients)
 {
-    assert(chunks >= 1 && chunks <= QUEUE_CHUNKS_MAX);
-    int bucket_bits = 1;
-    while ((size_t) 1 << bucket_bits < chunks)
-        bucket_bits++;
+    assert(chunks >= 1 && chunks <= QUEUE_CHUNKS_MAX && clients >= 1);
     struct queue *queue = calloc(1, sizeof *queue);
     if (!queue)
         return NULL;
     /* Large blocks of 0 take no memory before they are written to. */
     *queue = (struct queue){.bytes = aligned_alloc(QUEUE_CHUNK, chunks * QUEUE_CHUNK),
                             .chunk = calloc(chunks + 1, sizeof *queue->chunk),
-                            .client = calloc(chunks + 1, sizeof *queue->client),
-                            .bucket = calloc((size_t) 1 << bucket_bits, sizeof *queue->bucket),
-                            .multiplier = seed | 1,
-                            .bucket_shift = 64 - bucket_bits,
+                            .client = calloc((size_t) clients + 1, sizeof *queue->client),
                             .level = calloc(chunks + 1, sizeof *queue->level),
                             .counts = {.capacity = (int64_t) chunks}};
-    if (!queue->bytes || !queue->chunk || !queue->client || !queue->bucket || !queue->level) {
+    if (!queue->bytes || !queue->chunk || !queue->client || !queue->level) {
         queue_destroy(queue);
         return NULL;
     }
@@ -97,7 +85,6 @@ void queue_destroy(struct queue *queue)
     free(queue->bytes);
     free(queue->chunk);
     free(queue->client);
-    free(queue->bucket);
     free(queue->level);
     free(queue);
 }
@@ -125,7 +112,7 @@ static int32_t take_chunk(struct queue *queue)
     return chunk;
 }
 
-/* The datagram, in no line yet. There is room for it. */
+/* The datagram, in no line yet. Enough chunks are free. */
 static int32_t write_datagram(struct queue *queue, int kind, const unsigned char *bytes,
                               size_t size)
 {
@@ -156,46 +143,7 @@ static void read_datagram(struct queue *queue, int32_t datagram, unsigned char *
     }
 }
 
-/* ---- Clients: by id -------------------------------------------------------------------------- */
-
-/* The highest bits of the product with a random odd number: two ids fall into one bucket with a
- * probability of 2 / buckets at most, whoever chose them without knowing the number
- * (Dietzfelbinger, Hagerup, Katajainen, Penttonen: A reliable randomized algorithm for the
- * closest-pair problem, 1997). There are as many buckets as there can be clients: two others at
- * most stand in a client's way on average. The collisions of query_id_hash() are known to
- * everybody. */
-static int32_t *bucket_of(struct queue *queue, int64_t id)
-{
-    return &queue->bucket[(uint64_t) id * queue->multiplier >> queue->bucket_shift];
-}
-
-static int32_t find_client(struct queue *queue, int64_t id)
-{
-    int32_t c = *bucket_of(queue, id);
-    while (c && queue->client[c].id != id)
-        c = queue->client[c].next;
-    return c;
-}
-
-/* ---- Clients: the ring of turns -------------------------------------------------------------- */
-
-static void leave_ring(struct queue *queue, int32_t c)
-{
-    int32_t before = queue->client[c].before, after = queue->client[c].after;
-    queue->client[before].after = after;
-    queue->client[after].before = before;
-}
-
-static void join_ring(struct queue *queue, int32_t c)
-{
-    int32_t last = queue->client[0].before;
-    queue->client[c].before = last;
-    queue->client[c].after = 0;
-    queue->client[last].after = c;
-    queue->client[0].before = c;
-}
-
-/* ---- Clients: by what they hold -------------------------------------------------------------- */
+/* ---- Clients by what they hold -------------------------------------------------------------- */
 
 static void leave_level(struct queue *queue, int32_t c)
 {
@@ -222,22 +170,27 @@ static void join_level(struct queue *queue, int32_t c)
  * one datagram. */
 static void hold(struct queue *queue, int32_t c, int32_t more_chunks)
 {
-    if (queue->client[c].chunks)
+    struct client *client = &queue->client[c];
+    if (client->chunks)
         leave_level(queue, c);
-    queue->client[c].chunks += more_chunks;
+    else
+        queue->counts.clients++;
+    client->chunks += more_chunks;
     queue->counts.chunks += more_chunks;
-    if (queue->client[c].chunks)
+    if (client->chunks)
         join_level(queue, c);
-    if (queue->client[c].chunks > queue->top)
-        queue->top = queue->client[c].chunks;
+    else
+        queue->counts.clients--;
+    if (client->chunks > queue->top)
+        queue->top = client->chunks;
     while (queue->top && !queue->level[queue->top])
         queue->top--;
 }
 
 /* Free chunks, and what clients hold beyond the limit; counted as far as wanted. The first client
- * adds as many as there are levels above the limit, and each other one at least: so neither more
- * levels nor more clients are looked at than chunks are wanted. */
-static int32_t room(const struct queue *queue, int32_t limit, int32_t wanted)
+ * adds as many as there are levels above the limit, and each other one at least one: so neither
+ * more levels nor more clients are visited than chunks are wanted. */
+static int32_t obtainable(const struct queue *queue, int32_t limit, int32_t wanted)
 {
     int32_t found = (int32_t) (queue->counts.capacity - queue->counts.chunks);
     for (int32_t level = queue->top; level > limit && found < wanted; level--)
@@ -246,118 +199,103 @@ static int32_t room(const struct queue *queue, int32_t limit, int32_t wanted)
     return found;
 }
 
-/* ---- Clients: they come and go --------------------------------------------------------------- */
+/* ---- Lines ----------------------------------------------------------------------------------- */
 
-static int32_t add_client(struct queue *queue, int64_t id)
-{
-    int32_t c = queue->free_client;
-    if (!c)
-        c = (int32_t) ++queue->counts.clients_most;
-    else
-        queue->free_client = queue->client[c].next;
-    int32_t *bucket = bucket_of(queue, id);
-    queue->client[c] = (struct client){.id = id, .next = *bucket};
-    *bucket = c;
-    join_ring(queue, c);
-    queue->counts.clients++;
-    return c;
-}
-
-static void remove_client(struct queue *queue, int32_t c)
-{
-    int32_t *link = bucket_of(queue, queue->client[c].id);
-    while (*link != c)
-        link = &queue->client[*link].next;
-    *link = queue->client[c].next;
-    leave_ring(queue, c);
-    queue->client[c].next = queue->free_client;
-    queue->free_client = c;
-    queue->counts.clients--;
-}
-
-/* ---- Datagrams in the lines of clients ------------------------------------------------------- */
-
-static void append(struct queue *queue, int32_t c, int32_t datagram)
+static void append(struct queue *queue, int32_t c, enum queue_line line, int32_t datagram)
 {
     struct client *client = &queue->client[c];
-    queue->chunk[datagram].older = client->newest;
+    queue->chunk[datagram].older = client->newest[line];
     queue->chunk[datagram].newer = 0;
-    if (client->newest)
-        queue->chunk[client->newest].newer = datagram;
+    if (client->newest[line])
+        queue->chunk[client->newest[line]].newer = datagram;
     else
-        client->oldest = datagram;
-    client->newest = datagram;
+        client->oldest[line] = datagram;
+    client->newest[line] = datagram;
 }
 
-/* One at either end of the line. */
-static void unlink_datagram(struct queue *queue, int32_t c, int32_t datagram)
+/* A datagram at either end of its line. */
+static void unlink_datagram(struct queue *queue, int32_t c, enum queue_line line, int32_t datagram)
 {
     struct client *client = &queue->client[c];
     int32_t older = queue->chunk[datagram].older, newer = queue->chunk[datagram].newer;
     if (older)
         queue->chunk[older].newer = newer;
     else
-        client->oldest = newer;
+        client->oldest[line] = newer;
     if (newer)
         queue->chunk[newer].older = older;
     else
-        client->newest = older;
+        client->newest[line] = older;
 }
 
-/* The client goes with its last datagram. */
-static void take_out(struct queue *queue, int32_t c, int32_t datagram, struct queue_datagram *out,
-                     unsigned char *bytes)
+static void take(struct queue *queue, int32_t c, enum queue_line line, int32_t datagram,
+                 struct queue_datagram *out, unsigned char *bytes)
 {
-    out->client_id = queue->client[c].id;
+    out->client = c - 1;
     out->kind = queue->chunk[datagram].kind;
     out->size = (size_t) queue->chunk[datagram].size;
-    unlink_datagram(queue, c, datagram);
+    unlink_datagram(queue, c, line, datagram);
     read_datagram(queue, datagram, bytes);
     hold(queue, c, -chunks_of(out->size));
-    if (!queue->client[c].oldest)
-        remove_client(queue, c);
     queue->counts.datagrams--;
+}
+
+/* The line of the newest datagram of a client that holds any. */
+static enum queue_line newest_line(const struct queue *queue, int32_t c)
+{
+    const int32_t *newest = queue->client[c].newest;
+    const struct chunk *chunk = queue->chunk;
+    if (!newest[QUEUE_SHORT])
+        return QUEUE_SCENES;
+    if (!newest[QUEUE_SCENES])
+        return QUEUE_SHORT;
+    return chunk[newest[QUEUE_SHORT]].arrival > chunk[newest[QUEUE_SCENES]].arrival ? QUEUE_SHORT
+                                                                                    : QUEUE_SCENES;
 }
 
 /* ---- The whole ------------------------------------------------------------------------------- */
 
-enum queue_put_result queue_put(struct queue *queue, int64_t client_id, int kind,
+enum queue_put_result queue_put(struct queue *queue, int client, enum queue_line line, int kind,
                                 const unsigned char *bytes, size_t size)
 {
     assert(size >= 1 && size <= QUEUE_DATAGRAM_MAX);
-    int32_t chunks = chunks_of(size), c = find_client(queue, client_id);
-    if (room(queue, queue->client[c].chunks + chunks, chunks) < chunks)
+    const int32_t chunks = chunks_of(size), c = client + 1;
+    if (obtainable(queue, queue->client[c].chunks + chunks, chunks) < chunks)
         return QUEUE_REFUSED;
     if (queue->counts.capacity - queue->counts.chunks < chunks)
         return QUEUE_FULL;
-    if (!c)
-        c = add_client(queue, client_id);
-    append(queue, c, write_datagram(queue, kind, bytes, size));
+    const int32_t datagram = write_datagram(queue, kind, bytes, size);
+    queue->chunk[datagram].arrival = ++queue->arrivals;
+    append(queue, c, line, datagram);
     hold(queue, c, chunks);
     if (++queue->counts.datagrams > queue->counts.datagrams_most)
         queue->counts.datagrams_most = queue->counts.datagrams;
     return QUEUE_KEPT;
 }
 
-bool queue_pop(struct queue *queue, struct queue_datagram *out,
+bool queue_has(const struct queue *queue, int client, enum queue_line line)
+{
+    return queue->client[client + 1].oldest[line] != 0;
+}
+
+bool queue_pop(struct queue *queue, int client, enum queue_line line, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
-    int32_t c = queue->client[0].after;
-    if (!c)
+    const int32_t c = client + 1;
+    if (!queue_has(queue, client, line))
         return false;
-    leave_ring(queue, c);
-    join_ring(queue, c);
-    take_out(queue, c, queue->client[c].oldest, out, bytes);
+    take(queue, c, line, queue->client[c].oldest[line], out, bytes);
     return true;
 }
 
-bool queue_throw(struct queue *queue, struct queue_datagram *out,
+bool queue_evict(struct queue *queue, struct queue_datagram *out,
                  unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
     if (!queue->top)
         return false;
-    int32_t c = queue->level[queue->top];
-    take_out(queue, c, queue->client[c].newest, out, bytes);
+    const int32_t c = queue->level[queue->top];
+    const enum queue_line line = newest_line(queue, c);
+    take(queue, c, line, queue->client[c].newest[line], out, bytes);
     return true;
 }
 

@@ -1,25 +1,21 @@
-/* The datagrams that wait for their turn: bounded, and fair to every client.
+/* Pending queries: bounded storage, shared by all clients.
  *
- * Each client has a line of its own, first in, first out, and the clients take turns: one
- * datagram a turn. One that arrives joins behind all others, so between two turns of a client
- * each other client has one at most, whatever it sends.
+ * Each client has two first-in, first-out lines: one for short queries (pairs and definitions), one
+ * for scenes. turns.h decides which client is served next.
  *
- * Room is counted in chunks. When there is none left, it is taken from those that hold most, the
- * newest of their datagrams first, and only down to what the sender would hold itself. With
- * capacity chunks, m clients that hold any, the sender counted among them, and m * share <=
- * capacity:
+ * Capacity is counted in chunks. When none is free, the client that holds most loses its newest
+ * datagram, but it keeps at least as much as the sender would then hold. Let m be the number of
+ * clients that hold any chunk, the sender included, and share = capacity / m:
  *
- * - A datagram with which its client holds no more than the share is never refused.
- * - A datagram is never thrown out if it and all older ones of its client, taken together, are no
- *   more than the share.
+ * - A datagram is never refused if its client holds at most the share with it.
+ * - A datagram is never evicted if it and all older ones of its client take at most the share.
  *
- * So who never has more than capacity / (most clients that ever wait at once) chunks waiting
- * loses nothing, whatever the others do. Nothing is forgotten silently: what was put is popped or
- * thrown out, each into the caller's hands, and what was refused still is in them.
+ * So a client whose pending datagrams never exceed capacity / (most clients pending at once) loses
+ * nothing, whatever the others do. Every datagram that was kept is popped or evicted exactly once.
  *
- * All memory is taken at the start, but only touched where it is needed: what was freed last is
- * used first. An operation costs O(chunks of the datagram), whoever waits; for the search by id
- * that is so on average. */
+ * All memory is allocated by queue_create() and touched on first use; the chunk freed last is
+ * reused first. An operation takes time proportional to the chunks of its datagram, independent of
+ * the number of clients. */
 #ifndef QUEUE_H
 #define QUEUE_H
 
@@ -27,61 +23,62 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes of a datagram: no UDP datagram has more than 65,507. */
+/* Most bytes of a datagram; UDP's limit is 65,507. */
 enum { QUEUE_DATAGRAM_MAX = 65536 };
 
-/* Bytes. A page: most queries are a few hundred bytes, and then one that waits touches one page;
- * a smaller chunk would not touch less memory, and large datagrams would have more to link. */
+/* Bytes of a chunk: one page. Most queries are a few hundred bytes, and touch one page while they
+ * are pending; smaller chunks would not touch less memory, and would make more links for large
+ * datagrams. */
 enum { QUEUE_CHUNK = 4096 };
 
-/* 4 GiB. */
-enum { QUEUE_CHUNKS_MAX = 1 << 20 };
+enum { QUEUE_CHUNKS_MAX = 1 << 20 }; /* 4 GiB */
+
+enum queue_line { QUEUE_SHORT, QUEUE_SCENES, QUEUE_LINES };
 
 struct queue;
 
 struct queue_datagram {
-    int64_t client_id;
+    int client;
     int kind; /* as given to queue_put() */
     size_t size;
 };
 
 enum queue_put_result {
     QUEUE_KEPT,
-    QUEUE_FULL,    /* not kept yet: others have to give room */
-    QUEUE_REFUSED, /* not kept, since nobody holds so much more than the sender */
+    QUEUE_FULL,    /* not kept yet: call queue_evict(), then put it again */
+    QUEUE_REFUSED, /* not kept: no other client holds sufficiently more than the sender */
 };
 
 struct queue_counts {
-    int64_t datagrams, chunks, clients; /* that wait now */
+    int64_t datagrams, chunks, clients; /* pending now */
     int64_t capacity;                   /* chunks */
-    /* The most that ever waited at once. Of the memory for chunks no more was ever touched. */
-    int64_t datagrams_most, chunks_most, clients_most;
+    /* Most ever pending at once. Only this many chunks of memory were ever touched. */
+    int64_t datagrams_most, chunks_most;
 };
 
-/* On input: chunks from 1 to QUEUE_CHUNKS_MAX; seed: 64 random bits, so that nobody can choose
- * client ids that are slow to find. (With another seed all is slower at worst.)
- * On output: a queue, to be freed with queue_destroy(); NULL: out of memory. */
-struct queue *queue_create(size_t chunks, uint64_t seed);
+/* On input: chunks from 1 to QUEUE_CHUNKS_MAX; clients have the numbers 0 to clients - 1.
+ * NULL: out of memory. queue_destroy() accepts NULL. */
+struct queue *queue_create(size_t chunks, int clients);
 void queue_destroy(struct queue *queue);
 
-/* Copies a datagram into its client's line. On input: size from 1 to QUEUE_DATAGRAM_MAX; any
- * client_id and kind.
+/* Copies a datagram to the end of a line. On input: size from 1 to QUEUE_DATAGRAM_MAX; any kind.
  *
- * With QUEUE_FULL nothing has changed: the caller calls queue_throw() and puts the datagram again,
- * until it is kept. With nothing else in between, that is so after 16 times
- * (QUEUE_DATAGRAM_MAX / QUEUE_CHUNK) at most, and it is not refused any more: nothing is thrown
- * out in vain. */
-enum queue_put_result queue_put(struct queue *queue, int64_t client_id, int kind,
+ * QUEUE_FULL changes nothing. If queue_evict() and queue_put() then alternate, with no other call
+ * between them, the datagram is kept after at most QUEUE_DATAGRAM_MAX / QUEUE_CHUNK evictions. */
+enum queue_put_result queue_put(struct queue *queue, int client, enum queue_line line, int kind,
                                 const unsigned char *bytes, size_t size);
 
-/* Takes the oldest datagram of the client whose turn it is. On output: its out->size bytes.
- * False: none waits. */
-bool queue_pop(struct queue *queue, struct queue_datagram *out,
+/* Whether the line has a datagram. */
+bool queue_has(const struct queue *queue, int client, enum queue_line line);
+
+/* Removes the oldest datagram of a line. On output: *out, and its out->size bytes. False: the line
+ * is empty. */
+bool queue_pop(struct queue *queue, int client, enum queue_line line, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX]);
 
-/* Takes the newest datagram of a client that holds as many chunks as any other; for when
- * queue_put() says QUEUE_FULL. On output: as queue_pop(). */
-bool queue_throw(struct queue *queue, struct queue_datagram *out,
+/* After queue_put() returned QUEUE_FULL: removes the newest datagram of a client that holds most
+ * chunks. On output: as queue_pop(). */
+bool queue_evict(struct queue *queue, struct queue_datagram *out,
                  unsigned char bytes[QUEUE_DATAGRAM_MAX]);
 
 struct queue_counts queue_counts(const struct queue *queue);

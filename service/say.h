@@ -1,5 +1,5 @@
-/* Whether a line on standard error would be taken at once: a pipe that nobody reads must not stop
- * the service. Lines are to have less than 4096 bytes: a pipe that takes any takes as many. */
+/* Whether a line can be written to standard error without blocking: a full pipe must not stop the
+ * service. Lines must be shorter than 4096 bytes: a pipe that is writable takes that many. */
 #ifndef SAY_H
 #define SAY_H
 
@@ -8,8 +8,8 @@
 
 bool say_now(void);
 
-/* The same for something that is said once a second at most. last_ns: when it was said last
- * (clock_ns()); 0: never. */
+/* The same for a message that is written at most once a second. last_ns: time of the last one
+ * (clock_ns()); 0: none. */
 bool say_again(int64_t last_ns);
 
 #endif

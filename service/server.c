@@ -1,104 +1,90 @@
 #include "server.h"
 
 #include "answer.h"
-#include "bus.h"
 #include "clock.h"
+#include "expect.h"
 #include "histogram.h"
+#include "jobs.h"
 #include "malformed.h"
 #include "queue.h"
 #include "say.h"
-#include "senders.h"
+#include "turns.h"
 #include "wire.h"
 
 #include <inttypes.h>
-#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* What queries there are. */
-enum kind { PAIRS = SERVER_PAIRS, SCENES = SERVER_SCENES, KINDS };
 
 static const struct {
     const char *query, *result;
     const char *(*read_header)(const void *bytes, uint32_t size, struct query_header *out);
-    /* Room for the queries that wait, in pages: 4,096 pairs (16 MB), and 256 of the largest scenes
-     * (17 MB), or more smaller ones. */
-    size_t chunks;
-    /* Messages that LCM keeps until they are drained, in memory of its own; beyond this many it
-     * drops the newest, which the sequence numbers tell. Of scenes that is 33 MB at most. */
-    int lcm_queue;
-} kinds[KINDS] = {
-    [PAIRS] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, wire_read_pair_header, 4096, 4096},
-    [SCENES] = {WIRE_SCENE_QUERY, WIRE_SCENE_RESULT, wire_read_scene_header, 4352, 512},
+    enum queue_line line;
+} kinds[SERVER_KINDS] = {
+    [SERVER_PAIRS] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, wire_read_pair_header, QUEUE_SHORT},
+    [SERVER_SCENES] = {WIRE_SCENE_QUERY, WIRE_SCENE_RESULT, wire_read_scene_header, QUEUE_SCENES},
+    [SERVER_DEFINITIONS] = {WIRE_DEFINITION_QUERY, WIRE_DEFINITION, wire_read_definition_header,
+                            QUEUE_SHORT},
+    [SERVER_STATUS] = {WIRE_STATUS, WIRE_STATUS, NULL, QUEUE_SHORT},
 };
 
 enum {
-    /* Messages drained before something is answered: a flood must not keep the service from it. */
-    DRAINED_MAX = 256,
-    /* Pairs answered before the bus is looked at again: as many. To refuse one takes no less time
-     * than to answer it, most of it in sending: who answered fewer than it drains would spend its
-     * time on refusing what it could have answered. */
-    PAIRS_A_TURN = DRAINED_MAX
+    QUEUE_CHUNKS = 8192, /* 32 MB: so many pairs, or 500 of the largest scenes */
+    BATCH_MAX = 64
 };
 
-/* A scene is interrupted so often, to drain the bus and let pairs pass; or as long after the last
- * time as that took, so that half of the time is the scene's. */
-static const int64_t interrupted_every_ns = 200000;
+/* The bus is looked at so often. */
+static const int64_t look_ns = 250000;
 
-/* What a scene may take while others wait. One datagram can ask for a million pairs that need
- * milliseconds each; most scenes take less than one altogether. */
-static const int64_t scene_turn_ns = 100000000;
-
-/* What pairs may take before the bus is looked at again: far less than LCM's queue holds of a
- * flood, also where each needs milliseconds. */
-static const int64_t pairs_turn_ns = 5000000;
+/* A scene that has used so much is stopped if others wait. One datagram can request a million pairs
+ * that take milliseconds each; most scenes take less than one altogether. */
+static const int64_t scene_ns = 100000000;
 
 static const int64_t beat_ns = 1000000000;
 
-/* A subscription to the queries of a kind. */
-struct intake {
-    struct server *server;
-    enum kind kind;
-    char query_channel[BUS_CHANNEL_MAX];
-    char result_channel[BUS_CHANNEL_MAX];
-    lcm_subscription_t *subscription;
-    struct queue *queue;
-    unsigned char datagram[QUEUE_DATAGRAM_MAX]; /* that is being read */
-};
-
 struct server {
-    lcm_t *lcm;
-    lcm_subscription_t *statuses;
-    struct intake intake[KINDS];
-    char status_channel[BUS_CHANNEL_MAX];
-    struct answerer answerer;
-    struct senders senders;
+    bool (*publish)(void *user, const char *channel, const unsigned char *bytes, size_t size);
+    void *user;
+    const struct meter_clocks *clocks;
+    char query_channel[SERVER_KINDS][BUS_CHANNEL_MAX];
+    char result_channel[SERVER_KINDS][BUS_CHANNEL_MAX];
+    struct answerer *answerer;
+    struct queue *queue;
+    struct turns *turns;
+    struct jobs jobs;
+    struct expect expect;
+    struct meter meter;
+    /* Clients whose messages were read since the last charge, and the time that they took. */
+    int batch[BATCH_MAX], batch_count;
+    int64_t batch_ns;
+    int64_t empty_ns;                   /* when the bus was last found empty */
+    int64_t unit_ns[TURNS_CLIENTS + 1]; /* average of what serving a client once takes */
+    int served;                         /* the last client */
     struct histogram compute_ns;
-    struct wire_status status; /* counts so far; the rest is filled in when it is published */
+    struct wire_status status; /* counts so far; the remainder is set when it is published */
     int64_t ready_ns, beat_at_ns;
-    bool failed; /* the bus did */
-    /* The scene that is being answered: since when, when the bus is to be looked at again, and the
-     * time spent on others meanwhile. */
-    struct scene_query scene;
-    struct scene_result scene_result, refused;
-    int64_t begin_ns, look_at_ns, elsewhere_ns;
-    unsigned char thrown[QUEUE_DATAGRAM_MAX]; /* out of a queue, for others to have room */
     struct malformed malformed;
-    /* The other service last heard on the same channels (0: none), and when that was said. */
-    int64_t other_id, other_said_ns;
+    /* The other service last heard from on the same channels (0: none), and when it was reported.
+     */
+    int64_t other_id, other_reported_ns;
+    struct pair_query pair;
+    struct pair_result pair_result;
+    struct definition_query definition;
+    struct definition definition_result;
+    struct scene_result refused;
+    unsigned char datagram[QUEUE_DATAGRAM_MAX]; /* that is being answered */
+    unsigned char evicted[QUEUE_DATAGRAM_MAX];
+    unsigned char out[QUERY_BYTES_MAX];
 };
 
 /* ---- Results ---- */
 
-/* What all results have. */
-static void publish(struct server *server, enum kind kind, const unsigned char *bytes, size_t size,
-                    int32_t status)
+static void publish_result(struct server *server, enum server_kind kind, size_t size,
+                           int32_t status)
 {
     server->status.received++;
-    server->status.scenes += kind == SCENES;
-    if (lcm_publish(server->lcm, server->intake[kind].result_channel, bytes, (unsigned) size) !=
-        0) {
+    server->status.scenes += kind == SERVER_SCENES;
+    server->status.definitions += kind == SERVER_DEFINITIONS;
+    if (!server->publish(server->user, server->result_channel[kind], server->out, size)) {
         server->status.unsent++;
         return;
     }
@@ -108,12 +94,18 @@ static void publish(struct server *server, enum kind kind, const unsigned char *
 
 static void publish_pair(struct server *server, const struct pair_result *result)
 {
-    unsigned char bytes[WIRE_RESULT_BYTES_MAX];
-    publish(server, PAIRS, bytes, wire_write_pair_result(result, bytes), result->status);
+    publish_result(server, SERVER_PAIRS, wire_write_pair_result(result, server->out),
+                   result->status);
     server->status.pairs += result->status == FMB_OK;
 }
 
-/* Those that the broad phase kept apart are decided too; those that a method cannot decide are not.
+static void publish_definition(struct server *server, const struct definition *result)
+{
+    publish_result(server, SERVER_DEFINITIONS, wire_write_definition(result, server->out),
+                   result->status);
+}
+
+/* Pairs that the broad phase separated are decided too; those that a method cannot decide are not.
  */
 static int64_t decided(const struct scene_result *result, int32_t first_pair)
 {
@@ -123,335 +115,458 @@ static int64_t decided(const struct scene_result *result, int32_t first_pair)
     return pairs;
 }
 
-static void publish_scene(struct server *server, int32_t first_pair, struct scene_result *result)
+static void publish_scene(struct server *server, int32_t first_pair,
+                          const struct scene_result *result)
 {
-    unsigned char bytes[QUERY_BYTES_MAX];
-    result->lost = senders_gaps(&server->senders, result->client_id);
-    publish(server, SCENES, bytes, wire_write_scene_result(result, bytes), result->status);
+    publish_result(server, SERVER_SCENES, wire_write_scene_result(result, server->out),
+                   result->status);
     if (result->status == FMB_OK)
         server->status.pairs += decided(result, first_pair);
 }
 
-/* ---- Answering ---- */
-
-static void answer_a_pair(struct server *server, const unsigned char *bytes, size_t size)
+static void note_malformed(struct server *server, enum server_kind kind, size_t size,
+                           const char *error)
 {
-    struct pair_query query;
-    struct pair_result result;
-    const char *error = wire_read_pair_query(bytes, (uint32_t) size, &query);
-    if (error) {
-        malformed_note(&server->malformed, server->intake[PAIRS].query_channel, (uint32_t) size,
-                       error);
-        return;
-    }
-    const int64_t begin = clock_ns();
-    answer_pair(&server->answerer, &query, &result);
-    result.compute_ns = clock_ns() - begin;
-    if (result.status == FMB_OK)
-        histogram_add(&server->compute_ns, result.compute_ns);
-    publish_pair(server, &result);
+    malformed_note(&server->malformed, server->query_channel[kind], (uint32_t) size, error);
 }
 
-static void answer_a_scene(struct server *server, const unsigned char *bytes, size_t size)
+/* ---- Activity ---- */
+
+static bool has_work(const struct server *server, int client)
 {
-    struct scene_query *query = &server->scene;
-    struct scene_result *result = &server->scene_result;
-    const char *error = wire_read_scene_query(bytes, (uint32_t) size, query);
+    return server->jobs.of_client[client] || queue_has(server->queue, client, QUEUE_SHORT) ||
+           queue_has(server->queue, client, QUEUE_SCENES);
+}
+
+/* A client that got its last answer is idle from now on. */
+static void update_activity(struct server *server, int client)
+{
+    if (has_work(server, client)) {
+        turns_activate(server->turns, client);
+    } else {
+        turns_deactivate(server->turns, client);
+        expect_answered(&server->expect, client, server->meter.wall_ns);
+    }
+}
+
+/* ---- Pairs and definitions ---- */
+
+static void answer_a_pair(struct server *server, size_t size)
+{
+    struct pair_result *result = &server->pair_result;
+    const char *error = wire_read_pair_query(server->datagram, (uint32_t) size, &server->pair);
     if (error) {
-        malformed_note(&server->malformed, server->intake[SCENES].query_channel, (uint32_t) size,
-                       error);
+        note_malformed(server, SERVER_PAIRS, size, error);
         return;
     }
-    server->begin_ns = clock_ns();
-    server->look_at_ns = server->begin_ns + interrupted_every_ns;
-    server->elsewhere_ns = 0;
-    answer_scene(&server->answerer, query, result);
-    result->compute_ns = clock_ns() - server->begin_ns - server->elsewhere_ns;
+    const int64_t begin_ns = server->clocks->wall_ns();
+    answer_pair(server->answerer, &server->pair, result);
+    result->compute_ns = server->clocks->wall_ns() - begin_ns;
     if (result->status == FMB_OK)
         histogram_add(&server->compute_ns, result->compute_ns);
-    publish_scene(server, query->first_pair, result);
+    publish_pair(server, result);
 }
 
-static bool answer_next(struct server *server, enum kind kind)
+static void answer_a_definition(struct server *server, size_t size)
 {
-    struct intake *intake = &server->intake[kind];
-    struct queue_datagram next;
-    if (!queue_pop(intake->queue, &next, intake->datagram))
-        return false;
-    (kind == PAIRS ? answer_a_pair : answer_a_scene)(server, intake->datagram, next.size);
-    return true;
-}
-
-static bool answer_pairs(struct server *server)
-{
-    const int64_t end = clock_ns() + pairs_turn_ns;
-    int answered = 0;
-    while (answered < PAIRS_A_TURN && answer_next(server, PAIRS)) {
-        answered++;
-        if (clock_ns() >= end)
-            break;
+    const char *error =
+        wire_read_definition_query(server->datagram, (uint32_t) size, &server->definition);
+    if (error) {
+        note_malformed(server, SERVER_DEFINITIONS, size, error);
+        return;
     }
-    return answered > 0;
+    answer_definition(server->answerer, &server->definition, &server->definition_result);
+    publish_definition(server, &server->definition_result);
 }
 
-bool server_answer(struct server *server)
+/* ---- Scenes ---- */
+
+static void finish_scene(struct server *server, struct job *job)
 {
-    const bool pairs = answer_pairs(server);
-    return answer_next(server, SCENES) || pairs;
+    struct scene_result *result = scene_job_result(job->scene);
+    result->compute_ns = job->used_ns;
+    if (result->status == FMB_OK)
+        histogram_add(&server->compute_ns, result->compute_ns);
+    publish_scene(server, scene_job_query(job->scene)->first_pair, result);
+    jobs_give_back(&server->jobs, job);
 }
 
-bool server_is_waiting(const struct server *server)
+/* Stops the longest scene, at the expense of its client. */
+static void free_a_job(struct server *server, int for_client)
 {
-    return queue_counts(server->intake[PAIRS].queue).datagrams +
-               queue_counts(server->intake[SCENES].queue).datagrams >
-           0;
+    struct job *job = jobs_longest(&server->jobs);
+    const int client = job->client;
+    turns_charge(server->turns, for_client, meter_read(&server->meter));
+    scene_job_stop(job->scene);
+    finish_scene(server, job);
+    turns_charge(server->turns, client, meter_read(&server->meter));
+    update_activity(server, client);
 }
 
-static bool is_readable(const struct server *server)
+/* The next scene of a client. NULL: its bytes are malformed. */
+static struct job *begin_scene(struct server *server, int client)
 {
-    struct pollfd bus = {.fd = lcm_get_fileno(server->lcm), .events = POLLIN};
-    return poll(&bus, 1, 0) > 0;
+    struct queue_datagram next;
+    if (server->jobs.free == 0)
+        free_a_job(server, client);
+    queue_pop(server->queue, client, QUEUE_SCENES, &next, server->datagram);
+    struct job *job = jobs_take(&server->jobs, client);
+    const char *error = scene_job_begin(job->scene, server->datagram, next.size);
+    if (!error)
+        return job;
+    note_malformed(server, SERVER_SCENES, next.size, error);
+    jobs_give_back(&server->jobs, job);
+    return NULL;
 }
 
-/* While a scene is answered. Returns whether to go on. */
-static bool between(void *user)
+static bool other_scenes_wait(const struct server *server)
 {
-    struct server *server = user;
-    const int64_t begin = clock_ns();
-    if (begin < server->look_at_ns)
+    return server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0;
+}
+
+/* A turn of at most so many nanoseconds. */
+static void advance_scene(struct server *server, int client, int64_t most_ns)
+{
+    const int64_t begin_ns = server->meter.wall_ns;
+    struct job *job = server->jobs.of_client[client];
+    if (!job)
+        job = begin_scene(server, client);
+    if (!job)
+        return;
+    bool complete = false;
+    int64_t turn = 0;
+    while (!complete && turn < most_ns) {
+        complete = scene_job_step(job->scene, server->answerer);
+        turn = server->clocks->wall_ns() - begin_ns;
+    }
+    job->used_ns += turn;
+    if (!complete && job->used_ns > scene_ns && other_scenes_wait(server) &&
+        scene_job_can_stop(job->scene)) {
+        scene_job_stop(job->scene);
+        complete = true;
+    }
+    if (complete)
+        finish_scene(server, job);
+}
+
+/* ---- Turns ---- */
+
+static bool may_serve(const void *user, int client)
+{
+    const struct server *server = user;
+    return server->jobs.of_client[client] || queue_has(server->queue, client, QUEUE_SHORT) ||
+           server->jobs.free > 0 || jobs_longest((struct jobs *) &server->jobs);
+}
+
+/* What a client is charged for being served once. A long unit of work delays every other client,
+ * puts their cores to sleep and empties the caches, all of which they pay for: so what it takes
+ * beyond short_ns counts twice. */
+static int64_t price(int64_t used_ns)
+{
+    static const int64_t short_ns = 50000;
+    return used_ns > short_ns ? 2 * used_ns - short_ns : used_ns;
+}
+
+static void serve(struct server *server, int client, int64_t scene_most_ns)
+{
+    struct queue_datagram next;
+    if (client != server->served)
+        meter_base(&server->meter);
+    server->served = client;
+    turns_begin(server->turns);
+    if (!queue_pop(server->queue, client, QUEUE_SHORT, &next, server->datagram))
+        advance_scene(server, client, scene_most_ns);
+    else if (next.kind == SERVER_PAIRS)
+        answer_a_pair(server, next.size);
+    else
+        answer_a_definition(server, next.size);
+    const int64_t used_ns = meter_read(&server->meter);
+    server->unit_ns[client] += (used_ns - server->unit_ns[client]) / 4;
+    turns_charge(server->turns, client, price(used_ns));
+    update_activity(server, client);
+}
+
+static int64_t smaller(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Only while others wait, for a client that would be served before them; and only where it is far
+ * behind them, or the work that would begin instead usually takes longer than the waiting. */
+static bool begin_expecting(struct server *server, int client)
+{
+    int64_t lead_ns;
+    const int next = turns_next(server->turns, NULL, NULL, -1, &lead_ns);
+    if (next < 0 || has_work(server, client))
+        return false;
+    lead_ns = turns_lead(server->turns, client);
+    return expect_begin(&server->expect, client, server->meter.wall_ns, lead_ns + TURNS_SLICE_NS,
+                        lead_ns > TURNS_SLICE_NS ? INT64_MAX : server->unit_ns[next]);
+}
+
+static bool goes_on_expecting(struct server *server)
+{
+    struct expect *expect = &server->expect;
+    const int64_t now_ns = server->clocks->wall_ns();
+    const int client = expect->client;
+    if (client < 0)
+        return false;
+    if (expect_poll(expect, now_ns) && !has_work(server, client) &&
+        turns_lead(server->turns, client) > -TURNS_SLICE_NS)
         return true;
-    if (is_readable(server))
-        server_drain(server);
-    server_beat(server);
-    answer_pairs(server);
-    const int64_t end = clock_ns(), took = end - begin;
-    server->look_at_ns = end + (took > interrupted_every_ns ? took : interrupted_every_ns);
-    server->elsewhere_ns += took;
-    return queue_counts(server->intake[SCENES].queue).datagrams == 0 ||
-           end - server->begin_ns - server->elsewhere_ns < scene_turn_ns;
+    turns_charge(server->turns, client, expect_end(expect, now_ns));
+    return false;
 }
 
-/* ---- Queries coming in ---- */
+enum server_state server_work(struct server *server)
+{
+    if (goes_on_expecting(server))
+        return SERVER_EXPECTING;
+    const int64_t until_ns = server->clocks->wall_ns() + look_ns;
+    int64_t left_ns = look_ns;
+    while (left_ns > 0) {
+        int64_t lead_ns;
+        const int client = turns_next(server->turns, may_serve, server, server->served, &lead_ns);
+        if (client < 0)
+            return SERVER_IDLE;
+        serve(server, client,
+              lead_ns < look_ns ? smaller(left_ns, lead_ns + TURNS_SLICE_NS) : left_ns);
+        if (begin_expecting(server, client))
+            return SERVER_EXPECTING;
+        left_ns = until_ns - server->meter.wall_ns;
+    }
+    return turns_active(server->turns) > 0 ? SERVER_WORKING : SERVER_IDLE;
+}
 
-static void refuse_pair(struct server *server, const unsigned char *bytes, uint32_t size,
+void server_resume(struct server *server)
+{
+    meter_skip(&server->meter);
+}
+
+/* ---- Queries that arrive ---- */
+
+static void refuse_pair(struct server *server, const unsigned char *bytes, size_t size,
                         enum fmb_status status)
 {
-    struct pair_query query;
-    struct pair_result result;
-    const char *error = wire_read_pair_query(bytes, size, &query);
+    const char *error = wire_read_pair_query(bytes, (uint32_t) size, &server->pair);
     if (error) {
-        malformed_note(&server->malformed, server->intake[PAIRS].query_channel, size, error);
+        note_malformed(server, SERVER_PAIRS, size, error);
         return;
     }
-    answer_pair_refused(&server->answerer, &query, status, &result);
-    publish_pair(server, &result);
+    answer_pair_refused(server->answerer, &server->pair, status, &server->pair_result);
+    publish_pair(server, &server->pair_result);
 }
 
-/* Its header is enough, and has been read once. */
-static void refuse_scene(struct server *server, const unsigned char *bytes, uint32_t size,
-                         enum fmb_status status)
+/* The header is enough, and has been read once. */
+static void refuse_other(struct server *server, enum server_kind kind, const unsigned char *bytes,
+                         size_t size, enum fmb_status status)
 {
     struct query_header header;
-    wire_read_scene_header(bytes, size, &header);
-    answer_scene_refused(&server->answerer, &header, status, &server->refused);
-    publish_scene(server, 0, &server->refused);
+    kinds[kind].read_header(bytes, (uint32_t) size, &header);
+    if (kind == SERVER_SCENES) {
+        answer_scene_refused(server->answerer, &header, status, &server->refused);
+        publish_scene(server, 0, &server->refused);
+    } else {
+        answer_definition_refused(server->answerer, &header, status, &server->definition_result);
+        publish_definition(server, &server->definition_result);
+    }
 }
 
-static void refuse(struct server *server, enum kind kind, const unsigned char *bytes, size_t size,
-                   enum fmb_status status)
+/* At the expense of its client, not of the batch. */
+static void refuse(struct server *server, const struct queue_datagram *datagram,
+                   const unsigned char *bytes, enum fmb_status status)
 {
-    (kind == PAIRS ? refuse_pair : refuse_scene)(server, bytes, (uint32_t) size, status);
+    server->batch_ns += meter_read(&server->meter);
+    if (datagram->kind == SERVER_PAIRS)
+        refuse_pair(server, bytes, datagram->size, status);
+    else
+        refuse_other(server, (enum server_kind) datagram->kind, bytes, datagram->size, status);
+    turns_charge(server->turns, datagram->client, meter_read(&server->meter));
 }
 
-/* Where there is no room, others that hold more of it lose their newest ones, or the sender does.
- */
-static void put(struct intake *intake, int64_t client_id, const unsigned char *bytes, size_t size)
+static void put(struct server *server, const struct queue_datagram *datagram,
+                const unsigned char *bytes)
 {
-    struct server *server = intake->server;
     enum queue_put_result result;
-    while ((result = queue_put(intake->queue, client_id, 0, bytes, size)) == QUEUE_FULL) {
-        struct queue_datagram thrown;
-        if (queue_throw(intake->queue, &thrown, server->thrown))
-            refuse(server, intake->kind, server->thrown, thrown.size, FMB_BUSY);
+    while ((result = queue_put(server->queue, datagram->client, kinds[datagram->kind].line,
+                               datagram->kind, bytes, datagram->size)) == QUEUE_FULL) {
+        struct queue_datagram evicted;
+        if (!queue_evict(server->queue, &evicted, server->evicted))
+            break;
+        refuse(server, &evicted, server->evicted, FMB_BUSY);
+        update_activity(server, evicted.client);
     }
     if (result == QUEUE_REFUSED)
-        refuse(server, intake->kind, bytes, size, FMB_BUSY);
+        refuse(server, datagram, bytes, FMB_BUSY);
 }
 
-static void on_query(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static void charge_batch(struct server *server, int datagrams)
 {
-    struct intake *intake = user;
-    struct server *server = intake->server;
+    server->batch_ns += meter_read(&server->meter);
+    for (int i = 0; i < server->batch_count; i++)
+        turns_charge(server->turns, server->batch[i], server->batch_ns / datagrams);
+    server->batch_count = 0;
+    server->batch_ns = 0;
+}
+
+static void receive_query(struct server *server, enum server_kind kind, const unsigned char *bytes,
+                          size_t size)
+{
     struct query_header header;
-    (void) channel;
-    const char *error = kinds[intake->kind].read_header(buffer->data, buffer->data_size, &header);
+    const char *error = kinds[kind].read_header(bytes, (uint32_t) size, &header);
     if (error) {
-        malformed_note(&server->malformed, intake->query_channel, buffer->data_size, error);
+        note_malformed(server, kind, size, error);
         return;
     }
-    if (query_id_ok(header.client_id) && query_id_ok(header.sequence_number))
-        senders_note(&server->senders, header.client_id, header.sequence_number);
-    if (buffer->data_size > QUERY_BYTES_MAX)
-        refuse(server, intake->kind, buffer->data, buffer->data_size, FMB_OVER_LIMIT);
+    const int client = turns_client(server->turns, header.client_id);
+    const struct queue_datagram datagram = {.client = client, .kind = kind, .size = size};
+    if (server->batch_count == BATCH_MAX)
+        charge_batch(server, BATCH_MAX);
+    server->batch[server->batch_count++] = client;
+    expect_arrived(&server->expect, client, server->empty_ns);
+    if (size > QUERY_BYTES_MAX)
+        refuse(server, &datagram, bytes, FMB_OVER_LIMIT);
     else
-        put(intake, header.client_id, buffer->data, buffer->data_size);
+        put(server, &datagram, bytes);
+    update_activity(server, client);
 }
 
-bool server_drain(struct server *server)
+/* The heartbeat of another service on the same channels: both answer every query. Each that is new
+ * is reported, at most one a second. */
+static void receive_status(struct server *server, const unsigned char *bytes, size_t size)
 {
-    int drained = 0;
-    do {
-        server->failed = server->failed || lcm_handle(server->lcm) != 0;
-    } while (!server->failed && ++drained < DRAINED_MAX && is_readable(server));
-    return !server->failed;
-}
-
-/* The heartbeat of another service on the same channels: both answer every query, and neither
- * knows the other's keys. Said of each that is new, once a second at most. */
-static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
-{
-    struct server *server = user;
     struct wire_status other;
-    if (wire_read_status(buffer->data, buffer->data_size, &other) ||
+    if (wire_read_status(bytes, (uint32_t) size, &other) ||
         other.server_id == server->status.server_id || other.server_id == server->other_id ||
-        !say_again(server->other_said_ns))
+        !say_again(server->other_reported_ns))
         return;
     server->other_id = other.server_id;
-    server->other_said_ns = clock_ns();
+    server->other_reported_ns = clock_ns();
     fprintf(stderr,
             "fmbd: another service (server %" PRId64
             ") is on %s: start one of them with --prefix\n",
-            other.server_id, channel);
+            other.server_id, server->query_channel[SERVER_STATUS]);
+}
+
+void server_receive(struct server *server, enum server_kind kind, const unsigned char *bytes,
+                    size_t size)
+{
+    if (kind == SERVER_STATUS)
+        receive_status(server, bytes, size);
+    else
+        receive_query(server, kind, bytes, size);
+}
+
+void server_received(struct server *server, int datagrams)
+{
+    if (datagrams > 0)
+        charge_batch(server, datagrams);
+    server->empty_ns = server->meter.wall_ns;
 }
 
 /* ---- Heartbeat ---- */
 
-static void complete_status(struct server *server, struct wire_status *status)
+static void complete_status(const struct server *server, const struct bus_counts *bus,
+                            struct wire_status *status)
 {
-    const struct cache_counts cache = cache_counts(server->answerer.cache);
-    const struct queue_counts pairs = queue_counts(server->intake[PAIRS].queue);
-    const struct queue_counts scenes = queue_counts(server->intake[SCENES].queue);
+    const struct cache_counts cache = cache_counts(answerer_cache(server->answerer));
+    const struct queue_counts queue = queue_counts(server->queue);
     *status = server->status;
     status->utime = clock_utime();
     status->uptime_us = (clock_ns() - server->ready_ns) / 1000;
+    status->receive_buffer = bus->receive_buffer;
     status->malformed = server->malformed.count;
-    status->sequence_gaps = server->senders.gaps;
-    status->repeated = server->senders.repeated;
+    status->foreign = (int64_t) (bus->foreign + bus->malformed);
+    status->dropped = (int64_t) bus->dropped;
+    status->waiting = queue.datagrams;
+    status->most_waiting = queue.datagrams_most;
     status->bodies = cache.bodies;
-    status->capacity = cache.capacity;
+    status->frames = cache.frames;
+    status->frame_capacity = cache.frame_capacity;
+    status->ids = cache.ids;
     status->hits = cache.hits;
     status->misses = cache.misses;
-    status->replacements = cache.replacements;
     status->evictions = cache.evictions;
     status->compute_p50_ns = histogram_quantile(&server->compute_ns, 0.50);
     status->compute_p99_ns = histogram_quantile(&server->compute_ns, 0.99);
     status->compute_max_ns = server->compute_ns.max;
-    status->waiting = pairs.datagrams + scenes.datagrams;
-    status->most_waiting = pairs.datagrams_most + scenes.datagrams_most;
 }
 
-void server_publish_status(struct server *server)
+int server_beat_due_ms(const struct server *server)
+{
+    const int64_t left_ns = server->beat_at_ns - clock_ns();
+    return left_ns > 0 ? (int) ((left_ns + 999999) / 1000000) : 0;
+}
+
+void server_beat(struct server *server, const struct bus_counts *bus)
 {
     struct wire_status status;
-    unsigned char bytes[WIRE_BYTES_MAX];
-    complete_status(server, &status);
-    size_t size = wire_write_status(&status, bytes);
-    lcm_publish(server->lcm, server->status_channel, bytes, (unsigned) size); /* or the next one */
+    unsigned char bytes[WIRE_STATUS_BYTES_MAX];
+    complete_status(server, bus, &status);
+    const size_t size = wire_write_status(&status, bytes);
+    server->publish(server->user, server->result_channel[SERVER_STATUS], bytes, size);
     malformed_say(&server->malformed);
-}
-
-int server_beat(struct server *server)
-{
-    const int64_t now = clock_ns();
-    if (now >= server->beat_at_ns) {
-        server_publish_status(server);
-        server->beat_at_ns = now + beat_ns;
-    }
-    return (int) ((server->beat_at_ns - now + 999999) / 1000000);
+    server->beat_at_ns = clock_ns() + beat_ns;
 }
 
 /* ---- Life ---- */
 
-static bool open_intake(struct server *server, enum kind kind, const struct server_options *options)
-{
-    struct intake *intake = &server->intake[kind];
-    intake->server = server;
-    intake->kind = kind;
-    bus_channel(intake->query_channel, options->prefix, kinds[kind].query);
-    bus_channel(intake->result_channel, options->prefix, kinds[kind].result);
-    intake->queue = queue_create(kinds[kind].chunks, options->seed);
-    if (!intake->queue)
-        return false;
-    intake->subscription =
-        bus_subscribe(server->lcm, intake->query_channel, on_query, intake, kinds[kind].lcm_queue);
-    return intake->subscription != NULL;
-}
-
 static bool open_server(struct server *server, const struct server_options *options)
 {
-    bus_channel(server->status_channel, options->prefix, WIRE_STATUS);
-    server->answerer.server_id = options->server_id;
-    server->answerer.between = between;
-    server->answerer.user = server;
-    server->answerer.cache = cache_create(options->bodies, options->first_key);
-    server->status.server_id = options->server_id;
-    server->status.restarts = options->restarts;
-    server->status.receive_buffer = options->receive_buffer;
-    snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
-    server->ready_ns = clock_ns();
-    if (!server->answerer.cache || !answer_prepare(&server->answerer))
+    const struct answerer_options answerer = {.frames = options->frames,
+                                              .server_id = options->server_id,
+                                              .secret = {options->secret[0], options->secret[1]}};
+    server->answerer = answerer_create(&answerer);
+    server->queue = queue_create(QUEUE_CHUNKS, TURNS_CLIENTS + 1);
+    server->turns = turns_create(options->secret[2]);
+    const bool jobs = jobs_init(&server->jobs);
+    if (!server->answerer || !server->queue || !server->turns || !jobs)
         return false;
-    cache_take_memory(server->answerer.cache);
-    for (int kind = 0; kind < KINDS; kind++)
-        if (!open_intake(server, (enum kind) kind, options))
-            return false;
-    server->statuses = bus_subscribe(server->lcm, server->status_channel, on_status, server, 4);
-    return server->statuses != NULL;
+    cache_take_memory(answerer_cache(server->answerer));
+    server->status.server_id = options->server_id;
+    snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
+    server->served = -1;
+    expect_init(&server->expect);
+    meter_init(&server->meter, server->clocks);
+    server->ready_ns = clock_ns();
+    return true;
 }
 
-struct server *server_create(lcm_t *lcm, const struct server_options *options)
+struct server *server_create(const struct server_options *options)
 {
     struct server *server = calloc(1, sizeof *server);
     if (!server)
         return NULL;
-    server->lcm = lcm;
+    server->publish = options->publish;
+    server->user = options->user;
+    server->clocks = options->clocks ? options->clocks : &meter_system_clocks;
+    for (int kind = 0; kind < SERVER_KINDS; kind++) {
+        bus_channel(server->query_channel[kind], options->prefix, kinds[kind].query);
+        bus_channel(server->result_channel[kind], options->prefix, kinds[kind].result);
+    }
     if (open_server(server, options))
         return server;
     server_destroy(server);
     return NULL;
 }
 
-static void close_intake(struct intake *intake)
-{
-    if (intake->subscription)
-        lcm_unsubscribe(intake->server->lcm, intake->subscription);
-    queue_destroy(intake->queue);
-}
-
 void server_destroy(struct server *server)
 {
     if (!server)
         return;
-    for (int kind = 0; kind < KINDS; kind++)
-        close_intake(&server->intake[kind]);
-    if (server->statuses)
-        lcm_unsubscribe(server->lcm, server->statuses);
-    cache_destroy(server->answerer.cache);
-    answer_release(&server->answerer);
+    jobs_release(&server->jobs);
+    turns_destroy(server->turns);
+    queue_destroy(server->queue);
+    answerer_destroy(server->answerer);
     free(server);
 }
 
-const char *server_query_channel(const struct server *server, int kind)
+const char *server_query_channel(const struct server *server, enum server_kind kind)
 {
-    return server->intake[kind].query_channel;
+    return server->query_channel[kind];
 }
 
-const char *server_result_channel(const struct server *server, int kind)
+const char *server_result_channel(const struct server *server, enum server_kind kind)
 {
-    return server->intake[kind].result_channel;
-}
-
-const char *server_status_channel(const struct server *server)
-{
-    return server->status_channel;
+    return server->result_channel[kind];
 }

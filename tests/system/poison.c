@@ -4,6 +4,8 @@
  * poison wrap CHANNEL: two fragments of a message, the second of which says that it begins 16 bytes
  * below 2^32: in 32 bits offset plus size wraps and seems to fit, in 64 bits the bytes go 4 GB
  * beyond the message.
+ * poison empty CHANNEL: headers alone, short ones without a channel's end: negative sizes.
+ * poison huge CHANNEL: a fragment of a message of 256 MB.
  * poison short CHANNEL: two good fragments, then one that ends in the middle of its header: what is
  * left of the second stands in for the rest, and the size without the header is taken for a huge
  * one, which wraps with the offset. */
@@ -96,22 +98,61 @@ static void send_packet(int fd, const unsigned char *packet, size_t size)
     }
 }
 
-int main(int argc, char **argv)
+static void send_wrap(int fd, const char *channel)
 {
     unsigned char packet[PACKET_MAX];
     struct fragment fragment = {.sequence_number = 1, .message_size = 4 * DATA, .count = 4};
-    int wrap = argc == 3 && strcmp(argv[1], "wrap") == 0;
-    if (argc != 3 || (!wrap && strcmp(argv[1], "short") != 0) || strlen(argv[2]) > 63) {
-        fputs("usage: poison wrap|short CHANNEL\n", stderr);
-        return 2;
-    }
-    int fd = open_bus();
-    send_packet(fd, packet, write_fragment(&fragment, argv[2], packet));
+    send_packet(fd, packet, write_fragment(&fragment, channel, packet));
     fragment.number = 1;
-    fragment.offset = wrap ? 0xfffffff0 : DATA;
+    fragment.offset = 0xfffffff0;
     send_packet(fd, packet, write_fragment(&fragment, NULL, packet));
-    if (!wrap)
-        send_packet(fd, packet, CUT);
-    close(fd);
-    return 0;
+}
+
+static void send_short(int fd, const char *channel)
+{
+    unsigned char packet[PACKET_MAX];
+    struct fragment fragment = {.sequence_number = 1, .message_size = 4 * DATA, .count = 4};
+    send_packet(fd, packet, write_fragment(&fragment, channel, packet));
+    fragment.number = 1;
+    fragment.offset = DATA;
+    send_packet(fd, packet, write_fragment(&fragment, NULL, packet));
+    send_packet(fd, packet, CUT);
+}
+
+static void send_empty(int fd, const char *channel)
+{
+    unsigned char packet[PACKET_MAX] = "LC02";
+    const size_t length = strlen(channel);
+    memcpy(packet + CUT, channel, length);
+    for (size_t size = 0; size <= CUT; size += 4)
+        send_packet(fd, packet, size);
+    send_packet(fd, packet, CUT + length); /* no final 0 */
+}
+
+static void send_huge(int fd, const char *channel)
+{
+    unsigned char packet[PACKET_MAX];
+    const struct fragment fragment = {
+        .sequence_number = 1, .message_size = 1u << 28, .count = UINT16_MAX};
+    send_packet(fd, packet, write_fragment(&fragment, channel, packet));
+}
+
+static const struct {
+    const char *name;
+    void (*send)(int fd, const char *channel);
+} poisons[] = {
+    {"wrap", send_wrap}, {"short", send_short}, {"empty", send_empty}, {"huge", send_huge}};
+
+int main(int argc, char **argv)
+{
+    for (size_t i = 0; i < sizeof poisons / sizeof *poisons && argc == 3; i++) {
+        if (strcmp(argv[1], poisons[i].name) != 0 || strlen(argv[2]) > 63)
+            continue;
+        const int fd = open_bus();
+        poisons[i].send(fd, argv[2]);
+        close(fd);
+        return 0;
+    }
+    fputs("usage: poison wrap|short|empty|huge CHANNEL\n", stderr);
+    return 2;
 }

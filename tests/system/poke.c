@@ -6,6 +6,8 @@
  * as fast as it can, and prints how many there were.
  * poke numbers CLIENT NUMBER...: publishes good pair queries of this client with these sequence
  * numbers.
+ * poke listen PATH: prints the datagrams that a service manager gets at this socket, one a line;
+ * until it is ended.
  * poke lie CERTIFICATE: a service that says of every pair, with this certificate, that it
  * overlaps, and of the first pair of every scene; until it is ended. */
 #include "hostile.h"
@@ -15,6 +17,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <time.h>
 
 struct poke {
@@ -66,6 +70,23 @@ static int numbers(lcm_t *lcm, long long client_id, int count, char **number)
     return failed != 0;
 }
 
+static int listen_at(const char *path)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    char text[256];
+    const int fd = socket(AF_UNIX, SOCK_DGRAM, 0);
+    snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+    if (fd < 0 || bind(fd, (const struct sockaddr *) &address, sizeof address) != 0)
+        return 1;
+    for (;;) {
+        const ssize_t size = recv(fd, text, sizeof text, 0);
+        if (size < 0)
+            return 1;
+        printf("%.*s\n", (int) size, text);
+        fflush(stdout);
+    }
+}
+
 struct liar {
     lcm_t *lcm;
     char *certificate;
@@ -110,10 +131,13 @@ int main(int argc, char **argv)
             "usage: poke CHANNEL TYPE\n"
             "       poke flood TYPE CLIENT SECONDS\n"
             "       poke numbers CLIENT NUMBER...\n"
+            "       poke listen PATH\n"
             "       poke lie CERTIFICATE\n",
             stderr);
         return 2;
     }
+    if (strcmp(what, "listen") == 0)
+        return listen_at(argv[2]);
     lcm_t *lcm = lcm_create(NULL);
     if (!lcm)
         return 1;

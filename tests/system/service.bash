@@ -24,11 +24,6 @@ start_fmbd() {
     wait_until grep -q ready "$fmbd_log"
 }
 
-# The worker of a supervisor; nothing where there is none.
-worker_of() {
-    grep -l "^PPid:[[:space:]]*$1\$" /proc/[0-9]*/status 2> /dev/null | cut -d/ -f3
-}
-
 # stop_fmbd [SIGNAL]: the daemon must end well.
 stop_fmbd() {
     kill -"${1:-TERM}" "$fmbd"

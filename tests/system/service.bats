@@ -5,7 +5,7 @@ load service
 @test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
     for signal in TERM INT; do
         start_fmbd
-        grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, FMB_SCENE_QUERY on FMB_SCENE_RESULT, heartbeat on FMB_STATUS' "$fmbd_log"
+        grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, FMB_SCENE_QUERY on FMB_SCENE_RESULT, FMB_DEFINITION_QUERY on FMB_DEFINITION, heartbeat on FMB_STATUS' "$fmbd_log"
         stop_fmbd "$signal"
     done
 }
@@ -117,7 +117,7 @@ grid_scene() {
     started="${started-} $!"
     run "$FMB" query --timeout 0.2 --retries 50 --certificate "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
-    [[ ${lines[2]} == *"  1  2  not decided: the certificate is too long for a message: ask with --local" ]]
+    [[ ${lines[2]} == *"  1  2  not decided: the certificate is too long for a message: use --local" ]]
 }
 
 @test "watch shows what passes of scenes, in JSON" {
@@ -133,7 +133,6 @@ grid_scene() {
     wait_until asked
     [ "$(jq -c '[.end_pair, .overlapping, .touching]' "$BATS_TEST_TMPDIR/watch")" = \
         "$(jq -c '[.pairs[].verdict] | [length, (map(select(. == "overlapping")) | length), (map(select(. == "touching")) | length)]' "$BATS_TEST_TMPDIR/bus")" ]
-    [ "$(jq .lost "$BATS_TEST_TMPDIR/watch")" = 0 ]
     stop_fmbd
 }
 
@@ -251,9 +250,10 @@ grid_scene() {
     watch=$!
     started="$started $watch"
     sent=0 to_watch=0 scenes_to_watch=0
-    for type in pair_query pair_result scene_query scene_result status; do
+    for type in pair_query pair_result scene_query scene_result definition_query definition status; do
         sent=$((sent + $("$FMB_BUILD/poke" FMB_PAIR_QUERY $type)))
         sent=$((sent + $("$FMB_BUILD/poke" FMB_SCENE_QUERY $type)))
+        sent=$((sent + $("$FMB_BUILD/poke" FMB_DEFINITION_QUERY $type)))
         scenes_to_watch=$((scenes_to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
         to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_PAIR_RESULT $type)))
         to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
@@ -288,8 +288,8 @@ grid_scene() {
     stop_fmbd
 }
 
-@test "room for one body: every answer is right all the same" {
-    start_fmbd --bodies 1
+@test "capacity for one frame: every answer is right all the same" {
+    start_fmbd --frames 1
     random_scene 3 20 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
@@ -302,7 +302,7 @@ grid_scene() {
 }
 
 @test "the heartbeat tells what was done" {
-    start_fmbd --bodies 500
+    start_fmbd --frames 500
     random_scene 2 5 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
@@ -310,7 +310,7 @@ grid_scene() {
     [ "$(status_of scenes)" = 2 ]
     [ "$(status_of pairs)" = 20 ]
     [ "$(status_of bodies)" = 5 ]
-    [ "$(status_of capacity)" = 500 ]
+    [ "$(status_of frame_capacity)" = 500 ]
     [ "$(status_of misses)" = 5 ]
     [ "$(status_of hits)" = 5 ]
     "$FMB" query --certificate "$BATS_TEST_TMPDIR/scene.json"
@@ -324,12 +324,96 @@ grid_scene() {
     stop_fmbd
 }
 
+# poison_all: packets that crash liblcm's receiver (1.3.1), on every channel of the service.
+poison_all() {
+    for channel in FMB_PAIR_QUERY FMB_SCENE_QUERY FMB_DEFINITION_QUERY FMB_STATUS FMB_PAIR_RESULT \
+        FMB_SCENE_RESULT; do
+        "$FMB_BUILD/poison" wrap $channel
+        "$FMB_BUILD/poison" short $channel
+        "$FMB_BUILD/poison" empty $channel
+        "$FMB_BUILD/poison" huge $channel
+    done
+}
+
+@test "packets that crash liblcm harm neither service nor clients" {
+    start_fmbd
+    "$FMB" watch > /dev/null 2>&1 3>&- &
+    watch=$!
+    started="$started $watch"
+    random_scene 3 60 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local"
+    for _ in 1 2 3 4 5; do
+        poison_all
+        "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/local"
+    done
+    [ "$(status_of foreign)" -ge 100 ]
+    kill -0 $watch
+    stop_fmbd
+}
+
+@test "starts beside packets that crash liblcm" {
+    ( while :; do poison_all; done ) 3>&- &
+    started="${started-} $!"
+    for _ in 1 2 3 4 5 6 7 8; do
+        start_fmbd
+        for _ in 1 2 3 4 5; do "$FMB" status > /dev/null; done
+        stop_fmbd
+    done
+}
+
+@test "started as root, it becomes nobody, or the user that is named" {
+    [ "$(id -u)" = 0 ] && [ "$(wc -l < /proc/self/uid_map)" = 1 ] &&
+        [ "$(awk '{ print $3 }' /proc/self/uid_map)" -gt 65534 ] || skip "needs root and its ids"
+    for user in nobody daemon; do
+        if [ $user = nobody ]; then start_fmbd; else start_fmbd --user $user; fi
+        id=$(id -u $user)
+        [ "$(awk '/^Uid:/ { print $2, $3, $4 }' "/proc/$fmbd/status")" = "$id $id $id" ]
+        [ "$(awk '/^Groups:/ { print NF }' "/proc/$fmbd/status")" = 2 ]
+        [ "$(awk '/^NoNewPrivs:/ { print $2 }' "/proc/$fmbd/status")" = 1 ]
+        "$FMB" status > /dev/null
+        stop_fmbd
+    done
+    run "$FMBD" --user no-such-user
+    [ "$status" = 1 ]
+    [[ "$output" == *"--user"* ]]
+}
+
+@test "where an id does not exist, it warns once and goes on" {
+    [ "$FMB_NETNS" = own ] || skip "needs namespaces"
+    unshare -rn true || skip "needs user namespaces"
+    unshare -rn sh -c 'ip link set lo up; ip link set lo multicast on
+        ip route add 224.0.0.0/4 dev lo; exec timeout 1 "$@"' sh "$FMBD" \
+        2> "$BATS_TEST_TMPDIR/err" 3>&- || true
+    [ "$(grep -c warning "$BATS_TEST_TMPDIR/err")" = 1 ]
+    grep -q ready "$BATS_TEST_TMPDIR/err"
+}
+
+@test "a filter of system calls is in place" {
+    case $FMB_BUILD in *asan*) skip "sanitizers need other calls" ;; esac
+    start_fmbd
+    [ "$(awk '/^Seccomp:/ { print $2 }' "/proc/$fmbd/status")" = 2 ]
+    stop_fmbd
+}
+
+@test "a service manager is told when it is ready, alive and stopping" {
+    "$FMB_BUILD/poke" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    started="${started-} $!"
+    wait_until test -S "$BATS_TEST_TMPDIR/notify"
+    NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
+    alive() { [ "$(grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/heard")" -ge 3 ]; }
+    wait_until alive
+    stop_fmbd
+    [ "$(head -n 1 "$BATS_TEST_TMPDIR/heard")" = READY=1 ]
+    stopping() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/heard")" = STOPPING=1 ]; }
+    wait_until stopping
+}
+
 @test "no route for multicast: two lines that say what to run" {
-    [ "$FMB_NETNS" = own ] || skip "needs a network without routes"
-    run "$FMBD" --lcm-url udpm://10.9.8.7:7667
+    unshare -rn true || skip "needs a network without routes"
+    run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667
     [ "$status" = 1 ]
     [ "${#lines[@]}" = 2 ]
-    [[ "${lines[0]}" == "fmbd: no route to the multicast group 10.9.8.7"* ]]
+    [[ "${lines[0]}" == "fmbd: no route to the multicast group 239.8.7.6"* ]]
     [[ "${lines[1]}" == *"ip route add 224.0.0.0/4 dev lo"* ]]
 }
 
@@ -377,11 +461,11 @@ grid_scene() {
 @test "a bus without a port: refused at once" {
     run timeout 5 "$FMBD" --lcm-url udpm://239.255.76.67
     [ "$status" = 1 ]
-    [[ "$output" == *"udpm://GROUP:7667"* ]]
+    [[ "$output" == *"udpm://239.255.76.67:7667"* ]]
 }
 
 @test "wrong options: exit code 2 and a hint; help and version: 0" {
-    for options in --nonsense --bodies=0 --bodies=-1 --bodies=1x --bodies=99999999999999999999 \
+    for options in --nonsense --frames=0 --frames=-1 --frames=1x --frames=99999999999999999999 --bodies=5 --unfiltered \
         '--prefix=a.*' extra; do
         run "$FMBD" "$options"
         [ "$status" = 2 ]

@@ -1,6 +1,8 @@
 #include "scene_truth.h"
 
+#include "big_endian.h"
 #include "pair_draw.h"
+#include "wire.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -10,28 +12,49 @@
 
 #include <cmocka.h>
 
-static void set_vector(const double *vector, int dim, struct query_numbers *out)
+void scene_set_placement(const struct solid *solid, int64_t body_id,
+                         unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], struct placement *out)
 {
-    out->count = dim;
-    memcpy(out->number, vector, (size_t) dim * sizeof *vector);
-}
-
-void scene_set_frame(const struct solid *solid, int64_t body_id, struct query_frame *out)
-{
-    *out = (struct query_frame){.body_id = body_id, .shape = (int32_t) solid->shape};
-    out->dim = solid->dim;
-    set_vector(solid->origin, solid->dim, &out->origin);
+    struct geometry_frame frame = {.shape = (int) solid->shape};
+    const int dim = solid->dim, count = solid_count(solid);
+    for (int i = 0; i < count; i++)
+        memcpy(frame.components + i * dim, solid->component[i], (size_t) dim * sizeof(double));
+    *out = (struct placement){.body_id = body_id,
+                              .dim = dim,
+                              .frame_count = 1,
+                              .number_count = dim * (1 + count),
+                              .velocity_count = solid->moving ? dim : 0};
+    out->geometry = (struct geometry){bytes, geometry_write(dim, &frame, bytes)};
+    memcpy(out->position, solid->origin, (size_t) dim * sizeof(double));
     if (solid->moving)
-        set_vector(solid->velocity, solid->dim, &out->velocity);
-    for (int i = 0; i < solid_count(solid); i++)
-        for (int axis = 0; axis < solid->dim; axis++)
-            out->components.number[out->components.count++] = solid->component[i][axis];
+        memcpy(out->velocity, solid->velocity, (size_t) dim * sizeof(double));
 }
 
-void scene_draw_frames(struct draw *draw, int dim, int moving, int32_t count,
-                       struct scene_query *out)
+void scene_set(struct scene *scene, int32_t i, const struct solid *solid, int64_t body_id)
 {
-    out->frame_count = count;
+    scene_set_placement(solid, body_id, scene->geometry[i], &scene->query.placement[i]);
+}
+
+void scene_put_number(struct scene *scene, int32_t i, int k, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    big_endian_put_64(scene->geometry[i] + 4 + 4 + 1 + 4 + 8 * k, bits);
+}
+
+void scene_name(struct placement *placement, const struct handle *handle)
+{
+    static unsigned char bytes[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES];
+    const int dim = placement->dim;
+    geometry_write_none(dim, bytes[dim]);
+    placement->handle = *handle;
+    placement->frame_count = placement->number_count = 0;
+    placement->geometry = (struct geometry){bytes[dim], GEOMETRY_NONE_BYTES};
+}
+
+void scene_draw_placements(struct draw *draw, int dim, int moving, int32_t count, struct scene *out)
+{
+    out->query.placement_count = count;
     for (int32_t i = 0; i < count; i += 2) {
         struct cell cell;
         struct question question;
@@ -39,15 +62,15 @@ void scene_draw_frames(struct draw *draw, int dim, int moving, int32_t count,
             cell = pair_draw_cell(draw);
         while (cell.dim != dim || (moving >= 0 && cell.moving != (moving > 0)));
         (draw_int(draw, 0, 15) ? pair_draw : pair_draw_stretched)(draw, &cell, &question);
-        scene_set_frame(&question.a, 0, &out->frame[i]);
+        scene_set(out, i, &question.a, 0);
         if (i + 1 < count)
-            scene_set_frame(&question.b, 0, &out->frame[i + 1]);
+            scene_set(out, i + 1, &question.b, 0);
     }
 }
 
 void scene_draw_pairs(struct draw *draw, int32_t count, struct scene_query *out)
 {
-    const int last = out->frame_count - 1;
+    const int last = out->placement_count - 1;
     out->index_count = 2 * count;
     for (int32_t i = 0; i < count; i++) {
         unsigned *pair = out->pair[i];
@@ -60,9 +83,9 @@ void scene_draw_pairs(struct draw *draw, int32_t count, struct scene_query *out)
 
 int32_t scene_list(const struct scene_query *query, const unsigned (**out)[2])
 {
-    static unsigned list[QUERY_FRAMES_MAX * QUERY_FRAMES_MAX / 2][2];
+    static unsigned list[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 2][2];
     const bool across = query->which == QUERY_PAIRS_ACROSS;
-    const int32_t split = query->split, n = query->frame_count;
+    const int32_t split = query->split, n = query->placement_count;
     int32_t count = 0;
     *out = (const unsigned(*)[2]) list;
     if (query->which == QUERY_PAIRS_LISTED) {
@@ -77,14 +100,17 @@ int32_t scene_list(const struct scene_query *query, const unsigned (**out)[2])
     return count;
 }
 
-static struct fmb_frame frame_of(const struct query_frame *frame, struct fmb_body *body)
+static struct fmb_frame frame_of(const struct placement *placement, struct fmb_body *body)
 {
-    struct fmb_frame out = {.body = body, .moving = frame->velocity.count > 0};
-    assert_int_equal(fmb_body_make(frame->dim, frame->shape, frame->components.number,
-                                   (size_t) frame->components.count, body),
-                     FMB_OK);
-    memcpy(out.origin, frame->origin.number, sizeof out.origin);
-    memcpy(out.velocity, frame->velocity.number, sizeof out.velocity);
+    struct fmb_frame out = {.body = body, .moving = placement->velocity_count > 0};
+    struct geometry_frame frame;
+    int dim;
+    assert_true(geometry_read(&placement->geometry, &dim, &frame));
+    assert_int_equal(
+        fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), body),
+        FMB_OK);
+    memcpy(out.origin, placement->position, sizeof out.origin);
+    memcpy(out.velocity, placement->velocity, sizeof out.velocity);
     return out;
 }
 
@@ -92,10 +118,27 @@ enum fmb_status scene_decide(const struct scene_query *query, const unsigned pai
                              struct fmb_answer *answer)
 {
     struct fmb_body body[2];
-    const struct fmb_pair both = {.a = frame_of(&query->frame[pair[0]], &body[0]),
-                                  .b = frame_of(&query->frame[pair[1]], &body[1]),
+    const struct fmb_pair both = {.a = frame_of(&query->placement[pair[0]], &body[0]),
+                                  .b = frame_of(&query->placement[pair[1]], &body[1]),
                                   .duration = query->duration};
     return fmb_decide(fmb_method_by_number(query->method), &both, FMB_WANT_BOX, answer);
+}
+
+/* ---- Answers ---- */
+
+void scene_begin(struct scene_job *job, const struct scene_query *query)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    assert_null(scene_job_begin(job, bytes, wire_write_scene_query(query, bytes)));
+}
+
+void scene_answer(struct scene_job *job, struct answerer *answerer, const struct scene_query *query,
+                  struct scene_result *out)
+{
+    scene_begin(job, query);
+    while (!scene_job_step(job, answerer))
+        continue;
+    *out = *scene_job_result(job);
 }
 
 /* ---- A result, read from its beginning ---- */
@@ -148,8 +191,8 @@ static void assert_pair(struct reading *reading, const unsigned pair[2])
 static bool any_moves(const struct scene_query *query)
 {
     bool moves = false;
-    for (int32_t i = 0; i < query->frame_count; i++)
-        moves = moves || query->frame[i].velocity.count > 0;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        moves = moves || query->placement[i].velocity_count > 0;
     return moves;
 }
 

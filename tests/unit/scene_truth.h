@@ -1,32 +1,54 @@
-/* Scenes for tests, and what must be answered to them: pair by pair, by fmb_decide(). */
+/* Scenes for tests, and what the answers must be: pair by pair, by fmb_decide(). */
 #ifndef SCENE_TRUTH_H
 #define SCENE_TRUTH_H
 
+#include "answer.h"
 #include "draw.h"
-#include "query.h"
 #include "question.h"
 
-/* A frame of a query that comes whole. body_id 0: anonymous. */
-void scene_set_frame(const struct solid *solid, int64_t body_id, struct query_frame *out);
+/* A query, and the geometries of the placements that come whole. */
+struct scene {
+    struct scene_query query;
+    unsigned char geometry[QUERY_PLACEMENTS_MAX][GEOMETRY_FRAME_BYTES_MAX];
+};
+
+/* A placement that comes whole, its geometry in bytes. body_id 0: anonymous. */
+void scene_set_placement(const struct solid *solid, int64_t body_id,
+                         unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], struct placement *out);
+
+/* Placement i of the scene. */
+void scene_set(struct scene *scene, int32_t i, const struct solid *solid, int64_t body_id);
+
+/* Number k of the geometry of a placement that comes whole. */
+void scene_put_number(struct scene *scene, int32_t i, int k, double value);
+
+/* The handle in place of the frames. */
+void scene_name(struct placement *placement, const struct handle *handle);
 
 /* Frames of hard pairs (pair_draw.h), all of this dimension: 2 i and 2 i + 1 are of one. Anonymous;
- * the rest of the query is left alone. moving: -1 some, 0 none, 1 such pairs alone. */
-void scene_draw_frames(struct draw *draw, int dim, int moving, int32_t count,
-                       struct scene_query *out);
+ * the remainder of the query is left alone. moving: -1 some, 0 none, 1 such pairs alone. */
+void scene_draw_placements(struct draw *draw, int dim, int moving, int32_t count,
+                           struct scene *out);
 
-/* Any pairs of two different frames of the query, half of them of frames 2 i and 2 i + 1. */
+/* Any pairs of two different placements of the query, half of them 2 i and 2 i + 1. */
 void scene_draw_pairs(struct draw *draw, int32_t count, struct scene_query *out);
 
-/* All pairs that a query asks for, in their order. Returns the count; *out is good until the next
- * call. */
+/* All pairs of a query, in their order. Returns the count; *out is valid until the next call. */
 int32_t scene_list(const struct scene_query *query, const unsigned (**out)[2]);
 
-/* The truth of a pair of frames that came whole. */
+/* The truth of a pair of placements that come whole. */
 enum fmb_status scene_decide(const struct scene_query *query, const unsigned pair[2],
                              struct fmb_answer *answer);
 
+/* Begins with the query as a message; it must fit. */
+void scene_begin(struct scene_job *job, const struct scene_query *query);
+
+/* The result of a query that is not interrupted. */
+void scene_answer(struct scene_job *job, struct answerer *answerer, const struct scene_query *query,
+                  struct scene_result *out);
+
 /* Fails the running test where the result is not, to the bit, the answer to the pairs from
- * first_pair to end_pair. whole: the query with every frame whole. */
+ * first_pair to end_pair. whole: the query with every placement whole. */
 void scene_assert(const struct scene_query *whole, const struct scene_result *result);
 
 #endif

@@ -11,39 +11,39 @@
 
 #include <cmocka.h>
 
-enum { CLIENTS = 5, IDS = 24, FRAMES = 8, CONTENTS = 64, FIRST_KEY = 1000, KEYS_MAX = 1 << 20 };
+enum { CLIENTS = 5, IDS = 24, PLACEMENTS = 8, CONTENTS = 64 };
 
 /* Two clients are in 2D, the others in 3D; all use the same ids, each for bodies of its own. */
 struct client {
     int dim;
-    int content[IDS + 1]; /* of each body, as it is now */
-    int64_t key[IDS + 1]; /* what it was told for that; 0: nothing */
+    int content[IDS + 1];           /* of each body, as it is now */
+    struct handle handle[CONTENTS]; /* as far as results have reported it */
 };
 
 static struct {
     struct draw draw;
-    struct answerer answerer;
+    struct answerer *answerer;
+    struct scene_job *job;
     struct client client[CLIENTS];
-    struct scene_query content[2]; /* [dim - 2]: CONTENTS frames */
-    bool quiet;                    /* nothing is lost, and no client disturbs another */
-    long answered, by_key, unknown;
+    struct scene content[2]; /* [dim - 2]: CONTENTS placements */
+    bool quiet;              /* nothing is lost or interrupted */
+    long answered, by_handle, unknown;
 } world;
 
-/* What each key was given for; NULL: it was not given yet. */
-static const struct query_frame *named[KEYS_MAX];
-
-static void begin(int clients_that_share, size_t bodies)
+static void begin(bool quiet, size_t frames)
 {
+    const struct answerer_options options = {frames, .server_id = 1,
+                                             .secret = {0x243f6a8885a308d3, 0x13198a2e03707344}};
     struct draw draw;
     draw_begin(&draw, "clients");
     memset(&world, 0, sizeof world);
-    memset(named, 0, sizeof named);
     world.draw = draw;
-    world.quiet = clients_that_share == 1;
-    world.answerer.cache = cache_create(bodies, FIRST_KEY);
-    assert_true(answer_prepare(&world.answerer));
+    world.quiet = quiet;
+    world.answerer = answerer_create(&options);
+    world.job = scene_job_create();
+    assert_true(world.answerer && world.job);
     for (int dim = 2; dim <= 3; dim++)
-        scene_draw_frames(&world.draw, dim, -1, CONTENTS, &world.content[dim - 2]);
+        scene_draw_placements(&world.draw, dim, -1, CONTENTS, &world.content[dim - 2]);
     for (int c = 0; c < CLIENTS; c++) {
         struct client *client = &world.client[c];
         client->dim = c < 2 ? 2 : 3;
@@ -54,8 +54,8 @@ static void begin(int clients_that_share, size_t bodies)
 
 static void end(void)
 {
-    answer_release(&world.answerer);
-    cache_destroy(world.answerer.cache);
+    scene_job_destroy(world.job);
+    answerer_destroy(world.answerer);
 }
 
 static bool one_in(int n)
@@ -63,57 +63,51 @@ static bool one_in(int n)
     return draw_int(&world.draw, 1, n) == 1;
 }
 
-static const struct query_frame *frame_of(const struct client *client, int content)
+static struct placement *content_of(const struct client *client, int content)
 {
-    return &world.content[client->dim - 2].frame[content];
+    return &world.content[client->dim - 2].query.placement[content];
 }
 
-/* ---- Keys ---- */
+/* ---- Handles ---- */
 
-static bool same_components(const struct query_frame *one, const struct query_frame *other)
+/* A handle is that of one geometry for ever. */
+static void store_handle(struct client *client, int64_t id, const struct handle *handle)
 {
-    return one->shape == other->shape && one->dim == other->dim &&
-           memcmp(&one->components, &other->components, sizeof one->components) == 0;
+    struct handle *known = &client->handle[client->content[id]];
+    assert_false(handle_is_none(handle));
+    assert_true(handle_is_none(known) || handle_equal(known, handle));
+    *known = *handle;
 }
 
-/* A key names one set of components for ever. */
-static void learn(struct client *client, int64_t id, int64_t key)
+static void shorten(const struct client *client, struct placement *placement)
 {
-    const struct query_frame *frame = frame_of(client, client->content[id]);
-    const struct query_frame **names = &named[key - FIRST_KEY];
-    assert_true(key >= FIRST_KEY && key < FIRST_KEY + KEYS_MAX);
-    assert_true(!*names || same_components(*names, frame));
-    *names = frame;
-    client->key[id] = key;
-}
-
-static void send_by_key(struct query_frame *frame, int64_t key)
-{
-    frame->key = key;
-    frame->components = (struct query_numbers){0};
-    world.by_key++;
+    if (placement->body_id == 0)
+        return;
+    const struct handle *handle = &client->handle[client->content[placement->body_id]];
+    if (handle_is_none(handle) || one_in(8))
+        return;
+    scene_name(placement, handle);
+    world.by_handle++;
 }
 
 /* ---- Queries ---- */
 
-static void turn_bodies(struct client *client)
+static void change_bodies(struct client *client)
 {
     for (int id = 1; id <= IDS; id++)
-        if (one_in(12)) {
+        if (one_in(12))
             client->content[id] = draw_int(&world.draw, 0, CONTENTS - 1);
-            client->key[id] = 0;
-        }
 }
 
-/* A frame of any body of the client, somewhere; one in eight is anonymous. */
-static void place(const struct client *client, struct query_frame *out)
+/* Any body of the client, somewhere; one in eight is anonymous. */
+static void place(const struct client *client, struct placement *out)
 {
     const int64_t id = one_in(8) ? 0 : draw_int(&world.draw, 1, IDS);
     const int anywhere = draw_int(&world.draw, 0, CONTENTS - 1);
-    *out = *frame_of(client, id ? client->content[id] : anywhere);
+    *out = *content_of(client, id ? client->content[id] : anywhere);
     out->body_id = id;
     if (one_in(2))
-        out->origin = frame_of(client, anywhere)->origin;
+        memcpy(out->position, content_of(client, anywhere)->position, sizeof out->position);
 }
 
 static void place_all(const struct client *client, struct scene_query *out)
@@ -122,27 +116,17 @@ static void place_all(const struct client *client, struct scene_query *out)
     out->want = draw_int(&world.draw, 0, 1) * QUERY_WANT_BOX | QUERY_WANT_TIMES;
     out->method = one_in(16) ? fmb_method_by_name("exact")->number : 0;
     out->which = draw_int(&world.draw, QUERY_PAIRS_LISTED, QUERY_PAIRS_ACROSS);
-    out->frame_count = draw_int(&world.draw, 2, FRAMES);
-    for (int32_t i = 0; i < out->frame_count; i++)
-        place(client, &out->frame[i]);
+    out->placement_count = draw_int(&world.draw, 2, PLACEMENTS);
+    for (int32_t i = 0; i < out->placement_count; i++)
+        place(client, &out->placement[i]);
     out->index_count = out->split = out->first_pair = 0;
     if (out->which == QUERY_PAIRS_LISTED)
         scene_draw_pairs(&world.draw, 8, out);
     if (out->which == QUERY_PAIRS_ACROSS)
-        out->split = draw_int(&world.draw, 0, out->frame_count);
+        out->split = draw_int(&world.draw, 0, out->placement_count);
 }
 
-/* What the client sends of it: bodies whose key it knows by key, as a rule. */
-static void shorten(const struct client *client, struct scene_query *sent)
-{
-    for (int32_t i = 0; i < sent->frame_count; i++) {
-        struct query_frame *frame = &sent->frame[i];
-        if (frame->body_id && client->key[frame->body_id] && !one_in(8))
-            send_by_key(frame, client->key[frame->body_id]);
-    }
-}
-
-/* Another client asks for a scene of its own, does not wait for the answer, and forgets it. */
+/* Another client sends a scene of its own, and does not wait for the result. */
 static void disturb(void)
 {
     static struct scene_query query;
@@ -150,24 +134,21 @@ static void disturb(void)
     const struct client *client = &world.client[draw_int(&world.draw, 0, CLIENTS - 1)];
     place_all(client, &query);
     if (one_in(2))
-        shorten(client, &query);
-    answer_scene(&world.answerer, &query, &result);
+        for (int32_t i = 0; i < query.placement_count; i++)
+            shorten(client, &query.placement[i]);
+    scene_answer(world.job, world.answerer, &query, &result);
 }
 
-/* Where a key is dead, the components go in its place. Some must be. */
-static void send_whole(struct client *client, const struct scene_query *whole,
-                       const struct scene_result *result, struct scene_query *sent)
+/* The frames in the place of each handle that is not held. There is one at least. */
+static void send_whole(const struct scene_query *whole, const struct scene_result *result,
+                       struct scene_query *sent)
 {
-    int repaired = 0;
-    assert_int_equal(result->key_count, sent->frame_count);
-    for (int32_t i = 0; i < sent->frame_count; i++) {
-        if (sent->frame[i].components.count > 0 || result->key[i] != 0)
-            continue;
-        sent->frame[i] = whole->frame[i];
-        client->key[whole->frame[i].body_id] = 0;
-        repaired++;
+    assert_true(result->unknown_count > 0);
+    for (int32_t i = 0; i < result->unknown_count; i++) {
+        const unsigned index = result->unknown[i];
+        assert_true(placement_by_handle(&sent->placement[index]));
+        sent->placement[index] = whole->placement[index];
     }
-    assert_true(repaired > 0);
     world.unknown++;
 }
 
@@ -178,36 +159,47 @@ static bool get_answer(const struct scene_query *sent, struct scene_result *resu
         disturb();
     if (!world.quiet && one_in(8))
         return false;
-    answer_scene(&world.answerer, sent, result);
+    scene_answer(world.job, world.answerer, sent, result);
     return world.quiet || !one_in(8);
 }
 
-static void ask_scene(struct client *client)
+/* Handles are those of the placements that came whole with an id, in their order. */
+static void store_handles(struct client *client, const struct scene_query *sent,
+                          const struct scene_result *result)
+{
+    int32_t count = 0;
+    for (int32_t i = 0; i < sent->placement_count; i++) {
+        const struct placement *placement = &sent->placement[i];
+        if (placement->body_id && !placement_by_handle(placement))
+            store_handle(client, placement->body_id, &result->handle[count++]);
+    }
+    assert_int_equal(result->handle_count, count);
+}
+
+static void query_scene(struct client *client)
 {
     static struct scene_query whole, sent;
     static struct scene_result result;
     place_all(client, &whole);
     sent = whole;
-    shorten(client, &sent);
+    for (int32_t i = 0; i < sent.placement_count; i++)
+        shorten(client, &sent.placement[i]);
     int unknown = 0;
     for (;;) {
         if (!get_answer(&sent, &result))
             continue;
         if (result.status != FMB_UNKNOWN_BODY)
             break;
-        assert_true(++unknown <= FRAMES); /* each time one frame more is whole */
-        send_whole(client, &whole, &result, &sent);
+        assert_true(++unknown <= PLACEMENTS); /* each time one more is whole */
+        send_whole(&whole, &result, &sent);
     }
     scene_assert(&whole, &result);
-    assert_true(result.key_count == 0 || result.key_count == whole.frame_count);
-    for (int32_t i = 0; i < result.key_count; i++)
-        if (whole.frame[i].body_id)
-            learn(client, whole.frame[i].body_id, result.key[i]);
+    store_handles(client, &sent, &result);
     world.answered++;
 }
 
 /* The same, pair by pair. */
-static void ask_pair(struct client *client)
+static void query_pair(struct client *client)
 {
     static struct scene_query whole;
     static const unsigned both[2] = {0, 1};
@@ -216,61 +208,65 @@ static void ask_pair(struct client *client)
     struct fmb_answer answer;
     whole.duration = 1;
     for (int f = 0; f < 2; f++) {
-        place(client, &whole.frame[f]);
-        sent.frame[f] = whole.frame[f];
-        if (sent.frame[f].body_id && client->key[sent.frame[f].body_id])
-            send_by_key(&sent.frame[f], client->key[sent.frame[f].body_id]);
+        place(client, &whole.placement[f]);
+        sent.placement[f] = whole.placement[f];
+        shorten(client, &sent.placement[f]);
     }
-    answer_pair(&world.answerer, &sent, &result);
+    answer_pair(world.answerer, &sent, &result);
     if (result.status == FMB_UNKNOWN_BODY) {
-        memcpy(sent.frame, whole.frame, sizeof sent.frame);
-        answer_pair(&world.answerer, &sent, &result);
+        memcpy(sent.placement, whole.placement, sizeof sent.placement);
+        answer_pair(world.answerer, &sent, &result);
         world.unknown++;
     }
     assert_int_equal(result.status, FMB_OK);
     scene_decide(&whole, both, &answer);
     assert_memory_equal(&answer, &result.answer, sizeof answer);
     for (int f = 0; f < 2; f++)
-        if (whole.frame[f].body_id)
-            learn(client, whole.frame[f].body_id, result.key[f]);
+        if (sent.placement[f].body_id && !placement_by_handle(&sent.placement[f]))
+            store_handle(client, sent.placement[f].body_id, &result.handle[f]);
+        else
+            assert_true(handle_is_none(&result.handle[f]));
     world.answered++;
 }
 
-static void ask_much(int clients)
+static void query_much(void)
 {
     for (long round = 0; round < draw_sample(6000); round++) {
-        struct client *client = &world.client[draw_int(&world.draw, 0, clients - 1)];
-        turn_bodies(client);
-        (one_in(4) ? ask_pair : ask_scene)(client);
+        struct client *client = &world.client[draw_int(&world.draw, 0, CLIENTS - 1)];
+        change_bodies(client);
+        (one_in(4) ? query_pair : query_scene)(client);
     }
 }
 
 static void test_clients_that_share_ids_and_lose_datagrams(void **state)
 {
-    static const size_t bodies[] = {1, 6, 12, 100};
+    static const size_t frames[] = {1, 6, 24, 100};
     (void) state;
-    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
-        begin(CLIENTS, bodies[i]);
-        ask_much(CLIENTS);
-        const struct cache_counts counts = cache_counts(world.answerer.cache);
-        assert_true(world.answered > 0 && world.by_key > 0 && world.unknown > 0);
-        assert_true(counts.replacements > 0 && counts.hits > 0);
-        assert_int_equal(counts.evictions > 0, bodies[i] < IDS);
-        assert_true(counts.bodies <= counts.capacity);
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        begin(false, frames[i]);
+        query_much();
+        const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
+        assert_true(world.answered > 0 && world.by_handle > 0 && world.unknown > 0);
+        assert_true(counts.evictions > 0 && counts.hits > 0);
+        assert_int_equal(counts.bodies, counts.frame_capacity);
+        assert_true(counts.ids <= IDS);
         end();
     }
 }
 
-/* With room for its bodies, and nobody who uses its ids, no key of a client ever dies but where it
- * turns the body itself. */
-static void test_a_client_alone_keeps_its_keys(void **state)
+/* With capacity for the bodies of all clients each is prepared once, whichever client uses which id
+ * for which of them, and no handle is ever unknown. */
+static void test_clients_that_share_ids_do_not_disturb_each_other(void **state)
 {
     (void) state;
-    begin(1, IDS);
-    ask_much(1);
-    assert_true(world.by_key > 0);
+    begin(true, 2 * CONTENTS);
+    query_much();
+    const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
+    assert_true(world.by_handle > 0);
     assert_int_equal(world.unknown, 0);
-    assert_int_equal(cache_counts(world.answerer.cache).evictions, 0);
+    assert_int_equal(counts.evictions, 0);
+    assert_int_equal(counts.misses, counts.bodies);
+    assert_int_equal(counts.ids, IDS);
     end();
 }
 
@@ -278,7 +274,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_clients_that_share_ids_and_lose_datagrams),
-        cmocka_unit_test(test_a_client_alone_keeps_its_keys),
+        cmocka_unit_test(test_clients_that_share_ids_do_not_disturb_each_other),
     };
     return cmocka_run_group_tests_name("answer_clients", tests, NULL, NULL);
 }

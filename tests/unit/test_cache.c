@@ -1,5 +1,6 @@
-/* Hit, miss, replacement, eviction, dead keys. */
+/* Hit, miss, eviction, ids, pages, and bodies or ids that are chosen to collide. */
 #include "cache.h"
+#include "scene_truth.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,188 +10,388 @@
 
 #include <cmocka.h>
 
-enum { FIRST_KEY = 1000 };
+static const uint64_t secret[2] = {0x243f6a8885a308d3, 0x13198a2e03707344};
+static const uint64_t another_secret[2] = {0xa4093822299f31d0, 0x082efa98ec4e6c89};
 
-/* A cube with edges of a length. */
-static void cube(double edge, double out[9])
+/* The geometry of a cuboid with edges along the axes. Valid until the next call. */
+static struct geometry cuboid(double x, double y)
 {
-    memset(out, 0, 9 * sizeof *out);
-    out[0] = out[4] = out[8] = edge;
+    static unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    const struct geometry_frame frame = {.shape = FMB_CUBOID,
+                                         .components = {x, 0, 0, 0, y, 0, 0, 0, y}};
+    return (struct geometry){bytes, geometry_write(3, &frame, bytes)};
 }
 
-static int64_t key_of(struct cache *cache, int64_t id, int dim, int shape, const double *components)
+/* Keeps a cube. */
+static struct handle keep(struct cache *cache, int64_t id, double edge)
 {
-    int64_t key;
-    cache_keep(cache, id, dim, shape, components, &key);
-    return key;
+    const struct geometry geometry = cuboid(edge, edge);
+    const struct cached *cached = cache_keep(cache, id, &geometry);
+    assert_true(cached->body.component[2][2] == edge);
+    assert_true(cached->body.inverse[2][2] == 1 / edge);
+    assert_int_equal(cached->geometry.size, geometry.size);
+    assert_memory_equal(cached->geometry.bytes, geometry.bytes, geometry.size);
+    return cached->handle;
 }
 
-static int64_t keep(struct cache *cache, int64_t id, double edge)
+/* The edge of the body with this handle, or 0. */
+static double find(struct cache *cache, struct handle handle)
 {
-    double components[9];
-    int64_t key;
-    cube(edge, components);
-    const struct fmb_body *body = cache_keep(cache, id, 3, FMB_CUBOID, components, &key);
-    assert_true(body->component[2][2] == edge);
-    assert_true(body->inverse[2][2] == 1 / edge);
-    return key;
-}
-
-/* The edge of the body that the key stands for, or 0. */
-static double find(struct cache *cache, int64_t id, int64_t key)
-{
-    const struct fmb_body *body = cache_find(cache, id, key, 3, FMB_CUBOID);
-    return body ? body->component[0][0] : 0;
+    const struct cached *cached = cache_find(cache, &handle);
+    if (!cached)
+        return 0;
+    assert_true(handle_equal(&cached->handle, &handle));
+    return cached->body.component[0][0];
 }
 
 static void test_hit_and_miss(void **state)
 {
     (void) state;
-    struct cache *cache = cache_create(4, FIRST_KEY);
-    int64_t key = keep(cache, 7, 2);
-    assert_int_equal(key, FIRST_KEY);
-    assert_int_equal(keep(cache, 7, 2), key);
-    assert_true(find(cache, 7, key) == 2);
-    struct cache_counts counts = cache_counts(cache);
+    struct cache *cache = cache_create(4, secret);
+    const struct handle handle = keep(cache, 7, 2);
+    const struct handle again = keep(cache, 7, 2);
+    assert_true(handle_equal(&handle, &again));
+    assert_true(find(cache, handle) == 2);
+    const struct cache_counts counts = cache_counts(cache);
     assert_int_equal(counts.bodies, 1);
-    assert_int_equal(counts.capacity, 4);
+    assert_int_equal(counts.frames, 1);
+    assert_int_equal(counts.frame_capacity, 4);
+    assert_int_equal(counts.ids, 1);
     assert_int_equal(counts.misses, 1);
     assert_int_equal(counts.hits, 2);
     cache_destroy(cache);
 }
 
-static void test_replacement_kills_the_key(void **state)
+/* As other programs compute it. */
+static void test_handle(void **state)
 {
     (void) state;
-    struct cache *cache = cache_create(4, FIRST_KEY);
-    int64_t old = keep(cache, 7, 2);
-    int64_t new = keep(cache, 7, 3);
-    assert_int_not_equal(old, new);
-    assert_true(find(cache, 7, old) == 0);
-    assert_true(find(cache, 7, new) == 3);
-    /* The old components again are new all the same: the old key stays dead. */
-    int64_t again = keep(cache, 7, 2);
-    assert_int_not_equal(again, old);
-    assert_true(find(cache, 7, old) == 0);
-    assert_int_equal(cache_counts(cache).replacements, 2);
+    struct cache *cache = cache_create(4, secret);
+    struct hasher *hasher = hasher_create();
+    const struct handle handle = keep(cache, 0, 3);
+    const struct geometry geometry = cuboid(3, 3);
+    const struct handle expected = hasher_handle(hasher, geometry.bytes, geometry.size);
+    assert_true(handle_equal(&handle, &expected));
+    hasher_destroy(hasher);
+    cache_destroy(cache);
+}
+
+static void test_handles_that_are_not_held(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(3, secret);
+    const struct handle handle = keep(cache, 1, 1);
+    for (int i = 0; i < HANDLE_BYTES; i++) {
+        struct handle other = handle;
+        other.bytes[i] ^= 1;
+        assert_true(find(cache, other) == 0);
+        assert_null(cache_peek(cache, &other));
+    }
+    assert_true(find(cache, (struct handle){{0}}) == 0);
+    assert_int_equal(cache_counts(cache).hits, 0);
+    assert_int_equal(cache_counts(cache).misses, 1);
+    cache_destroy(cache);
+}
+
+/* The ids of bodies do not matter, nor whether there are any. */
+static void test_ids_share_a_body(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(4, secret);
+    const struct handle handle = keep(cache, 1, 2);
+    for (int64_t id = 0; id <= 3; id++) {
+        const struct handle other = keep(cache, id, 2);
+        assert_true(handle_equal(&handle, &other));
+    }
     assert_int_equal(cache_counts(cache).bodies, 1);
+    assert_int_equal(cache_counts(cache).misses, 1);
+    assert_int_equal(cache_counts(cache).ids, 3);
     cache_destroy(cache);
 }
 
-static void test_components_are_compared_bit_by_bit(void **state)
+/* As two clients do that number their bodies from 1, or one whose body changes to and fro. */
+static void test_an_id_with_two_bodies(void **state)
 {
     (void) state;
-    struct cache *cache = cache_create(4, FIRST_KEY);
-    double components[9];
-    cube(1, components);
-    int64_t key = key_of(cache, 1, 3, FMB_CUBOID, components);
-    components[1] = -0.0;
-    assert_int_not_equal(key_of(cache, 1, 3, FMB_CUBOID, components), key);
-    key = key_of(cache, 1, 3, FMB_CUBOID, components);
-    assert_int_not_equal(key_of(cache, 1, 3, FMB_TETRAHEDRON, components), key);
-    const struct fmb_body *body = cache_keep(cache, 1, 3, FMB_TETRAHEDRON, components, &key);
-    assert_int_equal(body->shape, FMB_TETRAHEDRON);
-    /* Four numbers of a 2D body are not the first four of a 3D one. */
-    key = key_of(cache, 2, 2, FMB_CUBOID, components);
-    assert_int_equal(key_of(cache, 2, 2, FMB_CUBOID, components), key);
-    assert_int_not_equal(key_of(cache, 2, 3, FMB_CUBOID, components), key);
+    struct cache *cache = cache_create(20, secret);
+    struct handle handle[2][10];
+    for (int round = 0; round < 5; round++)
+        for (int body = 0; body < 2; body++)
+            for (int id = 0; id < 10; id++) {
+                const struct handle now = keep(cache, 1 + id, 1 + id + 0.5 * body);
+                assert_true(round == 0 || handle_equal(&now, &handle[body][id]));
+                handle[body][id] = now;
+            }
+    assert_int_equal(cache_counts(cache).misses, 20);
+    assert_int_equal(cache_counts(cache).hits, 80);
+    assert_int_equal(cache_counts(cache).ids, 10);
+    for (int id = 0; id < 10; id++)
+        assert_true(find(cache, handle[0][id]) == 1 + id && find(cache, handle[1][id]) == 1.5 + id);
     cache_destroy(cache);
 }
 
-static void test_the_least_recently_used_goes(void **state)
+static void test_bodies_are_compared_bit_by_bit(void **state)
 {
     (void) state;
-    struct cache *cache = cache_create(3, FIRST_KEY);
-    int64_t key[5];
+    struct cache *cache = cache_create(8, secret);
+    struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    struct handle handle[5];
+    for (int i = 0; i < 5; i++) {
+        frame.components[1] = i == 1 ? -0.0 : 0;
+        frame.components[8] = i == 2 ? 1 + 0x1p-52 : 1;
+        frame.shape = i == 3 ? FMB_TETRAHEDRON : FMB_CUBOID;
+        const struct geometry geometry = {bytes, geometry_write(i == 4 ? 2 : 3, &frame, bytes)};
+        const struct cached *cached = cache_keep(cache, 1, &geometry);
+        assert_int_equal(cached->body.dim, i == 4 ? 2 : 3);
+        assert_int_equal(cached->body.shape, frame.shape);
+        handle[i] = cached->handle;
+        for (int other = 0; other < i; other++)
+            assert_false(handle_equal(&handle[i], &handle[other]));
+    }
+    assert_int_equal(cache_counts(cache).bodies, 5);
+    cache_destroy(cache);
+}
+
+static void test_the_least_recently_used_is_evicted(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(3, secret);
+    struct handle handle[5];
     for (int id = 1; id <= 3; id++)
-        key[id] = keep(cache, id, id);
-    assert_true(find(cache, 1, key[1]) == 1); /* by key: used */
-    keep(cache, 2, 2);                        /* by components: used */
-    key[4] = keep(cache, 4, 4);
-    assert_true(find(cache, 3, key[3]) == 0);
+        handle[id] = keep(cache, id, id);
+    assert_true(find(cache, handle[1]) == 1);       /* by handle: used */
+    keep(cache, 2, 2);                              /* whole: used */
+    assert_non_null(cache_peek(cache, &handle[3])); /* not a use */
+    handle[4] = keep(cache, 4, 4);
+    assert_true(find(cache, handle[3]) == 0);
     for (int id = 1; id <= 4; id++)
         if (id != 3)
-            assert_true(find(cache, id, key[id]) == id);
+            assert_true(find(cache, handle[id]) == id);
     assert_int_equal(cache_counts(cache).evictions, 1);
     assert_int_equal(cache_counts(cache).bodies, 3);
     cache_destroy(cache);
 }
 
-static void test_keys_of_others_find_nothing(void **state)
+static void test_capacity_for_one(void **state)
 {
     (void) state;
-    struct cache *cache = cache_create(3, FIRST_KEY);
-    int64_t one = keep(cache, 1, 1), two = keep(cache, 2, 2);
-    assert_true(find(cache, 1, two) == 0);
-    assert_true(find(cache, 2, one) == 0);
-    assert_true(find(cache, 3, one) == 0);
-    assert_true(find(cache, 0, 0) == 0);
-    assert_true(find(cache, 1, 0) == 0);
+    struct cache *cache = cache_create(1, secret);
+    const struct handle one = keep(cache, 1, 1), two = keep(cache, 2, 2);
+    assert_true(find(cache, one) == 0);
+    assert_true(find(cache, two) == 2);
     cache_destroy(cache);
 }
 
-/* Against a plain list of all that was ever kept: the same held, the same dead. */
+/* An id whose entry holds another body now: the entry is not taken for the id's. */
+static void test_stale_ids(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(1, secret);
+    const struct handle one = keep(cache, 1, 1);
+    assert_int_equal(cache_counts(cache).ids, 1);
+    keep(cache, 0, 2); /* evicts it */
+    assert_int_equal(cache_counts(cache).ids, 0);
+    const struct handle again = keep(cache, 1, 1);
+    assert_true(handle_equal(&one, &again));
+    assert_int_equal(cache_counts(cache).ids, 1);
+    assert_int_equal(cache_counts(cache).misses, 3);
+    keep(cache, 2, 1); /* a second id of the same body */
+    assert_int_equal(cache_counts(cache).ids, 2);
+    keep(cache, 3, 5);
+    assert_int_equal(cache_counts(cache).ids, 1);
+    cache_destroy(cache);
+}
+
+/* Against a plain list of all that was ever kept: the same are held, and the same are not. */
 static void test_against_a_list(void **state)
 {
     (void) state;
-    enum { IDS = 40, CAPACITY = 16, ROUNDS = 200000 };
-    struct cache *cache = cache_create(CAPACITY, FIRST_KEY);
+    enum { BODIES = 40, CAPACITY = 16, ROUNDS = 100000 };
+    struct cache *cache = cache_create(CAPACITY, secret);
     struct {
-        double edge;
-        int64_t key, used_at;
-    } list[IDS] = {0};
+        bool known;
+        struct handle handle;
+        int used_at; /* 0: not held */
+    } list[BODIES] = {0};
+    int64_t misses = 0;
     srand(1);
     for (int now = 1; now <= ROUNDS; now++) {
-        int id = rand() % IDS;
-        double edge = rand() % 2 + 1;
-        int64_t key = keep(cache, id + 1, edge);
-        if (list[id].key && list[id].edge == edge)
-            assert_int_equal(key, list[id].key);
-        else
-            assert_true(key >= FIRST_KEY);
-        list[id].edge = edge;
-        list[id].key = key;
-        list[id].used_at = 2 * now;
-        int held = 0, oldest = -1;
-        for (int i = 0; i < IDS; i++) {
-            held += list[i].key != 0;
-            if (list[i].key && (oldest < 0 || list[i].used_at < list[oldest].used_at))
+        const int b = rand() % BODIES, probe = rand() % BODIES;
+        const struct handle handle = keep(cache, rand() % 8, 1 + b);
+        assert_true(!list[b].known || handle_equal(&handle, &list[b].handle));
+        misses += list[b].used_at == 0;
+        list[b].known = true;
+        list[b].handle = handle;
+        list[b].used_at = 2 * now;
+        int held = 0, oldest = b;
+        for (int i = 0; i < BODIES; i++) {
+            held += list[i].used_at != 0;
+            if (list[i].used_at && list[i].used_at < list[oldest].used_at)
                 oldest = i;
         }
-        if (held > CAPACITY) {
-            assert_true(find(cache, oldest + 1, list[oldest].key) == 0);
-            list[oldest].key = 0;
-        }
-        int probe = rand() % IDS;
-        if (list[probe].key) {
-            assert_true(find(cache, probe + 1, list[probe].key) == list[probe].edge);
-            list[probe].used_at = 2 * now + 1;
-        }
+        if (held > CAPACITY)
+            list[oldest].used_at = 0;
+        if (!list[probe].known)
+            continue;
+        assert_true(find(cache, list[probe].handle) == (list[probe].used_at ? 1 + probe : 0));
+        list[probe].used_at = list[probe].used_at ? 2 * now + 1 : 0;
     }
     assert_int_equal(cache_counts(cache).bodies, CAPACITY);
+    assert_int_equal(cache_counts(cache).misses, misses);
+    assert_true(cache_counts(cache).ids <= 7);
     cache_destroy(cache);
 }
 
-static void test_room_for_one(void **state)
+static void test_pages_have_all_bodies(void **state)
 {
     (void) state;
-    struct cache *cache = cache_create(1, FIRST_KEY);
-    int64_t one = keep(cache, 1, 1), two = keep(cache, 2, 2);
-    assert_true(find(cache, 1, one) == 0);
-    assert_true(find(cache, 2, two) == 2);
+    enum { CAPACITY = 16 };
+    struct cache *cache = cache_create(CAPACITY, secret);
+    int64_t position = 0;
+    assert_null(cache_next(cache, &position));
+    for (int b = 1; b <= 100; b++) {
+        bool seen[101] = {false};
+        int count = 0;
+        const struct cached *cached;
+        keep(cache, b, b);
+        for (position = 0; (cached = cache_next(cache, &position)); count++) {
+            const int edge = (int) cached->body.component[0][0];
+            assert_false(seen[edge]);
+            seen[edge] = true;
+            keep(cache, 0, edge); /* a use does not change the order */
+        }
+        assert_int_equal(count, b < CAPACITY ? b : CAPACITY);
+        assert_int_equal(position, count);
+    }
+    position = -1;
+    assert_null(cache_next(cache, &position));
+    position = INT64_MAX;
+    assert_null(cache_next(cache, &position));
     cache_destroy(cache);
+}
+
+/* Any placement may be prefetched, of which nothing has been checked. */
+static void test_prefetch(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(4, secret);
+    struct placement placement = {.body_id = INT64_MIN};
+    cache_prefetch(cache, &placement);
+    placement.body_id = 1;
+    cache_prefetch(cache, &placement);
+    placement.handle = keep(cache, 1, 1);
+    cache_prefetch(cache, &placement);
+    placement.frame_count = 1;
+    cache_prefetch(cache, &placement);
+    assert_int_equal(cache_counts(cache).hits, 0);
+    cache_destroy(cache);
+}
+
+static void test_memory_taken_is_as_it_was(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(1000, secret);
+    const struct handle handle = keep(cache, 1, 1);
+    cache_take_memory(cache);
+    assert_true(find(cache, handle) == 1);
+    cache_destroy(cache);
+}
+
+/* ---- Chosen to collide ---- */
+
+/* The set of an id in a table of 2^bits, by the formula of cache.c. */
+static uint64_t set_of(int64_t id, uint64_t multiplier, int bits)
+{
+    return (uint64_t) id * (multiplier | 1) >> (64 - bits);
+}
+
+enum { ATTACK = 16384, CAPACITY_ATTACKED = 65536 };
+
+/* So many ids that all fall into one set for this multiplier. */
+static void choose_ids(uint64_t multiplier, int64_t out[ATTACK])
+{
+    int count = 0;
+    for (int64_t id = 1; count < ATTACK; id++)
+        if (set_of(id, multiplier, 15) == 77)
+            out[count++] = id;
+}
+
+/* Keeps one body under all of them. Returns how many are known afterwards. */
+static int64_t ids_known(const int64_t id[ATTACK], const uint64_t used[2])
+{
+    struct cache *cache = cache_create(CAPACITY_ATTACKED, used);
+    const struct geometry geometry = cuboid(1, 1);
+    for (int i = 0; i < ATTACK; i++)
+        cache_keep(cache, id[i], &geometry);
+    const int64_t ids = cache_counts(cache).ids;
+    cache_destroy(cache);
+    return ids;
+}
+
+/* With the secret, ids can be computed that push each other out of the table. They do not with
+ * another one: nearly as many are known as of any ids. */
+static void test_ids_chosen_to_collide(void **state)
+{
+    (void) state;
+    static int64_t id[ATTACK];
+    choose_ids(secret[1], id);
+    assert_int_equal(ids_known(id, secret), 4);
+    assert_true(ids_known(id, another_secret) > ATTACK * 3 / 4);
+    for (int i = 0; i < ATTACK; i++)
+        id[i] = 1 + i;
+    assert_true(ids_known(id, another_secret) > ATTACK * 3 / 4);
+}
+
+/* So many bodies whose handles fall into one bucket of 2^bits for this multiplier. */
+static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int capacity, int bits)
+{
+    struct cache *cache = cache_create((size_t) capacity, used);
+    struct hasher *hasher = hasher_create();
+    for (int kept = 0, n = 1; kept < capacity; n++) {
+        const struct geometry geometry = cuboid(1, n);
+        const struct handle handle = hasher_handle(hasher, geometry.bytes, geometry.size);
+        uint64_t half = 0;
+        for (int i = 0; i < 8; i++)
+            half = half << 8 | handle.bytes[i];
+        if (half * (multiplier | 1) >> (64 - bits) != 5)
+            continue;
+        cache_keep(cache, 0, &geometry);
+        kept++;
+    }
+    const int64_t longest = cache_longest_chain(cache);
+    assert_int_equal(cache_counts(cache).bodies, capacity);
+    hasher_destroy(hasher);
+    cache_destroy(cache);
+    return longest;
+}
+
+/* Likewise bodies. Chains of 256 bodies in 256 buckets are as short as of any. */
+static void test_bodies_chosen_to_collide(void **state)
+{
+    (void) state;
+    assert_int_equal(longest_chain(secret[0], secret, 256, 8), 256);
+    assert_in_range(longest_chain(secret[0], another_secret, 256, 8), 2, 8);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hit_and_miss),
-        cmocka_unit_test(test_replacement_kills_the_key),
-        cmocka_unit_test(test_components_are_compared_bit_by_bit),
-        cmocka_unit_test(test_the_least_recently_used_goes),
-        cmocka_unit_test(test_keys_of_others_find_nothing),
+        cmocka_unit_test(test_handle),
+        cmocka_unit_test(test_handles_that_are_not_held),
+        cmocka_unit_test(test_ids_share_a_body),
+        cmocka_unit_test(test_an_id_with_two_bodies),
+        cmocka_unit_test(test_bodies_are_compared_bit_by_bit),
+        cmocka_unit_test(test_the_least_recently_used_is_evicted),
+        cmocka_unit_test(test_capacity_for_one),
+        cmocka_unit_test(test_stale_ids),
         cmocka_unit_test(test_against_a_list),
-        cmocka_unit_test(test_room_for_one),
+        cmocka_unit_test(test_pages_have_all_bodies),
+        cmocka_unit_test(test_prefetch),
+        cmocka_unit_test(test_memory_taken_is_as_it_was),
+        cmocka_unit_test(test_ids_chosen_to_collide),
+        cmocka_unit_test(test_bodies_chosen_to_collide),
     };
     return cmocka_run_group_tests_name("cache", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Order, turns, room; against a flood, against a naive model, and what memory is touched. */
+/* Order, capacity; against a flood, against a naive model, and what memory is touched. */
 #include "queue.h"
 
 #include <setjmp.h>
@@ -12,9 +12,7 @@
 
 #include <cmocka.h>
 
-#define SEED UINT64_C(0xb5c3a1f00d96e287)
-
-enum { GUARD = 0xa5 };
+enum { GUARD = 0xa5, CLIENTS = 100 };
 
 /* Datagrams are cut from here, so that each byte of one tells where it is from. */
 static unsigned char noise[2 * QUEUE_DATAGRAM_MAX];
@@ -31,41 +29,63 @@ static int set_up(void **state)
 
 static struct queue *create(size_t chunks)
 {
-    struct queue *queue = queue_create(chunks, SEED);
+    struct queue *queue = queue_create(chunks, CLIENTS);
     assert_non_null(queue);
     return queue;
 }
 
+/* Odd kinds are scenes. */
+static enum queue_line line_of(int kind)
+{
+    return kind % 2 ? QUEUE_SCENES : QUEUE_SHORT;
+}
+
 /* The kind says where the bytes were cut. */
-static enum queue_put_result put(struct queue *queue, int64_t client_id, int kind, size_t size)
+static enum queue_put_result put(struct queue *queue, int client, int kind, size_t size)
 {
-    return queue_put(queue, client_id, kind, noise + kind, size);
+    return queue_put(queue, client, line_of(kind), kind, noise + kind, size);
 }
 
-static void keep(struct queue *queue, int64_t client_id, int kind, size_t size)
+static void keep(struct queue *queue, int client, int kind, size_t size)
 {
-    assert_int_equal(put(queue, client_id, kind, size), QUEUE_KEPT);
+    assert_int_equal(put(queue, client, kind, size), QUEUE_KEPT);
+    assert_true(queue_has(queue, client, line_of(kind)));
 }
 
-typedef bool take(struct queue *queue, struct queue_datagram *out, unsigned char *bytes);
+static void expect(const struct queue_datagram *got, int client, int kind, size_t size)
+{
+    assert_int_equal(got->client, client);
+    assert_int_equal(got->kind, kind);
+    assert_int_equal(got->size, size);
+    assert_memory_equal(got_bytes, noise + kind, size);
+    assert_int_equal(got_bytes[size], GUARD);
+}
 
-static void expect(take *take_one, struct queue *queue, int64_t client_id, int kind, size_t size)
+static void expect_pop(struct queue *queue, int client, int kind, size_t size)
 {
     struct queue_datagram got;
     got_bytes[size] = GUARD;
-    assert_true(take_one(queue, &got, got_bytes));
-    assert_int_equal(got.client_id, client_id);
-    assert_int_equal(got.kind, kind);
-    assert_int_equal(got.size, size);
-    assert_memory_equal(got_bytes, noise + kind, size);
-    assert_int_equal(got_bytes[size], GUARD);
+    assert_true(queue_pop(queue, client, line_of(kind), &got, got_bytes));
+    expect(&got, client, kind, size);
+}
+
+static void expect_eviction(struct queue *queue, int client, int kind, size_t size)
+{
+    struct queue_datagram got;
+    got_bytes[size] = GUARD;
+    assert_true(queue_evict(queue, &got, got_bytes));
+    expect(&got, client, kind, size);
 }
 
 static void expect_empty(struct queue *queue)
 {
     struct queue_datagram got;
-    assert_false(queue_pop(queue, &got, got_bytes));
-    assert_false(queue_throw(queue, &got, got_bytes));
+    for (int client = 0; client < CLIENTS; client++)
+        for (int line = 0; line < QUEUE_LINES; line++) {
+            assert_false(queue_has(queue, client, (enum queue_line) line));
+            assert_false(queue_pop(queue, client, (enum queue_line) line, &got, got_bytes));
+        }
+    assert_false(queue_evict(queue, &got, got_bytes));
     struct queue_counts counts = queue_counts(queue);
     assert_int_equal(counts.datagrams, 0);
     assert_int_equal(counts.chunks, 0);
@@ -78,42 +98,38 @@ static void test_a_client_is_served_in_order(void **state)
     struct queue *queue = create(8);
     expect_empty(queue);
     for (int i = 0; i < 5; i++)
-        keep(queue, 7, i, 100);
+        keep(queue, 7, 2 * i, 100);
     struct queue_counts counts = queue_counts(queue);
     assert_int_equal(counts.datagrams, 5);
     assert_int_equal(counts.chunks, 5);
     assert_int_equal(counts.clients, 1);
     assert_int_equal(counts.capacity, 8);
     for (int i = 0; i < 5; i++)
-        expect(queue_pop, queue, 7, i, 100);
+        expect_pop(queue, 7, 2 * i, 100);
     expect_empty(queue);
     counts = queue_counts(queue);
     assert_int_equal(counts.datagrams_most, 5);
     assert_int_equal(counts.chunks_most, 5);
-    assert_int_equal(counts.clients_most, 1);
     queue_destroy(queue);
 }
 
-static void test_clients_take_turns(void **state)
+static void test_lines_are_apart(void **state)
 {
     (void) state;
     struct queue *queue = create(32);
     for (int i = 0; i < 4; i++)
         keep(queue, 1, 10 + i, 50);
-    for (int i = 0; i < 2; i++)
-        keep(queue, -2, 20 + i, 9000);
-    keep(queue, INT64_MIN, 30, 1);
-    expect(queue_pop, queue, 1, 10, 50);
-    expect(queue_pop, queue, -2, 20, 9000);
-    keep(queue, 0, 40, 60); /* joins behind all: each of the others has one turn before it */
-    expect(queue_pop, queue, INT64_MIN, 30, 1);
-    expect(queue_pop, queue, 1, 11, 50);
-    keep(queue, INT64_MIN, 31, 1); /* was gone: joins anew */
-    expect(queue_pop, queue, -2, 21, 9000);
-    expect(queue_pop, queue, 0, 40, 60);
-    expect(queue_pop, queue, 1, 12, 50);
-    expect(queue_pop, queue, INT64_MIN, 31, 1);
-    expect(queue_pop, queue, 1, 13, 50);
+    keep(queue, CLIENTS - 1, 20, 9000);
+    keep(queue, 0, 31, 1);
+    expect_pop(queue, 1, 11, 50);
+    expect_pop(queue, 1, 13, 50);
+    assert_false(queue_has(queue, 1, QUEUE_SCENES));
+    expect_pop(queue, CLIENTS - 1, 20, 9000);
+    keep(queue, 1, 15, 60);
+    expect_pop(queue, 1, 10, 50);
+    expect_pop(queue, 0, 31, 1);
+    expect_pop(queue, 1, 15, 60);
+    expect_pop(queue, 1, 12, 50);
     expect_empty(queue);
     queue_destroy(queue);
 }
@@ -130,8 +146,8 @@ static void test_sizes_around_whole_chunks(void **state)
             keep(queue, 1, chunks, size);
             keep(queue, 1, chunks + 1, size);
             assert_int_equal(queue_counts(queue).chunks, 2 * (chunks + (off > 0)));
-            expect(queue_pop, queue, 1, chunks, size);
-            expect(queue_throw, queue, 1, chunks + 1, size);
+            expect_pop(queue, 1, chunks, size);
+            expect_eviction(queue, 1, chunks + 1, size);
             expect_empty(queue);
         }
     queue_destroy(queue);
@@ -146,9 +162,9 @@ static void test_one_chunk(void **state)
     keep(queue, 1, 1, QUEUE_CHUNK);
     assert_int_equal(put(queue, 1, 2, 1), QUEUE_REFUSED);
     assert_int_equal(put(queue, 2, 3, 1), QUEUE_REFUSED); /* it would hold as much */
-    expect(queue_pop, queue, 1, 1, QUEUE_CHUNK);
+    expect_pop(queue, 1, 1, QUEUE_CHUNK);
     keep(queue, 2, 4, 1);
-    expect(queue_throw, queue, 2, 4, 1);
+    expect_eviction(queue, 2, 4, 1);
     expect_empty(queue);
     queue_destroy(queue);
 }
@@ -165,22 +181,22 @@ static void test_the_biggest_holder_loses_its_newest(void **state)
     assert_int_equal(put(queue, 2, 24, 5000), QUEUE_REFUSED); /* would hold 6 as well */
     assert_int_equal(put(queue, 2, 24, 100), QUEUE_FULL);
     assert_int_equal(put(queue, 2, 24, 100), QUEUE_FULL); /* nothing has changed */
-    expect(queue_throw, queue, 1, 15, 100);
+    expect_eviction(queue, 1, 15, 100);
     keep(queue, 2, 24, 100);
-    /* 5 and 5: for one that comes, the others give in turn until all are alike. */
+    /* 5 and 5: a third client takes from both until all hold as many. */
     for (int i = 0; i < 3; i++) {
-        struct queue_datagram thrown;
+        struct queue_datagram evicted;
         assert_int_equal(put(queue, 3, 30 + i, 100), QUEUE_FULL);
-        assert_true(queue_throw(queue, &thrown, got_bytes));
-        assert_in_range(thrown.client_id, 1, 2);
+        assert_true(queue_evict(queue, &evicted, got_bytes));
+        assert_in_range(evicted.client, 1, 2);
         keep(queue, 3, 30 + i, 100);
     }
     assert_int_equal(put(queue, 3, 33, 100), QUEUE_REFUSED); /* 4, 3 and 3 */
     queue_destroy(queue);
 }
 
-/* The first would give 3 chunks, which are not enough: nobody loses anything for nothing. */
-static void test_nothing_is_thrown_in_vain(void **state)
+/* The first would lose 3 chunks, which are not enough: it loses none. */
+static void test_nothing_is_evicted_in_vain(void **state)
 {
     (void) state;
     struct queue *queue = create(19);
@@ -190,7 +206,7 @@ static void test_nothing_is_thrown_in_vain(void **state)
     assert_int_equal(put(queue, 2, 50, 10 * QUEUE_CHUNK), QUEUE_REFUSED);
     for (int i = 0; i < 9; i++) {
         assert_int_equal(put(queue, 2, 50, 9 * QUEUE_CHUNK), QUEUE_FULL);
-        expect(queue_throw, queue, 1, 18 - i, 1);
+        expect_eviction(queue, 1, 18 - i, 1);
     }
     keep(queue, 2, 50, 9 * QUEUE_CHUNK);
     assert_int_equal(queue_counts(queue).chunks, 19);
@@ -199,7 +215,7 @@ static void test_nothing_is_thrown_in_vain(void **state)
 
 /* ---- A flood --------------------------------------------------------------------------------- */
 
-enum { MODEST = 1000 };
+enum { MODEST = CLIENTS - 1 };
 
 struct flood {
     size_t chunks;
@@ -207,48 +223,37 @@ struct flood {
     size_t size, modest_size;
 };
 
-/* Puts as the server does. Whoever is thrown out, it is not the modest client. */
-static enum queue_put_result press(struct queue *queue, int64_t client_id, size_t size)
+/* Puts as the server does. The modest client loses nothing. */
+static enum queue_put_result press(struct queue *queue, int client, size_t size)
 {
     enum queue_put_result result;
-    int throws = 0;
-    while ((result = put(queue, client_id, 0, size)) == QUEUE_FULL) {
-        struct queue_datagram thrown;
-        assert_true(++throws <= QUEUE_DATAGRAM_MAX / QUEUE_CHUNK);
-        assert_true(queue_throw(queue, &thrown, got_bytes));
-        assert_int_not_equal(thrown.client_id, MODEST);
+    int evictions = 0;
+    while ((result = put(queue, client, 0, size)) == QUEUE_FULL) {
+        struct queue_datagram evicted;
+        assert_true(++evictions <= QUEUE_DATAGRAM_MAX / QUEUE_CHUNK);
+        assert_true(queue_evict(queue, &evicted, got_bytes));
+        assert_int_not_equal(evicted.client, MODEST);
     }
     return result;
 }
 
-/* The modest client asks again when it has its answer. It is kept, and before it comes no more than
- * one of each flooder. */
+/* The modest client sends its next query when it has an answer. Each is kept. */
 static void withstand(struct flood flood)
 {
     struct queue *queue = create(flood.chunks);
     enum { ROUNDS = 3000 };
-    int refused = 0, waited = -1, served = 0; /* waited: turns; -1: nothing waits */
+    int refused = 0;
     for (int round = 0; round < ROUNDS; round++) {
+        struct queue_datagram got;
         for (int i = 0; i < 20 * flood.flooders; i++)
             refused += press(queue, i % flood.flooders, flood.size) == QUEUE_REFUSED;
-        if (waited < 0) {
-            assert_int_equal(press(queue, MODEST, flood.modest_size), QUEUE_KEPT);
-            waited = 0;
-        }
-        for (int turn = 0; turn < 2; turn++) {
-            struct queue_datagram got;
-            assert_true(queue_pop(queue, &got, got_bytes));
-            if (got.client_id == MODEST) {
-                served++;
-                waited = -1;
-            } else if (waited >= 0) {
-                assert_true(++waited <= flood.flooders);
-            }
-        }
+        assert_int_equal(press(queue, MODEST, flood.modest_size), QUEUE_KEPT);
+        for (int i = 0; i < 20 * flood.flooders; i++)
+            refused += press(queue, i % flood.flooders, flood.size) == QUEUE_REFUSED;
+        assert_true(queue_pop(queue, MODEST, QUEUE_SHORT, &got, got_bytes));
+        assert_true(queue_pop(queue, round % flood.flooders, QUEUE_SHORT, &got, got_bytes));
     }
     assert_true(refused > ROUNDS);
-    /* Two turns a round; of its rounds of waiting the last may have a turn to spare. */
-    assert_true(served >= 2 * ROUNDS / (flood.flooders + 2));
     queue_destroy(queue);
 }
 
@@ -267,7 +272,7 @@ static void test_a_flood_of_large_ones(void **state)
 }
 
 /* Up to the share that is promised, to the chunk: 21 clients, 16 chunks each. */
-static void test_many_who_flood(void **state)
+static void test_many_floods(void **state)
 {
     (void) state;
     const size_t chunks = 21 * 16;
@@ -278,36 +283,35 @@ static void test_many_who_flood(void **state)
 
 /* ---- Against a model ------------------------------------------------------------------------- */
 
-enum { MODEL_CHUNKS = 300, MODEL_IDS = 24 };
+enum { MODEL_CHUNKS = 300, MODEL_CLIENTS = 24 };
 
 struct item {
-    int64_t client_id;
+    int client;
     int kind;
     size_t size;
 };
 
-/* What waits, in the order in which it came, and the clients in the order of their turns. */
+/* What waits, in the order in which it came. */
 struct model {
     struct item item[MODEL_CHUNKS];
-    int64_t turn[MODEL_IDS];
-    int items, turns;
-    int64_t capacity, items_most, chunks_most, turns_most;
-    int64_t put, refused, thrown, popped;
+    int items;
+    int64_t capacity, items_most, chunks_most;
+    int64_t put, refused, evicted, popped;
 };
 
 static int chunks_of(size_t size)
 {
     int chunks = 0;
-    for (size_t room = 0; room < size; room += QUEUE_CHUNK)
+    for (size_t space = 0; space < size; space += QUEUE_CHUNK)
         chunks++;
     return chunks;
 }
 
-static int held(const struct model *model, int64_t client_id)
+static int held(const struct model *model, int client)
 {
     int chunks = 0;
     for (int i = 0; i < model->items; i++)
-        if (model->item[i].client_id == client_id)
+        if (model->item[i].client == client)
             chunks += chunks_of(model->item[i].size);
     return chunks;
 }
@@ -315,28 +319,24 @@ static int held(const struct model *model, int64_t client_id)
 static int held_by_all(const struct model *model)
 {
     int chunks = 0;
-    for (int t = 0; t < model->turns; t++)
-        chunks += held(model, model->turn[t]);
+    for (int i = 0; i < model->items; i++)
+        chunks += chunks_of(model->item[i].size);
     return chunks;
 }
 
-static void drop_turn(struct model *model, int64_t client_id)
+static int clients_that_hold(const struct model *model)
 {
-    int kept = 0;
-    for (int t = 0; t < model->turns; t++)
-        if (model->turn[t] != client_id)
-            model->turn[kept++] = model->turn[t];
-    model->turns = kept;
+    int clients = 0;
+    for (int c = 0; c < MODEL_CLIENTS; c++)
+        clients += held(model, c) > 0;
+    return clients;
 }
 
 static void drop_item(struct model *model, int i)
 {
-    int64_t client_id = model->item[i].client_id;
     model->items--;
     memmove(&model->item[i], &model->item[i + 1],
             (size_t) (model->items - i) * sizeof *model->item);
-    if (!held(model, client_id))
-        drop_turn(model, client_id);
 }
 
 static int64_t larger(int64_t a, int64_t b)
@@ -346,57 +346,54 @@ static int64_t larger(int64_t a, int64_t b)
 
 static void add_item(struct model *model, struct item item)
 {
-    if (!held(model, item.client_id))
-        model->turn[model->turns++] = item.client_id;
     model->item[model->items++] = item;
     model->items_most = larger(model->items_most, model->items);
-    model->turns_most = larger(model->turns_most, model->turns);
     model->chunks_most = larger(model->chunks_most, held_by_all(model));
 }
 
 static enum queue_put_result model_put(const struct model *model, struct item item)
 {
-    int64_t need = chunks_of(item.size), would_hold = held(model, item.client_id) + need;
-    int64_t free_chunks = model->capacity - held_by_all(model), room = free_chunks;
-    for (int t = 0; t < model->turns; t++)
-        room += larger(held(model, model->turn[t]) - would_hold, 0);
-    return free_chunks >= need ? QUEUE_KEPT : room >= need ? QUEUE_FULL : QUEUE_REFUSED;
+    int64_t need = chunks_of(item.size), would_hold = held(model, item.client) + need;
+    int64_t free_chunks = model->capacity - held_by_all(model), obtainable = free_chunks;
+    for (int c = 0; c < MODEL_CLIENTS; c++)
+        obtainable += larger(held(model, c) - would_hold, 0);
+    return free_chunks >= need ? QUEUE_KEPT : obtainable >= need ? QUEUE_FULL : QUEUE_REFUSED;
 }
 
 /* The sender counted. */
-static int clients_with(const struct model *model, int64_t sender_id)
+static int clients_with(const struct model *model, int sender)
 {
-    return model->turns + !held(model, sender_id);
+    return clients_that_hold(model) + !held(model, sender);
 }
 
-/* Any of those that hold most may be chosen, but more than a share it must be. */
-static void throw_one(struct queue *queue, struct model *model, int64_t sender_id)
+/* Any of those that hold most may be chosen, but it must hold more than a share. */
+static void evict_one(struct queue *queue, struct model *model, int sender)
 {
-    struct queue_datagram thrown;
+    struct queue_datagram evicted;
     memset(got_bytes, 0, sizeof got_bytes);
-    assert_true(queue_throw(queue, &thrown, got_bytes));
-    for (int t = 0; t < model->turns; t++)
-        assert_true(held(model, model->turn[t]) <= held(model, thrown.client_id));
-    assert_true(clients_with(model, sender_id) * held(model, thrown.client_id) > model->capacity);
+    assert_true(queue_evict(queue, &evicted, got_bytes));
+    for (int c = 0; c < MODEL_CLIENTS; c++)
+        assert_true(held(model, c) <= held(model, evicted.client));
+    assert_true(clients_with(model, sender) * held(model, evicted.client) > model->capacity);
     int newest = model->items - 1;
-    while (model->item[newest].client_id != thrown.client_id)
+    while (model->item[newest].client != evicted.client)
         newest--;
-    assert_int_equal(thrown.kind, model->item[newest].kind);
-    assert_int_equal(thrown.size, model->item[newest].size);
-    assert_memory_equal(got_bytes, noise + thrown.kind, thrown.size);
+    assert_int_equal(evicted.kind, model->item[newest].kind);
+    assert_int_equal(evicted.size, model->item[newest].size);
+    assert_memory_equal(got_bytes, noise + evicted.kind, evicted.size);
     drop_item(model, newest);
-    model->thrown++;
+    model->evicted++;
 }
 
 static void put_both(struct queue *queue, struct model *model, struct item item)
 {
     enum queue_put_result result = model_put(model, item);
-    int throws = 0;
-    assert_int_equal(put(queue, item.client_id, item.kind, item.size), result);
+    int evictions = 0;
+    assert_int_equal(put(queue, item.client, item.kind, item.size), result);
     while (result == QUEUE_FULL) {
-        throw_one(queue, model, item.client_id);
-        assert_true(++throws <= QUEUE_DATAGRAM_MAX / QUEUE_CHUNK);
-        result = put(queue, item.client_id, item.kind, item.size);
+        evict_one(queue, model, item.client);
+        assert_true(++evictions <= QUEUE_DATAGRAM_MAX / QUEUE_CHUNK);
+        result = put(queue, item.client, item.kind, item.size);
         assert_int_equal(result, model_put(model, item));
         assert_int_not_equal(result, QUEUE_REFUSED);
     }
@@ -405,24 +402,24 @@ static void put_both(struct queue *queue, struct model *model, struct item item)
         add_item(model, item);
         return;
     }
-    int64_t would_hold = held(model, item.client_id) + chunks_of(item.size);
-    assert_true(clients_with(model, item.client_id) * would_hold > model->capacity);
+    int64_t would_hold = held(model, item.client) + chunks_of(item.size);
+    assert_true(clients_with(model, item.client) * would_hold > model->capacity);
     model->refused++;
 }
 
+/* The oldest of a line in which something waits. */
 static void pop_both(struct queue *queue, struct model *model)
 {
     if (!model->items) {
         expect_empty(queue);
         return;
     }
-    int64_t client_id = model->turn[0];
+    const struct item any = model->item[rand() % model->items];
     int oldest = 0;
-    while (model->item[oldest].client_id != client_id)
+    while (model->item[oldest].client != any.client ||
+           line_of(model->item[oldest].kind) != line_of(any.kind))
         oldest++;
-    expect(queue_pop, queue, client_id, model->item[oldest].kind, model->item[oldest].size);
-    drop_turn(model, client_id);
-    model->turn[model->turns++] = client_id;
+    expect_pop(queue, any.client, model->item[oldest].kind, model->item[oldest].size);
     drop_item(model, oldest);
     model->popped++;
 }
@@ -432,10 +429,9 @@ static void compare_counts(const struct queue *queue, const struct model *model)
     struct queue_counts counts = queue_counts(queue);
     assert_int_equal(counts.datagrams, model->items);
     assert_int_equal(counts.chunks, held_by_all(model));
-    assert_int_equal(counts.clients, model->turns);
+    assert_int_equal(counts.clients, clients_that_hold(model));
     assert_int_equal(counts.datagrams_most, model->items_most);
     assert_int_equal(counts.chunks_most, model->chunks_most);
-    assert_int_equal(counts.clients_most, model->turns_most);
 }
 
 static size_t draw_size(void)
@@ -450,11 +446,10 @@ static size_t draw_size(void)
     }
 }
 
-/* Few ids are drawn most often; some are far apart, some differ in their highest bits alone. */
-static int64_t draw_id(void)
+/* A few are drawn most often. */
+static int draw_client(void)
 {
-    int i = rand() % (rand() % MODEL_IDS + 1);
-    return i % 3 == 0 ? i : i % 3 == 1 ? INT64_MAX - i : (int64_t) ((uint64_t) i << 59);
+    return rand() % (rand() % MODEL_CLIENTS + 1);
 }
 
 /* Turns from filling to draining and back. */
@@ -468,17 +463,17 @@ static void compare_with_model(int capacity, int operations)
             puts_of_16 = rand() % 16 + 1;
         if (rand() % 16 < puts_of_16)
             put_both(queue, &model,
-                     (struct item){draw_id(), rand() % QUEUE_DATAGRAM_MAX, draw_size()});
+                     (struct item){draw_client(), rand() % QUEUE_DATAGRAM_MAX, draw_size()});
         else
             pop_both(queue, &model);
         compare_counts(queue, &model);
     }
     assert_true(model.refused > operations / 100);
-    assert_true(capacity == 1 || model.thrown > operations / 1000);
+    assert_true(capacity == 1 || model.evicted > operations / 1000);
     while (model.items)
         pop_both(queue, &model);
     expect_empty(queue);
-    assert_int_equal(model.put, model.popped + model.refused + model.thrown);
+    assert_int_equal(model.put, model.popped + model.refused + model.evicted);
     queue_destroy(queue);
 }
 
@@ -510,15 +505,14 @@ static void test_what_was_freed_is_used_again(void **state)
     struct queue *queue = create(CHUNKS);
     long before = page_faults();
     for (int i = 0; i < CHUNKS; i++) {
-        keep(queue, i, i % 1000, 400);
-        keep(queue, -i - 1, i % 1000, 5000);
-        expect(queue_pop, queue, i, i % 1000, 400);
-        expect(queue_pop, queue, -i - 1, i % 1000, 5000);
+        const int client = i % CLIENTS;
+        keep(queue, client, i % 1000, 400);
+        keep(queue, 0, 2 + i % 1000, 5000);
+        expect_pop(queue, client, i % 1000, 400);
+        expect_pop(queue, 0, 2 + i % 1000, 5000);
     }
-    /* The hash table is touched everywhere: 4 bytes for each client that there could be. */
     assert_true(page_faults() - before < CHUNKS / 64);
     assert_int_equal(queue_counts(queue).chunks_most, 3);
-    assert_int_equal(queue_counts(queue).clients_most, 2);
     queue_destroy(queue);
 }
 
@@ -527,7 +521,8 @@ static long faults_of_some_more(struct queue *queue)
     struct queue_datagram got;
     long before = page_faults();
     for (int i = 0; i < 10000; i++)
-        if (put(queue, i, 0, 5000) != QUEUE_KEPT || !queue_pop(queue, &got, got_bytes))
+        if (put(queue, i % CLIENTS, 0, 5000) != QUEUE_KEPT ||
+            !queue_pop(queue, i % CLIENTS, QUEUE_SHORT, &got, got_bytes))
             return -1;
     return page_faults() - before;
 }
@@ -540,9 +535,9 @@ static void test_what_was_freed_last_is_used_first(void **state)
     enum { CHUNKS = 4096 };
     struct queue *queue = create(CHUNKS);
     for (int i = 0; i < CHUNKS; i++)
-        keep(queue, i, 0, QUEUE_CHUNK);
+        keep(queue, i % CLIENTS, 0, QUEUE_CHUNK);
     for (int i = 0; i < CHUNKS; i++)
-        expect(queue_pop, queue, i, 0, QUEUE_CHUNK);
+        expect_pop(queue, i % CLIENTS, 0, QUEUE_CHUNK);
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
@@ -566,15 +561,14 @@ static void test_all_chunks_come_back(void **state)
             keep(queue, i, i, 1);
         assert_int_equal(put(queue, CHUNKS, 0, 1), QUEUE_REFUSED);
         for (int i = 0; i < CHUNKS; i++)
-            expect(queue_pop, queue, i, i, 1);
+            expect_pop(queue, i, i, 1);
         expect_empty(queue);
         for (int i = 0; i < CHUNKS / 16; i++)
             keep(queue, 1, i, QUEUE_DATAGRAM_MAX);
         for (int i = CHUNKS / 16 - 1; i >= 0; i--)
-            expect(queue_throw, queue, 1, i, QUEUE_DATAGRAM_MAX);
+            expect_eviction(queue, 1, i, QUEUE_DATAGRAM_MAX);
         expect_empty(queue);
     }
-    assert_int_equal(queue_counts(queue).clients_most, CHUNKS);
     queue_destroy(queue);
 }
 
@@ -582,14 +576,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_client_is_served_in_order),
-        cmocka_unit_test(test_clients_take_turns),
+        cmocka_unit_test(test_lines_are_apart),
         cmocka_unit_test(test_sizes_around_whole_chunks),
         cmocka_unit_test(test_one_chunk),
         cmocka_unit_test(test_the_biggest_holder_loses_its_newest),
-        cmocka_unit_test(test_nothing_is_thrown_in_vain),
+        cmocka_unit_test(test_nothing_is_evicted_in_vain),
         cmocka_unit_test(test_a_flood_of_small_ones),
         cmocka_unit_test(test_a_flood_of_large_ones),
-        cmocka_unit_test(test_many_who_flood),
+        cmocka_unit_test(test_many_floods),
         cmocka_unit_test(test_against_a_model),
         cmocka_unit_test(test_what_was_freed_is_used_again),
         cmocka_unit_test(test_what_was_freed_last_is_used_first),

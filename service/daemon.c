@@ -1,0 +1,222 @@
+#define _GNU_SOURCE
+#include "daemon.h"
+
+#include "bus.h"
+#include "clock.h"
+#include "confine.h"
+#include "fmb.h"
+#include "notify.h"
+#include "random_id.h"
+#include "say.h"
+#include "server.h"
+#include "signals.h"
+
+#include <inttypes.h>
+#include <poll.h>
+#include <sched.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/random.h>
+#include <time.h>
+
+/* Batches read before something is answered, so that a flood does not keep the service from it. */
+enum { BATCHES_MAX = 4 };
+
+/* While queries wait, signals and the watchdog are looked at so often. */
+static const int64_t look_ns = 10000000;
+
+/* A yield of the core that lasts so long is answered by a pause, in which naps take its place. */
+static const int64_t long_yield_ns = 1000000, yield_pause_ns = 1000000000, nap_ns = 100000;
+
+struct daemon {
+    struct bus *bus;
+    struct server *server;
+    struct notify notify;
+    int signals;
+    int64_t look_at_ns, yield_at_ns;
+    bool failed; /* the bus did; the reason is on stderr */
+};
+
+static bool publish(void *user, const char *channel, const unsigned char *bytes, size_t size)
+{
+    const struct daemon *daemon = user;
+    return bus_publish(daemon->bus, channel, bytes, size);
+}
+
+static void on_message(void *user, const struct bus_message *message)
+{
+    server_receive(user, (enum server_kind) message->listener, message->bytes, message->size);
+}
+
+/* ---- Serving ---- */
+
+static void fail(struct daemon *daemon)
+{
+    perror("fmbd: the bus failed");
+    daemon->failed = true;
+}
+
+static void drain(struct daemon *daemon)
+{
+    int datagrams = BUS_BATCH;
+    for (int i = 0; i < BATCHES_MAX && datagrams == BUS_BATCH; i++) {
+        datagrams = bus_receive(daemon->bus, on_message, daemon->server);
+        if (datagrams >= 0)
+            server_received(daemon->server, datagrams);
+        else
+            fail(daemon);
+    }
+}
+
+static void beat_if_due(struct daemon *daemon)
+{
+    if (server_beat_due_ms(daemon->server) > 0)
+        return;
+    const struct bus_counts counts = bus_counts(daemon->bus);
+    server_beat(daemon->server, &counts);
+}
+
+static bool signal_came(const struct daemon *daemon)
+{
+    struct pollfd signals = {.fd = daemon->signals, .events = POLLIN};
+    return poll(&signals, 1, 0) > 0;
+}
+
+/* What is due besides queries. Returns whether to go on. */
+static bool look_around(struct daemon *daemon)
+{
+    beat_if_due(daemon);
+    const int64_t now_ns = clock_ns();
+    if (now_ns < daemon->look_at_ns)
+        return true;
+    daemon->look_at_ns = now_ns + look_ns;
+    notify_alive(&daemon->notify, 0);
+    return !signal_came(daemon);
+}
+
+/* Waits for the bus. Returns whether to go on. */
+static bool sleep_until_due(struct daemon *daemon)
+{
+    const int due_ms = notify_alive(&daemon->notify, server_beat_due_ms(daemon->server));
+    const int ready = bus_wait(daemon->bus, daemon->signals, due_ms);
+    if (ready < 0)
+        fail(daemon);
+    return !(ready & 2);
+}
+
+/* Lets other programs run for a moment. Where one of them keeps the core busy, a yield lasts until
+ * its time slice ends, while a process that sleeps is woken up by a datagram. */
+static void give_way(struct daemon *daemon)
+{
+    const int64_t begin_ns = clock_ns();
+    if (begin_ns < daemon->yield_at_ns) {
+        struct pollfd bus = {.fd = bus_fileno(daemon->bus), .events = POLLIN};
+        ppoll(&bus, 1, &(struct timespec){.tv_nsec = nap_ns}, NULL);
+        return;
+    }
+    sched_yield();
+    if (clock_ns() - begin_ns > long_yield_ns)
+        daemon->yield_at_ns = begin_ns + yield_pause_ns;
+}
+
+static void serve(struct daemon *daemon)
+{
+    bool more = true;
+    while (more && !daemon->failed) {
+        drain(daemon);
+        const enum server_state state = server_work(daemon->server);
+        more = look_around(daemon);
+        if (!more || state == SERVER_WORKING)
+            continue;
+        if (state == SERVER_EXPECTING)
+            give_way(daemon);
+        else
+            more = sleep_until_due(daemon);
+        server_resume(daemon->server);
+    }
+}
+
+/* ---- Life ---- */
+
+static void report_ready(const struct daemon *daemon, const struct daemon_options *options,
+                         int64_t server_id)
+{
+    const struct server *server = daemon->server;
+    if (!say_now())
+        return;
+    fprintf(stderr,
+            "fmbd %s ready: answers %s on %s, %s on %s, %s on %s, heartbeat on %s; %zu frames; "
+            "receive buffer %ld bytes; server %" PRId64 "\n",
+            fmb_version(), server_query_channel(server, SERVER_PAIRS),
+            server_result_channel(server, SERVER_PAIRS),
+            server_query_channel(server, SERVER_SCENES),
+            server_result_channel(server, SERVER_SCENES),
+            server_query_channel(server, SERVER_DEFINITIONS),
+            server_result_channel(server, SERVER_DEFINITIONS),
+            server_result_channel(server, SERVER_STATUS), options->frames,
+            bus_counts(daemon->bus).receive_buffer, server_id);
+}
+
+static bool open_bus(struct daemon *daemon, const struct daemon_options *options)
+{
+    char why[BUS_WHY_MAX];
+    daemon->bus = bus_open(options->lcm_url, why);
+    bool ok = daemon->bus;
+    for (int kind = 0; ok && kind < SERVER_KINDS; kind++)
+        ok = bus_listen(daemon->bus, server_query_channel(daemon->server, (enum server_kind) kind),
+                        why);
+    if (!ok)
+        fprintf(stderr, "fmbd: %s\n", why);
+    return ok;
+}
+
+static bool open_server(struct daemon *daemon, const struct daemon_options *options,
+                        int64_t server_id)
+{
+    struct server_options server = {.prefix = options->prefix,
+                                    .frames = options->frames,
+                                    .server_id = server_id,
+                                    .publish = publish,
+                                    .user = daemon};
+    if (getrandom(server.secret, sizeof server.secret, 0) != (ssize_t) sizeof server.secret) {
+        perror("fmbd: getrandom");
+        return false;
+    }
+    daemon->server = server_create(&server);
+    if (!daemon->server)
+        fprintf(stderr, "fmbd: no memory for %zu frames\n", options->frames);
+    return daemon->server;
+}
+
+static bool serve_until_signal(struct daemon *daemon, const struct daemon_options *options,
+                               int64_t server_id)
+{
+    daemon->signals = signals_open();
+    if (daemon->signals < 0) {
+        perror("fmbd: signals");
+        return false;
+    }
+    if (!confine_user(options->user))
+        return false;
+    confine_calls();
+    notify_ready(&daemon->notify);
+    report_ready(daemon, options, server_id);
+    serve(daemon);
+    notify_stopping(&daemon->notify);
+    return !daemon->failed;
+}
+
+int daemon_run(const struct daemon_options *options)
+{
+    struct daemon daemon = {0};
+    const int64_t server_id = random_id();
+    notify_open(&daemon.notify);
+    const bool ended_well = open_server(&daemon, options, server_id) &&
+                            open_bus(&daemon, options) &&
+                            serve_until_signal(&daemon, options, server_id);
+    server_destroy(daemon.server);
+    bus_close(daemon.bus);
+    notify_close(&daemon.notify);
+    return ended_well ? EXIT_SUCCESS : EXIT_FAILURE;
+}

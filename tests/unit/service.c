@@ -1,0 +1,186 @@
+#include "service.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct service service;
+
+/* ---- What is published ---- */
+
+static void add(struct service_result result)
+{
+    assert_true(service.count < SERVICE_RESULTS_MAX);
+    service.result[service.count++] = result;
+    if (result.client_id >= SERVICE_CLIENTS)
+        return;
+    service.now_ns += service.cost_ns[result.client_id];
+    service.answers[result.client_id]++;
+    service.answered_ns[result.client_id] = service.now_ns;
+}
+
+static void take_pair(const unsigned char *bytes, uint32_t size)
+{
+    assert_null(wire_read_pair_result(bytes, size, &service.pair));
+    strcpy(service.certificate, service.pair.certificate ? service.pair.certificate : "");
+    service.pair.certificate = service.certificate;
+    add((struct service_result){.kind = SERVER_PAIRS,
+                                .client_id = service.pair.client_id,
+                                .sequence_number = service.pair.sequence_number,
+                                .status = service.pair.status});
+}
+
+static void take_scene(const unsigned char *bytes, uint32_t size)
+{
+    static struct scene_result result;
+    assert_null(wire_read_scene_result(bytes, size, &result));
+    add((struct service_result){SERVER_SCENES, result.client_id, result.sequence_number,
+                                result.status, result.end_pair});
+}
+
+static void take_definition(const unsigned char *bytes, uint32_t size)
+{
+    static struct definition result;
+    struct hasher *hasher = hasher_create();
+    assert_null(wire_read_definition(bytes, size, hasher, &result));
+    hasher_destroy(hasher);
+    service.definition_bodies = result.body_count;
+    add((struct service_result){.kind = SERVER_DEFINITIONS,
+                                .client_id = result.client_id,
+                                .sequence_number = result.sequence_number,
+                                .status = result.status});
+}
+
+static bool on_publish(void *user, const char *channel, const unsigned char *bytes, size_t size)
+{
+    const uint32_t length = (uint32_t) size;
+    (void) user;
+    if (service.refuses)
+        return false;
+    if (strcmp(channel, "T_" WIRE_PAIR_RESULT) == 0)
+        take_pair(bytes, length);
+    else if (strcmp(channel, "T_" WIRE_SCENE_RESULT) == 0)
+        take_scene(bytes, length);
+    else if (strcmp(channel, "T_" WIRE_DEFINITION) == 0)
+        take_definition(bytes, length);
+    else
+        assert_null(wire_read_status(bytes, length, &service.status));
+    return true;
+}
+
+/* ---- The server ---- */
+
+static int64_t clock_now(void)
+{
+    service.now_ns += service.tick_ns;
+    return service.now_ns;
+}
+
+int service_open(void **state)
+{
+    static const struct meter_clocks clocks = {clock_now, clock_now};
+    const struct server_options options = {.prefix = "T_",
+                                           .frames = 2000,
+                                           .server_id = 11,
+                                           .secret = {5, 6, 7},
+                                           .publish = on_publish,
+                                           .clocks = &clocks};
+    (void) state;
+    memset(&service, 0, sizeof service);
+    service.now_ns = 1;
+    service.server = server_create(&options);
+    return service.server ? 0 : -1;
+}
+
+int service_close(void **state)
+{
+    (void) state;
+    server_destroy(service.server);
+    return 0;
+}
+
+void service_receive(enum server_kind kind, const unsigned char *bytes, size_t size)
+{
+    server_receive(service.server, kind, bytes, size);
+    server_received(service.server, 1);
+}
+
+void service_settle(void)
+{
+    enum server_state state;
+    while ((state = server_work(service.server)) != SERVER_IDLE) {
+        if (state != SERVER_EXPECTING)
+            continue;
+        service.now_ns += 1000;
+        server_resume(service.server);
+    }
+}
+
+const struct wire_status *service_status(void)
+{
+    const struct bus_counts counts = {
+        .foreign = 3, .malformed = 4, .dropped = 5, .receive_buffer = 6};
+    server_beat(service.server, &counts);
+    return &service.status;
+}
+
+/* ---- Queries ---- */
+
+static unsigned char geometries[2][GEOMETRY_FRAME_BYTES_MAX];
+static unsigned char bytes[QUERY_BYTES_MAX];
+
+struct pair_query service_pair(int64_t client_id, int64_t sequence_number)
+{
+    const struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
+    struct pair_query query = {
+        .client_id = client_id, .sequence_number = sequence_number, .duration = 1};
+    for (int i = 0; i < 2; i++) {
+        query.placement[i] =
+            (struct placement){.dim = 2, .frame_count = 1, .number_count = 6, .position = {i, 0}};
+        query.placement[i].geometry =
+            (struct geometry){geometries[i], geometry_write(2, &frame, geometries[i])};
+    }
+    return query;
+}
+
+void service_send_pair(const struct pair_query *query)
+{
+    service_receive(SERVER_PAIRS, bytes, wire_write_pair_query(query, bytes));
+}
+
+void service_query_pair(int64_t client_id, int64_t sequence_number)
+{
+    const struct pair_query query = service_pair(client_id, sequence_number);
+    service_send_pair(&query);
+}
+
+void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bodies)
+{
+    const struct geometry_frame strip = {.shape = FMB_TETRAHEDRON,
+                                         .components = {3000, 3000, 0, 0.5}};
+    static struct scene_query query;
+    query = (struct scene_query){.client_id = client_id,
+                                 .sequence_number = sequence_number,
+                                 .duration = 1,
+                                 .method = fmb_method_by_name("exact")->number,
+                                 .which = QUERY_PAIRS_ALL,
+                                 .placement_count = bodies};
+    const struct geometry geometry = {geometries[0], geometry_write(2, &strip, geometries[0])};
+    for (int32_t i = 0; i < bodies; i++)
+        query.placement[i] = (struct placement){.dim = 2,
+                                                .frame_count = 1,
+                                                .number_count = 6,
+                                                .geometry = geometry,
+                                                .position = {0, i}};
+    service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&query, bytes));
+}
+
+void service_query_definitions(int64_t client_id, int64_t sequence_number)
+{
+    static struct definition_query query;
+    query = (struct definition_query){.client_id = client_id, .sequence_number = sequence_number};
+    service_receive(SERVER_DEFINITIONS, bytes, wire_write_definition_query(&query, bytes));
+}

@@ -1,0 +1,55 @@
+/* A server without a bus, and all that it published. One at a time. */
+#ifndef SERVICE_H
+#define SERVICE_H
+
+#include "server.h"
+#include "wire.h"
+
+enum { SERVICE_RESULTS_MAX = 40000, SERVICE_CLIENTS = 100 };
+
+struct service_result {
+    enum server_kind kind;
+    int64_t client_id, sequence_number;
+    int32_t status, end_pair;
+};
+
+extern struct service {
+    struct server *server;
+    int count;
+    struct service_result result[SERVICE_RESULTS_MAX];
+    /* Of each client: how many results, and when the last was published. */
+    int64_t answers[SERVICE_CLIENTS], answered_ns[SERVICE_CLIENTS];
+    struct pair_result pair; /* the last one; its certificate is a copy, "" where it has none */
+    char certificate[QUERY_CERTIFICATE_MAX];
+    int32_t definition_bodies; /* of the last definition */
+    struct wire_status status; /* the last heartbeat */
+    /* The clocks: they stand still but for tick_ns at each reading, and cost_ns[client_id] while a
+     * result is published. */
+    int64_t now_ns, tick_ns, cost_ns[SERVICE_CLIENTS];
+    bool refuses; /* the bus does */
+} service;
+
+int service_open(void **state);
+int service_close(void **state);
+
+/* One message, as a batch of its own. */
+void service_receive(enum server_kind kind, const unsigned char *bytes, size_t size);
+
+/* Works until nothing waits. */
+void service_settle(void);
+
+const struct wire_status *service_status(void);
+
+/* ---- Queries ---- */
+
+/* Two squares side by side. */
+struct pair_query service_pair(int64_t client_id, int64_t sequence_number);
+void service_send_pair(const struct pair_query *query);
+void service_query_pair(int64_t client_id, int64_t sequence_number);
+
+/* All pairs of slanting strips, all whose boxes overlap. */
+void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bodies);
+
+void service_query_definitions(int64_t client_id, int64_t sequence_number);
+
+#endif
