@@ -13,14 +13,14 @@ struct answers_bus {
     struct answers_question question;
     struct fmb_client *client; /* NULL: could not be opened */
     double patience;           /* seconds until a query is given up */
-    uint64_t advised;          /* outages of which the user was told */
+    uint64_t advised;          /* outages that have been reported */
 };
 
-/* One scene being asked. */
-struct asking {
+/* A scene being answered. */
+struct run {
     const struct scene *scene;
-    struct scene_cursor told; /* pairs so far */
-    bool certificate;         /* wanted */
+    struct scene_cursor given; /* pairs so far */
+    bool certificate;          /* wanted */
     answers_sink *sink;
     void *user;
 };
@@ -40,33 +40,46 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
     return answers;
 }
 
+/* The first result of a query has been used. */
+static void report_contradictions(const struct fmb_client *client)
+{
+    const uint64_t count = client ? fmb_client_counts(client).contradicting : 0;
+    if (count > 0)
+        fprintf(stderr,
+                "fmb: %" PRIu64
+                " queries got a second result that contradicts the first: another "
+                "program on the bus is wrong, or forges results\n",
+                count);
+}
+
 void answers_bus_close(struct answers_bus *answers)
 {
+    report_contradictions(answers->client);
     fmb_client_close(answers->client);
     free(answers);
 }
 
-/* ---- The question ---------------------------------------------------------------------------- */
+/* ---- The query ---- */
 
-static struct fmb_client_frame frame_of(const struct scene_body *body)
+static struct fmb_client_placement placement_of(const struct scene_body *body)
 {
     const int dim = body->body.dim;
-    struct fmb_client_frame frame = {
+    struct fmb_client_placement out = {
         .body_id = body->id, .shape = (int) body->body.shape, .dim = dim, .moving = body->moving};
     for (int i = 0; i < body->body.count; i++)
-        memcpy(frame.components + i * dim, body->body.component[i],
-               (size_t) dim * sizeof *frame.components);
-    memcpy(frame.origin, body->origin, sizeof frame.origin);
-    memcpy(frame.velocity, body->velocity, sizeof frame.velocity);
-    return frame;
+        memcpy(out.components + i * dim, body->body.component[i],
+               (size_t) dim * sizeof *out.components);
+    memcpy(out.position, body->origin, sizeof out.position);
+    memcpy(out.velocity, body->velocity, sizeof out.velocity);
+    return out;
 }
 
-static struct fmb_client_frame *frames_of(const struct scene *scene)
+static struct fmb_client_placement *placements_of(const struct scene *scene)
 {
-    struct fmb_client_frame *frame = allocate(scene->body_count, sizeof *frame);
+    struct fmb_client_placement *placement = allocate(scene->body_count, sizeof *placement);
     for (size_t i = 0; i < scene->body_count; i++)
-        frame[i] = frame_of(&scene->body[i]);
-    return frame;
+        placement[i] = placement_of(&scene->body[i]);
+    return placement;
 }
 
 static unsigned (*pairs_of(const struct scene *scene))[2]
@@ -92,47 +105,47 @@ static unsigned want_of(const struct answers_question *question, const struct sc
     return want;
 }
 
-/* ---- The answers ----------------------------------------------------------------------------- */
+/* ---- The answers ---- */
 
-/* Pairs of which nothing is heard, where all are asked, are separated. */
-static void give_separated(const struct asking *asking, struct scene_pair pair)
+/* With all pairs, those that the library leaves out are separated. */
+static void give_separated(const struct run *run, struct scene_pair pair)
 {
     const struct outcome outcome = {.pair = pair, .answer.verdict = FMB_SEPARATED};
-    asking->sink(asking->user, asking->scene, &outcome);
+    run->sink(run->user, run->scene, &outcome);
 }
 
-static const char *error_of(const struct asking *asking, const struct fmb_client_answer *answer)
+static const char *error_of(const struct run *run, const struct fmb_client_answer *answer)
 {
     if (answer->status != FMB_OK)
         return answer->text;
-    if (asking->certificate && !answer->certificate)
-        return "the certificate is too long for a message: ask with --local";
+    if (run->certificate && !answer->certificate)
+        return "the certificate is too long for a message: use --local";
     return NULL;
 }
 
 static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
-    struct asking *asking = user;
-    struct outcome outcome = {.error = error_of(asking, answer)};
-    while (scene_next_pair(asking->scene, &asking->told, &outcome.pair) &&
+    struct run *run = user;
+    struct outcome outcome = {.error = error_of(run, answer)};
+    while (scene_next_pair(run->scene, &run->given, &outcome.pair) &&
            (outcome.pair.a != answer->a || outcome.pair.b != answer->b))
-        give_separated(asking, outcome.pair);
+        give_separated(run, outcome.pair);
     if (!outcome.error) {
         outcome.answer = answer->answer;
         outcome.certificate = answer->certificate;
     }
-    asking->sink(asking->user, asking->scene, &outcome);
+    run->sink(run->user, run->scene, &outcome);
 }
 
-/* error: why nothing was asked; NULL if it was. */
-static void give_rest(struct asking *asking, const char *error)
+/* The remaining pairs. error: why no query was sent; NULL if one was. */
+static void give_remaining(struct run *run, const char *error)
 {
     struct outcome outcome = {.error = error};
-    while (scene_next_pair(asking->scene, &asking->told, &outcome.pair))
+    while (scene_next_pair(run->scene, &run->given, &outcome.pair))
         if (error)
-            asking->sink(asking->user, asking->scene, &outcome);
+            run->sink(run->user, run->scene, &outcome);
         else
-            give_separated(asking, outcome.pair);
+            give_separated(run, outcome.pair);
 }
 
 /* Once for each outage. */
@@ -153,15 +166,15 @@ static void advise(struct answers_bus *answers)
             *prefix ? " --prefix " : "", prefix);
 }
 
-static void ask(struct answers_bus *answers, struct asking *asking)
+static void query(struct answers_bus *answers, struct run *run)
 {
     const struct answers_question *question = &answers->question;
-    const struct scene *scene = asking->scene;
-    struct fmb_client_frame *frame = frames_of(scene);
+    const struct scene *scene = run->scene;
+    struct fmb_client_placement *placement = placements_of(scene);
     unsigned(*pair)[2] = pairs_of(scene);
-    const struct fmb_client_scene asked = {
-        .frames = frame,
-        .frame_count = scene->body_count,
+    const struct fmb_client_scene queried = {
+        .placements = placement,
+        .placement_count = scene->body_count,
         .which = scene->all_pairs ? FMB_CLIENT_ALL : FMB_CLIENT_LISTED,
         .pairs = pair,
         .pair_count = scene->pair_count,
@@ -169,9 +182,9 @@ static void ask(struct answers_bus *answers, struct asking *asking)
         .want = want_of(question, scene),
         .method = question->method ? question->method->number : 0,
     };
-    const int status = fmb_client_ask(answers->client, &asked, take_answer, asking);
-    give_rest(asking, status == FMB_OK ? NULL : fmb_client_why(answers->client));
-    free(frame);
+    const int status = fmb_client_query(answers->client, &queried, take_answer, run);
+    give_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
+    free(placement);
     free(pair);
     advise(answers);
 }
@@ -179,10 +192,10 @@ static void ask(struct answers_bus *answers, struct asking *asking)
 void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user)
 {
-    struct asking asking = {
+    struct run run = {
         .scene = scene, .certificate = answers->question.certificate, .sink = sink, .user = user};
     if (answers->client)
-        ask(answers, &asking);
+        query(answers, &run);
     else
-        give_rest(&asking, "no bus");
+        give_remaining(&run, "no bus");
 }

@@ -1,5 +1,4 @@
-/* Options of the commands: reading them, and what is the same for all of them. Errors are one line
- * on stderr and a hint. */
+/* Parses the options of the commands. Errors are reported on stderr, in one line and a hint. */
 #ifndef ARGS_H
 #define ARGS_H
 
@@ -23,22 +22,23 @@ struct args_bus {
 
 struct args;
 
-/* Takes one of the command's own options, whose value is optarg. False: after an error. */
+/* Processes one of the command's own options, with the value optarg. Returns false after an error.
+ */
 typedef bool args_take(const struct args *args, int option, void *out);
 
 enum { ARGS_OPTIONS_MAX = 24 };
 
 struct args {
-    const char *command; /* its name */
-    const char *usage;   /* what --help prints */
-    /* Its own, all long, at most ARGS_OPTIONS_MAX; ends with 0s. A value that is a letter is the
-     * short option; others are from 1 to 31. */
+    const char *command; /* name of the command */
+    const char *usage;   /* text of --help */
+    /* The command's own options, all long, at most ARGS_OPTIONS_MAX; ends with 0s. A value that is
+     * a letter is also the short option; other values are from 1 to 31. */
     const struct option *options;
     args_take *take;
-    const char *operand; /* what may stand behind the options, for people: "FILE"; NULL: nothing */
+    const char *operand; /* name of the operands in messages: "FILE"; NULL: none allowed */
     int operands_max;
-    /* Options may say what they say of the operand before them: take is told how many there were,
-     * in operand_count. The command has no option of the value 1 then. */
+    /* Options may refer to the operand before them: operand_count is its number when take is
+     * called. No option may then have the value 1. */
     bool in_order;
 
     /* Filled in by args_parse(). */
@@ -48,21 +48,19 @@ struct args {
     const char *option; /* for take: the name of the long option */
 };
 
-/* On output: ARGS_RUN, or the exit code where nothing is to be run: after --help, and after an
- * error. out is for take. */
+/* Returns ARGS_RUN; or the exit code, after --help or an error. out is passed to take. */
 enum { ARGS_RUN = -1 };
 int args_parse(struct args *args, int argc, char **argv, void *out);
 
-/* An error in words, and the hint. Always false. */
+/* Reports an error and the hint. Always returns false. */
 bool args_error(const struct args *args, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* For take. On output: true and *out, a finite number from low to high; or false after an error.
- * The whole value must be the number. */
+/* For take: reads optarg as a finite number from low to high. Returns false after an error. */
 bool args_number(const struct args *args, double low, double high, double *out);
 bool args_integer(const struct args *args, long low, long high, long *out);
 
-/* The URL of a bus as people should see it. */
+/* The URL of a bus, for messages. */
 const char *args_bus_name(const struct args_bus *bus);
 
 #endif

@@ -20,26 +20,26 @@
 static const char usage[] =
     "usage: fmb query [OPTIONS] [FILE]\n"
     "\n"
-    "Decides the pairs of the scenes in FILE, or of standard input where FILE is missing\n"
-    "or '-', and prints the answers in the order asked.\n"
+    "Decides the pairs of the scenes in FILE, and prints the answers in the order of the pairs.\n"
+    "Without FILE, or where it is '-', reads standard input.\n"
     "\n"
-    "  --local          decide in this process; without it, the service on the bus does\n"
+    "  --local          decide in this process; without it, the service on the bus decides\n"
     "  --json           one line of JSON for each scene, exact; without it, tables for\n"
     "                   people, rounded\n"
     "  --box            give the box of the intersection too\n"
-    "  --certificate    give a proof of each verdict too, checked here with the numbers of the\n"
-    "                   scene alone; a verdict that it does not show counts as not decided.\n"
-    "                   The service is then asked pair by pair, which takes longer: else many\n"
-    "                   pairs at once\n"
-    "  --svg FILE       draw the scenes into FILE, with the boxes, which the answers then have\n"
-    "                   too\n"
+    "  --certificate    give a proof of each verdict too. It is checked here with the numbers\n"
+    "                   of the scene alone; a verdict without a valid proof counts as not\n"
+    "                   decided. The service then decides each pair by a query of its own,\n"
+    "                   which takes longer\n"
+    "  --svg FILE       draw the scenes into FILE; implies --box\n"
     "  --method NAME    how to decide: certified (the default: never wrong, and fast); exact\n"
     "                   (boxes and intervals to the last bit); or fmb or sat, which are\n"
-    "                   inexact and there to be compared\n"
-    "  --timeout SECONDS    wait so long before a query is sent again (0.5)\n"
-    "  --retries N          send it again so often before giving up (5)\n" ARGS_COMMON_USAGE
+    "                   inexact, for comparison\n"
+    "  --timeout SECONDS    longest time before a query is sent again (0.5); the first\n"
+    "                       repeats come after milliseconds\n"
+    "  --retries N          give a query up after N + 1 timeouts (5)\n" ARGS_COMMON_USAGE
     "\n"
-    "A scene, with velocity, duration (1) and pairs (all) as one likes:\n"
+    "A scene; velocity, duration (default 1) and pairs (default all) are optional:\n"
     "  {\"dim\": 3, \"duration\": 1.0,\n"
     "   \"bodies\": [{\"id\": 1, \"shape\": \"cuboid\", \"origin\": [0,0,0],\n"
     "               \"components\": [[1,0,0],[0,1,0],[0,0,1]], \"velocity\": [0,0,0]},\n"
@@ -47,8 +47,8 @@ static const char usage[] =
     "               \"components\": [[1,0,0],[0,1,0],[0,0,1]]}],\n"
     "   \"pairs\": [[1,2]]}\n"
     "\n"
-    "Exit codes: 0 answered, 1 a pair could not be decided or nobody answered, 2 wrong\n"
-    "usage, or input that cannot be read or is no scene.\n";
+    "Exit codes: 0 answered; 1 a pair could not be decided, or no service answered; 2 wrong\n"
+    "usage, or input that cannot be read or is not a scene.\n";
 
 struct options {
     bool local, json;
@@ -141,7 +141,7 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
     progress_step(&run->progress);
 }
 
-/* The bus is opened for the first pair that needs it: a bad scene is told without one. */
+/* The bus is opened for the first scene: a bad one is reported without a bus. */
 static void answer_on_bus(struct run *run, const struct scene *scene)
 {
     const struct options *options = run->options;

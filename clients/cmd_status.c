@@ -2,10 +2,10 @@
 #include "commands.h"
 
 #include "args.h"
+#include "json_write.h"
 #include "listen.h"
 #include "number.h"
 #include "output.h"
-#include "report.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,7 +16,9 @@ static const char usage[] =
     "Waits for the next heartbeat of the service, which comes once a second, and prints it.\n"
     "\n"
     "  --json               as one line of JSON\n"
-    "  --timeout SECONDS    wait no longer than that (3)\n" ARGS_COMMON_USAGE;
+    "  --timeout SECONDS    longest time to wait (3)\n" ARGS_COMMON_USAGE
+    "\n"
+    "Exit codes: 0 printed, 1 no heartbeat came, 2 wrong usage.\n";
 
 struct options {
     bool json;
@@ -26,8 +28,8 @@ struct options {
 struct heartbeat {
     struct fmb_client_heartbeat status;
     char version[32];
-    bool heard;
-    const char *malformed; /* what was wrong with the last one that could not be read */
+    bool received;
+    const char *malformed; /* error of the last one that could not be read */
 };
 
 enum { JSON = 1, TIMEOUT };
@@ -54,7 +56,7 @@ static void on_heartbeat(void *user, const struct fmb_client_heartbeat *status)
     heartbeat->status = *status;
     snprintf(heartbeat->version, sizeof heartbeat->version, "%s", status->version);
     heartbeat->status.version = heartbeat->version;
-    heartbeat->heard = true;
+    heartbeat->received = true;
 }
 
 static void on_malformed(void *user, const char *what)
@@ -63,21 +65,23 @@ static void on_malformed(void *user, const char *what)
     heartbeat->malformed = what;
 }
 
-/* ---- Printing -------------------------------------------------------------------------------- */
+/* ---- Printing ---- */
 
 static void print_json(const struct fmb_client_heartbeat *status)
 {
-    fputs("{\"version\": ", stdout);
-    report_string_json(stdout, status->version);
-#define X(name) printf(", \"%s\": %" PRId64, #name, status->name);
+    struct json_writer json = {.out = stdout};
+    json_begin(&json, NULL, '{');
+    json_string(&json, "version", status->version);
+#define X(name) json_integer(&json, #name, status->name);
     FMB_CLIENT_COUNTERS(X)
 #undef X
-    fputs(", \"results\": {", stdout);
-#define X(name, number, text) \
-    printf("%s\"%s\": %" PRId64, number ? ", " : "", #name, status->results[number]);
+    json_begin(&json, "results", '{');
+#define X(name, number, text) json_integer(&json, #name, status->results[number]);
     FMB_STATUS_MAP(X)
 #undef X
-    puts("}}");
+    json_end(&json, '}');
+    json_end(&json, '}');
+    json_line_end(&json);
 }
 
 static void print_count(const char *name, int64_t count)
@@ -110,33 +114,33 @@ static void print_text(const struct fmb_client_heartbeat *status)
 {
     printf("fmbd %s, server %" PRId64 ", up ", status->version, status->server_id);
     print_duration(status->uptime_us);
-    if (status->restarts > 0)
-        printf(", restarted %" PRId64 " times", status->restarts);
     puts("\nqueries");
     print_count("received", status->received);
     print_count("  scenes", status->scenes);
+    print_count("  definitions", status->definitions);
     print_count("answered", status->answered);
     print_count("pairs decided", status->pairs);
     print_refusals(status);
     print_count("not sent", status->unsent);
-    print_count("asked again", status->repeated);
-    print_count("lost on the way", status->sequence_gaps);
-    print_count("not readable", status->malformed);
+    print_count("malformed", status->malformed);
     print_count("waiting", status->waiting);
     print_count("  at most", status->most_waiting);
     puts("bodies");
     print_count("held", status->bodies);
-    print_count("room for", status->capacity);
+    print_count("frames", status->frames);
+    print_count("  at most", status->frame_capacity);
+    print_count("ids", status->ids);
     print_count("hits", status->hits);
     print_count("misses", status->misses);
-    print_count("  replaced", status->replacements);
     print_count("evicted", status->evictions);
     puts("time to decide");
-    printf("  %-16s %15.1f us\n", "half within", 1e-3 * (double) status->compute_p50_ns);
-    printf("  %-16s %15.1f us\n", "99 % within", 1e-3 * (double) status->compute_p99_ns);
+    printf("  %-16s %15.1f us\n", "p50", 1e-3 * (double) status->compute_p50_ns);
+    printf("  %-16s %15.1f us\n", "p99", 1e-3 * (double) status->compute_p99_ns);
     printf("  %-16s %15.1f us\n", "longest", 1e-3 * (double) status->compute_max_ns);
     puts("bus");
     print_count("receive buffer", status->receive_buffer);
+    print_count("dropped", status->dropped);
+    print_count("foreign", status->foreign);
 }
 
 static void advise(const struct options *options, const struct args_bus *bus,
@@ -166,7 +170,7 @@ int cmd_status(int argc, char **argv)
     struct args args = {"status", usage, own_options, take_option, .operand = NULL};
     struct options options = {.timeout = 3};
     struct listener listener;
-    struct heartbeat heartbeat = {.heard = false};
+    struct heartbeat heartbeat = {.received = false};
     const struct fmb_client_watcher watcher = {
         .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &heartbeat};
     int code = args_parse(&args, argc, argv, &options);
@@ -174,7 +178,7 @@ int cmd_status(int argc, char **argv)
         return code;
     if (!listen_open(&args.bus, &watcher, &listener))
         return ARGS_FAILED;
-    enum listen_end end = listen_until(&listener, &heartbeat.heard, options.timeout);
+    enum listen_end end = listen_until(&listener, &heartbeat.received, options.timeout);
     listen_close(&listener);
     if (end == LISTEN_ENOUGH)
         return print_heartbeat(&options, &heartbeat.status);

@@ -1,4 +1,4 @@
-/* fmb watch: the results that pass on the bus. */
+/* fmb watch: the results on the bus. */
 #include "commands.h"
 
 #include "args.h"
@@ -11,15 +11,16 @@
 static const char usage[] =
     "usage: fmb watch [OPTIONS]\n"
     "\n"
-    "Prints the results that pass on the bus, whoever asked, one line each, until SIGINT or\n"
-    "SIGTERM: of pairs, with the ids of the bodies (0 is one without an id), and of scenes.\n"
-    "The result of a scene has one datagram's answers: to the pairs up to the one it names.\n"
-    "Where not all pairs were listed, those that meet alone are counted, all others are\n"
-    "separated.\n"
+    "Prints the results on the bus, of all clients, one line each, until SIGINT or SIGTERM. The\n"
+    "result of a pair names the bodies by id (0: anonymous). The result of a scene holds the\n"
+    "answers of one datagram, up to the pair that the line names. If the query did not list its\n"
+    "pairs, only those that touch or overlap are counted; all others are separated.\n"
     "\n"
     "  --json               one line of JSON for each result, exact, with its certificate\n"
     "                       where it has one\n"
-    "  --count N            end after N results\n" ARGS_COMMON_USAGE;
+    "  --count N            end after N results\n" ARGS_COMMON_USAGE
+    "\n"
+    "Exit codes: 0 ended by a signal or --count, 1 no bus, or the output failed, 2 wrong usage.\n";
 
 struct options {
     bool json;
@@ -52,23 +53,41 @@ static bool take_option(const struct args *args, int option, void *out)
     return true;
 }
 
-/* ---- Results of pairs ------------------------------------------------------------------------ */
+/* ---- Results of pairs ---- */
+
+/* The members that results of pairs and of scenes have in common. */
+static void begin_json(struct json_writer *json, int64_t utime, int64_t client_id,
+                       int64_t sequence_number, int64_t server_id, int64_t compute_ns)
+{
+    json_begin(json, NULL, '{');
+    json_integer(json, "utime", utime);
+    json_integer(json, "client_id", client_id);
+    json_integer(json, "sequence_number", sequence_number);
+    json_integer(json, "server_id", server_id);
+    json_integer(json, "compute_ns", compute_ns);
+}
+
+static void end_json(struct json_writer *json)
+{
+    json_end(json, '}');
+    json_line_end(json);
+}
 
 static void print_pair_json(const struct fmb_client_pair_result *result)
 {
     const struct outcome outcome = {.error = result->status == FMB_OK ? NULL : result->text,
                                     .answer = result->answer,
                                     .certificate = result->certificate};
-    printf("{\"utime\": %" PRId64 ", \"client_id\": %" PRId64 ", \"sequence_number\": %" PRId64
-           ", \"server_id\": %" PRId64 ", \"compute_ns\": %" PRId64 ", \"a\": %" PRId64
-           ", \"b\": %" PRId64 ", ",
-           result->utime, result->client_id, result->sequence_number, result->server_id,
-           result->compute_ns, result->body_id[0], result->body_id[1]);
-    report_answer_json(stdout, result->dim, &outcome);
-    puts("}");
+    struct json_writer json = {.out = stdout};
+    begin_json(&json, result->utime, result->client_id, result->sequence_number, result->server_id,
+               result->compute_ns);
+    json_integer(&json, "a", result->body_id[0]);
+    json_integer(&json, "b", result->body_id[1]);
+    report_answer_json(&json, result->dim, &outcome);
+    end_json(&json);
 }
 
-/* With what each line begins. */
+/* How each line begins. */
 static void print_head(int64_t client_id, int64_t sequence_number, int64_t compute_ns)
 {
     printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  ", client_id, sequence_number,
@@ -87,26 +106,26 @@ static void print_pair_text(const struct fmb_client_pair_result *result,
     putchar('\n');
 }
 
-/* ---- Results of scenes ----------------------------------------------------------------------- */
+/* ---- Results of scenes ---- */
 
 static void print_scene_json(const struct fmb_client_scene_result *result)
 {
-    printf("{\"utime\": %" PRId64 ", \"client_id\": %" PRId64 ", \"sequence_number\": %" PRId64
-           ", \"server_id\": %" PRId64 ", \"compute_ns\": %" PRId64 ", \"lost\": %" PRId64 ", ",
-           result->utime, result->client_id, result->sequence_number, result->server_id,
-           result->compute_ns, result->lost);
+    struct json_writer json = {.out = stdout};
+    begin_json(&json, result->utime, result->client_id, result->sequence_number, result->server_id,
+               result->compute_ns);
     if (result->status != FMB_OK) {
-        fputs("\"error\": ", stdout);
-        report_string_json(stdout, result->text);
-        puts("}");
+        json_string(&json, "error", result->text);
+        end_json(&json);
         return;
     }
-    printf("\"end_pair\": %" PRId64 ", \"overlapping\": %" PRId64 ", \"touching\": %" PRId64,
-           result->end_pair, result->overlapping, result->touching);
-    if (!result->names_pairs)
-        printf(", \"separated\": %" PRId64 ", \"undecided\": %" PRId64, result->separated,
-               result->undecided);
-    puts("}");
+    json_integer(&json, "end_pair", result->end_pair);
+    json_integer(&json, "overlapping", result->overlapping);
+    json_integer(&json, "touching", result->touching);
+    if (!result->names_pairs) {
+        json_integer(&json, "separated", result->separated);
+        json_integer(&json, "undecided", result->undecided);
+    }
+    end_json(&json);
 }
 
 static void print_scene_text(const struct fmb_client_scene_result *result)
@@ -125,7 +144,7 @@ static void print_scene_text(const struct fmb_client_scene_result *result)
     putchar('\n');
 }
 
-/* ---- The run --------------------------------------------------------------------------------- */
+/* ---- The command ---- */
 
 static void count(struct watch *watch)
 {

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The signals come last: until the bus is open they simply end the process. */
+/* Signals come last: until the bus is open they end the process. */
 bool listen_open(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
                  struct listener *out)
 {

@@ -1,4 +1,4 @@
-/* Listens to a service until enough was heard, a signal asks to end, or it takes too long. */
+/* Receives what a service publishes, until it is enough, a signal comes, or a time limit. */
 #ifndef LISTEN_H
 #define LISTEN_H
 
@@ -10,15 +10,15 @@ struct listener {
     int signals; /* readable after SIGINT or SIGTERM */
 };
 
-/* On output: false after lines on stderr. From true on SIGINT and SIGTERM are blocked:
- * listen_until() sees them. */
+/* Returns false if the bus cannot be opened, which was reported on stderr. After true, SIGINT and
+ * SIGTERM are blocked, and end listen_until(). */
 bool listen_open(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
                  struct listener *out);
 void listen_close(struct listener *listener);
 
 enum listen_end { LISTEN_ENOUGH, LISTEN_SIGNAL, LISTEN_TIMEOUT, LISTEN_FAILED };
 
-/* Until *enough, which the callbacks set. timeout in seconds; negative: none. */
+/* Waits until *enough, which the callbacks set. timeout: seconds; negative: no limit. */
 enum listen_end listen_until(struct listener *listener, const bool *enough, double timeout);
 
 #endif

@@ -1,6 +1,6 @@
-/* Asks the service on the bus, from Java, whether a cube and a tetrahedron that comes at it meet,
- * when and in which box; then the same for the next stretch of time, with keys in place of the
- * components that the service holds by then.
+/* Queries the service on the bus, from Java: do a cube and a tetrahedron that moves towards it
+ * meet, when and in which box? Then the same for the next stretch of time, with handles in place of
+ * the frames that the service holds by then.
  *
  * By hand, on Debian, with the message types that 'make install' puts into share/fmb/lcmtypes (in
  * the sources they are in msgs/):
@@ -16,18 +16,19 @@
  *     overlapping from 0.666667 to 1 s, box (0.5 0 0) to (1 1 1)
  *     overlapping from 0 to 1 s, box (0 0 0) to (1 1 1)
  *
- * Arguments, which may be left out: the seconds of a stretch (1), and how often to ask before
- * giving up (6). The bus is that of LCM_DEFAULT_URL, or the usual one of this host. Exit codes: 0
- * answered, 1 refused or nobody answered, 2 wrong arguments. */
+ * Arguments, which may be left out: the seconds of a stretch (1), and how often to send a
+ * query before it is given up (6). The bus is that of LCM_DEFAULT_URL, or the usual one of this
+ * host. Exit codes: 0 answered, 1 refused or no service answered, 2 wrong arguments. */
 
-import fmb_msgs.frame_t;
 import fmb_msgs.pair_query_t;
 import fmb_msgs.pair_result_t;
+import fmb_msgs.placement_t;
 
 import java.io.IOException;
 import java.math.BigDecimal;
 import java.math.MathContext;
 import java.security.SecureRandom;
+import java.util.Arrays;
 import java.util.concurrent.BlockingQueue;
 import java.util.concurrent.LinkedBlockingQueue;
 import java.util.concurrent.TimeUnit;
@@ -38,11 +39,12 @@ public final class AskPair
 {
     private static final String DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0";
     private static final String QUERY_CHANNEL = "FMB_PAIR_QUERY", RESULT_CHANNEL = "FMB_PAIR_RESULT";
+    private static final byte[] NO_HANDLE = new byte[16];
     private static final long TIMEOUT_NS = TimeUnit.MILLISECONDS.toNanos(500);
 
     /* ---- A client of the service ----------------------------------------------------------- */
 
-    /** To be asked from one thread. */
+    /** For one thread. */
     static final class Client
     {
         private final LCM lcm;
@@ -59,8 +61,8 @@ public final class AskPair
             lcm.subscribe(RESULT_CHANNEL, (bus, channel, bytes) -> take(bytes));
         }
 
-        /* Results go to everybody on the bus. Whose one is stands in front, behind the fingerprint
-         * of the type and utime. */
+        /* Results go to all clients on the bus. The client's id follows the fingerprint of the type
+         * and utime. */
         private boolean isMine(LCMDataInputStream bytes) throws IOException
         {
             boolean isResult = bytes.readLong() == pair_result_t.LCM_FINGERPRINT;
@@ -70,8 +72,8 @@ public final class AskPair
             return mine;
         }
 
-        /* In LCM's thread, which an exception would end. Others' results are not decoded: where one
-         * is damaged, a count in it may be anything, and decoding takes that much memory. */
+        /* In LCM's thread, which an exception would end. Results of other clients are not decoded:
+         * in a damaged one a count may be anything, and decoding takes that much memory. */
         private void take(LCMDataInputStream bytes)
         {
             try {
@@ -82,8 +84,8 @@ public final class AskPair
             }
         }
 
-        /* The result with this number, or null once the deadline has passed. Second answers to
-         * earlier queries are passed over. */
+        /* The result with this number, or null once the deadline has passed. Second results of
+         * earlier queries are ignored. */
         private pair_result_t resultUntil(long deadline) throws InterruptedException
         {
             for (;;) {
@@ -99,10 +101,10 @@ public final class AskPair
             return result != null && result.status == pair_result_t.STATUS_BUSY;
         }
 
-        /* LCM loses datagrams without a word, and a busy service wants to be asked again later: so
-         * the same query goes out again after each time-out, with the same number. Null: there was
+        /* LCM loses datagrams without notice, and a busy service has to be queried again later: so
+         * the same query is sent again after each time-out, with the same number. Null: there was
          * no result. */
-        private pair_result_t ask(pair_query_t query) throws InterruptedException
+        private pair_result_t send(pair_query_t query) throws InterruptedException
         {
             pair_result_t refusal = null;
             number++;
@@ -123,29 +125,29 @@ public final class AskPair
             return refusal;
         }
 
-        private pair_result_t askOnce(Body a, Body b, double duration) throws InterruptedException
+        private pair_result_t queryOnce(Body a, Body b, double duration) throws InterruptedException
         {
             pair_query_t query = new pair_query_t();
             query.duration = duration;
             query.want = pair_query_t.WANT_BOX;
-            query.a = a.frame();
-            query.b = b.frame();
-            return ask(query);
+            query.a = a.placement();
+            query.b = b.placement();
+            return send(query);
         }
 
-        /** Do two bodies meet within the duration? A key dies with the service, or when the service
-         * needs the room, or gets other components under the same id from any client: then the
-         * bodies are sent whole again. Null: there was no result. */
-        pair_result_t askPair(Body a, Body b, double duration) throws InterruptedException
+        /** Do two bodies meet within the duration? A service that was started anew, or needed the
+         * space, does not hold a body any more: then the bodies are sent whole again. Null: there
+         * was no result. */
+        pair_result_t queryPair(Body a, Body b, double duration) throws InterruptedException
         {
-            pair_result_t result = askOnce(a, b, duration);
+            pair_result_t result = queryOnce(a, b, duration);
             if (result != null && result.status == pair_result_t.STATUS_UNKNOWN_BODY) {
-                a.key = b.key = 0;
-                result = askOnce(a, b, duration);
+                a.handle = b.handle = NO_HANDLE;
+                result = queryOnce(a, b, duration);
             }
             if (result != null && result.status == pair_result_t.STATUS_OK) {
-                a.key = result.key_a;
-                b.key = result.key_b;
+                a.keep(result.handle_a);
+                b.keep(result.handle_b);
             }
             return result;
         }
@@ -156,38 +158,49 @@ public final class AskPair
     static final class Body
     {
         final long id;
-        final int shape;
-        final double[] components, origin, velocity;
-        long key = 0; // that the service gave for the components, if it did: it stands for them
+        final byte shape;
+        final double[] numbers; // of its only frame: origin in body coordinates, then components
+        final double[] position, velocity;
+        byte[] handle = NO_HANDLE; // of shape and numbers, once the service holds them
 
-        Body(long id, int shape, double[] components, double[] origin, double[] velocity)
+        Body(long id, byte shape, double[] numbers, double[] position, double[] velocity)
         {
             this.id = id;
             this.shape = shape;
-            this.components = components;
-            this.origin = origin;
+            this.numbers = numbers;
+            this.position = position;
             this.velocity = velocity;
         }
 
-        frame_t frame()
+        /* A result has the handles of bodies that were sent whole. */
+        void keep(byte[] newHandle)
         {
-            frame_t frame = new frame_t();
-            frame.body_id = id;
-            frame.key = key;
-            frame.shape = shape;
-            frame.dim = origin.length;
-            frame.origin = origin;
-            frame.components = key == 0 ? components : new double[0];
-            frame.num_components = frame.components.length;
-            frame.velocity = velocity;
-            frame.num_velocity = velocity.length;
-            return frame;
+            if (!Arrays.equals(newHandle, NO_HANDLE))
+                handle = newHandle;
+        }
+
+        placement_t placement()
+        {
+            boolean whole = Arrays.equals(handle, NO_HANDLE);
+            placement_t placement = new placement_t();
+            placement.body_id = id;
+            placement.handle = handle;
+            placement.dim = position.length;
+            placement.shapes = whole ? new byte[] {shape} : new byte[0];
+            placement.num_frames = placement.shapes.length;
+            placement.numbers = whole ? numbers : new double[0];
+            placement.num_numbers = placement.numbers.length;
+            placement.position = position;
+            placement.orientation = new double[0]; // not turned
+            placement.velocity = velocity;
+            placement.num_velocity = velocity.length;
+            return placement;
         }
 
         void move(double seconds)
         {
             for (int axis = 0; axis < velocity.length; axis++)
-                origin[axis] += seconds * velocity[axis];
+                position[axis] += seconds * velocity[axis];
         }
     }
 
@@ -235,15 +248,16 @@ public final class AskPair
         return code;
     }
 
-    private static int askScene(Client client, String url, double duration)
+    private static int queryScene(Client client, String url, double duration)
         throws InterruptedException
     {
-        double[] edges = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        Body cube = new Body(1, frame_t.SHAPE_CUBOID, edges, new double[] {0, 0, 0}, new double[0]);
-        Body tetrahedron = new Body(2, frame_t.SHAPE_TETRAHEDRON, edges, new double[] {2, 0, 0},
-                                    new double[] {-1.5, 0, 0});
+        double[] numbers = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+        Body cube = new Body(1, placement_t.SHAPE_CUBOID, numbers, new double[] {0, 0, 0},
+                             new double[0]);
+        Body tetrahedron = new Body(2, placement_t.SHAPE_TETRAHEDRON, numbers,
+                                    new double[] {2, 0, 0}, new double[] {-1.5, 0, 0});
         for (int i = 0; i < 2; i++) {
-            pair_result_t result = client.askPair(cube, tetrahedron, duration);
+            pair_result_t result = client.queryPair(cube, tetrahedron, duration);
             if (result == null)
                 return fail(1, "no fmbd answered on channel " + RESULT_CHANNEL + " of " + url +
                                    ": start one with 'fmbd &'");
@@ -271,7 +285,7 @@ public final class AskPair
         String set = System.getenv("LCM_DEFAULT_URL");
         String url = set == null || set.isEmpty() ? DEFAULT_URL : set;
         try {
-            return askScene(new Client(url, tries), url, duration);
+            return queryScene(new Client(url, tries), url, duration);
         } catch (IOException | IllegalArgumentException failed) {
             return fail(1, "cannot open the bus " + url + ": " + failed.getMessage());
         }

@@ -1,7 +1,7 @@
 --[[
-Asks the service on the bus, from Lua, whether a cube and a tetrahedron that comes at it meet, when
-and in which box; then the same for the next stretch of time, with keys in place of the components
-that the service holds by then.
+Queries the service on the bus, from Lua: do a cube and a tetrahedron that moves towards it meet,
+when and in which box? Then the same for the next stretch of time, with handles in place of the
+frames that the service holds by then.
 
 By hand, on Debian, with the message types that 'make install' puts into share/fmb/lcmtypes (in the
 sources they are in msgs/):
@@ -16,18 +16,18 @@ prints
     overlapping from 0.666667 to 1 s, box (0.5 0 0) to (1 1 1)
     overlapping from 0 to 1 s, box (0 0 0) to (1 1 1)
 
-Arguments, which may be left out: the seconds of a stretch (1), and how often to ask before giving
-up (6). The bus is that of LCM_DEFAULT_URL, or the usual one of this host. Exit codes: 0 answered,
-1 refused or nobody answered, 2 wrong arguments.
+Arguments, which may be left out: the seconds of a stretch (1), and how often to send a query
+before it is given up (6). The bus is that of LCM_DEFAULT_URL, or the usual one of this host. Exit
+codes: 0 answered, 1 refused or no service answered, 2 wrong arguments.
 --]]
 
 -- What lcm-gen writes is for Lua 5.1, and takes this name when it is loaded.
 unpack = unpack or table.unpack
 
 local lcm = require 'lcm'
-local frame_t = require 'fmb_msgs.frame_t'
 local pair_query_t = require 'fmb_msgs.pair_query_t'
 local pair_result_t = require 'fmb_msgs.pair_result_t'
+local placement_t = require 'fmb_msgs.placement_t'
 
 local DEFAULT_URL = 'udpm://239.255.76.67:7667?ttl=0'
 local QUERY_CHANNEL, RESULT_CHANNEL = 'FMB_PAIR_QUERY', 'FMB_PAIR_RESULT'
@@ -48,7 +48,7 @@ end
 local Client = {}
 Client.__index = Client
 
--- 53 random bits: all that a number of Lua 5.2 has room for, and all that the service takes.
+-- 53 random bits: what a number of Lua 5.2 holds exactly, and what the service accepts.
 local function random_id()
     local file = assert(io.open('/dev/urandom', 'rb'))
     local bytes = {file:read(7):byte(1, 7)}
@@ -71,8 +71,8 @@ function Client.open(url, tries)
     return self
 end
 
--- Results go to everybody on the bus. Those of others are passed over, and so are second answers
--- to earlier queries, and what cannot be read: no error may leave this for liblcm's own code.
+-- Results go to all clients on the bus. Those of other clients are ignored, as are second results
+-- of earlier queries and what cannot be read: no error may leave this for liblcm's own code.
 function Client:take(bytes)
     local readable, result = pcall(pair_result_t.decode, bytes)
     if readable and result.client_id == self.id and result.sequence_number == self.number then
@@ -84,9 +84,9 @@ function Client:answered()
     return self.result and self.result.status ~= pair_result_t.STATUS_BUSY
 end
 
--- Until there is an answer, or the bus was silent for the time-out. Others may keep it from being
--- silent, and Lua's clock has whole seconds: then for one to two of them. (In Lua, LCM keeps 31
--- messages, and drops what comes meanwhile: where others ask fast, an answer may take some tries.)
+-- Until there is an answer, or no message came for the time-out. Where other clients' results keep
+-- coming, for one to two seconds, as Lua's clock has whole ones. (In Lua, LCM keeps 31 messages and
+-- drops the others: beside fast clients, an answer may take some tries.)
 function Client:listen()
     local start = os.time()
     while not self:answered() and self.bus:handle_timeout(TIMEOUT_MS) do
@@ -97,10 +97,10 @@ function Client:listen()
     end
 end
 
--- LCM loses datagrams without a word, and a busy service wants to be asked again later: so the
--- same query goes out again after each time-out, with the same number. On output: the result, or
--- nil where there was none.
-function Client:ask(query)
+-- LCM loses datagrams without notice, and a busy service has to be queried again later: so the
+-- same query is sent again after each time-out, with the same number. On output: the result, or nil
+-- where there was none.
+function Client:send(query)
     self.number = self.number + 1
     self.result = nil
     query.utime = os.time() * 1e6
@@ -117,44 +117,54 @@ function Client:ask(query)
     return self.result
 end
 
--- A body is a table with id, shape, components, origin, velocity, and the key that the service
--- gave for it, if it did: it stands for the components.
-local function frame_of(body)
-    local frame = frame_t:new()
-    frame.body_id = body.id
-    frame.shape = body.shape
-    frame.dim = #body.origin
-    frame.origin = body.origin
-    frame.velocity = body.velocity
-    frame.num_velocity = #body.velocity
-    if body.key then
-        frame.key = body.key
+-- A body is a table with id, shape, numbers (of its only frame: the origin in body coordinates,
+-- then the components), position, velocity, and, once the service holds shape and numbers, their
+-- handle.
+local function placement_of(body)
+    local placement = placement_t:new()
+    placement.body_id = body.id
+    placement.dim = #body.position
+    placement.position = body.position
+    placement.velocity = body.velocity
+    placement.num_velocity = #body.velocity
+    if body.handle then
+        placement.handle = body.handle
     else
-        frame.components = body.components
-        frame.num_components = #body.components
+        placement.shapes, placement.num_frames = {body.shape}, 1
+        placement.numbers, placement.num_numbers = body.numbers, #body.numbers
     end
-    return frame
+    return placement
 end
 
-function Client:ask_once(a, b, duration)
+-- A result has the handles of bodies that were sent whole, and zeros for others.
+local function keep_handle(body, handle)
+    for _, byte in ipairs(handle) do
+        if byte ~= 0 then
+            body.handle = handle
+        end
+    end
+end
+
+function Client:query_once(a, b, duration)
     local query = pair_query_t:new()
     query.duration = duration
     query.want = pair_query_t.WANT_BOX
-    query.a, query.b = frame_of(a), frame_of(b)
-    return self:ask(query)
+    query.a, query.b = placement_of(a), placement_of(b)
+    return self:send(query)
 end
 
--- Do two bodies meet within the duration? A key dies with the service, or when the service needs
--- the room, or gets other components under the same id from any client: then the bodies are sent
--- whole again. On output: the result, or nil where there was none.
-function Client:ask_pair(a, b, duration)
-    local result = self:ask_once(a, b, duration)
+-- Do two bodies meet within the duration? A service that was started anew, or needed the space,
+-- does not hold a body any more: then the bodies are sent whole again. On output: the result, or nil
+-- where there was none.
+function Client:query_pair(a, b, duration)
+    local result = self:query_once(a, b, duration)
     if result and result.status == pair_result_t.STATUS_UNKNOWN_BODY then
-        a.key, b.key = nil, nil
-        result = self:ask_once(a, b, duration)
+        a.handle, b.handle = nil, nil
+        result = self:query_once(a, b, duration)
     end
     if result and result.status == pair_result_t.STATUS_OK then
-        a.key, b.key = result.key_a, result.key_b
+        keep_handle(a, result.handle_a)
+        keep_handle(b, result.handle_b)
     end
     return result
 end
@@ -192,13 +202,13 @@ local function main()
         url = DEFAULT_URL
     end
     local client = Client.open(url, tries)
-    local edges = {1, 0, 0, 0, 1, 0, 0, 0, 1}
-    local cube = {id = 1, shape = frame_t.SHAPE_CUBOID, components = edges, origin = {0, 0, 0},
+    local numbers = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}
+    local cube = {id = 1, shape = placement_t.SHAPE_CUBOID, numbers = numbers, position = {0, 0, 0},
         velocity = {}}
-    local tetrahedron = {id = 2, shape = frame_t.SHAPE_TETRAHEDRON, components = edges,
-        origin = {2, 0, 0}, velocity = {-1.5, 0, 0}}
+    local tetrahedron = {id = 2, shape = placement_t.SHAPE_TETRAHEDRON, numbers = numbers,
+        position = {2, 0, 0}, velocity = {-1.5, 0, 0}}
     for _ = 1, 2 do
-        local result = client:ask_pair(cube, tetrahedron, duration)
+        local result = client:query_pair(cube, tetrahedron, duration)
         if not result then
             fail(1, "no fmbd answered on channel %s of %s: start one with 'fmbd &'",
                 RESULT_CHANNEL, url)
@@ -208,7 +218,7 @@ local function main()
         end
         print(result_text(result))
         for axis, speed in ipairs(tetrahedron.velocity) do
-            tetrahedron.origin[axis] = tetrahedron.origin[axis] + duration * speed
+            tetrahedron.position[axis] = tetrahedron.position[axis] + duration * speed
         end
     end
 end

@@ -7,8 +7,8 @@
 
 static void print_contact(void *user, const struct fmb_client_answer *answer)
 {
-    const struct fmb_client_frame *frame = user;
-    const int64_t a = frame[answer->a].body_id, b = frame[answer->b].body_id;
+    const struct fmb_client_placement *placement = user;
+    const int64_t a = placement[answer->a].body_id, b = placement[answer->b].body_id;
     if (answer->status)
         printf("%d and %d: %s\n", (int) a, (int) b, answer->text);
     else if (answer->answer.has_contact)
@@ -20,14 +20,14 @@ static void print_contact(void *user, const struct fmb_client_answer *answer)
 
 int main(void)
 {
-    struct fmb_client_frame frame[4] = {
+    struct fmb_client_placement placement[4] = {
         {1, FMB_CUBOID, 3, false, {9, 0, 0, 0, 9, 0, 0, 0, 1}, {0, 0, -1}, {0}}, /* the table */
         {2, FMB_CUBOID, 3, false, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 1, 0}, {0}},
         {3, FMB_CUBOID, 3, false, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {2.5, 1, 0}, {0}},
         {4, FMB_CUBOID, 3, true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {3.25, 1, 2}, {0, 0, -2}},
     };
-    const struct fmb_client_scene scene = {.frames = frame,
-                                           .frame_count = 4,
+    const struct fmb_client_scene scene = {.placements = placement,
+                                           .placement_count = 4,
                                            .which = FMB_CLIENT_ALL,
                                            .duration = 1,
                                            .want = FMB_CLIENT_WANT_TIMES};
@@ -37,7 +37,7 @@ int main(void)
         fprintf(stderr, "%s\n", why);
         return 1;
     }
-    const int status = fmb_client_ask(client, &scene, print_contact, frame);
+    const int status = fmb_client_query(client, &scene, print_contact, placement);
     if (status)
         fprintf(stderr, "%s\n", fmb_client_why(client));
     fmb_client_close(client);

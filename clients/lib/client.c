@@ -2,8 +2,9 @@
 
 #include "clock.h"
 #include "random_id.h"
-#include "wire.h"
 
+#include "fmb_msgs_definition_query_t.h"
+#include "fmb_msgs_definition_t.h"
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
 #include "fmb_msgs_scene_query_t.h"
@@ -11,9 +12,7 @@
 #include "fmb_msgs_status_t.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
-#include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +20,7 @@
 
 static_assert((int) FMB_CLIENT_PREFIX_MAX == BUS_PREFIX_MAX &&
                   (int) FMB_CLIENT_WHY_MAX == BUS_WHY_MAX,
-              "what the header promises");
+              "limits of the public header");
 static_assert((int) FMB_CLIENT_LISTED == QUERY_PAIRS_LISTED &&
                   (int) FMB_CLIENT_ALL == QUERY_PAIRS_ALL &&
                   (int) FMB_CLIENT_ACROSS == QUERY_PAIRS_ACROSS,
@@ -33,9 +32,9 @@ static_assert((int) FMB_CLIENT_WANT_BOX == QUERY_WANT_BOX &&
 
 enum {
     TRIES = 6,
-    /* Messages taken before queries are looked after again: another client's flood must not keep
-     * this one from sending. */
-    TAKEN_MAX = 2 * ASKING_WINDOW,
+    /* Calls of bus_receive(): some 16,000 datagrams, more than a buffer of 4 MB holds. So another
+     * client's flood cannot keep this one from sending. */
+    BATCHES_MAX = 256,
     HANDLE_MAX_S = 1000000
 };
 
@@ -57,14 +56,7 @@ bool fmb_client_prefix_ok(const char *prefix)
     return bus_prefix_ok(prefix);
 }
 
-/* ---- What comes in --------------------------------------------------------------------------- */
-
-static void note_malformed(struct fmb_client *client, const char *what)
-{
-    client->counts.malformed++;
-    if (client->watcher.malformed)
-        client->watcher.malformed(client->watcher.user, what);
-}
+/* ---- Messages ---- */
 
 static const char *text_of(int32_t status, const char *detail)
 {
@@ -109,51 +101,90 @@ static void show_scene(const struct fmb_client *client, const struct scene_resul
         .touching = count[FMB_TOUCHING],
         .separated = count[FMB_SEPARATED],
         .undecided = count[0],
-        .lost = result->lost,
         .compute_ns = result->compute_ns,
     };
     client->watcher.scene(client->watcher.user, &out);
 }
 
-static void on_pair(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+/* Results of other clients are read for the watcher alone. */
+static bool is_for(const struct fmb_client *client, const struct query_header *header, bool watched)
 {
-    struct fmb_client *client = user;
+    return watched || header->client_id == client->client_id;
+}
+
+static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
+{
+    const bool watched = client->watcher.pair;
+    const uint32_t size = (uint32_t) message->size;
+    struct query_header header;
     struct pair_result result;
-    (void) channel;
-    const char *error = wire_read_pair_result(buffer->data, buffer->data_size, &result);
-    if (error) {
-        note_malformed(client, error);
-        return;
-    }
-    if (client->watcher.pair)
+    const char *error = wire_read_pair_result_header(message->bytes, size, &header);
+    if (error || !is_for(client, &header, watched))
+        return error;
+    error = wire_read_pair_result(message->bytes, size, &result);
+    if (error)
+        return error;
+    if (watched)
         show_pair(client, &result);
-    asking_take_pair(client, &result);
+    if (header.client_id == client->client_id)
+        requests_take(client, &(struct request_result){.kind = FMB_CLIENT_PAIR,
+                                                       .status = result.status,
+                                                       .detail = result.detail,
+                                                       .pair = &result,
+                                                       .bytes = message->bytes,
+                                                       .size = message->size,
+                                                       .number = header.sequence_number});
+    return NULL;
 }
 
-static void on_scene(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static const char *on_scene(struct fmb_client *client, const struct bus_message *message)
 {
-    struct fmb_client *client = user;
-    (void) channel;
-    const char *error = wire_read_scene_result(buffer->data, buffer->data_size, &client->result);
-    if (error) {
-        note_malformed(client, error);
-        return;
-    }
-    if (client->watcher.scene)
-        show_scene(client, &client->result);
-    asking_take_scene(client, &client->result);
+    const bool watched = client->watcher.scene;
+    const uint32_t size = (uint32_t) message->size;
+    struct query_header header;
+    struct scene_result *result = &client->received.scene;
+    const char *error = wire_read_scene_result_header(message->bytes, size, &header);
+    if (error || !is_for(client, &header, watched))
+        return error;
+    error = wire_read_scene_result(message->bytes, size, result);
+    if (error)
+        return error;
+    if (watched)
+        show_scene(client, result);
+    if (header.client_id == client->client_id)
+        requests_take(client, &(struct request_result){.kind = FMB_CLIENT_SCENE,
+                                                       .status = result->status,
+                                                       .detail = result->detail,
+                                                       .scene = result,
+                                                       .bytes = message->bytes,
+                                                       .size = message->size,
+                                                       .number = header.sequence_number});
+    return NULL;
 }
 
-static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static const char *on_definition(struct fmb_client *client, const struct bus_message *message)
 {
-    struct fmb_client *client = user;
+    struct definition *result = &client->received.definition;
+    const char *error =
+        wire_read_definition(message->bytes, (uint32_t) message->size, client->hasher, result);
+    if (error)
+        return error;
+    if (result->client_id == client->client_id)
+        requests_take(client, &(struct request_result){.kind = FMB_CLIENT_DEFINITION,
+                                                       .status = result->status,
+                                                       .detail = result->detail,
+                                                       .bytes = message->bytes,
+                                                       .size = message->size,
+                                                       .number = result->sequence_number});
+    return NULL;
+}
+
+static const char *on_status(struct fmb_client *client, const struct bus_message *message)
+{
     struct wire_status status;
-    (void) channel;
-    const char *error = wire_read_status(buffer->data, buffer->data_size, &status);
-    if (error) {
-        note_malformed(client, error);
-        return;
-    }
+    const char *error = wire_read_status(message->bytes, (uint32_t) message->size, &status);
+    if (error)
+        return error;
     struct fmb_client_heartbeat out = {
         .utime = status.utime, .server_id = status.server_id, .version = status.version};
 #define X(name) out.name = status.name;
@@ -162,44 +193,60 @@ static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *u
     memcpy(out.results, status.results, sizeof out.results);
     if (client->watcher.heartbeat)
         client->watcher.heartbeat(client->watcher.user, &out);
+    return NULL;
 }
 
-/* ---- The bus --------------------------------------------------------------------------------- */
+/* ---- The bus ---- */
 
-/* Of results, those of other clients come in too: room for bursts of them. Beyond it LCM drops. */
 static const struct {
     const char *name;
-    lcm_msg_handler_t handler;
-    int queue;
-} intakes[CLIENT_INTAKES] = {
-    [CLIENT_PAIRS] = {WIRE_PAIR_RESULT, on_pair, 10000},
-    [CLIENT_SCENES] = {WIRE_SCENE_RESULT, on_scene, 1000},
-    [CLIENT_STATUSES] = {WIRE_STATUS, on_status, 100},
+    const char *(*read)(struct fmb_client *client, const struct bus_message *message);
+} channels[CLIENT_CHANNELS] = {
+    [FMB_CLIENT_PAIR] = {WIRE_PAIR_RESULT, on_pair},
+    [FMB_CLIENT_SCENE] = {WIRE_SCENE_RESULT, on_scene},
+    [FMB_CLIENT_DEFINITION] = {WIRE_DEFINITION, on_definition},
+    [CLIENT_STATUS] = {WIRE_STATUS, on_status},
 };
 
-bool client_subscribe(struct fmb_client *client, enum client_intake intake)
+static void on_message(void *user, const struct bus_message *message)
 {
-    char channel[BUS_CHANNEL_MAX];
-    if (client->intake[intake])
-        return true;
-    bus_channel(channel, client->prefix, intakes[intake].name);
-    client->intake[intake] =
-        bus_subscribe(client->lcm, channel, intakes[intake].handler, client, intakes[intake].queue);
-    return client->intake[intake] != NULL;
+    struct fmb_client *client = user;
+    const char *error = channels[client->channel[message->listener]].read(client, message);
+    if (!error)
+        return;
+    client->counts.malformed++;
+    if (client->watcher.malformed)
+        client->watcher.malformed(client->watcher.user, error);
 }
 
-int client_listen(struct fmb_client *client, int wait_ms, const bool *enough)
+bool client_listen(struct fmb_client *client, int channel)
 {
-    struct pollfd bus = {.fd = lcm_get_fileno(client->lcm), .events = POLLIN};
-    int taken = 0;
-    while (taken < TAKEN_MAX && !client->failed && !(taken > 0 && enough && *enough)) {
-        const int ready = poll(&bus, 1, taken == 0 ? wait_ms : 0);
-        if (ready == 0 || (ready < 0 && errno == EINTR))
-            break;
-        client->failed = ready < 0 || lcm_handle(client->lcm) != 0;
-        taken++;
+    char name[BUS_CHANNEL_MAX], why[BUS_WHY_MAX];
+    for (int i = 0; i < client->listener_count; i++)
+        if (client->channel[i] == channel)
+            return true;
+    bus_channel(name, client->prefix, channels[channel].name);
+    if (!bus_listen(client->bus, name, why))
+        return false;
+    client->channel[client->listener_count++] = channel;
+    return true;
+}
+
+void client_wait(struct fmb_client *client, int other_fd, int timeout_ms)
+{
+    if (bus_wait(client->bus, other_fd, timeout_ms) < 0)
+        client->failed = true;
+}
+
+int client_receive(struct fmb_client *client)
+{
+    int received = 0, count = BUS_BATCH;
+    for (int i = 0; i < BATCHES_MAX && count == BUS_BATCH && !client->failed; i++) {
+        count = bus_receive(client->bus, on_message, client);
+        client->failed = count < 0;
+        received += count > 0 ? count : 0;
     }
-    return taken;
+    return received;
 }
 
 int fmb_client_watch(struct fmb_client *client, const struct fmb_client_watcher *watcher)
@@ -207,15 +254,15 @@ int fmb_client_watch(struct fmb_client *client, const struct fmb_client_watcher 
     if (client->inside)
         return FMB_CLIENT_INSIDE;
     client->watcher = *watcher;
-    const bool good = (!watcher->pair || client_subscribe(client, CLIENT_PAIRS)) &&
-                      (!watcher->scene || client_subscribe(client, CLIENT_SCENES)) &&
-                      (!watcher->heartbeat || client_subscribe(client, CLIENT_STATUSES));
+    const bool good = (!watcher->pair || client_listen(client, FMB_CLIENT_PAIR)) &&
+                      (!watcher->scene || client_listen(client, FMB_CLIENT_SCENE)) &&
+                      (!watcher->heartbeat || client_listen(client, CLIENT_STATUS));
     return good ? FMB_OK : FMB_CLIENT_NO_BUS;
 }
 
 int fmb_client_fileno(const struct fmb_client *client)
 {
-    return lcm_get_fileno(client->lcm);
+    return bus_fileno(client->bus);
 }
 
 int fmb_client_handle(struct fmb_client *client, double timeout)
@@ -224,9 +271,10 @@ int fmb_client_handle(struct fmb_client *client, double timeout)
         return FMB_CLIENT_INSIDE;
     const double most = timeout < HANDLE_MAX_S ? timeout : HANDLE_MAX_S;
     client->inside = true;
-    const int taken = client_listen(client, timeout < 0 ? -1 : (int) ceil(1000 * most), NULL);
+    client_wait(client, -1, timeout < 0 ? -1 : (int) ceil(1000 * most));
+    const int received = client_receive(client);
     client->inside = false;
-    return client->failed ? FMB_CLIENT_NO_BUS : taken;
+    return client->failed ? FMB_CLIENT_NO_BUS : received;
 }
 
 struct fmb_client_counts fmb_client_counts(const struct fmb_client *client)
@@ -234,12 +282,14 @@ struct fmb_client_counts fmb_client_counts(const struct fmb_client *client)
     return client->counts;
 }
 
-/* ---- Life ------------------------------------------------------------------------------------ */
+/* ---- Opening and closing ---- */
 
-/* The generated code computes them when they are first asked for, and keeps them: so before there
- * are threads that could do that at once. */
+/* The generated code computes each one when it is first used, and keeps it: two threads must not do
+ * that at once. */
 static void compute_fingerprints(void)
 {
+    __fmb_msgs_definition_query_t_get_hash();
+    __fmb_msgs_definition_t_get_hash();
     __fmb_msgs_pair_query_t_get_hash();
     __fmb_msgs_pair_result_t_get_hash();
     __fmb_msgs_scene_query_t_get_hash();
@@ -263,21 +313,22 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
         return false;
     }
     snprintf(client->prefix, sizeof client->prefix, "%s", prefix);
-    bus_channel(client->query_channel[CLIENT_PAIRS], prefix, WIRE_PAIR_QUERY);
-    bus_channel(client->query_channel[CLIENT_SCENES], prefix, WIRE_SCENE_QUERY);
+    bus_channel(client->query_channel[FMB_CLIENT_PAIR], prefix, WIRE_PAIR_QUERY);
+    bus_channel(client->query_channel[FMB_CLIENT_SCENE], prefix, WIRE_SCENE_QUERY);
+    bus_channel(client->query_channel[FMB_CLIENT_DEFINITION], prefix, WIRE_DEFINITION_QUERY);
     client->timeout_ns = (int64_t) (timeout * ns_per_s);
     client->tries = options->tries ? options->tries : TRIES;
     return true;
 }
 
-static bool open_bus(struct fmb_client *client, const struct fmb_client_options *options,
-                     char why[BUS_WHY_MAX])
+static bool open_parts(struct fmb_client *client, const char *url, char why[BUS_WHY_MAX])
 {
-    client->owned = !options->lcm;
-    client->lcm = options->lcm ? options->lcm : bus_open_or_why(options->url, NULL, why);
-    if (client->lcm && lcm_get_fileno(client->lcm) < 0)
-        snprintf(why, BUS_WHY_MAX, "nothing comes through the LCM bus");
-    return client->lcm && lcm_get_fileno(client->lcm) >= 0;
+    client->bus = bus_open(url, why);
+    client->hasher = client->bus ? hasher_create() : NULL;
+    client->held.hasher = client->hasher;
+    client->client_id = random_id();
+    requests_forget_pace(&client->requests);
+    return client->hasher != NULL;
 }
 
 struct fmb_client *fmb_client_open(const struct fmb_client_options *options, char *why, size_t size)
@@ -289,10 +340,8 @@ struct fmb_client *fmb_client_open(const struct fmb_client_options *options, cha
     pthread_once(&once, compute_fingerprints);
     if (!options)
         options = &none;
-    if (client && set_options(client, options, text) && open_bus(client, options, text)) {
-        client->client_id = random_id();
+    if (client && set_options(client, options, text) && open_parts(client, options->url, text))
         return client;
-    }
     if (size > 0)
         snprintf(why, size, "%s", text);
     fmb_client_close(client);
@@ -303,10 +352,7 @@ void fmb_client_close(struct fmb_client *client)
 {
     if (!client)
         return;
-    for (int intake = 0; intake < CLIENT_INTAKES; intake++)
-        if (client->intake[intake])
-            lcm_unsubscribe(client->lcm, client->intake[intake]);
-    if (client->lcm && client->owned)
-        lcm_destroy(client->lcm);
+    bus_close(client->bus);
+    hasher_destroy(client->hasher);
     free(client);
 }

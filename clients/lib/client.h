@@ -1,42 +1,53 @@
-/* What a client is made of. */
+/* The state of a client. Private to the library. */
 #ifndef CLIENT_H
 #define CLIENT_H
 
-#include "asking.h"
 #include "bus.h"
 #include "fmb_client.h"
-#include "keys.h"
+#include "held.h"
+#include "recent.h"
+#include "request.h"
+#include "scene_run.h"
+#include "wire.h"
 
-/* What can be subscribed to. */
-enum client_intake { CLIENT_PAIRS, CLIENT_SCENES, CLIENT_STATUSES, CLIENT_INTAKES };
+/* Channels that can be received: results of each kind, and the heartbeat. */
+enum { CLIENT_STATUS = FMB_CLIENT_KINDS, CLIENT_CHANNELS };
 
 struct fmb_client {
-    lcm_t *lcm;
-    bool owned;  /* the bus */
-    bool failed; /* the bus did */
-    bool inside; /* callbacks may be running */
+    struct bus *bus;
+    bool failed; /* the bus has failed */
+    bool inside; /* a callback may be running */
     char prefix[BUS_PREFIX_MAX + 1];
-    char query_channel[CLIENT_STATUSES][BUS_CHANNEL_MAX]; /* of pairs and scenes */
-    lcm_subscription_t *intake[CLIENT_INTAKES];           /* NULL: not subscribed to so far */
+    char query_channel[FMB_CLIENT_KINDS][BUS_CHANNEL_MAX];
+    int listener_count;
+    int channel[CLIENT_CHANNELS]; /* [number of the bus_listen() call]: CLIENT_STATUS or a kind */
     int64_t client_id, timeout_ns;
     int tries;
     struct fmb_client_watcher watcher;
     struct fmb_client_counts counts;
-    struct fmb_client_answer answer; /* of the last pair; with its texts */
+    struct hasher *hasher;
+    struct held held;
+    struct recent recent;
+    struct requests requests;
+    struct scene_run run;
+    struct fmb_client_answer answer; /* of the last single pair, with its texts */
     char text[QUERY_TEXT_MAX], certificate[QUERY_CERTIFICATE_MAX];
     char why[FMB_CLIENT_WHY_MAX];
-    struct keys keys;
-    struct asking asking;
-    struct scene_query query;   /* that is being written */
-    struct scene_result result; /* that is being read */
+    union { /* the message being decoded */
+        struct scene_result scene;
+        struct definition definition;
+    } received;
 };
 
-/* False: the bus refuses. */
-bool client_subscribe(struct fmb_client *client, enum client_intake intake);
+/* Receives the channel from now on. False: the bus cannot. */
+bool client_listen(struct fmb_client *client, int channel);
 
-/* Waits for a message, up to so many milliseconds (negative: without end), then takes those that
- * are there, but no more than some at a time, and none after *enough (may be NULL). Returns how
- * many; sets failed. */
-int client_listen(struct fmb_client *client, int wait_ms, const bool *enough);
+/* Waits until a datagram is pending or other_fd (-1: none) is readable, up to timeout_ms (negative:
+ * no limit). Sets failed on error. */
+void client_wait(struct fmb_client *client, int other_fd, int timeout_ms);
+
+/* Handles pending datagrams, up to a limit greater than a receive buffer holds. Returns their
+ * number; sets failed on error. */
+int client_receive(struct fmb_client *client);
 
 #endif

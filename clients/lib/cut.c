@@ -12,43 +12,42 @@ struct cut_place {
     uint16_t index;
 };
 
-static size_t frame_bytes(const struct fmb_client_scene *scene, size_t i)
+static size_t placement_bytes(const struct fmb_client_scene *scene, size_t i)
 {
-    struct query_frame frame;
-    question_frame(&scene->frames[i], &frame);
-    return wire_frame_bytes(&frame);
+    return question_placement_bytes(&scene->placements[i]);
 }
 
 /* ---- Blocks ---- */
 
 /* Which methods answer ALL and ACROSS; of others, pairs of a part would take too long, or the
  * service refuses. */
-static bool asks_blocks(const struct fmb_client_scene *scene)
+static bool uses_blocks(const struct fmb_client_scene *scene)
 {
     const bool certified = scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_DEFAULT ||
                            scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_CERTIFIED;
     return scene->which != FMB_CLIENT_LISTED && certified;
 }
 
-/* Bytes that the frames of a block may take: of all there is room for, or of one of two. */
-static size_t block_room(const struct fmb_client_scene *scene)
+/* Bytes that the placements of a block may take: a whole query where all fit into one, else half.
+ */
+static size_t block_capacity(const struct fmb_client_scene *scene)
 {
-    const size_t room = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
+    const size_t capacity = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
     size_t bytes = 0;
-    for (size_t i = 0; i < scene->frame_count && bytes <= room; i++)
-        bytes += frame_bytes(scene, i);
-    return bytes <= room ? room : room / 2;
+    for (size_t i = 0; i < scene->placement_count && bytes <= capacity; i++)
+        bytes += placement_bytes(scene, i);
+    return bytes <= capacity ? capacity : capacity / 2;
 }
 
 static void cut_blocks(struct cut *cut)
 {
     const struct fmb_client_scene *scene = cut->scene;
     const bool across = scene->which == FMB_CLIENT_ACROSS;
-    const size_t room = block_room(scene);
-    size_t bytes = room + 1;
-    for (size_t i = 0; i < scene->frame_count; i++) {
-        const size_t more = frame_bytes(scene, i);
-        if (bytes + more > room || (across && i == scene->split)) {
+    const size_t capacity = block_capacity(scene);
+    size_t bytes = capacity + 1;
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        const size_t more = placement_bytes(scene, i);
+        if (bytes + more > capacity || (across && i == scene->split)) {
             cut->start[cut->block_count++] = (unsigned) i;
             bytes = 0;
         }
@@ -56,7 +55,7 @@ static void cut_blocks(struct cut *cut)
         if (!across || i < scene->split)
             cut->row_count = cut->block_count;
     }
-    cut->start[cut->block_count] = (unsigned) scene->frame_count;
+    cut->start[cut->block_count] = (unsigned) scene->placement_count;
 }
 
 size_t cut_column(const struct cut *cut, size_t row)
@@ -64,16 +63,16 @@ size_t cut_column(const struct cut *cut, size_t row)
     return cut->scene->which == FMB_CLIENT_ACROSS ? cut->row_count : row;
 }
 
-static void add_frame(const struct cut *cut, unsigned frame, struct part *out)
+static void add_placement(const struct cut *cut, unsigned placement, struct part *out)
 {
-    out->frame[out->frame_count++] = frame;
-    out->bytes += frame_bytes(cut->scene, frame);
+    out->placement[out->placement_count++] = placement;
+    out->bytes += placement_bytes(cut->scene, placement);
 }
 
 static void add_block(const struct cut *cut, size_t block, struct part *out)
 {
     for (unsigned i = cut->start[block]; i < cut->start[block + 1]; i++)
-        add_frame(cut, i, out);
+        add_placement(cut, i, out);
 }
 
 static bool next_block(struct cut *cut, struct part *out)
@@ -88,18 +87,18 @@ static bool next_block(struct cut *cut, struct part *out)
     add_block(cut, out->row, out);
     out->which = out->column == out->row ? QUERY_PAIRS_ALL : QUERY_PAIRS_ACROSS;
     if (out->which == QUERY_PAIRS_ACROSS) {
-        out->split = out->frame_count;
+        out->split = out->placement_count;
         add_block(cut, out->column, out);
     }
-    out->total = part_pairs_before(out, out->split ? out->split : out->frame_count);
+    out->total = part_pairs_before(out, out->split ? out->split : out->placement_count);
     return true;
 }
 
 /* ---- Pair by pair ---- */
 
-static bool is_in(const struct cut *cut, unsigned frame)
+static bool is_in(const struct cut *cut, unsigned placement)
 {
-    return cut->place[frame].part == cut->part;
+    return cut->place[placement].part == cut->part;
 }
 
 static size_t bytes_of_pair(const struct cut *cut, const unsigned pair[2])
@@ -107,7 +106,7 @@ static size_t bytes_of_pair(const struct cut *cut, const unsigned pair[2])
     size_t bytes = WIRE_PAIR_BYTES;
     for (int f = 0; f < 2; f++)
         if (!is_in(cut, pair[f]))
-            bytes += frame_bytes(cut->scene, pair[f]);
+            bytes += placement_bytes(cut->scene, pair[f]);
     return bytes;
 }
 
@@ -115,8 +114,8 @@ static void add_pair(struct cut *cut, const unsigned pair[2], struct part *out)
 {
     for (int f = 0; f < 2; f++) {
         if (!is_in(cut, pair[f])) {
-            cut->place[pair[f]] = (struct cut_place){cut->part, (uint16_t) out->frame_count};
-            add_frame(cut, pair[f], out);
+            cut->place[pair[f]] = (struct cut_place){cut->part, (uint16_t) out->placement_count};
+            add_placement(cut, pair[f], out);
         }
         out->pair[out->total][f] = cut->place[pair[f]].index;
     }
@@ -141,10 +140,10 @@ static bool next_list(struct cut *cut, int32_t pairs_max, struct part *out)
 
 /* ---- All of them ---- */
 
-bool cut_begin(const struct fmb_client_scene *scene, bool alone, struct cut *out)
+bool cut_begin(const struct fmb_client_scene *scene, bool single, struct cut *out)
 {
-    *out = (struct cut){.scene = scene, .alone = alone, .blocks = !alone && asks_blocks(scene)};
-    const size_t count = scene->frame_count;
+    *out = (struct cut){.scene = scene, .single = single, .blocks = !single && uses_blocks(scene)};
+    const size_t count = scene->placement_count;
     if (out->blocks)
         out->start = calloc(count + 1, sizeof *out->start);
     else
@@ -166,11 +165,11 @@ void cut_end(struct cut *cut)
 
 bool cut_next(struct cut *cut, int32_t pairs_max, struct part *out)
 {
-    out->alone = cut->alone;
-    out->split = out->total = out->frame_count = 0;
+    out->single = cut->single;
+    out->split = out->total = out->placement_count = 0;
     out->row = out->column = 0;
     out->bytes = WIRE_SCENE_QUERY_BYTES;
     if (cut->blocks)
         return next_block(cut, out);
-    return next_list(cut, cut->alone ? 1 : pairs_max, out);
+    return next_list(cut, cut->single ? 1 : pairs_max, out);
 }

@@ -1,37 +1,37 @@
-/* Cuts a question into parts that one datagram has room for, in an order in which their answers can
- * be put into that of the pairs with little memory.
+/* Divides a scene into parts that fit a datagram, in an order that needs little memory to sort
+ * their answers into the order of the pairs.
  *
- * Pairs that are listed are taken as they come, as many as fit with the frames that they need. ALL
- * and ACROSS are cut into blocks of frames, unless one datagram has room for all: each part is two
- * blocks against each other, or one in itself, and a row are the parts with the same first block.
- * Pairs that are asked one by one, or by a method that decides listed pairs alone, are taken one
- * after the other, whichever they are. */
+ * Listed pairs are taken in order, as many as fit with the placements that they need. ALL and
+ * ACROSS are divided into blocks of placements, unless all fit into one datagram: each part is a
+ * pair of blocks, or one block with itself, and the parts with the same first block are a row. If
+ * each pair is a separate query, or the method only decides listed pairs, all pairs are taken in
+ * order. */
 #ifndef CUT_H
 #define CUT_H
 
-#include "part.h"
+#include "scene_part.h"
 
 struct cut_place;
 
 struct cut {
     const struct fmb_client_scene *scene;
-    bool alone, blocks;
-    struct question_cursor at; /* without blocks: behind the parts so far */
-    uint64_t part;             /* number of the last one */
+    bool single, blocks;
+    struct question_cursor at; /* without blocks: after the parts so far */
+    uint64_t part;             /* number of the last part */
     struct cut_place
-        *place; /* owned, [frame_count]: the last part that a frame was in, and where */
-    /* Block i has the frames from start[i] up to start[i + 1]. The first ones begin rows. */
+        *place; /* owned, [placement_count]: the last part with this placement, and its index */
+    /* Block i has the placements start[i] to start[i + 1] - 1. The first row_count begin rows. */
     unsigned *start; /* owned, [block_count + 1] */
     size_t block_count, row_count;
     size_t row, column; /* of the next part: its blocks */
 };
 
-/* On input: a checked question, to outlive the cut; whether its pairs are asked one by one.
- * False: no memory. */
-bool cut_begin(const struct fmb_client_scene *scene, bool alone, struct cut *out);
+/* On input: a checked scene, which must outlive the cut; single: each pair is a separate query.
+ * False: out of memory. */
+bool cut_begin(const struct fmb_client_scene *scene, bool single, struct cut *out);
 void cut_end(struct cut *cut);
 
-/* The next part; of those that are listed, with pairs_max pairs at most. False: there is none. */
+/* The next part; at most pairs_max pairs if they are listed. False: there is none. */
 bool cut_next(struct cut *cut, int32_t pairs_max, struct part *out);
 
 /* The first column of a row. */

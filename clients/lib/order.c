@@ -16,7 +16,7 @@ void order_end(struct order *order)
 }
 
 static void give(const struct order *order, const struct part_answers *answers,
-                 const unsigned pair[2], const struct part_found *found)
+                 const unsigned pair[2], const struct part_answer *found)
 {
     struct fmb_client_answer out = {
         .a = pair[0], .b = pair[1], .text = "", .certificate = answers->certificate};
@@ -40,11 +40,11 @@ static void give_none(const struct order *order, const struct part_answers *answ
 }
 
 /* The answer to the pair with this number; pairs come in the order of their numbers. */
-static const struct part_found *find(struct part_answers *answers, int32_t number)
+static const struct part_answer *find(struct part_answers *answers, int32_t number)
 {
-    if (answers->given == answers->count || answers->found[answers->given].number != number)
+    if (answers->given == answers->count || answers->answer[answers->given].number != number)
         return NULL;
-    return &answers->found[answers->given++];
+    return &answers->answer[answers->given++];
 }
 
 /* ---- Lists ---- */
@@ -53,15 +53,15 @@ static const struct part_found *find(struct part_answers *answers, int32_t numbe
 static void give_list(const struct order *order, const struct part *part,
                       struct part_answers *answers)
 {
-    const bool separated = order->cut->scene->which == FMB_CLIENT_LISTED || part->alone;
+    const bool separated = order->cut->scene->which == FMB_CLIENT_LISTED || part->single;
     for (int32_t number = 0; number < part->total; number++) {
-        const unsigned pair[2] = {part->frame[part->pair[number][0]],
-                                  part->frame[part->pair[number][1]]};
+        const unsigned pair[2] = {part->placement[part->pair[number][0]],
+                                  part->placement[part->pair[number][1]]};
         if (number >= answers->answered) {
             give_none(order, answers, pair);
             continue;
         }
-        const struct part_found *found = find(answers, number);
+        const struct part_answer *found = find(answers, number);
         if (separated || (found && found->answer.verdict != FMB_SEPARATED))
             give(order, answers, pair, found);
     }
@@ -69,7 +69,8 @@ static void give_list(const struct order *order, const struct part *part,
 
 /* ---- Rows of blocks ---- */
 
-/* The pairs of frame a with a column: their numbers in the part, and the partner of the first. */
+/* The pairs of placement a with a column: their numbers in the part, and the partner of the first.
+ */
 struct span {
     int32_t from, to;
     unsigned partner;
@@ -88,8 +89,8 @@ static struct span span_of(const struct cut *cut, size_t row, size_t column, uns
 static void give_span(const struct order *order, struct part_answers *answers, unsigned a,
                       struct span span)
 {
-    while (answers->given < answers->count && answers->found[answers->given].number < span.to) {
-        const struct part_found *found = &answers->found[answers->given++];
+    while (answers->given < answers->count && answers->answer[answers->given].number < span.to) {
+        const struct part_answer *found = &answers->answer[answers->given++];
         const unsigned pair[2] = {a, span.partner + (unsigned) (found->number - span.from)};
         give(order, answers, pair, found);
     }

@@ -1,5 +1,5 @@
-# The examples in other LCM languages (clients/examples/): what they print, and how they fare on a
-# bus with others.
+# Clients in other LCM languages (clients/examples/), and in C over plain LCM: what they print, also
+# on a bus with other clients.
 
 load service
 
@@ -48,9 +48,10 @@ start_log() {
     bus_log=$BATS_TEST_TMPDIR/bus.log
     lcm-logger -q -f -c FMB_PAIR_QUERY "$bus_log" 3>&- &
     started="${started-} $!"
-    # It does not say when it listens: it does once it has seen something.
+    # It does not say when it receives: it does once it has seen something. It writes an event when
+    # the next one comes.
     seen_by_log() {
-        "$FMB" query --certificate --timeout 0.1 --retries 0 clients/demo/cube.json > /dev/null 2>&1 || true # asked as a pair
+        "$FMB" query --certificate --timeout 0.001 --retries 0 clients/demo/cube.json > /dev/null 2>&1 || true # a pair query
         queries_at_least 1
     }
     wait_until seen_by_log
@@ -88,10 +89,10 @@ first_answers() {
     first_answers java
 }
 
-# Where one body has room, the first query's keys are dead when the second comes with them.
-dead_keys() {
+# A cache of one frame does not hold both bodies when the second query comes with their handles.
+bodies_not_held() {
     need "$1"
-    start_fmbd --bodies 1
+    start_fmbd --frames 1
     ask "$1" > "$BATS_TEST_TMPDIR/answers"
     expected 1 | cmp - "$BATS_TEST_TMPDIR/answers"
     [ "$(status_of results.UNKNOWN_BODY)" = 1 ]
@@ -99,49 +100,69 @@ dead_keys() {
     stop_fmbd
 }
 
-@test "Lua: asks by key, and sends the bodies whole again where the keys are dead" {
-    dead_keys lua
+@test "Lua: queries by handle, and sends bodies whole again where they are not held" {
+    bodies_not_held lua
 }
 
-@test "Java: asks by key, and sends the bodies whole again where the keys are dead" {
-    dead_keys java
+@test "Java: queries by handle, and sends bodies whole again where they are not held" {
+    bodies_not_held java
 }
 
-# The service sleeps until each client has asked at least twice; then all answers come at once, more
-# than were waited for.
-asks_again() {
+@test "C over plain LCM: a pair, and the largest scene" {
+    start_fmbd
+    run "$FMB_BUILD/plain"
+    [ "$status" = 0 ]
+    [ "$output" = "verdict 3, box 0.5 to 1
+status 0, 115 verdicts, 384 handles" ]
+    [ "$(status_of malformed)" = 0 ]
+    stop_fmbd
+}
+
+@test "Java: the largest scene, and a page of definitions" {
+    need java
+    start_fmbd
+    timeout 60 java -Djava.net.preferIPv4Stack=true \
+        -cp /usr/share/java/lcm.jar:build/examples/java Largest > "$BATS_TEST_TMPDIR/largest"
+    [ "$(head -n 1 "$BATS_TEST_TMPDIR/largest")" = 'status 0, 115 verdicts, 384 handles' ]
+    [ "$(tail -n 1 "$BATS_TEST_TMPDIR/largest")" = 'status 0, 384 bodies' ]
+    [ "$(status_of malformed)" = 0 ]
+    stop_fmbd
+}
+
+# The service is stopped until the client has sent its query at least three times; then all results
+# come at once, more than the client waits for.
+repeats() {
     need "$1"
     start_log
     start_fmbd
-    kill -STOP "$(worker_of "$fmbd")"
+    kill -STOP "$fmbd"
     local before client
     before=$(queries)
     ask "$1" 0.8 100 > "$BATS_TEST_TMPDIR/answers" 3>&- &
     client=$!
     started="$started $client"
-    wait_until queries_at_least $((before + 3))
-    kill -CONT "$(worker_of "$fmbd")"
+    wait_until queries_at_least $((before + 4))
+    kill -CONT "$fmbd"
     wait $client
     expected 0.8 | cmp - "$BATS_TEST_TMPDIR/answers"
-    [ "$(status_of repeated)" -ge 2 ]
-    [ "$(status_of sequence_gaps)" = 0 ]
+    [ "$(status_of received)" -ge 4 ]
     stop_fmbd
 }
 
-@test "Lua: asks again under the same number, and passes over second answers" {
-    asks_again lua
+@test "Lua: repeats a query under the same number, and ignores second results" {
+    repeats lua
 }
 
-@test "Java: asks again under the same number, and passes over second answers" {
-    asks_again java
+@test "Java: repeats a query under the same number, and ignores second results" {
+    repeats java
 }
 
-# The numbers are the same, and the answers come at once: nothing but the client ids tells them apart.
+# The sequence numbers are the same, and the results come at once: only the client ids differ.
 @test "clients with the same numbers get each its own answers, on a bus with damaged results" {
     need lua
     start_log
     start_fmbd
-    kill -STOP "$(worker_of "$fmbd")"
+    kill -STOP "$fmbd"
     clients=
     durations='0.7 0.8 0.9'
     languages=lua
@@ -156,7 +177,7 @@ asks_again() {
         done
     done
     for type in pair_query pair_result status; do "$FMB_BUILD/poke" FMB_PAIR_RESULT $type; done
-    kill -CONT "$(worker_of "$fmbd")"
+    kill -CONT "$fmbd"
     for client in $clients; do wait "$client"; done
     for language in $languages; do
         for duration in $durations; do
@@ -166,7 +187,7 @@ asks_again() {
     stop_fmbd
 }
 
-# Others ask without a pause for other bodies under the same ids, so that keys die all the time.
+# Other clients query without a pause, with other bodies under the same ids.
 @test "in a flood of other clients' results each gets its own answers" {
     need lua
     start_fmbd
@@ -183,13 +204,13 @@ asks_again() {
         ask $language 0.8 100 > "$BATS_TEST_TMPDIR/answers"
         expected 0.8 | cmp - "$BATS_TEST_TMPDIR/answers"
     done
-    # It asked to the end.
+    # It was running to the end.
     kill $flood
     stop_fmbd
 }
 
 # A service that refuses the first query twice, then answers: tests/system/busy.lua.
-asks_later() {
+queries_later() {
     need lua
     need "$1"
     LUA_PATH='build/examples/lua/?.lua;;' lua5.2 tests/system/busy.lua \
@@ -200,12 +221,12 @@ asks_later() {
     [ "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/numbers")" = '1 busy 1 busy 1 2 ' ]
 }
 
-@test "Lua: asks a busy service again, later" {
-    asks_later lua
+@test "Lua: queries a busy service again, later" {
+    queries_later lua
 }
 
-@test "Java: asks a busy service again, later" {
-    asks_later java
+@test "Java: queries a busy service again, later" {
+    queries_later java
 }
 
 fails() {
@@ -229,11 +250,11 @@ fails() {
     done
 }
 
-@test "Lua: nobody there, refused, no bus, wrong arguments: exit codes 1, 1, 1, 2" {
+@test "Lua: no service, refused, no bus, wrong arguments: exit codes 1, 1, 1, 2" {
     fails lua
 }
 
-@test "Java: nobody there, refused, no bus, wrong arguments: exit codes 1, 1, 1, 2" {
+@test "Java: no service, refused, no bus, wrong arguments: exit codes 1, 1, 1, 2" {
     fails java
 }
 

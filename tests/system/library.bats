@@ -16,7 +16,7 @@ setup() {
     export PKG_CONFIG_PATH=$root/lib/pkgconfig
 }
 
-@test "the example asks a scene: compiled against what is installed, with neither libfmb nor GMP" {
+@test "the example queries a scene: compiled against what is installed, with neither libfmb nor GMP" {
     $compiler -std=c99 -Wall -Wextra -Werror $flags clients/examples/ask_scene.c \
         $(pkg-config --static --cflags --libs fmb-client) -o "$BATS_TEST_TMPDIR/ask_scene"
     [ -z "$(ldd "$BATS_TEST_TMPDIR/ask_scene" | grep gmp)" ]
@@ -59,7 +59,7 @@ END
 
 @test "the client's library shows its own names alone" {
     nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
-    grep -qx fmb_client_ask "$BATS_TEST_TMPDIR/names"
+    grep -qx fmb_client_query "$BATS_TEST_TMPDIR/names"
     grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
     [ -z "$(grep -v '^fmb_\|asan' "$BATS_TEST_TMPDIR/names")" ]
     [ -z "$(grep fmb_msgs "$BATS_TEST_TMPDIR/names")" ]

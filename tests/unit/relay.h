@@ -1,56 +1,103 @@
-/* A service and a client in one thread, without a network: each on a bus of its own, and what one
- * publishes is carried over to the other; or lost, doubled, late, or replaced by a lie. */
+/* A service in a thread of its own, on a bus of its own, that answers, loses, delays, repeats or
+ * changes what a client gets. */
 #ifndef RELAY_H
 #define RELAY_H
 
+#include "answer.h"
+#include "bus.h"
 #include "fmb_client.h"
 #include "query.h"
-#include "server.h"
 
-struct relay {
-    lcm_t *service, *client;
-    struct server *server;
-    int queries;  /* that the client sent */
-    size_t bytes; /* of them */
-    /* Every so many; 0: none. */
-    int lose_query, lose_result, double_result, delay_result, busy;
-    bool deaf; /* no query arrives */
-    /* Changes a result of a scene; turn counts them from 1. NULL: none is changed. */
-    void (*lie)(struct scene_result *result, int turn);
-    /* Called before a query is carried over. */
-    void (*before)(struct relay *relay);
-    /* For itself. */
-    int results, turn;
-    unsigned char late[QUERY_BYTES_MAX];
-    unsigned late_size;
-    char late_channel[64];
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* Numbers of the bus_listen() calls. */
+enum relay_kind { RELAY_PAIR, RELAY_SCENE, RELAY_DEFINITION, RELAY_KINDS };
+
+enum { RELAY_SERVICES = 2, RELAY_ARRIVALS = 256 };
+
+struct relay;
+
+/* Changes a result; turn counts them from 1. */
+typedef void relay_lie(struct scene_result *result, int turn);
+typedef void relay_pair_lie(struct pair_result *result, int turn);
+typedef void relay_before(struct relay *relay);
+
+struct relay_arrival {
+    int64_t time; /* clock_ns() */
+    int64_t number;
 };
 
-/* On input: all 0 but for what is to go wrong. */
-void relay_open(struct relay *relay, size_t bodies);
-void relay_close(struct relay *relay);
+struct relay {
+    _Atomic int queries;  /* received */
+    _Atomic size_t bytes; /* of them */
+    /* [query % RELAY_ARRIVALS]; pair queries have their number. */
+    struct relay_arrival arrival[RELAY_ARRIVALS];
+    /* Every so many; 0: none. */
+    _Atomic int lose_query, lose_result, double_result, delay_result, busy;
+    _Atomic bool deaf; /* no query is answered */
+    /* NULL: results are sent as they are. The second ones: of doubled results, the second copy. */
+    relay_lie *_Atomic lie, *_Atomic second_lie;
+    relay_pair_lie *_Atomic pair_lie, *_Atomic second_pair_lie;
+    /* Called before a query is answered, in the relay's thread. */
+    relay_before *_Atomic before;
+    _Atomic int turn;
+    char url[80];
+    /* Internal. */
+    struct answerer *service[RELAY_SERVICES]; /* each answers each query, in this order */
+    pthread_mutex_t lock;                     /* of all that the thread uses */
+    pthread_t thread;
+    int stop[2];
+    struct bus *bus;
+    struct scene_job *job;
+    struct scene_result result;
+    struct definition_query definition_query;
+    struct definition definition;
+    int results;
+    unsigned char late[QUERY_BYTES_MAX];
+    size_t late_size;
+    enum relay_kind late_kind;
+};
 
-/* The service ends, and another one begins. */
-void relay_restart(struct relay *relay, size_t bodies);
+/* Runs the program again in a network of its own (netns); to be called first in main(). */
+void relay_enter(char **argv);
 
-/* A client on the client's bus; tries as in fmb_client_options. */
+/* All 0. Not on the stack: where a test fails, the thread goes on. */
+struct relay *relay_new(void);
+
+/* Starts the thread. On input: what is to go wrong; frames: capacity of the service's cache. */
+void relay_open(struct relay *relay, size_t frames);
+void relay_close(struct relay *relay); /* and frees it */
+
+/* The service ends, and another one begins. From before(), or while no query is under way. */
+void relay_restart(struct relay *relay, size_t frames);
+
+/* A second service, which answers each query before the first one. */
+void relay_add_service(struct relay *relay, size_t frames);
+
+void relay_publish(struct relay *relay, const char *channel, const void *bytes, size_t size);
+
+/* Datagrams that the relay's receive buffer had no space for. */
+uint64_t relay_dropped(struct relay *relay);
+
+/* A client on the relay's bus; options as in fmb_client_options. */
 struct fmb_client *relay_client(struct relay *relay, double timeout, int tries);
 
-/* ---- Scenes and what libfmb says of them ---- */
+/* ---- Scenes, and what libfmb decides ---- */
 
 /* Bodies of all shapes, of one dimension, some of them moving; ids from first_id on, 0: none.
  * size: of the space they are in, per axis. */
-void relay_draw(struct fmb_client_frame *out, size_t count, int dim, double size, int64_t first_id,
-                unsigned seed);
+void relay_draw(struct fmb_client_placement *out, size_t count, int dim, double size,
+                int64_t first_id, unsigned seed);
 
-/* All answers that fmb_client_ask() has to give, in their order, by fmb_decide_batch(). */
+/* All answers that fmb_client_query() has to give, in their order, by fmb_decide_batch(). */
 struct relay_truth {
-    size_t count, room;
+    size_t count, capacity;
     struct relay_pair {
         unsigned a, b;
         struct fmb_answer answer;
     } * pair;
-    size_t told;   /* answers that were as they should be so far */
+    size_t given;  /* answers that were right so far */
     size_t failed; /* those with a status */
 };
 
@@ -61,8 +108,8 @@ void relay_truth_clear(struct relay_truth *truth);
  * counted, and their verdict is not looked at. */
 void relay_check(void *truth, const struct fmb_client_answer *answer);
 
-/* Asks, and checks all answers. */
-void relay_ask(struct fmb_client *client, const struct fmb_client_scene *scene);
+/* Queries the scene, and checks all answers. */
+void relay_query(struct fmb_client *client, const struct fmb_client_scene *scene);
 
 /* A smaller number where tests are to be fast. */
 size_t relay_size(size_t size, size_t fast);

@@ -1,5 +1,5 @@
 /* The client library against the service: every answer is that of libfmb, to the bit, in the order
- * asked, whatever the size of the scene and whatever the service keeps. */
+ * of the pairs, whatever the size of the scene and whatever the service holds. */
 #include "relay.h"
 
 #include <math.h>
@@ -16,18 +16,21 @@
 
 enum { ALL_WANTS = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES };
 
-static struct fmb_client_frame *frames_of(size_t count, int dim, double size, int64_t first_id)
+static struct fmb_client_placement *frames_of(size_t count, int dim, double size, int64_t first_id)
 {
-    struct fmb_client_frame *frame = malloc((count + 1) * sizeof *frame);
+    struct fmb_client_placement *frame = malloc((count + 1) * sizeof *frame);
     relay_draw(frame, count, dim, size, first_id, 7);
     return frame;
 }
 
-static struct fmb_client_scene scene_of(const struct fmb_client_frame *frame, size_t count,
+static struct fmb_client_scene scene_of(const struct fmb_client_placement *frame, size_t count,
                                         enum fmb_client_which which, unsigned want)
 {
-    return (struct fmb_client_scene){
-        .frames = frame, .frame_count = count, .which = which, .duration = 0.75, .want = want};
+    return (struct fmb_client_scene){.placements = frame,
+                                     .placement_count = count,
+                                     .which = which,
+                                     .duration = 0.75,
+                                     .want = want};
 }
 
 static unsigned (*list_of(size_t count, size_t frames))[2]
@@ -47,92 +50,92 @@ static unsigned (*list_of(size_t count, size_t frames))[2]
 static void test_small_scenes_of_every_kind(void **state)
 {
     (void) state;
-    struct relay relay = {0};
-    relay_open(&relay, 1000);
-    struct fmb_client *client = relay_client(&relay, 5, 1);
+    struct relay *relay = relay_new();
+    relay_open(relay, 1000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
     for (size_t count = 0; count < 40; count += count < 4 ? 1 : 9)
         for (int dim = 2; dim <= 3; dim++)
             for (unsigned want = 0; want <= ALL_WANTS; want++) {
                 if (want & FMB_CLIENT_WANT_CERTIFICATE)
                     continue;
-                struct fmb_client_frame *frame = frames_of(count, dim, 3, 1);
+                struct fmb_client_placement *frame = frames_of(count, dim, 3, 1);
                 struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, want);
-                relay_ask(client, &scene);
+                relay_query(client, &scene);
                 scene.which = FMB_CLIENT_ACROSS;
                 for (scene.split = 0; scene.split <= count; scene.split += 1 + count / 3)
-                    relay_ask(client, &scene);
+                    relay_query(client, &scene);
                 scene.which = FMB_CLIENT_LISTED;
                 scene.pair_count = count < 2 ? 0 : 2 * count;
                 unsigned(*pair)[2] = list_of(scene.pair_count, count);
                 scene.pairs = (const unsigned(*)[2]) pair;
-                relay_ask(client, &scene);
+                relay_query(client, &scene);
                 free(pair);
                 free(frame);
             }
-    assert_int_equal(fmb_client_counts(client).repeated, 0);
+    assert_int_equal(relay_dropped(relay), 0);
     assert_int_equal(fmb_client_counts(client).malformed, 0);
     fmb_client_close(client);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 static void test_all_pairs_of_many_bodies(void **state)
 {
     (void) state;
-    struct relay relay = {0};
+    struct relay *relay = relay_new();
     const size_t count = relay_size(5000, 1300);
-    relay_open(&relay, 65536);
-    struct fmb_client *client = relay_client(&relay, 20, 1);
-    struct fmb_client_frame *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
+    relay_open(relay, 65536);
+    struct fmb_client *client = relay_client(relay, 20, 1);
+    struct fmb_client_placement *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
     const struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, ALL_WANTS);
-    relay_ask(client, &scene);
+    relay_query(client, &scene);
     assert_true(fmb_client_counts(client).queries > 10);
-    assert_int_equal(fmb_client_counts(client).repeated, 0);
+    assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     free(frame);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 /* Results with no room for all answers: nearly all pairs meet. */
 static void test_all_pairs_of_a_crowd(void **state)
 {
     (void) state;
-    struct relay relay = {0};
+    struct relay *relay = relay_new();
     const size_t count = relay_size(900, 560);
-    relay_open(&relay, 65536);
-    struct fmb_client *client = relay_client(&relay, 20, 1);
-    struct fmb_client_frame *frame = frames_of(count, 2, 2, 1);
+    relay_open(relay, 65536);
+    struct fmb_client *client = relay_client(relay, 20, 1);
+    struct fmb_client_placement *frame = frames_of(count, 2, 2, 1);
     struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, ALL_WANTS);
-    relay_ask(client, &scene);
+    relay_query(client, &scene);
     assert_true(fmb_client_counts(client).queries > 30);
     scene.which = FMB_CLIENT_ACROSS;
     scene.split = count / 3;
-    relay_ask(client, &scene);
+    relay_query(client, &scene);
     fmb_client_close(client);
     free(frame);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 static void test_many_pairs_listed(void **state)
 {
     (void) state;
-    struct relay relay = {0};
+    struct relay *relay = relay_new();
     const size_t count = relay_size(100000, 20000), frames = 3000;
-    relay_open(&relay, 65536);
-    struct fmb_client *client = relay_client(&relay, 20, 1);
-    struct fmb_client_frame *frame = frames_of(frames, 3, 8, 1);
+    relay_open(relay, 65536);
+    struct fmb_client *client = relay_client(relay, 20, 1);
+    struct fmb_client_placement *frame = frames_of(frames, 3, 8, 1);
     unsigned(*pair)[2] = list_of(count, frames);
     struct fmb_client_scene scene = scene_of(frame, frames, FMB_CLIENT_LISTED, 0);
     scene.pairs = (const unsigned(*)[2]) pair;
     scene.pair_count = count;
     for (unsigned want = 0; want <= ALL_WANTS; want += ALL_WANTS) {
         scene.want = want;
-        relay_ask(client, &scene);
+        relay_query(client, &scene);
     }
-    assert_int_equal(fmb_client_counts(client).repeated, 0);
+    assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     free(pair);
     free(frame);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 /* ---- Methods and certificates ---- */
@@ -140,46 +143,46 @@ static void test_many_pairs_listed(void **state)
 static struct fmb_pair pair_of(const struct fmb_client_scene *scene, unsigned a, unsigned b,
                                struct fmb_body body[2])
 {
-    const struct fmb_client_frame *of[2] = {&scene->frames[a], &scene->frames[b]};
+    const struct fmb_client_placement *of[2] = {&scene->placements[a], &scene->placements[b]};
     struct fmb_frame frame[2];
     for (int f = 0; f < 2; f++) {
         const int count = fmb_component_count(of[f]->dim, of[f]->shape) * of[f]->dim;
         fmb_body_make(of[f]->dim, of[f]->shape, of[f]->components, (size_t) count, &body[f]);
         frame[f] = (struct fmb_frame){.body = &body[f], .moving = of[f]->moving};
-        memcpy(frame[f].origin, of[f]->origin, sizeof frame[f].origin);
+        memcpy(frame[f].origin, of[f]->position, sizeof frame[f].origin);
         memcpy(frame[f].velocity, of[f]->velocity, sizeof frame[f].velocity);
     }
     return (struct fmb_pair){frame[0], frame[1], scene->duration};
 }
 
-/* Answers against fmb_decide(), which is asked for each pair up to the one that is told. */
-struct telling {
+/* Answers against fmb_decide(), called for each pair up to the one that is given. */
+struct giving {
     const struct fmb_client_scene *scene;
-    size_t told, undecided, separated;
+    size_t given, undecided, separated;
     unsigned a, b; /* next pair */
 };
 
-static enum fmb_status decide(struct telling *telling, struct fmb_answer *answer)
+static enum fmb_status decide(struct giving *giving, struct fmb_answer *answer)
 {
     struct fmb_body body[2];
-    const struct fmb_pair pair = pair_of(telling->scene, telling->a, telling->b, body);
-    if (++telling->b == telling->scene->frame_count)
-        telling->b = ++telling->a + 1;
-    return fmb_decide(fmb_method_by_number(telling->scene->method), &pair,
-                      telling->scene->want & FMB_WANT_BOX, answer);
+    const struct fmb_pair pair = pair_of(giving->scene, giving->a, giving->b, body);
+    if (++giving->b == giving->scene->placement_count)
+        giving->b = ++giving->a + 1;
+    return fmb_decide(fmb_method_by_number(giving->scene->method), &pair,
+                      giving->scene->want & FMB_WANT_BOX, answer);
 }
 
 static void check_method(void *user, const struct fmb_client_answer *answer)
 {
-    struct telling *telling = user;
+    struct giving *giving = user;
     struct fmb_answer should;
     enum fmb_status status;
     unsigned a, b;
     do {
-        a = telling->a;
-        b = telling->b;
-        status = decide(telling, &should);
-        telling->separated += status == FMB_OK && should.verdict == FMB_SEPARATED;
+        a = giving->a;
+        b = giving->b;
+        status = decide(giving, &should);
+        giving->separated += status == FMB_OK && should.verdict == FMB_SEPARATED;
     } while (status == FMB_OK && should.verdict == FMB_SEPARATED);
     assert_int_equal(answer->a, a);
     assert_int_equal(answer->b, b);
@@ -187,94 +190,94 @@ static void check_method(void *user, const struct fmb_client_answer *answer)
     assert_int_equal(answer->answer.verdict, should.verdict);
     assert_memory_equal(answer->answer.contact, should.contact, sizeof should.contact);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
-    telling->told++;
-    telling->undecided += status != FMB_OK;
+    giving->given++;
+    giving->undecided += status != FMB_OK;
 }
 
-/* fmb and sat answer pairs that are listed alone; the library sees to that. */
+/* fmb and sat answer listed pairs only; the library lists them. */
 static void test_every_method(void **state)
 {
     (void) state;
-    struct relay relay = {0};
-    relay_open(&relay, 1000);
-    struct fmb_client *client = relay_client(&relay, 5, 1);
-    struct fmb_client_frame *frame = frames_of(60, 3, 3, 1);
+    struct relay *relay = relay_new();
+    relay_open(relay, 1000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement *frame = frames_of(60, 3, 3, 1);
     for (size_t i = 0; fmb_method_at(i); i++) {
         struct fmb_client_scene scene = scene_of(frame, 60, FMB_CLIENT_ALL, ALL_WANTS);
-        struct telling telling = {.scene = &scene, .b = 1};
+        struct giving giving = {.scene = &scene, .b = 1};
         scene.method = fmb_method_at(i)->number;
-        assert_int_equal(fmb_client_ask(client, &scene, check_method, &telling), FMB_OK);
-        assert_true(telling.told > 100);
-        assert_true(telling.separated > 100);
-        assert_true(fmb_method_at(i)->certain == (telling.undecided == 0));
+        assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
+        assert_true(giving.given > 100);
+        assert_true(giving.separated > 100);
+        assert_true(fmb_method_at(i)->certain == (giving.undecided == 0));
     }
     fmb_client_close(client);
     free(frame);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 static void check_certificate(void *user, const struct fmb_client_answer *answer)
 {
-    struct telling *telling = user;
+    struct giving *giving = user;
     struct fmb_body body[2];
     char why[200];
     assert_int_equal(answer->status, FMB_OK);
-    assert_int_equal(answer->a, telling->a);
-    assert_int_equal(answer->b, telling->b);
+    assert_int_equal(answer->a, giving->a);
+    assert_int_equal(answer->b, giving->b);
     struct fmb_answer should;
-    assert_int_equal(decide(telling, &should), FMB_OK);
+    assert_int_equal(decide(giving, &should), FMB_OK);
     assert_int_equal(answer->answer.verdict, should.verdict);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
-    const struct fmb_pair pair = pair_of(telling->scene, answer->a, answer->b, body);
+    const struct fmb_pair pair = pair_of(giving->scene, answer->a, answer->b, body);
     assert_non_null(answer->certificate);
     assert_true(
         fmb_certificate_holds(&pair, answer->answer.verdict, answer->certificate, why, sizeof why));
-    telling->told++;
+    giving->given++;
 }
 
 static void test_certificates_of_all_pairs(void **state)
 {
     (void) state;
-    struct relay relay = {0};
-    relay_open(&relay, 20); /* fewer than there are */
-    struct fmb_client *client = relay_client(&relay, 5, 1);
-    struct fmb_client_frame *frame = frames_of(40, 2, 3, 1);
+    struct relay *relay = relay_new();
+    relay_open(relay, 20); /* fewer than there are */
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement *frame = frames_of(40, 2, 3, 1);
     const struct fmb_client_scene scene =
         scene_of(frame, 40, FMB_CLIENT_ALL, ALL_WANTS | FMB_CLIENT_WANT_CERTIFICATE);
-    struct telling telling = {.scene = &scene, .b = 1};
-    assert_int_equal(fmb_client_ask(client, &scene, check_certificate, &telling), FMB_OK);
-    assert_int_equal(telling.told, 780);
-    assert_int_equal(fmb_client_counts(client).repeated, 0);
+    struct giving giving = {.scene = &scene, .b = 1};
+    assert_int_equal(fmb_client_query(client, &scene, check_certificate, &giving), FMB_OK);
+    assert_int_equal(giving.given, 780);
+    assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     free(frame);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 static void test_one_pair(void **state)
 {
     (void) state;
-    struct relay relay = {0};
-    relay_open(&relay, 10);
-    struct fmb_client *client = relay_client(&relay, 5, 1);
+    struct relay *relay = relay_new();
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_answer answer;
-    struct fmb_client_frame pair[2];
+    struct fmb_client_placement pair[2];
     relay_draw(pair, 2, 2, 1, 1, 1);
     for (int k = 0; k < 2; k++)
-        pair[1] = pair[0], pair[1].body_id = 2, pair[1].origin[0] += 1;
-    assert_int_equal(fmb_client_ask_pair(client, pair, 1, 0, &answer), FMB_OK);
+        pair[1] = pair[0], pair[1].body_id = 2, pair[1].position[0] += 1;
+    assert_int_equal(fmb_client_query_pair(client, pair, 1, 0, &answer), FMB_OK);
     assert_int_equal(answer.answer.verdict, FMB_TOUCHING);
     assert_null(answer.certificate);
-    assert_int_equal(fmb_client_ask_pair(client, pair, 1, FMB_CLIENT_WANT_CERTIFICATE, &answer),
+    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_CLIENT_WANT_CERTIFICATE, &answer),
                      FMB_OK);
     assert_memory_equal(answer.certificate, "touching", 8);
-    pair[1].origin[1] = INFINITY;
-    assert_int_equal(fmb_client_ask_pair(client, pair, 1, 0, &answer), FMB_NOT_FINITE);
-    assert_string_equal(answer.text, "frames[1].origin[1]: not a finite number");
+    pair[1].position[1] = INFINITY;
+    assert_int_equal(fmb_client_query_pair(client, pair, 1, 0, &answer), FMB_NOT_FINITE);
+    assert_string_equal(answer.text, "placements[1].position[1]: not a finite number");
     fmb_client_close(client);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
-/* ---- Questions that are none ---- */
+/* ---- Wrong scenes ---- */
 
 static void never(void *user, const struct fmb_client_answer *answer)
 {
@@ -286,32 +289,32 @@ static void never(void *user, const struct fmb_client_answer *answer)
 static void wrong(struct fmb_client *client, const struct fmb_client_scene *scene, int status,
                   const char *place)
 {
-    assert_int_equal(fmb_client_ask(client, scene, never, NULL), status);
+    assert_int_equal(fmb_client_query(client, scene, never, NULL), status);
     assert_memory_equal(fmb_client_why(client), place, strlen(place));
 }
 
-static void test_wrong_questions_are_refused(void **state)
+static void test_wrong_scenes_are_refused(void **state)
 {
     (void) state;
-    struct relay relay = {0};
-    relay_open(&relay, 10);
-    struct fmb_client *client = relay_client(&relay, 5, 1);
-    struct fmb_client_frame frame[3], good[3];
+    struct relay *relay = relay_new();
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement frame[3], good[3];
     relay_draw(good, 3, 3, 1, 1, 1);
     memcpy(frame, good, sizeof good);
     struct fmb_client_scene scene = scene_of(frame, 3, FMB_CLIENT_LISTED, 0);
     frame[2].shape = 4;
-    wrong(client, &scene, FMB_UNKNOWN_SHAPE, "frames[2].shape: ");
+    wrong(client, &scene, FMB_UNKNOWN_SHAPE, "placements[2].shape: ");
     frame[2] = good[2], frame[1].dim = 2, frame[1].shape = FMB_CUBOID;
-    wrong(client, &scene, FMB_DIMENSIONS_DIFFER, "frames[1].dim: ");
+    wrong(client, &scene, FMB_DIMENSIONS_DIFFER, "placements[1].dim: ");
     frame[1].dim = 4;
-    wrong(client, &scene, FMB_WRONG_DIMENSION, "frames[1].dim: ");
+    wrong(client, &scene, FMB_WRONG_DIMENSION, "placements[1].dim: ");
     frame[1] = good[1], frame[0].components[4] = NAN;
-    wrong(client, &scene, FMB_NOT_FINITE, "frames[0].components[4]: ");
+    wrong(client, &scene, FMB_NOT_FINITE, "placements[0].components[4]: ");
     frame[0] = good[0], frame[0].body_id = INT64_C(1) << 53;
-    wrong(client, &scene, FMB_BAD_ID, "frames[0].body_id: ");
+    wrong(client, &scene, FMB_BAD_ID, "placements[0].body_id: ");
     frame[0].body_id = -1;
-    wrong(client, &scene, FMB_BAD_ID, "frames[0].body_id: ");
+    wrong(client, &scene, FMB_BAD_ID, "placements[0].body_id: ");
     frame[0] = good[0];
     const unsigned same[][2] = {{0, 1}, {1, 1}}, beyond[][2] = {{0, 3}};
     scene.pairs = same, scene.pair_count = 2;
@@ -326,9 +329,9 @@ static void test_wrong_questions_are_refused(void **state)
     wrong(client, &scene, FMB_UNKNOWN_WANT, "want: ");
     scene.want = 0, scene.duration = -1;
     wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
-    assert_int_equal(relay.queries, 0);
+    assert_int_equal(relay->queries, 0);
     fmb_client_close(client);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
 /* A method that the service does not know is refused by it, pair by pair. */
@@ -339,132 +342,135 @@ static void count_refusals(void *user, const struct fmb_client_answer *answer)
     ++*(int *) user;
 }
 
-static void test_refusals_of_the_service_are_told(void **state)
+static void test_refusals_of_the_service_are_given(void **state)
 {
     (void) state;
-    struct relay relay = {0};
+    struct relay *relay = relay_new();
     int count = 0;
-    relay_open(&relay, 10);
-    struct fmb_client *client = relay_client(&relay, 5, 1);
-    struct fmb_client_frame frame[5];
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement frame[5];
     relay_draw(frame, 5, 3, 1, 1, 1);
     struct fmb_client_scene scene = scene_of(frame, 5, FMB_CLIENT_ALL, 0);
     scene.method = 77;
-    assert_int_equal(fmb_client_ask(client, &scene, count_refusals, &count), FMB_OK);
+    assert_int_equal(fmb_client_query(client, &scene, count_refusals, &count), FMB_OK);
     assert_int_equal(count, 10);
     fmb_client_close(client);
-    relay_close(&relay);
+    relay_close(relay);
 }
 
-/* ---- Keys ---- */
+/* ---- Handles ---- */
 
-struct keys_world {
-    struct relay relay;
+struct world {
+    struct relay *relay;
     struct fmb_client *client;
-    struct fmb_client_frame *frame;
+    struct fmb_client_placement *frame;
     struct fmb_client_scene scene;
 };
 
-static void open_world(struct keys_world *world, size_t bodies)
+static void open_world(struct world *world, size_t bodies)
 {
     memset(world, 0, sizeof *world);
-    relay_open(&world->relay, bodies);
-    world->client = relay_client(&world->relay, 5, 1);
+    world->relay = relay_new();
+    relay_open(world->relay, bodies);
+    world->client = relay_client(world->relay, 5, 1);
     world->frame = frames_of(100, 3, 5, 1);
     world->scene = scene_of(world->frame, 100, FMB_CLIENT_ALL, ALL_WANTS);
 }
 
-static void close_world(struct keys_world *world)
+static void close_world(struct world *world)
 {
     fmb_client_close(world->client);
     free(world->frame);
-    relay_close(&world->relay);
+    relay_close(world->relay);
 }
 
-/* Asks, and tells what was done for it. */
-static struct fmb_client_counts ask_world(struct keys_world *world)
+/* Queries the scene. On output: what was done for it. */
+static struct fmb_client_counts query_world(struct world *world)
 {
     const struct fmb_client_counts before = fmb_client_counts(world->client);
-    relay_ask(world->client, &world->scene);
+    relay_query(world->client, &world->scene);
     struct fmb_client_counts counts = fmb_client_counts(world->client);
     counts.queries -= before.queries;
     counts.bytes -= before.bytes;
     counts.whole -= before.whole;
-    counts.by_key -= before.by_key;
+    counts.by_handle -= before.by_handle;
     return counts;
 }
 
-static void test_bodies_go_by_key_the_second_time(void **state)
+static void test_bodies_go_by_handle_the_second_time(void **state)
 {
     (void) state;
-    struct keys_world world;
+    struct world world;
     open_world(&world, 1000);
     world.frame[50].body_id = 0;
-    const struct fmb_client_counts first = ask_world(&world), second = ask_world(&world);
+    const struct fmb_client_counts first = query_world(&world), second = query_world(&world);
     assert_int_equal(first.whole, 100);
-    assert_int_equal(first.by_key, 0);
+    assert_int_equal(first.by_handle, 0);
     assert_int_equal(second.whole, 1);
-    assert_int_equal(second.by_key, 99);
+    assert_int_equal(second.by_handle, 99);
     assert_int_equal(second.queries, 1);
     assert_true(second.bytes < 2 * first.bytes / 3);
-    print_message("# 100 bodies whole: %d bytes, by key: %d\n", (int) first.bytes,
+    print_message("# 100 bodies whole: %d bytes, by handle: %d\n", (int) first.bytes,
                   (int) second.bytes);
     /* A body that has other components, be it in the sign of a zero, goes whole. */
     world.frame[3].components[1] = -world.frame[3].components[1];
-    assert_int_equal(ask_world(&world).whole, 2);
+    assert_int_equal(query_world(&world).whole, 2);
+    /* The body from before is still held. */
     world.frame[3].components[1] = -world.frame[3].components[1];
-    assert_int_equal(ask_world(&world).whole, 2);
+    assert_int_equal(query_world(&world).whole, 1);
     /* The place does not matter. */
-    world.frame[3].origin[1] += 1;
-    assert_int_equal(ask_world(&world).whole, 1);
+    world.frame[3].position[1] += 1;
+    assert_int_equal(query_world(&world).whole, 1);
     close_world(&world);
 }
 
-/* Another client gives the ids to other bodies. */
-static void test_replaced_bodies_are_sent_again(void **state)
+/* Another client gives the ids to other bodies: neither has to send anything again. */
+static void test_equal_ids_of_two_clients_do_not_matter(void **state)
 {
     (void) state;
-    struct keys_world world;
+    struct world world;
     open_world(&world, 1000);
-    ask_world(&world);
-    struct fmb_client *other = relay_client(&world.relay, 5, 1);
-    struct fmb_client_frame *others = frames_of(10, 3, 5, 41);
+    query_world(&world);
+    struct fmb_client *other = relay_client(world.relay, 5, 1);
+    struct fmb_client_placement *others = frames_of(10, 3, 5, 41);
     for (int i = 0; i < 10; i++)
         others[i].components[0] += 7;
     const struct fmb_client_scene scene = scene_of(others, 10, FMB_CLIENT_ALL, ALL_WANTS);
-    relay_ask(other, &scene);
-    const struct fmb_client_counts counts = ask_world(&world);
-    assert_int_equal(counts.queries, 2);
-    assert_int_equal(counts.by_key, 100 + 90);
-    assert_int_equal(counts.whole, 10);
-    relay_ask(other, &scene);
+    relay_query(other, &scene);
+    const struct fmb_client_counts counts = query_world(&world);
+    assert_int_equal(counts.queries, 1);
+    assert_int_equal(counts.by_handle, 100);
+    assert_int_equal(counts.whole, 0);
+    relay_query(other, &scene);
+    assert_int_equal(fmb_client_counts(other).whole, 10);
     fmb_client_close(other);
     free(others);
     close_world(&world);
 }
 
-static void test_a_new_service_knows_no_keys(void **state)
+static void test_a_new_service_holds_no_bodies(void **state)
 {
     (void) state;
-    struct keys_world world;
+    struct world world;
     open_world(&world, 1000);
-    ask_world(&world);
-    relay_restart(&world.relay, 1000);
-    const struct fmb_client_counts counts = ask_world(&world);
+    query_world(&world);
+    relay_restart(world.relay, 1000);
+    const struct fmb_client_counts counts = query_world(&world);
     assert_int_equal(counts.queries, 2);
     assert_int_equal(counts.whole, 100);
-    assert_int_equal(ask_world(&world).whole, 0);
+    assert_int_equal(query_world(&world).whole, 0);
     close_world(&world);
 }
 
-static void test_room_for_one_body_is_enough(void **state)
+static void test_a_cache_of_one_body_is_enough(void **state)
 {
     (void) state;
     for (size_t bodies = 1; bodies <= 64; bodies *= 4) {
-        struct keys_world world;
+        struct world world;
         open_world(&world, bodies);
         for (int i = 0; i < 4; i++)
-            assert_true(ask_world(&world).queries <= 3);
+            assert_true(query_world(&world).queries <= 3);
         close_world(&world);
     }
 }
@@ -478,18 +484,18 @@ static void steal(struct relay *relay)
     stolen++;
 }
 
-static void test_keys_that_are_never_held_end(void **state)
+static void test_bodies_that_are_never_held_end(void **state)
 {
     (void) state;
-    struct keys_world world;
+    struct world world;
     open_world(&world, 1000);
-    ask_world(&world);
-    world.relay.before = steal;
+    query_world(&world);
+    world.relay->before = steal;
     for (int i = 0; i < 3; i++)
-        assert_int_equal(ask_world(&world).queries, 2);
+        assert_int_equal(query_world(&world).queries, 2);
     assert_int_equal(stolen, 6);
     struct fmb_client_answer answer;
-    assert_int_equal(fmb_client_ask_pair(world.client, world.frame, 1, 0, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(world.client, world.frame, 1, 0, &answer), FMB_OK);
     close_world(&world);
 }
 
@@ -497,12 +503,12 @@ static void test_keys_that_are_never_held_end(void **state)
 static void test_an_id_may_stand_twice(void **state)
 {
     (void) state;
-    struct keys_world world;
+    struct world world;
     open_world(&world, 1000);
     for (int i = 10; i < 20; i++)
         world.frame[i].body_id = 5;
     for (int i = 0; i < 3; i++)
-        ask_world(&world);
+        query_world(&world);
     close_world(&world);
 }
 
@@ -511,14 +517,14 @@ static void test_an_id_may_stand_twice(void **state)
 static void test_two_clients_in_a_process(void **state)
 {
     (void) state;
-    struct keys_world world;
+    struct world world;
     open_world(&world, 1000);
-    struct fmb_client *other = relay_client(&world.relay, 5, 1);
-    struct fmb_client_frame *others = frames_of(80, 2, 3, 1);
+    struct fmb_client *other = relay_client(world.relay, 5, 1);
+    struct fmb_client_placement *others = frames_of(80, 2, 3, 1);
     const struct fmb_client_scene scene = scene_of(others, 80, FMB_CLIENT_ALL, ALL_WANTS);
     for (int i = 0; i < 3; i++) {
-        ask_world(&world);
-        relay_ask(other, &scene);
+        query_world(&world);
+        relay_query(other, &scene);
     }
     assert_int_equal(fmb_client_counts(other).malformed, 0);
     assert_int_equal(fmb_client_counts(world.client).malformed, 0);
@@ -530,7 +536,7 @@ static void test_two_clients_in_a_process(void **state)
 /* cmocka's asserts are for the thread that runs the tests. */
 struct thread {
     const struct fmb_client_scene *scene;
-    struct relay relay;
+    struct relay *relay;
     struct fmb_client *client;
     uint64_t contacts;
     int failed;
@@ -548,7 +554,7 @@ static void *run(void *user)
     struct thread *thread = user;
     for (int i = 0; i < 20; i++)
         thread->failed +=
-            fmb_client_ask(thread->client, thread->scene, count_contacts, thread) != FMB_OK;
+            fmb_client_query(thread->client, thread->scene, count_contacts, thread) != FMB_OK;
     return NULL;
 }
 
@@ -557,15 +563,16 @@ static void test_clients_in_threads(void **state)
     (void) state;
     struct thread thread[2];
     pthread_t id[2];
-    struct fmb_client_frame *frame = frames_of(600, 3, 6, 1);
+    struct fmb_client_placement *frame = frames_of(600, 3, 6, 1);
     const struct fmb_client_scene scene = scene_of(frame, 600, FMB_CLIENT_ALL, ALL_WANTS);
     struct relay_truth truth;
     relay_truth_make(&scene, &truth);
     for (int i = 0; i < 2; i++) {
         memset(&thread[i], 0, sizeof thread[i]);
         thread[i].scene = &scene;
-        relay_open(&thread[i].relay, 1000);
-        thread[i].client = relay_client(&thread[i].relay, 20, 1);
+        thread[i].relay = relay_new();
+        relay_open(thread[i].relay, 1000);
+        thread[i].client = relay_client(thread[i].relay, 20, 1);
     }
     for (int i = 0; i < 2; i++)
         assert_int_equal(pthread_create(&id[i], NULL, run, &thread[i]), 0);
@@ -574,13 +581,13 @@ static void test_clients_in_threads(void **state)
         assert_int_equal(thread[i].failed, 0);
         assert_int_equal(thread[i].contacts, 20 * truth.count);
         fmb_client_close(thread[i].client);
-        relay_close(&thread[i].relay);
+        relay_close(thread[i].relay);
     }
     relay_truth_clear(&truth);
     free(frame);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_small_scenes_of_every_kind),
@@ -590,16 +597,18 @@ int main(void)
         cmocka_unit_test(test_every_method),
         cmocka_unit_test(test_certificates_of_all_pairs),
         cmocka_unit_test(test_one_pair),
-        cmocka_unit_test(test_wrong_questions_are_refused),
-        cmocka_unit_test(test_refusals_of_the_service_are_told),
-        cmocka_unit_test(test_bodies_go_by_key_the_second_time),
-        cmocka_unit_test(test_replaced_bodies_are_sent_again),
-        cmocka_unit_test(test_a_new_service_knows_no_keys),
-        cmocka_unit_test(test_room_for_one_body_is_enough),
-        cmocka_unit_test(test_keys_that_are_never_held_end),
+        cmocka_unit_test(test_wrong_scenes_are_refused),
+        cmocka_unit_test(test_refusals_of_the_service_are_given),
+        cmocka_unit_test(test_bodies_go_by_handle_the_second_time),
+        cmocka_unit_test(test_equal_ids_of_two_clients_do_not_matter),
+        cmocka_unit_test(test_a_new_service_holds_no_bodies),
+        cmocka_unit_test(test_a_cache_of_one_body_is_enough),
+        cmocka_unit_test(test_bodies_that_are_never_held_end),
         cmocka_unit_test(test_an_id_may_stand_twice),
         cmocka_unit_test(test_two_clients_in_a_process),
         cmocka_unit_test(test_clients_in_threads),
     };
-    return cmocka_run_group_tests_name("client_ask", tests, NULL, NULL);
+    (void) argc;
+    relay_enter(argv);
+    return cmocka_run_group_tests_name("client_query", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "part.h"
+#include "scene_part.h"
 
 #include "wire.h"
 
@@ -7,9 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of a pair, with a certificate of usual length. */
+enum { SINGLE_RESULT_BYTES = 1400 };
+
 void part_answers_clear(struct part_answers *answers)
 {
-    free(answers->found);
+    free(answers->answer);
     free(answers->certificate);
     memset(answers, 0, sizeof *answers);
 }
@@ -31,17 +34,17 @@ static size_t contact_bytes(const struct fmb_client_scene *scene)
 
 size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene)
 {
-    if (part->alone) /* a certificate of usual length */
-        return WIRE_BYTES_MAX;
+    if (part->single)
+        return SINGLE_RESULT_BYTES;
     const size_t named = part->which == QUERY_PAIRS_LISTED ? 0 : WIRE_PAIR_BYTES;
-    const size_t bytes = WIRE_SCENE_RESULT_BYTES + 8 * (size_t) part->frame_count +
+    const size_t bytes = WIRE_SCENE_RESULT_BYTES + HANDLE_BYTES * (size_t) part->placement_count +
                          (size_t) part->total * (1 + named + contact_bytes(scene));
     return bytes < QUERY_BYTES_MAX ? bytes : QUERY_BYTES_MAX;
 }
 
 int32_t part_pairs_before(const struct part *part, int32_t a)
 {
-    const int32_t n = part->frame_count;
+    const int32_t n = part->placement_count;
     if (part->which == QUERY_PAIRS_ACROSS)
         return a * (n - part->split);
     return a * n - a * (a + 1) / 2;
@@ -49,7 +52,7 @@ int32_t part_pairs_before(const struct part *part, int32_t a)
 
 /* ---- What a result says ---- */
 
-/* A result of a scene against the part that it answers. */
+/* A result against the part that it answers. */
 struct taking {
     const struct part *part;
     const struct fmb_client_scene *scene;
@@ -62,29 +65,29 @@ static bool is_contact(int verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* The number of the pair of a verdict; -1: the result names what was not asked. */
+/* The number of the pair of a verdict; -1: the result names a pair that is not of the query. */
 static int32_t number_of(const struct taking *taking, int32_t k)
 {
     const struct part *part = taking->part;
     if (part->which == QUERY_PAIRS_LISTED)
         return taking->first + k;
-    const unsigned frames = (unsigned) part->frame_count, split = (unsigned) part->split;
+    const unsigned placements = (unsigned) part->placement_count, split = (unsigned) part->split;
     const unsigned a = taking->result->pair[k][0], b = taking->result->pair[k][1];
     const bool across = part->which == QUERY_PAIRS_ACROSS;
     const unsigned partners = across ? split : a + 1;
-    if (a >= (across ? split : frames) || b < partners || b >= frames)
+    if (a >= (across ? split : placements) || b < partners || b >= placements)
         return -1;
     return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
 }
 
-static bool moves(const struct taking *taking, unsigned frame)
+static bool moves(const struct taking *taking, unsigned placement)
 {
-    return taking->scene->frames[taking->part->frame[frame]].moving;
+    return taking->scene->placements[taking->part->placement[placement]].moving;
 }
 
 static bool any_moves(const struct taking *taking)
 {
-    for (int32_t i = 0; i < taking->part->frame_count; i++)
+    for (int32_t i = 0; i < taking->part->placement_count; i++)
         if (moves(taking, (unsigned) i))
             return true;
     return false;
@@ -100,7 +103,7 @@ static bool pair_moves(const struct taking *taking, int32_t k)
     return moves(taking, pair[0]) || moves(taking, pair[1]);
 }
 
-/* Each pair that is named was asked, comes once, in order, and is a contact. */
+/* Each pair that is named is of the query, comes once, in order, and is a contact. */
 static bool fits_named(const struct taking *taking)
 {
     const struct scene_result *result = taking->result;
@@ -140,7 +143,7 @@ static bool fits(const struct taking *taking)
     if (result->end_pair <= taking->first || result->end_pair > part->total)
         return false;
     if (result->has_boxes && (!(taking->scene->want & FMB_CLIENT_WANT_BOX) ||
-                              result->dim != taking->scene->frames[0].dim))
+                              result->dim != taking->scene->placements[0].dim))
         return false;
     if (listed &&
         (result->names_pairs || result->verdict_count != result->end_pair - taking->first))
@@ -148,18 +151,18 @@ static bool fits(const struct taking *taking)
     return (listed || fits_named(taking)) && fits_times(taking);
 }
 
-static bool make_room(struct part_answers *answers, size_t more)
+static bool reserve(struct part_answers *answers, size_t more)
 {
-    if (answers->count + more <= answers->room)
+    if (answers->count + more <= answers->capacity)
         return true;
-    size_t room = 2 * answers->room;
-    if (room < answers->count + more)
-        room = answers->count + more;
-    struct part_found *found = realloc(answers->found, room * sizeof *found);
-    if (!found)
+    size_t capacity = 2 * answers->capacity;
+    if (capacity < answers->count + more)
+        capacity = answers->count + more;
+    struct part_answer *answer = realloc(answers->answer, capacity * sizeof *answer);
+    if (!answer)
         return false;
-    answers->found = found;
-    answers->room = room;
+    answers->answer = answer;
+    answers->capacity = capacity;
     return true;
 }
 
@@ -182,18 +185,18 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
     const struct taking taking = {part, scene, result, answers->answered};
     int32_t contact = 0;
     if (!fits(&taking))
-        return PART_NONSENSE;
+        return PART_MALFORMED;
     size_t found = 0;
     for (int32_t k = 0; k < result->verdict_count; k++)
         found += result->verdict[k] != FMB_SEPARATED;
-    if (!make_room(answers, found))
+    if (!reserve(answers, found))
         return PART_NO_MEMORY;
     for (int32_t k = 0; k < result->verdict_count; k++) {
         if (result->verdict[k] == FMB_SEPARATED)
             continue;
-        struct part_found *out = &answers->found[answers->count++];
-        *out = (struct part_found){.number = number_of(&taking, k),
-                                   .answer.verdict = (enum fmb_verdict) result->verdict[k]};
+        struct part_answer *out = &answers->answer[answers->count++];
+        *out = (struct part_answer){.number = number_of(&taking, k),
+                                    .answer.verdict = (enum fmb_verdict) result->verdict[k]};
         if (is_contact(result->verdict[k]))
             fill_contact(result, contact++, &out->answer);
     }
@@ -201,19 +204,19 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
     return PART_TAKEN;
 }
 
-/* An interval of a contact of a pair that moves alone; a box of a contact, and a certificate, where
- * they were wanted. */
+/* An interval of a contact of a pair that moves single; a box of a contact, and a certificate,
+ * where they were wanted. */
 static bool fits_pair(const struct part *part, const struct fmb_client_scene *scene,
                       const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
     const bool contact = is_contact((int) answer->verdict);
-    const bool moving =
-        scene->frames[part->frame[0]].moving || scene->frames[part->frame[1]].moving;
+    const bool moving = scene->placements[part->placement[0]].moving ||
+                        scene->placements[part->placement[1]].moving;
     if (answer->has_contact && !(contact && moving))
         return false;
     if (answer->has_box &&
-        !(contact && scene->want & FMB_CLIENT_WANT_BOX && result->dim == scene->frames[0].dim))
+        !(contact && scene->want & FMB_CLIENT_WANT_BOX && result->dim == scene->placements[0].dim))
         return false;
     return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;
 }
@@ -222,12 +225,12 @@ enum part_taken part_take_pair(const struct part *part, const struct fmb_client_
                                const struct pair_result *result, struct part_answers *answers)
 {
     if (!fits_pair(part, scene, result))
-        return PART_NONSENSE;
-    if (!make_room(answers, 1))
+        return PART_MALFORMED;
+    if (!reserve(answers, 1))
         return PART_NO_MEMORY;
     if (result->certificate && !(answers->certificate = strdup(result->certificate)))
         return PART_NO_MEMORY;
-    answers->found[answers->count++] = (struct part_found){.answer = result->answer};
+    answers->answer[answers->count++] = (struct part_answer){.answer = result->answer};
     answers->answered = 1;
     return PART_TAKEN;
 }

@@ -1,0 +1,63 @@
+#include "recent.h"
+
+#include "big_endian.h"
+#include "digest.h"
+#include "request.h"
+
+/* Where parts of messages stand. */
+enum {
+    PAIR_STATUS_AT = 8 + 6 * 8 + 2 * HANDLE_BYTES,
+    SCENE_STATUS_AT = 8 + 4 * 8,
+    COMPUTE_BYTES = 8 /* the last field */
+};
+
+static bool is_comparable(const struct request_result *result)
+{
+    return result->kind != FMB_CLIENT_DEFINITION && result->status != FMB_BUSY &&
+           result->status != FMB_UNKNOWN_BODY;
+}
+
+/* Behind a counted list. */
+static size_t skip_list(const unsigned char *bytes, size_t at, size_t each)
+{
+    return at + 4 + each * big_endian_32(bytes + at);
+}
+
+static uint64_t digest_of(const struct request_result *result)
+{
+    const unsigned char *bytes = result->bytes;
+    const size_t end = result->size - COMPUTE_BYTES;
+    if (result->kind == FMB_CLIENT_PAIR)
+        return digest(0, bytes + PAIR_STATUS_AT, end - PAIR_STATUS_AT);
+    const size_t method = skip_list(bytes, SCENE_STATUS_AT + 4, 1);
+    const size_t handles = skip_list(bytes, method + 4, 2);
+    const size_t answers = skip_list(bytes, handles, 1);
+    const uint64_t before = digest(0, bytes + SCENE_STATUS_AT, handles - SCENE_STATUS_AT);
+    return digest(before, bytes + answers, end - answers);
+}
+
+static int32_t end_pair_of(const struct request_result *result)
+{
+    return result->kind == FMB_CLIENT_SCENE ? result->scene->end_pair : 0;
+}
+
+void recent_note(struct recent *recent, const struct request_result *result, int64_t number)
+{
+    struct recent_result *out = &recent->result[number % RECENT_MAX];
+    out->used = is_comparable(result);
+    if (!out->used)
+        return;
+    out->kind = result->kind;
+    out->number = number;
+    out->end_pair = end_pair_of(result);
+    out->digest = digest_of(result);
+}
+
+bool recent_contradicts(const struct recent *recent, const struct request_result *result)
+{
+    if (result->number < 0 || !is_comparable(result))
+        return false;
+    const struct recent_result *first = &recent->result[result->number % RECENT_MAX];
+    return first->used && first->number == result->number && first->kind == (int) result->kind &&
+           first->end_pair == end_pair_of(result) && first->digest != digest_of(result);
+}

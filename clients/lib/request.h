@@ -1,0 +1,115 @@
+/* Requests: queries under way, each sent until its result comes.
+ *
+ * LCM loses datagrams without notice. So a query without a result is sent again, with the same
+ * sequence number: first some milliseconds after the usual response time (pace, below), then after
+ * twice the time each, up to the client's timeout. A busy service is queried again after a pause. A
+ * second result of a query is ignored, but compared with the first (recent.h).
+ *
+ * Queries under way are limited in number and bytes, so that the receive buffers of both ends can
+ * hold them.
+ *
+ * The engine distinguishes kinds of messages; handlers process their contents. */
+#ifndef REQUEST_H
+#define REQUEST_H
+
+#include "fmb_client_raw.h"
+#include "query.h"
+
+#include <stdint.h>
+
+/* A well-formed result; or none, if status is negative (enum fmb_client_status). */
+struct request_result {
+    enum fmb_client_kind kind;
+    int status;
+    const char *detail; /* "" if OK, or if there is no result */
+    union {
+        const struct pair_result *pair;
+        const struct scene_result *scene;
+    };
+    const unsigned char *bytes; /* of the message; NULL: there is no result */
+    size_t size;
+    int64_t number;
+};
+
+/* What a handler decided about a result. */
+enum request_taken {
+    REQUEST_MALFORMED, /* it does not match the query, and is ignored */
+    REQUEST_COMPLETE,
+    REQUEST_NEXT, /* the handler has written another query into the request, to be sent */
+    /* As NEXT, but the other query has the same meaning, with frames in place of handles. A result
+     * of the first query with status OK, from another service, is accepted too. */
+    REQUEST_WHOLE
+};
+
+struct request;
+
+/* On input: a result of the request; or none, and the request ends. Private to the library. */
+typedef enum request_taken request_handler(void *user, struct request *request,
+                                           const struct request_result *result);
+
+struct request {
+    bool under_way;
+    enum fmb_client_kind kind;
+    request_handler *handler;
+    void *user;
+    fmb_client_raw_sink *raw_sink; /* of a raw query */
+    int64_t number;                /* sequence number */
+    int64_t earlier;    /* number of the query that this one repeats with frames; -1: none */
+    int64_t first_at;   /* time of first sending; times are those of clock_ns() */
+    int64_t sent_at;    /* time of last sending */
+    int64_t deadline;   /* time to send it again, or to give it up */
+    int64_t give_up_at; /* time to give it up at the latest */
+    int64_t interval;   /* from sent_at to deadline */
+    int refusals;       /* times that the service was busy */
+    bool repeated;
+    bool pausing;  /* the deadline ends a pause after a refusal */
+    size_t charge; /* bytes that it takes of a receive buffer */
+    size_t size;
+    unsigned char query[QUERY_BYTES_MAX];
+};
+
+/* Response time of one kind of query, estimated like the round-trip time of RFC 6298. It is
+ * measured from sending, or from the previous result if that came later, since a service answers
+ * the queries of a client one after the other. Nanoseconds; times are those of clock_ns(). */
+struct request_pace {
+    int64_t mean, deviation; /* 0: no result so far */
+    int64_t retry;           /* first interval of the next query */
+    int64_t heard_at;        /* time of the last result */
+    int64_t overtaken_at;    /* requests sent before this are older than one that has its result */
+    int64_t oldest;          /* number of the oldest request under way */
+};
+
+struct requests {
+    struct request request[FMB_CLIENT_RAW_WINDOW];
+    int count;           /* under way */
+    size_t charge;       /* of all of them */
+    int64_t next_number; /* sequence number of the next query */
+    int64_t heard_at;    /* time of the last result; clock_ns() */
+    bool silent;         /* the service stopped answering */
+    struct request_pace pace[FMB_CLIENT_KINDS];
+};
+
+struct fmb_client;
+
+/* Resets the estimates: at the start, and when the service has stopped answering. */
+void requests_forget_pace(struct requests *requests);
+
+/* Whether another request may begin. bytes: of its query or its result, the larger of the two. */
+bool requests_ready(const struct requests *requests, size_t bytes);
+
+/* Begins a request. The caller writes request->query and size, then calls request_send(). */
+struct request *request_begin(struct fmb_client *client, enum fmb_client_kind kind, size_t bytes,
+                              request_handler *handler, void *user);
+void request_send(struct fmb_client *client, struct request *request);
+
+/* Waits until a datagram comes, a deadline or the time until (clock_ns()) is reached, or other_fd
+ * (-1: none) is readable. Receives pending datagrams, then repeats or gives up what is due. */
+void requests_step(struct fmb_client *client, int other_fd, int64_t until);
+
+/* Ends all requests without a result. */
+void requests_give_up(struct fmb_client *client, int status);
+
+/* Processes a result for this client. */
+void requests_take(struct fmb_client *client, const struct request_result *result);
+
+#endif

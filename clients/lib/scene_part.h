@@ -1,0 +1,62 @@
+/* A part of a scene that fits a datagram, and its answers. */
+#ifndef SCENE_PART_H
+#define SCENE_PART_H
+
+#include "fmb_client.h"
+#include "question.h"
+
+/* Least bytes of a placement with frames: id, handle, a geometry of 6 numbers, position, and the
+ * counts of orientation and velocity, in 2D. */
+enum {
+    PART_PLACEMENT_BYTES_MIN = 8 + HANDLE_BYTES + 4 + 4 + 1 + 4 + 8 * 6 + 8 * 2 + 4 + 4,
+    PART_PLACEMENTS_MAX = QUERY_BYTES_MAX / PART_PLACEMENT_BYTES_MIN
+};
+
+struct part {
+    bool single;   /* a pair query */
+    int32_t which; /* QUERY_PAIRS_ */
+    int32_t split; /* with ACROSS */
+    int32_t total; /* of pairs */
+    int32_t placement_count;
+    unsigned placement[PART_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
+    uint16_t pair[QUERY_PAIRS_MAX][2];       /* LISTED: [total][a, b], indices in the part */
+    size_t bytes;                            /* of the query, if all placements have frames */
+    size_t row, column;                      /* for cut.h and order.h */
+};
+
+/* A pair that is not separated. */
+struct part_answer {
+    int32_t number;           /* in the part, in its order */
+    struct fmb_answer answer; /* with verdict 0: the method cannot decide it */
+};
+
+/* All 0: none yet. */
+struct part_answers {
+    int32_t answered; /* the first so many pairs; those not listed in answer are separated */
+    int status;       /* of the other pairs, once no more answers will come */
+    char text[QUERY_TEXT_MAX];
+    struct part_answer *answer;    /* owned, [count], in order */
+    size_t count, capacity, given; /* given: index of the first not delivered yet */
+    char *certificate;             /* owned; NULL: none */
+};
+
+void part_answers_clear(struct part_answers *answers);
+
+/* Sets the status of all pairs not answered. text: NULL or "" for that of the status. */
+void part_answers_refuse(struct part_answers *answers, int status, const char *text);
+
+/* Most bytes of the result. */
+size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene);
+
+/* With ALL and ACROSS: number of the first pair of placement a of the part. */
+int32_t part_pairs_before(const struct part *part, int32_t a);
+
+/* Adds the answers of a result with FMB_OK, for the pairs from answers->answered on. MALFORMED: the
+ * result does not match the part; nothing was added. */
+enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
+enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
+                                const struct scene_result *result, struct part_answers *answers);
+enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
+                               const struct pair_result *result, struct part_answers *answers);
+
+#endif

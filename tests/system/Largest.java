@@ -1,0 +1,121 @@
+/* Sends the largest scene query that is served (63,900 bytes) from Java, prints the counts of
+ * verdicts and handles of its result; then queries the definitions of all bodies, and prints how
+ * many came in the first result. Exit code 0: both had their result. */
+
+import fmb_msgs.definition_query_t;
+import fmb_msgs.definition_t;
+import fmb_msgs.placement_t;
+import fmb_msgs.scene_query_t;
+import fmb_msgs.scene_result_t;
+
+import java.io.ByteArrayOutputStream;
+import java.io.DataOutputStream;
+import java.io.IOException;
+import java.util.concurrent.BlockingQueue;
+import java.util.concurrent.LinkedBlockingQueue;
+import java.util.concurrent.TimeUnit;
+import lcm.lcm.LCM;
+import lcm.lcm.LCMEncodable;
+
+public final class Largest
+{
+    /* 80 bytes, 165 for each cube and 4 for each pair. */
+    private static final int CUBES = 384, PAIRS = 115, LARGEST = 63900, TRIES = 20;
+    private static final long CLIENT_ID = 815;
+
+    private static placement_t cube(int i)
+    {
+        placement_t cube = new placement_t();
+        cube.body_id = 1 + i;
+        cube.dim = 3;
+        cube.num_frames = 1;
+        cube.shapes = new byte[] {placement_t.SHAPE_CUBOID};
+        cube.num_numbers = 12;
+        cube.numbers = new double[] {0, 0, 0, 1 + i, 0, 0, 0, 1, 0, 0, 0, 1};
+        cube.position = new double[] {0.75 * i, 0, 0};
+        cube.orientation = cube.velocity = new double[0];
+        return cube;
+    }
+
+    private static scene_query_t sceneQuery()
+    {
+        scene_query_t query = new scene_query_t();
+        query.client_id = CLIENT_ID;
+        query.num_placements = CUBES;
+        query.placements = new placement_t[CUBES];
+        for (int i = 0; i < CUBES; i++)
+            query.placements[i] = cube(i);
+        query.num_indices = 2 * PAIRS;
+        query.indices = new short[2 * PAIRS];
+        for (int i = 0; i < 2 * PAIRS; i++)
+            query.indices[i] = (short) (i / 2 + i % 2);
+        query.ignored = new short[0];
+        return query;
+    }
+
+    private static definition_query_t definitionQuery()
+    {
+        definition_query_t query = new definition_query_t();
+        query.client_id = CLIENT_ID;
+        query.sequence_number = 1;
+        query.handles = new byte[0];
+        return query;
+    }
+
+    private static int size(LCMEncodable message) throws IOException
+    {
+        ByteArrayOutputStream bytes = new ByteArrayOutputStream();
+        message.encode(new DataOutputStream(bytes));
+        return bytes.size();
+    }
+
+    /* LCM loses datagrams: a query is sent until its result comes. Null: none came. */
+    private static String query(LCM lcm, String channel, LCMEncodable query,
+                                BlockingQueue<String> results) throws InterruptedException
+    {
+        String result = null;
+        for (int i = 0; i < TRIES && result == null; i++) {
+            lcm.publish(channel, query);
+            result = results.poll(500, TimeUnit.MILLISECONDS);
+        }
+        return result;
+    }
+
+    private static boolean run(LCM lcm) throws IOException, InterruptedException
+    {
+        BlockingQueue<String> scenes = new LinkedBlockingQueue<>();
+        BlockingQueue<String> definitions = new LinkedBlockingQueue<>();
+        lcm.subscribe("FMB_SCENE_RESULT", (bus, channel, bytes) -> {
+            try {
+                scene_result_t result = new scene_result_t(bytes);
+                scenes.add("status " + result.status + ", " + result.num_verdicts + " verdicts, " +
+                           result.num_handle_bytes / 16 + " handles");
+            } catch (IOException damaged) {
+                scenes.add("damaged");
+            }
+        });
+        lcm.subscribe("FMB_DEFINITION", (bus, channel, bytes) -> {
+            try {
+                definition_t result = new definition_t(bytes);
+                definitions.add("status " + result.status + ", " + result.num_bodies + " bodies");
+            } catch (IOException damaged) {
+                definitions.add("damaged");
+            }
+        });
+        scene_query_t scene = sceneQuery();
+        if (size(scene) != LARGEST)
+            return false;
+        String first = query(lcm, "FMB_SCENE_QUERY", scene, scenes);
+        String second = query(lcm, "FMB_DEFINITION_QUERY", definitionQuery(), definitions);
+        System.out.println(first);
+        System.out.println(second);
+        return first != null && second != null;
+    }
+
+    public static void main(String[] args) throws IOException, InterruptedException
+    {
+        String url = System.getenv("LCM_DEFAULT_URL");
+        boolean usual = url == null || url.isEmpty();
+        System.exit(run(new LCM(usual ? "udpm://239.255.76.67:7667?ttl=0" : url)) ? 0 : 1);
+    }
+}

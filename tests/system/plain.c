@@ -1,0 +1,116 @@
+/* plain: a client over plain LCM, without libfmb-client: lcm-gen's types, and liblcm's receiver.
+ *
+ * Sends a pair query, then the largest scene query that is served (63,900 bytes), and prints the
+ * verdict, and the counts of verdicts and handles. Exit code 0: both had their result. */
+#include <lcm/lcm.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "fmb_msgs_pair_query_t.h"
+#include "fmb_msgs_pair_result_t.h"
+#include "fmb_msgs_scene_query_t.h"
+#include "fmb_msgs_scene_result_t.h"
+
+/* A scene query of 80 bytes, 165 for each cube and 4 for each pair. */
+enum {
+    CUBES = 384,
+    PAIRS = 115,
+    LARGEST = 80 + 165 * CUBES + 4 * PAIRS,
+    TRIES = 20,
+    WAIT_MS = 500
+};
+_Static_assert(LARGEST == 63900, "the largest query");
+
+static const int64_t client_id = 4711;
+
+static fmb_msgs_placement_t cube_at(int64_t id, double *position)
+{
+    static uint8_t shape = FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID;
+    static double numbers[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    return (fmb_msgs_placement_t){.body_id = id,
+                                  .dim = 3,
+                                  .num_frames = 1,
+                                  .shapes = &shape,
+                                  .num_numbers = 12,
+                                  .numbers = numbers,
+                                  .position = position};
+}
+
+static void on_pair(const lcm_recv_buf_t *buffer, const char *channel,
+                    const fmb_msgs_pair_result_t *result, void *user)
+{
+    (void) buffer;
+    (void) channel;
+    if (result->client_id != client_id || *(bool *) user)
+        return;
+    *(bool *) user = true;
+    printf("verdict %d, box %g to %g\n", result->verdict, result->box[0], result->box[3]);
+}
+
+static void on_scene(const lcm_recv_buf_t *buffer, const char *channel,
+                     const fmb_msgs_scene_result_t *result, void *user)
+{
+    (void) buffer;
+    (void) channel;
+    if (result->client_id != client_id || *(bool *) user)
+        return;
+    *(bool *) user = true;
+    printf("status %d, %d verdicts, %d handles\n", result->status, result->num_verdicts,
+           result->num_handle_bytes / 16);
+}
+
+static void send_pair(lcm_t *lcm)
+{
+    static double position[2][3] = {{0, 0, 0}, {0.5, 0, 0}};
+    const fmb_msgs_pair_query_t query = {.client_id = client_id,
+                                         .want = FMB_MSGS_PAIR_QUERY_T_WANT_BOX,
+                                         .a = cube_at(1, position[0]),
+                                         .b = cube_at(2, position[1])};
+    fmb_msgs_pair_query_t_publish(lcm, "FMB_PAIR_QUERY", &query);
+}
+
+static void send_scene(lcm_t *lcm)
+{
+    static double position[CUBES][3];
+    static fmb_msgs_placement_t placement[CUBES];
+    static int16_t index[2 * PAIRS];
+    for (int i = 0; i < CUBES; i++) {
+        position[i][0] = 0.75 * i;
+        placement[i] = cube_at(1 + i, position[i]);
+    }
+    for (int i = 0; i < 2 * PAIRS; i++)
+        index[i] = (int16_t) (i / 2 + i % 2);
+    const fmb_msgs_scene_query_t query = {.client_id = client_id,
+                                          .sequence_number = 1,
+                                          .num_placements = CUBES,
+                                          .placements = placement,
+                                          .num_indices = 2 * PAIRS,
+                                          .indices = index};
+    if (fmb_msgs_scene_query_t_encoded_size(&query) == LARGEST)
+        fmb_msgs_scene_query_t_publish(lcm, "FMB_SCENE_QUERY", &query);
+}
+
+/* LCM loses datagrams: a query is sent until its result comes. */
+static bool query(lcm_t *lcm, void (*send)(lcm_t *lcm), const bool *answered)
+{
+    for (int i = 0; i < TRIES && !*answered; i++) {
+        send(lcm);
+        while (!*answered && lcm_handle_timeout(lcm, WAIT_MS) > 0)
+            continue;
+    }
+    return *answered;
+}
+
+int main(void)
+{
+    bool pair = false, scene = false;
+    lcm_t *lcm = lcm_create(NULL);
+    if (!lcm)
+        return 1;
+    fmb_msgs_pair_result_t_subscribe(lcm, "FMB_PAIR_RESULT", on_pair, &pair);
+    fmb_msgs_scene_result_t_subscribe(lcm, "FMB_SCENE_RESULT", on_scene, &scene);
+    const bool answered = query(lcm, send_pair, &pair) && query(lcm, send_scene, &scene);
+    lcm_destroy(lcm);
+    return answered ? 0 : 1;
+}
