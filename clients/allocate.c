@@ -24,6 +24,11 @@ void *allocate(size_t count, size_t size)
     return or_exit(calloc(count ? count : 1, size));
 }
 
+void *allocate_unset(size_t size)
+{
+    return or_exit(malloc(size));
+}
+
 void *allocate_in_lines(size_t count, size_t size)
 {
     const size_t line = 64;

@@ -13,6 +13,9 @@ void *allocate(size_t count, size_t size);
  * of a line lie in one. */
 void *allocate_in_lines(size_t count, size_t size);
 
+/* One of size bytes, from 1, not cleared. */
+void *allocate_unset(size_t size);
+
 /* On input: memory of allocate() or NULL. On output: the same contents with room for at least
  * `needed` elements; *room tells for how many, and grows at least twofold, so that a list that
  * is filled one by one is copied a few times only. */

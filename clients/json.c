@@ -1,9 +1,10 @@
-/* text.c cuts the input into objects and lets nothing but JSON through; cJSON makes a tree of
- * each; the tree is checked and copied into a scene, and freed before the scene is used.
+/* text.c splits the input into objects; cJSON parses each into a tree, and decides what is JSON;
+ * the tree is checked and copied into a scene, and freed.
  *
- * What is known of cJSON 1.7, and minded here: access to an array by index walks the list, so the
- * list is walked once; the look-up of keys takes the first of several and ignores case, so keys
- * are compared here; and 1e999 becomes infinite, so every number is checked. */
+ * Properties of cJSON 1.7 that matter here: access to an array by index walks its list, so lists
+ * are walked once; the look-up of a key takes the first match and ignores case, so keys are
+ * compared here; 1e999 reads as infinite, so every number is checked. Numbers are read by strtod(),
+ * rounded correctly, in the C locale. */
 #include "json.h"
 
 #include "allocate.h"
@@ -37,42 +38,14 @@ struct place {
     size_t index;
 };
 
-struct writer {
-    char *text;
-    size_t used, room;
-};
-
-static void write_text(struct writer *writer, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void write_text(struct writer *writer, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    int length = vsnprintf(writer->text + writer->used, writer->room - writer->used, format, list);
-    va_end(list);
-    if (length > 0)
-        writer->used += (size_t) length;
-    if (writer->used >= writer->room)
-        writer->used = writer->room - 1;
-}
-
-static void write_place(struct writer *writer, const struct place *place)
+static void write_place(FILE *out, const struct place *place)
 {
     if (place->parent)
-        write_place(writer, place->parent);
+        write_place(out, place->parent);
     if (!place->key)
-        write_text(writer, "[%zu]", place->index);
+        fprintf(out, "[%zu]", place->index);
     else
-        write_text(writer, "%s%s", place->parent ? "." : "", place->key);
-}
-
-static struct writer begin_error(struct json_reader *reader)
-{
-    struct writer writer = {reader->error, 0, sizeof reader->error};
-    if (reader->scene_number > 1)
-        write_text(&writer, "scene %zu: ", reader->scene_number);
-    return writer;
+        fprintf(out, "%s%s", place->parent ? "." : "", place->key);
 }
 
 static bool refuse(struct json_reader *reader, const struct place *place, const char *format, ...)
@@ -81,15 +54,21 @@ static bool refuse(struct json_reader *reader, const struct place *place, const 
 /* Always false. place: NULL for the scene itself. */
 static bool refuse(struct json_reader *reader, const struct place *place, const char *format, ...)
 {
-    struct writer writer = begin_error(reader);
+    memset(reader->error, 0, sizeof reader->error);
+    FILE *out = fmemopen(reader->error, sizeof reader->error - 1, "w");
+    if (!out)
+        allocate_failed();
+    if (reader->scene_number > 1)
+        fprintf(out, "scene %zu: ", reader->scene_number);
     if (place) {
-        write_place(&writer, place);
-        write_text(&writer, ": ");
+        write_place(out, place);
+        fputs(": ", out);
     }
     va_list list;
     va_start(list, format);
-    vsnprintf(writer.text + writer.used, writer.room - writer.used, format, list);
+    vfprintf(out, format, list);
     va_end(list);
+    fclose(out);
     return false;
 }
 
@@ -400,8 +379,15 @@ static bool read_scene(struct json_reader *reader, const cJSON *item, struct sce
 
 /* ---- The input ------------------------------------------------------------------------------- */
 
+/* Without memory the program ends; to the parser it would be invalid JSON. */
+static void *allocate_bytes(size_t size)
+{
+    return allocate(size, 1);
+}
+
 struct json_reader *json_open(int fd)
 {
+    cJSON_InitHooks(&(cJSON_Hooks){allocate_bytes, free});
     struct json_reader *reader = allocate(1, sizeof *reader);
     text_open(fd, &reader->text);
     reader->scene_number = 1;
@@ -419,21 +405,29 @@ const char *json_error(const struct json_reader *reader)
     return reader->error;
 }
 
-/* What text.c lets through cJSON refuses for want of memory only. */
+static enum json_outcome bad_text(struct json_reader *reader, enum json_outcome outcome)
+{
+    refuse(reader, NULL, "%s", reader->text.error);
+    return outcome;
+}
+
 static enum json_outcome read_object_text(struct json_reader *reader, const char *object,
                                           size_t length, struct scene *out)
 {
-    cJSON *root = cJSON_ParseWithLength(object, length);
-    if (!root)
-        allocate_failed();
-    bool good = read_scene(reader, root, out);
+    const char *end = object;
+    cJSON *root = cJSON_ParseWithLengthOpts(object, length, &end, false);
+    const bool parsed = root && end == object + length;
+    const bool good = parsed && read_scene(reader, root, out);
     cJSON_Delete(root);
-    if (!good) {
-        scene_clear(out);
-        return JSON_BAD;
+    if (good) {
+        reader->scene_number++;
+        return JSON_SCENE;
     }
-    reader->scene_number++;
-    return JSON_SCENE;
+    scene_clear(out);
+    if (parsed)
+        return JSON_BAD;
+    text_refuse(&reader->text, (size_t) (end - object), "invalid JSON");
+    return bad_text(reader, JSON_BAD);
 }
 
 enum json_outcome json_next(struct json_reader *reader, struct scene *out)
@@ -443,8 +437,8 @@ enum json_outcome json_next(struct json_reader *reader, struct scene *out)
     memset(out, 0, sizeof *out);
     switch (text_next(&reader->text, &object, &length)) {
     case TEXT_OBJECT: return read_object_text(reader, object, length, out);
-    case TEXT_FAILED: refuse(reader, NULL, "%s", reader->text.error); return JSON_FAILED;
-    case TEXT_BAD: refuse(reader, NULL, "%s", reader->text.error); return JSON_BAD;
+    case TEXT_FAILED: return bad_text(reader, JSON_FAILED);
+    case TEXT_BAD: return bad_text(reader, JSON_BAD);
     case TEXT_END: break;
     }
     if (reader->scene_number > 1)

@@ -36,7 +36,7 @@ enum json_outcome json_next(struct json_reader *reader, struct scene *out);
 /* After JSON_BAD and JSON_FAILED, one line without its end, lives as long as the reader:
  *
  *     bodies[3].components[1]: expected 3 numbers, found 2
- *     line 3, column 14: expected ',' or '}', found ']'
+ *     line 3, column 14: invalid JSON
  *
  * From the second object of the input on it begins with "scene 2: ". */
 const char *json_error(const struct json_reader *reader);

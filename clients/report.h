@@ -2,6 +2,7 @@
 #ifndef REPORT_H
 #define REPORT_H
 
+#include "json_write.h"
 #include "number.h"
 #include "scene.h"
 
@@ -30,8 +31,7 @@ struct report {
  * pair that could not be decided has an "error" in place of the verdict. */
 struct report_json {
     struct report report;
-    FILE *out;
-    bool first; /* no pair of the scene was written yet */
+    struct json_writer json;
 };
 
 struct report_json report_json(FILE *out);
@@ -62,11 +62,7 @@ struct report_text report_text(FILE *out, bool box);
 
 /* The members of one answer as report_json writes them, without braces: "verdict": ..., or
  * "error": ... Used wherever answers are printed as JSON; the pair is not looked at. */
-void report_answer_json(FILE *out, int dim, const struct outcome *outcome);
-
-/* text as a JSON string with its quotes; bytes that are not printable ASCII as \u00XX. */
-void report_string_json(FILE *out, const char *text);
-void report_bytes_json(FILE *out, const char *bytes, size_t count);
+void report_answer_json(struct json_writer *json, int dim, const struct outcome *outcome);
 
 /* Verdict, contact and box for people, in columns, without the end of the line:
  *

@@ -1,74 +1,64 @@
 #include "scene_json.h"
 
-#include "number.h"
+#include "json_write.h"
 
-#include <inttypes.h>
-
-static void write_vector(FILE *out, const double *numbers, int count)
+static void write_components(struct json_writer *json, const struct fmb_body *body)
 {
-    char text[NUMBER_TEXT_MAX];
-    for (int i = 0; i < count; i++)
-        fprintf(out, "%s%s", i ? "," : "[", number_exact(numbers[i], text));
-    putc(']', out);
+    json_begin(json, "components", '[');
+    for (int i = 0; i < body->count; i++)
+        json_numbers(json, NULL, body->component[i], body->dim);
+    json_end(json, ']');
 }
 
-static void write_components(FILE *out, const struct fmb_body *body)
+static void write_body(struct json_writer *json, int dim, const struct scene_body *body)
 {
-    for (int i = 0; i < body->count; i++) {
-        putc(i ? ',' : '[', out);
-        write_vector(out, body->component[i], body->dim);
-    }
-    putc(']', out);
+    json_begin(json, NULL, '{');
+    json_integer(json, "id", body->id);
+    json_string(json, "shape", fmb_shape_name((int) body->body.shape));
+    json_numbers(json, "origin", body->origin, dim);
+    write_components(json, &body->body);
+    if (body->moving)
+        json_numbers(json, "velocity", body->velocity, dim);
+    json_end(json, '}');
 }
 
-static void write_body(FILE *out, int dim, const struct scene_body *body)
+static void write_bodies(struct json_writer *json, const struct scene *scene)
 {
-    fprintf(out, "{\"id\": %" PRId64 ", \"shape\": \"%s\", \"origin\": ", body->id,
-            fmb_shape_name((int) body->body.shape));
-    write_vector(out, body->origin, dim);
-    fputs(", \"components\": ", out);
-    write_components(out, &body->body);
-    if (body->moving) {
-        fputs(", \"velocity\": ", out);
-        write_vector(out, body->velocity, dim);
-    }
-    putc('}', out);
-}
-
-static void write_bodies(FILE *out, const struct scene *scene)
-{
-    fputs(" \"bodies\": [", out);
+    json_break(json, "\n ");
+    json_begin(json, "bodies", '[');
     for (size_t i = 0; i < scene->body_count; i++) {
-        fputs(i ? ",\n            " : "", out);
-        write_body(out, scene->dim, &scene->body[i]);
+        if (i > 0)
+            json_break(json, "\n            ");
+        write_body(json, scene->dim, &scene->body[i]);
     }
-    putc(']', out);
+    json_end(json, ']');
 }
 
-/* So many on a line. */
-enum { PAIRS_A_LINE = 8 };
-
-static void write_pairs(FILE *out, const struct scene *scene)
+static void write_pairs(struct json_writer *json, const struct scene *scene)
 {
-    fputs(",\n \"pairs\": [", out);
+    enum { PAIRS_PER_LINE = 8 };
+    json_break(json, "\n ");
+    json_begin(json, "pairs", '[');
     for (size_t k = 0; k < scene->pair_count; k++) {
-        const struct scene_pair *pair = &scene->pair[k];
-        fprintf(out, "%s[%" PRId64 ",%" PRId64 "]",
-                k == 0                 ? ""
-                : k % PAIRS_A_LINE > 0 ? ", "
-                                       : ",\n           ",
-                scene->body[pair->a].id, scene->body[pair->b].id);
+        if (k > 0 && k % PAIRS_PER_LINE == 0)
+            json_break(json, "\n           ");
+        json_begin(json, NULL, '[');
+        json_integer(json, NULL, scene->body[scene->pair[k].a].id);
+        json_integer(json, NULL, scene->body[scene->pair[k].b].id);
+        json_end(json, ']');
     }
-    putc(']', out);
+    json_end(json, ']');
 }
 
 void scene_json_write(FILE *out, const struct scene *scene)
 {
-    char duration[NUMBER_TEXT_MAX];
-    fprintf(out, "{\"dim\": %d, \"duration\": %s,\n", scene->dim,
-            number_exact(scene->duration, duration));
-    write_bodies(out, scene);
+    struct json_writer json = {.out = out};
+    json_begin(&json, NULL, '{');
+    json_integer(&json, "dim", scene->dim);
+    json_number(&json, "duration", scene->duration);
+    write_bodies(&json, scene);
     if (!scene->all_pairs)
-        write_pairs(out, scene);
-    fputs("}\n", out);
+        write_pairs(&json, scene);
+    json_end(&json, '}');
+    json_line_end(&json);
 }

@@ -3,7 +3,7 @@
 #include "allocate.h"
 
 #include <errno.h>
-#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,9 +13,7 @@ enum { READ_BYTES = 1 << 16 };
 
 void text_open(int fd, struct text *out)
 {
-    memset(out, 0, sizeof *out);
-    out->fd = fd;
-    scan_begin(&out->scan);
+    *out = (struct text){.fd = fd, .line = 1, .column = 1, .object_max = TEXT_OBJECT_MAX};
 }
 
 void text_close(struct text *text)
@@ -24,21 +22,60 @@ void text_close(struct text *text)
     memset(text, 0, sizeof *text);
 }
 
-/* Forgets the bytes before the object that is being read. */
-static void drop_old(struct text *text)
+/* ---- Positions and errors -------------------------------------------------------------------- */
+
+/* Moves begin, and counts lines and columns on the way. */
+static void advance(struct text *text, size_t count)
 {
-    if (text->begin == 0)
-        return;
-    text->used -= text->begin;
-    text->scanned -= text->begin;
-    memmove(text->bytes, text->bytes + text->begin, text->used);
-    text->begin = 0;
+    for (; count > 0; count--) {
+        const unsigned char byte = (unsigned char) text->bytes[text->begin++];
+        const bool continuation = (byte & 0xc0) == 0x80;
+        if (byte == '\n') {
+            text->line++;
+            text->column = 1;
+        } else if (!continuation) {
+            text->column++;
+        }
+    }
 }
 
-/* On output: how many bytes more; 0: the end; -1: errno. */
+enum text_outcome text_refuse(struct text *text, size_t offset, const char *format, ...)
+{
+    char what[TEXT_ERROR_MAX / 2];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(what, sizeof what, format, list);
+    va_end(list);
+    advance(text, offset);
+    snprintf(text->error, sizeof text->error, "line %zu, column %zu: %s", text->line, text->column,
+             what);
+    return TEXT_BAD;
+}
+
+static enum text_outcome refuse_byte(struct text *text, unsigned char byte)
+{
+    if (byte > 0x20 && byte < 0x7f)
+        return text_refuse(text, 0, "expected an object, '{', found '%c'", byte);
+    return text_refuse(text, 0, "expected an object, '{', found byte 0x%02x", byte);
+}
+
+static enum text_outcome failed(struct text *text)
+{
+    snprintf(text->error, sizeof text->error, "%s", strerror(errno));
+    return TEXT_FAILED;
+}
+
+/* ---- Reading --------------------------------------------------------------------------------- */
+
+/* Drops the bytes before begin and appends a piece of the input. Returns how many bytes were read;
+ * 0: the end; -1: errno. */
 static ssize_t read_more(struct text *text)
 {
-    drop_old(text);
+    text->used -= text->begin;
+    text->scanned -= text->begin;
+    if (text->begin > 0)
+        memmove(text->bytes, text->bytes + text->begin, text->used);
+    text->begin = 0;
     text->bytes = allocate_room(text->bytes, &text->room, text->used + READ_BYTES, 1);
     ssize_t count;
     do
@@ -49,95 +86,95 @@ static ssize_t read_more(struct text *text)
     return count;
 }
 
-/* The number before end becomes 17 digits, which read back as the same double, and spaces. */
-static void shorten_number(char *end, size_t length)
+/* ---- The end of an object -------------------------------------------------------------------- */
+
+enum scan { SCAN_MORE, SCAN_DONE, SCAN_DEEP };
+
+static enum scan scan_open(struct text *text, bool object)
 {
-    char digits[TEXT_NUMBER_MAX + 1];
-    char *number = end - length, after = *end;
-    *end = '\0';
-    double value = strtod(number, NULL);
-    *end = after;
-    int count = isfinite(value) ? snprintf(digits, sizeof digits, "%.17g", value)
-                                : snprintf(digits, sizeof digits, "1e999");
-    memset(number, ' ', length);
-    memcpy(number, digits, (size_t) count);
+    if (text->depth == TEXT_DEPTH_MAX)
+        return SCAN_DEEP;
+    text->depth++;
+    text->objects = text->objects << 1 | object;
+    return SCAN_MORE;
 }
 
-/* Looks at the bytes there are, to the end of the object if it is among them. */
-static enum scan_result scan_on(struct text *text)
+/* A bracket that does not match ends the object too: cJSON will say where it is. */
+static enum scan scan_close(struct text *text, bool object)
 {
-    enum scan_result result = SCAN_MORE;
-    while (result == SCAN_MORE && text->scanned < text->used) {
-        size_t number = text->scan.number_bytes;
-        char *byte = text->bytes + text->scanned++;
-        result = scan_byte(&text->scan, (unsigned char) *byte);
-        if (number > TEXT_NUMBER_MAX && text->scan.number_bytes == 0)
-            shorten_number(byte, number);
+    const bool matches = (text->objects & 1) == object;
+    text->depth = matches ? text->depth - 1 : 0;
+    text->objects >>= 1;
+    return text->depth > 0 ? SCAN_MORE : SCAN_DONE;
+}
+
+static enum scan scan_byte(struct text *text, char byte)
+{
+    if (text->in_string) {
+        text->in_string = byte != '"' || text->escaped;
+        text->escaped = byte == '\\' && !text->escaped;
+        return SCAN_MORE;
     }
-    if (scan_is_between(&text->scan))
-        text->begin = text->scanned;
+    switch (byte) {
+    case '{': return scan_open(text, true);
+    case '[': return scan_open(text, false);
+    case '}': return scan_close(text, true);
+    case ']': return scan_close(text, false);
+    case '"': text->in_string = true; break;
+    default: break;
+    }
+    return SCAN_MORE;
+}
+
+/* ---- Objects --------------------------------------------------------------------------------- */
+
+static bool is_space(char byte)
+{
+    return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
+}
+
+static enum scan scan_object(struct text *text)
+{
+    enum scan result = SCAN_MORE;
+    while (result == SCAN_MORE && text->scanned < text->used)
+        result = scan_byte(text, text->bytes[text->scanned++]);
     return result;
 }
 
-/* Editors put one at the beginning of a file; JSON has none. The byte that was refused is the first
- * of three; the others may be still to come, and are waited for while it looks like one. */
-static bool is_byte_order_mark(struct text *text)
+/* Skips white space. Returns 1 if another byte follows, 0 at the end, -1: errno. */
+static ssize_t find_object(struct text *text)
 {
-    static const char mark[] = "\xef\xbb\xbf";
-    text->begin = text->scanned - 1;
-    for (size_t i = 0; i < 3; i++) {
-        if (text->begin + i == text->used && read_more(text) <= 0)
-            return false;
-        if (text->bytes[text->begin + i] != mark[i])
-            return false;
+    ssize_t count = 1;
+    while (count > 0) {
+        while (text->begin < text->used && is_space(text->bytes[text->begin]))
+            advance(text, 1);
+        text->scanned = text->begin;
+        if (text->begin < text->used)
+            return 1;
+        count = read_more(text);
     }
-    return true;
-}
-
-static enum text_outcome bad(struct text *text)
-{
-    if (scan_is_between(&text->scan) && is_byte_order_mark(text))
-        scan_refuse(&text->scan, "a UTF-8 byte order mark");
-    snprintf(text->error, sizeof text->error, "line %zu, column %zu: %s", text->scan.line,
-             text->scan.column, text->scan.error);
-    return TEXT_BAD;
-}
-
-static enum text_outcome end(struct text *text)
-{
-    if (scan_is_between(&text->scan))
-        return TEXT_END;
-    scan_end(&text->scan);
-    return bad(text);
-}
-
-static enum text_outcome failed(struct text *text)
-{
-    snprintf(text->error, sizeof text->error, "%s", strerror(errno));
-    return TEXT_FAILED;
-}
-
-static enum text_outcome done(struct text *text, const char **object, size_t *length)
-{
-    *object = text->bytes + text->begin;
-    *length = text->scanned - text->begin;
-    text->begin = text->scanned;
-    scan_next(&text->scan);
-    return TEXT_OBJECT;
+    return count;
 }
 
 enum text_outcome text_next(struct text *text, const char **object, size_t *length)
 {
-    for (;;) {
-        switch (scan_on(text)) {
-        case SCAN_DONE: return done(text, object, length);
-        case SCAN_BAD: return bad(text);
-        case SCAN_MORE: break;
-        }
-        ssize_t count = read_more(text);
-        if (count < 0)
-            return failed(text);
-        if (count == 0)
-            return end(text);
+    advance(text, text->scanned - text->begin);
+    ssize_t count = find_object(text);
+    if (count <= 0)
+        return count < 0 ? failed(text) : TEXT_END;
+    if (text->bytes[text->begin] != '{')
+        return refuse_byte(text, (unsigned char) text->bytes[text->begin]);
+    while (count > 0) {
+        const enum scan result = scan_object(text);
+        *object = text->bytes + text->begin;
+        *length = text->scanned - text->begin;
+        if (result == SCAN_DONE)
+            return TEXT_OBJECT;
+        if (result == SCAN_DEEP)
+            return text_refuse(text, *length - 1, "nested more than %d deep", TEXT_DEPTH_MAX);
+        if (*length > text->object_max)
+            return text_refuse(text, 0, "an object of more than %zu bytes", text->object_max);
+        count = read_more(text);
     }
+    return count < 0 ? failed(text) : text_refuse(text, *length, "the input ends within an object");
 }

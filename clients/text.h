@@ -1,35 +1,54 @@
-/* The JSON objects of an input as texts, one after the other, while the input may still grow. */
+/* Splits an input into the texts of its JSON objects, one after the other, while the input may
+ * still grow.
+ *
+ * An object ends where its first brace closes: brackets outside of strings are counted, nothing
+ * else is looked at. Whether the text in between is JSON is for cJSON to decide (json.c). */
 #ifndef TEXT_H
 #define TEXT_H
 
-#include "scan.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
-/* Numbers of more characters are put shorter without changing the double that they mean: cJSON
- * cuts them in two. */
-enum { TEXT_NUMBER_MAX = 63 };
-
-enum { TEXT_ERROR_MAX = SCAN_ERROR_MAX + 64 };
+enum {
+    TEXT_DEPTH_MAX = 32,       /* scenes nest 5 deep; cJSON recurses once per level */
+    TEXT_OBJECT_MAX = 1 << 30, /* bytes of one object, so that an endless one is refused */
+    TEXT_ERROR_MAX = 160
+};
 
 enum text_outcome { TEXT_OBJECT, TEXT_END, TEXT_BAD, TEXT_FAILED };
 
-/* Memory: the longest object, and one piece of the input. To be read by others: error. */
+/* Memory: the longest object and one piece of the input. Read error; the rest is private. */
 struct text {
     int fd;
     char *bytes; /* owned */
     size_t used, room;
-    size_t begin;   /* of the object that is being read */
-    size_t scanned; /* bytes before this one have been looked at */
-    struct scan scan;
-    char error[TEXT_ERROR_MAX]; /* after BAD: "line 3, column 14: expected ..."; after FAILED */
+    size_t begin;        /* of the current object, or of the white space before it */
+    size_t scanned;      /* bytes before this one have been looked at */
+    size_t line, column; /* of bytes[begin], from 1; columns are characters of UTF-8 */
+    size_t object_max;   /* TEXT_OBJECT_MAX */
+    int depth;
+    uint64_t objects; /* bit d: of the open brackets, the d-th from the innermost is a brace */
+    bool in_string, escaped;
+    char error[TEXT_ERROR_MAX];
 };
 
-/* On input: an open file, read from where it stands; not owned. */
+/* In: an open file, read from its current position; not owned. */
 void text_open(int fd, struct text *out);
 void text_close(struct text *text);
 
-/* On output: OBJECT: *object has *length bytes, is well-formed JSON, and lives until the next
- * call; END: nothing but white space follows; BAD: what follows is no JSON object; FAILED: the
- * file cannot be read. */
+/* Returns
+ *   TEXT_OBJECT  *object has *length bytes, begins with '{' and ends with a bracket that closes
+ *                the brace or does not match; valid until the next call
+ *   TEXT_END     nothing but white space was left
+ *   TEXT_BAD     what follows is no object; error is set
+ *   TEXT_FAILED  the file cannot be read; error is set
+ * After any but TEXT_OBJECT there is no next call. */
 enum text_outcome text_next(struct text *text, const char **object, size_t *length);
+
+/* Sets error to "line 3, column 14: " and the formatted text, for the byte at `offset` of the
+ * current object. Returns TEXT_BAD. */
+enum text_outcome text_refuse(struct text *text, size_t offset, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -1,80 +1,48 @@
 #include "mesh_join.h"
 
-#include "query.h"
-#include "random_id.h"
+#include "allocate.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-enum { SLOTS_MIN = 256 };
+#define uthash_malloc(size) allocate(1, size)
+#include <uthash.h>
 
-static uint64_t bits_of(double value)
+struct mesh_joined {
+    double position[3];
+    unsigned index;
+    UT_hash_handle hh;
+};
+
+void mesh_join_open(struct mesh_join *join, struct mesh_build *build)
 {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
+    *join = (struct mesh_join){.build = build, .hash = keyed_hash_make()};
 }
 
-/* Coordinates of meshes differ in few bits, often the first ones: a product moves what differs to
- * the front, from where a shift takes it back to the bits that slots are counted with. */
-static size_t hash_of(uint64_t factor, const double position[3])
+void mesh_join_close(struct mesh_join *join)
 {
-    uint64_t hash = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        hash = (hash ^ bits_of(position[axis])) * factor;
-        hash ^= hash >> 32;
+    struct mesh_joined *at = join->vertex, *next;
+    HASH_CLEAR(hh, join->vertex);
+    for (; at; at = next) {
+        next = at->hh.next;
+        free(at);
     }
-    return (size_t) hash;
-}
-
-/* The slot of that position, or the free one where it belongs. */
-static size_t find(const struct mesh_join *join, const double position[3])
-{
-    const double(*vertex)[3] = (const double(*)[3]) join->build->mesh->vertex;
-    size_t at = hash_of(join->factor, position) & (join->slot_count - 1);
-    while (join->slot[at] != 0 && memcmp(vertex[join->slot[at] - 1], position, sizeof *vertex) != 0)
-        at = (at + 1) & (join->slot_count - 1);
-    return at;
-}
-
-static bool make_slots(struct mesh_join *join)
-{
-    const struct mesh *mesh = join->build->mesh;
-    if (!join->slot)
-        join->factor = query_id_mix(random_id()) | 1;
-    if (join->slot && mesh->vertex_count < join->slot_count / 2)
-        return true;
-    const size_t wanted = join->slot ? 2 * join->slot_count : SLOTS_MIN;
-    unsigned *slot = wanted > SIZE_MAX / sizeof *slot ? NULL : calloc(wanted, sizeof *slot);
-    if (!slot)
-        return mesh_refuse_room(join->build->source, wanted, "vertices");
-    free(join->slot);
-    join->slot = slot;
-    join->slot_count = wanted;
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        slot[find(join, mesh->vertex[i])] = (unsigned) i + 1;
-    return true;
 }
 
 bool mesh_join_vertex(struct mesh_join *join, const double position[3], unsigned *index)
 {
     /* -0 + 0 is 0; all else plus 0 is what it was. */
     const double clean[3] = {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0};
-    if (!make_slots(join))
-        return false;
-    const size_t at = find(join, clean);
-    if (join->slot[at] == 0) {
+    const unsigned hash = keyed_hash_of(&join->hash, clean, sizeof clean);
+    struct mesh_joined *joined;
+    HASH_FIND_BYHASHVALUE(hh, join->vertex, clean, sizeof clean, hash, joined);
+    if (!joined) {
         if (!mesh_add_vertex(join->build, clean))
             return false;
-        join->slot[at] = (unsigned) join->build->mesh->vertex_count;
+        joined = allocate(1, sizeof *joined);
+        memcpy(joined->position, clean, sizeof clean);
+        joined->index = (unsigned) join->build->mesh->vertex_count - 1;
+        HASH_ADD_BYHASHVALUE(hh, join->vertex, position, sizeof clean, hash, joined);
     }
-    *index = join->slot[at] - 1;
+    *index = joined->index;
     return true;
-}
-
-void mesh_join_free(struct mesh_join *join)
-{
-    free(join->slot);
-    join->slot = NULL;
-    join->slot_count = 0;
 }

@@ -2,19 +2,20 @@
 #ifndef MESH_JOIN_H
 #define MESH_JOIN_H
 
+#include "keyed_hash.h"
 #include "mesh_build.h"
 
 struct mesh_join {
-    struct mesh_build *build; /* whose vertices all came from here */
-    unsigned *slot;           /* owned; index of a vertex + 1; 0: none */
-    uint64_t factor;          /* random and odd: no file knows which vertices share a slot */
-    size_t slot_count;        /* 0 or a power of 2, at least twice as many as there are vertices */
+    struct mesh_build *build;   /* not owned; all its vertices were added here */
+    struct mesh_joined *vertex; /* owned: a table by coordinates; NULL: empty */
+    struct keyed_hash hash;
 };
 
-/* On input: finite coordinates. On output: the index of the vertex that has them, a new one where
- * there was none; -0 becomes 0. Or false and the error. */
-bool mesh_join_vertex(struct mesh_join *join, const double position[3], unsigned *index);
+void mesh_join_open(struct mesh_join *join, struct mesh_build *build);
+void mesh_join_close(struct mesh_join *join);
 
-void mesh_join_free(struct mesh_join *join);
+/* In: finite coordinates; -0 is taken as 0. On output: the index of the vertex that has them, which
+ * is added if there was none. Returns false, with the error of the source, without memory. */
+bool mesh_join_vertex(struct mesh_join *join, const double position[3], unsigned *index);
 
 #endif

@@ -1,9 +1,9 @@
 #include "mesh_page.h"
 
 #include "allocate.h"
+#include "json_write.h"
 #include "mesh_thin.h"
 #include "page_base64.h"
-#include "page_json.h"
 #include "page_template.h"
 
 #include <math.h>
@@ -89,49 +89,22 @@ static struct units units_of(const struct page *page)
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
-static void put(FILE *out, struct page_json *json)
-{
-    fwrite(json->bytes, 1, json->used, out);
-    page_json_clear(json);
-}
-
-static void add_integer(struct page_json *json, const char *name, uint64_t value)
-{
-    page_json_raw(json, name);
-    page_json_integer(json, (int64_t) value);
-}
-
-static void add_numbers(struct page_json *json, const char *name, const double number[3])
-{
-    page_json_raw(json, name);
-    for (int i = 0; i < 3; i++) {
-        page_json_raw(json, i ? "," : "[");
-        page_json_number(json, number[i]);
-    }
-    page_json_raw(json, "]");
-}
-
-static void put_head(FILE *out, const struct page *page)
+static void put_head(struct json_writer *json, const struct page *page)
 {
     const struct mesh_meeting *meeting = page->report->meeting;
-    struct page_json json = {0};
-    page_json_raw(&json, "{\"as\":");
-    page_json_string(&json, page->report->question->as == MESH_FACES ? "faces" : "tetrahedra");
-    add_integer(&json, ",\"count\":", meeting->count);
-    add_integer(&json, ",\"overlapping\":", meeting->overlapping);
-    add_integer(&json, ",\"touching\":", meeting->touching);
+    const struct mesh_question *question = page->report->question;
+    json_string(json, "as", question->as == MESH_FACES ? "faces" : "tetrahedra");
+    json_integer(json, "count", (int64_t) meeting->count);
+    json_integer(json, "overlapping", (int64_t) meeting->overlapping);
+    json_integer(json, "touching", (int64_t) meeting->touching);
     if (page->count == 1) {
-        add_integer(&json, ",\"sharing_edge\":", meeting->sharing_edge);
-        add_integer(&json, ",\"sharing_vertex\":", meeting->sharing_vertex);
+        json_integer(json, "sharing_edge", (int64_t) meeting->sharing_edge);
+        json_integer(json, "sharing_vertex", (int64_t) meeting->sharing_vertex);
     }
-    page_json_raw(&json, meeting->moving ? ",\"moving\":true" : ",\"moving\":false");
-    page_json_raw(&json, ",\"T\":");
-    page_json_number(&json, page->report->question->duration);
-    add_numbers(&json, ",\n\"centre\":", page->units.centre);
-    page_json_raw(&json, ",\"exponent\":");
-    page_json_integer(&json, page->units.exponent);
-    page_json_raw(&json, ",\n\"meshes\":[");
-    put(out, &json);
+    json_bool(json, "moving", meeting->moving);
+    json_number(json, "T", question->duration);
+    json_numbers(json, "centre", page->units.centre, 3);
+    json_integer(json, "exponent", page->units.exponent);
 }
 
 /* How far it gets in the window, in units of the picture; what is beyond any picture is cut. */
@@ -187,53 +160,63 @@ static void put_numbers(FILE *out, const struct mesh_thinned *kept)
     page_base64_end(&text);
 }
 
-static void put_mesh(FILE *out, const struct page *page, int which)
+static void put_mesh(struct json_writer *json, const struct page *page, int which)
 {
     const struct mesh_report *report = page->report;
-    struct page_json json = {0};
     double shift[3];
     shift_of(page, which, shift);
-    page_json_raw(&json, which ? ",\n{\"name\":" : "\n{\"name\":");
-    page_json_string(&json, report->name[which]);
-    add_integer(&json, ",\"faces\":", report->mesh[which]->face_count);
-    add_integer(&json, ",\"met\":", report->meeting->faces[which]);
-    add_numbers(&json, ",\"shift\":", shift);
-    page_json_raw(&json, ",\n\"corner\":\"");
-    put(out, &json);
-    put_coordinates(out, page, which);
-    fputs("\",\n\"face\":\"", out);
-    put_faces(out, page, which);
-    fputs("\",\n\"colour\":\"", out);
-    put_colours(out, page, which);
-    fputs("\",\n\"number\":", out);
+    json_break(json, "\n");
+    json_begin(json, NULL, '{');
+    json_string(json, "name", report->name[which]);
+    json_integer(json, "faces", (int64_t) report->mesh[which]->face_count);
+    json_integer(json, "met", (int64_t) report->meeting->faces[which]);
+    json_numbers(json, "shift", shift, 3);
+    json_begin(json, "corner", '"');
+    put_coordinates(json->out, page, which);
+    json_end(json, '"');
+    json_begin(json, "face", '"');
+    put_faces(json->out, page, which);
+    json_end(json, '"');
+    json_begin(json, "colour", '"');
+    put_colours(json->out, page, which);
+    json_end(json, '"');
     if (page->kept[which].face_count < report->mesh[which]->face_count) {
-        putc('"', out);
-        put_numbers(out, &page->kept[which]);
-        putc('"', out);
+        json_begin(json, "number", '"');
+        put_numbers(json->out, &page->kept[which]);
+        json_end(json, '"');
     } else {
-        fputs("null", out); /* they are all there, in their order */
+        json_null(json, "number"); /* all are there, in their order */
     }
-    putc('}', out);
+    json_end(json, '}');
 }
 
-static void put_pairs(FILE *out, const struct page *page)
+static void put_pair(struct json_writer *json, const struct mesh_pair *pair, bool moving)
+{
+    json_break(json, "\n");
+    json_begin(json, NULL, '[');
+    json_integer(json, NULL, pair->a);
+    json_integer(json, NULL, pair->b);
+    json_integer(json, NULL, pair->verdict);
+    for (int end = 0; end < 2 && moving; end++)
+        json_number(json, NULL, pair->contact[end]);
+    json_end(json, ']');
+}
+
+static void put_data(FILE *out, const struct page *page)
 {
     const struct mesh_meeting *meeting = page->report->meeting;
-    struct page_json json = {0};
-    page_json_raw(&json, "],\n\"pairs\":[");
-    for (size_t i = 0; i < page->pairs; i++) {
-        const struct mesh_pair *pair = &meeting->pair[i];
-        add_integer(&json, i ? ",\n[" : "\n[", pair->a);
-        add_integer(&json, ",", pair->b);
-        add_integer(&json, ",", (uint64_t) pair->verdict);
-        for (int end = 0; end < 2 && meeting->moving; end++) {
-            page_json_raw(&json, ",");
-            page_json_number(&json, pair->contact[end]);
-        }
-        page_json_raw(&json, "]");
-    }
-    page_json_raw(&json, "]}");
-    put(out, &json);
+    struct json_writer json = {.out = out, .page = true};
+    json_begin(&json, NULL, '{');
+    put_head(&json, page);
+    json_begin(&json, "meshes", '[');
+    for (int m = 0; m < page->count; m++)
+        put_mesh(&json, page, m);
+    json_end(&json, ']');
+    json_begin(&json, "pairs", '[');
+    for (size_t i = 0; i < page->pairs; i++)
+        put_pair(&json, &meeting->pair[i], meeting->moving);
+    json_end(&json, ']');
+    json_end(&json, '}');
 }
 
 void mesh_page_write(FILE *out, const struct mesh_report *report)
@@ -245,10 +228,7 @@ void mesh_page_write(FILE *out, const struct mesh_report *report)
     thin(&page);
     page.units = units_of(&page);
     page_template_begin(&page_template_mesh, out);
-    put_head(out, &page);
-    for (int m = 0; m < page.count; m++)
-        put_mesh(out, &page, m);
-    put_pairs(out, &page);
+    put_data(out, &page);
     page_template_end(&page_template_mesh, out);
     for (int m = 0; m < page.count; m++)
         mesh_thinned_free(&page.kept[m]);

@@ -1,5 +1,6 @@
 #include "mesh_ply.h"
 
+#include "mesh_bits.h"
 #include "mesh_number.h"
 
 #include <stdarg.h>
@@ -80,28 +81,6 @@ bool ply_end_record(struct ply *ply)
 
 /* ---- Binary ---------------------------------------------------------------------------------- */
 
-static inline uint64_t bits_of(const unsigned char *bytes, size_t size, enum ply_format format)
-{
-    uint64_t bits = 0;
-    for (size_t i = 0; i < size; i++)
-        bits = bits << 8 | bytes[format == PLY_BIG_ENDIAN ? i : size - 1 - i];
-    return bits;
-}
-
-static double float_of(uint32_t bits)
-{
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-static double double_of(uint64_t bits)
-{
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* A double has every value of each type. */
 static double value_of(uint64_t bits, enum ply_type type)
 {
@@ -109,8 +88,8 @@ static double value_of(uint64_t bits, enum ply_type type)
     case PLY_INT8: return (int8_t) bits;
     case PLY_INT16: return (int16_t) bits;
     case PLY_INT32: return (int32_t) bits;
-    case PLY_FLOAT32: return float_of((uint32_t) bits);
-    case PLY_FLOAT64: return double_of(bits);
+    case PLY_FLOAT32: return mesh_float((uint32_t) bits);
+    case PLY_FLOAT64: return mesh_double(bits);
     default: return (double) bits;
     }
 }
@@ -129,7 +108,7 @@ static bool binary_value(struct ply *ply, enum ply_type type, double *value)
     const size_t size = ply_size(type);
     if (!binary_skip(ply, size))
         return false;
-    *value = value_of(bits_of(bytes, size, ply->format), type);
+    *value = value_of(mesh_bits(bytes, size, ply->format == PLY_BIG_ENDIAN), type);
     return true;
 }
 

@@ -1,10 +1,10 @@
 #include "mesh_report.h"
 
 #include "allocate.h"
+#include "json_write.h"
 #include "mesh_write.h"
 #include "number.h"
 
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,30 +77,40 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
 
 /* ---- JSON ------------------------------------------------------------------------------------ */
 
-static void put_pair_json(FILE *out, const struct mesh_pair *pair, bool moving)
+static void put_pair_json(struct json_writer *json, const struct mesh_pair *pair, bool moving)
 {
-    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
-    fprintf(out, "[%u, %u, \"%s\"", pair->a, pair->b, fmb_verdict_name((int) pair->verdict));
-    if (moving)
-        fprintf(out, ", [%s, %s]", number_exact(pair->contact[0], first),
-                number_exact(pair->contact[1], last));
-    putc(']', out);
+    json_begin(json, NULL, '[');
+    json_integer(json, NULL, pair->a);
+    json_integer(json, NULL, pair->b);
+    json_string(json, NULL, fmb_verdict_name((int) pair->verdict));
+    if (moving) {
+        json_begin(json, NULL, '[');
+        json_number(json, NULL, pair->contact[0]);
+        json_number(json, NULL, pair->contact[1]);
+        json_end(json, ']');
+    }
+    json_end(json, ']');
 }
 
 void mesh_report_json(FILE *out, const struct mesh_report *report)
 {
     const struct mesh_meeting *meeting = report->meeting;
-    fprintf(out, "{\"overlapping\": %zu, \"touching\": %zu, \"faces_a\": %zu, \"faces_b\": %zu, ",
-            meeting->overlapping, meeting->touching, meeting->faces[0], meeting->faces[1]);
-    if (is_self(report))
-        fprintf(out, "\"sharing_edge\": %" PRIu64 ", \"sharing_vertex\": %" PRIu64 ", ",
-                meeting->sharing_edge, meeting->sharing_vertex);
-    fputs("\"pairs\": [", out);
-    for (size_t i = 0; i < meeting->count; i++) {
-        fputs(i ? ", " : "", out);
-        put_pair_json(out, &meeting->pair[i], meeting->moving);
+    struct json_writer json = {.out = out};
+    json_begin(&json, NULL, '{');
+    json_integer(&json, "overlapping", (int64_t) meeting->overlapping);
+    json_integer(&json, "touching", (int64_t) meeting->touching);
+    json_integer(&json, "faces_a", (int64_t) meeting->faces[0]);
+    json_integer(&json, "faces_b", (int64_t) meeting->faces[1]);
+    if (is_self(report)) {
+        json_integer(&json, "sharing_edge", (int64_t) meeting->sharing_edge);
+        json_integer(&json, "sharing_vertex", (int64_t) meeting->sharing_vertex);
     }
-    fputs("]}\n", out);
+    json_begin(&json, "pairs", '[');
+    for (size_t i = 0; i < meeting->count; i++)
+        put_pair_json(&json, &meeting->pair[i], meeting->moving);
+    json_end(&json, ']');
+    json_end(&json, '}');
+    json_line_end(&json);
 }
 
 /* ---- Colours --------------------------------------------------------------------------------- */

@@ -117,13 +117,14 @@ static bool read_solid(struct mesh_join *join)
 bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
 {
     struct mesh_build build = {.source = source, .mesh = out};
-    struct mesh_join join = {.build = &build};
+    struct mesh_join join;
     bool good;
+    mesh_join_open(&join, &build);
     do {
         good = read_solid(&join);
         source->at = mesh_skip_spaces(source->at);
     } while (good && source->at < source->end);
-    mesh_join_free(&join);
+    mesh_join_close(&join);
     mesh_fit(&build);
     return good;
 }

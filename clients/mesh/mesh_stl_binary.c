@@ -1,27 +1,18 @@
 /* 80 bytes of anything, the number of facets as 32 bits, then 50 bytes for each facet: its normal
  * and three vertices, each of three floats of 32 bits, and 16 bits of anything. All little-endian.
  */
+#include "mesh_bits.h"
 #include "mesh_formats.h"
 #include "mesh_join.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 enum { COUNT_AT = 80, HEADER_BYTES = 84, FACET_BYTES = 50, NORMAL_BYTES = 12, FLOAT_BYTES = 4 };
 
 static uint32_t word_at(const unsigned char *bytes)
 {
-    return bytes[0] | (uint32_t) bytes[1] << 8 | (uint32_t) bytes[2] << 16 |
-           (uint32_t) bytes[3] << 24;
-}
-
-static float float_at(const unsigned char *bytes)
-{
-    const uint32_t bits = word_at(bytes);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return (uint32_t) mesh_bits(bytes, sizeof(uint32_t), false);
 }
 
 static uint64_t size_of(uint32_t facets)
@@ -55,7 +46,7 @@ static bool read_vertex(struct mesh_join *join, size_t facet, unsigned *index)
     struct mesh_source *source = join->build->source;
     double position[3];
     for (int axis = 0; axis < 3; axis++) {
-        position[axis] = float_at(source->at);
+        position[axis] = mesh_float(word_at(source->at));
         if (!isfinite(position[axis]))
             return mesh_refuse_byte(source, source->at, "face", facet, "%c is not finite",
                                     "xyz"[axis]);
@@ -86,11 +77,12 @@ static bool read_facets(struct mesh_join *join)
 bool mesh_stl_binary(struct mesh_source *source, struct mesh *out)
 {
     struct mesh_build build = {.source = source, .mesh = out};
-    struct mesh_join join = {.build = &build};
+    struct mesh_join join;
     if (!mesh_is_stl_binary(source))
         return refuse_size(source);
+    mesh_join_open(&join, &build);
     const bool good = read_facets(&join);
-    mesh_join_free(&join);
+    mesh_join_close(&join);
     mesh_fit(&build);
     return good;
 }

@@ -13,9 +13,9 @@ tetrahedron() {
     printf 'f %s\n' '1 3 2' '1 2 4' '1 4 3' '2 3 4' >> "$1"
 }
 
-# page NAME ARGUMENTS: NAME.html, and what the program says as JSON in NAME.told.
+# page NAME ARGUMENTS: writes NAME.html, and the program's result to NAME.json.
 page() {
-    "$fmb" mesh --json --html "$1.html" "${@:2}" > "$1.told"
+    "$fmb" mesh --json --html "$1.html" "${@:2}" > "$1.json"
 }
 
 setup_file() {
@@ -66,14 +66,14 @@ setup() {
     data touching.html | jq -e --arg name "x$hostile/\"q'.obj" '.meshes[1].name == $name'
 }
 
-@test "the pairs are those that the program tells" {
+@test "the pairs are those of the program" {
     for page in small touching moving; do
         data $page.html | jq -c '[.count, .overlapping, .touching, .pairs]' > held
         jq -c '[.overlapping + .touching, .overlapping, .touching,
             [.pairs[] | [.[0], .[1], (if .[2] == "overlapping" then 3 else 2 end)] + (.[3] // [])]]' \
-            $page.told > told
-        [ "$(jq '.[0]' told)" -gt 0 ]
-        diff told held
+            $page.json > expected
+        [ "$(jq '.[0]' expected)" -gt 0 ]
+        diff expected held
     done
 }
 
@@ -133,14 +133,14 @@ numbers() {
 
 # counts PAGE: as they stand in the head of a page.
 counts() {
-    jq -c '[.overlapping + .touching, .overlapping, .touching | tostring]' "$1.told"
+    jq -c '[.overlapping + .touching, .overlapping, .touching | tostring]' "$1.json"
 }
 
-@test "the counts are those that the program tells" {
+@test "the counts are those of the program" {
     found meshes ".opened.counts == $(counts small) and .touch.counts == $(counts touching)"
     found meshes ".moving.counts == $(counts moving) and .self.counts == $(counts self)"
-    found meshes ".opened.facts == \"A a.ply: $(jq .faces_a small.told) of 200 faces meet\" +
-        \"B b.ply: $(jq .faces_b small.told) of 200 faces meet\" or (.opened.facts | error)"
+    found meshes ".opened.facts == \"A a.ply: $(jq .faces_a small.json) of 200 faces meet\" +
+        \"B b.ply: $(jq .faces_b small.json) of 200 faces meet\" or (.opened.facts | error)"
 }
 
 @test "overlapping faces are red, touching ones yellow, others of the second mesh blue" {
@@ -150,12 +150,12 @@ counts() {
 }
 
 @test "a click on a pair chooses it, and shows it near" {
-    name=$(jq -r '.pairs[2] | "A \(.[0]) – B \(.[1])"' small.told)
-    next=$(jq -r '.pairs[3] | "A \(.[0]) – B \(.[1])"' small.told)
+    name=$(jq -r '.pairs[2] | "A \(.[0]) – B \(.[1])"' small.json)
+    next=$(jq -r '.pairs[3] | "A \(.[0]) – B \(.[1])"' small.json)
     found meshes ".clicked | .row == [\"$name\"] and .said == \"$name: overlapping\""
     found meshes '.clicked.red > .opened.red and .clicked.sum != .opened.sum'
     found meshes ".next.row == [\"$next\"] and .none.row == [] and .back.sum == .opened.sum"
-    face=$(jq -r '.pairs[2][0] | "A \(.): overlapping, "' small.told)
+    face=$(jq -r '.pairs[2][0] | "A \(.): overlapping, "' small.json)
     found meshes ".pointed | any(startswith(\"$face\"))"
 }
 
@@ -166,8 +166,8 @@ counts() {
 
 @test "the list: by face, by verdict" {
     found meshes '.filtered.names | length > 0 and all(test("\\b3\\b"))'
-    count=$(jq '[.pairs[] | select(.[0] == 3 or .[1] == 3)] | length' small.told)
-    found meshes ".filtered.said == \"$count of $(jq '.pairs | length' small.told) pairs\""
+    count=$(jq '[.pairs[] | select(.[0] == 3 or .[1] == 3)] | length' small.json)
+    found meshes ".filtered.said == \"$count of $(jq '.pairs | length' small.json) pairs\""
     found meshes '.touching == 0 and .all == (.opened.rows)'
 }
 
@@ -180,7 +180,7 @@ counts() {
     found meshes '.moving.bands == 1 and .before.moment == "0 s of 1 s" and .after.moment == "1 s of 1 s"'
     found meshes '.before.red < 50 and .after.red > 3000 and .before.sum != .after.sum'
     found meshes '.after.grey > .before.grey + 50'
-    first=$(jq -r '.pairs[0][3][0]' moving.told)
+    first=$(jq -r '.pairs[0][3][0]' moving.json)
     found meshes ".movingPair.moment | startswith(\"$(printf %.6g "$first") s\")"
     found meshes ".movingPair.times | startswith(\"$(printf %.6g "$first") .. \")"
     found meshes '.playing == "❚❚"'

@@ -276,7 +276,7 @@ squares() {
     printf '{"dim": 3,\n "bodies": [1,]}' > "$BATS_TEST_TMPDIR/bad.json"
     run "$FMB" query --local "$BATS_TEST_TMPDIR/bad.json"
     ended 2
-    is "fmb: $BATS_TEST_TMPDIR/bad.json: line 2, column 15: expected a value, found ']'"
+    is "fmb: $BATS_TEST_TMPDIR/bad.json: line 2, column 15: invalid JSON"
 }
 
 @test "numbers that are not finite" {
@@ -431,7 +431,7 @@ Try 'fmb --help'."
     for command in query watch status; do
         wrong "--prefix: expected at most 32 letters, digits, '_' or '-'" $command -p 'a.*'
         wrong "option '--lcm-url' needs a value" $command --lcm-url
-        run "$FMB" $command -p a -l memq:// -h
+        run "$FMB" $command -p a -l udpm:// -h
         ended 0
         [[ ${lines[0]} == "usage: fmb $command"* ]]
     done

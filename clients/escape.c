@@ -1,0 +1,83 @@
+#include "escape.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+static const uint32_t replacement = 0xfffd;
+
+/* Length of the UTF-8 sequence that begins with this byte; 0: none does. */
+static size_t sequence_length(unsigned char first)
+{
+    if (first < 0x80)
+        return 1;
+    if (first < 0xc0 || first >= 0xf8)
+        return 0;
+    return first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+}
+
+/* Returns the bytes taken, at least 1. On output: *code is the character they are, or U+FFFD. */
+static size_t decode(const unsigned char *text, size_t size, uint32_t *code)
+{
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000}; /* [length], else overlong */
+    const size_t length = sequence_length(text[0]);
+    *code = replacement;
+    if (length == 0 || length > size)
+        return 1;
+    uint32_t value = length == 1 ? text[0] : text[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if ((text[i] & 0xc0) != 0x80)
+            return 1;
+        value = value << 6 | (text[i] & 0x3f);
+    }
+    const bool surrogate = value >= 0xd800 && value < 0xe000;
+    if (value < least[length] || value > 0x10ffff || surrogate)
+        return 1;
+    *code = value;
+    return length;
+}
+
+/* NULL: the character stays. Others than ASCII are one or two units of UTF-16. */
+static const char *json_of(uint32_t code, char text[16])
+{
+    if (code == '"' || code == '\\')
+        snprintf(text, 16, "\\%c", (char) code);
+    else if (code > 0xffff)
+        snprintf(text, 16, "\\u%04x\\u%04x", (unsigned) (0xd800 + ((code - 0x10000) >> 10)),
+                 (unsigned) (0xdc00 + (code & 0x3ff)));
+    else if (code < ' ' || code > '~' || code == '<' || code == '>' || code == '&')
+        snprintf(text, 16, "\\u%04x", (unsigned) code);
+    else
+        return NULL;
+    return text;
+}
+
+static const char *xml_of(uint32_t code)
+{
+    switch (code) {
+    case '&': return "&amp;";
+    case '<': return "&lt;";
+    case '>': return "&gt;";
+    case '"': return "&quot;";
+    case '\n': return NULL;
+    }
+    const bool control = code < ' ' || (code >= 0x7f && code < 0xa0);
+    return control || (code >= replacement && code <= 0xffff) ? "\xef\xbf\xbd" : NULL;
+}
+
+void escape(FILE *out, enum escape form, const char *text, size_t size)
+{
+    const unsigned char *at = (const unsigned char *) text, *end = at + size, *kept = at;
+    while (at < end) {
+        char room[16];
+        uint32_t code;
+        const size_t length = decode(at, (size_t) (end - at), &code);
+        const char *escaped = form == ESCAPE_JSON ? json_of(code, room) : xml_of(code);
+        if (escaped) {
+            fwrite(kept, 1, (size_t) (at - kept), out);
+            fputs(escaped, out);
+            kept = at + length;
+        }
+        at += length;
+    }
+    fwrite(kept, 1, (size_t) (at - kept), out);
+}

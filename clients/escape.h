@@ -1,0 +1,17 @@
+/* Escapes text for JSON and XML. */
+#ifndef ESCAPE_H
+#define ESCAPE_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* ESCAPE_JSON: the inside of a JSON string, also where the JSON stands in a <script> of a page.
+ * ESCAPE_XML: the text of an element, or of an attribute in double quotes; of XML, HTML and SVG. */
+enum escape { ESCAPE_JSON, ESCAPE_XML };
+
+/* Writes `size` bytes of UTF-8; each byte that is not part of valid UTF-8 becomes U+FFFD. JSON is
+ * written in printable ASCII. In XML, control characters other than the line feed become U+FFFD
+ * too. */
+void escape(FILE *out, enum escape form, const char *text, size_t size);
+
+#endif

@@ -1,0 +1,53 @@
+/* Writes JSON to a stream.
+ *
+ *     struct json_writer json = {.out = stdout};
+ *     json_begin(&json, NULL, '{');
+ *     json_integer(&json, "count", 2);              {"count": 2, "box": [0,0.5,1]}
+ *     json_numbers(&json, "box", box, 3);
+ *     json_end(&json, '}');
+ *     json_line_end(&json);
+ *
+ * key is the name of a member, in printable ASCII that needs no escape; NULL in an array and for
+ * the outermost value. The writer adds commas. Check ferror(out) for write errors. */
+#ifndef JSON_WRITE_H
+#define JSON_WRITE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* To begin a text: out (not owned), page if wanted, and all else 0. */
+struct json_writer {
+    FILE *out;
+    bool page;         /* for scripts: no spaces, and integers beyond +-(2^53 - 1) as strings */
+    bool comma;        /* private: the next element needs a comma before it */
+    const char *space; /* private: of json_break(), or NULL */
+};
+
+/* bracket: '{' or '[', ended by '}' or ']'. Or '"', ended by '"': the caller writes text that needs
+ * no escape to out in between. */
+void json_begin(struct json_writer *json, const char *key, char bracket);
+void json_end(struct json_writer *json, char bracket);
+
+/* Puts this white space, a string literal, before the next element. */
+void json_break(struct json_writer *json, const char *space);
+
+/* After a complete text: ends the line; another text may follow. */
+void json_line_end(struct json_writer *json);
+
+void json_null(struct json_writer *json, const char *key);
+void json_bool(struct json_writer *json, const char *key, bool value);
+void json_integer(struct json_writer *json, const char *key, int64_t value);
+
+/* A number that reads back as the same bits; null if not finite. */
+void json_number(struct json_writer *json, const char *key, double value);
+
+/* A vector, without spaces: [0,0.5,1]. */
+void json_numbers(struct json_writer *json, const char *key, const double *numbers, int count);
+
+/* Strings, escaped by escape(). */
+void json_string(struct json_writer *json, const char *key, const char *text);
+void json_bytes(struct json_writer *json, const char *key, const char *bytes, size_t count);
+
+#endif
