@@ -25,15 +25,15 @@ static void print_help(FILE *out)
     fputs(
         "usage: fmb log COMMAND [OPTIONS] LOG...\n"
         "\n"
-        "Looks into event logs, and takes parts out of them, as lcm-logger and LCM's file provider "
-        "write them. Logs may be\n"
-        "damaged: what is whole is read, and what is not is told with its place.\n"
+        "Inspects LCM event logs, as lcm-logger and LCM's file provider write them, and copies\n"
+        "parts of them. Logs may be damaged: intact events are read, damage is reported with its\n"
+        "offset.\n"
         "\n"
         "Commands:\n",
         out);
     for (int i = 0; i < COMMAND_COUNT; i++)
         fprintf(out, "  %-8s  %s\n", commands[i].name, commands[i].help);
-    fputs("\n'fmb log COMMAND --help' says more.\n", out);
+    fputs("\n'fmb log COMMAND --help' lists the options.\n", out);
 }
 
 static bool is_help(const char *word)

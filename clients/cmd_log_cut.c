@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "json_write.h"
 #include "log_cut.h"
 #include "number.h"
 #include "output.h"
@@ -14,36 +15,31 @@
 static const char usage[] =
     "usage: fmb log cut [OPTIONS] LOG... -o FILE\n"
     "\n"
-    "Copies the events that are chosen out of one or more LCM event logs into a new one, so that\n"
-    "'fmb replay' says of each of its queries what it says of it in the whole. Several logs are\n"
-    "taken as one, in the order given, as rotation wrote them. What is no event of a log, or is\n"
-    "damaged, is told with its offset and left out: with no further options a log is repaired so.\n"
+    "Copies chosen events of one or more LCM event logs into a new log. 'fmb replay' of the new\n"
+    "log reports the same for each of its queries. Several logs are read as one, in the order\n"
+    "given, as rotation wrote them. Damage is reported with its offset and left out: without\n"
+    "further options this repairs a log.\n"
     "\n"
     "  -o, --output FILE    the new log\n"
-    "  --force              FILE may be there already\n"
-    "  --from S, --to S     what was logged from S on and before S, in seconds since the first\n"
+    "  --force              FILE may exist already\n"
+    "  --from S, --to S     events logged from S on and before S, in seconds since the first\n"
     "                       event, as in 'fmb replay'\n"
-    "  --channel NAME       what was sent on this channel; or NAME is an extended regular\n"
-    "                       expression of POSIX that is to match the whole name. May be given\n"
-    "                       several times\n"
-    "  --body ID            queries that have a frame with this body id, and their results; no\n"
-    "                       other events. May be given several times\n"
+    "  --channel NAME       events on this channel; or NAME is a POSIX extended regular\n"
+    "                       expression that matches the whole name. May be repeated\n"
+    "  --body ID            queries that contain a body with this id, and their results; no\n"
+    "                       other events. May be repeated\n"
     "  --json               one line of JSON in place of the text\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
-    "All conditions that are given have to hold. Results go with their queries, wherever they\n"
-    "stand, as far as their channel is chosen. Events are the same bytes, with the same log "
-    "times,\n"
-    "and are numbered anew; but a frame that came by key, where the cut does not tell what that\n"
-    "stands for, gets the components written back beside its key: it is a whole one to a service,\n"
-    "and one by key to 'fmb replay'. A scene that would be too long for a datagram so is left as\n"
-    "it is: in front of it stand definitions, which are scene queries with client_id 0 and no\n"
-    "pairs, of frames that have both, components and key. Keys that the logs do not tell are\n"
-    "counted, and stay.\n"
+    "An event is copied if it meets all conditions given. A result is copied with its query, if\n"
+    "its channel is chosen. Events are copied unchanged, with their log times, and renumbered.\n"
+    "Before them come definitions, from anywhere in the logs, of the bodies that the queries name\n"
+    "by handle and that no copied event defines earlier. Handles that the logs do not define are\n"
+    "counted.\n"
     "\n"
-    "Exit codes: 0 all that was chosen is there, 1 damage was left out or nothing was chosen,\n"
-    "2 wrong usage, or a file cannot be read or written: FILE is not whole then.\n";
+    "Exit codes: 0 everything chosen was copied; 1 damage was left out, or nothing was chosen; 2\n"
+    "wrong usage, or a file cannot be read or written: FILE is then incomplete.\n";
 
 struct options {
     struct log_cut_options cut;
@@ -95,9 +91,9 @@ static bool take_option(const struct args *args, int option, void *out)
     return true;
 }
 
-/* ---- While it goes ---- */
+/* ---- Reports ---- */
 
-/* Damaged places that are printed; the rest is counted. */
+/* Damaged places that are printed; others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
 struct run {
@@ -122,8 +118,6 @@ static void on_progress(void *user, int64_t bytes, int64_t of)
     progress_to(&run->progress, (uint64_t) bytes);
 }
 
-/* ---- What became of it ---- */
-
 static void print_count(const char *name, int64_t count, const char *what)
 {
     char text[NUMBER_TEXT_MAX];
@@ -142,28 +136,38 @@ static void print_text(const struct log_cut_counts *counts)
     print_count("", counts->kept[LOG_SCENE_QUERY], "queries of scenes");
     print_count("", counts->kept[LOG_SCENE_RESULT], "results of scenes");
     print_count("", counts->kept[LOG_STATUS], "heartbeats");
+    print_count("", counts->kept[LOG_DEFINITION_QUERY], "queries of definitions");
+    print_count("", counts->kept[LOG_DEFINITION], "definitions");
     print_count("", counts->kept[LOG_OTHER], "on other channels");
-    print_count("written back", counts->frames, "frames whose keys are told outside of the cut");
-    print_count("defined", counts->defined, "keys of scenes that have no room for components");
-    print_count("unknown", counts->unknown_frames, "frames by keys that the logs do not tell");
+    print_count("defined", counts->defined, "bodies in front of them");
+    print_count("unknown", counts->unknown, "handles that the logs do not define");
+    print_count("version 1", counts->version_1,
+                "messages recorded by version 1, whose bodies are not known");
     print_count("left out", counts->damaged_bytes, "damaged bytes");
 }
 
 static void print_json(const struct log_cut_counts *counts, int code)
 {
-    static const char *const name[LOG_KINDS] = {"pair_queries",  "pair_results", "scene_queries",
-                                                "scene_results", "statuses",     "other_events"};
-    printf("{\"exit\": %d, \"events\": %" PRId64 ", \"bytes\": %" PRId64
-           ", \"kept_events\": %" PRId64 ", \"kept_bytes\": %" PRId64,
-           code, counts->events, counts->bytes, counts->kept_events, counts->kept_bytes);
+    static const char *const name[LOG_KINDS] = {
+        "pair_queries", "pair_results",       "scene_queries", "scene_results",
+        "statuses",     "definition_queries", "definitions",   "other_events"};
+    struct json_writer json = {.out = stdout};
+    json_begin(&json, NULL, '{');
+    json_integer(&json, "exit", code);
+    json_integer(&json, "events", counts->events);
+    json_integer(&json, "bytes", counts->bytes);
+    json_integer(&json, "kept_events", counts->kept_events);
+    json_integer(&json, "kept_bytes", counts->kept_bytes);
     for (int kind = 0; kind < LOG_KINDS; kind++)
-        printf(", \"%s\": %" PRId64, name[kind], counts->kept[kind]);
-    printf(", \"rewritten_queries\": %" PRId64 ", \"rewritten_frames\": %" PRId64
-           ", \"definitions\": %" PRId64 ", \"defined_keys\": %" PRId64
-           ", \"unknown_queries\": %" PRId64 ", \"unknown_frames\": %" PRId64
-           ", \"damages\": %" PRId64 ", \"damaged_bytes\": %" PRId64 "}\n",
-           counts->queries, counts->frames, counts->definitions, counts->defined,
-           counts->unknown_queries, counts->unknown_frames, counts->damages, counts->damaged_bytes);
+        json_integer(&json, name[kind], counts->kept[kind]);
+    json_integer(&json, "added_definitions", counts->definitions);
+    json_integer(&json, "added_bodies", counts->defined);
+    json_integer(&json, "unknown_handles", counts->unknown);
+    json_integer(&json, "version_1", counts->version_1);
+    json_integer(&json, "damages", counts->damages);
+    json_integer(&json, "damaged_bytes", counts->damaged_bytes);
+    json_end(&json, '}');
+    json_line_end(&json);
 }
 
 static int code_of(const struct run *run, const struct log_cut_counts *counts)
@@ -176,7 +180,7 @@ static int code_of(const struct run *run, const struct log_cut_counts *counts)
     return counts->damages > 0 || counts->kept_events == 0 ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
-/* ---- The run ---- */
+/* ---- The command ---- */
 
 static int run_cut(const struct options *options)
 {
@@ -198,7 +202,7 @@ static bool check_options(const struct args *args, const struct options *options
     if (args->operand_count == 0)
         return args_error(args, "expected a LOG");
     if (!options->cut.output)
-        return args_error(args, "where to? -o FILE");
+        return args_error(args, "expected -o FILE");
     return true;
 }
 

@@ -15,16 +15,15 @@
 static const char usage[] =
     "usage: fmb log info [OPTIONS] LOG...\n"
     "\n"
-    "Reads event logs and prints for each: its size, the time it covers, its channels with the\n"
-    "types of their messages, how many there are and how large, and each place that is damaged.\n"
-    "A type that is none of the service's is printed as the fingerprint that its messages begin\n"
-    "with.\n"
+    "Reads event logs and prints for each: its size, the time it covers, its channels with their\n"
+    "message types, counts and sizes, and each place that is damaged. A type that does not belong\n"
+    "to the service is printed as the fingerprint of its messages.\n"
     "\n"
     "  --json               one line of JSON for each log, with all times in microseconds\n"
     "  -h, --help\n"
     "\n"
-    "Exit codes: 0 all logs are whole, 1 one is damaged: what could be read is printed, 2 wrong\n"
-    "usage, or a log that cannot be read, or is none.\n";
+    "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is printed; 2\n"
+    "wrong usage, or a file that cannot be read or is not a log.\n";
 
 struct options {
     bool json;

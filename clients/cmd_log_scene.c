@@ -1,4 +1,4 @@
-/* fmb log scene: a query of a log, as a scene to ask again. */
+/* fmb log scene: a query of a log, as a scene that can be queried again. */
 #include "commands.h"
 
 #include "answer.h"
@@ -21,24 +21,23 @@ static const char usage[] =
     "\n"
     "  fmb log scene LOG --event 17 | fmb query --local --json --box\n"
     "\n"
-    "Of several logs the last one has the query, and those before it are read for the keys that\n"
-    "they tell. Frames that came by key get their components back.\n"
+    "Of several logs the last one contains the query, and the others are read for definitions of\n"
+    "bodies. Bodies that came by handle get their frames back.\n"
     "\n"
-    "  --event N            the event of this number, as 'fmb replay' names it: a query, or a\n"
-    "                       result, which stands for its query\n"
-    "  --offset BYTES       the event that begins there in the file: where numbers repeat\n"
+    "  --event N            the event with this number, as 'fmb replay' prints it: a query, or\n"
+    "                       the result of one\n"
+    "  --offset BYTES       the event at this offset in the file, where numbers repeat\n"
     "  --client C, --sequence S  the query with these ids\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
-    "All pairs of a scene stay all; those that were asked of some against others are listed; what\n"
-    "begins with first_pair, from there on. Bodies keep their ids; anonymous ones, and those "
-    "whose\n"
-    "id stands before them, get free ones, which standard error tells. So it does the method and\n"
-    "the wants, as the command to ask with.\n"
+    "A query of all pairs prints no list of pairs; one of some bodies against the others lists\n"
+    "them; one with first_pair lists the pairs from there on. Bodies keep their ids. Anonymous\n"
+    "bodies, and those whose id is used by an earlier one, get free ids, which are reported on\n"
+    "standard error, with the command that repeats the query by its method and wants.\n"
     "\n"
-    "Exit codes: 0 printed, 1 there is no such query, the service refuses it, or a key is not\n"
-    "told, 2 wrong usage, or a log cannot be read.\n";
+    "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a handle is not\n"
+    "defined; 2 wrong usage, or a log cannot be read.\n";
 
 struct options {
     struct log_query_options query;
@@ -87,7 +86,7 @@ static bool check_options(const struct args *args, struct options *options)
     if (options->has_client != options->has_sequence)
         return args_error(args, "--client goes with --sequence");
     if (options->has_event + options->has_offset + ids != 1)
-        return args_error(args, "which one? --event, --offset, or --client with --sequence");
+        return args_error(args, "expected --event, --offset, or --client with --sequence");
     options->query.by = options->has_event    ? LOG_QUERY_NUMBER
                         : options->has_offset ? LOG_QUERY_OFFSET
                                               : LOG_QUERY_IDS;
@@ -96,77 +95,92 @@ static bool check_options(const struct args *args, struct options *options)
 
 /* ---- Whether the service takes it ---- */
 
-/* The first pairs show that. */
-static bool not_more(void *user)
+/* Bodies that the query names by handle: the service holds those that it takes. */
+static void keep_bodies(struct answerer *answerer, struct any_query *query)
 {
-    (void) user;
-    return false;
+    int32_t count;
+    const struct placement *placement = any_query_placements(query, &count);
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]) && scene_takes(&placement[i].geometry))
+            cache_keep(answerer_cache(answerer), 0, &placement[i].geometry);
 }
 
-/* What the service says to it, without the detail of a pair that its method cannot decide: that is
- * no fault of the query. */
-static bool is_taken(struct answerer *answerer, const struct any_query *query,
-                     char detail[QUERY_TEXT_MAX])
+/* The status of a pair that its method cannot decide is no fault of the query. */
+static bool takes_pair(struct answerer *answerer, const struct pair_query *query,
+                       char detail[QUERY_TEXT_MAX])
 {
-    union {
-        struct pair_result pair;
-        struct scene_result scene;
-    } *result = allocate(1, sizeof *result);
-    bool taken;
-    if (query->kind == LOG_PAIR_QUERY) {
-        answer_pair(answerer, &query->pair, &result->pair);
-        taken = result->pair.status == FMB_OK || result->pair.status == FMB_CANNOT_DECIDE;
-        snprintf(detail, QUERY_TEXT_MAX, "%s", result->pair.detail);
-    } else {
-        answer_scene(answerer, &query->scene, &result->scene);
-        taken = result->scene.status == FMB_OK;
-        snprintf(detail, QUERY_TEXT_MAX, "%s", result->scene.detail);
-    }
+    struct pair_result *result = allocate(1, sizeof *result);
+    answer_pair(answerer, query, result);
+    const bool taken = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
+    snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
     free(result);
     return taken;
 }
 
-static bool check_query(const struct log_query *query)
+/* The first pairs show it. */
+static bool takes_scene(struct answerer *answerer, const struct log_query *query,
+                        char detail[QUERY_TEXT_MAX])
 {
-    struct answerer *answerer = allocate(1, sizeof *answerer);
-    char detail[QUERY_TEXT_MAX];
-    answerer->between = not_more;
-    answerer->cache = cache_create(2, 1);
-    if (!answerer->cache || !answer_prepare(answerer))
+    struct scene_job *job = scene_job_create();
+    if (!job)
         allocate_failed();
-    bool taken = query->size <= QUERY_BYTES_MAX;
-    if (taken)
-        taken = is_taken(answerer, &query->query, detail);
-    else
-        snprintf(detail, sizeof detail, "longer than %d bytes", QUERY_BYTES_MAX);
-    if (!taken)
-        fprintf(stderr, "fmb: event %" PRId64 ": the service refuses it: %s\n", query->place.number,
-                detail);
-    cache_destroy(answerer->cache);
-    answer_release(answerer);
-    free(answerer);
+    bool taken = scene_job_begin(job, query->bytes, query->size) == NULL;
+    while (taken && !scene_job_can_stop(job) && !scene_job_step(job, answerer))
+        continue;
+    if (taken && !scene_job_can_stop(job)) {
+        const struct scene_result *result = scene_job_result(job);
+        taken = result->status == FMB_OK;
+        snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
+    }
+    scene_job_destroy(job);
     return taken;
 }
 
-/* ---- What is said beside the scene ---- */
+static bool takes(struct log_query *query, char detail[QUERY_TEXT_MAX])
+{
+    const struct answerer_options options = {.frames = QUERY_PLACEMENTS_MAX, .secret = {1, 1}};
+    struct answerer *answerer = answerer_create(&options);
+    if (!answerer)
+        allocate_failed();
+    struct any_query *any = &query->query;
+    keep_bodies(answerer, any);
+    const bool taken = any->kind == LOG_PAIR_QUERY ? takes_pair(answerer, &any->pair, detail)
+                                                   : takes_scene(answerer, query, detail);
+    answerer_destroy(answerer);
+    return taken;
+}
 
-static void tell_ids(struct any_query *query, const struct scene *scene)
+static bool check_query(struct log_query *query)
+{
+    char detail[QUERY_TEXT_MAX] = "";
+    if (query->size > QUERY_BYTES_MAX)
+        snprintf(detail, sizeof detail, "longer than %d bytes", QUERY_BYTES_MAX);
+    else if (takes(query, detail))
+        return true;
+    fprintf(stderr, "fmb: event %" PRId64 ": the service refuses it: %s\n", query->number, detail);
+    return false;
+}
+
+/* ---- What is reported besides the scene ---- */
+
+static void report_ids(struct any_query *query, const struct scene *scene)
 {
     int32_t count;
-    const struct query_frame *frame = any_query_frames(query, &count);
+    const struct placement *placement = any_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
-        if (frame[i].body_id == scene->body[i].id)
+        if (placement[i].body_id == scene->body[i].id)
             continue;
-        if (frame[i].body_id == 0)
-            fprintf(stderr, "fmb: frame %d, which has no id, is body %" PRId64 "\n", (int) i,
+        if (placement[i].body_id == 0)
+            fprintf(stderr, "fmb: placement %d, which has no id, is body %" PRId64 "\n", (int) i,
                     scene->body[i].id);
         else
-            fprintf(stderr, "fmb: frame %d, one more of body %" PRId64 ", is body %" PRId64 "\n",
-                    (int) i, frame[i].body_id, scene->body[i].id);
+            fprintf(stderr,
+                    "fmb: placement %d, one more of body %" PRId64 ", is body %" PRId64 "\n",
+                    (int) i, placement[i].body_id, scene->body[i].id);
     }
 }
 
-static void tell_command(const struct log_query *query)
+static void report_command(const struct log_query *query)
 {
     const struct any_query *any = &query->query;
     const bool is_pair = any->kind == LOG_PAIR_QUERY;
@@ -174,16 +188,15 @@ static void tell_command(const struct log_query *query)
     const int32_t want = is_pair ? any->pair.want : any->scene.want;
     fprintf(stderr,
             "fmb: event %" PRId64 " (offset %" PRId64 "), client %" PRId64
-            ", sequence number %" PRId64 "; to ask it again: fmb query --local --json",
-            query->place.number, query->place.offset, query->ids.client_id,
-            query->ids.sequence_number);
+            ", sequence number %" PRId64 "; to repeat it: fmb query --local --json",
+            query->number, query->offset, query->ids.client_id, query->ids.sequence_number);
     if (method != 0)
         fprintf(stderr, " --method %s", fmb_method_by_number(method)->name);
     fprintf(stderr, "%s%s\n", want & QUERY_WANT_BOX ? " --box" : "",
             is_pair && want & QUERY_WANT_CERTIFICATE ? " --certificate" : "");
 }
 
-/* ---- The run ---- */
+/* ---- The command ---- */
 
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
@@ -197,8 +210,8 @@ static int print_scene(struct log_query *query)
     struct scene scene;
     scene_of_query(&query->query, &scene);
     scene_json_write(stdout, &scene);
-    tell_ids(&query->query, &scene);
-    tell_command(query);
+    report_ids(&query->query, &scene);
+    report_command(query);
     scene_clear(&scene);
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
@@ -217,6 +230,7 @@ static int run_scene(struct options *options)
     int code = code_of[outcome];
     if (outcome == LOG_QUERY_FOUND)
         code = check_query(query) ? print_scene(query) : ARGS_FAILED;
+    log_query_clear(query);
     free(query);
     return code;
 }

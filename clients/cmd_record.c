@@ -2,16 +2,16 @@
 #include "commands.h"
 
 #include "args.h"
+#include "bus.h"
 #include "clock.h"
-#include "log_spool.h"
+#include "log_choice.h"
+#include "log_write.h"
 #include "output.h"
-#include "record_bus.h"
 #include "record_line.h"
 #include "record_report.h"
 #include "signals.h"
 
 #include <errno.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,33 +21,32 @@
 static const char usage[] =
     "usage: fmb record [OPTIONS] FILE\n"
     "\n"
-    "Writes the queries, the results and the heartbeats of a service that pass on the bus, byte\n"
-    "for byte, to an LCM event log, for lcm-logplayer and all that reads such logs; until SIGINT\n"
-    "or SIGTERM. What cannot be read is recorded too, and counted.\n"
+    "Writes the queries, results and heartbeats of a service that pass on the bus, byte for byte,\n"
+    "to an LCM event log, until SIGINT or SIGTERM. lcm-logplayer and other programs can read it.\n"
+    "Messages that cannot be decoded are recorded too, and counted.\n"
     "\n"
     "  --force              overwrite FILE\n"
-    "  --json               say at the end what was recorded as one line of JSON\n"
-    "  --duration SECONDS   end after that time\n"
+    "  --json               report at the end as one line of JSON\n"
+    "  --duration SECONDS   end after this time\n"
     "  --count N            end after N messages\n"
     "  --split-mb N         write FILE.000, FILE.001, ... of at most N MB (1,048,576 bytes) each;\n"
-    "                       with --force all files of such names are removed first\n"
-    "  --max-files K        of those keep the newest K\n"
-    "  --channel REGEX      record what passes on other channels too whose whole name matches\n"
+    "                       with --force all files with such names are removed first\n"
+    "  --max-files K        keep only the newest K of these files\n"
+    "  --channel REGEX      also record the channels whose whole name matches\n"
     "  --all                record all channels\n" ARGS_COMMON_USAGE
     "\n"
-    "Without --channel and --all the system passes on nothing but the service's own channels, and\n"
-    "whole datagrams: other messages take no room, and what can crash LCM is kept from it.\n"
+    "Each file also defines the bodies that its queries name by handle. Definitions that no\n"
+    "message contains are requested from the service. Bodies are kept in up to 64 MB of memory.\n"
+    "Messages of more than one datagram are not recorded.\n"
     "\n"
-    "At the end it says how many messages were lost, at least: sequence numbers that clients\n"
-    "skipped, results that the service counts in its heartbeats and that did not come, messages\n"
-    "that waited for the disk in vain, and with --channel and --all datagrams that the system\n"
-    "threw away. For a larger receive buffer, and to be served before others:\n"
+    "The report at the end counts the datagrams that the system dropped, and the handles whose\n"
+    "bodies could not be obtained. To enlarge the receive buffer, and to raise the priority:\n"
     "  sudo sysctl net.core.rmem_max=4194304\n"
     "  sudo chrt -f 10 fmb record ...\n"
     "\n"
-    "Exit codes: 0 recorded, also where messages were lost; 1 the bus or the log failed (the disk\n"
-    "is full), and what was recorded before is good; 2 wrong usage, FILE exists or cannot be\n"
-    "created.\n";
+    "Exit codes: 0 recorded, even if messages were lost; 1 the bus or the log failed (the disk is\n"
+    "full, FILE was deleted), and what was recorded before is valid; 2 wrong usage, or FILE\n"
+    "exists or cannot be created.\n";
 
 struct options {
     bool json, all;
@@ -60,15 +59,17 @@ struct options {
 
 struct recording {
     const struct options *options;
-    struct record_bus bus;
+    struct bus *bus;
+    struct log_channels channels;
+    struct log_choice others; /* channels of no service that are recorded too */
     struct log_parts parts;
-    struct log_spool *spool;
-    struct tally tally;
+    struct record_bodies *bodies;
     struct record_line line;
+    struct recorded recorded;
     int64_t begin_ns;
-    int64_t taken;   /* messages that went to the spool */
-    int64_t refused; /* and that did not */
-    int64_t utime;   /* when the newest was received */
+    int64_t utime;  /* when the newest message was received */
+    int64_t events; /* messages that were written */
+    int error;      /* why the log cannot be written; 0: it can */
     bool enough;
 };
 
@@ -104,7 +105,7 @@ static bool take_option(const struct args *args, int option, void *out)
     return true;
 }
 
-/* What the options say together. */
+/* Checks what depends on several options. */
 static int complete(const struct args *args, struct options *options)
 {
     if (args->operand_count == 0)
@@ -114,8 +115,6 @@ static int complete(const struct args *args, struct options *options)
     else if (options->all && options->channel)
         args_error(args, "--channel: --all records all channels");
     else {
-        if (options->all)
-            options->channel = ".*";
         options->parts.path = args->operands[0];
         options->parts.part_bytes = (int64_t) (options->split_mb * (1 << 20));
         return ARGS_RUN;
@@ -125,64 +124,108 @@ static int complete(const struct args *args, struct options *options)
 
 /* ---- Messages -------------------------------------------------------------------------------- */
 
-/* What no log has room for: a channel without a name, and a size that is a negative number. */
-static bool put(struct recording *recording, const char *channel, size_t channel_length,
-                const lcm_recv_buf_t *message)
+/* An event of the time of the newest message. */
+static bool write_event(struct recording *recording, const char *channel, const void *bytes,
+                        size_t size)
 {
-    return channel_length > 0 && message->data_size <= INT32_MAX &&
-           log_spool_put(recording->spool, message->recv_utime, channel, channel_length,
-                         message->data, message->data_size);
+    if (recording->error)
+        return false;
+    if (log_parts_append(&recording->parts, recording->utime, channel, strlen(channel), bytes,
+                         size)) {
+        recording->recorded.events++;
+        return true;
+    }
+    recording->error = errno;
+    return false;
 }
 
-static void on_message(void *user, enum log_kind kind, const char *channel,
-                       const lcm_recv_buf_t *message)
+static bool write_definition(void *user, const void *bytes, size_t size)
 {
     struct recording *recording = user;
-    const size_t channel_length = strlen(channel);
-    if (recording->enough)
+    return write_event(recording, recording->channels.name[LOG_DEFINITION], bytes, size);
+}
+
+/* Definitions come before the message, and in the same file. */
+static bool prepare(struct recording *recording, size_t channel_length, size_t size)
+{
+    const long number = recording->parts.number;
+    const int64_t bytes =
+        log_event_bytes(channel_length, size) + (int64_t) record_bodies_needed(recording->bodies);
+    if (!log_parts_prepare(&recording->parts, bytes)) {
+        recording->error = errno;
+        return false;
+    }
+    if (recording->parts.number != number)
+        record_bodies_begin_file(recording->bodies);
+    return record_bodies_define(recording->bodies, write_definition, recording);
+}
+
+static void on_message(void *user, const struct bus_message *message)
+{
+    struct recording *recording = user;
+    struct recorded *recorded = &recording->recorded;
+    const struct log_event event = {.channel = message->channel,
+                                    .channel_length = strlen(message->channel)};
+    const enum log_kind kind = log_kind_of(&recording->channels, &event);
+    if (recording->enough || recording->error ||
+        (kind == LOG_OTHER && !log_choice_has_channel(&recording->others, &event)))
         return;
-    tally_note(&recording->tally, kind, channel_length, message->data, message->data_size);
-    if (put(recording, channel, channel_length, message))
-        recording->taken++;
-    else
-        recording->refused++;
-    recording->utime = message->recv_utime;
-    recording->enough = recording->taken == recording->options->count;
+    const char *wrong = record_bodies_take(recording->bodies, kind, message->bytes, message->size);
+    recording->utime = message->utime;
+    const bool own = record_bodies_is_own(recording->bodies);
+    if (!own) {
+        recorded->received[kind]++;
+        recorded->malformed += wrong != NULL;
+    }
+    if (!prepare(recording, event.channel_length, message->size) || own)
+        return;
+    if (write_event(recording, message->channel, message->bytes, message->size))
+        recording->events++;
+    recording->enough = recording->events == recording->options->count;
 }
 
-/* ---- The run --------------------------------------------------------------------------------- */
+/* ---- While it runs --------------------------------------------------------------------------- */
 
-enum end { END_ENOUGH, END_ASKED, END_BUS_FAILED, END_LOG_FAILED };
+enum end { END_ENOUGH, END_REQUESTED, END_BUS_FAILED, END_LOG_FAILED };
 
-/* How often it is looked whether the log can still be written, and the line is shown. */
-static const int64_t tick_ns = 250000000;
+static const int64_t line_ns = 250000000, check_ns = 1000000000;
 
-static void show_line(struct recording *recording, long part, int64_t now_ns)
+static void show_line(struct recording *recording, int64_t now_ns)
 {
-    const int64_t dropped = record_bus_dropped(&recording->bus);
-    char *name = recording->options->parts.part_bytes > 0
-                     ? log_parts_name(recording->options->parts.path, part)
-                     : NULL;
-    record_line_show(&recording->line, now_ns, name ? name : recording->options->parts.path,
-                     &recording->tally,
-                     record_lost(&recording->tally, recording->refused, dropped));
-    free(name);
-}
-
-static bool tick(struct recording *recording, int64_t now_ns)
-{
-    const struct log_spool_state state = log_spool_state(recording->spool);
-    show_line(recording, state.part, now_ns);
-    return state.error == 0;
+    record_line_show(&recording->line, now_ns, recording->parts.name, recording->events,
+                     log_parts_written(&recording->parts),
+                     (int64_t) bus_counts(recording->bus).dropped);
 }
 
 static enum end bus_failed(struct recording *recording)
 {
     const int error = errno;
     record_line_end(&recording->line);
-    fprintf(stderr, "fmb: the bus has failed: %s\n",
-            error ? strerror(error) : "nothing more comes");
+    fprintf(stderr, "fmb: the bus has failed: %s\n", strerror(error));
     return END_BUS_FAILED;
+}
+
+/* Receives what waits, up to a limit, and has the system take it. */
+static bool receive(struct recording *recording)
+{
+    enum { BATCHES = 64 };
+    int count = BUS_BATCH;
+    for (int i = 0; i < BATCHES && count == BUS_BATCH; i++)
+        if ((count = bus_receive(recording->bus, on_message, recording)) < 0)
+            return false;
+    if (!recording->error && !log_parts_flush(&recording->parts))
+        recording->error = errno;
+    return true;
+}
+
+static int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+static int wait_ms(int64_t now_ns, int64_t until_ns)
+{
+    return until_ns > now_ns ? (int) ((until_ns - now_ns + 999999) / 1000000) : 0;
 }
 
 static enum end run(struct recording *recording, int signals)
@@ -190,98 +233,89 @@ static enum end run(struct recording *recording, int signals)
     const double duration = recording->options->duration;
     const int64_t end_ns =
         duration > 0 ? recording->begin_ns + (int64_t) (1e9 * duration) : INT64_MAX;
-    int64_t now_ns = recording->begin_ns, tick_at_ns = now_ns;
-    struct pollfd source[2] = {
-        {.fd = lcm_get_fileno(recording->bus.lcm), .events = POLLIN},
-        {.fd = signals, .events = POLLIN},
-    };
+    int64_t now_ns = recording->begin_ns, line_at_ns = now_ns, check_at_ns = now_ns;
     while (!recording->enough && now_ns < end_ns) {
-        const int64_t until_ns = tick_at_ns < end_ns ? tick_at_ns : end_ns;
-        const int wait_ms = until_ns > now_ns ? (int) ((until_ns - now_ns + 999999) / 1000000) : 0;
-        if (poll(source, 2, wait_ms) < 0 && errno != EINTR)
+        const int64_t due_ns = record_bodies_request(recording->bodies, now_ns);
+        const int64_t until_ns = least(least(due_ns, end_ns), least(line_at_ns, check_at_ns));
+        const int ready = bus_wait(recording->bus, signals, wait_ms(now_ns, until_ns));
+        if (ready < 0)
             return bus_failed(recording);
-        if (source[1].revents)
-            return END_ASKED;
-        if (!record_bus_drain(&recording->bus))
+        if (ready & 2)
+            return END_REQUESTED;
+        if (!receive(recording))
             return bus_failed(recording);
         now_ns = clock_ns();
-        if (now_ns < tick_at_ns)
-            continue;
-        if (!tick(recording, now_ns))
+        if (now_ns >= line_at_ns) {
+            show_line(recording, now_ns);
+            line_at_ns = now_ns + line_ns;
+        }
+        if (now_ns >= check_at_ns && !recording->error) {
+            recording->error = log_parts_check(&recording->parts) ? 0 : errno;
+            check_at_ns = now_ns + check_ns;
+        }
+        if (recording->error)
             return END_LOG_FAILED;
-        tick_at_ns = now_ns + tick_ns;
     }
-    return recording->enough ? END_ENOUGH : END_ASKED;
+    return recording->enough ? END_ENOUGH : END_REQUESTED;
 }
 
-/* What was on its way when the end came: until something comes that was sent later, or nothing for
- * some time, but no longer than a second. */
-static enum end take_rest(struct recording *recording)
+/* What was under way at the end: until something comes that was sent later, or nothing for some
+ * time, but no longer than a second. */
+static enum end receive_rest(struct recording *recording)
 {
     enum { QUIET_MS = 20 };
     const int64_t asked_utime = clock_utime(), end_ns = clock_ns() + 1000000000;
-    while (!recording->enough && recording->utime <= asked_utime && clock_ns() < end_ns &&
-           record_bus_has_more(&recording->bus, QUIET_MS))
-        if (!record_bus_drain(&recording->bus))
+    while (!recording->enough && !recording->error && recording->utime <= asked_utime &&
+           clock_ns() < end_ns && bus_wait(recording->bus, -1, QUIET_MS) > 0)
+        if (!receive(recording))
             return bus_failed(recording);
-    return END_ASKED;
+    return recording->error ? END_LOG_FAILED : END_REQUESTED;
 }
 
 /* ---- Begin and end --------------------------------------------------------------------------- */
 
-/* Room for messages that wait for the disk, twice: seconds of tens of thousands of pairs each, and
- * half a second of the most that the bus carries of the largest scenes. */
-enum { HALF_BYTES = 128 << 20 };
-
-static void say_begin(const struct recording *recording)
+static void publish(void *user, const void *bytes, size_t size)
 {
-    fprintf(stderr, "fmb: recording to %s", recording->parts.name);
-    if (recording->bus.receive_buffer > 0)
-        fprintf(stderr, ", with a receive buffer of %ld bytes", recording->bus.receive_buffer);
-    fputc('\n', stderr);
+    struct recording *recording = user;
+    bus_publish(recording->bus, recording->channels.name[LOG_DEFINITION_QUERY], bytes, size);
 }
 
 static int end_of_recording(struct recording *recording, enum end end)
 {
-    const int64_t end_ns = clock_ns(), dropped = record_bus_dropped(&recording->bus);
-    const struct log_spool_state state = log_spool_finish(recording->spool);
-    const struct recorded recorded = {
-        .tally = &recording->tally,
-        .parts = &recording->parts,
-        .events = state.events,
-        .bytes = state.bytes,
-        .unwritten = recording->refused + recording->taken - state.events,
-        .dropped = dropped,
-        .receive_buffer = recording->bus.receive_buffer,
-        .seconds = 1e-9 * (double) (end_ns - recording->begin_ns),
-        .error = state.error,
-    };
+    struct recorded *recorded = &recording->recorded;
+    const int64_t end_ns = clock_ns();
+    const int error = log_parts_finish(&recording->parts);
+    if (!recording->error)
+        recording->error = error;
+    recorded->bytes = log_parts_written(&recording->parts);
+    recorded->seconds = 1e-9 * (double) (end_ns - recording->begin_ns);
+    recorded->bodies = record_bodies_counts(recording->bodies);
+    recorded->bus = bus_counts(recording->bus);
     record_line_end(&recording->line);
-    if (state.error)
-        log_write_complain(recording->parts.name, state.error);
-    record_report_losses(&recorded);
-    (recording->options->json ? record_report_json : record_report_text)(&recorded);
-    const bool good = output_flush() && !state.error && end != END_BUS_FAILED;
-    return good ? ARGS_ANSWERED : ARGS_FAILED;
+    if (recording->error)
+        log_write_complain(recording->parts.name, recording->error);
+    record_report_losses(recorded);
+    (recording->options->json ? record_report_json : record_report_text)(recorded,
+                                                                         &recording->parts);
+    return output_flush() && !recording->error && end != END_BUS_FAILED ? ARGS_ANSWERED
+                                                                        : ARGS_FAILED;
 }
 
-/* The thread that writes must be begun behind the signals, lest it be the one that gets them. A
- * file that may not grow shall be an error, not a signal. */
+/* A file that may not grow is an error, not a signal. */
 static int record(struct recording *recording, int signals)
 {
     signal(SIGXFSZ, SIG_IGN);
-    recording->spool = log_spool_start(&recording->parts, HALF_BYTES);
-    if (!recording->spool) {
-        perror("fmb: cannot begin to write");
-        return ARGS_FAILED;
-    }
+    recording->bodies = record_bodies_open(publish, recording);
     recording->begin_ns = clock_ns();
     recording->line = record_line_begin(recording->begin_ns);
-    say_begin(recording);
+    fprintf(stderr, "fmb: recording to %s, with a receive buffer of %ld bytes\n",
+            recording->parts.name, bus_counts(recording->bus).receive_buffer);
     enum end end = run(recording, signals);
-    if (end == END_ASKED)
-        end = take_rest(recording);
-    return end_of_recording(recording, end);
+    if (end == END_REQUESTED)
+        end = receive_rest(recording);
+    const int code = end_of_recording(recording, end);
+    record_bodies_close(recording->bodies);
+    return code;
 }
 
 /* The bus is open, and what comes waits there. */
@@ -305,6 +339,31 @@ static int record_from_bus(struct recording *recording)
     return code;
 }
 
+static bool open_bus(struct recording *recording, const struct args_bus *args)
+{
+    const bool others = recording->options->all || recording->options->channel;
+    char why[BUS_WHY_MAX];
+    recording->channels = log_channels(args->prefix);
+    recording->bus = bus_open(args->url, why);
+    bool ok = recording->bus != NULL;
+    for (int kind = 0; ok && !others && kind < LOG_OTHER; kind++)
+        ok = bus_listen(recording->bus, recording->channels.name[kind], why);
+    if (ok && others)
+        ok = bus_listen(recording->bus, NULL, why);
+    if (!ok)
+        fprintf(stderr, "fmb: %s\n", why);
+    return ok;
+}
+
+static bool choose_others(const struct args *args, struct recording *recording)
+{
+    const char *channel = recording->options->channel;
+    char why[LOG_CHOICE_WHY_MAX];
+    recording->others = log_choice_all();
+    return !channel || log_choice_add_channel(&recording->others, channel, why) ||
+           args_error(args, "--channel: '%s' is no regular expression: %s", channel, why);
+}
+
 int cmd_record(int argc, char **argv)
 {
     struct args args = {"record",         usage, own_options, take_option, .operand = "FILE",
@@ -315,12 +374,11 @@ int cmd_record(int argc, char **argv)
     int code = args_parse(&args, argc, argv, &options);
     if (code == ARGS_RUN)
         code = complete(&args, &options);
-    if (code != ARGS_RUN)
-        return code;
-    code = record_bus_open(&args.bus, options.channel, on_message, &recording, &recording.bus);
-    if (code != ARGS_RUN)
-        return code;
-    code = record_from_bus(&recording);
-    record_bus_close(&recording.bus);
+    if (code == ARGS_RUN && !choose_others(&args, &recording))
+        code = ARGS_USAGE;
+    if (code == ARGS_RUN)
+        code = open_bus(&recording, &args.bus) ? record_from_bus(&recording) : ARGS_FAILED;
+    bus_close(recording.bus);
+    log_choice_clear(&recording.others);
     return code;
 }

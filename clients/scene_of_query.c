@@ -1,6 +1,7 @@
 #include "scene_of_query.h"
 
 #include "allocate.h"
+#include "big_endian.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -8,15 +9,33 @@
 
 /* ---- Bodies ---- */
 
-static void set_body(const struct query_frame *frame, struct scene_body *out)
+static bool read_body(const struct geometry *geometry, struct fmb_body *out)
 {
-    const enum fmb_status status = fmb_body_make(frame->dim, frame->shape, frame->components.number,
-                                                 (size_t) frame->components.count, &out->body);
-    assert(status == FMB_OK);
-    (void) status;
-    memcpy(out->origin, frame->origin.number, sizeof out->origin);
-    memcpy(out->velocity, frame->velocity.number, sizeof out->velocity);
-    out->moving = frame->velocity.count > 0;
+    struct geometry_frame frame;
+    int dim;
+    if (big_endian_32(geometry->bytes + 4) != 1 || !geometry_read(geometry, &dim, &frame))
+        return false;
+    for (int axis = 0; axis < dim; axis++)
+        if (frame.origin[axis] != 0)
+            return false;
+    return fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), out) ==
+           FMB_OK;
+}
+
+bool scene_takes(const struct geometry *geometry)
+{
+    struct fmb_body body;
+    return read_body(geometry, &body);
+}
+
+static void set_body(const struct placement *placement, struct scene_body *out)
+{
+    const bool taken = read_body(&placement->geometry, &out->body);
+    assert(taken);
+    (void) taken;
+    memcpy(out->origin, placement->position, sizeof out->origin);
+    memcpy(out->velocity, placement->velocity, sizeof out->velocity);
+    out->moving = placement->velocity_count > 0;
 }
 
 static int compare(const void *left, const void *right)
@@ -35,37 +54,37 @@ static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_
     return (*id)++;
 }
 
-/* Whether a frame before this one has its id. Scenes are small: this is quick enough. */
-static bool is_repeated(const struct query_frame *frame, size_t i)
+/* Whether a placement before this one has its id. Scenes are small: this is quick enough. */
+static bool is_repeated(const struct placement *placement, size_t i)
 {
     for (size_t before = 0; before < i; before++)
-        if (frame[before].body_id == frame[i].body_id)
+        if (placement[before].body_id == placement[i].body_id)
             return true;
     return false;
 }
 
-static void set_ids(const struct query_frame *frame, struct scene *scene)
+static void set_ids(const struct placement *placement, struct scene *scene)
 {
     int64_t *sorted = allocate(scene->body_count, sizeof *sorted), id = 1;
     size_t next = 0;
     for (size_t i = 0; i < scene->body_count; i++)
-        sorted[i] = frame[i].body_id;
+        sorted[i] = placement[i].body_id;
     qsort(sorted, scene->body_count, sizeof *sorted, compare);
     for (size_t i = 0; i < scene->body_count; i++)
-        scene->body[i].id = frame[i].body_id == 0 || is_repeated(frame, i)
+        scene->body[i].id = placement[i].body_id == 0 || is_repeated(placement, i)
                                 ? free_id(sorted, scene->body_count, &next, &id)
-                                : frame[i].body_id;
+                                : placement[i].body_id;
     free(sorted);
 }
 
-static void set_bodies(const struct query_frame *frame, size_t count, struct scene *scene)
+static void set_bodies(const struct placement *placement, size_t count, struct scene *scene)
 {
-    scene->dim = count > 0 ? frame[0].dim : FMB_DIM_MAX;
+    scene->dim = count > 0 ? placement[0].dim : FMB_DIM_MAX;
     scene->body_count = count;
     scene->body = allocate(count, sizeof *scene->body);
     for (size_t i = 0; i < count; i++)
-        set_body(&frame[i], &scene->body[i]);
-    set_ids(frame, scene);
+        set_body(&placement[i], &scene->body[i]);
+    set_ids(placement, scene);
 }
 
 /* ---- Pairs ---- */
@@ -120,10 +139,10 @@ void scene_of_query(const struct any_query *query, struct scene *out)
     *out = (struct scene){.all_pairs = true};
     if (query->kind == LOG_PAIR_QUERY) {
         out->duration = query->pair.duration;
-        set_bodies(query->pair.frame, 2, out);
+        set_bodies(query->pair.placement, 2, out);
         return;
     }
     out->duration = query->scene.duration;
-    set_bodies(query->scene.frame, (size_t) query->scene.frame_count, out);
+    set_bodies(query->scene.placement, (size_t) query->scene.placement_count, out);
     set_pairs(&query->scene, out);
 }

@@ -44,7 +44,7 @@ bool log_choice_add_channel(struct log_choice *choice, const char *text,
     }
     channel.text = allocate(channel.length + 1, 1);
     memcpy(channel.text, text, channel.length);
-    choice->channel = allocate_room(choice->channel, &choice->channel_room,
+    choice->channel = allocate_room(choice->channel, &choice->channel_capacity,
                                     choice->channel_count + 1, sizeof *choice->channel);
     choice->channel[choice->channel_count++] = channel;
     return true;
@@ -52,7 +52,7 @@ bool log_choice_add_channel(struct log_choice *choice, const char *text,
 
 void log_choice_add_body(struct log_choice *choice, int64_t id)
 {
-    choice->body = allocate_room(choice->body, &choice->body_room, choice->body_count + 1,
+    choice->body = allocate_room(choice->body, &choice->body_capacity, choice->body_count + 1,
                                  sizeof *choice->body);
     choice->body[choice->body_count++] = id;
 }
@@ -98,11 +98,11 @@ static bool is_chosen(const struct log_choice *choice, int64_t id)
     return false;
 }
 
-bool log_choice_has_body(const struct log_choice *choice, const struct query_frame *frame,
+bool log_choice_has_body(const struct log_choice *choice, const struct placement *placement,
                          int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (is_chosen(choice, frame[i].body_id))
+        if (is_chosen(choice, placement[i].body_id))
             return true;
     return choice->body_count == 0;
 }

@@ -1,5 +1,5 @@
-/* Which events of a log somebody wants: by time, by channel and by body; each that is given has to
- * hold. Starts with no limits: log_choice_all(). */
+/* A choice of events of a log, by time, channel and body. An event must meet all conditions given.
+ * log_choice_all() is the choice without conditions. */
 #ifndef LOG_CHOICE_H
 #define LOG_CHOICE_H
 
@@ -9,33 +9,32 @@
 struct log_channel_choice;
 
 struct log_choice {
-    /* Seconds of log time since the first event, from <= t < to; -INFINITY and INFINITY: no limit.
-     */
+    /* from <= t < to, log time in seconds since the first event; -INFINITY, INFINITY: no limit. */
     double from, to;
-    /* Owned; none: all channels, any query. */
+    /* Owned. No channels: all of them; no bodies: any query. */
     struct log_channel_choice *channel;
-    size_t channel_count, channel_room;
+    size_t channel_count, channel_capacity;
     int64_t *body; /* ids, from 1 */
-    size_t body_count, body_room;
+    size_t body_count, body_capacity;
 };
 
 struct log_choice log_choice_all(void);
 void log_choice_clear(struct log_choice *choice);
 
-/* One channel more, or those whose whole name an extended regular expression of POSIX matches. On
- * output: false, and why it is none. */
+/* Adds a channel, or those whose whole name matches a POSIX extended regular expression. Returns
+ * false, and why, if text is neither. */
 enum { LOG_CHOICE_WHY_MAX = 128 };
 bool log_choice_add_channel(struct log_choice *choice, const char *text,
                             char why[LOG_CHOICE_WHY_MAX]);
 void log_choice_add_body(struct log_choice *choice, int64_t id);
 
-/* Whether nothing is left out. */
+/* Whether there are no conditions. */
 bool log_choice_is_all(const struct log_choice *choice);
 
-/* The single conditions. Times are those of the log, microseconds. */
+/* Check a single condition. Times are log times, microseconds. */
 bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, int64_t utime);
 bool log_choice_has_channel(const struct log_choice *choice, const struct log_event *event);
-bool log_choice_has_body(const struct log_choice *choice, const struct query_frame *frame,
+bool log_choice_has_body(const struct log_choice *choice, const struct placement *placement,
                          int32_t count);
 
 #endif

@@ -1,11 +1,10 @@
 #include "log_cut.h"
 
 #include "allocate.h"
-#include "any_query.h"
-#include "definition.h"
+#include "definitions.h"
 #include "log_survey.h"
 #include "log_write.h"
-#include "message.h"
+#include "wire.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -13,7 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Bytes between two words of progress. */
+/* Bytes between two reports of progress. */
 enum { PROGRESS_BYTES = 1 << 20 };
 
 struct cut {
@@ -24,14 +23,14 @@ struct cut {
     struct input input;
     struct log_writer *output; /* NULL: not opened */
     struct log_survey survey;
-    int64_t event; /* number of the one that is being copied, over all logs */
-    int64_t passed, told;
-    bool failed;
-    struct any_query query, definition;
+    int64_t event;            /* number of the event that is being copied, over all logs */
+    int64_t passed, reported; /* bytes */
+    bool failed, begun;       /* begun: the definitions are written */
+    struct definition definition;
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-/* Says what cannot be read or written, once. */
+/* Reports what cannot be read or written, once. */
 static void fail(struct cut *cut, const char *what, int error)
 {
     if (!cut->failed)
@@ -57,9 +56,9 @@ static void on_progress(void *user, int64_t bytes)
 {
     struct cut *cut = user;
     cut->passed += bytes;
-    if (cut->passed - cut->told < PROGRESS_BYTES)
+    if (cut->passed - cut->reported < PROGRESS_BYTES)
         return;
-    cut->told = cut->passed;
+    cut->reported = cut->passed;
     cut->sink->progress(cut->sink->user, cut->passed / 2, input_size(&cut->input));
 }
 
@@ -86,82 +85,46 @@ static void copy(struct cut *cut, const struct log_event *event)
     log_unmap(data, event);
 }
 
-/* ---- What is written back ---- */
+/* ---- Definitions ---- */
 
-static bool find_components(struct cut *cut, int64_t place, struct query_numbers *out)
-{
-    if (log_patches_find(cut->survey.patches, place, out))
-        return true;
-    fail(cut, "a temporary file", log_patches_error(cut->survey.patches));
-    return false;
-}
+/* Of a definition without its bodies. */
+enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
 
-static void write_definition(struct cut *cut, const struct log_event *event)
+static void write_definition(struct cut *cut, int64_t utime)
 {
-    append(cut, event, cut->bytes, any_query_write(&cut->definition, cut->bytes));
-    cut->counts->definitions++;
-    cut->counts->defined += cut->definition.scene.frame_count;
-    definition_begin(&cut->definition.scene);
-}
-
-static void define(struct cut *cut, const struct log_event *event, const struct query_frame *frame,
-                   const struct log_patch *patch)
-{
-    struct scene_query *definition = &cut->definition.scene;
-    struct query_numbers components;
-    cut->definition.kind = LOG_SCENE_QUERY;
-    definition_begin(definition);
-    for (int32_t i = 0; i < patch->count; i++) {
-        const struct query_frame *by_key = &frame[patch->put[i].frame];
-        if (!find_components(cut, patch->put[i].components, &components))
-            return;
-        if (definition_add(definition, by_key, &components))
-            continue;
-        write_definition(cut, event);
-        definition_add(definition, by_key, &components);
-    }
-    write_definition(cut, event);
-    copy(cut, event);
-}
-
-static void write_back(struct cut *cut, const struct log_event *event, struct query_frame *frame,
-                       const struct log_patch *patch)
-{
-    for (int32_t i = 0; i < patch->count; i++)
-        if (!find_components(cut, patch->put[i].components, &frame[patch->put[i].frame].components))
-            return;
-    append(cut, event, cut->bytes, any_query_write(&cut->query, cut->bytes));
-    cut->counts->queries++;
-    cut->counts->frames += patch->count;
-}
-
-/* Whether the query that was read has all frames that the patch is for. */
-static bool fits(const struct log_patch *patch, int32_t count)
-{
-    for (int32_t i = 0; i < patch->count; i++)
-        if (patch->put[i].frame >= count)
-            return false;
-    return true;
-}
-
-/* The query was read before: where it is another now, somebody has written into the log. */
-static void copy_patched(struct cut *cut, const struct log_event *event,
-                         const struct log_patch *patch)
-{
-    const enum log_kind kind = log_kind_of(&cut->channels, event);
-    int32_t count;
-    if (!message_is_query(kind) ||
-        any_query_read(&cut->query, kind, event->data, event->kept) != NULL) {
-        fail_input(cut, ENODATA);
+    const struct log_event event = {.utime = utime,
+                                    .channel = cut->channels.name[LOG_DEFINITION],
+                                    .channel_length = cut->channels.length[LOG_DEFINITION]};
+    if (cut->definition.body_count == 0)
         return;
+    append(cut, &event, cut->bytes, wire_write_definition(&cut->definition, cut->bytes));
+    cut->counts->definitions++;
+    cut->counts->defined += cut->definition.body_count;
+    cut->definition.body_count = 0;
+}
+
+/* One geometry fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
+ * shorter. */
+static void define(struct cut *cut, int64_t utime)
+{
+    const struct log_survey *survey = &cut->survey;
+    size_t bytes = DEFINITION_BYTES;
+    for (size_t i = 0; i < survey->wanted_count; i++) {
+        const struct geometry *geometry = definitions_find(survey->definitions, &survey->wanted[i]);
+        if (!geometry) {
+            cut->counts->unknown++;
+            continue;
+        }
+        if (bytes + HANDLE_BYTES + geometry->size > QUERY_BYTES_MAX ||
+            cut->definition.body_count == QUERY_BODIES_MAX) {
+            write_definition(cut, utime);
+            bytes = DEFINITION_BYTES;
+        }
+        bytes += HANDLE_BYTES + geometry->size;
+        cut->definition.body[cut->definition.body_count++] =
+            (struct query_body){survey->wanted[i], *geometry};
     }
-    struct query_frame *frame = any_query_frames(&cut->query, &count);
-    if (!any_query_is_whole(&cut->query) || !fits(patch, count))
-        fail_input(cut, ENODATA);
-    else if (patch->define)
-        define(cut, event, frame, patch);
-    else
-        write_back(cut, event, frame, patch);
+    write_definition(cut, utime);
 }
 
 /* ---- Copying ---- */
@@ -172,15 +135,16 @@ static void take_event(struct cut *cut, const struct log_event *event)
     const int64_t number = cut->event++;
     counts->events++;
     counts->bytes += event->length;
-    if (!log_marks_has(cut->survey.marks, number))
+    if (!log_survey_is_chosen(&cut->survey, number))
         return;
+    if (!cut->begun)
+        define(cut, event->utime);
+    cut->begun = true;
+    const enum log_kind kind = log_kind_of(&cut->channels, event);
     counts->kept_events++;
-    counts->kept[log_kind_of(&cut->channels, event)]++;
-    const struct log_patch *patch = log_patches_of(cut->survey.patches, number);
-    if (patch)
-        copy_patched(cut, event, patch);
-    else
-        copy(cut, event);
+    counts->kept[kind]++;
+    counts->version_1 += log_kind_is_version_1(kind, event);
+    copy(cut, event);
 }
 
 static void take_damage(struct cut *cut, const struct log_damage *damage)
@@ -207,14 +171,10 @@ static void copy_all(struct cut *cut)
     }
     if (outcome == LOG_FAILED)
         fail_input(cut, errno);
-    const int error = log_marks_error(cut->survey.marks);
-    const int other = log_patches_error(cut->survey.patches);
-    if (error || other)
-        fail(cut, "a temporary file", error ? error : other);
     cut->counts->kept_bytes = log_written(cut->output);
 }
 
-/* ---- The run ---- */
+/* ---- All of it ---- */
 
 static bool is_same_file(const char *path, const char *other)
 {
@@ -263,8 +223,6 @@ static void run(struct cut *cut)
         copy_all(cut);
     else
         cut->failed = true;
-    cut->counts->unknown_frames = cut->survey.unknown_frames;
-    cut->counts->unknown_queries = cut->survey.unknown_queries;
     log_survey_clear(&cut->survey);
 }
 

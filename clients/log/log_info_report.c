@@ -1,8 +1,8 @@
 #include "log_info_report.h"
 
 #include "cursor.h"
+#include "json_write.h"
 #include "number.h"
-#include "report.h"
 #include "wire_type.h"
 
 #include <inttypes.h>
@@ -179,6 +179,14 @@ static void print_damage(FILE *out, const struct log_info *info)
         fprintf(out, "    and %s more\n", number_grouped(info->damages - DAMAGE_LINES, offset));
 }
 
+static bool has_version_1(const struct log_info *info)
+{
+    for (unsigned i = 0; i < info->row_count; i++)
+        if (wire_type_is_version_1(info->row[i].type.fingerprint))
+            return true;
+    return false;
+}
+
 void log_report_text(FILE *out, const struct log_report *report)
 {
     const struct log_info *info = report->info;
@@ -195,6 +203,8 @@ void log_report_text(FILE *out, const struct log_report *report)
         print_span(out, info);
         print_channels(out, info);
     }
+    if (has_version_1(info))
+        fputs("  recorded by version 1, whose messages this version does not read\n", out);
     if (info->damages > 0)
         print_damage(out, info);
     if (report->error)
@@ -205,74 +215,89 @@ void log_report_text(FILE *out, const struct log_report *report)
 
 /* ---- For programs ---------------------------------------------------------------------------- */
 
-static void write_times(FILE *out, const struct log_tally *tally)
+static void write_times(struct json_writer *json, const struct log_tally *tally)
 {
-    if (tally->events > 0)
-        fprintf(out, ", \"begin\": %" PRId64 ", \"end\": %" PRId64, tally->begin, tally->end);
-    else
-        fputs(", \"begin\": null, \"end\": null", out);
+    if (tally->events > 0) {
+        json_integer(json, "begin", tally->begin);
+        json_integer(json, "end", tally->end);
+    } else {
+        json_null(json, "begin");
+        json_null(json, "end");
+    }
 }
 
-static void write_counts(FILE *out, const struct log_tally *tally)
+static void write_counts(struct json_writer *json, const struct log_tally *tally)
 {
-    fprintf(out, "\"events\": %" PRId64 ", \"bytes\": %" PRId64 ", \"least\": %zu, \"most\": %zu",
-            tally->events, tally->bytes, tally->least, tally->most);
-    write_times(out, tally);
+    json_integer(json, "events", tally->events);
+    json_integer(json, "bytes", tally->bytes);
+    json_integer(json, "least", (int64_t) tally->least);
+    json_integer(json, "most", (int64_t) tally->most);
+    write_times(json, tally);
 }
 
-static void write_row(FILE *out, const struct log_row *row)
+static void write_row(struct json_writer *json, const struct log_row *row)
 {
     char text[TYPE_TEXT_MAX];
     const char *type = type_text(row->type, text);
-    fputs("{\"channel\": ", out);
-    report_bytes_json(out, row->channel, row->channel_length);
-    fprintf(out, type ? ", \"type\": \"%s\", " : ", \"type\": null, ", type);
-    write_counts(out, &row->tally);
-    putc('}', out);
+    json_begin(json, NULL, '{');
+    json_bytes(json, "channel", row->channel, row->channel_length);
+    if (type)
+        json_string(json, "type", type);
+    else
+        json_null(json, "type");
+    write_counts(json, &row->tally);
+    json_end(json, '}');
 }
 
-static void write_channels(FILE *out, const struct log_info *info)
+static void write_channels(struct json_writer *json, const struct log_info *info)
 {
-    fputs(", \"channels\": [", out);
-    for (unsigned i = 0; i < info->row_count; i++) {
-        fputs(i ? ", " : "", out);
-        write_row(out, &info->row[i]);
-    }
-    putc(']', out);
+    json_begin(json, "channels", '[');
+    for (unsigned i = 0; i < info->row_count; i++)
+        write_row(json, &info->row[i]);
+    json_end(json, ']');
     if (info->others.events == 0)
         return;
-    fputs(", \"others\": {", out);
-    write_counts(out, &info->others);
-    putc('}', out);
+    json_begin(json, "others", '{');
+    write_counts(json, &info->others);
+    json_end(json, '}');
 }
 
-static void write_damage(FILE *out, const struct log_info *info)
+static void write_damage(struct json_writer *json, const struct log_info *info)
 {
-    fprintf(out, ", \"damage\": {\"places\": %" PRId64 ", \"bytes\": %" PRId64 ", \"first\": [",
-            info->damages, info->damaged);
-    for (int64_t i = 0; i < info->damages && i < LOG_INFO_DAMAGES_MAX; i++)
-        fprintf(out, "%s{\"offset\": %" PRId64 ", \"length\": %" PRId64 ", \"what\": \"%s\"}",
-                i ? ", " : "", info->damage[i].offset, info->damage[i].length,
-                info->damage[i].what);
-    fputs("]}", out);
+    json_begin(json, "damage", '{');
+    json_integer(json, "places", info->damages);
+    json_integer(json, "bytes", info->damaged);
+    json_begin(json, "first", '[');
+    for (int64_t i = 0; i < info->damages && i < LOG_INFO_DAMAGES_MAX; i++) {
+        json_begin(json, NULL, '{');
+        json_integer(json, "offset", info->damage[i].offset);
+        json_integer(json, "length", info->damage[i].length);
+        json_string(json, "what", info->damage[i].what);
+        json_end(json, '}');
+    }
+    json_end(json, ']');
+    json_end(json, '}');
 }
 
 void log_report_json(FILE *out, const struct log_report *report)
 {
     const struct log_tally *all = &report->info->all;
-    char rate[NUMBER_TEXT_MAX];
-    fputs("{\"log\": ", out);
-    report_string_json(out, report->path);
-    fprintf(out, ", \"size\": %" PRId64 ", \"events\": %" PRId64 ", \"bytes\": %" PRId64,
-            report->size, all->events, all->bytes);
-    write_times(out, all);
-    fprintf(out, ", \"rate\": %s, \"backward\": %" PRId64,
-            span_of(all) > 0 ? number_exact(rate_of(all), rate) : "null", report->info->backward);
-    write_channels(out, report->info);
-    write_damage(out, report->info);
-    if (report->error) {
-        fputs(", \"error\": ", out);
-        report_string_json(out, report->error);
-    }
-    fputs("}\n", out);
+    struct json_writer json = {.out = out};
+    json_begin(&json, NULL, '{');
+    json_string(&json, "log", report->path);
+    json_integer(&json, "size", report->size);
+    json_integer(&json, "events", all->events);
+    json_integer(&json, "bytes", all->bytes);
+    write_times(&json, all);
+    if (span_of(all) > 0)
+        json_number(&json, "rate", rate_of(all));
+    else
+        json_null(&json, "rate");
+    json_integer(&json, "backward", report->info->backward);
+    write_channels(&json, report->info);
+    write_damage(&json, report->info);
+    if (report->error)
+        json_string(&json, "error", report->error);
+    json_end(&json, '}');
+    json_line_end(&json);
 }

@@ -1,4 +1,4 @@
-/* Prints what is in a log. */
+/* Prints the summary of a log. */
 #ifndef LOG_INFO_REPORT_H
 #define LOG_INFO_REPORT_H
 
@@ -9,12 +9,12 @@
 struct log_report {
     const char *path;
     int64_t size;
-    const char *error;           /* why it could not be read to its end; NULL: it was */
+    const char *error;           /* why it could not be read to its end; NULL: no error */
     const struct log_info *info; /* after log_info_end() */
 };
 
-/* For people; of many damages the first few lines. What channels are called does nothing to a
- * terminal. */
+/* For people; lists the first few damaged places. Control characters in channel names are not
+ * printed. */
 void log_report_text(FILE *out, const struct log_report *report);
 
 /* One line, one JSON object:
@@ -29,9 +29,9 @@ void log_report_text(FILE *out, const struct log_report *report);
  *
  * bytes, least and most are of data; times are microseconds since 1970, null where there is no
  * event; rate is events a second, null where no time passes. A type that is not one of fmb_msgs is
- * its fingerprint, "0x0123456789abcdef", or null where the data has none. "others" comes behind
- * channels where there are more than are counted; of places LOG_INFO_DAMAGES_MAX are given; "error"
- * comes last, where the log could not be read to its end. */
+ * its fingerprint, "0x0123456789abcdef", or null where the data has none. "others" follows channels
+ * if there are more than LOG_INFO_ROWS_MAX; at most LOG_INFO_DAMAGES_MAX places are listed; "error"
+ * comes last, if the log could not be read to its end. */
 void log_report_json(FILE *out, const struct log_report *report);
 
 #endif

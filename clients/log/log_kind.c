@@ -1,7 +1,9 @@
 #include "log_kind.h"
 
+#include "big_endian.h"
 #include "bus.h"
 #include "wire.h"
+#include "wire_type.h"
 
 #include <string.h>
 
@@ -9,8 +11,12 @@ _Static_assert(sizeof((struct log_channels *) 0)->name[0] == BUS_CHANNEL_MAX, "L
 
 struct log_channels log_channels(const char *prefix)
 {
-    static const char *const name[LOG_OTHER] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, WIRE_SCENE_QUERY,
-                                                WIRE_SCENE_RESULT, WIRE_STATUS};
+    static const char *const name[LOG_OTHER] = {
+        [LOG_PAIR_QUERY] = WIRE_PAIR_QUERY,   [LOG_PAIR_RESULT] = WIRE_PAIR_RESULT,
+        [LOG_SCENE_QUERY] = WIRE_SCENE_QUERY, [LOG_SCENE_RESULT] = WIRE_SCENE_RESULT,
+        [LOG_STATUS] = WIRE_STATUS,           [LOG_DEFINITION_QUERY] = WIRE_DEFINITION_QUERY,
+        [LOG_DEFINITION] = WIRE_DEFINITION,
+    };
     struct log_channels channels;
     for (int kind = 0; kind < LOG_OTHER; kind++) {
         bus_channel(channels.name[kind], prefix, name[kind]);
@@ -26,4 +32,25 @@ enum log_kind log_kind_of(const struct log_channels *channels, const struct log_
             memcmp(event->channel, channels->name[kind], event->channel_length) == 0)
             return (enum log_kind) kind;
     return LOG_OTHER;
+}
+
+const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
+                         struct query_header *out)
+{
+    const uint32_t size = (uint32_t) event->kept;
+    if (log_kind_is_result(kind) && event->kept < event->size)
+        return "longer than any message of this type";
+    switch (kind) {
+    case LOG_PAIR_QUERY: return wire_read_pair_header(event->data, size, out);
+    case LOG_PAIR_RESULT: return wire_read_pair_result_header(event->data, size, out);
+    case LOG_SCENE_QUERY: return wire_read_scene_header(event->data, size, out);
+    case LOG_SCENE_RESULT: return wire_read_scene_result_header(event->data, size, out);
+    default: return "neither a query nor a result";
+    }
+}
+
+bool log_kind_is_version_1(enum log_kind kind, const struct log_event *event)
+{
+    return kind != LOG_OTHER && event->kept >= 8 &&
+           wire_type_is_version_1((int64_t) big_endian_64(event->data));
 }

@@ -1,17 +1,20 @@
-/* Which of a service's channels an event of a log is on. */
+/* The service's channel that an event of a log is on, and the ids of its message. */
 #ifndef LOG_KIND_H
 #define LOG_KIND_H
 
 #include "log_read.h"
+#include "query.h"
 
-/* In the order of msgs/README.md. */
+/* Queries and results of pairs and scenes come before LOG_STATUS. */
 enum log_kind {
     LOG_PAIR_QUERY,
     LOG_PAIR_RESULT,
     LOG_SCENE_QUERY,
     LOG_SCENE_RESULT,
     LOG_STATUS,
-    LOG_OTHER, /* somebody else's, or of a service with another prefix */
+    LOG_DEFINITION_QUERY,
+    LOG_DEFINITION,
+    LOG_OTHER, /* of another program, or of a service with another prefix */
     LOG_KINDS
 };
 
@@ -21,9 +24,29 @@ struct log_channels {
     size_t length[LOG_OTHER];
 };
 
-/* prefix: one that bus_prefix_ok() takes, "" for none. */
+/* prefix: valid by bus_prefix_ok(), or "". */
 struct log_channels log_channels(const char *prefix);
 
 enum log_kind log_kind_of(const struct log_channels *channels, const struct log_event *event);
+
+/* Whether it is a query or a result of a pair or a scene. */
+static inline bool log_kind_is_query(enum log_kind kind)
+{
+    return kind == LOG_PAIR_QUERY || kind == LOG_SCENE_QUERY;
+}
+
+static inline bool log_kind_is_result(enum log_kind kind)
+{
+    return kind == LOG_PAIR_RESULT || kind == LOG_SCENE_RESULT;
+}
+
+/* Reads the ids of a query or result, and nothing else of it. Returns NULL; or a static text: why
+ * they cannot be read. A query may be longer than the kept data of the event: the service answers
+ * it with a refusal. */
+const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
+                         struct query_header *out);
+
+/* Whether an event on a channel of the service is of a message type of version 1. */
+bool log_kind_is_version_1(enum log_kind kind, const struct log_event *event);
 
 #endif

@@ -139,17 +139,25 @@ static bool is_full(const struct log_parts *parts, int64_t more)
     return has_several(parts) && written > 0 && written + more > parts->options.part_bytes;
 }
 
+bool log_parts_prepare(struct log_parts *parts, int64_t bytes)
+{
+    return !is_full(parts, bytes) || turn_over(parts);
+}
+
 bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
                       size_t channel_length, const void *data, size_t size)
 {
-    if (is_full(parts, log_event_bytes(channel_length, size)) && !turn_over(parts))
-        return false;
     return log_append(parts->writer, utime, channel, channel_length, data, size);
 }
 
 bool log_parts_flush(struct log_parts *parts)
 {
     return log_flush(parts->writer);
+}
+
+bool log_parts_check(struct log_parts *parts)
+{
+    return log_check(parts->writer);
 }
 
 int64_t log_parts_written(const struct log_parts *parts)

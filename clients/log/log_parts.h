@@ -1,51 +1,55 @@
-/* A log that is written into one file, or into several of bounded size, one after the other:
- * FILE.000, FILE.001, ... Each of them is a log, no event is divided, and all of them one behind
- * the other are a log too, but for the events' numbers: those begin anew in each. */
+/* Writes a log into one file, or into several of bounded size, one after the other: FILE.000,
+ * FILE.001, ... Each file is a complete log, with its own event numbers from 0. No event is
+ * divided, so the files can also be concatenated. */
 #ifndef LOG_PARTS_H
 #define LOG_PARTS_H
 
 #include "log_write.h"
 
 struct log_parts_options {
-    const char *path; /* FILE; must stay */
-    /* What is there is overwritten: FILE; or where there are to be several, all that have such a
-     * name are removed first. Without it, that any is there is an error. */
+    const char *path; /* FILE; must outlive the log */
+    /* Overwrites FILE; with several files, removes all files with such names first. Without force,
+     * an existing file is an error. */
     bool force;
-    int64_t
-        part_bytes; /* the most that a file has, but for one event that is larger; 0: one FILE */
-    long keep;      /* of several files the last so many stay, 1 or more; 0: all */
+    int64_t part_bytes; /* most bytes of a file, unless a single event is larger; 0: one FILE */
+    long keep;          /* number of newest files to keep, 1 or more; 0: all */
 };
 
 struct log_parts {
     struct log_parts_options options;
     struct log_writer *writer; /* NULL: none is open */
-    int previous;              /* the file before it, of which the disk may lack some; -1: none */
-    char *name;                /* the file that is being written, or could not be */
-    long first, number;        /* the oldest file that is left, and the one that is being written */
-    int64_t finished;          /* bytes of the files before it, those that are gone too */
+    int previous;              /* the previous file, perhaps not on disk yet; -1: none */
+    char *name;                /* of the current file, or of the one that failed */
+    long first, number;        /* of the oldest file left, and of the current one */
+    int64_t finished;          /* bytes of all earlier files, deleted ones included */
 };
 
-/* Opens the first file. On output: true; or false: errno, and where it has to do with another file
- * than FILE, its name in out->name. In both cases log_parts_close() is to be called. */
+/* Opens the first file. Returns false on error: errno, and in out->name the file if it is not FILE.
+ * Call log_parts_close() in both cases. */
 bool log_parts_open(const struct log_parts_options *options, struct log_parts *out);
 
-/* As log_append() and log_flush(); not to be called again after false. A full file is closed
- * without waiting for the disk: that is made up for when the next one is full, or at the end, and
- * an error of it is heard then. */
+/* Begins the next file if the current one has no space for so many more bytes. Call it before
+ * events that belong into the same file; log_parts.number shows whether the file is new. The full
+ * file is closed without waiting for the disk; errors of the disk are reported when the next file
+ * is full, or at the end. */
+bool log_parts_prepare(struct log_parts *parts, int64_t bytes);
+
+/* As log_append(), log_flush() and log_check(). After false, call none of these again. */
 bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
                       size_t channel_length, const void *data, size_t size);
 bool log_parts_flush(struct log_parts *parts);
+bool log_parts_check(struct log_parts *parts);
 
-/* Bytes of all files so far, those that are gone too; as log_written(). */
+/* Bytes of all files so far, deleted ones included; as log_written(). */
 int64_t log_parts_written(const struct log_parts *parts);
 
-/* Closes the last file. On output: as log_finish(). The names are still good. */
+/* Closes the last file. Returns as log_finish(). The names stay valid. */
 int log_parts_finish(struct log_parts *parts);
 
 /* Frees all. */
 void log_parts_close(struct log_parts *parts);
 
-/* The name of a file of several; to be freed by the caller; NULL: no memory. */
+/* The name of one of several files. The caller frees it. NULL: out of memory. */
 char *log_parts_name(const char *path, long number);
 
 #endif

@@ -1,43 +1,46 @@
-/* One query out of logs, with what its keys stand for. */
+/* Extracts one query from logs, with the bodies of its handles. */
 #ifndef LOG_QUERY_H
 #define LOG_QUERY_H
 
 #include "any_query.h"
-#include "match.h"
+#include "definitions.h"
+#include "log_read.h"
 
 struct log_query_options {
-    /* Taken as one, in this order. The query stands in the last one, or its result does; those
-     * before it are read for what they tell of keys. */
+    /* Read as one log, in this order. The last one contains the query or its result; the others
+     * are read for definitions. */
     char *const *log; /* [log_count] */
     int log_count;
-    const char *prefix; /* of the channels, "" for none */
-    /* What is wanted: the event of this number, as the log says; or the one at this place, bytes
-     * from the beginning of the log; or the query with these ids. An event that is a result stands
-     * for its query. */
+    const char *prefix; /* of the channels; "": none */
+    /* Which query: that of the event with this number in the log, that of the event at this offset,
+     * or that with these ids. The event may be the query or its result. */
     enum { LOG_QUERY_NUMBER, LOG_QUERY_OFFSET, LOG_QUERY_IDS } by;
     int64_t number, offset;
     int64_t client_id, sequence_number;
-    /* So many bytes of so many have been gone through. */
+    /* So many bytes out of so many have been read. */
     void (*progress)(void *user, int64_t bytes, int64_t of);
     void *user;
 };
 
 struct log_query {
-    struct match_place place;
+    int64_t number, offset; /* of its event, in the last log */
     struct query_header ids;
-    size_t size; /* bytes, as it stands in the log */
-    /* Frames that came by key have their components, and their key, as fmb replay finds them
-     * (told.h). */
+    size_t size; /* bytes in the log */
+    unsigned char bytes[LOG_DATA_MAX];
+    /* A placement by handle also has the geometry of its body, from anywhere in the logs. The
+     * counts of its frames and numbers stay 0. */
     struct any_query query;
+    struct definitions *definitions; /* owned */
 };
 
 enum log_query_outcome {
     LOG_QUERY_FOUND,
-    LOG_QUERY_NONE,  /* there is none, or several, or a key is not told */
+    LOG_QUERY_NONE,  /* there is no such query, or several, or a handle is not defined */
     LOG_QUERY_FAILED /* a file cannot be opened or read */
 };
 
-/* What is not FOUND has been said on stderr. */
+/* If not FOUND, the reason was reported on stderr. Clear *out in any case. */
 enum log_query_outcome log_query(const struct log_query_options *options, struct log_query *out);
+void log_query_clear(struct log_query *query);
 
 #endif

@@ -1,34 +1,37 @@
-/* Goes through logs, and finds what a cut of them (log_cut.h) has to hold: which events, and what
- * is to be written back into queries that came by keys. */
+/* Reads logs once, and determines the contents of a cut (log_cut.h): its events, and the bodies
+ * that it has to define. Memory: a bit for each event, the unmatched queries and results, and each
+ * distinct body. */
 #ifndef LOG_SURVEY_H
 #define LOG_SURVEY_H
 
 #include "input.h"
 #include "log_choice.h"
 #include "log_kind.h"
-#include "log_marks.h"
-#include "log_patches.h"
 
 struct log_survey_options {
-    struct input *input; /* at its beginning */
+    struct input *input; /* at the beginning */
     char *const *log;    /* paths */
     const struct log_channels *channels;
     const struct log_choice *choice;
-    /* So many bytes more have been gone through. */
+    /* So many more bytes have been read. */
     void (*progress)(void *user, int64_t bytes);
     void *user;
 };
 
 struct log_survey {
-    struct log_marks *marks;     /* owned: events that are chosen */
-    struct log_patches *patches; /* owned: of queries that are chosen */
-    /* Frames of chosen queries that came by keys which the logs do not tell, and those queries. */
-    int64_t unknown_frames, unknown_queries;
+    unsigned char *chosen; /* owned; one bit for each event */
+    size_t chosen_size;    /* bytes */
+    /* Distinct handles that chosen queries name and no earlier chosen event defines, ascending. */
+    struct handle *wanted; /* owned */
+    size_t wanted_count, wanted_capacity;
+    struct definitions *definitions; /* owned; of all events, chosen or not */
 };
 
-/* Events are numbered over all logs, from 0. *out is to be cleared in any case. False: a file
- * failed, which has been said on stderr. */
+/* Events are numbered from 0 over all logs. Returns false if a file failed, which was reported on
+ * stderr. Clear *out in any case. */
 bool log_survey(const struct log_survey_options *options, struct log_survey *out);
 void log_survey_clear(struct log_survey *survey);
+
+bool log_survey_is_chosen(const struct log_survey *survey, int64_t event);
 
 #endif

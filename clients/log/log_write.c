@@ -1,60 +1,44 @@
 #include "log_write.h"
 
+#include "big_endian.h"
 #include "log_read.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <lcm/eventlog.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* What small events are gathered in for the system; larger ones go there straight. */
-enum { BUFFER_BYTES = 16 << 10 };
+/* Events are collected in a buffer; one that is larger is written by itself. */
+enum { BUFFER_BYTES = 256 << 10 };
 
 struct log_writer {
-    lcm_eventlog_t *log;
-    int64_t written; /* bytes */
-    int error;       /* the first; 0: none so far */
+    int fd;
+    int error;      /* the first; 0: none so far */
+    int64_t number; /* of the next event */
+    int64_t whole;  /* bytes that the file has, all of them whole events */
+    size_t used;    /* of the buffer: whole events too */
+    unsigned char buffer[BUFFER_BYTES];
 };
-
-/* An empty file that was not there: LCM's own function would overwrite. */
-static bool create_new(const char *path)
-{
-    int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    return fd >= 0 && close(fd) == 0;
-}
 
 struct log_writer *log_create(const char *path, bool force)
 {
-    struct log_writer *writer = calloc(1, sizeof *writer);
+    struct log_writer *writer = malloc(sizeof *writer);
     if (!writer)
         return NULL;
-    if (force || create_new(path))
-        writer->log = lcm_eventlog_create(path, "w");
-    if (!writer->log) {
-        const int error = errno;
-        free(writer);
-        errno = error;
-        return NULL;
-    }
-    setvbuf(writer->log->f, NULL, _IOFBF, BUFFER_BYTES);
-    return writer;
-}
-
-/* What a call that failed leaves in errno. Always false. */
-static bool fail(struct log_writer *writer)
-{
-    struct stat status;
-    if (!writer->error) {
-        writer->error = errno ? errno : EIO;
-        writer->written = fstat(fileno(writer->log->f), &status) == 0 ? status.st_size : 0;
-    }
-    errno = writer->error;
-    return false;
+    writer->fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC | (force ? O_TRUNC : O_EXCL), 0666);
+    writer->error = 0;
+    writer->number = writer->whole = 0;
+    writer->used = 0;
+    if (writer->fd >= 0)
+        return writer;
+    const int error = errno;
+    free(writer);
+    errno = error;
+    return NULL;
 }
 
 int64_t log_event_bytes(size_t channel_length, size_t size)
@@ -62,45 +46,142 @@ int64_t log_event_bytes(size_t channel_length, size_t size)
     return LOG_HEADER_BYTES + (int64_t) channel_length + (int64_t) size;
 }
 
-/* The library takes pointers to what it might change, and does not. */
-bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
-                size_t channel_length, const void *data, size_t size)
+/* ---- Writing ----------------------------------------------------------------------------------
+ */
+
+static bool fail(struct log_writer *writer, int error)
 {
-    lcm_eventlog_event_t event = {.timestamp = utime,
-                                  .channellen = (int32_t) channel_length,
-                                  .datalen = (int32_t) size,
-                                  .channel = (char *) channel,
-                                  .data = (void *) data};
-    assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= INT32_MAX);
-    errno = 0;
-    if (writer->error || lcm_eventlog_write_event(writer->log, &event) != 0)
-        return fail(writer);
-    writer->written += log_event_bytes(channel_length, size);
-    return true;
+    if (!writer->error)
+        writer->error = error ? error : EIO;
+    errno = writer->error;
+    return false;
+}
+
+/* Returns how many bytes were written; fewer than size after an error, errno. */
+static size_t write_all(int fd, const unsigned char *bytes, size_t size)
+{
+    size_t done = 0;
+    while (done < size) {
+        const ssize_t count = write(fd, bytes + done, size - done);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count <= 0)
+            break;
+        done += (size_t) count;
+    }
+    return done;
+}
+
+/* Bytes of the first events of the buffer that are whole in its first `done` bytes. */
+static size_t whole_events(const struct log_writer *writer, size_t done)
+{
+    size_t at = 0;
+    for (;;) {
+        const unsigned char *header = writer->buffer + at;
+        if (done - at < LOG_HEADER_BYTES)
+            return at;
+        const size_t size = LOG_HEADER_BYTES + (size_t) big_endian_32(header + 20) +
+                            (size_t) big_endian_32(header + 24);
+        if (size > done - at)
+            return at;
+        at += size;
+    }
+}
+
+/* The file ends with its last whole event. What is no regular file cannot be cut, and need not. */
+static bool cut_back(struct log_writer *writer, int error)
+{
+    if (ftruncate(writer->fd, (off_t) writer->whole) == 0)
+        lseek(writer->fd, (off_t) writer->whole, SEEK_SET);
+    return fail(writer, error);
 }
 
 bool log_flush(struct log_writer *writer)
 {
-    errno = 0;
-    if (writer->error || fflush(writer->log->f) != 0 || ferror(writer->log->f))
-        return fail(writer);
+    if (writer->error)
+        return fail(writer, 0);
+    const size_t done = write_all(writer->fd, writer->buffer, writer->used);
+    const int error = errno;
+    const bool complete = done == writer->used;
+    writer->whole += (int64_t) (complete ? done : whole_events(writer, done));
+    writer->used = 0;
+    return complete || cut_back(writer, error);
+}
+
+static void put_header(struct log_writer *writer, int64_t utime, const char *channel,
+                       size_t channel_length, size_t size)
+{
+    unsigned char *header = writer->buffer + writer->used;
+    big_endian_put_32(header, UINT32_C(0xeda1da01));
+    big_endian_put_64(header + 4, (uint64_t) writer->number++);
+    big_endian_put_64(header + 12, (uint64_t) utime);
+    big_endian_put_32(header + 20, (uint32_t) channel_length);
+    big_endian_put_32(header + 24, (uint32_t) size);
+    memcpy(header + LOG_HEADER_BYTES, channel, channel_length);
+    writer->used += LOG_HEADER_BYTES + channel_length;
+}
+
+/* In: an empty buffer. */
+static bool write_large(struct log_writer *writer, int64_t utime, const char *channel,
+                        size_t channel_length, const void *data, size_t size)
+{
+    put_header(writer, utime, channel, channel_length, size);
+    const size_t head = writer->used;
+    writer->used = 0;
+    if (write_all(writer->fd, writer->buffer, head) != head ||
+        write_all(writer->fd, data, size) != size)
+        return cut_back(writer, errno);
+    writer->whole += (int64_t) (head + size);
+    return true;
+}
+
+bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
+                size_t channel_length, const void *data, size_t size)
+{
+    const size_t bytes = (size_t) log_event_bytes(channel_length, size);
+    assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= INT32_MAX);
+    if (writer->error)
+        return fail(writer, 0);
+    if (bytes > BUFFER_BYTES - writer->used && !log_flush(writer))
+        return false;
+    if (bytes > BUFFER_BYTES)
+        return write_large(writer, utime, channel, channel_length, data, size);
+    put_header(writer, utime, channel, channel_length, size);
+    if (size > 0)
+        memcpy(writer->buffer + writer->used, data, size);
+    writer->used += size;
     return true;
 }
 
 int64_t log_written(const struct log_writer *writer)
 {
-    return writer->written;
+    return writer->whole + (int64_t) writer->used;
 }
+
+bool log_check(struct log_writer *writer)
+{
+    struct stat file;
+    if (writer->error)
+        return fail(writer, 0);
+    if (fstat(writer->fd, &file) != 0)
+        return fail(writer, errno);
+    if (S_ISREG(file.st_mode) && (file.st_nlink == 0 || file.st_size < (off_t) writer->whole))
+        return fail(writer, ESTALE);
+    return true;
+}
+
+/* ---- The end ----------------------------------------------------------------------------------
+ */
 
 int log_finish_soon(struct log_writer *writer, int *disk)
 {
     *disk = -1;
     if (!writer)
         return 0;
-    if (log_flush(writer) && (*disk = fcntl(fileno(writer->log->f), F_DUPFD_CLOEXEC, 0)) < 0)
-        fail(writer);
+    if (log_flush(writer))
+        log_check(writer);
     const int error = writer->error;
-    lcm_eventlog_destroy(writer->log);
+    *disk = writer->fd;
     free(writer);
     return error;
 }
@@ -128,7 +209,7 @@ static const char *remedy(int error)
     switch (error) {
     case EEXIST: return "; --force overwrites it";
     case ENOSPC:
-    case EDQUOT: return "; make room there, or write elsewhere";
+    case EDQUOT: return "; free space there, or write elsewhere";
     case EFBIG: return "; no larger file is allowed there: write several";
     default: return "";
     }
@@ -136,5 +217,8 @@ static const char *remedy(int error)
 
 void log_write_complain(const char *path, int error)
 {
-    fprintf(stderr, "fmb: %s: %s%s\n", path, strerror(error), remedy(error));
+    if (error == ESTALE)
+        fprintf(stderr, "fmb: %s: deleted or truncated by another program\n", path);
+    else
+        fprintf(stderr, "fmb: %s: %s%s\n", path, strerror(error), remedy(error));
 }

@@ -1,10 +1,8 @@
-/* Writes LCM's event logs (log_read.h says what one is), through LCM's own functions: what they
- * write every LCM tool can read. They say little of what goes wrong; here no error of a file stays
- * unsaid. Errors are errno's numbers, log_write_complain() says them to people.
+/* Writes LCM event logs (format: log_read.h). Errors are values of errno; log_write_complain()
+ * reports them.
  *
- * What was appended is in memory until log_flush() or log_finish(). After the first error nothing
- * more is written: the file ends with an event that is cut off, if that, and all before it are
- * good. */
+ * Appended events may stay in memory until log_flush() or log_finish(). After the first error
+ * nothing more is written, and the file is truncated to its last complete event. */
 #ifndef LOG_WRITE_H
 #define LOG_WRITE_H
 
@@ -14,35 +12,37 @@
 
 struct log_writer;
 
-/* On input: force: a file that is there already is overwritten; without it that is an error,
- * EEXIST. On output: an empty log, to be closed by the caller with log_finish(); NULL: errno. */
+/* Creates an empty log, which the caller closes with log_finish(). An existing file is overwritten
+ * with force, and an error (EEXIST) without. NULL: errno. */
 struct log_writer *log_create(const char *path, bool force);
 
-/* On input: utime: when it was received, microseconds since 1970; channel: channel_length bytes,
- * from 1 to LOG_CHANNEL_MAX - 1; size bytes of data, up to INT32_MAX. The events of a log are
- * numbered by LCM, from 0. On output: false: errno. */
+/* Appends an event. Events are numbered from 0. On input: utime: time of receipt, microseconds
+ * since 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. False: errno. */
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size);
 
-/* Hands all that was appended to the system: then it stays, whatever becomes of this process. */
+/* Passes all appended events to the system, so that they survive the end of this process. */
 bool log_flush(struct log_writer *writer);
 
-/* Bytes of the file, counted with what is still in memory; after an error those that it has. */
+/* Bytes of the file, events still in memory included; after an error, bytes of the file. */
 int64_t log_written(const struct log_writer *writer);
 
-/* How many of them an event takes. */
+/* Whether the file still exists, with all that was written. False after any error, and if another
+ * program deleted or truncated the file (ESTALE). log_finish() checks this too. */
+bool log_check(struct log_writer *writer);
+
+/* Bytes that an event takes in the file. */
 int64_t log_event_bytes(size_t channel_length, size_t size);
 
-/* Closes, and waits until the disk has it all: some errors are only heard then. On output: 0, or
- * the error, also where it was met before. writer may be NULL. */
+/* Closes the log and waits until all is on disk: some errors only show then. Returns 0; or the
+ * first error, even if it was returned before. writer may be NULL. */
 int log_finish(struct log_writer *writer);
 
-/* The same for one who cannot wait: hands all to the system and closes; log_reach_disk() is to be
- * called later with *disk, and waits for what the disk does not have yet. */
+/* The same without waiting for the disk. Call log_reach_disk() later with *disk, which waits. */
 int log_finish_soon(struct log_writer *writer, int *disk);
-int log_reach_disk(int disk); /* -1: there is nothing to wait for */
+int log_reach_disk(int disk); /* disk may be -1: returns at once */
 
-/* Says on stderr why a log cannot be written, and what to do about it. */
+/* Reports on stderr why a log cannot be written, and what to do. */
 void log_write_complain(const char *path, int error);
 
 #endif

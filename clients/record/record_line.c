@@ -31,23 +31,21 @@ static void show(const char *text)
     fflush(stderr);
 }
 
-void record_line_show(struct record_line *line, int64_t now_ns, const char *path,
-                      const struct tally *tally, int64_t lost)
+void record_line_show(struct record_line *line, int64_t now_ns, const char *path, int64_t events,
+                      int64_t bytes, int64_t lost)
 {
     const int64_t passed = now_ns - line->at_ns;
     if (!line->enabled || passed < every_ns || !say_now())
         return;
     char text[LINE_MAX_CHARACTERS], number[4][NUMBER_TEXT_MAX];
-    const int64_t events = tally_heard(tally);
     const double seconds = 1e-9 * (double) passed;
     snprintf(text, sizeof text, "fmb: %s messages, %s/s, %.2f MB/s, %s lost, %s MB: %s",
              number_grouped(events, number[0]),
              number_grouped((int64_t) ((double) (events - line->events) / seconds), number[1]),
-             1e-6 * (double) (tally->bytes - line->bytes) / seconds,
-             number_grouped(lost, number[2]), number_grouped(tally->bytes / 1000000, number[3]),
-             path);
+             1e-6 * (double) (bytes - line->bytes) / seconds, number_grouped(lost, number[2]),
+             number_grouped(bytes / 1000000, number[3]), path);
     show(text);
-    *line = (struct record_line){true, true, now_ns, events, tally->bytes};
+    *line = (struct record_line){true, true, now_ns, events, bytes};
 }
 
 void record_line_end(struct record_line *line)

@@ -1,25 +1,24 @@
-/* How a recording goes, while it runs, on a terminal. */
+/* The progress of a recording, on a terminal. */
 #ifndef RECORD_LINE_H
 #define RECORD_LINE_H
 
-#include "record_tally.h"
-
 #include <stdbool.h>
+#include <stdint.h>
 
 struct record_line {
     bool enabled, shown;
-    int64_t at_ns, events, bytes; /* when it was shown last, and how much there was */
+    int64_t at_ns, events, bytes; /* of the last display: time, and counts then */
 };
 
-/* Shows nothing unless standard error is a terminal. */
+/* A display that is only enabled if standard error is a terminal. */
 struct record_line record_line_begin(int64_t now_ns);
 
-/* A few times a second, and not at all while the terminal takes nothing: so it may be called
- * often. On input: the file, and what has come so far. */
-void record_line_show(struct record_line *line, int64_t now_ns, const char *path,
-                      const struct tally *tally, int64_t lost);
+/* Updates the line, at most a few times a second, and never blocks on the terminal: so it may be
+ * called often. On input: the file, the messages and bytes so far, and the messages lost. */
+void record_line_show(struct record_line *line, int64_t now_ns, const char *path, int64_t events,
+                      int64_t bytes, int64_t lost);
 
-/* Clears it. */
+/* Clears the line. */
 void record_line_end(struct record_line *line);
 
 #endif

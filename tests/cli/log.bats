@@ -6,8 +6,8 @@ setup() {
     FMB=${FMB_BUILD:-build}/fmb
     cd "$BATS_TEST_DIRNAME/../.." || return
     log=$BATS_TEST_TMPDIR/a.log
-    pair_query=1704231dbc74a72c
-    status=98458447f1c5ee86
+    pair_query=f9dadc6e7e54da5d
+    status=8cb2ead8b5dc3d8d
 }
 
 # bytes HEX
@@ -71,16 +71,16 @@ field() {
 }
 
 @test "all types of the service, and others by their fingerprint" {
-    for type in 9265058e7e235b03 $pair_query eb1e69337997c3dc 52891e4394056640 c3b42b0975213c58 \
-        $status 0123456789abcdef 00; do
+    for type in 5801f213322833f7 e2c4e2ab0ebcd9d9 6d5222ebc7de383d $pair_query da4c8b503074f8bc \
+        0b1ab3e2ae9b67cf f632860e1441ef51 12759c8650eac72e $status 0123456789abcdef 00; do
         event 1 A $type
     done > "$log"
     info --json "$log"
     ended 0
-    [ "$(field '[.channels[] | .type] | sort')" = '[null,"0x0123456789abcdef","fmb_msgs.frame_t","fmb_msgs.pair_query_t","fmb_msgs.pair_result_t","fmb_msgs.scene_query_t","fmb_msgs.scene_result_t","fmb_msgs.status_t"]' ]
+    [ "$(field '[.channels[] | .type] | sort')" = '[null,"0x0123456789abcdef","fmb_msgs.body_t","fmb_msgs.definition_query_t","fmb_msgs.definition_t","fmb_msgs.pair_query_t","fmb_msgs.pair_result_t","fmb_msgs.placement_t","fmb_msgs.scene_query_t","fmb_msgs.scene_result_t","fmb_msgs.status_t"]' ]
     info "$log"
-    [[ $output == *"  A        0x0123456789abcdef            1      8      8     8  0.000 s  0.000 s"* ]]
-    [[ $output == *"  A        (too short)                   1      1      1     1  0.000 s  0.000 s"* ]]
+    grep -Eqx '  A +0x0123456789abcdef +1 +8 +8 +8  0.000 s  0.000 s' <<< "$output"
+    grep -Eqx '  A +\(too short\) +1 +1 +1 +1  0.000 s  0.000 s' <<< "$output"
 }
 
 @test "an empty file is a log" {
@@ -130,7 +130,7 @@ field() {
     }
     [ -z "$(tr -d '\n -~' <<< "$output")" ]
     info --json "$log"
-    [ "$(field '[.channels[].channel | length]')" = '[10,999,63,5,3]' ]
+    [ "$(field '[.channels[].channel | length]')" = '[10,999,63,5,2]' ]
     [ "$(field '.channels[3].channel')" = '"a\u0000b\"\\"' ]
     [ -z "$(tr -d '\n -~' <<< "$output")" ]
 }
@@ -151,11 +151,11 @@ field() {
 }
 
 @test "what LCM writes is read" {
-    LCM_DEFAULT_URL="file://$log?mode=w" run "$FMB" query clients/demo/cube.json --timeout 0.01 --retries 1
-    info --json "$log"
+    # The logs of the regression set were written by liblcm.
+    info --json "$BATS_TEST_DIRNAME/../logs/clients.log"
     ended 0
-    [ "$(field '[.channels[] | [.channel, .type, .events]]')" = \
-        '[["FMB_SCENE_QUERY","fmb_msgs.scene_query_t",2]]' ]
+    [ "$(field '[.channels[] | [.channel, .type]]')" = \
+        '[["FMB_DEFINITION","fmb_msgs.definition_t"],["FMB_DEFINITION_QUERY","fmb_msgs.definition_query_t"],["FMB_PAIR_QUERY","fmb_msgs.pair_query_t"],["FMB_PAIR_RESULT","fmb_msgs.pair_result_t"],["FMB_SCENE_QUERY","fmb_msgs.scene_query_t"],["FMB_SCENE_RESULT","fmb_msgs.scene_result_t"],["FMB_STATUS","fmb_msgs.status_t"]]' ]
 }
 
 # ---- Damage ----------------------------------------------------------------------------------
@@ -293,4 +293,23 @@ Try 'fmb log info --help'."
     ended 2
     is "fmb log info: unknown option '--frobnicate'
 Try 'fmb log info --help'."
+}
+
+# ---- Logs of version 1 -----------------------------------------------------------------------
+
+@test "a log that version 1 recorded is recognised" {
+    # One pair query, of which the fingerprint is enough.
+    printf '\355\241\332\001\0\0\0\0\0\0\0\0\0\6\15\327\20\41\40\0\0\0\0\16\0\0\0\10%s' \
+        FMB_PAIR_QUERY > "$BATS_TEST_TMPDIR/one.log"
+    printf '\27\4\43\35\274\164\247\54' >> "$BATS_TEST_TMPDIR/one.log"
+    run --separate-stderr "$FMB" log info "$BATS_TEST_TMPDIR/one.log"
+    [ "$status" = 0 ]
+    [[ "$output" == *'fmb_msgs.pair_query_t (version 1)'* ]]
+    [[ "$output" == *'recorded by version 1'* ]]
+    run --separate-stderr "$FMB" log cut --json "$BATS_TEST_TMPDIR/one.log" -o "$BATS_TEST_TMPDIR/cut.log"
+    [ "$status" = 0 ]
+    jq -e '.version_1 == 1 and .kept_events == 1' <<< "$output"
+    run --separate-stderr "$FMB" log scene "$BATS_TEST_TMPDIR/one.log" --event 0
+    [ "$status" = 1 ]
+    [[ "$stderr" == *'recorded by version 1'* ]]
 }

@@ -70,8 +70,8 @@ split_at() {
         run --separate-stderr "$FMB" log scene "$log" --event "$event"
         [ "$status" = 0 ] || continue
         scenes=$((scenes + 1))
-        said "to ask it again: fmb query --local --json"
-        command=${stderr##*to ask it again: fmb }
+        said "to repeat it: fmb query --local --json"
+        command=${stderr##*to repeat it: fmb }
         [[ "$command" != *--certificate* ]] || certificates=$((certificates + 1))
         # shellcheck disable=SC2086
         "$FMB" ${command} <<< "$output" | jq -e '.pairs | length > 0 and all(has("verdict"))' > "$T/jq"
@@ -82,7 +82,7 @@ split_at() {
 }
 
 @test "the answers of a query alone are those in the log" {
-    generate --blast pairs 40 --by-key --box --certificate "$log"
+    generate --blast pairs 40 --by-handle --box --certificate "$log"
     "$FMB" replay "$log" --write-golden "$T/golden.log" > "$T/said"
     for event in 20 41 78; do
         scene 0 "$log" --event "$event"
@@ -109,8 +109,8 @@ split_at() {
 @test "what a replay finds different is what the query alone is not" {
     generate --blast pairs 40 --whole --static --dim 3 --box "$log"
     cp "$log" "$T/other.log"
-    # Of the last result the verdict: behind header, channel, ids, status, empty detail and method.
-    at=$(($(offset_of "$log" 79) + 28 + 15 + 72 + 4 + 5 + 4))
+    # Of the last result the verdict: after header, channel, ids, handles, status, empty detail and method.
+    at=$(($(offset_of "$log" 79) + 28 + 15 + 56 + 32 + 4 + 5 + 4))
     then=$(u32 "$log" "$at")
     [ "$then" = 1 ] || [ "$then" = 3 ]
     printf '\0\0\0\2' | dd of="$T/other.log" bs=1 seek="$at" conv=notrunc status=none
@@ -122,26 +122,25 @@ split_at() {
     [ "$(answers | jq -r '.pairs[0].verdict')" = "$now" ]
 }
 
-@test "frames by key have their components, told by the logs before too" {
-    generate --blast pairs 60 --by-key "$log"
+@test "bodies by handle have their frames, defined by the logs before too" {
+    generate --blast pairs 60 --by-handle "$log"
     split_at "$log" 60
     scene 0 "$log" --event 100
     query=$output
     jq -e '.bodies | all(.components | length == 3 or length == 2)' <<< "$query" > "$T/jq"
     scene 0 "$T/first.log" "$T/second.log" --event 100
     [ "$output" = "$query" ]
-    # Alone the second log does not tell all keys.
+    # Alone the second log does not define all handles.
     unknown=0
     for ((event = 60; event < 120; event += 2)); do
         run --separate-stderr "$FMB" log scene "$T/second.log" --event "$event"
         [ "$status" != 0 ] || continue
         [ "$status" = 1 ] && [ -z "$output" ]
-        said 'came by key '
-        said ', and no log here tells what that stands for'
+        said 'came by a handle that no log here defines'
         unknown=$((unknown + 1))
     done
     [ "$unknown" -gt 0 ]
-    # A cut tells them.
+    # A cut defines them.
     "$FMB" log cut "$log" --from 0.001 -o "$T/cut.log" > "$T/said"
     scene 0 "$log" --event 118
     query=$output
@@ -169,7 +168,7 @@ split_at() {
     [[ "$stderr" == *'fmb: event 0 (offset 0), client '* ]]
     generate refused "$log"
     found=0
-    for ((event = 0; event < 213; event += step)); do
+    for ((event = 0; event < 230; event += step)); do
         run --separate-stderr "$FMB" log scene "$log" --event "$event"
         [[ "$stderr" == *'which has no id, is body '* || "$stderr" == *', one more of body '* ]] || continue
         [ "$status" = 0 ]
@@ -181,11 +180,11 @@ split_at() {
 
 @test "what the service refuses has no scene, and the reason is said" {
     generate refused "$log"
-    scene 1 "$log" --event 20
+    scene 1 "$log" --event 22
     [ -z "$output" ]
-    [ "$stderr" = 'fmb: event 20: the service refuses it: a.components: expected 9 numbers, found 8' ]
+    [ "$stderr" = 'fmb: event 22: the service refuses it: a.num_numbers: expected 12 numbers, found 11' ]
     # None of them makes it fail in another way.
-    for ((event = 0; event < 213; event += step)); do
+    for ((event = 0; event < 230; event += step)); do
         run --separate-stderr "$FMB" log scene "$log" --event "$event"
         [ "$status" -le 1 ]
         [ "$status" = 0 ] || [ -z "$output" ]
@@ -209,8 +208,8 @@ split_at() {
     [ "$stderr" = "fmb: $log: event 5000: there is none" ]
     scene 1 "$log" --event 0
     said 'a result, whose query is not here'
-    scene 1 "$log" --event 256
-    said 'event 256: longer than its fields'
+    scene 1 "$log" --event 258
+    said 'event 258: longer than its fields'
     scene 2 "$T/nothing.log" --event 0
     [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
 }

@@ -122,18 +122,18 @@ static void ask_scene(struct asker *asker, const struct solid *solid)
     query.duration = step_s;
     query.want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
     query.which = QUERY_PAIRS_LISTED;
-    query.frame_count = PARTS;
+    query.placement_count = PARTS;
     query.index_count = 2 * PAIRS;
     memcpy(query.pair, pairs, sizeof pairs);
     for (int part = 0; part < PARTS; part++) {
-        part_frame(&solid[part], part + 1, &query.frame[part]);
-        if (part >= STILL) /* it has turned: its components are others */
+        part_place(&solid[part], part + 1, &query.placement[part]);
+        if (part >= STILL) /* it has turned: its frame is another */
             asker_forget(asker, part + 1);
     }
     asker_scene(asker, &query, &result);
 }
 
-/* Their links have keys by now, from the scene. */
+/* The handles of the links are known by now, from the scene. */
 static void ask_pair(struct asker *asker, const struct solid *solid, int n)
 {
     const unsigned *pair = pairs[FIRST_ALONE + n % ALONE];
@@ -142,7 +142,7 @@ static void ask_pair(struct asker *asker, const struct solid *solid, int n)
     if (n % 4 == 0)
         query.want |= QUERY_WANT_CERTIFICATE;
     for (int f = 0; f < 2; f++)
-        part_frame(&solid[pair[f]], pair[f] + 1, &query.frame[f]);
+        part_place(&solid[pair[f]], pair[f] + 1, &query.placement[f]);
     asker_pair(asker, &query, &result);
 }
 
@@ -167,8 +167,7 @@ static void swing(struct instance *instance, struct tape *tape)
 
 bool kind_arm(struct tape *tape)
 {
-    const struct instance_options options = {
-        .prefix = "", .server_id = 1001, .first_key = 500000, .bodies = 64};
+    const struct instance_options options = {.prefix = "", .server_id = 1001, .frames = 64};
     struct instance instance;
     if (!instance_open(&instance, tape, &options))
         return false;

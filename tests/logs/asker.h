@@ -1,28 +1,31 @@
-/* A client of an instance: sends bodies whole until it has been told a key, by key from then on,
- * and whole again where a key is dead. */
+/* A client of an instance: sends a body whole until a result carries its handle, by handle from
+ * then on, and whole again where the handle is not held. */
 #ifndef ASKER_H
 #define ASKER_H
 
 #include "instance.h"
 
-/* Its bodies have ids from 1 to this, and others than its own are none of its business. */
+/* Its bodies have ids from 1 to this. */
 enum { ASKER_BODIES_MAX = 8192 };
 
 struct asker {
     struct instance
         *instance; /* not owned; another one takes its place where the service restarts */
     int64_t client_id;
-    int64_t next_number;               /* of its next query */
-    int64_t key[ASKER_BODIES_MAX + 1]; /* [body_id]; 0: none known */
+    int64_t next_number;                        /* of its next query */
+    struct handle handle[ASKER_BODIES_MAX + 1]; /* [body_id]; all 0: none known */
 };
 
-/* Ask what the query says, with the asker's ids; frames come whole, and are changed to go by key
- * where one is known. Asked once more where keys were dead. On output: the last query and its
- * result. */
+/* Send the query with the asker's ids; its bodies are whole, and go by handle where one is known.
+ * Once more where a handle was not held. On output: the result; of a pair also the last query that
+ * was sent. */
 void asker_pair(struct asker *asker, struct pair_query *query, struct pair_result *result);
-void asker_scene(struct asker *asker, struct scene_query *query, struct scene_result *result);
+void asker_scene(struct asker *asker, const struct scene_query *query, struct scene_result *result);
 
-/* Forgets that the body was ever told: its next frame goes whole. For bodies that change. */
+/* The body goes whole next time: it has changed. */
 void asker_forget(struct asker *asker, int64_t body_id);
+
+/* Names a body by the handle that the asker knows; else leaves it whole. */
+void asker_name(const struct asker *asker, struct placement *placement);
 
 #endif

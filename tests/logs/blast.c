@@ -48,9 +48,8 @@ static struct blasting *begin(struct tape *tape, const struct blast *blast)
     blasting->blast = blast;
     blasting->draw.state = blast->seed;
     struct draw *draw = &blasting->draw;
-    struct instance_options options = {.prefix = "", .bodies = 2 * BLAST_BODIES};
+    struct instance_options options = {.prefix = "", .frames = 2 * BLAST_BODIES};
     options.server_id = draw_id(draw);
-    options.first_key = draw_id(draw);
     blasting->asker = (struct asker){.instance = &blasting->instance, .client_id = draw_id(draw)};
     if (instance_open(&blasting->instance, tape, &options))
         return blasting;
@@ -86,14 +85,14 @@ static void draw_bodies(struct blasting *blasting)
 }
 
 /* A body at a new place. */
-static void draw_frame(struct blasting *blasting, int i, bool moving, struct query_frame *out)
+static void draw_placement(struct blasting *blasting, int i, bool moving, struct placement *out)
 {
     struct solid *solid = &blasting->solid[i];
     draw_vector(&blasting->draw, solid->dim, origin_most, solid->origin);
     solid->moving = moving;
     if (moving)
         draw_vector(&blasting->draw, solid->dim, velocity_most, solid->velocity);
-    part_frame(solid, i + 1, out);
+    part_place(solid, i + 1, out);
 }
 
 static void draw_pair(struct blasting *blasting, struct pair_query *query)
@@ -106,7 +105,8 @@ static void draw_pair(struct blasting *blasting, struct pair_query *query)
     const int last = first + (blast->bodies ? blast->bodies / 2 : BODIES_2D) - 1;
     const int movers = moving ? draw_int(draw, 1, 3) : 0;
     for (int f = 0; f < 2; f++)
-        draw_frame(blasting, draw_int(draw, first, last), movers >> f & 1, &query->frame[f]);
+        draw_placement(blasting, draw_int(draw, first, last), movers >> f & 1,
+                       &query->placement[f]);
 }
 
 bool blast_pairs(struct tape *tape, const struct blast *blast)
@@ -119,9 +119,9 @@ bool blast_pairs(struct tape *tape, const struct blast *blast)
         struct pair_query query = {.duration = 1, .want = blast->want};
         struct pair_result result;
         draw_pair(blasting, &query);
-        if (!choose(&blasting->draw, blast->by_key, blast->by_key < 0))
+        if (!choose(&blasting->draw, blast->by_handle, blast->by_handle < 0))
             for (int f = 0; f < 2; f++)
-                asker_forget(&blasting->asker, query.frame[f].body_id);
+                asker_forget(&blasting->asker, query.placement[f].body_id);
         asker_pair(&blasting->asker, &query, &result);
     }
     end(blasting);
@@ -130,7 +130,7 @@ bool blast_pairs(struct tape *tape, const struct blast *blast)
 
 /* ---- Scenes ---- */
 
-/* Both from one draw: the high half chooses one frame, the low half one of the others. */
+/* Both from one draw: the high half chooses one placement, the low half one of the others. */
 static void draw_pairs(struct draw *draw, int32_t count, struct scene_query *out)
 {
     out->index_count = 2 * count;
@@ -143,20 +143,19 @@ static void draw_pairs(struct draw *draw, int32_t count, struct scene_query *out
     }
 }
 
-/* With as many pairs as there is room for behind the frames, which go by key after the first time.
- */
+/* With as many pairs as fit after the placements, which name their bodies by handle after the first
+ * time. */
 static void ask_scene(struct blasting *blasting)
 {
     struct scene_query *query = &blasting->scene;
-    size_t room = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
+    size_t left = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
     for (int i = 0; i < BLAST_FRAMES; i++) {
-        struct query_frame *frame = &query->frame[i];
-        draw_frame(blasting, i, false, frame);
-        if (blasting->asker.key[frame->body_id])
-            frame->components.count = 0;
-        room -= wire_frame_bytes(frame);
+        struct placement *placement = &query->placement[i];
+        draw_placement(blasting, i, false, placement);
+        asker_name(&blasting->asker, placement);
+        left -= wire_placement_bytes(placement);
     }
-    draw_pairs(&blasting->draw, (int32_t) (room / WIRE_PAIR_BYTES), query);
+    draw_pairs(&blasting->draw, (int32_t) (left / WIRE_PAIR_BYTES), query);
     asker_scene(&blasting->asker, query, &blasting->scene_result);
 }
 
@@ -169,7 +168,7 @@ bool blast_scenes(struct tape *tape, const struct blast *blast)
         blasting->solid[i] = draw_solid(&blasting->draw, 3, i % 2 ? FMB_TETRAHEDRON : FMB_CUBOID);
     blasting->scene.duration = 1;
     blasting->scene.which = QUERY_PAIRS_LISTED;
-    blasting->scene.frame_count = BLAST_FRAMES;
+    blasting->scene.placement_count = BLAST_FRAMES;
     for (int64_t n = 0; n < blast->count; n++)
         ask_scene(blasting);
     end(blasting);

@@ -10,15 +10,14 @@
 
 struct blast {
     int64_t count; /* queries */
-    /* Of all that is drawn, the ids of service and client and the first key among it: so logs of
+    /* Of all that is drawn, the ids of service and client among it: so logs of
      * several seeds, one behind the other, are a log too. */
     uint64_t seed;
-    int dim;    /* 2 or 3; 0: both */
-    int moving; /* 0, or 1; -1: both */
-    int by_key; /* bodies that have a key go by key: 0, or 1; -1: one time in two. (A body that has
-                   none yet goes whole.) */
-    int32_t want; /* QUERY_WANT_ bits, of pairs */
-    int bodies;   /* from 2 to BLAST_BODIES: of each dimension half as many; 0: BLAST_BODIES */
+    int dim;       /* 2 or 3; 0: both */
+    int moving;    /* 0, or 1; -1: both */
+    int by_handle; /* bodies go by handle once it is known: 0, or 1; -1: one time in two */
+    int32_t want;  /* QUERY_WANT_ bits, of pairs */
+    int bodies;    /* from 2 to BLAST_BODIES: of each dimension half as many; 0: BLAST_BODIES */
 };
 
 /* Pairs of BLAST_BODIES bodies of all shapes, drawn anew for each query, each body at a place of
@@ -26,9 +25,9 @@ struct blast {
 enum { BLAST_BODIES = 8192 };
 bool blast_pairs(struct tape *tape, const struct blast *blast);
 
-/* Scenes of BLAST_FRAMES bodies in 3D, one half cuboids and one half tetrahedra, at rest, by key,
- * with as many pairs listed as a datagram has room for, verdicts alone. The first one tells the
- * bodies, and has fewer pairs. Of the options count and seed. */
+/* Scenes of BLAST_FRAMES bodies in 3D, one half cuboids and one half tetrahedra, at rest, by
+ * handle, with as many pairs listed as fit into a datagram, verdicts alone. The first one has the
+ * bodies whole, and fewer pairs. Of the options count and seed. */
 enum { BLAST_FRAMES = 100 };
 bool blast_scenes(struct tape *tape, const struct blast *blast);
 

@@ -7,11 +7,12 @@
 
 #include <string.h>
 
-enum { CLIENTS = 3, BODIES = 12, STEPS = 8, STEP_US = 10000 };
+enum { CLIENTS = 3, BODIES = 12, STEPS = 8, STEP_US = 10000, LIVES = 4, RECORDER = 9000 };
 
 struct clients {
     struct tape *tape;
-    struct instance instance[3]; /* one life of the service after the other */
+    struct instance instance[LIVES]; /* one life of the service after the other */
+    struct instance other;           /* beside the last one */
     struct asker asker[CLIENTS];
     struct scene_query scene;
     struct scene_result scene_result;
@@ -41,8 +42,8 @@ static struct pair_query pair_of(int client, int step, int a, int b)
 {
     struct pair_query query = {.duration = 0.01, .want = step % 2 ? QUERY_WANT_BOX : 0};
     const struct solid solid[2] = {body(client, a, step), body(client, b, step)};
-    part_frame(&solid[0], id_of(client, a), &query.frame[0]);
-    part_frame(&solid[1], id_of(client, b), &query.frame[1]);
+    part_place(&solid[0], id_of(client, a), &query.placement[0]);
+    part_place(&solid[1], id_of(client, b), &query.placement[1]);
     return query;
 }
 
@@ -51,11 +52,11 @@ static void set_scene(int client, int step, struct scene_query *query)
     query->duration = 0.01;
     query->which = QUERY_PAIRS_ALL;
     query->want = QUERY_WANT_TIMES;
-    query->frame_count = BODIES;
+    query->placement_count = BODIES;
     query->index_count = query->split = query->first_pair = 0;
     for (int n = 0; n < BODIES; n++) {
         const struct solid solid = body(client, n, step);
-        part_frame(&solid, id_of(client, n), &query->frame[n]);
+        part_place(&solid, id_of(client, n), &query->placement[n]);
     }
 }
 
@@ -74,8 +75,8 @@ static void ask_scene(struct clients *clients, int client, int step)
 
 /* ---- What happens ---- */
 
-/* They count alike, and results come when the next ones have asked; nobody asks by a key before it
- * is told. */
+/* They count alike, and results come when the next ones have asked; no handle is used before a
+ * result carries it. */
 static void ask_in_turns(struct clients *clients, struct instance *instance)
 {
     instance->result_after_us = 400;
@@ -89,7 +90,7 @@ static void ask_in_turns(struct clients *clients, struct instance *instance)
     instance->result_after_us = 45;
 }
 
-/* The same number again, the same query: once by key, and once whole. */
+/* The same number again, the same query: once by handle, and once whole. */
 static void ask_again(struct clients *clients, struct instance *instance, bool whole)
 {
     struct pair_query query = pair_of(0, 1, 1, 2);
@@ -131,25 +132,37 @@ static void get_lost(struct clients *clients, struct instance *instance)
     ask_scene(clients, 0, 2);
 }
 
-/* Client 1 publishes bodies with the ids of client 0: the keys that it was told are dead. Each
- * asks, and finds the other one's in its place. */
-static void replace_bodies(struct clients *clients)
+/* Client 1 publishes other bodies under the ids of client 0, and both are answered. The first query
+ * of client 0 names its body as it was; then that has changed too. */
+static void share_ids(struct clients *clients)
 {
     for (int step = 0; step < 3; step++)
         for (int client = 0; client < 2; client++) {
             struct pair_query query = pair_of(0, step, 7, 8);
             struct pair_result result;
-            query.frame[0].components.number[0] = 2 + client;
+            struct solid solid = body(0, 7, step);
+            solid.component[0][0] = 2 + client;
+            part_place(&solid, id_of(0, 7), &query.placement[0]);
+            if (step + client == 1)
+                asker_forget(&clients->asker[client], id_of(0, 7));
             asker_pair(&clients->asker[client], &query, &result);
         }
 }
 
-static bool start(struct clients *clients, int life, size_t bodies)
+/* A recorder that comes late requests all bodies; then some by handle, one of which no service ever
+ * held. */
+static void define_bodies(struct clients *clients, struct instance *instance)
 {
-    const struct instance_options options = {.prefix = "",
-                                             .server_id = 500 + life,
-                                             .first_key = 1000000 * (int64_t) (3 - life),
-                                             .bodies = bodies};
+    const struct handle handle[] = {
+        clients->asker[1].handle[id_of(1, 3)], {{1, 2, 3}}, clients->asker[2].handle[id_of(2, 4)]};
+    instance_define(instance, RECORDER, 1, NULL, 0);
+    instance_define(instance, RECORDER, 100, handle, 3);
+}
+
+static bool start(struct clients *clients, int life, size_t frames)
+{
+    const struct instance_options options = {
+        .prefix = "", .server_id = 500 + life, .frames = frames};
     if (!instance_open(&clients->instance[life], clients->tape, &options))
         return false;
     for (int client = 0; client < CLIENTS; client++)
@@ -171,10 +184,11 @@ static void live_first(struct clients *clients)
     ask_again(clients, instance, true);
     be_turned_away(clients, instance);
     get_lost(clients, instance);
-    replace_bodies(clients);
+    share_ids(clients);
+    define_bodies(clients, instance);
 }
 
-/* Keys of the first life are unknown; what is whole is told anew. */
+/* Handles of the first life are not held; then their bodies come whole. */
 static void live_again(struct clients *clients)
 {
     for (int client = 0; client < CLIENTS; client++) {
@@ -183,23 +197,43 @@ static void live_again(struct clients *clients)
     }
 }
 
-/* With room for so few bodies that clients drive out each other's. */
-static void live_in_want(struct clients *clients)
+/* With capacity for so few bodies that the bodies of clients evict each other. */
+static void live_small(struct clients *clients)
 {
     for (int step = 0; step < 4; step++)
         for (int client = 0; client < CLIENTS; client++)
             ask_pair(clients, client, step);
 }
 
+/* Two services on the same channels. The second one starts later, and does not hold what the first
+ * one holds: its UNKNOWN_BODY comes after an answer. Then bodies come whole, and both answer. */
+static void live_beside_another(struct clients *clients)
+{
+    struct instance *instance = &clients->instance[LIVES - 1];
+    const struct instance_options options = {.prefix = "", .server_id = 600, .frames = 64};
+    for (int step = 0; step < 5; step++) {
+        if (step == 2 && instance_open(&clients->other, clients->tape, &options))
+            instance->other = &clients->other;
+        if (step == 3)
+            for (int n = 0; n < BODIES; n++)
+                asker_forget(&clients->asker[0], id_of(0, n));
+        ask_pair(clients, 0, step % 2);
+    }
+    if (instance->other)
+        instance_close(instance->other);
+    instance->other = NULL;
+}
+
 static bool live(struct clients *clients)
 {
     static const struct {
-        size_t bodies;
+        size_t frames;
         void (*happens)(struct clients *clients);
-    } lives[] = {{256, live_first}, {256, live_again}, {3, live_in_want}};
-    for (int life = 0; life < 3; life++) {
+    } lives[LIVES] = {
+        {256, live_first}, {256, live_again}, {3, live_small}, {64, live_beside_another}};
+    for (int life = 0; life < LIVES; life++) {
         tape_reach(clients->tape, life * INT64_C(1000000));
-        if (!start(clients, life, lives[life].bodies))
+        if (!start(clients, life, lives[life].frames))
             return false;
         lives[life].happens(clients);
         stop(clients, life);

@@ -67,16 +67,16 @@ static void begin_query(struct crowd *crowd, int32_t which, int32_t want, int wa
     query->want = want;
     query->split = which == QUERY_PAIRS_ACROSS ? walkers : 0;
     query->first_pair = query->index_count = 0;
-    query->frame_count = walkers + standing;
+    query->placement_count = walkers + standing;
     for (int i = 0; i < walkers; i++)
-        part_frame(&crowd->solid[i], i + 1, &query->frame[i]);
+        part_place(&crowd->solid[i], i + 1, &query->placement[i]);
     for (int i = 0; i < standing; i++)
-        part_frame(&crowd->solid[WALKERS + i], WALKERS + i + 1, &query->frame[walkers + i]);
+        part_place(&crowd->solid[WALKERS + i], WALKERS + i + 1, &query->placement[walkers + i]);
 }
 
 static int32_t pairs_of(const struct scene_query *query)
 {
-    const int32_t n = query->frame_count, split = query->split;
+    const int32_t n = query->placement_count, split = query->split;
     switch (query->which) {
     case QUERY_PAIRS_ALL: return n * (n - 1) / 2;
     case QUERY_PAIRS_ACROSS: return split * (n - split);
@@ -98,7 +98,7 @@ static void ask_to_the_end(struct crowd *crowd)
 static void list_neighbours(struct crowd *crowd)
 {
     struct scene_query *query = &crowd->query;
-    const int32_t n = query->frame_count;
+    const int32_t n = query->placement_count;
     int32_t count = 0;
     for (int32_t i = 0; i < n; i++)
         for (int32_t step = 1; step <= 3; step++) {
@@ -108,22 +108,13 @@ static void list_neighbours(struct crowd *crowd)
     query->index_count = 2 * count;
 }
 
-/* The service has answered so many parts of a scene, and others wait: it breaks off. */
-static bool break_off(void *user)
-{
-    int *parts = user;
-    return --*parts > 0;
-}
-
+/* The service has answered a part of the scene, and other clients wait: it stops there. */
 static void ask_and_be_broken_off(struct crowd *crowd)
 {
-    struct answerer *answerer = &crowd->asker.instance->answerer;
-    int parts = 2;
     begin_query(crowd, QUERY_PAIRS_ACROSS, 0, WALKERS, STANDING);
-    answerer->between = break_off;
-    answerer->user = &parts;
+    crowd->asker.instance->stop_after = 1;
     asker_scene(&crowd->asker, &crowd->query, &crowd->result);
-    answerer->between = NULL;
+    crowd->asker.instance->stop_after = 0;
     crowd->query.first_pair = crowd->result.end_pair;
     ask_to_the_end(crowd);
 }
@@ -153,8 +144,7 @@ static void ask_all(struct crowd *crowd, struct tape *tape)
 
 bool kind_crowd(struct tape *tape)
 {
-    const struct instance_options options = {
-        .prefix = "", .server_id = 77, .first_key = 4503599627370496, .bodies = 512};
+    const struct instance_options options = {.prefix = "", .server_id = 77, .frames = 512};
     static struct crowd crowd;
     struct instance instance;
     if (!instance_open(&instance, tape, &options))

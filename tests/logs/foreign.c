@@ -1,5 +1,5 @@
 /* A bus on which others are too, and a logger that began late: results stand hundreds of events
- * behind their queries, or before them; keys were told before the log began; another instance of
+ * behind their queries, or before them; bodies came whole before the log began; another instance of
  * the service answers the same numbers on channels with a prefix; and what others publish on
  * channels whose names look alike, or in a format that is none of the service's. */
 #include "kinds.h"
@@ -9,8 +9,8 @@
 
 #include <string.h>
 
-/* Keys are told within so many rounds, twice as many as there are bodies. */
-enum { ROUNDS = 44, ROUND_US = 10000, BODIES = 10, TELLING = 20, OTHERS = 7 };
+/* Bodies come whole within so many rounds, twice as many as there are bodies. */
+enum { ROUNDS = 44, ROUND_US = 10000, BODIES = 10, FIRST_ROUNDS = 20, OTHERS = 7, RECORDER = 61 };
 
 struct foreign {
     struct tape *tape;
@@ -47,15 +47,15 @@ static void publish_other(struct foreign *foreign)
 }
 
 /* A message of another type; and a query that is cut off, one with more behind it, and one that
- * says that it has more numbers than there are bytes. None is one that can be read. */
+ * says that it has more frames than there are bytes. None is one that can be read. */
 static void publish_malformed(struct foreign *foreign)
 {
     struct pair_query query = {.client_id = 5, .sequence_number = 5, .duration = 1};
     struct pair_result result;
-    unsigned char bytes[WIRE_BYTES_MAX] = {0};
+    static unsigned char bytes[QUERY_BYTES_MAX];
     const struct solid box = part_box(2, (double[]){0, 0, 0}, (double[]){1, 1, 0});
-    part_frame(&box, 0, &query.frame[0]);
-    part_frame(&box, 0, &query.frame[1]);
+    part_place(&box, 0, &query.placement[0]);
+    part_place(&box, 0, &query.placement[1]);
     const size_t size = wire_write_pair_query(&query, bytes);
     instance_hear_pair(&foreign->here, bytes, size - 1, &result);
     instance_hear_pair(&foreign->here, bytes, size + 1, &result);
@@ -63,8 +63,23 @@ static void publish_malformed(struct foreign *foreign)
     bytes[7] ^= 1; /* of the fingerprint */
     instance_hear_pair(&foreign->here, bytes, size, &result);
     bytes[7] ^= 1;
-    memset(bytes + 68, 0x7f, 4); /* how many numbers the first origin has */
+    memset(bytes + 76, 0x7f, 4); /* how many frames the first body has */
     instance_hear_pair(&foreign->here, bytes, size, &result);
+}
+
+/* A body that is not what its handle says: the definition cannot be read. */
+static void publish_mismatch(struct foreign *foreign)
+{
+    static struct definition definition;
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    struct placement placement;
+    const struct solid box = part_box(2, (double[]){0, 0, 0}, (double[]){1, 1, 0});
+    part_place(&box, 0, &placement);
+    definition.body_count = 1;
+    definition.body[0] = (struct query_body){{{1}}, placement.geometry};
+    tape_put(foreign->tape, tape_utime(foreign->tape), WIRE_DEFINITION, bytes,
+             wire_write_definition(&definition, bytes));
+    tape_pass(foreign->tape, 200);
 }
 
 /* ---- What is asked ---- */
@@ -79,7 +94,7 @@ static struct pair_query pair_of(int round, int a, int b)
         struct solid solid = part_box(2, origin, (double[]){0.5 + 0.0625 * (n % 4), 1, 0});
         solid.moving = n % 2;
         solid.velocity[0] = n % 4 == 1 ? 20 : -20;
-        part_frame(&solid, n + 1, &query.frame[f]);
+        part_place(&solid, n + 1, &query.placement[f]);
     }
     return query;
 }
@@ -94,12 +109,12 @@ static void ask_both(struct foreign *foreign, int round)
     asker_pair(&foreign->lab, &there, &result);
 }
 
-/* While keys are told, soon after; then in turns: so late that some hundreds of events are between;
- * before the query; a little late. */
+/* While bodies come whole, soon after; then in turns: so late that some hundreds of events are
+ * between; before the query; a little late. */
 static int64_t delay_of(int round)
 {
     static const int64_t delays[] = {333000, -150, 45, 2500};
-    return round < TELLING ? 45 : delays[round % 4];
+    return round < FIRST_ROUNDS ? 45 : delays[round % 4];
 }
 
 static void run_round(struct foreign *foreign, int round)
@@ -114,12 +129,16 @@ static void run_round(struct foreign *foreign, int round)
         instance_beat(&foreign->here);
         instance_beat(&foreign->there);
     }
-    if (round == ROUNDS / 2)
+    if (round == 3)
+        instance_define(&foreign->here, RECORDER, 1, &foreign->asker.handle[1], 2);
+    if (round == ROUNDS / 2) {
         publish_malformed(foreign);
+        publish_mismatch(foreign);
+    }
 }
 
-/* Bodies 0 to 2 are told, and of the last query only the result comes while the logger runs. What
- * is by such a key nobody can tell from the log, until their publisher sends them whole again. */
+/* Bodies 0 to 2 come whole, and of the last query only the result comes while the logger runs. What
+ * their handles stand for is in the log later: a recorder requests it, or they come whole again. */
 static void run_before_the_log(struct foreign *foreign)
 {
     for (int n = 0; n < 2; n++) {
@@ -144,10 +163,8 @@ static void run(struct foreign *foreign)
 
 static bool open_both(struct foreign *foreign)
 {
-    const struct instance_options here = {
-        .prefix = "", .server_id = 31, .first_key = 9000, .bodies = 64};
-    const struct instance_options there = {
-        .prefix = "LAB_", .server_id = 32, .first_key = 9005, .bodies = 64};
+    const struct instance_options here = {.prefix = "", .server_id = 31, .frames = 64};
+    const struct instance_options there = {.prefix = "LAB_", .server_id = 32, .frames = 64};
     if (!instance_open(&foreign->here, foreign->tape, &here))
         return false;
     if (instance_open(&foreign->there, foreign->tape, &there))

@@ -2,9 +2,9 @@
  *
  *   generate KIND FILE              a log of the kind; the same bytes on every machine
  *   generate --list                 the kinds, one a line
- *   generate --instructions         the instruction sets that this program knows and its machine
- * has generate --blast pairs N FILE   N pairs asked, with their results generate --blast scenes N
- * FILE  N scenes of some 14,800 listed pairs each
+ *   generate --instructions         the instruction sets of this program and its machine
+ *   generate --blast pairs N FILE   N pair queries, with their results
+ *   generate --blast scenes N FILE  N scenes of some 14,000 listed pairs each
  *
  * Exit codes: 0 made, 1 not, 2 wrong options. */
 #include "blast.h"
@@ -48,8 +48,8 @@ static const char usage[] =
     "  --dim 2|3       pairs of this dimension alone\n"
     "  --static        pairs at rest alone\n"
     "  --moving        pairs that move alone\n"
-    "  --whole         pairs with components alone\n"
-    "  --by-key        pairs by key, as soon as there is one\n"
+    "  --whole         pairs of whole bodies alone\n"
+    "  --by-handle     pairs by handle, as soon as it is known\n"
     "  --box           pairs with boxes\n"
     "  --certificate   pairs with certificates\n"
     "  --list          prints the kinds\n"
@@ -69,7 +69,7 @@ enum {
     STATIC,
     MOVING,
     WHOLE,
-    BY_KEY,
+    BY_HANDLE,
     BOX,
     CERTIFICATE,
     LIST,
@@ -84,7 +84,7 @@ static const struct option long_options[] = {{"blast", required_argument, NULL, 
                                              {"static", no_argument, NULL, STATIC},
                                              {"moving", no_argument, NULL, MOVING},
                                              {"whole", no_argument, NULL, WHOLE},
-                                             {"by-key", no_argument, NULL, BY_KEY},
+                                             {"by-handle", no_argument, NULL, BY_HANDLE},
                                              {"box", no_argument, NULL, BOX},
                                              {"certificate", no_argument, NULL, CERTIFICATE},
                                              {"list", no_argument, NULL, LIST},
@@ -130,8 +130,8 @@ static bool take(int option, char **argv, struct options *out)
         return true;
     case STATIC: out->blast.moving = 0; return true;
     case MOVING: out->blast.moving = 1; return true;
-    case WHOLE: out->blast.by_key = 0; return true;
-    case BY_KEY: out->blast.by_key = 1; return true;
+    case WHOLE: out->blast.by_handle = 0; return true;
+    case BY_HANDLE: out->blast.by_handle = 1; return true;
     case BOX: out->blast.want |= QUERY_WANT_BOX; return true;
     case CERTIFICATE: out->blast.want |= QUERY_WANT_CERTIFICATE; return true;
     default: return refuse("wrong option", argv[optind - 1]);
@@ -205,7 +205,7 @@ static int make_blast(struct options *options, const char *count, const char *pa
 
 int main(int argc, char **argv)
 {
-    struct options options = {.blast = {.seed = 1, .moving = -1, .by_key = -1}};
+    struct options options = {.blast = {.seed = 1, .moving = -1, .by_handle = -1}};
     int option;
     opterr = 0;
     while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {

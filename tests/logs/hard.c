@@ -1,7 +1,7 @@
 /* Pairs that are hard for a reason: of each family of the campaigns one for each cell that it has.
  * At rest those of a family are listed in one scene, with boxes; what moves is asked pair by pair,
- * since windows differ, and some once more, by key and the other way round. Methods, certificates
- * and boxes are drawn. */
+ * since windows differ, and some once more, by handle and the other way round. Methods,
+ * certificates and boxes are drawn. */
 #include "kinds.h"
 
 #include "asker.h"
@@ -39,8 +39,8 @@ static void ask_again(struct hard *hard, const struct pair_query *query)
 {
     struct pair_query swapped = *query;
     struct pair_result result;
-    swapped.frame[0] = query->frame[1];
-    swapped.frame[1] = query->frame[0];
+    swapped.placement[0] = query->placement[1];
+    swapped.placement[1] = query->placement[0];
     asker_pair(&hard->asker, &swapped, &result);
 }
 
@@ -54,8 +54,8 @@ static void ask_pair(struct hard *hard, const struct question *question)
         query.want |= QUERY_WANT_BOX;
     if (draw_int(draw, 0, 3) == 0)
         query.want |= QUERY_WANT_CERTIFICATE;
-    part_frame(&question->a, again ? ++hard->body_id : 0, &query.frame[0]);
-    part_frame(&question->b, again ? ++hard->body_id : 0, &query.frame[1]);
+    part_place(&question->a, again ? ++hard->body_id : 0, &query.placement[0]);
+    part_place(&question->b, again ? ++hard->body_id : 0, &query.placement[1]);
     asker_pair(&hard->asker, &query, &result);
     if (again)
         ask_again(hard, &query);
@@ -65,19 +65,19 @@ static void ask_pair(struct hard *hard, const struct question *question)
 
 static void append_pair(struct scene_query *query, const struct question *question)
 {
-    const unsigned first = (unsigned) query->frame_count;
+    const unsigned first = (unsigned) query->placement_count;
     unsigned *pair = query->pair[query->index_count / 2];
-    part_frame(&question->a, 0, &query->frame[first]);
-    part_frame(&question->b, 0, &query->frame[first + 1]);
+    part_place(&question->a, 0, &query->placement[first]);
+    part_place(&question->b, 0, &query->placement[first + 1]);
     pair[0] = first;
     pair[1] = first + 1;
-    query->frame_count += 2;
+    query->placement_count += 2;
     query->index_count += 2;
 }
 
 static void ask_scene(struct hard *hard)
 {
-    if (hard->scene.frame_count > 0)
+    if (hard->scene.placement_count > 0)
         asker_scene(&hard->asker, &hard->scene, &hard->scene_result);
 }
 
@@ -88,7 +88,7 @@ static void begin_scene(struct hard *hard)
     query->which = QUERY_PAIRS_LISTED;
     query->method = draw_method(&hard->draw);
     query->want = QUERY_WANT_BOX;
-    query->frame_count = query->index_count = 0;
+    query->placement_count = query->index_count = 0;
 }
 
 /* ---- All ---- */
@@ -112,8 +112,7 @@ static void ask_family(struct hard *hard, const struct family *family, int dim, 
 
 static bool ask_families(struct tape *tape, int dim, int motions)
 {
-    const struct instance_options options = {
-        .prefix = "", .server_id = 2718281828, .first_key = 1 + 100000 * dim, .bodies = 1024};
+    const struct instance_options options = {.prefix = "", .server_id = 2718281828, .frames = 1024};
     static struct hard hard;
     struct instance instance;
     if (!instance_open(&instance, tape, &options))

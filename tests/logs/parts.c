@@ -1,23 +1,35 @@
 #include "parts.h"
 
-#include <string.h>
-
-static void set_vector(const double *vector, int dim, struct query_numbers *out)
+void part_place(const struct solid *solid, int64_t body_id, struct placement *out)
 {
-    out->count = dim;
-    memcpy(out->number, vector, (size_t) dim * sizeof *vector);
+    static unsigned char bytes[PART_BODIES_MAX][GEOMETRY_FRAME_BYTES_MAX];
+    static int next;
+    struct geometry_frame frame = {.shape = (int) solid->shape};
+    const int dim = solid->dim, components = solid_count(solid);
+    for (int i = 0; i < components; i++)
+        for (int axis = 0; axis < dim; axis++)
+            frame.components[dim * i + axis] = solid->component[i][axis];
+    unsigned char *to = bytes[next];
+    next = (next + 1) % PART_BODIES_MAX;
+    *out = (struct placement){.body_id = body_id,
+                              .dim = dim,
+                              .frame_count = 1,
+                              .number_count = dim * (1 + components),
+                              .velocity_count = solid->moving ? dim : 0,
+                              .geometry = {to, geometry_write(dim, &frame, to)}};
+    for (int axis = 0; axis < dim; axis++) {
+        out->position[axis] = solid->origin[axis];
+        out->velocity[axis] = solid->moving ? solid->velocity[axis] : 0;
+    }
 }
 
-void part_frame(const struct solid *solid, int64_t body_id, struct query_frame *out)
+void part_by_handle(struct placement *placement, const struct handle *handle)
 {
-    *out = (struct query_frame){
-        .body_id = body_id, .shape = (int32_t) solid->shape, .dim = solid->dim};
-    set_vector(solid->origin, solid->dim, &out->origin);
-    if (solid->moving)
-        set_vector(solid->velocity, solid->dim, &out->velocity);
-    for (int i = 0; i < solid_count(solid); i++)
-        for (int axis = 0; axis < solid->dim; axis++)
-            out->components.number[out->components.count++] = solid->component[i][axis];
+    static unsigned char none[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES]; /* [dim] */
+    geometry_write_none(placement->dim, none[placement->dim]);
+    placement->handle = *handle;
+    placement->frame_count = placement->number_count = 0;
+    placement->geometry = (struct geometry){none[placement->dim], GEOMETRY_NONE_BYTES};
 }
 
 struct solid part_box(int dim, const double origin[3], const double size[3])

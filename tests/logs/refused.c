@@ -4,6 +4,7 @@
 
 #include "asker.h"
 #include "parts.h"
+#include "writer.h"
 
 #include <float.h>
 #include <math.h>
@@ -11,8 +12,8 @@
 
 #define COUNT(array) ((int) (sizeof(array) / sizeof(array)[0]))
 
-/* Frames of nothing of which a scene is longer than one may be. */
-enum { A_CLIENT = 1618033, TOO_LONG = 2031 };
+/* Placements of nothing of which a scene is longer than one may be. */
+enum { A_CLIENT = 1618033, TOO_LONG = 1455 };
 
 static const double zero[3] = {0}, one[3] = {1, 1, 1}, half[3] = {0.5, 0.5, 0.5};
 
@@ -30,16 +31,45 @@ struct refusing {
 /* Breaks one thing of a query that is good. */
 typedef void spoil_pair(struct pair_query *query);
 
-static void set_count(struct query_numbers *numbers, int32_t count)
+/* Any geometry: of so many frames of a shape, with so many numbers, all of them 1 but the first
+ * dim. */
+static void set_geometry(struct placement *placement, int32_t dim, int32_t frames, int shape,
+                         int32_t numbers)
 {
-    numbers->count = count;
+    static unsigned char bytes[16][256];
+    static int next;
+    struct writer writer = {.at = bytes[next], .end = bytes[next] + sizeof bytes[next]};
+    const unsigned char *begin = bytes[next];
+    next = (next + 1) % COUNT(bytes);
+    writer_int32(&writer, dim);
+    writer_int32(&writer, frames);
+    for (int32_t i = 0; i < frames; i++)
+        *writer_take(&writer, 1) = (unsigned char) shape;
+    writer_int32(&writer, numbers);
+    for (int32_t i = 0; i < numbers; i++)
+        writer_double(&writer, i < dim ? 0 : 1);
+    placement->dim = dim;
+    placement->frame_count = frames;
+    placement->number_count = numbers;
+    placement->geometry = (struct geometry){begin, writer_end(&writer, begin)};
 }
 
-static void set_dim(struct query_frame *frame, int32_t dim)
+/* One of the numbers of a body of one frame. */
+static void set_number(struct placement *placement, int i, double number)
 {
-    frame->dim = dim;
-    set_count(&frame->origin, dim);
+    static unsigned char bytes[16][GEOMETRY_FRAME_BYTES_MAX];
+    static int next;
+    unsigned char *to = bytes[next];
+    uint64_t bits;
+    next = (next + 1) % COUNT(bytes);
+    memcpy(&bits, &number, sizeof bits);
+    memcpy(to, placement->geometry.bytes, placement->geometry.size);
+    big_endian_put_64(to + 13 + 8 * i, bits);
+    placement->geometry.bytes = to;
 }
+
+/* A handle that no service ever held. */
+static const struct handle unheard = {{0xde, 0xad, 0xbe, 0xef}};
 
 static void client_below_0(struct pair_query *query)
 {
@@ -58,80 +88,111 @@ static void number_too_large(struct pair_query *query)
 
 static void body_below_0(struct pair_query *query)
 {
-    query->frame[0].body_id = INT64_MIN;
+    query->placement[0].body_id = INT64_MIN;
 }
 
-static void key_too_large(struct pair_query *query)
+static void handle_and_frames(struct pair_query *query)
 {
-    query->frame[1].key = QUERY_ID_MAX + 1;
+    query->placement[1].handle = unheard;
+}
+
+static void handle_and_numbers(struct pair_query *query)
+{
+    set_geometry(&query->placement[1], 3, 0, 0, 3);
+    query->placement[1].handle = unheard;
+}
+
+static void neither_handle_nor_frames(struct pair_query *query)
+{
+    set_geometry(&query->placement[0], 3, 0, 0, 0);
 }
 
 static void no_shape(struct pair_query *query)
 {
-    query->frame[0].shape = 0;
+    set_geometry(&query->placement[0], 3, 1, 0, 12);
 }
 
-static void shape_4(struct pair_query *query)
+static void shape_5(struct pair_query *query)
 {
-    query->frame[1].shape = 4;
+    set_geometry(&query->placement[1], 3, 1, 5, 12);
 }
 
 static void dim_0(struct pair_query *query)
 {
-    set_dim(&query->frame[0], 0);
-}
-
-static void dim_4(struct pair_query *query)
-{
-    set_dim(&query->frame[1], 4);
+    set_geometry(&query->placement[0], 0, 1, FMB_CUBOID, 0);
 }
 
 static void face_in_plane(struct pair_query *query)
 {
-    set_dim(&query->frame[1], 2);
-    query->frame[1].shape = FMB_FACE;
+    set_geometry(&query->placement[1], 2, 1, FMB_FACE, 6);
 }
 
-static void components_8(struct pair_query *query)
+static void numbers_11(struct pair_query *query)
 {
-    set_count(&query->frame[0].components, 8);
+    set_geometry(&query->placement[0], 3, 1, FMB_CUBOID, 11);
 }
 
-static void components_0(struct pair_query *query)
+static void numbers_0(struct pair_query *query)
 {
-    set_count(&query->frame[1].components, 0);
+    set_geometry(&query->placement[1], 3, 1, FMB_CUBOID, 0);
 }
 
-static void components_of_face(struct pair_query *query)
+static void numbers_of_face(struct pair_query *query)
 {
-    query->frame[0].shape = FMB_FACE; /* which has 6 of them */
+    set_geometry(&query->placement[0], 3, 1, FMB_FACE, 12); /* which has 9 of them */
 }
 
 static void velocity_2(struct pair_query *query)
 {
-    set_count(&query->frame[1].velocity, 2);
+    query->placement[1].velocity_count = 2;
 }
 
-static void origin_nan(struct pair_query *query)
+static void orientation_3(struct pair_query *query)
 {
-    query->frame[0].origin.number[2] = NAN;
+    query->placement[1].orientation_count = 3;
+}
+
+static void position_nan(struct pair_query *query)
+{
+    query->placement[0].position[2] = NAN;
 }
 
 static void component_infinite(struct pair_query *query)
 {
-    query->frame[1].components.number[4] = -INFINITY;
+    set_number(&query->placement[1], 3 + 4, -INFINITY);
 }
 
 static void velocity_infinite(struct pair_query *query)
 {
-    set_count(&query->frame[0].velocity, 3);
-    query->frame[0].velocity.number[0] = INFINITY;
+    query->placement[0].velocity_count = 3;
+    query->placement[0].velocity[0] = INFINITY;
 }
 
 static void plane_and_space(struct pair_query *query)
 {
-    set_dim(&query->frame[1], 2);
-    set_count(&query->frame[1].components, 4);
+    set_geometry(&query->placement[1], 2, 1, FMB_CUBOID, 6);
+}
+
+/* What later versions do. */
+static void turned(struct pair_query *query)
+{
+    query->placement[0].orientation_count = 4;
+    query->placement[0].orientation[0] = 1;
+}
+
+static void two_frames(struct pair_query *query)
+{
+    set_geometry(&query->placement[1], 3, 2, FMB_CUBOID, 24);
+}
+
+static void box_by_size(struct pair_query *query)
+{
+    set_geometry(&query->placement[0], 3, 1, 4, 6);
+}
+
+static void origin_not_0(struct pair_query *query)
+{
+    set_number(&query->placement[1], 1, 0.5);
 }
 
 static void duration_below_0(struct pair_query *query)
@@ -169,24 +230,27 @@ static void wants_all(struct pair_query *query)
     query->want = -1;
 }
 
+static void wants_gap(struct pair_query *query)
+{
+    query->want = QUERY_WANT_GAP;
+}
+
 static void flat_for_fmb(struct pair_query *query)
 {
-    memcpy(&query->frame[0].components.number[3], query->frame[0].components.number,
-           3 * sizeof(double));
+    for (int axis = 0; axis < 3; axis++)
+        set_number(&query->placement[0], 3 + 3 + axis, axis == 0);
     query->method = 2;
 }
 
-static void key_never_told(struct pair_query *query)
+static void handle_not_held(struct pair_query *query)
 {
-    query->frame[0].body_id = 1;
-    query->frame[0].key = 123456789;
-    set_count(&query->frame[0].components, 0);
+    query->placement[0].body_id = 1;
+    part_by_handle(&query->placement[0], &unheard);
 }
 
-static void key_of_nobody(struct pair_query *query)
+static void handle_without_id(struct pair_query *query)
 {
-    query->frame[1].key = 3;
-    set_count(&query->frame[1].components, 0);
+    part_by_handle(&query->placement[1], &unheard);
 }
 
 static spoil_pair *const spoilt_pairs[] = {
@@ -194,30 +258,37 @@ static spoil_pair *const spoilt_pairs[] = {
     client_too_large,
     number_too_large,
     body_below_0,
-    key_too_large,
+    handle_and_frames,
+    handle_and_numbers,
+    neither_handle_nor_frames,
     no_shape,
-    shape_4,
+    shape_5,
     dim_0,
-    dim_4,
     face_in_plane,
-    components_8,
-    components_0,
-    components_of_face,
+    numbers_11,
+    numbers_0,
+    numbers_of_face,
     velocity_2,
-    origin_nan,
+    orientation_3,
+    position_nan,
     component_infinite,
     velocity_infinite,
     plane_and_space,
+    turned,
+    two_frames,
+    box_by_size,
+    origin_not_0,
     duration_below_0,
     duration_nan,
     duration_infinite,
     method_5,
     method_below_0,
     wants_times,
+    wants_gap,
     wants_all,
     flat_for_fmb,
-    key_never_told,
-    key_of_nobody,
+    handle_not_held,
+    handle_without_id,
 };
 
 /* Two boxes that overlap by an eighth. */
@@ -228,8 +299,8 @@ static struct pair_query good_pair(struct refusing *refusing)
                                .duration = 1,
                                .want = QUERY_WANT_BOX};
     const struct solid a = part_box(3, zero, one), b = part_box(3, half, one);
-    part_frame(&a, 0, &query.frame[0]);
-    part_frame(&b, 0, &query.frame[1]);
+    part_place(&a, 0, &query.placement[0]);
+    part_place(&b, 0, &query.placement[1]);
     return query;
 }
 
@@ -262,7 +333,7 @@ static void split_too_far(struct scene_query *query)
 {
     query->which = QUERY_PAIRS_ACROSS;
     query->index_count = 0;
-    query->split = query->frame_count + 1;
+    query->split = query->placement_count + 1;
 }
 
 static void first_pair_too_far(struct scene_query *query)
@@ -277,7 +348,7 @@ static void first_pair_below_0(struct scene_query *query)
 
 static void index_of_none(struct scene_query *query)
 {
-    query->pair[1][0] = (unsigned) query->frame_count;
+    query->pair[1][0] = (unsigned) query->placement_count;
 }
 
 static void index_below_0(struct scene_query *query)
@@ -314,20 +385,44 @@ static void all_by_sat(struct scene_query *query)
 
 static void one_in_plane(struct scene_query *query)
 {
-    set_dim(&query->frame[2], 2);
-    set_count(&query->frame[2].components, 4);
+    set_geometry(&query->placement[2], 2, 1, FMB_CUBOID, 6);
 }
 
 static void one_not_finite(struct scene_query *query)
 {
-    query->frame[3].origin.number[1] = NAN;
+    query->placement[3].position[1] = NAN;
 }
 
-static void one_unknown(struct scene_query *query)
+static void one_not_held(struct scene_query *query)
 {
-    query->frame[1].body_id = 99;
-    query->frame[1].key = 99;
-    set_count(&query->frame[1].components, 0);
+    query->placement[1].body_id = 99;
+    part_by_handle(&query->placement[1], &unheard);
+}
+
+static void margin_below_0(struct scene_query *query)
+{
+    query->margin = -1;
+}
+
+static void margin_1(struct scene_query *query)
+{
+    query->margin = 1;
+}
+
+static void gaps(struct scene_query *query)
+{
+    query->want = QUERY_WANT_GAP;
+}
+
+static void one_ignored(struct scene_query *query)
+{
+    query->ignored_count = 2;
+    query->ignored[0][1] = 3;
+}
+
+static void ignored_odd(struct scene_query *query)
+{
+    query->ignored_count = 1;
 }
 
 static void time_runs_back(struct scene_query *query)
@@ -351,17 +446,18 @@ static void first_pair_at_the_end(struct scene_query *query)
     query->first_pair = query->index_count / 2;
 }
 
-static void no_frames(struct scene_query *query)
+static void nothing_placed(struct scene_query *query)
 {
     query->which = QUERY_PAIRS_ALL;
-    query->frame_count = query->index_count = 0;
+    query->placement_count = query->index_count = 0;
 }
 
 static spoil_scene *const spoilt_scenes[] = {
     which_3,        split_of_listed, split_too_far,  first_pair_too_far,    first_pair_below_0,
     index_of_none,  index_below_0,   against_itself, indices_odd,           indices_of_all,
-    certificates,   all_by_sat,      one_in_plane,   one_not_finite,        one_unknown,
-    time_runs_back, client_is_none,  nothing_listed, first_pair_at_the_end, no_frames,
+    certificates,   all_by_sat,      one_in_plane,   one_not_finite,        one_not_held,
+    margin_below_0, margin_1,        gaps,           one_ignored,           ignored_odd,
+    time_runs_back, client_is_none,  nothing_listed, first_pair_at_the_end, nothing_placed,
 };
 
 /* Four boxes in a row that touch. */
@@ -373,11 +469,11 @@ static void set_good_scene(struct refusing *refusing)
     query->sequence_number = refusing->next_number++;
     query->duration = 1;
     query->which = QUERY_PAIRS_LISTED;
-    query->frame_count = 4;
+    query->placement_count = 4;
     query->index_count = 2 * 3;
     for (int i = 0; i < 4; i++) {
         const struct solid box = part_box(3, (double[]){i, 0, 0}, one);
-        part_frame(&box, 0, &query->frame[i]);
+        part_place(&box, 0, &query->placement[i]);
     }
     for (unsigned i = 0; i < 3; i++) {
         query->pair[i][0] = i;
@@ -396,26 +492,58 @@ static void ask_spoilt_scenes(struct refusing *refusing)
 
 /* ---- Too much ---- */
 
-static void write_count(int32_t count, unsigned char out[4])
+/* A scene of so many placements of nothing: each is 44 bytes of 0, of no body and no dimension.
+ * After the count of placements come those of indices and of ignored ones, which are 0. */
+static void ask_placements_of_nothing(struct refusing *refusing, int32_t placements)
 {
-    for (int i = 0; i < 4; i++)
-        out[i] = (unsigned char) ((uint32_t) count >> (24 - 8 * i));
-}
-
-/* A scene of so many frames of nothing: each is 32 bytes of 0, of no shape and no dimension. What
- * stands behind the number of frames is the number of indices, which is 0. */
-static void ask_frames_of_nothing(struct refusing *refusing, int32_t frames)
-{
-    enum { FRAME = 32, COUNTS = 8, LONGEST = QUERY_BYTES_MAX + 1000 };
+    enum { PLACEMENT = 44, COUNTS = 12, LONGEST = QUERY_BYTES_MAX + 1000 };
     static unsigned char bytes[COUNTS + LONGEST];
     set_good_scene(refusing);
-    no_frames(&refusing->scene);
+    nothing_placed(&refusing->scene);
     refusing->scene.utime = tape_utime(refusing->instance->tape);
     const size_t size = wire_write_scene_query(&refusing->scene, bytes),
-                 more = FRAME * (size_t) frames;
+                 more = PLACEMENT * (size_t) placements;
     memset(bytes + size, 0, more);
-    write_count(frames, bytes + size - COUNTS);
+    big_endian_put_32(bytes + size - COUNTS, (uint32_t) placements);
     instance_hear_scene(refusing->instance, bytes, size + more, &refusing->scene_result);
+}
+
+/* Four positions do not fit into a struct: the numbers that stand for two counts of 0 are the
+ * fourth, and two more follow. */
+static void ask_in_four_dimensions(struct refusing *refusing)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    struct pair_query query = good_pair(refusing);
+    struct pair_result result;
+    set_geometry(&query.placement[1], 4, 1, FMB_CUBOID, 20);
+    query.placement[1].dim = 3;
+    query.utime = tape_utime(refusing->instance->tape);
+    const size_t size = wire_write_pair_query(&query, bytes);
+    memset(bytes + size, 0, 8);
+    instance_hear_pair(refusing->instance, bytes, size + 8, &result);
+}
+
+/* ---- Definitions ---- */
+
+/* Of a client without an id; from a place where there are no bodies; and two that cannot be read:
+ * one is cut off, one has half a handle. */
+static void ask_spoilt_definitions(struct refusing *refusing)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    static struct definition_query query;
+    static struct definition result;
+    struct instance *instance = refusing->instance;
+    query = (struct definition_query){.client_id = -1, .handle_count = 1, .handle = {unheard}};
+    instance_hear_definition(instance, bytes, wire_write_definition_query(&query, bytes), &result);
+    query.client_id = A_CLIENT;
+    query.sequence_number = refusing->next_number++;
+    query.first = 2;
+    size_t size = wire_write_definition_query(&query, bytes);
+    instance_hear_definition(instance, bytes, size, &result);
+    instance_hear_definition(instance, bytes, size - 1, &result);
+    size -= HANDLE_BYTES / 2;
+    big_endian_put_32(bytes + size - HANDLE_BYTES / 2 - 4, HANDLE_BYTES / 2);
+    instance_hear_definition(instance, bytes, size, &result);
 }
 
 /* ---- The ends of the doubles ---- */
@@ -453,8 +581,8 @@ static void ask_extremes(struct refusing *refusing)
             struct solid b = part_corner(3, (double[]){at, 0, 0}, (double[]){size, size, size});
             b.moving = speed != 0 || signbit(speed);
             b.velocity[0] = speed;
-            part_frame(&a, 0, &query.frame[0]);
-            part_frame(&b, 0, &query.frame[1]);
+            part_place(&a, 0, &query.placement[0]);
+            part_place(&b, 0, &query.placement[1]);
             query.method = methods[m];
             query.duration = i % 3 == 2 ? 0.0 : 1;
             if (m < 1)
@@ -465,8 +593,7 @@ static void ask_extremes(struct refusing *refusing)
 
 bool kind_refused(struct tape *tape)
 {
-    const struct instance_options options = {
-        .prefix = "", .server_id = 1, .first_key = 1000, .bodies = 16};
+    const struct instance_options options = {.prefix = "", .server_id = 1, .frames = 16};
     static struct refusing refusing;
     struct instance instance;
     if (!instance_open(&instance, tape, &options))
@@ -474,8 +601,10 @@ bool kind_refused(struct tape *tape)
     refusing = (struct refusing){.instance = &instance};
     ask_spoilt_pairs(&refusing);
     ask_spoilt_scenes(&refusing);
-    ask_frames_of_nothing(&refusing, QUERY_FRAMES_MAX + 1);
-    ask_frames_of_nothing(&refusing, TOO_LONG); /* for a query, not yet for a datagram */
+    ask_in_four_dimensions(&refusing);
+    ask_placements_of_nothing(&refusing, QUERY_PLACEMENTS_MAX + 1);
+    ask_placements_of_nothing(&refusing, TOO_LONG); /* for a query, not yet for a datagram */
+    ask_spoilt_definitions(&refusing);
     ask_extremes(&refusing);
     instance_beat(&instance);
     instance_close(&instance);

@@ -1,6 +1,6 @@
 /* Three towers that fall onto a plate, level by level, at 100 Hz, and come to rest: all pairs of
- * all bodies in each step, by key, and of some that lie on each other a certificate. One tower is
- * laid out in multiples of 1/64, so that it touches face on face. One is of tenths, and in turns
+ * all bodies in each step, by handle, and of some that lie on each other a certificate. One tower
+ * is laid out in multiples of 1/64, so that it touches face on face. One is of tenths, and in turns
  * its levels touch but for rounding, are an ulp apart, or overlap by an ulp. One leans. */
 #include "kinds.h"
 
@@ -102,15 +102,15 @@ static struct solid level_at(const struct stack *stack, int tower, int level, in
     return solid;
 }
 
-static void set_frames(const struct stack *stack, int step, struct scene_query *query)
+static void set_placements(const struct stack *stack, int step, struct scene_query *query)
 {
-    query->frame_count = BODIES;
-    part_frame(&stack->rest[0], 1, &query->frame[0]);
+    query->placement_count = BODIES;
+    part_place(&stack->rest[0], 1, &query->placement[0]);
     for (int tower = 0; tower < TOWERS; tower++)
         for (int level = 0; level < LEVELS; level++) {
             const struct solid solid = level_at(stack, tower, level, step);
             const int body = body_of(tower, level);
-            part_frame(&solid, body + 1, &query->frame[body]);
+            part_place(&solid, body + 1, &query->placement[body]);
         }
 }
 
@@ -125,7 +125,7 @@ static void ask_scene(struct asker *asker, const struct stack *stack, int step)
     query.duration = step_s;
     query.want = wants[step % 4];
     query.which = QUERY_PAIRS_ALL;
-    set_frames(stack, step, &query);
+    set_placements(stack, step, &query);
     asker_scene(asker, &query, &result);
 }
 
@@ -137,7 +137,7 @@ static void ask_pair(struct asker *asker, const struct stack *stack, int tower, 
     struct pair_result result;
     for (int f = 0; f < 2; f++) {
         const struct solid solid = level_at(stack, tower, level - f, step);
-        part_frame(&solid, body_of(tower, level - f) + 1, &query.frame[f]);
+        part_place(&solid, body_of(tower, level - f) + 1, &query.placement[f]);
     }
     asker_pair(asker, &query, &result);
 }
@@ -145,7 +145,7 @@ static void ask_pair(struct asker *asker, const struct stack *stack, int tower, 
 bool kind_stack(struct tape *tape)
 {
     const struct instance_options options = {
-        .prefix = "", .server_id = 9007199254740991, .first_key = 1, .bodies = 64};
+        .prefix = "", .server_id = 9007199254740991, .frames = 64};
     static struct asker asker;
     struct instance instance;
     struct stack stack;

@@ -39,8 +39,8 @@ static void tell_scene_result(const lcm_eventlog_event_t *event)
         return;
     printf(", \"client\": %" PRId64 ", \"number\": %" PRId64 ", \"server\": %" PRId64,
            result.client_id, result.sequence_number, result.server_id);
-    printf(", \"status\": %d, \"method\": %d, \"lost\": %" PRId64 ", \"end\": %d, \"verdicts\": [",
-           (int) result.status, (int) result.method, result.lost, (int) result.end_pair);
+    printf(", \"status\": %d, \"method\": %d, \"end\": %d, \"verdicts\": [", (int) result.status,
+           (int) result.method, (int) result.end_pair);
     for (int32_t i = 0; i < result.num_verdicts; i++)
         printf("%s%d", i ? "," : "", (int) result.verdicts[i]);
     printf("], \"times\": %d, \"boxes\": %d", (int) result.num_times, (int) result.num_boxes);

@@ -12,22 +12,22 @@
 
 #include <cmocka.h>
 
-enum { BODIES = 10, CLIENTS = 2, LIVES = 3, FRAMES_MAX = 6 };
+enum { BODIES = 10, CLIENTS = 2, LIVES = 3, PLACEMENTS_MAX = 6, RECORDER = 99 };
 
 /* What is under way. */
 struct making {
     const struct world_options *options;
     struct log_world *world;
-    struct answerer answerer;
+    struct answerer *answerer;
+    struct scene_job *job;
     double now;
     int64_t sequence;
-    int64_t key[CLIENTS][BODIES + 1]; /* [client][body]: as it was told; 0: not */
-    int form[BODIES + 1];             /* [body]: which components it has */
+    struct handle handle[CLIENTS][BODIES + 1]; /* [client][body]: of a result; all 0: none */
+    int form[BODIES + 1];                      /* [body]: which frame it has */
 };
 
 static struct scene_query scene;
-static struct scene_result scene_result;
-static unsigned char bytes[QUERY_BYTES_MAX + WIRE_RESULT_BYTES_MAX];
+static unsigned char bytes[QUERY_BYTES_MAX];
 
 /* ---- What is drawn ---- */
 
@@ -107,70 +107,96 @@ void world_write(const struct log_world *world, const char *path)
 
 /* ---- Services ---- */
 
-static void start(struct making *making, int life)
+static void start_service(struct making *making, int life, size_t frames)
 {
-    const int64_t first_key = making->options->same_keys ? 7 : 1000 * (life + 1);
-    cache_destroy(making->answerer.cache);
-    making->answerer.cache = cache_create(BODIES, first_key);
-    making->answerer.server_id = 50 + life;
-    assert_non_null(making->answerer.cache);
+    const struct answerer_options options = {
+        .frames = frames, .server_id = 50 + life, .secret = {3, 4}};
+    answerer_destroy(making->answerer);
+    making->answerer = answerer_create(&options);
+    assert_non_null(making->answerer);
 }
 
-static void open_making(struct making *making)
+static void open_making(struct making *making, size_t frames)
 {
-    assert_true(answer_prepare(&making->answerer));
-    start(making, 0);
+    making->job = scene_job_create();
+    assert_non_null(making->job);
+    start_service(making, 0, frames);
 }
 
 static void close_making(struct making *making)
 {
-    cache_destroy(making->answerer.cache);
-    answer_release(&making->answerer);
+    answerer_destroy(making->answerer);
+    scene_job_destroy(making->job);
 }
 
-/* ---- Frames ---- */
-
-/* A box or a corner of its own for each body and form, on a grid, so that all verdicts come. */
-static void set_body(int body, int form, struct query_frame *out)
+/* In: the query, in bytes. */
+static const struct scene_result *answer_scene(struct making *making, size_t size)
 {
-    const double size = 0.5 * (1 + (body + form) % 3);
-    out->shape = body % 2 ? FMB_CUBOID : FMB_TETRAHEDRON;
-    out->components.count = 9;
-    memset(out->components.number, 0, sizeof out->components.number);
-    for (int i = 0; i < 3; i++)
-        out->components.number[4 * i] = size;
-    out->components.number[1] = 0.25 * form;
+    assert_null(scene_job_begin(making->job, bytes, size));
+    while (!scene_job_step(making->job, making->answerer))
+        continue;
+    return scene_job_result(making->job);
 }
 
-static struct query_frame draw_frame(struct making *making, int client)
+/* ---- Bodies ---- */
+
+/* A box or a corner of its own for each body and form, so that all verdicts come. The geometry is
+ * valid until some more are made. */
+static void set_body(int body, int form, struct placement *out)
+{
+    enum { KEPT = 2048 };
+    static unsigned char kept[KEPT][GEOMETRY_FRAME_BYTES_MAX];
+    static int next;
+    const double size = 0.5 * (1 + (body + form) % 3);
+    struct geometry_frame frame = {.shape = body % 2 ? FMB_CUBOID : FMB_TETRAHEDRON};
+    for (int i = 0; i < 3; i++)
+        frame.components[4 * i] = size;
+    frame.components[1] = 0.25 * form;
+    unsigned char *to = kept[next++ % KEPT];
+    out->dim = 3;
+    out->handle = (struct handle){{0}};
+    out->frame_count = 1;
+    out->number_count = 12;
+    out->geometry = (struct geometry){to, geometry_write(3, &frame, to)};
+}
+
+static void set_handle(const struct handle *handle, struct placement *out)
+{
+    static unsigned char none[GEOMETRY_NONE_BYTES];
+    geometry_write_none(3, none);
+    out->handle = *handle;
+    out->frame_count = out->number_count = 0;
+    out->geometry = (struct geometry){none, sizeof none};
+}
+
+static struct placement draw_placement(struct making *making, int client)
 {
     struct log_world *world = making->world;
     const int body = happens(world, 8) ? 0 : 1 + world_draw(world, BODIES);
-    struct query_frame frame = {.body_id = body, .dim = 3, .origin.count = 3};
+    struct placement placement = {.body_id = body};
     for (int axis = 0; axis < 3; axis++)
-        frame.origin.number[axis] = 0.5 * world_draw(world, 5);
+        placement.position[axis] = 0.5 * world_draw(world, 5);
     if (happens(world, 3)) {
-        frame.velocity.count = 3;
-        frame.velocity.number[world_draw(world, 3)] = 0.5 * (world_draw(world, 7) - 3);
+        placement.velocity_count = 3;
+        placement.velocity[world_draw(world, 3)] = 0.5 * (world_draw(world, 7) - 3);
     }
-    set_body(body, making->form[body], &frame);
-    if (making->key[client][body] != 0 && !happens(world, 6)) {
-        frame.key = making->key[client][body];
-        frame.components = (struct query_numbers){.count = 0};
-    }
+    set_body(body, making->form[body], &placement);
+    if (!handle_is_none(&making->handle[client][body]) && !happens(world, 6))
+        set_handle(&making->handle[client][body], &placement);
     if (happens(world, 40))
-        frame.origin.number[0] = 1.0 / 0.0;
-    return frame;
+        placement.position[0] = 1.0 / 0.0;
+    return placement;
 }
 
-/* A client that has been told to forgets, but not always at once. */
-static void take_key(struct making *making, int client, int64_t body, int32_t status, int64_t key)
+/* A client whose handle is not held sends the body whole, but not always at once. */
+static void take_handle(struct making *making, int client, int64_t body, int32_t status,
+                        const struct handle *handle)
 {
-    int64_t *known = &making->key[client][body];
-    if (status == FMB_OK && key != 0 && body != 0)
-        *known = key;
+    struct handle *known = &making->handle[client][body];
+    if (body != 0 && !handle_is_none(handle))
+        *known = *handle;
     else if (status == FMB_UNKNOWN_BODY && !happens(making->world, 3))
-        *known = 0;
+        *known = (struct handle){{0}};
 }
 
 /* ---- Where queries and results stand ---- */
@@ -184,7 +210,7 @@ static double place_of_result(struct making *making, double query)
 {
     switch (world_draw(making->world, 8)) {
     case 0: return query - 3 * some(making);  /* before it, and before others */
-    case 1: return query + 12 * some(making); /* others ask meanwhile, by its keys too */
+    case 1: return query + 12 * some(making); /* others come meanwhile */
     default: return query + 0.5 * some(making);
     }
 }
@@ -202,40 +228,40 @@ static void put_result(struct making *making, const char *channel, size_t size)
         put(making->world, place_of_result(making, making->now), channel, bytes, size);
 }
 
-/* ---- Asking ---- */
+/* ---- Queries ---- */
 
-static void ask_pair_once(struct making *making, const struct pair_query *query, int client)
+static void send_pair_once(struct making *making, const struct pair_query *query, int client)
 {
     struct pair_result result;
     put_query(making, WIRE_PAIR_QUERY, wire_write_pair_query(query, bytes));
     if (happens(making->world, 30))
-        answer_pair_refused(&making->answerer, query, FMB_BUSY, &result);
+        answer_pair_refused(making->answerer, query, FMB_BUSY, &result);
     else
-        answer_pair(&making->answerer, query, &result);
+        answer_pair(making->answerer, query, &result);
     put_result(making, WIRE_PAIR_RESULT, wire_write_pair_result(&result, bytes));
-    for (int f = 0; f < 2; f++)
-        take_key(making, client, query->frame[f].body_id, result.status, result.key[f]);
+    for (int p = 0; p < 2; p++)
+        take_handle(making, client, query->placement[p].body_id, result.status, &result.handle[p]);
 }
 
-static void ask_pair(struct making *making, int client)
+static void send_pair(struct making *making, int client)
 {
     struct pair_query query = {.utime = (int64_t) (1e6 * making->now),
                                .client_id = 70 + client,
                                .sequence_number = making->sequence++,
                                .duration = 1,
                                .want = world_draw(making->world, 4)};
-    for (int f = 0; f < 2; f++)
-        query.frame[f] = draw_frame(making, client);
-    ask_pair_once(making, &query, client);
+    for (int p = 0; p < 2; p++)
+        query.placement[p] = draw_placement(making, client);
+    send_pair_once(making, &query, client);
     if (making->options->once || !happens(making->world, 10))
         return;
     making->now += some(making);
-    ask_pair_once(making, &query, client);
+    send_pair_once(making, &query, client);
 }
 
 static void draw_pairs(struct making *making)
 {
-    const int n = scene.frame_count;
+    const int n = scene.placement_count;
     scene.split = scene.first_pair = scene.index_count = 0;
     scene.which = world_draw(making->world, 3);
     if (scene.which == QUERY_PAIRS_ACROSS)
@@ -251,37 +277,50 @@ static void draw_pairs(struct making *making)
         }
 }
 
-static void put_scene(struct making *making)
-{
-    put_query(making, WIRE_SCENE_QUERY, wire_write_scene_query(&scene, bytes));
-    answer_scene(&making->answerer, &scene, &scene_result);
-    put_result(making, WIRE_SCENE_RESULT, wire_write_scene_result(&scene_result, bytes));
-}
-
-static void ask_scene(struct making *making, int client)
+static void send_scene(struct making *making, int client)
 {
     struct log_world *world = making->world;
+    static struct handle handles[QUERY_PLACEMENTS_MAX];
     scene.utime = (int64_t) (1e6 * making->now);
     scene.client_id = 70 + client;
     scene.sequence_number = making->sequence++;
     scene.duration = 1;
     scene.method = 0;
     scene.want = world_draw(world, 2) * QUERY_WANT_BOX + world_draw(world, 2) * QUERY_WANT_TIMES;
-    scene.frame_count = 2 + world_draw(world, FRAMES_MAX - 1);
-    for (int i = 0; i < scene.frame_count; i++)
-        scene.frame[i] = draw_frame(making, client);
+    scene.placement_count = 2 + world_draw(world, PLACEMENTS_MAX - 1);
+    for (int i = 0; i < scene.placement_count; i++)
+        scene.placement[i] = draw_placement(making, client);
     draw_pairs(making);
-    put_scene(making);
-    for (int i = 0; i < scene.frame_count; i++)
-        take_key(making, client, scene.frame[i].body_id, scene_result.status,
-                 scene_result.key_count > 0 ? scene_result.key[i] : 0);
+    const size_t size = wire_write_scene_query(&scene, bytes);
+    put_query(making, WIRE_SCENE_QUERY, size);
+    const struct scene_result *result = answer_scene(making, size);
+    const int32_t status = result->status, count = result->handle_count;
+    memcpy(handles, result->handle, (size_t) count * sizeof *handles);
+    put_result(making, WIRE_SCENE_RESULT, wire_write_scene_result(result, bytes));
+    for (int i = 0, next = 0; i < scene.placement_count; i++) {
+        const bool whole = scene.placement[i].body_id != 0 && scene.placement[i].frame_count > 0;
+        const struct handle none = {{0}};
+        take_handle(making, client, scene.placement[i].body_id, status,
+                    whole && next < count ? &handles[next++] : &none);
+    }
+}
+
+/* A recorder requests all bodies. */
+static void send_definition_query(struct making *making)
+{
+    static struct definition_query query;
+    static struct definition result;
+    query = (struct definition_query){.client_id = RECORDER, .sequence_number = making->sequence++};
+    put_query(making, WIRE_DEFINITION_QUERY, wire_write_definition_query(&query, bytes));
+    answer_definition(making->answerer, &query, &result);
+    put_result(making, WIRE_DEFINITION, wire_write_definition(&result, bytes));
 }
 
 static void put_other(struct making *making)
 {
-    static const char *const channel[] = {WIRE_STATUS, "CAMERA", WIRE_PAIR_QUERY,
-                                          WIRE_SCENE_RESULT};
-    put(making->world, making->now, channel[world_draw(making->world, 4)], "no message", 10);
+    static const char *const channel[] = {WIRE_STATUS, "CAMERA", WIRE_PAIR_QUERY, WIRE_SCENE_RESULT,
+                                          WIRE_DEFINITION};
+    put(making->world, making->now, channel[world_draw(making->world, 5)], "no message", 10);
 }
 
 static void take_step(struct making *making)
@@ -293,19 +332,21 @@ static void take_step(struct making *making)
         making->form[1 + world_draw(world, BODIES)]++;
     if (happens(world, 12))
         put_other(making);
+    else if (happens(world, 40))
+        send_definition_query(making);
     else if (happens(world, 3))
-        ask_scene(making, client);
+        send_scene(making, client);
     else
-        ask_pair(making, client);
+        send_pair(making, client);
 }
 
 void world_make(const struct world_options *options, struct log_world *out)
 {
     struct making making = {.options = options, .world = out};
     *out = (struct log_world){.seed = options->seed, .state = options->seed};
-    open_making(&making);
+    open_making(&making, BODIES);
     for (int life = 0; life < LIVES; life++) {
-        start(&making, life);
+        start_service(&making, life, BODIES);
         for (int step = 0; step < options->steps; step++)
             take_step(&making);
     }
@@ -319,54 +360,50 @@ void world_make(const struct world_options *options, struct log_world *out)
 static void set_row(int first, int count)
 {
     for (int i = 0; i < count; i++) {
-        scene.frame[i] =
-            (struct query_frame){.body_id = 1 + first + i, .dim = 3, .origin.count = 3};
-        set_body(1 + 2 * i, 0, &scene.frame[i]);
-        scene.frame[i].origin.number[0] = 0.4 * (first + i);
+        scene.placement[i] = (struct placement){.body_id = 1 + first + i};
+        set_body(1 + 2 * i, first + i, &scene.placement[i]);
+        scene.placement[i].position[0] = 0.4 * (first + i);
     }
-    scene.frame_count = count;
+    scene.placement_count = count;
 }
 
-static void add_scene(struct making *making)
+static const struct scene_result *add_scene(struct making *making)
 {
     scene.sequence_number = making->sequence++;
-    world_add(making->world, WIRE_SCENE_QUERY, bytes, wire_write_scene_query(&scene, bytes));
-    answer_scene(&making->answerer, &scene, &scene_result);
-    world_add(making->world, WIRE_SCENE_RESULT, bytes,
-              wire_write_scene_result(&scene_result, bytes));
-    assert_int_equal(scene_result.status, FMB_OK);
+    const size_t size = wire_write_scene_query(&scene, bytes);
+    world_add(making->world, WIRE_SCENE_QUERY, bytes, size);
+    const struct scene_result *result = answer_scene(making, size);
+    assert_int_equal(result->status, FMB_OK);
+    world_add(making->world, WIRE_SCENE_RESULT, bytes, wire_write_scene_result(result, bytes));
+    return result;
 }
 
-enum { TOLD_AT_ONCE = 300 };
+enum { WHOLE_AT_ONCE = 300 };
 
 void world_make_large(int bodies, int scenes, struct log_world *out)
 {
-    const struct world_options options = {.same_keys = false};
+    const struct world_options options = {.once = true};
     struct making making = {.options = &options, .world = out, .sequence = 1};
-    int64_t *key = calloc((size_t) bodies, sizeof *key);
+    struct handle *handle = calloc((size_t) bodies, sizeof *handle);
     *out = (struct log_world){.state = 1};
-    assert_non_null(key);
-    assert_true(answer_prepare(&making.answerer));
-    making.answerer.cache = cache_create((size_t) bodies, 1000);
+    assert_non_null(handle);
+    open_making(&making, (size_t) bodies);
     scene.utime = scene.client_id = 9;
     scene.duration = 1;
     scene.method = scene.want = scene.split = scene.first_pair = scene.index_count = 0;
     scene.which = QUERY_PAIRS_ALL;
     for (int first = 0, count; first < bodies; first += count) {
-        count = first == 0 && bodies % TOLD_AT_ONCE ? bodies % TOLD_AT_ONCE : TOLD_AT_ONCE;
+        count = first == 0 && bodies % WHOLE_AT_ONCE ? bodies % WHOLE_AT_ONCE : WHOLE_AT_ONCE;
         set_row(first, count);
-        add_scene(&making);
-        memcpy(key + first, scene_result.key, (size_t) count * sizeof *key);
+        memcpy(handle + first, add_scene(&making)->handle, (size_t) count * sizeof *handle);
     }
     for (int i = 0; i < scenes; i++) {
         set_row(0, bodies);
-        for (int k = 0; k < bodies; k++) {
-            scene.frame[k].key = key[k];
-            scene.frame[k].components = (struct query_numbers){.count = 0};
-        }
+        for (int k = 0; k < bodies; k++)
+            set_handle(&handle[k], &scene.placement[k]);
         add_scene(&making);
     }
-    free(key);
+    free(handle);
     close_making(&making);
 }
 
@@ -379,21 +416,20 @@ void world_make_apart(int pairs, struct log_world *out)
     struct pair_query query = {.client_id = 8, .duration = 1};
     struct pair_result result;
     *out = (struct log_world){.state = 5};
-    open_making(&making);
+    open_making(&making, BODIES);
     for (int results = 0; results < 2; results++)
         for (int i = 0; i < pairs; i++) {
             query.sequence_number = i;
-            for (int f = 0; f < 2; f++) {
-                query.frame[f] = (struct query_frame){
-                    .body_id = 1 + (i + f) % BODIES, .dim = 3, .origin.count = 3};
-                query.frame[f].origin.number[0] = i % 3;
-                set_body(1 + (i + f) % BODIES, 0, &query.frame[f]);
+            for (int p = 0; p < 2; p++) {
+                query.placement[p] = (struct placement){.body_id = 1 + (i + p) % BODIES};
+                query.placement[p].position[0] = i % 3;
+                set_body(1 + (i + p) % BODIES, 0, &query.placement[p]);
             }
             if (results == 0) {
                 world_add(out, WIRE_PAIR_QUERY, bytes, wire_write_pair_query(&query, bytes));
                 continue;
             }
-            answer_pair(&making.answerer, &query, &result);
+            answer_pair(making.answerer, &query, &result);
             world_add(out, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
         }
     close_making(&making);

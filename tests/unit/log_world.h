@@ -1,7 +1,7 @@
-/* Logs of a small world: clients that ask pairs and scenes of bodies, whole and by key, and
+/* Logs of a small world: clients that send pairs and scenes of bodies, whole and by handle, and
  * services that answer them, by the service's own code. What happens, and where it stands in the
  * log, is drawn: results come late, before their queries, again, or not at all; services start anew
- * and forget; clients ask again, by dead keys, or what is refused. */
+ * and hold no bodies; a recorder requests definitions; queries are repeated or refused. */
 #ifndef LOG_WORLD_H
 #define LOG_WORLD_H
 
@@ -31,23 +31,22 @@ struct log_world {
 struct world_options {
     uint64_t seed;
     int steps;
-    bool once;      /* nobody asks the same again */
-    bool same_keys; /* each service counts its keys from the same number on */
+    bool once; /* no client repeats a query */
 };
 
 /* To be cleared with world_clear(). */
 void world_make(const struct world_options *options, struct log_world *out);
 
-/* A world in which so many bodies are told, in scenes of 300, of which the first has those that are
- * over, and then asked by key in scenes of all of them, so often; each result behind its query. */
+/* A world in which so many bodies come whole, in scenes of 300, of which the first has those that
+ * are over, and then by handle in scenes of all of them, so many; each result after its query. */
 void world_make_large(int bodies, int scenes, struct log_world *out);
 
-/* Pairs that are asked whole: first all queries, then all results. */
+/* Pairs of whole bodies: first all queries, then all results. */
 void world_make_apart(int pairs, struct log_world *out);
 
 void world_clear(struct log_world *world);
 
-/* Adds an event behind the last one. */
+/* Adds an event after the last one. */
 void world_add(struct log_world *world, const char *channel, const void *bytes, size_t size);
 
 /* The world's log, by LCM's own writer. */

@@ -1,14 +1,13 @@
-/* A replay of a cut says of each of its queries what a replay of the whole log says; and all that
- * is not written back is the same bytes. */
+/* A replay of a cut reports for each of its queries what a replay of the whole log reports; and its
+ * events are those of the log, byte for byte, after the definitions that they need. */
 #include "log_cut.h"
 
 #include "any_query.h"
-#include "definition.h"
 #include "input.h"
 #include "log_world.h"
 #include "log_write.h"
-#include "message.h"
-#include "replay_jobs.h"
+#include "replay.h"
+#include "wire.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -65,12 +64,13 @@ struct outcomes {
 
 static struct outcomes *taken;
 
-struct page *__wrap_page_open(const char *title);
+struct page *__wrap_page_open(const char *title, int64_t begin);
 void __wrap_page_take(struct page *page, const struct replayed *replayed);
 
-struct page *__wrap_page_open(const char *title)
+struct page *__wrap_page_open(const char *title, int64_t begin)
 {
     (void) title;
+    (void) begin;
     return (struct page *) &taken;
 }
 
@@ -115,29 +115,23 @@ static void on_progress(void *user, int64_t bytes)
 static const struct replay_sink replay_sink = {on_found, on_unreadable, on_damage, on_progress,
                                                NULL};
 
-static struct replay_options replay_of(char *const *log)
-{
-    return (struct replay_options){.log = log,
-                                   .log_count = 1,
-                                   .prefix = "",
-                                   .from = -INFINITY,
-                                   .to = INFINITY,
-                                   .bodies = 1000};
-}
-
 static void replay(char *log, struct outcomes *out)
 {
-    struct replay_options options = replay_of(&log);
+    struct replay_options options = {.log = &log,
+                                     .log_count = 1,
+                                     .prefix = "",
+                                     .from = -INFINITY,
+                                     .to = INFINITY,
+                                     .frames = 1000,
+                                     .page = __wrap_page_open("", 0)};
     struct tally tally = {.events = 0};
     out->count = 0;
     taken = out;
-    options.page = __wrap_page_open("");
-    const struct replay_part all = {0, replay_size(&options)};
-    assert_true(replay_run(&options, all, &replay_sink, &tally));
+    assert_true(replay_run(&options, &replay_sink, &tally));
 }
 
 /* Queries of cuts that were the same, so far. */
-static int64_t compared, compared_in_parts;
+static int64_t compared;
 
 /* Of what: for people. */
 static char cut_name[200];
@@ -153,47 +147,17 @@ static bool has_outcome(const struct outcomes *outcomes, int64_t sequence_number
     return false;
 }
 
-/* Where services tell the same keys for different components, as none does that starts to count at
- * random: what is left out may have misled. */
-static bool keys_mislead;
-
-/* What a result tells fmb replay learns when it answers the query, and that may itself wait for a
- * key: then the cut knows more. */
-static bool knows_more(const struct outcomes *whole, int64_t sequence_number,
-                       enum replay_outcome outcome)
-{
-    return outcome == REPLAY_SAME &&
-           (has_outcome(whole, sequence_number, REPLAY_UNKNOWN) ||
-            (keys_mislead && has_outcome(whole, sequence_number, REPLAY_DIFFERENT)));
-}
-
-/* Where a client asked the same again, the results may have gone to the one or the other. */
+/* Where a client repeated a query, the results may have gone to the one or the other. */
 static void assert_same_outcomes(const struct outcomes *whole, const struct outcomes *cut)
 {
     for (size_t i = 0; i < cut->count; i++) {
         const int64_t number = cut->query[i].sequence_number;
         const enum replay_outcome outcome = cut->query[i].outcome;
-        if (!has_outcome(whole, number, outcome) && !knows_more(whole, number, outcome))
+        if (!has_outcome(whole, number, outcome))
             fail_msg("%s: query %ld was another one before than %d", cut_name, (long) number,
                      (int) outcome);
         compared += outcome == REPLAY_SAME;
     }
-}
-
-/* Also where each of several processes has a part of the log, which may know more, as said above.
- */
-static void assert_same_in_parts(char *log)
-{
-    const struct replay_options options = replay_of(&log);
-    const struct replay_part all = {0, replay_size(&options)};
-    struct tally one = {.events = 0}, parts = {.events = 0};
-    assert_true(replay_run(&options, all, &replay_sink, &one));
-    assert_true(replay_jobs(&options, 3, all.end, &replay_sink, &parts));
-    assert_true(tally_outcome(&parts, REPLAY_UNKNOWN) <= tally_outcome(&one, REPLAY_UNKNOWN));
-    assert_int_equal(tally_outcome(&parts, REPLAY_DIFFERENT),
-                     tally_outcome(&one, REPLAY_DIFFERENT));
-    assert_int_equal(tally_outcome(&parts, REPLAY_ALONE), tally_outcome(&one, REPLAY_ALONE));
-    compared_in_parts += tally_compared(&parts);
 }
 
 /* ---- What is in a cut ---- */
@@ -218,7 +182,7 @@ static bool read_next(struct reading *reading)
     return outcome == LOG_EVENT;
 }
 
-static struct any_query whole_query, cut_query;
+static struct any_query query;
 static struct log_channels channels;
 
 static enum log_kind kind_of(const struct log_event *event)
@@ -228,24 +192,8 @@ static enum log_kind kind_of(const struct log_event *event)
 
 static bool read_query(const struct log_event *event, struct any_query *out)
 {
-    return message_is_query(kind_of(event)) &&
-           !any_query_read(out, kind_of(event), event->data, event->kept);
-}
-
-/* Whether all but what is written back, components in place of none beside a key, is the same. */
-static bool is_rewritten(void)
-{
-    static unsigned char whole_bytes[QUERY_BYTES_MAX], cut_bytes[QUERY_BYTES_MAX];
-    int32_t count, cut_count;
-    const struct query_frame *whole = any_query_frames(&whole_query, &count);
-    struct query_frame *cut = any_query_frames(&cut_query, &cut_count);
-    assert_int_equal(count, cut_count);
-    for (int32_t i = 0; i < count; i++)
-        if (whole[i].components.count == 0 && whole[i].key != 0)
-            cut[i].components = whole[i].components;
-    const size_t size = any_query_write(&whole_query, whole_bytes);
-    return size == any_query_write(&cut_query, cut_bytes) &&
-           memcmp(whole_bytes, cut_bytes, size) == 0;
+    return log_kind_is_query(kind_of(event)) &&
+           !any_query_read(out, kind_of(event), event->data, (uint32_t) event->kept);
 }
 
 static bool is_same_event(const struct log_event *a, const struct log_event *b)
@@ -255,10 +203,17 @@ static bool is_same_event(const struct log_event *a, const struct log_event *b)
     return a->size == b->size && memcmp(a->data, b->data, a->kept) == 0;
 }
 
-static bool is_definition(const struct log_event *event)
+/* One that a cut has added. */
+static bool is_added(const struct log_event *event)
 {
-    return kind_of(event) == LOG_SCENE_QUERY && read_query(event, &cut_query) &&
-           definition_is(&cut_query.scene);
+    static struct definition definition;
+    static struct hasher *hasher;
+    if (!hasher)
+        hasher = hasher_create();
+    if (kind_of(event) != LOG_DEFINITION ||
+        wire_read_definition(event->data, (uint32_t) event->kept, hasher, &definition))
+        return false;
+    return definition.client_id == 0 && definition.server_id == 0;
 }
 
 static bool is_chosen(const struct log_choice *choice, const struct log_event *event)
@@ -266,40 +221,36 @@ static bool is_chosen(const struct log_choice *choice, const struct log_event *e
     const bool in_time = log_choice_has_time(choice, LOG_WORLD_BEGIN, event->utime) &&
                          log_choice_has_channel(choice, event);
     int32_t count;
-    if (!read_query(event, &whole_query))
+    if (!read_query(event, &query))
         return in_time && choice->body_count == 0;
-    const struct query_frame *frame = any_query_frames(&whole_query, &count);
-    return in_time && log_choice_has_body(choice, frame, count);
+    const struct placement *placement = any_query_placements(&query, &count);
+    return in_time && log_choice_has_body(choice, placement, count);
 }
 
-/* What a cut has to hold is there, in its order, and nothing else but definitions; results are seen
- * to by the outcomes of their queries. Returns how many queries are not the same bytes. */
-static int64_t assert_holds(char *log, char *cut, const struct log_choice *choice)
+/* What a cut has to hold is there, in its order, and nothing else but definitions before it;
+ * results are checked by the outcomes of their queries. */
+static void assert_holds(char *log, char *cut, const struct log_choice *choice)
 {
     struct reading whole, part;
-    int64_t rewritten = 0;
     open_reading(&whole, &log, 1);
     open_reading(&part, &cut, 1);
     bool more = read_next(&part);
+    while (more && is_added(&part.event))
+        more = read_next(&part);
     while (read_next(&whole)) {
-        while (more && is_definition(&part.event) && !is_definition(&whole.event))
-            more = read_next(&part);
+        if (is_added(&whole.event))
+            continue;
         const bool is_here = more && part.event.utime == whole.event.utime;
-        if (!message_is_result(kind_of(&whole.event)))
+        if (!log_kind_is_result(kind_of(&whole.event)))
             assert_int_equal(is_here, is_chosen(choice, &whole.event));
         if (!is_here)
             continue;
-        if (!is_same_event(&whole.event, &part.event)) {
-            assert_true(read_query(&whole.event, &whole_query));
-            assert_true(read_query(&part.event, &cut_query) && is_rewritten());
-            rewritten++;
-        }
+        assert_true(is_same_event(&whole.event, &part.event));
         more = read_next(&part);
     }
     assert_false(more);
     input_close(&whole.input);
     input_close(&part.input);
-    return rewritten;
 }
 
 /* ---- Cutting ---- */
@@ -330,12 +281,12 @@ static struct log_cut_counts cut_logs(char *const *log, int count, const char *o
     return counts;
 }
 
-/* Cuts, and sees that all is as it was. whole: what a replay of the log says. */
+/* Cuts, and checks that all is as it was. whole: what a replay of the log reports. */
 static struct log_cut_counts cut_and_check(char *log, char *cut, const struct log_choice *choice,
                                            const struct outcomes *whole, struct outcomes *out)
 {
     const struct log_cut_counts counts = cut_logs(&log, 1, cut, choice);
-    assert_int_equal(counts.queries, assert_holds(log, cut, choice));
+    assert_holds(log, cut, choice);
     replay(cut, out);
     assert_same_outcomes(whole, out);
     return counts;
@@ -350,10 +301,9 @@ static struct log_cut_counts all;
 
 static void add_counts(const struct log_cut_counts *counts)
 {
-    all.queries += counts->queries;
-    all.frames += counts->frames;
     all.definitions += counts->definitions;
-    all.unknown_frames += counts->unknown_frames;
+    all.defined += counts->defined;
+    all.unknown += counts->unknown;
 }
 
 static struct log_choice between(double from, double to)
@@ -397,7 +347,7 @@ static void name_cut(const struct log_world *world, const struct log_choice *cho
 }
 
 /* A cut of the world's log, and a cut of that. */
-static void cut_twice(struct log_world *world, char *whole, bool in_parts)
+static void cut_twice(struct log_world *world, char *whole)
 {
     char cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
     path_of("cut", cut);
@@ -407,8 +357,6 @@ static void cut_twice(struct log_world *world, char *whole, bool in_parts)
     struct log_cut_counts counts =
         cut_and_check(whole, cut, &choice, &whole_outcomes, &cut_outcomes);
     add_counts(&counts);
-    if (in_parts && world_draw(world, 8) == 0)
-        assert_same_in_parts(cut);
     /* Times count from the first event of the log that is cut. */
     narrower.from = -INFINITY;
     narrower.to = INFINITY;
@@ -425,7 +373,6 @@ static void cut_worlds(struct world_options options, int count)
     char whole[PATH_MAX_OF_TESTS];
     path_of("whole", whole);
     channels = log_channels("");
-    keys_mislead = options.same_keys;
     for (const uint64_t first = options.seed; options.seed < first + (uint64_t) count;
          options.seed++) {
         struct log_world world;
@@ -433,10 +380,9 @@ static void cut_worlds(struct world_options options, int count)
         world_write(&world, whole);
         replay(whole, &whole_outcomes);
         for (int i = 0; i < 12; i++)
-            cut_twice(&world, whole, options.once && !options.same_keys);
+            cut_twice(&world, whole);
         world_clear(&world);
     }
-    keys_mislead = false;
 }
 
 enum { STEPS = 60 };
@@ -450,29 +396,16 @@ static void cuts_of_small_worlds(void **state)
 {
     (void) state;
     all = (struct log_cut_counts){.events = 0};
-    compared = compared_in_parts = 0;
+    compared = 0;
     cut_worlds((struct world_options){.seed = 1, .steps = STEPS, .once = true}, worlds());
-    assert_true(all.queries > 0 && all.frames > all.queries && all.unknown_frames > 0);
-    assert_true(compared > 0 && compared_in_parts > 0);
+    assert_true(all.definitions > 0 && all.defined > all.definitions && all.unknown == 0);
+    assert_true(compared > 0);
 }
 
-static void cuts_where_clients_ask_again(void **state)
+static void cuts_where_clients_repeat_queries(void **state)
 {
     (void) state;
     cut_worlds((struct world_options){.seed = 1, .steps = STEPS}, worlds());
-}
-
-/* In the second of these worlds a result goes with a key that has been written back, and that is
- * another service's; in the third a query waits for one key while another one changes hands. */
-static void cuts_where_services_tell_the_same_keys(void **state)
-{
-    static const uint64_t seeds[] = {1, 33, 130};
-    (void) state;
-    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
-        cut_worlds(
-            (struct world_options){
-                .seed = seeds[i], .steps = STEPS, .once = true, .same_keys = true},
-            1);
 }
 
 static void all_is_copied_where_nothing_is_left_out(void **state)
@@ -489,8 +422,7 @@ static void all_is_copied_where_nothing_is_left_out(void **state)
     const struct log_cut_counts counts =
         cut_and_check(whole, path_of("cut", cut), &choice, &whole_outcomes, &cut_outcomes);
     assert_int_equal(counts.kept_events, world.count);
-    assert_int_equal(counts.kept_bytes, counts.bytes);
-    assert_int_equal(counts.queries, 0);
+    assert_true(counts.definitions > 0 || counts.kept_bytes == counts.bytes);
     world_clear(&world);
 }
 
@@ -539,18 +471,18 @@ static void several_logs_are_one(void **state)
     const struct log_cut_counts counts = cut_logs(logs, 2, path_of("cut", cut), &choice);
     const struct log_cut_counts same =
         cut_logs(&(char *){whole}, 1, path_of("again", again), &choice);
-    assert_true(counts.frames > 0);
+    assert_true(counts.defined > 0);
     assert_memory_equal(&counts, &same, sizeof counts);
-    assert_int_equal(
-        assert_holds(again, cut, &(struct log_choice){.from = -INFINITY, .to = INFINITY}), 0);
+    assert_holds(again, cut, &(struct log_choice){.from = -INFINITY, .to = INFINITY});
     world_clear(&world);
 }
 
-/* ---- Scenes that have no room ---- */
+/* ---- Many bodies ---- */
 
-enum { LARGE_BODIES = 1000, LARGE_SCENES = 3 };
+enum { LARGE_BODIES = 900, LARGE_SCENES = 3 };
 
-static void what_has_no_room_is_defined_before(void **state)
+/* Three scenes have the bodies whole; in a cut without them they take two definitions. */
+static void many_bodies_are_defined(void **state)
 {
     (void) state;
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
@@ -559,41 +491,57 @@ static void what_has_no_room_is_defined_before(void **state)
     world_make_large(LARGE_BODIES, LARGE_SCENES, &world);
     world_write(&world, path_of("whole", whole));
     replay(whole, &whole_outcomes);
-    /* Four scenes tell the bodies. The first that needs them has them told before it. */
-    struct log_choice choice = between(0.008, INFINITY);
+    struct log_choice choice = between(0.006, INFINITY);
     struct log_cut_counts counts =
         cut_and_check(whole, path_of("cut", cut), &choice, &whole_outcomes, &cut_outcomes);
     assert_int_equal(cut_outcomes.count, LARGE_SCENES);
     assert_int_equal(cut_outcomes.query[0].outcome, REPLAY_SAME);
     assert_int_equal(counts.kept_events, 2 * LARGE_SCENES);
-    assert_int_equal(counts.queries, 0);
     assert_int_equal(counts.definitions, 2);
     assert_int_equal(counts.defined, LARGE_BODIES);
-    assert_same_in_parts(cut);
-    /* Some are told by the cut itself: the others have room. */
+    /* The copied queries define some of them. */
     choice = between(0.002, INFINITY);
     counts = cut_and_check(whole, cut, &choice, &whole_outcomes, &cut_outcomes);
-    assert_int_equal(counts.definitions, 0);
-    assert_int_equal(counts.frames, LARGE_BODIES % 300 * LARGE_SCENES);
-    /* Of a cut with definitions: those that are left out are written anew. */
-    choice = between(0.008, INFINITY);
+    assert_int_equal(counts.defined, 300);
+    /* Definitions that a cut leaves out are made anew. */
+    choice = between(0.006, INFINITY);
     cut_logs(&(char *){whole}, 1, cut, &choice);
-    choice = between(0.002, 0.003);
+    choice = between(0.002, INFINITY);
     counts = cut_logs(&(char *){cut}, 1, path_of("again", again), &choice);
     assert_int_equal(counts.defined, LARGE_BODIES);
     replay(again, &again_outcomes);
-    assert_int_equal(again_outcomes.count, 1);
+    assert_int_equal(again_outcomes.count, LARGE_SCENES - 1);
     assert_int_equal(again_outcomes.query[0].outcome, REPLAY_SAME);
-    /* And those that are not are copied, as any event of that time. */
+    /* Those that it keeps are copied, as any event. */
     choice = log_choice_all();
     counts = cut_logs(&(char *){cut}, 1, again, &choice);
+    assert_int_equal(counts.definitions, 0);
     assert_int_equal(counts.kept_bytes, counts.bytes);
+    world_clear(&world);
+}
+
+/* Of a log that begins late: two of the three scenes that define bodies are not in it. */
+static void undefined_handles_are_counted(void **state)
+{
+    (void) state;
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
+    struct log_world world;
+    const struct log_choice choice = log_choice_all();
+    channels = log_channels("");
+    world_make_large(LARGE_BODIES, LARGE_SCENES, &world);
+    const struct log_world late = {.event = world.event + 4, .count = world.count - 4};
+    world_write(&late, path_of("whole", whole));
+    const struct log_cut_counts counts =
+        cut_logs(&(char *){whole}, 1, path_of("cut", cut), &choice);
+    assert_int_equal(counts.unknown, 600);
+    assert_int_equal(counts.defined, 0);
+    assert_int_equal(counts.kept_events, late.count);
     world_clear(&world);
 }
 
 /* ---- Large logs ---- */
 
-/* Results that stand megabytes behind their queries. */
+/* Results that stand megabytes after their queries. */
 static void results_come_from_far(void **state)
 {
     (void) state;
@@ -650,12 +598,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cuts_of_small_worlds),
-        cmocka_unit_test(cuts_where_clients_ask_again),
-        cmocka_unit_test(cuts_where_services_tell_the_same_keys),
+        cmocka_unit_test(cuts_where_clients_repeat_queries),
         cmocka_unit_test(all_is_copied_where_nothing_is_left_out),
         cmocka_unit_test(parts_are_the_whole),
         cmocka_unit_test(several_logs_are_one),
-        cmocka_unit_test(what_has_no_room_is_defined_before),
+        cmocka_unit_test(many_bodies_are_defined),
+        cmocka_unit_test(undefined_handles_are_counted),
         cmocka_unit_test(results_come_from_far),
         cmocka_unit_test(long_events_are_copied_in_full),
     };

@@ -3,10 +3,10 @@
 #include "log_query.h"
 
 #include "answers.h"
-#include "input.h"
 #include "json.h"
+#include "log_kind.h"
 #include "log_world.h"
-#include "message.h"
+#include "sample_placement.h"
 #include "scene_json.h"
 #include "scene_of_query.h"
 #include "wire.h"
@@ -25,6 +25,7 @@
 #include <cmocka.h>
 
 static char path[128];
+static struct log_query found;
 
 static int make_path(void **state)
 {
@@ -38,12 +39,11 @@ static int make_path(void **state)
 static int remove_path(void **state)
 {
     (void) state;
+    log_query_clear(&found);
     return unlink(path);
 }
 
 /* ---- Taking out ---- */
-
-static struct log_query found;
 
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
@@ -60,6 +60,7 @@ static enum log_query_outcome look_for(struct log_query_options options)
     options.log_count = 1;
     options.prefix = "";
     options.progress = on_progress;
+    log_query_clear(&found);
     fflush(stderr);
     dup2(nowhere, STDERR_FILENO);
     const enum log_query_outcome outcome = log_query(&options, &found);
@@ -196,11 +197,11 @@ static struct query_header ids_of(const struct world_event *event, enum log_kind
                                      .data = event->bytes,
                                      .size = event->size,
                                      .kept = event->size};
-    struct match_item item = {.ids = {.client_id = -1}};
+    struct query_header ids = {.client_id = -1};
     *kind = log_kind_of(&channels, &logged);
-    if (*kind >= LOG_STATUS || message_read_ids(*kind, &logged, &item))
+    if (*kind >= LOG_STATUS || log_kind_ids(*kind, &logged, &ids))
         *kind = LOG_OTHER;
-    return item.ids;
+    return ids;
 }
 
 /* The result of an event's ids, which says that they were decided. */
@@ -224,7 +225,7 @@ static int64_t ask_by_result(size_t event, const struct query_header *ids)
     const int64_t compared = decide_found();
 
     /* It is the same query, however one asks for it. */
-    const int64_t offset = found.place.offset, number = found.place.number;
+    const int64_t offset = found.offset, number = found.number;
     const struct log_query_options ways[] = {
         {.by = LOG_QUERY_NUMBER, .number = number},
         {.by = LOG_QUERY_OFFSET, .offset = offset},
@@ -232,7 +233,7 @@ static int64_t ask_by_result(size_t event, const struct query_header *ids)
     };
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         assert_int_equal(look_for(ways[i]), LOG_QUERY_FOUND);
-        assert_true(found.place.offset == offset || ways[i].by == LOG_QUERY_IDS);
+        assert_true(found.offset == offset || ways[i].by == LOG_QUERY_IDS);
         assert_int_equal(decide_found(), compared);
     }
     return compared;
@@ -244,7 +245,7 @@ static int64_t ask_world(const struct log_world *world)
     for (size_t i = 0; i < world->count; i++) {
         enum log_kind kind;
         const struct query_header ids = ids_of(&world->event[i], &kind);
-        if (message_is_result(kind) && read_recorded(&world->event[i], kind))
+        if (log_kind_is_result(kind) && read_recorded(&world->event[i], kind))
             compared += ask_by_result(i, &ids);
     }
     return compared;
@@ -271,14 +272,34 @@ static void large_scenes_have_the_same_answers(void **state)
     world_clear(&world);
 }
 
+/* Where the scenes that have the bodies whole are not in the log. */
+static void undefined_handles_are_reported(void **state)
+{
+    (void) state;
+    struct log_world world;
+    world_make_large(300, 1, &world);
+    const struct log_world late = {.event = world.event + 2, .count = 2};
+    world_write(&late, path);
+    const struct log_query_options first = {.by = LOG_QUERY_NUMBER, .number = 0};
+    assert_int_equal(look_for(first), LOG_QUERY_NONE);
+    world_write(&world, path);
+    const struct log_query_options third = {.by = LOG_QUERY_NUMBER, .number = 2};
+    assert_int_equal(look_for(third), LOG_QUERY_FOUND);
+    world_clear(&world);
+}
+
 /* ---- What is not there ---- */
 
 static void what_is_not_there_is_not_found(void **state)
 {
     (void) state;
     struct log_world world = {.state = 1};
-    const struct pair_query query = {.client_id = 3, .sequence_number = 4};
-    unsigned char bytes[WIRE_BYTES_MAX];
+    unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
+    const struct pair_query query = {
+        .client_id = 3,
+        .sequence_number = 4,
+        .placement = {sample_placement(0, geometry[0]), sample_placement(6, geometry[1])}};
+    static unsigned char bytes[QUERY_BYTES_MAX];
     world_add(&world, WIRE_PAIR_QUERY, bytes, wire_write_pair_query(&query, bytes));
     world_add(&world, "CAMERA", "image", 5);
     world_add(&world, WIRE_PAIR_QUERY, "no query", 8);
@@ -297,21 +318,32 @@ static void what_is_not_there_is_not_found(void **state)
 
 /* ---- Scenes ---- */
 
-/* Frames with these body ids, unit cubes. */
-static void set_frames(const int64_t *ids, int count)
+static unsigned char geometry_bytes[GEOMETRY_FRAME_BYTES_MAX];
+
+/* One body with these components, at rest at the origin. */
+static struct placement place(int64_t id, const double *components)
 {
+    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    memcpy(frame.components, components, 9 * sizeof *components);
+    return (struct placement){
+        .body_id = id,
+        .dim = 3,
+        .frame_count = 1,
+        .number_count = 12,
+        .geometry = {geometry_bytes, geometry_write(3, &frame, geometry_bytes)}};
+}
+
+/* Placements of unit cubes with these ids. */
+static void set_placements(const int64_t *ids, int count)
+{
+    static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    log_query_clear(&found);
     memset(&found, 0, sizeof found);
     found.query.kind = LOG_SCENE_QUERY;
-    found.query.scene.frame_count = count;
+    found.query.scene.placement_count = count;
     found.query.scene.duration = 0.25;
-    for (int i = 0; i < count; i++) {
-        struct query_frame *frame = &found.query.scene.frame[i];
-        *frame = (struct query_frame){
-            .body_id = ids[i], .shape = FMB_CUBOID, .dim = 3, .origin.count = 3};
-        frame->components.count = 9;
-        for (int c = 0; c < 3; c++)
-            frame->components.number[4 * c] = 1;
-    }
+    for (int i = 0; i < count; i++)
+        found.query.scene.placement[i] = place(ids[i], unit);
 }
 
 static void bodies_get_ids_that_are_free(void **state)
@@ -319,7 +351,7 @@ static void bodies_get_ids_that_are_free(void **state)
     (void) state;
     const int64_t ids[] = {0, 1, 1, 0, 3, QUERY_ID_MAX, QUERY_ID_MAX, 5};
     const int64_t expected[] = {2, 1, 4, 6, 3, QUERY_ID_MAX, 7, 5};
-    set_frames(ids, 8);
+    set_placements(ids, 8);
     found.query.scene.which = QUERY_PAIRS_ALL;
     struct scene scene = scene_of_found();
     assert_true(scene.all_pairs);
@@ -342,11 +374,11 @@ static void assert_pairs(const size_t (*expected)[2], size_t count)
     scene_clear(&scene);
 }
 
-static void pairs_are_those_that_were_asked(void **state)
+static void pairs_are_those_of_the_query(void **state)
 {
     (void) state;
     const int64_t ids[] = {4, 3, 2, 1};
-    set_frames(ids, 4);
+    set_placements(ids, 4);
     found.query.scene.which = QUERY_PAIRS_ACROSS;
     found.query.scene.split = 2;
     assert_pairs((const size_t[][2]){{0, 2}, {0, 3}, {1, 2}, {1, 3}}, 4);
@@ -370,19 +402,21 @@ static void numbers_read_back_as_the_same_bits(void **state)
     static const double numbers[9] = {-0.0, 5e-324, DBL_MAX,  -DBL_MIN,          1.0 / 3,
                                       1e23, 0.1,    -2.5e-17, 9007199254740993.0};
     const int64_t ids[] = {1, 2};
-    set_frames(ids, 2);
-    struct query_frame *frame = &found.query.scene.frame[1];
-    memcpy(frame->components.number, numbers, sizeof numbers);
-    memcpy(frame->origin.number, numbers, 3 * sizeof *numbers);
-    memcpy(frame->velocity.number, numbers + 3, 3 * sizeof *numbers);
-    frame->velocity.count = 3;
+    set_placements(ids, 2);
+    struct placement *placement = &found.query.scene.placement[1];
+    *placement = place(2, numbers);
+    memcpy(placement->position, numbers, 3 * sizeof *numbers);
+    memcpy(placement->velocity, numbers + 3, 3 * sizeof *numbers);
+    placement->velocity_count = 3;
+    found.query.scene.placement_count = 1;
+    found.query.scene.placement[0] = *placement;
     found.query.scene.duration = 5e-324;
     struct scene scene = scene_of_found();
-    const struct scene_body *body = &scene.body[1];
+    const struct scene_body *body = &scene.body[0];
     assert_true(same_bits(&body->body.component[0][0], numbers, 9));
     assert_true(same_bits(body->origin, numbers, 3));
     assert_true(body->moving && same_bits(body->velocity, numbers + 3, 3));
-    assert_true(scene.duration == 5e-324 && !scene.body[0].moving);
+    assert_true(scene.duration == 5e-324);
     scene_clear(&scene);
 }
 
@@ -391,9 +425,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(queries_alone_have_the_same_answers),
         cmocka_unit_test(large_scenes_have_the_same_answers),
+        cmocka_unit_test(undefined_handles_are_reported),
         cmocka_unit_test(what_is_not_there_is_not_found),
         cmocka_unit_test(bodies_get_ids_that_are_free),
-        cmocka_unit_test(pairs_are_those_that_were_asked),
+        cmocka_unit_test(pairs_are_those_of_the_query),
         cmocka_unit_test(numbers_read_back_as_the_same_bits),
     };
     return cmocka_run_group_tests(tests, make_path, remove_path);

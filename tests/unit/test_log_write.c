@@ -124,7 +124,8 @@ static bool to_writer(void *log, int64_t utime, const char *channel, size_t chan
 static bool to_parts(void *log, int64_t utime, const char *channel, size_t channel_length,
                      const void *data, size_t size)
 {
-    return log_parts_append(log, utime, channel, channel_length, data, size);
+    return log_parts_prepare(log, log_event_bytes(channel_length, size)) &&
+           log_parts_append(log, utime, channel, channel_length, data, size);
 }
 
 static void assert_event(const lcm_eventlog_event_t *event, int number)
@@ -248,29 +249,108 @@ static void limit_files(rlim_t bytes)
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
 }
 
-/* Nothing is written behind what is cut off, even where there is room again. */
-static void test_a_log_that_fails_is_good_up_to_there(void **state)
+/* Writes until a file of so many bytes is full, in buffers of some events each or event by event.
+ * No torn event is left, and nothing more is written, even where there is space again. */
+static void fill(const char *name, rlim_t limit, bool flush)
 {
-    (void) state;
-    enum { LIMIT = 1000003 };
-    struct log_writer *writer = log_create(in_folder("limited"), false);
+    struct log_writer *writer = log_create(in_folder(name), true);
+    int64_t bytes = 0;
     int count = 0;
     signal(SIGXFSZ, SIG_IGN);
-    limit_files(LIMIT);
-    while (append_event(to_writer, writer, count))
+    limit_files(limit);
+    while (append_event(to_writer, writer, count) && (!flush || log_flush(writer)))
         count++;
     assert_int_equal(errno, EFBIG);
-    assert_int_equal(log_written(writer), LIMIT);
     limit_files(RLIM_INFINITY);
     assert_false(append_event(to_writer, writer, count));
     assert_false(log_flush(writer));
+    assert_false(log_check(writer));
+    assert_int_equal(log_written(writer), size_of(name));
     assert_int_equal(log_finish(writer), EFBIG);
-    assert_int_equal(size_of("limited"), LIMIT);
-    const int whole = read_events("limited", 0);
-    int64_t bytes = 0;
+    const int whole = read_events(name, 0);
     for (int i = 0; i < whole; i++)
         bytes += bytes_of_event(i);
-    assert_true(bytes <= LIMIT && LIMIT < bytes + bytes_of_event(whole));
+    assert_int_equal(size_of(name), bytes);
+    assert_true(bytes <= (int64_t) limit && (int64_t) limit < bytes + bytes_of_event(whole));
+}
+
+static void test_a_full_disk_leaves_whole_events(void **state)
+{
+    (void) state;
+    for (rlim_t limit = 1000003; limit < 1000003 + 200000; limit += 7919) {
+        fill("limited", limit, false);
+        fill("limited", limit, true);
+    }
+}
+
+/* Larger than the buffer. */
+static void test_large_events(void **state)
+{
+    (void) state;
+    static unsigned char data[3000000];
+    struct log_writer *writer = log_create(in_folder("large"), true);
+    for (size_t i = 0; i < sizeof data; i++)
+        data[i] = (unsigned char) (i * i >> 7);
+    assert_true(append_event(to_writer, writer, 1));
+    assert_true(log_append(writer, 5, "CAMERA", 6, data, sizeof data));
+    assert_true(append_event(to_writer, writer, 2));
+    assert_int_equal(log_finish(writer), 0);
+    lcm_eventlog_t *log = lcm_eventlog_create(in_folder("large"), "r");
+    for (int i = 0; i < 3; i++) {
+        lcm_eventlog_event_t *event = lcm_eventlog_read_next_event(log);
+        assert_non_null(event);
+        assert_int_equal(event->eventnum, i);
+        if (i == 1) {
+            assert_int_equal(event->datalen, sizeof data);
+            assert_memory_equal(event->data, data, sizeof data);
+        }
+        lcm_eventlog_free_event(event);
+    }
+    lcm_eventlog_destroy(log);
+    writer = log_create(in_folder("large"), true);
+    limit_files(1000000);
+    assert_true(append_event(to_writer, writer, 1));
+    assert_false(log_append(writer, 5, "CAMERA", 6, data, sizeof data));
+    limit_files(RLIM_INFINITY);
+    assert_int_equal(log_finish(writer), EFBIG);
+    assert_int_equal(size_of("large"), bytes_of_event(1));
+}
+
+/* ---- Files that are gone --------------------------------------------------------------------- */
+
+static struct log_writer *begin_log(const char *name)
+{
+    struct log_writer *writer = log_create(in_folder(name), true);
+    assert_true(append_event(to_writer, writer, 2));
+    assert_true(log_flush(writer) && log_check(writer));
+    return writer;
+}
+
+static void test_a_deleted_file_is_noticed(void **state)
+{
+    (void) state;
+    struct log_writer *writer = begin_log("deleted");
+    assert_int_equal(unlink(in_folder("deleted")), 0);
+    assert_false(log_check(writer));
+    assert_int_equal(errno, ESTALE);
+    assert_false(append_event(to_writer, writer, 2));
+    assert_int_equal(log_finish(writer), ESTALE);
+    /* Also at the end alone, and where another file has taken its place. */
+    writer = begin_log("deleted");
+    put_file("other", "other");
+    char other[256];
+    snprintf(other, sizeof other, "%s", in_folder("other"));
+    assert_int_equal(rename(other, in_folder("deleted")), 0);
+    assert_int_equal(log_finish(writer), ESTALE);
+}
+
+static void test_a_truncated_file_is_noticed(void **state)
+{
+    (void) state;
+    struct log_writer *writer = begin_log("truncated");
+    assert_int_equal(truncate(in_folder("truncated"), 100), 0);
+    assert_false(log_check(writer));
+    assert_int_equal(log_finish(writer), ESTALE);
 }
 
 /* ---- Several files --------------------------------------------------------------------------- */
@@ -406,7 +486,10 @@ int main(void)
         cmocka_unit_test(test_nothing_is_overwritten_without_force),
         cmocka_unit_test(test_what_cannot_be_created),
         cmocka_unit_test(test_a_full_disk_is_said),
-        cmocka_unit_test(test_a_log_that_fails_is_good_up_to_there),
+        cmocka_unit_test(test_a_full_disk_leaves_whole_events),
+        cmocka_unit_test(test_large_events),
+        cmocka_unit_test(test_a_deleted_file_is_noticed),
+        cmocka_unit_test(test_a_truncated_file_is_noticed),
         cmocka_unit_test(test_several_files_divide_no_event),
         cmocka_unit_test(test_the_newest_files_are_kept),
         cmocka_unit_test(test_one_file_alone),

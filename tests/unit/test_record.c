@@ -1,7 +1,9 @@
-/* What a recording counts: messages, those that cannot be read, and those that did not come. */
-#include "hostile.h"
-#include "record_report.h"
-#include "record_tally.h"
+/* The bodies of a recording: what is requested, and what each file defines. */
+#include "record_bodies.h"
+
+#include "allocate.h"
+#include "definitions.h"
+#include "wire.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,254 +14,302 @@
 
 #include <cmocka.h>
 
-/* ---- Sequence numbers ------------------------------------------------------------------------ */
+enum { SERVER = 5, CLIENT = 7, SECOND = 1000000000 };
 
-static struct gaps gaps;
+struct body {
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    struct geometry geometry;
+    struct handle handle;
+};
 
-static int clear_gaps(void **state)
+struct world {
+    struct record_bodies *bodies;
+    struct hasher *hasher;
+    int64_t now_ns, sequence_number;
+    int requests;                    /* that were published */
+    struct definition_query request; /* the last one */
+    int definitions, defined;        /* messages and bodies that were written */
+    struct definitions *file;        /* what they define */
+    unsigned char bytes[QUERY_BYTES_MAX];
+};
+
+static void on_publish(void *user, const void *bytes, size_t size)
 {
-    (void) state;
-    memset(&gaps, 0, sizeof gaps);
+    struct world *world = user;
+    assert_null(wire_read_definition_query(bytes, (uint32_t) size, &world->request));
+    world->requests++;
+}
+
+static bool on_write(void *user, const void *bytes, size_t size)
+{
+    static struct definition definition;
+    struct world *world = user;
+    assert_null(wire_read_definition(bytes, (uint32_t) size, world->hasher, &definition));
+    assert_int_equal(definition.client_id, 0);
+    assert_int_equal(definition.server_id, 0);
+    assert_null(definitions_add_message(world->file, bytes, (uint32_t) size));
+    world->definitions++;
+    world->defined += definition.body_count;
+    return true;
+}
+
+static int setup(void **state)
+{
+    struct world *world = allocate(1, sizeof *world);
+    world->bodies = record_bodies_open(on_publish, world);
+    world->hasher = hasher_create();
+    world->file = definitions_open();
+    world->now_ns = SECOND;
+    *state = world;
     return 0;
 }
 
-static void test_numbers_that_are_skipped_are_missing(void **state)
+static int teardown(void **state)
 {
-    (void) state;
-    static const struct {
-        int64_t number, missing;
-    } steps[] = {
-        {1000, 0}, {1001, 0}, /* a client may begin anywhere */
-        {1004, 2}, {1004, 2}, /* one that comes again is neither new nor missing */
-        {1003, 1},            /* one that was overtaken has come */
-        {1003, 1}, {1002, 0}, {1001, 0}, {1000, 0}, {999, 0}, {5, 0}, {1006, 1},
-    };
-    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
-        gaps_note(&gaps, 1, steps[i].number);
-        assert_int_equal(gaps.missing, steps[i].missing);
-    }
-    gaps_note(&gaps, 2, 0); /* others do not matter */
-    gaps_note(&gaps, 2, 2);
-    gaps_note(&gaps, 1, 1007);
-    assert_int_equal(gaps.missing, 2);
-}
-
-/* Against a list of all numbers: drawn ones out of order, each some times or not at all. */
-static void test_numbers_in_any_order(void **state)
-{
-    (void) state;
-    enum { COUNT = 100000, OVERTAKEN = GAPS_WINDOW / 2 };
-    static bool came[COUNT];
-    int64_t last = 0, missing = 0;
-    srand(1);
-    came[0] = true;
-    gaps_note(&gaps, 7, 0);
-    for (int i = 1; i < COUNT - OVERTAKEN; i++) {
-        if (rand() % 10 == 0)
-            continue;
-        const int number = i + rand() % OVERTAKEN;
-        came[number] = true;
-        last = number > last ? number : last;
-        gaps_note(&gaps, 7, number);
-    }
-    for (int i = 0; i < last; i++)
-        missing += !came[i];
-    assert_true(missing > COUNT / 20);
-    assert_int_equal(gaps.missing, missing);
-}
-
-static void test_a_window_behind_it_is_too_late(void **state)
-{
-    (void) state;
-    gaps_note(&gaps, 1, 0);
-    gaps_note(&gaps, 1, GAPS_WINDOW + 1);
-    assert_int_equal(gaps.missing, GAPS_WINDOW);
-    gaps_note(&gaps, 1, 1); /* so far behind that it stays counted, however often it comes */
-    gaps_note(&gaps, 1, 1);
-    assert_int_equal(gaps.missing, GAPS_WINDOW);
-    gaps_note(&gaps, 1, 2);
-    gaps_note(&gaps, 1, 2);
-    assert_int_equal(gaps.missing, GAPS_WINDOW - 1);
-}
-
-/* A place in the window that was seen is not taken for that of a number one window later. */
-static void test_windows_are_not_confused(void **state)
-{
-    (void) state;
-    for (int64_t number = 0; number < 2 * GAPS_WINDOW; number++)
-        gaps_note(&gaps, 1, number);
-    gaps_note(&gaps, 1, 3 * GAPS_WINDOW - 1);
-    assert_int_equal(gaps.missing, GAPS_WINDOW - 1);
-    for (int64_t number = 2 * GAPS_WINDOW; number < 3 * GAPS_WINDOW; number++)
-        gaps_note(&gaps, 1, number);
-    assert_int_equal(gaps.missing, 0);
-    gaps_note(&gaps, 1, 5 * GAPS_WINDOW);
-    assert_int_equal(gaps.missing, 2 * GAPS_WINDOW);
-    gaps_note(&gaps, 1, 5 * GAPS_WINDOW - 5);
-    assert_int_equal(gaps.missing, 2 * GAPS_WINDOW - 1);
-}
-
-static void test_what_is_missing_does_not_overflow(void **state)
-{
-    (void) state;
-    for (int64_t client = 1; client <= 5000; client++) {
-        gaps_note(&gaps, client, 0);
-        gaps_note(&gaps, client, GAPS_MAX);
-    }
-    assert_true(gaps.missing <= GAPS_MAX && gaps.missing > GAPS_MAX - 5000);
-}
-
-static void test_clients_without_end(void **state)
-{
-    (void) state;
-    for (int round = 0; round < 3; round++)
-        for (int64_t client = 0; client < 100000; client++)
-            gaps_note(&gaps, client, round);
-    assert_int_equal(gaps.missing, 0);
-}
-
-/* ---- Results --------------------------------------------------------------------------------- */
-
-static void come(struct answered *answered, int64_t server, int results)
-{
-    for (int i = 0; i < results; i++)
-        answered_result(answered, server);
-}
-
-static void test_results_that_were_published_and_did_not_come(void **state)
-{
-    (void) state;
-    struct answered answered = {.now = 0};
-    come(&answered, 1, 5); /* before the first heartbeat nothing is known */
-    answered_heartbeat(&answered, 1, 100);
-    assert_int_equal(answered_missing(&answered), 0);
-    come(&answered, 1, 8);
-    answered_heartbeat(&answered, 1, 110);
-    assert_int_equal(answered_missing(&answered), 2);
-    come(&answered, 1, 4); /* one of them came late, behind the heartbeat */
-    answered_heartbeat(&answered, 1, 113);
-    assert_int_equal(answered_missing(&answered), 1);
-    come(&answered, 1, 50); /* until it says how many it published, none is missing */
-    assert_int_equal(answered_missing(&answered), 1);
-}
-
-static void test_every_service_counts_for_itself(void **state)
-{
-    (void) state;
-    struct answered answered = {.now = 0};
-    for (int64_t server = 1; server <= 1000; server++) {
-        answered_heartbeat(&answered, server, 10);
-        come(&answered, server, 2);
-        answered_heartbeat(&answered, server, 15);
-        assert_int_equal(answered_missing(&answered), 3 * server);
-    }
-}
-
-static void test_a_service_that_comes_again_or_lies(void **state)
-{
-    (void) state;
-    struct answered answered = {.now = 0};
-    answered_heartbeat(&answered, 1, 1000);
-    answered_heartbeat(&answered, 1, 3); /* a log that is played twice */
-    answered_heartbeat(&answered, 1, -1);
-    answered_heartbeat(&answered, 1, INT64_MIN);
-    answered_heartbeat(&answered, 1, INT64_MAX);
-    assert_int_equal(answered_missing(&answered), 0);
-    for (int64_t server = 2; server < 5000; server++) {
-        answered_heartbeat(&answered, server, 0);
-        answered_heartbeat(&answered, server, INT64_C(1) << 53);
-        assert_true(answered_missing(&answered) > 0);
-    }
-}
-
-/* ---- Messages -------------------------------------------------------------------------------- */
-
-static struct tally tally;
-
-static int clear_tally(void **state)
-{
-    (void) state;
-    memset(&tally, 0, sizeof tally);
+    struct world *world = *state;
+    record_bodies_close(world->bodies);
+    hasher_destroy(world->hasher);
+    definitions_close(world->file);
+    free(world);
     return 0;
 }
 
-static void note(void *kind, const char *what, const unsigned char *bytes, size_t size)
+/* ---- Messages ---------------------------------------------------------------------------------
+ */
+
+static struct body make_body(struct world *world, double size)
 {
-    (void) what;
-    tally_note(&tally, *(enum log_kind *) kind, 10, bytes, (uint32_t) size);
+    const struct geometry_frame frame = {.shape = FMB_CUBOID,
+                                         .components = {size, 0, 0, 0, size, 0, 0, 0, size}};
+    struct body body;
+    const size_t bytes = geometry_write(3, &frame, body.bytes);
+    body.geometry.size = bytes;
+    body.handle = hasher_handle(world->hasher, body.bytes, bytes);
+    return body;
 }
 
-static void test_good_and_damaged_messages_of_all_kinds(void **state)
+static struct placement place_whole(const struct body *body)
 {
-    (void) state;
-    static const char *const types[LOG_OTHER] = {"pair_query", "pair_result", "scene_query",
-                                                 "scene_result", "status"};
-    int64_t damaged = 0;
-    for (int kind = 0; kind < LOG_OTHER; kind++) {
-        unsigned char good[HOSTILE_BYTES_MAX];
-        enum log_kind as = (enum log_kind) kind;
-        const size_t size = hostile_good(types[kind], good);
-        note(&as, NULL, good, size);
-        assert_int_equal(tally.malformed, damaged);
-        const int64_t more = (int64_t) hostile_each(types[kind], note, &as);
-        assert_true(more > 100);
-        assert_int_equal(tally.malformed, damaged += more);
-        assert_int_equal(tally.heard[kind], 1 + more);
-        as = LOG_OTHER; /* what others say is never malformed */
-        hostile_each(types[kind], note, &as);
-        assert_int_equal(tally.malformed, damaged);
+    return (struct placement){.body_id = 1,
+                              .dim = 3,
+                              .frame_count = 1,
+                              .number_count = 12,
+                              .geometry = {body->bytes, body->geometry.size}};
+}
+
+static struct placement place_by_handle(const struct body *body)
+{
+    static unsigned char none[GEOMETRY_NONE_BYTES];
+    geometry_write_none(3, none);
+    return (struct placement){
+        .body_id = 1, .handle = body->handle, .dim = 3, .geometry = {none, sizeof none}};
+}
+
+/* A message that the recorder receives: the definitions that it needs are written before it. */
+static void receive(struct world *world, enum log_kind kind, size_t size)
+{
+    assert_null(record_bodies_take(world->bodies, kind, world->bytes, size));
+    const int before = world->definitions;
+    const size_t needed = record_bodies_needed(world->bodies);
+    assert_true(record_bodies_define(world->bodies, on_write, world));
+    assert_int_equal(needed > 0, world->definitions > before);
+    assert_int_equal(record_bodies_needed(world->bodies), 0);
+}
+
+static void receive_query(struct world *world, struct placement a, struct placement b)
+{
+    const struct pair_query query = {.client_id = CLIENT,
+                                     .sequence_number = ++world->sequence_number,
+                                     .duration = 1,
+                                     .placement = {a, b}};
+    receive(world, LOG_PAIR_QUERY, wire_write_pair_query(&query, world->bytes));
+}
+
+/* The result of the last query. */
+static void receive_result(struct world *world, enum fmb_status status)
+{
+    struct pair_result result = {.client_id = CLIENT,
+                                 .sequence_number = world->sequence_number,
+                                 .server_id = SERVER,
+                                 .status = status};
+    if (status == FMB_OK) {
+        result.method = 1;
+        result.answer.verdict = FMB_SEPARATED;
     }
-    assert_int_equal(tally_heard(&tally), 5 + 2 * damaged);
+    receive(world, LOG_PAIR_RESULT, wire_write_pair_result(&result, world->bytes));
 }
 
-static void test_bytes_are_those_of_a_log(void **state)
+static void receive_definition(struct world *world, const struct definition_query *query,
+                               const struct body *body, int count, int64_t next)
 {
-    (void) state;
-    tally_note(&tally, LOG_PAIR_QUERY, 14, "x", 1);
-    assert_int_equal(tally.bytes, 28 + 14 + 1);
-    tally_note(&tally, LOG_OTHER, 5, NULL, 0);
-    assert_int_equal(tally.bytes, 28 + 14 + 1 + 28 + 5);
+    static struct definition definition;
+    definition = (struct definition){.client_id = query->client_id,
+                                     .sequence_number = query->sequence_number,
+                                     .server_id = SERVER,
+                                     .next = next,
+                                     .body_count = count};
+    for (int i = 0; i < count; i++)
+        definition.body[i] =
+            (struct query_body){body[i].handle, {body[i].bytes, body[i].geometry.size}};
+    receive(world, LOG_DEFINITION, wire_write_definition(&definition, world->bytes));
 }
 
-static void note_flood(const char *type, enum log_kind kind, int64_t number)
+static void pass(struct world *world, int64_t ns)
 {
-    unsigned char bytes[HOSTILE_BYTES_MAX];
-    const size_t size = hostile_flood(type, 9, number, bytes);
-    tally_note(&tally, kind, 14, bytes, (uint32_t) size);
+    world->now_ns += ns;
+    record_bodies_request(world->bodies, world->now_ns);
 }
 
-/* Pairs and scenes of a client share its numbers. */
-static void test_what_is_lost(void **state)
+static void assert_file_defines(struct world *world, const struct body *body)
 {
-    (void) state;
-    note_flood("pair_query", LOG_PAIR_QUERY, 1);
-    note_flood("scene_query", LOG_SCENE_QUERY, 2);
-    assert_int_equal(record_lost(&tally, 0, -1), 0);
-    note_flood("pair_query", LOG_PAIR_QUERY, 6);
-    assert_int_equal(record_lost(&tally, 0, -1), 3);
-    assert_int_equal(record_lost(&tally, 10, -1), 13);
-    assert_int_equal(record_lost(&tally, 10, 2), 13); /* they are among those that are missing */
-    assert_int_equal(record_lost(&tally, 10, 5), 15);
-    answered_heartbeat(&tally.answered, 1, 0);
-    answered_heartbeat(&tally.answered, 1, 1);
-    assert_int_equal(record_lost(&tally, 0, 2), 4);
+    assert_non_null(definitions_find(world->file, &body->handle));
+}
+
+/* Another file begins, which defines nothing yet. */
+static void begin_file(struct world *world)
+{
+    definitions_close(world->file);
+    world->file = definitions_open();
+    record_bodies_begin_file(world->bodies);
+}
+
+/* The request at the start, and its answer: no bodies. */
+static void begin(struct world *world)
+{
+    pass(world, 0);
+    assert_int_equal(world->requests, 1);
+    assert_int_equal(world->request.handle_count, 0);
+    receive_definition(world, &world->request, NULL, 0, 0);
+    assert_true(record_bodies_is_own(world->bodies));
+}
+
+/* ---- Tests ------------------------------------------------------------------------------------
+ */
+
+static void test_all_are_requested_in_pages(void **state)
+{
+    struct world *world = *state;
+    const struct body body[] = {make_body(world, 1), make_body(world, 2)};
+    pass(world, 0);
+    assert_int_equal(world->requests, 1);
+    receive_definition(world, &world->request, &body[0], 1, 17);
+    pass(world, SECOND / 100);
+    assert_int_equal(world->requests, 2);
+    assert_int_equal(world->request.first, 17);
+    receive_definition(world, &world->request, &body[1], 1, 0);
+    pass(world, 20 * (int64_t) SECOND);
+    assert_int_equal(world->requests, 2);
+    /* They are written when a query names them. */
+    assert_int_equal(world->definitions, 0);
+    receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
+    assert_int_equal(world->definitions, 1);
+    assert_int_equal(world->defined, 2);
+    assert_file_defines(world, &body[0]);
+    assert_file_defines(world, &body[1]);
+    receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
+    assert_int_equal(world->definitions, 1);
+}
+
+static void test_each_file_defines_what_it_names(void **state)
+{
+    struct world *world = *state;
+    const struct body whole = make_body(world, 1), other = make_body(world, 2);
+    begin(world);
+    receive_query(world, place_whole(&whole), place_whole(&other));
+    for (int file = 0; file < 3; file++) {
+        begin_file(world);
+        receive_query(world, place_by_handle(&whole), place_whole(&other));
+        assert_file_defines(world, &whole);
+        assert_int_equal(world->definitions, file + 1);
+    }
+    assert_int_equal(record_bodies_counts(world->bodies).defined, 3);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
+}
+
+static void test_bodies_of_answered_queries_are_requested(void **state)
+{
+    struct world *world = *state;
+    const struct body a = make_body(world, 1), b = make_body(world, 2);
+    begin(world);
+    receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 1); /* it is not answered yet */
+    receive_result(world, FMB_OK);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 2);
+    assert_int_equal(world->request.handle_count, 2);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 2);
+    /* The answer has one: the file gets it at once, since a query in it names the body. */
+    receive_definition(world, &world->request, &a, 1, 0);
+    assert_true(record_bodies_is_own(world->bodies));
+    assert_file_defines(world, &a);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 1);
+    /* The other one is requested twice more. */
+    for (int i = 0; i < 10; i++)
+        pass(world, 11 * (int64_t) SECOND);
+    assert_int_equal(world->requests, 4);
+    assert_int_equal(world->request.handle_count, 1);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 1);
+    /* A definition for another client resolves it too, and is in the file as it is. */
+    const struct definition_query foreign = {.client_id = CLIENT};
+    receive_definition(world, &foreign, &b, 1, 0);
+    assert_false(record_bodies_is_own(world->bodies));
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
+    const int before = world->definitions;
+    receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    assert_int_equal(world->definitions, before);
+}
+
+static void test_refused_queries_need_no_bodies(void **state)
+{
+    struct world *world = *state;
+    const struct body a = make_body(world, 1), b = make_body(world, 2);
+    begin(world);
+    receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    receive_result(world, FMB_UNKNOWN_BODY);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 1);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
+}
+
+/* More than fit into memory: those that are used stay. */
+static void test_what_is_used_stays(void **state)
+{
+    struct world *world = *state;
+    const struct body used = make_body(world, 1), once = make_body(world, 2);
+    begin(world);
+    receive_query(world, place_whole(&used), place_whole(&once));
+    for (int i = 0; record_bodies_counts(world->bodies).dropped < 200000; i++) {
+        const struct body a = make_body(world, 3 + 2 * i), b = make_body(world, 4 + 2 * i);
+        receive_query(world, place_whole(&a), place_whole(&b));
+        if (i % 1000 == 0)
+            receive_query(world, place_by_handle(&used), place_whole(&a));
+    }
+    begin_file(world);
+    receive_query(world, place_by_handle(&used), place_by_handle(&once));
+    assert_file_defines(world, &used);
+    assert_null(definitions_find(world->file, &once.handle));
+}
+
+static void test_what_cannot_be_read(void **state)
+{
+    struct world *world = *state;
+    for (int kind = 0; kind < LOG_OTHER; kind++)
+        assert_non_null(record_bodies_take(world->bodies, (enum log_kind) kind, world->bytes, 10));
+    assert_null(record_bodies_take(world->bodies, LOG_OTHER, world->bytes, 10));
+    assert_int_equal(record_bodies_needed(world->bodies), 0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_numbers_that_are_skipped_are_missing, clear_gaps),
-        cmocka_unit_test_setup(test_numbers_in_any_order, clear_gaps),
-        cmocka_unit_test_setup(test_a_window_behind_it_is_too_late, clear_gaps),
-        cmocka_unit_test_setup(test_windows_are_not_confused, clear_gaps),
-        cmocka_unit_test_setup(test_what_is_missing_does_not_overflow, clear_gaps),
-        cmocka_unit_test_setup(test_clients_without_end, clear_gaps),
-        cmocka_unit_test(test_results_that_were_published_and_did_not_come),
-        cmocka_unit_test(test_every_service_counts_for_itself),
-        cmocka_unit_test(test_a_service_that_comes_again_or_lies),
-        cmocka_unit_test_setup(test_good_and_damaged_messages_of_all_kinds, clear_tally),
-        cmocka_unit_test_setup(test_bytes_are_those_of_a_log, clear_tally),
-        cmocka_unit_test_setup(test_what_is_lost, clear_tally),
+        cmocka_unit_test_setup_teardown(test_all_are_requested_in_pages, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_each_file_defines_what_it_names, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_bodies_of_answered_queries_are_requested, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,163 @@
+/* The bodies of a log by handle: from queries and from definitions, each once. */
+#include "definitions.h"
+
+#include "allocate.h"
+#include "wire.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct body {
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    struct geometry geometry;
+    struct handle handle;
+};
+
+struct world {
+    struct definitions *definitions;
+    struct hasher *hasher;
+    unsigned char bytes[QUERY_BYTES_MAX];
+};
+
+static void make_body(struct world *world, double size, struct body *out)
+{
+    const struct geometry_frame frame = {.shape = FMB_CUBOID,
+                                         .components = {size, 0, 0, 0, size, 0, 0, 0, size}};
+    out->geometry = (struct geometry){out->bytes, geometry_write(3, &frame, out->bytes)};
+    out->handle = hasher_handle(world->hasher, out->bytes, out->geometry.size);
+}
+
+static struct placement place(const struct body *body)
+{
+    return (struct placement){
+        .body_id = 1, .dim = 3, .frame_count = 1, .number_count = 12, .geometry = body->geometry};
+}
+
+static void assert_found(struct world *world, const struct body *body)
+{
+    const struct geometry *found = definitions_find(world->definitions, &body->handle);
+    assert_non_null(found);
+    assert_int_equal(found->size, body->geometry.size);
+    assert_memory_equal(found->bytes, body->bytes, found->size);
+}
+
+static int setup(void **state)
+{
+    struct world *world = allocate(1, sizeof *world);
+    world->definitions = definitions_open();
+    world->hasher = hasher_create();
+    *state = world;
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    struct world *world = *state;
+    definitions_close(world->definitions);
+    hasher_destroy(world->hasher);
+    free(world);
+    return 0;
+}
+
+/* More than the first buckets of a table, every other one twice. */
+static void test_many(void **state)
+{
+    enum { COUNT = 3000 };
+    struct world *world = *state;
+    struct body body;
+    for (int i = 0; i < COUNT; i++) {
+        make_body(world, i + 1, &body);
+        assert_null(definitions_find(world->definitions, &body.handle));
+        definitions_add(world->definitions, &body.geometry);
+        if (i % 2 == 0)
+            definitions_add(world->definitions, &body.geometry);
+        assert_found(world, &body);
+    }
+    const struct geometry *first, *again;
+    make_body(world, 1, &body);
+    first = definitions_find(world->definitions, &body.handle);
+    definitions_add(world->definitions, &body.geometry);
+    again = definitions_find(world->definitions, &body.handle);
+    assert_ptr_equal(first, again);
+    for (int i = 0; i < COUNT; i++) {
+        make_body(world, i + 1, &body);
+        assert_found(world, &body);
+    }
+}
+
+static void test_pair(void **state)
+{
+    struct world *world = *state;
+    struct body whole, named;
+    unsigned char none[GEOMETRY_NONE_BYTES];
+    make_body(world, 1, &whole);
+    make_body(world, 2, &named);
+    geometry_write_none(3, none);
+    const struct pair_query query = {
+        .duration = 1,
+        .placement = {place(&whole),
+                      {.handle = named.handle, .dim = 3, .geometry = {none, sizeof none}}}};
+    const uint32_t size = (uint32_t) wire_write_pair_query(&query, world->bytes);
+    assert_null(definitions_add_query(world->definitions, world->bytes, size));
+    assert_found(world, &whole);
+    assert_null(definitions_find(world->definitions, &named.handle));
+    struct placement anonymous = place(&named);
+    anonymous.body_id = 0;
+    assert_false(definitions_add_placement(world->definitions, &anonymous));
+    assert_null(definitions_find(world->definitions, &named.handle));
+    assert_non_null(definitions_add_query(world->definitions, world->bytes, size - 1));
+    assert_non_null(definitions_add_message(world->definitions, world->bytes, size));
+}
+
+static void test_scene(void **state)
+{
+    struct world *world = *state;
+    struct scene_query *query = allocate(1, sizeof *query);
+    struct body body[2];
+    for (int i = 0; i < 2; i++) {
+        make_body(world, i + 1, &body[i]);
+        query->placement[i] = place(&body[i]);
+    }
+    query->placement_count = 2;
+    query->which = QUERY_PAIRS_ALL;
+    const uint32_t size = (uint32_t) wire_write_scene_query(query, world->bytes);
+    assert_null(definitions_add_query(world->definitions, world->bytes, size));
+    assert_found(world, &body[0]);
+    assert_found(world, &body[1]);
+    free(query);
+}
+
+static void test_definition(void **state)
+{
+    struct world *world = *state;
+    struct definition *definition = allocate(1, sizeof *definition);
+    struct body body;
+    make_body(world, 1, &body);
+    definition->body_count = 1;
+    definition->body[0].handle = body.handle;
+    definition->body[0].geometry = body.geometry;
+    const uint32_t size = (uint32_t) wire_write_definition(definition, world->bytes);
+    world->bytes[size - 1] ^= 1;
+    assert_non_null(definitions_add_message(world->definitions, world->bytes, size));
+    assert_null(definitions_find(world->definitions, &body.handle));
+    world->bytes[size - 1] ^= 1;
+    assert_null(definitions_add_message(world->definitions, world->bytes, size));
+    assert_found(world, &body);
+    free(definition);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_many, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_pair, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_scene, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_definition, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
