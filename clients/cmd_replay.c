@@ -5,14 +5,13 @@
 #include "args.h"
 #include "cache.h"
 #include "input.h"
+#include "listing.h"
 #include "output.h"
 #include "progress.h"
 #include "replay_bus.h"
-#include "replay_jobs.h"
 #include "replay_json.h"
 #include "replay_junit.h"
 #include "replay_text.h"
-#include "listing.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -26,58 +25,64 @@ static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
     "\n"
     "Answers every query of one or more LCM event logs again, in this process, and compares with\n"
-    "the results recorded there: verdicts, intervals, boxes and certificates have to be the same\n"
-    "bits. Queries and results belong together by client id and sequence number, wherever they\n"
-    "stand. Several logs are taken as one, in the order given, as rotation wrote them. Frames\n"
-    "that came by key get the components that the log tells for the key. Definitions of keys,\n"
-    "which 'fmb log cut' writes into logs, are taken as such: nothing was asked there.\n"
+    "the recorded results: verdicts, intervals, boxes and certificates must be the same bits. A\n"
+    "result belongs to the query with the same client id and sequence number, anywhere in the\n"
+    "logs. Several logs are read as one, in the order given, as rotation wrote them. Handles are\n"
+    "resolved by definitions, and by bodies with an id that were sent whole, before or after the\n"
+    "query.\n"
     "\n"
-    "  --golden FILE        compare with the results in FILE, not with those recorded\n"
+    "  --golden FILE        compare with the results in FILE, not with the recorded ones\n"
     "  --write-golden FILE  write the results, as an event log, to compare with later\n"
-    "  --force              FILE may be there already\n"
-    "  --tolerance T        numbers need not be the same bits: ends of intervals may differ by T\n"
-    "                       times the duration, ends of boxes by T times the largest coordinate;\n"
-    "                       certificates are not compared. For logs of other versions\n"
-    "  --from S, --to S     only queries of this time of the log, in seconds since its first\n"
-    "                       event, from S on and before S; the rest is read for what these need\n"
-    "  -j, --jobs N         on N cores, each with a part of the bytes\n"
-    "  --bodies N           bodies that are kept, as fmbd --bodies (65536)\n"
+    "  --force              FILE may exist already\n"
+    "  --tolerance T        for logs of other versions: ends of intervals may differ by T times\n"
+    "                       the duration, ends of boxes by T times the largest coordinate;\n"
+    "                       certificates are not compared\n"
+    "  --from S, --to S     only queries logged from S on and before S, in seconds since the\n"
+    "                       first event; the remainder is read for definitions and results\n"
+    "  --frames N           capacity of the cache, in frames, as fmbd --frames (65536)\n"
     "  --bus                the service on the bus answers, not this process\n"
-    "  --speed X            with --bus: ask X times as fast as was logged, 1 for real time;\n"
+    "  --speed X            with --bus: send X times as fast as was logged, 1 for real time;\n"
     "                       without it, or 0, as fast as the service answers\n"
-    "  --timeout SECONDS    with --bus: wait so long before a query is sent again (0.5)\n"
-    "  --retries N          with --bus: after N more such times without any answer, one after the\n"
-    "                       other, the service is given up (9)\n"
+    "  --timeout SECONDS    with --bus: longest time before a query is sent again (0.5)\n"
+    "  --retries N          with --bus: give a query up, and end, after N + 1 timeouts (9)\n"
     "  --json               one line of JSON in place of the text\n"
-    "  --junit FILE         write JUnit XML as well, for CI systems\n"
-    "  --limit N            tell N differences, and only count the others (1000)\n"
-    "  --html FILE          write a page that shows what happened\n" ARGS_COMMON_USAGE
+    "  --junit FILE         also write JUnit XML, for CI systems\n"
+    "  --limit N            list N differences, and only count the others (1000)\n"
+    "  --html FILE          write a page that shows the replay\n" ARGS_COMMON_USAGE
     "\n"
-    "With --bus a live fmbd is asked, and nothing else changes: what the log holds is compared\n"
-    "with what it says now. It is asked under a client id of its own, many queries at once, none\n"
-    "is lost, and a service that dies and comes back is waited for. Keys of the log become keys\n"
-    "of this service, or components. (Where it serves others too, bodies of the same ids replace\n"
-    "theirs, and they have to send them again.) SIGINT ends it with what was answered so far.\n"
+    "With --bus a running fmbd answers, many queries at a time, under a new client id. Bodies\n"
+    "that it does not hold are sent whole. SIGINT ends the replay with what was answered so far.\n"
     "\n"
-    "Results of the moment are counted apart, not compared: that the service was busy, or did\n"
-    "not hold a body, then; or that the log does not have the components of a key. Times are\n"
-    "not compared; microseconds taken to decide are shown, then and now.\n"
+    "Not compared, but counted: results that say the service was busy or did not hold a body, and\n"
+    "queries with handles that the logs do not define. Second results of a query that contradict\n"
+    "the first are reported and counted as different. Times to decide are shown, not compared.\n"
     "\n"
-    "Exit codes: 0 all the same, 1 something is different, 2 unusable: a log cannot be read or\n"
-    "is damaged (which is told with its offset; 'fmb log cut' copies what can be read), a\n"
-    "message of the service's channels cannot be read, there is nothing to compare, or the\n"
-    "service on the bus does not answer all.\n";
+    "Memory, for logs of any size: some 300 bytes for each distinct body, and for each query that\n"
+    "waits for its result some 500 bytes (a pair) or 250 and its result of at most 64 kB (a\n"
+    "scene). A million pair queries before the first result take 500 MB.\n"
+    "\n"
+    "On several machines, by GNU parallel ($SLURM_ARRAY_TASK_ID for {} with Slurm):\n"
+    "  parallel --sshloginfile machines fmb replay --json --from {} --to '{= $_ += 60 =}' \\\n"
+    "    run.log ::: $(seq 0 60 3540) > parts\n"
+    "  jq -s '{queries: map(.queries) | add, same: map(.same) | add,\n"
+    "    different: map(.different) | add, differences: map(.differences[]),\n"
+    "    exit: (map(.exit) | if index(1) then 1 else max end)}' parts\n"
+    "\n"
+    "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be read, is\n"
+    "damaged ('fmb log cut' copies what is intact) or was recorded by version 1, a message on the\n"
+    "service's channels cannot be read, there is nothing to compare, or the service on the bus\n"
+    "does not answer all queries.\n";
 
 struct options {
     struct replay_options replay;
     struct answer_bus_options bus;
     struct args_bus where;
-    long jobs, bodies, limit, retries;
+    long frames, limit, retries;
     bool json, live;
     const char *junit, *html;
 };
 
-enum { GOLDEN = 1, WRITE_GOLDEN, FORCE, TOLERANCE, FROM, TO, BODIES, JSON, JUNIT, HTML, LIMIT };
+enum { GOLDEN = 1, WRITE_GOLDEN, FORCE, TOLERANCE, FROM, TO, FRAMES, JSON, JUNIT, HTML, LIMIT };
 enum { BUS = LIMIT + 1, SPEED, TIMEOUT, RETRIES };
 
 static const struct option own_options[] = {
@@ -87,8 +92,7 @@ static const struct option own_options[] = {
     {"tolerance", required_argument, NULL, TOLERANCE},
     {"from", required_argument, NULL, FROM},
     {"to", required_argument, NULL, TO},
-    {"jobs", required_argument, NULL, 'j'},
-    {"bodies", required_argument, NULL, BODIES},
+    {"frames", required_argument, NULL, FRAMES},
     {"json", no_argument, NULL, JSON},
     {"junit", required_argument, NULL, JUNIT},
     {"html", required_argument, NULL, HTML},
@@ -111,8 +115,7 @@ static bool take_option(const struct args *args, int option, void *out)
     case TOLERANCE: return args_number(args, 0, 1, &replay->compare.tolerance);
     case FROM: return args_number(args, 0, 1e12, &replay->from);
     case TO: return args_number(args, 0, 1e12, &replay->to);
-    case 'j': return args_integer(args, 1, REPLAY_JOBS_MAX, &options->jobs);
-    case BODIES: return args_integer(args, 1, CACHE_BODIES_MAX, &options->bodies);
+    case FRAMES: return args_integer(args, 1, CACHE_FRAMES_MAX, &options->frames);
     case JSON: options->json = true; break;
     case JUNIT: options->junit = optarg; break;
     case HTML: options->html = optarg; break;
@@ -127,14 +130,14 @@ static bool take_option(const struct args *args, int option, void *out)
 
 /* ---- While it goes ---- */
 
-/* Complaints of one kind that are printed; the rest is counted. */
+/* Complaints that are printed; the others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
 struct run {
     const struct options *options;
     struct progress progress;
     int64_t first_utime;
-    struct listing *told;
+    struct listing *differences;
     int64_t complaints;
     struct replay_json json;
 };
@@ -147,7 +150,7 @@ static const char *log_name(const struct run *run, int log)
 static void on_found(void *user, const struct found *found)
 {
     struct run *run = user;
-    listing_put(run->told, found);
+    listing_put(run->differences, found);
 }
 
 /* Whether one more may be printed. */
@@ -214,7 +217,7 @@ static bool write_junit(const struct run *run, const struct tally *tally)
     FILE *file = output_open(options->junit);
     if (!file)
         return false;
-    replay_junit(file, &options->replay, run->told, tally, run->first_utime);
+    replay_junit(file, &options->replay, run->differences, tally, run->first_utime);
     return output_close(file, options->junit);
 }
 
@@ -242,7 +245,7 @@ static const char *why_nothing(const struct options *options, const struct tally
 static int code_of(const struct options *options, const struct tally *all)
 {
     const char *nothing = why_nothing(options, all);
-    if (tally_outcome(all, REPLAY_DIFFERENT) > 0)
+    if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) > 0)
         return ARGS_FAILED;
     if (nothing)
         fprintf(stderr,
@@ -252,7 +255,7 @@ static int code_of(const struct options *options, const struct tally *all)
     return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
 }
 
-static void tell_one(void *user, const struct found *found)
+static void report_one(void *user, const struct found *found)
 {
     struct run *run = user;
     const bool several = run->options->replay.log_count > 1;
@@ -266,22 +269,21 @@ static void tell_one(void *user, const struct found *found)
     puts(line);
 }
 
-/* Where there was no bus, or nobody on it, counts say nothing. */
+/* Without a bus, or a service on it, counts say nothing. */
 static bool has_counts(const struct run *run, const struct tally *all)
 {
     return !run->options->live || all->bus.answered > 0 ||
            (all->bus.used && all->bus.end == ANSWER_BUS_NO_END);
 }
 
-static void tell_all(struct run *run, const struct tally *all, int code)
+static void report_all(struct run *run, const struct tally *all, int code)
 {
-    const int64_t beyond = listing_beyond(run->told);
+    const int64_t beyond = listing_beyond(run->differences);
     if (run->complaints > COMPLAINTS_MAX)
-        fprintf(stderr, "fmb: and %" PRId64 " more that could not be read\n",
-                run->complaints - COMPLAINTS_MAX);
+        fprintf(stderr, "fmb: and %" PRId64 " more of these\n", run->complaints - COMPLAINTS_MAX);
     if (run->options->json)
         run->json = replay_json_begin(stdout);
-    listing_each(run->told, tell_one, run);
+    listing_each(run->differences, report_one, run);
     if (run->options->json) {
         replay_json_end(&run->json, all, beyond, code);
         return;
@@ -301,7 +303,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     struct tally all = {.events = 0};
     run->progress = progress_begin_bytes((uint64_t) size);
     run->progress.enabled = isatty(STDERR_FILENO); /* what is printed comes when it has ended */
-    bool good = replay_jobs(&options->replay, (int) options->jobs, size, &sink, tally);
+    bool good = replay_run(&options->replay, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
         tally_add(&all, &tally[log]);
@@ -311,7 +313,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
         code = ARGS_USAGE;
     if (options->html && !write_page(options))
         code = ARGS_USAGE;
-    tell_all(run, &all, code);
+    report_all(run, &all, code);
     return output_flush() ? code : ARGS_USAGE;
 }
 
@@ -325,16 +327,16 @@ static int run_replay(struct options *options)
     run.first_utime = first_utime(&options->replay);
     if (options->html)
         options->replay.page = page_open(options->replay.log[0], run.first_utime);
-    run.told = listing_open(options->limit);
+    run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
     const int code = replay(&run, size, tally);
     free(tally);
     page_close(options->replay.page);
-    listing_close(run.told);
+    listing_close(run.differences);
     return code;
 }
 
-/* A report goes where no log is, lest 'fmb replay --junit *.log' costs one. */
+/* A report does not overwrite a log: 'fmb replay --junit *.log' would. */
 static bool check_report(const struct args *args, const char *option, const char *path)
 {
     static const unsigned char begin[] = {0xed, 0xa1, 0xda, 0x01};
@@ -352,17 +354,14 @@ static bool check_options(const struct args *args, const struct options *options
 {
     if (args->operand_count == 0)
         return args_error(args, "expected a LOG");
-    if (options->jobs > 1 && (options->html || options->replay.write_golden))
-        return args_error(args, "--jobs does not go with --html and --write-golden");
     return check_report(args, "junit", options->junit) && check_report(args, "html", options->html);
 }
 
-/* What goes with answers of this process, and what with those of a service. */
+/* Options of answers in this process, and of those of a service. */
 static bool check_bus(const struct args *args, const struct options *options)
 {
-    if (options->live && (options->jobs > 1 || options->bodies > 0))
-        return args_error(args, "--%s does not go with --bus",
-                          options->jobs > 1 ? "jobs" : "bodies");
+    if (options->live && options->frames > 0)
+        return args_error(args, "--frames does not go with --bus");
     if (!options->live && (options->bus.speed >= 0 || options->bus.timeout > 0 ||
                            options->retries >= 0 || args->bus.url))
         return args_error(args, "--speed, --timeout, --retries and --lcm-url go with --bus");
@@ -373,7 +372,7 @@ static bool check_bus(const struct args *args, const struct options *options)
 static void complete(struct options *options)
 {
     struct answer_bus_options *bus = &options->bus;
-    options->bodies = options->bodies > 0 ? options->bodies : 65536;
+    options->frames = options->frames > 0 ? options->frames : 65536;
     options->retries = options->retries >= 0 ? options->retries : 9;
     bus->url = options->where.url;
     bus->prefix = options->where.prefix;
@@ -382,7 +381,7 @@ static void complete(struct options *options)
     bus->retries = (int) options->retries;
     options->replay.bus = options->live ? bus : NULL;
     options->replay.prefix = options->where.prefix;
-    options->replay.bodies = (size_t) options->bodies;
+    options->replay.frames = (size_t) options->frames;
 }
 
 int cmd_replay(int argc, char **argv)
@@ -391,7 +390,6 @@ int cmd_replay(int argc, char **argv)
         "replay", usage, own_options, take_option, .operand = "LOG", .operands_max = 4096};
     struct options options = {.replay = {.from = -INFINITY, .to = INFINITY},
                               .bus = {.speed = -1},
-                              .jobs = 1,
                               .limit = 1000,
                               .retries = -1};
     const int code = args_parse(&args, argc, argv, &options);

@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OUTCOMES = REPLAY_ALONE + 1 };
+enum { OUTCOMES = REPLAY_OUTCOMES };
 
 struct page {
-    char *title;            /* owned */
-    int64_t begin;          /* of the logs, microseconds since 1970 */
-    size_t log_count, room; /* paths of the logs, in the order of their first queries */
-    char **log;             /* owned */
+    char *title;                /* owned */
+    int64_t begin;              /* of the logs, microseconds since 1970 */
+    size_t log_count, capacity; /* paths of the logs, in the order of their first queries */
+    char **log;                 /* owned */
     struct page_json events;
     struct page_shapes shapes;
     int64_t count[OUTCOMES];    /* of all queries */
@@ -25,7 +25,7 @@ struct page {
     int64_t left_first, left_last; /* as first and last, of those left out */
 };
 
-/* ---- Taking in ------------------------------------------------------------------------------- */
+/* ---- Adding ---------------------------------------------------------------------------------- */
 
 static char *copy_text(const char *text)
 {
@@ -38,6 +38,8 @@ struct page *page_open(const char *title, int64_t begin)
     struct page *page = allocate(1, sizeof *page);
     page->title = copy_text(title);
     page->begin = begin;
+    page_json_open(&page->events);
+    page_shapes_open(&page->shapes);
     return page;
 }
 
@@ -49,18 +51,18 @@ void page_close(struct page *page)
         free(page->log[i]);
     free(page->log);
     free(page->title);
-    page_json_clear(&page->events);
-    page_shapes_clear(&page->shapes);
+    page_json_close(&page->events);
+    page_shapes_close(&page->shapes);
     free(page);
 }
 
-/* One log is read after the other: the last one is found first. */
+/* Logs are read in turn: the latest is searched first. */
 static size_t log_index(struct page *page, const char *path)
 {
     for (size_t i = page->log_count; i > 0; i--)
         if (strcmp(page->log[i - 1], path) == 0)
             return i - 1;
-    page->log = allocate_room(page->log, &page->room, page->log_count + 1, sizeof *page->log);
+    page->log = allocate_room(page->log, &page->capacity, page->log_count + 1, sizeof *page->log);
     page->log[page->log_count] = copy_text(path);
     return page->log_count++;
 }
@@ -84,7 +86,7 @@ static size_t bytes(const struct page *page)
     return page->events.used + page->shapes.json.used;
 }
 
-/* Once it is not, it stays so. */
+/* Once false, it stays false. */
 static bool is_within(const struct page *page)
 {
     return page->kept < PAGE_EVENTS_MAX && bytes(page) < PAGE_BYTES_MAX;
@@ -109,7 +111,9 @@ static void keep(struct page *page, const struct replayed *replayed)
         page->kept++;
     else
         page->kept_further++;
-    page_event_write(replayed, log_index(page, replayed->log), &page->shapes, &page->events);
+    page_event_write(replayed, log_index(page, replayed->log), &page->shapes, &page->events.json);
+    page_json_flush(&page->events);
+    page_json_flush(&page->shapes.json);
     if (page->kept_further == 0)
         page->bytes_within = bytes(page);
 }
@@ -127,57 +131,48 @@ void page_take(struct page *page, const struct replayed *replayed)
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
-static void add_counts(struct page_json *json, const char *name, const int64_t count[OUTCOMES])
+static void write_counts(struct json_writer *json, const char *key, const int64_t count[OUTCOMES])
 {
-    page_json_raw(json, name);
-    for (int i = 0; i < OUTCOMES; i++) {
-        page_json_raw(json, i ? "," : "[");
-        page_json_integer(json, count[i]);
-    }
-    page_json_raw(json, "]");
+    json_begin(json, key, '[');
+    for (int i = 0; i < OUTCOMES; i++)
+        json_integer(json, NULL, count[i]);
+    json_end(json, ']');
 }
 
-static void add_span(struct page_json *json, const char *name, int64_t first, int64_t last)
+static void write_span(struct json_writer *json, const char *key, int64_t first, int64_t last)
 {
-    page_json_raw(json, name);
-    page_json_integer(json, first);
-    page_json_raw(json, ",");
-    page_json_integer(json, last);
-    page_json_raw(json, "]");
+    json_begin(json, key, '[');
+    json_integer(json, NULL, first);
+    json_integer(json, NULL, last);
+    json_end(json, ']');
 }
 
-/* What there is to say of the whole: counts in the order of enum replay_outcome. */
-static struct page_json make_head(const struct page *page)
+static void write_elements(struct json_writer *json, const char *key,
+                           const struct page_json *elements)
 {
-    struct page_json json = {0};
-    page_json_raw(&json, "{\"title\":");
-    page_json_string(&json, page->title);
-    page_json_raw(&json, ",\"logs\":[");
-    for (size_t i = 0; i < page->log_count; i++) {
-        page_json_raw(&json, i ? "," : "");
-        page_json_string(&json, page->log[i]);
-    }
-    page_json_raw(&json, "],\n\"begin\":");
-    page_json_integer(&json, page->begin);
-    add_counts(&json, ",\n\"count\":", page->count);
-    add_span(&json, ",\"span\":[", page->first, page->last);
-    add_counts(&json, ",\n\"left_out\":", page->left_out);
-    add_span(&json, ",\"left_span\":[", page->left_first, page->left_last);
-    page_json_raw(&json, ",\n\"shapes\":[\n");
-    return json;
+    json_begin(json, key, '[');
+    page_json_write(elements, json->out);
+    json_end(json, ']');
 }
 
+/* Counts in the order of enum replay_outcome. */
 static void write_data(const struct page *page, FILE *out)
 {
-    struct page_json head = make_head(page);
-    fwrite(head.bytes, 1, head.used, out);
-    page_json_clear(&head);
-    if (page->shapes.json.used > 0)
-        fwrite(page->shapes.json.bytes, 1, page->shapes.json.used, out);
-    fputs("\n],\n\"events\":[\n", out);
-    if (page->events.used > 0)
-        fwrite(page->events.bytes, 1, page->events.used, out);
-    fputs("\n]}", out);
+    struct json_writer json = {.out = out, .page = true};
+    json_begin(&json, NULL, '{');
+    json_string(&json, "title", page->title);
+    json_begin(&json, "logs", '[');
+    for (size_t i = 0; i < page->log_count; i++)
+        json_string(&json, NULL, page->log[i]);
+    json_end(&json, ']');
+    json_integer(&json, "begin", page->begin);
+    write_counts(&json, "count", page->count);
+    write_span(&json, "span", page->first, page->last);
+    write_counts(&json, "left_out", page->left_out);
+    write_span(&json, "left_span", page->left_first, page->left_last);
+    write_elements(&json, "shapes", &page->shapes.json);
+    write_elements(&json, "events", &page->events);
+    json_end(&json, '}');
 }
 
 void page_write(const struct page *page, FILE *out)

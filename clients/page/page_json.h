@@ -1,29 +1,21 @@
-/* JSON text that grows in memory, safe to stand in a <script> of a page. */
+/* JSON text in memory, escaped for a <script> element. */
 #ifndef PAGE_JSON_H
 #define PAGE_JSON_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "json_write.h"
 
-/* All 0 is an empty one. Where there is no memory, the program ends (allocate.h). */
 struct page_json {
-    char *bytes; /* owned; used of them, and no 0 at the end */
-    size_t used, room;
+    struct json_writer json; /* of elements, each on a line of its own */
+    char *bytes;             /* owned; `used` of them, as of the last page_json_flush() */
+    size_t used;
 };
 
-void page_json_clear(struct page_json *json);
+/* Exits with status 1 without memory, as page_json_flush() does. */
+void page_json_open(struct page_json *out);
+void page_json_flush(struct page_json *page);
+void page_json_close(struct page_json *page);
 
-/* As it is: punctuation, and names of members. */
-void page_json_raw(struct page_json *json, const char *text);
-
-/* Integers that doubles, the only numbers of the reader, may not hold become strings. */
-void page_json_integer(struct page_json *json, int64_t value);
-
-/* Reads back as the same bits; not finite: null. */
-void page_json_number(struct page_json *json, double value);
-
-/* With its quotes. What is no UTF-8 becomes U+FFFD, and each < is written as \u003c, so that
- * neither an end of the script nor a comment begins in it. */
-void page_json_string(struct page_json *json, const char *text);
+/* Copies the text, as of the last page_json_flush(). */
+void page_json_write(const struct page_json *page, FILE *out);
 
 #endif

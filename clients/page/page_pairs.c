@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Both say the same, or NaN. */
+/* Equal, or both NaN. */
 static bool same_numbers(const double *a, const double *b, int count)
 {
     for (int i = 0; i < count; i++)
@@ -58,25 +58,24 @@ static bool next_of_pair(struct page_pairs *pairs, struct page_pair *out)
 
 /* ---- A scene --------------------------------------------------------------------------------- */
 
-/* Of the frames that are kept. */
-static int64_t frame_count(const struct scene_query *query)
+/* Of the placements that are kept. */
+static int64_t placement_count(const struct scene_query *query)
 {
-    return query->frame_count < 0                  ? 0
-           : query->frame_count > QUERY_FRAMES_MAX ? QUERY_FRAMES_MAX
-                                                   : query->frame_count;
+    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                         : QUERY_PLACEMENTS_MAX;
 }
 
 /* Of the pairs that are kept. */
 static int32_t listed_count(const struct scene_query *query)
 {
     const int32_t count = query->index_count / 2;
-    return count < 0 ? 0 : count > QUERY_PAIRS_MAX ? QUERY_PAIRS_MAX : count;
+    return count < QUERY_PAIRS_MAX ? count : QUERY_PAIRS_MAX;
 }
 
 /* The number of a pair of all or across, in the order of (a, b). */
 static int64_t pair_number(const struct scene_query *query, int64_t a, int64_t b)
 {
-    const int64_t n = frame_count(query);
+    const int64_t n = placement_count(query);
     if (query->which == QUERY_PAIRS_ACROSS)
         return a * (n - query->split) + b - query->split;
     return a * n - a * (a + 1) / 2 + b - (a + 1);
@@ -86,7 +85,7 @@ int64_t page_pairs_total(const struct scene_query *query)
 {
     if (query->which == QUERY_PAIRS_LISTED)
         return query->index_count / 2;
-    const int64_t n = frame_count(query);
+    const int64_t n = placement_count(query);
     return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
 }
 
@@ -106,7 +105,7 @@ static struct page_side take(struct page_place *place)
     if (side.verdict < FMB_TOUCHING || place->contact >= result->contact_count)
         return side;
     const int32_t contact = place->contact++, dim = result->has_boxes ? result->dim : 0;
-    /* NaN stands for a pair at rest: it has none. */
+    /* NaN: the pair is at rest, and has none. */
     side.has_times = result->has_times && !isnan(result->times[2 * contact]);
     if (side.has_times)
         memcpy(side.times, &result->times[2 * contact], sizeof side.times);
@@ -139,7 +138,7 @@ static bool next_listed(struct page_pairs *pairs, struct page_pair *out)
     return true;
 }
 
-/* The pair that the result names next comes before (a, b), or no pair was found yet. */
+/* Whether the pair that the result names next precedes (a, b), or none was found so far. */
 static bool comes_before(const struct page_place *place, bool found, unsigned a, unsigned b)
 {
     if (!has_verdict(place) || !place->result->names_pairs)

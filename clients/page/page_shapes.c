@@ -6,89 +6,73 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct page_shape {
+#define uthash_malloc(size) allocate(1, size)
+#include <uthash.h>
+
+/* The key: compared as bytes. */
+struct shape {
     int32_t shape, dim, count;
     double number[FMB_COMPONENTS_MAX]; /* 0 beyond count */
 };
 
-void page_shapes_clear(struct page_shapes *shapes)
+struct page_shape {
+    struct shape shape;
+    size_t index;
+    UT_hash_handle hh;
+};
+
+void page_shapes_open(struct page_shapes *out)
 {
-    page_json_clear(&shapes->json);
-    free(shapes->shape);
-    free(shapes->slot);
-    memset(shapes, 0, sizeof *shapes);
+    memset(out, 0, sizeof *out);
+    page_json_open(&out->json);
+    out->hash = keyed_hash_make();
 }
 
-static struct page_shape shape_of(const struct query_frame *frame)
+void page_shapes_close(struct page_shapes *shapes)
 {
-    struct page_shape shape;
-    assert(frame->components.count >= 0 && frame->components.count <= FMB_COMPONENTS_MAX);
+    struct page_shape *at = shapes->shape, *next;
+    HASH_CLEAR(hh, shapes->shape);
+    for (; at; at = next) {
+        next = at->hh.next;
+        free(at);
+    }
+    page_json_close(&shapes->json);
+}
+
+static struct shape shape_of(int dim, const struct geometry_frame *frame)
+{
+    struct shape shape;
     memset(&shape, 0, sizeof shape); /* what lies between the members too: bytes are compared */
     shape.shape = frame->shape;
-    shape.dim = frame->dim;
-    shape.count = frame->components.count;
-    memcpy(shape.number, frame->components.number, (size_t) shape.count * sizeof *shape.number);
+    shape.dim = dim;
+    shape.count = frame->count * dim;
+    assert(shape.count >= 0 && shape.count <= FMB_COMPONENTS_MAX);
+    memcpy(shape.number, frame->components, (size_t) shape.count * sizeof *shape.number);
     return shape;
 }
 
-static uint64_t hash(const struct page_shape *shape)
+static void write_shape(struct json_writer *json, const struct shape *shape)
 {
-    int64_t mixed = shape->shape * 4 + shape->dim;
-    for (int i = 0; i < FMB_COMPONENTS_MAX; i++) {
-        int64_t bits;
-        memcpy(&bits, &shape->number[i], sizeof bits);
-        mixed = (int64_t) (query_id_mix(mixed) >> 29 ^ (uint64_t) bits);
-    }
-    return query_id_mix(mixed) >> 20;
+    json_break(json, "\n");
+    json_begin(json, NULL, '{');
+    json_integer(json, "shape", shape->shape);
+    json_integer(json, "dim", shape->dim);
+    json_numbers(json, "c", shape->number, shape->count);
+    json_end(json, '}');
 }
 
-/* The slot that holds the shape, or the free one where it belongs. Some are always free. */
-static size_t find(const struct page_shapes *shapes, const struct page_shape *shape)
+size_t page_shapes_index(struct page_shapes *shapes, int dim, const struct geometry_frame *frame)
 {
-    size_t at = hash(shape) & (shapes->slot_count - 1);
-    while (shapes->slot[at] &&
-           memcmp(&shapes->shape[shapes->slot[at] - 1], shape, sizeof *shape) != 0)
-        at = (at + 1) & (shapes->slot_count - 1);
-    return at;
-}
-
-/* No more than half of the slots are taken. */
-static void make_slots(struct page_shapes *shapes)
-{
-    enum { SLOTS_MIN = 64 };
-    if (2 * (shapes->count + 1) <= shapes->slot_count)
-        return;
-    shapes->slot_count = shapes->slot_count ? 2 * shapes->slot_count : SLOTS_MIN;
-    free(shapes->slot);
-    shapes->slot = allocate(shapes->slot_count, sizeof *shapes->slot);
-    for (size_t i = 0; i < shapes->count; i++)
-        shapes->slot[find(shapes, &shapes->shape[i])] = i + 1;
-}
-
-static void write_shape(struct page_json *json, const struct page_shape *shape)
-{
-    page_json_raw(json, json->used ? ",\n{\"shape\":" : "{\"shape\":");
-    page_json_integer(json, shape->shape);
-    page_json_raw(json, ",\"dim\":");
-    page_json_integer(json, shape->dim);
-    for (int32_t i = 0; i < shape->count; i++) {
-        page_json_raw(json, i ? "," : ",\"c\":[");
-        page_json_number(json, shape->number[i]);
-    }
-    page_json_raw(json, "]}");
-}
-
-size_t page_shapes_index(struct page_shapes *shapes, const struct query_frame *frame)
-{
-    const struct page_shape shape = shape_of(frame);
-    make_slots(shapes);
-    const size_t slot = find(shapes, &shape);
-    if (!shapes->slot[slot]) {
-        shapes->shape =
-            allocate_room(shapes->shape, &shapes->room, shapes->count + 1, sizeof shape);
-        shapes->shape[shapes->count++] = shape;
-        shapes->slot[slot] = shapes->count;
-        write_shape(&shapes->json, &shape);
-    }
-    return shapes->slot[slot] - 1;
+    const struct shape shape = shape_of(dim, frame);
+    const unsigned hash = keyed_hash_of(&shapes->hash, &shape, sizeof shape);
+    struct page_shape *found;
+    HASH_FIND_BYHASHVALUE(hh, shapes->shape, &shape, sizeof shape, hash, found);
+    if (found)
+        return found->index;
+    found = allocate(1, sizeof *found);
+    memcpy(&found->shape, &shape, sizeof shape);
+    found->index = shapes->count++;
+    HASH_ADD_BYHASHVALUE(hh, shapes->shape, shape, sizeof shape, hash, found);
+    write_shape(&shapes->json.json, &shape);
+    return found->index;
 }

@@ -2,22 +2,23 @@
 #ifndef PAGE_SHAPES_H
 #define PAGE_SHAPES_H
 
+#include "keyed_hash.h"
 #include "page_json.h"
 #include "query.h"
 
-/* All 0 is an empty table. */
 struct page_shapes {
     struct page_json json; /* {"shape": ..., "dim": ..., "c": [...]}, one after the other */
-    size_t count, room;
-    struct page_shape *shape; /* owned */
-    size_t slot_count;        /* a power of two, or 0 */
-    size_t *slot;             /* owned; by hash: index + 1 of a shape, 0: free */
+    size_t count;
+    struct page_shape *shape; /* owned: a table by all their bytes; NULL: empty */
+    struct keyed_hash hash;
 };
 
-void page_shapes_clear(struct page_shapes *shapes);
+/* On output: no shapes. */
+void page_shapes_open(struct page_shapes *out);
+void page_shapes_close(struct page_shapes *shapes);
 
-/* On input: a frame with the components of its shape. Returns the index of its shape, dimension
- * and components. */
-size_t page_shapes_index(struct page_shapes *shapes, const struct query_frame *frame);
+/* In: a frame of a body of dimension dim. Returns the index of its shape, dimension and components.
+ */
+size_t page_shapes_index(struct page_shapes *shapes, int dim, const struct geometry_frame *frame);
 
 #endif

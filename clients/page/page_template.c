@@ -2,11 +2,11 @@
 
 #include <string.h>
 
-/* Where the data belong. */
+/* Replaced by the data. */
 static const char mark[] = "@DATA@";
 enum { MARK_LENGTH = sizeof mark - 1 };
 
-/* The build has seen that the mark is there, once. */
+/* The Makefile checks that the page has one mark. */
 static size_t find_mark(const struct page_template *page)
 {
     size_t at = 0;

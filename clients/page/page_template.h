@@ -1,4 +1,4 @@
-/* Pages without their data, put together from the files of template/ when the program is built. */
+/* Pages without their data, assembled from the files of template/ by the Makefile. */
 #ifndef PAGE_TEMPLATE_H
 #define PAGE_TEMPLATE_H
 
@@ -12,7 +12,7 @@ struct page_template {
 
 extern const struct page_template page_template_replay, page_template_mesh;
 
-/* What stands before the data, and what behind them: the data are JSON, of page_json.h. */
+/* The parts before and after the data, which are JSON by json_write.h. */
 void page_template_begin(const struct page_template *page, FILE *out);
 void page_template_end(const struct page_template *page, FILE *out);
 

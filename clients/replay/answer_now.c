@@ -2,44 +2,38 @@
 
 #include "allocate.h"
 #include "answer.h"
-#include "check.h"
+#include "big_endian.h"
 #include "clock.h"
+#include "random_id.h"
 #include "wire.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Any will do, as long as it is always the same. */
-enum { SERVER_ID = 1, FIRST_KEY = 1 };
-
-/* Never given by a cache that counts from FIRST_KEY. */
-static const int64_t no_key = QUERY_ID_MAX;
+enum { SERVER_ID = 1 };
 
 struct answer_now {
-    struct answerer answerer;
-    struct known_bodies *known;
-    union {
-        struct pair_query pair;
-        struct scene_query scene;
-    } query;
-    union {
-        struct pair_result pair;
-        struct scene_result scene;
-    } result;
-    int64_t key_then[QUERY_FRAMES_MAX]; /* of the frames that came by key; 0: of others */
-    unsigned char bytes[LOG_DATA_MAX];
+    struct answerer *answerer;
+    struct scene_job *job;
+    struct definitions *definitions;
+    struct any_query query; /* a pair, or one that is too long */
+    struct pair_result pair;
+    struct scene_result refused;
+    unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-_Static_assert((int) LOG_DATA_MAX >= (int) QUERY_BYTES_MAX &&
-                   (int) LOG_DATA_MAX >= (int) WIRE_RESULT_BYTES_MAX,
-               "room for a result");
-
-struct answer_now *answer_now_open(size_t bodies, struct known_bodies *known)
+struct answer_now *answer_now_open(size_t frames, struct definitions *definitions)
 {
     struct answer_now *now = allocate(1, sizeof *now);
-    now->known = known;
-    now->answerer.server_id = SERVER_ID;
-    now->answerer.cache = cache_create(bodies, FIRST_KEY);
-    if (!now->answerer.cache || !answer_prepare(&now->answerer))
+    const struct answerer_options options = {
+        .frames = frames,
+        .server_id = SERVER_ID,
+        .secret = {(uint64_t) random_id(), (uint64_t) random_id()}};
+    now->definitions = definitions;
+    now->answerer = answerer_create(&options);
+    now->job = scene_job_create();
+    if (!now->answerer || !now->job)
         allocate_failed();
     return now;
 }
@@ -48,197 +42,159 @@ void answer_now_close(struct answer_now *now)
 {
     if (!now)
         return;
-    cache_destroy(now->answerer.cache);
-    answer_release(&now->answerer);
+    scene_job_destroy(now->job);
+    answerer_destroy(now->answerer);
     free(now);
 }
 
-/* ---- Keys ----
- *
- * A key of the log becomes the key that this cache has for the same components. A frame that has
- * both, key and components (fmb log cut writes such), counts as one by key, as it once was: the
- * result has as much room then. But what its key stands for is for results to say: whoever sends
- * components may send any key beside them. */
+/* ---- Definitions ---- */
 
-static void keep(struct answer_now *now, struct known_body *known)
+const struct handle *answer_now_undefined(struct definitions *definitions,
+                                          const struct placement *placement, int32_t count)
 {
-    cache_keep(now->answerer.cache, known->body_id, known->dim, known->shape,
-               known->components.number, &known->key_now);
-}
-
-/* The key under which the components of a frame that has both are known here: one that no other
- * frame has. 0: the frame is no such one. */
-static int64_t claim(struct answer_now *now, struct query_frame *frame)
-{
-    if (frame->key <= 0 || frame->components.count == 0)
-        return 0;
-    const int64_t key = -frame->key;
-    const struct known_body *known = known_bodies_find(now->known, frame->body_id, key);
-    if (!known || !known_bodies_same(known, frame))
-        known = known_bodies_learn(now->known, frame, key, 0);
-    if (!known)
-        return 0;
-    frame->components.count = 0;
-    return key;
-}
-
-/* 0: it is whole, or has a key that cannot be one and is refused. */
-static int64_t key_of(struct answer_now *now, struct query_frame *frame)
-{
-    const int64_t claimed = claim(now, frame);
-    return claimed || !check_by_key(frame) || !query_id_ok(frame->key) ? claimed : frame->key;
-}
-
-/* Returns whether the key is known, if it is there. */
-static bool translate(struct answer_now *now, struct query_frame *frame, int64_t *key_then)
-{
-    *key_then = key_of(now, frame);
-    if (*key_then == 0)
-        return true;
-    struct known_body *known = known_bodies_find(now->known, frame->body_id, *key_then);
-    if (known && known->key_now == 0)
-        keep(now, known);
-    frame->key = known ? known->key_now : no_key;
-    return known != NULL;
-}
-
-static bool translate_all(struct answer_now *now, struct query_frame *frame, int32_t count)
-{
-    bool all = true;
     for (int32_t i = 0; i < count; i++)
-        if (check_by_key(&frame[i]))
-            known_bodies_expect(now->known, frame[i].body_id, frame[i].key);
-    for (int32_t i = 0; i < count; i++)
-        all = translate(now, &frame[i], &now->key_then[i]) && all;
-    return all;
+        if (placement_by_handle(&placement[i]) &&
+            !definitions_find(definitions, &placement[i].handle))
+            return &placement[i].handle;
+    return NULL;
 }
 
-/* For when the cache has lost some of them since: those of other publishers, with the same ids, may
- * have come between. What was known for the first frames may have had to go for those that claim.
- */
-static void keep_all(struct answer_now *now, struct query_frame *frame, int32_t count)
+/* Whether a service keeps the body: not one that it refuses. */
+static bool can_be_kept(const struct geometry *geometry)
 {
+    struct geometry_frame frame;
+    struct fmb_body body;
+    int dim;
+    if (big_endian_32(geometry->bytes + 4) != 1 || !geometry_read(geometry, &dim, &frame))
+        return false;
+    for (int axis = 0; axis < dim; axis++)
+        if (frame.origin[axis] != 0)
+            return false;
+    return fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), &body) ==
+           FMB_OK;
+}
+
+/* Puts what the handles stand for into the cache. Those that it holds are looked up first: they are
+ * not evicted for the others then. */
+static void supply(struct answer_now *now, const struct placement *placement, int32_t count)
+{
+    struct cache *cache = answerer_cache(now->answerer);
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]))
+            cache_find(cache, &placement[i].handle);
     for (int32_t i = 0; i < count; i++) {
-        if (now->key_then[i] == 0)
+        if (!placement_by_handle(&placement[i]) || cache_find(cache, &placement[i].handle))
             continue;
-        struct known_body *known =
-            known_bodies_find(now->known, frame[i].body_id, now->key_then[i]);
-        if (!known)
-            continue;
-        keep(now, known);
-        frame[i].key = known->key_now;
+        const struct geometry *geometry = definitions_find(now->definitions, &placement[i].handle);
+        if (geometry && can_be_kept(geometry))
+            cache_keep(cache, 0, geometry);
     }
 }
 
-static void expect_soon(const struct answer_now *now, const struct query_frame *frame)
+/* After UNKNOWN_BODY: whether to answer once more. */
+static bool helps(struct answer_now *now, struct answered *out)
 {
-    cache_expect_soon(now->answerer.cache, frame->body_id);
-    if (check_by_key(frame))
-        known_bodies_expect_soon(now->known, frame->body_id, frame->key);
+    const struct handle *undefined =
+        answer_now_undefined(now->definitions, out->placement, out->placement_count);
+    if (undefined)
+        out->undefined = *undefined;
+    else
+        supply(now, out->placement, out->placement_count);
+    return !undefined;
 }
 
 /* ---- Pairs ---- */
 
-/* Of one of which the log's reader has not kept all, the header has to do. */
-static const char *read_pair(const unsigned char *bytes, size_t size, struct pair_query *out)
+static void decide_pair(struct answer_now *now, struct answered *out)
 {
-    struct query_header header;
-    const char *error = wire_read_pair_query(bytes, (uint32_t) size, out);
-    if (!error || size < LOG_DATA_MAX)
-        return error;
-    error = wire_read_pair_header(bytes, (uint32_t) size, &header);
-    *out = (struct pair_query){.utime = header.utime,
-                               .client_id = header.client_id,
-                               .sequence_number = header.sequence_number};
-    return error;
-}
-
-static void ask_pair(struct answer_now *now, struct answered_now *out)
-{
-    struct pair_result *result = &now->result.pair;
     const int64_t begin = clock_ns();
-    answer_pair(&now->answerer, &now->query.pair, result);
-    out->compute_ns = clock_ns() - begin;
-    out->status = result->status;
-    out->pairs = result->status == FMB_OK;
+    answer_pair(now->answerer, &now->query.pair, &now->pair);
+    now->pair.compute_ns = out->compute_ns = clock_ns() - begin;
+    out->status = now->pair.status;
+    out->pairs = out->status == FMB_OK;
 }
 
-static enum answer_now_outcome answer_pair_now(struct answer_now *now, const unsigned char *bytes,
-                                               size_t size, struct answered_now *out)
+static const char *answer_one_pair(struct answer_now *now, const unsigned char *bytes,
+                                   uint32_t size, struct answered *out)
 {
-    struct pair_query *query = &now->query.pair;
-    bool known = true;
-    if ((out->error = read_pair(bytes, size, query)))
-        return ANSWER_NOW_UNREADABLE;
-    expect_soon(now, &query->frame[0]);
-    expect_soon(now, &query->frame[1]);
-    if (size > QUERY_BYTES_MAX) {
-        answer_pair_refused(&now->answerer, query, FMB_OVER_LIMIT, &now->result.pair);
-    } else {
-        known = translate_all(now, query->frame, 2);
-        ask_pair(now, out);
-        if (known && now->result.pair.status == FMB_UNKNOWN_BODY) {
-            keep_all(now, query->frame, 2);
-            ask_pair(now, out);
-        }
-    }
-    out->status = now->result.pair.status;
-    now->result.pair.compute_ns = out->compute_ns;
-    out->size = wire_write_pair_result(&now->result.pair, now->bytes);
-    return known ? ANSWER_NOW_DONE : ANSWER_NOW_WITHOUT_BODY;
+    const char *error = any_query_read(&now->query, LOG_PAIR_QUERY, bytes, size);
+    if (error)
+        return error;
+    out->placement = now->query.pair.placement;
+    out->placement_count = 2;
+    decide_pair(now, out);
+    if (out->status == FMB_UNKNOWN_BODY && helps(now, out))
+        decide_pair(now, out);
+    out->size = wire_write_pair_result(&now->pair, now->bytes);
+    return NULL;
 }
 
 /* ---- Scenes ---- */
 
-static void ask_scene(struct answer_now *now, struct answered_now *out)
+static const char *decide_scene(struct answer_now *now, const unsigned char *bytes, uint32_t size,
+                                struct answered *out)
 {
-    struct scene_result *result = &now->result.scene;
     const int64_t begin = clock_ns();
-    answer_scene(&now->answerer, &now->query.scene, result);
-    out->compute_ns = clock_ns() - begin;
-    out->pairs = result->status == FMB_OK ? result->end_pair - now->query.scene.first_pair : 0;
+    const char *error = scene_job_begin(now->job, bytes, size);
+    while (!error && !scene_job_step(now->job, now->answerer))
+        continue;
+    if (error)
+        return error;
+    const struct scene_query *query = scene_job_query(now->job);
+    struct scene_result *result = scene_job_result(now->job);
+    result->compute_ns = out->compute_ns = clock_ns() - begin;
+    out->status = result->status;
+    out->pairs = out->status == FMB_OK ? result->end_pair - query->first_pair : 0;
+    out->placement = query->placement;
+    out->placement_count = query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                                         : QUERY_PLACEMENTS_MAX;
+    return NULL;
 }
 
-/* As the service, which looks at the header alone. */
-static enum answer_now_outcome refuse_scene_now(struct answer_now *now, const unsigned char *bytes,
-                                                size_t size, struct answered_now *out)
+static const char *answer_one_scene(struct answer_now *now, const unsigned char *bytes,
+                                    uint32_t size, struct answered *out)
 {
-    struct query_header header;
-    if ((out->error = wire_read_scene_header(bytes, (uint32_t) size, &header)))
-        return ANSWER_NOW_UNREADABLE;
-    answer_scene_refused(&now->answerer, &header, FMB_OVER_LIMIT, &now->result.scene);
+    const char *error = decide_scene(now, bytes, size, out);
+    if (error)
+        return error;
+    if (out->status == FMB_UNKNOWN_BODY && helps(now, out))
+        decide_scene(now, bytes, size, out);
+    out->size = wire_write_scene_result(scene_job_result(now->job), now->bytes);
+    return NULL;
+}
+
+/* ---- Either ---- */
+
+/* Of a query that is too long a service reads the header. */
+static const char *refuse(struct answer_now *now, enum log_kind kind, const unsigned char *bytes,
+                          uint32_t size, struct answered *out)
+{
+    const char *error = any_query_read(&now->query, kind, bytes, size);
+    if (error)
+        return error;
     out->status = FMB_OVER_LIMIT;
-    out->size = wire_write_scene_result(&now->result.scene, now->bytes);
-    return ANSWER_NOW_DONE;
-}
-
-static enum answer_now_outcome answer_scene_now(struct answer_now *now, const unsigned char *bytes,
-                                                size_t size, struct answered_now *out)
-{
-    struct scene_query *query = &now->query.scene;
-    if (size > QUERY_BYTES_MAX)
-        return refuse_scene_now(now, bytes, size, out);
-    if ((out->error = wire_read_scene_query(bytes, (uint32_t) size, query)))
-        return ANSWER_NOW_UNREADABLE;
-    const int32_t count =
-        query->frame_count < QUERY_FRAMES_MAX ? query->frame_count : QUERY_FRAMES_MAX;
-    const bool known = translate_all(now, query->frame, count);
-    ask_scene(now, out);
-    if (known && now->result.scene.status == FMB_UNKNOWN_BODY) {
-        keep_all(now, query->frame, count);
-        ask_scene(now, out);
+    if (kind == LOG_PAIR_QUERY) {
+        answer_pair_refused(now->answerer, &now->query.pair, FMB_OVER_LIMIT, &now->pair);
+        out->size = wire_write_pair_result(&now->pair, now->bytes);
+        return NULL;
     }
-    out->status = now->result.scene.status;
-    now->result.scene.compute_ns = out->compute_ns;
-    out->size = wire_write_scene_result(&now->result.scene, now->bytes);
-    return known ? ANSWER_NOW_DONE : ANSWER_NOW_WITHOUT_BODY;
+    const struct scene_query *query = &now->query.scene;
+    const struct query_header header = {query->utime, query->client_id, query->sequence_number};
+    answer_scene_refused(now->answerer, &header, FMB_OVER_LIMIT, &now->refused);
+    out->size = wire_write_scene_result(&now->refused, now->bytes);
+    return NULL;
 }
 
-enum answer_now_outcome answer_now(struct answer_now *now, enum log_kind kind,
-                                   const unsigned char *bytes, size_t size,
-                                   struct answered_now *out)
+const char *answer_now(struct answer_now *now, enum log_kind kind, const unsigned char *bytes,
+                       uint32_t size, struct answered *out)
 {
-    *out = (struct answered_now){.bytes = now->bytes};
-    return kind == LOG_PAIR_QUERY ? answer_pair_now(now, bytes, size, out)
-                                  : answer_scene_now(now, bytes, size, out);
+    struct cache *cache = answerer_cache(now->answerer);
+    const int64_t misses = cache_counts(cache).misses;
+    *out = (struct answered){.bytes = now->bytes};
+    if (size > QUERY_BYTES_MAX)
+        return refuse(now, kind, bytes, size, out);
+    const char *error = kind == LOG_PAIR_QUERY ? answer_one_pair(now, bytes, size, out)
+                                               : answer_one_scene(now, bytes, size, out);
+    out->all_held = out->status == FMB_OK && cache_counts(cache).misses == misses;
+    return error;
 }

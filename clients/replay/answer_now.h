@@ -1,39 +1,37 @@
-/* Answers the queries of a log in this process: what fmbd would say to them, from bytes to bytes,
- * by the code that it says it with. No clock but to measure, no bus, nothing random: the same
- * queries in the same order get the same bytes. */
+/* Answers the queries of a log in this process with the code of the service: encoded query in,
+ * encoded result out. Deterministic: the same query gets the same bytes, except compute_ns. */
 #ifndef ANSWER_NOW_H
 #define ANSWER_NOW_H
 
-#include "known_bodies.h"
-#include "log_kind.h"
+#include "any_query.h"
+#include "definitions.h"
 
 struct answer_now;
 
-/* bodies: capacity of the cache, as fmbd --bodies. known: not owned; the keys of the log. Never
- * NULL: ends the program where there is no memory. */
-struct answer_now *answer_now_open(size_t bodies, struct known_bodies *known);
+/* On input: frames: capacity of the cache, as fmbd --frames; definitions: the bodies of handles,
+ * not owned. Exits with status 1 if memory is exhausted. */
+struct answer_now *answer_now_open(size_t frames, struct definitions *definitions);
 void answer_now_close(struct answer_now *now); /* may be NULL */
 
-enum answer_now_outcome {
-    ANSWER_NOW_DONE,
-    ANSWER_NOW_WITHOUT_BODY, /* done, with UNKNOWN_BODY: of some keys the components are not known
-                              */
-    ANSWER_NOW_UNREADABLE    /* no such message; error says why */
-};
-
-struct answered_now {
-    /* Of the result, as the service would send it; good until the next call. */
-    const unsigned char *bytes;
+struct answered {
+    const unsigned char *bytes; /* the result, as a service sends it; valid until the next call */
     size_t size;
-    int64_t compute_ns, pairs; /* taken, and decided */
+    int64_t compute_ns, pairs; /* time taken, pairs decided */
     int32_t status;
-    const char *error;
+    /* If the status is UNKNOWN_BODY: the first handle not defined so far; else none. */
+    struct handle undefined;
+    const struct placement *placement; /* [placement_count] of the query; valid as bytes is */
+    int32_t placement_count;
+    bool all_held; /* all whole bodies with an id were in the cache, so they are defined */
 };
 
-/* On input: a query's bytes as they stand in the log, of more than LOG_DATA_MAX the first so many;
- * kind PAIR_QUERY or SCENE_QUERY. */
-enum answer_now_outcome answer_now(struct answer_now *now, enum log_kind kind,
-                                   const unsigned char *bytes, size_t size,
-                                   struct answered_now *out);
+/* Answers a query. On input: its bytes in the log, at most the first LOG_DATA_MAX. Returns NULL; or
+ * a static text: why it cannot be decoded. */
+const char *answer_now(struct answer_now *now, enum log_kind kind, const unsigned char *bytes,
+                       uint32_t size, struct answered *out);
+
+/* The first handle of the placements that is not defined; NULL: all are defined. */
+const struct handle *answer_now_undefined(struct definitions *definitions,
+                                          const struct placement *placement, int32_t count);
 
 #endif

@@ -2,64 +2,88 @@
 
 #include "wire.h"
 
-_Static_assert((int) WIRE_BYTES_MAX <= (int) QUERY_BYTES_MAX, "every pair fits");
+#include <string.h>
+
+static const char *read_header(struct any_query *out, const unsigned char *bytes, uint32_t size)
+{
+    struct query_header header = {.utime = 0};
+    if (out->kind == LOG_PAIR_QUERY) {
+        const char *error = wire_read_pair_header(bytes, size, &header);
+        out->pair = (struct pair_query){.utime = header.utime,
+                                        .client_id = header.client_id,
+                                        .sequence_number = header.sequence_number};
+        return error;
+    }
+    const char *error = wire_read_scene_header(bytes, size, &header);
+    memset(&out->scene, 0, sizeof out->scene);
+    out->scene.utime = header.utime;
+    out->scene.client_id = header.client_id;
+    out->scene.sequence_number = header.sequence_number;
+    return error;
+}
 
 const char *any_query_read(struct any_query *out, enum log_kind kind, const unsigned char *bytes,
-                           size_t size)
+                           uint32_t size)
 {
     out->kind = kind;
-    return kind == LOG_PAIR_QUERY ? wire_read_pair_query(bytes, (uint32_t) size, &out->pair)
-                                  : wire_read_scene_query(bytes, (uint32_t) size, &out->scene);
+    if (size > QUERY_BYTES_MAX)
+        return read_header(out, bytes, size);
+    return kind == LOG_PAIR_QUERY ? wire_read_pair_query(bytes, size, &out->pair)
+                                  : wire_read_scene_query(bytes, size, &out->scene);
 }
 
-struct query_frame *any_query_frames(struct any_query *query, int32_t *count)
+static int32_t least(int32_t a, int32_t b)
 {
-    if (query->kind == LOG_PAIR_QUERY) {
-        *count = 2;
-        return query->pair.frame;
-    }
-    *count =
-        query->scene.frame_count < QUERY_FRAMES_MAX ? query->scene.frame_count : QUERY_FRAMES_MAX;
-    return query->scene.frame;
+    return a < b ? a : b;
 }
 
-static bool frame_is_whole(const struct query_frame *frame)
+struct placement *any_query_placements(struct any_query *query, int32_t *count)
 {
-    return frame->origin.count <= FMB_COMPONENTS_MAX &&
-           frame->components.count <= FMB_COMPONENTS_MAX &&
-           frame->velocity.count <= FMB_COMPONENTS_MAX;
+    *count = query->kind == LOG_PAIR_QUERY
+                 ? 2
+                 : least(query->scene.placement_count, QUERY_PLACEMENTS_MAX);
+    return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
 }
 
-static bool frames_are_whole(const struct query_frame *frame, int32_t count)
+static bool placements_are_whole(const struct placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (!frame_is_whole(&frame[i]))
+        if (placement[i].dim > FMB_DIM_MAX ||
+            placement[i].orientation_count > QUERY_ORIENTATION_MAX ||
+            placement[i].velocity_count > FMB_DIM_MAX)
             return false;
     return true;
 }
 
-bool any_query_is_whole(const struct any_query *query)
+static bool is_whole(const struct any_query *query)
 {
     const struct scene_query *scene = &query->scene;
     if (query->kind == LOG_PAIR_QUERY)
-        return frames_are_whole(query->pair.frame, 2);
-    return scene->frame_count <= QUERY_FRAMES_MAX && scene->index_count <= 2 * QUERY_PAIRS_MAX &&
-           frames_are_whole(scene->frame, scene->frame_count);
+        return placements_are_whole(query->pair.placement, 2);
+    return scene->placement_count <= QUERY_PLACEMENTS_MAX &&
+           scene->index_count <= 2 * QUERY_PAIRS_MAX &&
+           scene->ignored_count <= 2 * QUERY_PAIRS_MAX &&
+           placements_are_whole(scene->placement, scene->placement_count);
 }
 
-static size_t scene_bytes(const struct scene_query *scene)
+static size_t bytes_of(const struct any_query *query)
 {
-    size_t bytes = WIRE_SCENE_QUERY_BYTES + sizeof(int16_t) * (size_t) scene->index_count;
-    for (int32_t i = 0; i < scene->frame_count; i++)
-        bytes += wire_frame_bytes(&scene->frame[i]);
+    const bool pair = query->kind == LOG_PAIR_QUERY;
+    const struct placement *placement = pair ? query->pair.placement : query->scene.placement;
+    const int32_t count = pair ? 2 : query->scene.placement_count;
+    size_t bytes = pair ? WIRE_PAIR_QUERY_BYTES : WIRE_SCENE_QUERY_BYTES;
+    for (int32_t i = 0; i < count; i++)
+        bytes += wire_placement_bytes(&placement[i]);
+    if (!pair)
+        bytes += WIRE_PAIR_BYTES / 2 *
+                 ((size_t) query->scene.index_count + (size_t) query->scene.ignored_count);
     return bytes;
 }
 
 size_t any_query_write(const struct any_query *query, unsigned char out[QUERY_BYTES_MAX])
 {
-    if (query->kind == LOG_PAIR_QUERY)
-        return wire_write_pair_query(&query->pair, out);
-    return scene_bytes(&query->scene) > QUERY_BYTES_MAX
-               ? 0
-               : wire_write_scene_query(&query->scene, out);
+    if (!is_whole(query) || bytes_of(query) > QUERY_BYTES_MAX)
+        return 0;
+    return query->kind == LOG_PAIR_QUERY ? wire_write_pair_query(&query->pair, out)
+                                         : wire_write_scene_query(&query->scene, out);
 }

@@ -6,24 +6,23 @@
 #include "query.h"
 
 struct any_query {
-    enum log_kind kind; /* PAIR_QUERY or SCENE_QUERY */
+    enum log_kind kind; /* LOG_PAIR_QUERY or LOG_SCENE_QUERY */
     union {
         struct pair_query pair;
         struct scene_query scene;
     };
 };
 
-/* As wire_read_pair_query(). */
+/* As wire_read_pair_query(). Of a query longer than QUERY_BYTES_MAX, which a service refuses
+ * unread, only the header is read; other fields are 0. */
 const char *any_query_read(struct any_query *out, enum log_kind kind, const unsigned char *bytes,
-                           size_t size);
+                           uint32_t size);
 
-/* Those that were kept; *count of them. */
-struct query_frame *any_query_frames(struct any_query *query, int32_t *count);
+/* The placements that the struct holds; *count of them. */
+struct placement *any_query_placements(struct any_query *query, int32_t *count);
 
-/* Whether all of it was kept that was read. */
-bool any_query_is_whole(const struct any_query *query);
-
-/* On input: one that is whole. Returns the size; 0: it is more than one datagram holds. */
+/* Encodes a query that was read. Returns the size; 0: it exceeds a datagram, or the struct did not
+ * hold all of it. */
 size_t any_query_write(const struct any_query *query, unsigned char out[QUERY_BYTES_MAX]);
 
 #endif

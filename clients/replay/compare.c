@@ -99,7 +99,7 @@ static bool find_difference(const struct compare_options *options, double durati
     return true;
 }
 
-static bool is_of_the_moment(int32_t status)
+bool compare_is_of_the_moment(int32_t status)
 {
     return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
 }
@@ -107,12 +107,14 @@ static bool is_of_the_moment(int32_t status)
 /* Of two statuses, one of which is of the moment. */
 static enum replay_outcome moment(int32_t then, int32_t now)
 {
-    return then == FMB_BUSY || now == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNKNOWN;
+    if (then == FMB_UNKNOWN_BODY)
+        return REPLAY_UNKNOWN;
+    return then == FMB_BUSY || now == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNDEFINED;
 }
 
-static int dim_of(const struct query_frame *frame)
+static int dim_of(const struct placement *placement)
 {
-    return frame->dim == 2 ? 2 : 3;
+    return placement->dim == 2 ? 2 : 3;
 }
 
 /* ---- Pairs ---- */
@@ -130,14 +132,15 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
                                   const struct pair_query *query, const struct pair_result *then,
                                   const struct pair_result *now, difference_sink *sink, void *user)
 {
-    if (is_of_the_moment(then->status) || is_of_the_moment(now->status))
+    if (compare_is_of_the_moment(then->status) || compare_is_of_the_moment(now->status))
         return moment(then->status, now->status);
-    const int dim = dim_of(&query->frame[0]);
-    struct difference difference = {.body_id = {query->frame[0].body_id, query->frame[1].body_id},
-                                    .frame = {0, 1},
-                                    .dim = dim,
-                                    .then = side_of_pair(then, dim),
-                                    .now = side_of_pair(now, dim)};
+    const int dim = dim_of(&query->placement[0]);
+    struct difference difference = {
+        .body_id = {query->placement[0].body_id, query->placement[1].body_id},
+        .placement = {0, 1},
+        .dim = dim,
+        .then = side_of_pair(then, dim),
+        .now = side_of_pair(now, dim)};
     if (!find_difference(options, query->duration, &difference))
         return REPLAY_SAME;
     sink(user, &difference);
@@ -146,8 +149,8 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
 
 /* ---- Scenes ---- */
 
-/* A walk over the answers of a result. */
-struct walk {
+/* The answers of a result, one after the other. */
+struct answers {
     const struct scene_query *query;
     const struct scene_result *result;
     int32_t next;    /* of verdicts */
@@ -159,68 +162,68 @@ static bool is_contact(unsigned char verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* Where the walk is: the number of the pair among all that are asked; past all at the end. */
-static int32_t number_at(const struct walk *walk)
+/* The number of the next pair among all that were requested; beyond all at the end. */
+static int32_t number_at(const struct answers *answers)
 {
-    if (walk->next >= walk->result->verdict_count)
+    if (answers->next >= answers->result->verdict_count)
         return INT32_MAX;
-    if (!walk->result->names_pairs)
-        return walk->query->first_pair + walk->next;
-    return scene_pairs_number(walk->query, walk->result->pair, (size_t) walk->next);
+    if (!answers->result->names_pairs)
+        return answers->query->first_pair + answers->next;
+    return scene_pairs_number(answers->query, answers->result->pair, (size_t) answers->next);
 }
 
 /* The box of a contact, if it is of the query's dimension. */
-static void take_box(const struct walk *walk, int32_t contact, struct fmb_answer *out)
+static void take_box(const struct answers *answers, int32_t contact, struct fmb_answer *out)
 {
-    const int dim = walk->result->dim;
-    out->has_box = walk->result->has_boxes && dim == dim_of(&walk->query->frame[0]);
+    const int dim = answers->result->dim;
+    out->has_box = answers->result->has_boxes && dim == dim_of(&answers->query->placement[0]);
     for (int i = 0; i < 2 * dim && out->has_box; i++)
-        out->box[i / dim][i % dim] = walk->result->boxes[2 * dim * contact + i];
+        out->box[i / dim][i % dim] = answers->result->boxes[2 * dim * contact + i];
 }
 
 /* The answer there, and on to the next one. */
-static struct fmb_answer take(struct walk *walk)
+static struct fmb_answer take(struct answers *answers)
 {
-    const struct scene_result *result = walk->result;
-    struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[walk->next++]};
+    const struct scene_result *result = answers->result;
+    struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[answers->next++]};
     if (!is_contact((unsigned char) answer.verdict))
         return answer;
-    const int32_t contact = walk->contact++;
+    const int32_t contact = answers->contact++;
     answer.has_contact = result->has_times && !isnan(result->times[2 * contact]);
     for (int end = 0; end < 2 && answer.has_contact; end++)
         answer.contact[end] = result->times[2 * contact + end];
-    take_box(walk, contact, &answer);
+    take_box(answers, contact, &answer);
     return answer;
 }
 
 /* The answer to the pair of this number: what the result names, or separated. */
-static struct fmb_answer answer_to(struct walk *walk, int32_t number)
+static struct fmb_answer answer_to(struct answers *answers, int32_t number)
 {
-    if (number_at(walk) == number)
-        return take(walk);
+    if (number_at(answers) == number)
+        return take(answers);
     return (struct fmb_answer){.verdict = FMB_SEPARATED};
 }
 
-/* The frames of the pair where the walk is. */
-static const unsigned *frames_at(const struct walk *walk)
+/* The placements of the pair where the cursor is. */
+static const unsigned *pair_at(const struct answers *answers)
 {
-    return walk->result->names_pairs ? walk->result->pair[walk->next]
-                                     : walk->query->pair[number_at(walk)];
+    return answers->result->names_pairs ? answers->result->pair[answers->next]
+                                        : answers->query->pair[number_at(answers)];
 }
 
-static struct difference begin_difference(const struct scene_query *query, const unsigned frame[2])
+static struct difference begin_difference(const struct scene_query *query, const unsigned pair[2])
 {
-    struct difference difference = {.dim = dim_of(&query->frame[0])};
+    struct difference difference = {.dim = dim_of(&query->placement[0])};
     for (int f = 0; f < 2; f++) {
-        difference.frame[f] = frame[f];
-        if (frame[f] < (unsigned) query->frame_count && frame[f] < QUERY_FRAMES_MAX)
-            difference.body_id[f] = query->frame[frame[f]].body_id;
+        difference.placement[f] = pair[f];
+        if (pair[f] < (unsigned) query->placement_count && pair[f] < QUERY_PLACEMENTS_MAX)
+            difference.body_id[f] = query->placement[pair[f]].body_id;
     }
     return difference;
 }
 
-static bool compare_answers(const struct compare_options *options, struct walk *then,
-                            struct walk *now, int32_t end, difference_sink *sink, void *user)
+static bool compare_answers(const struct compare_options *options, struct answers *then,
+                            struct answers *now, int32_t end, difference_sink *sink, void *user)
 {
     bool same = true;
     for (;;) {
@@ -229,7 +232,7 @@ static bool compare_answers(const struct compare_options *options, struct walk *
         if (number >= end)
             return same;
         struct difference difference =
-            begin_difference(now->query, frames_at(next_then == number ? then : now));
+            begin_difference(now->query, pair_at(next_then == number ? then : now));
         difference.then.answer = answer_to(then, number);
         difference.now.answer = answer_to(now, number);
         if (!find_difference(options, now->query->duration, &difference))
@@ -252,7 +255,7 @@ static bool goes_with(const struct scene_query *query, const struct scene_result
     int32_t before = query->first_pair - 1;
     for (int32_t i = 0; i < result->verdict_count; i++) {
         const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
-        if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->frame_count)
+        if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->placement_count)
             return false;
         if (query->which == QUERY_PAIRS_ACROSS &&
             (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
@@ -283,7 +286,7 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
                                    const struct scene_result *now, difference_sink *sink,
                                    void *user)
 {
-    if (is_of_the_moment(then->status) || is_of_the_moment(now->status))
+    if (compare_is_of_the_moment(then->status) || compare_is_of_the_moment(now->status))
         return moment(then->status, now->status);
     if (then->status != now->status)
         return differ_as_a_whole(then, now, sink, user);
@@ -291,48 +294,47 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
         return REPLAY_SAME;
     if (!goes_with(query, then) || !goes_with(query, now))
         return differ_as_a_whole(then, now, sink, user);
-    struct walk walk_then = {.query = query, .result = then};
-    struct walk walk_now = {.query = query, .result = now};
+    struct answers of_then = {.query = query, .result = then};
+    struct answers of_now = {.query = query, .result = now};
     const int32_t end = then->end_pair < now->end_pair ? then->end_pair : now->end_pair;
-    const bool same = compare_answers(options, &walk_then, &walk_now, end, sink, user);
+    const bool same = compare_answers(options, &of_then, &of_now, end, sink, user);
     return same ? REPLAY_SAME : REPLAY_DIFFERENT;
 }
 
 /* ---- Bytes ----
  *
- * Both types begin with the fingerprint and what is echoed (8 bytes each: utime, client id,
- * sequence number), then the server id, and end with compute_ns. */
+ * Both types begin with the fingerprint, what is echoed (8 bytes each: utime, client id, sequence
+ * number) and the server id, and end with compute_ns. */
 
-enum { IDS_END = 32, SERVER_END = 40, COMPUTE_BYTES = 8 };
+enum { SERVER_END = 40, COMPUTE_BYTES = 8 };
 
-/* Pairs: the ids of the bodies, their keys, and all that is compared, the status first. */
-enum { BODIES_END = SERVER_END + 16, KEYS_END = BODIES_END + 16 };
+/* Pairs: the ids of the bodies, their handles, and all that is compared, the status first. */
+enum { BODIES_END = SERVER_END + 16, HANDLES_END = BODIES_END + 2 * HANDLE_BYTES };
 
-/* Scenes: status, an empty detail where that is OK, and method; lost; the number of keys, and the
- * keys; and all that is compared. */
-enum { METHOD_END = SERVER_END + 4 + 5 + 4, LOST_END = METHOD_END + 8, COUNT_END = LOST_END + 4 };
+/* Scenes: status, an empty detail where that is OK, method, no unknown bodies; the bytes of the
+ * handles; and all that is compared. */
+enum { UNKNOWN_END = SERVER_END + 4 + 5 + 4 + 4, COUNT_END = UNKNOWN_END + 4 };
 
-static bool same_piece(const unsigned char *a, const unsigned char *b, size_t begin, size_t end)
+static bool same_bytes(const unsigned char *a, const unsigned char *b, size_t begin, size_t end)
 {
     return memcmp(a + begin, b + begin, end - begin) == 0;
 }
 
 static bool same_pair_bytes(const unsigned char *then, const unsigned char *now, size_t size)
 {
-    return size >= KEYS_END + 4 + COMPUTE_BYTES && same_piece(then, now, 0, IDS_END) &&
-           same_piece(then, now, SERVER_END, BODIES_END) &&
-           !is_of_the_moment((int32_t) big_endian_32(now + KEYS_END)) &&
-           same_piece(then, now, KEYS_END, size - COMPUTE_BYTES);
+    return size >= HANDLES_END + 4 + COMPUTE_BYTES && same_bytes(then, now, 0, 8) &&
+           same_bytes(then, now, SERVER_END, BODIES_END) &&
+           !compare_is_of_the_moment((int32_t) big_endian_32(now + HANDLES_END)) &&
+           same_bytes(then, now, HANDLES_END, size - COMPUTE_BYTES);
 }
 
 static bool same_scene_bytes(const unsigned char *then, const unsigned char *now, size_t size)
 {
-    if (size < COUNT_END + COMPUTE_BYTES || !same_piece(then, now, 0, IDS_END) ||
-        !same_piece(then, now, SERVER_END, METHOD_END) ||
-        big_endian_32(now + SERVER_END) != FMB_OK || !same_piece(then, now, LOST_END, COUNT_END))
+    if (size < COUNT_END + COMPUTE_BYTES || !same_bytes(then, now, 0, 8) ||
+        !same_bytes(then, now, SERVER_END, COUNT_END) || big_endian_32(now + SERVER_END) != FMB_OK)
         return false;
-    const size_t keys_end = COUNT_END + 8 * (size_t) big_endian_32(now + LOST_END);
-    return same_piece(then, now, keys_end, size - COMPUTE_BYTES);
+    return same_bytes(then, now, COUNT_END + big_endian_32(now + UNKNOWN_END),
+                      size - COMPUTE_BYTES);
 }
 
 bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t then_size,

@@ -1,9 +1,9 @@
-/* Two results of one query: then, as it was recorded, and now.
+/* Compares two results of one query: the recorded one (then) and the new one (now).
  *
  * They are the same if their statuses are, and the verdicts, intervals, boxes and certificates of
- * all pairs that both have answered: bit for bit, or with a tolerance. Who answered, when, how long
- * it took, which keys it told and what it had lost are not compared. A result of a scene may have
- * fewer pairs than were asked (end_pair): those that one of the two lacks are not compared. */
+ * all pairs answered by both: bit for bit, or within a tolerance. The service, times and handles
+ * are not compared. A result of a scene may answer fewer pairs than requested (end_pair): pairs
+ * that one of the two lacks are not compared. */
 #ifndef COMPARE_H
 #define COMPARE_H
 
@@ -11,7 +11,7 @@
 #include "query.h"
 #include "replayed.h"
 
-/* In what a pair differs first: each of these includes that those before it are the same. */
+/* The first difference of a pair: everything listed before it is the same. */
 enum difference_kind {
     DIFFERENT_STATUS,
     DIFFERENT_VERDICT,
@@ -21,35 +21,34 @@ enum difference_kind {
     DIFFERENT_KINDS
 };
 
-/* "verdict"; static. */
+/* For example "verdict"; static. */
 const char *difference_name(enum difference_kind kind);
 
-/* What one of the two says of a pair. */
+/* One of the two answers to a pair. */
 struct difference_side {
     int32_t status;           /* as in the result */
-    struct fmb_answer answer; /* all 0 where the status is not OK, or the method cannot decide */
+    struct fmb_answer answer; /* all 0 if the status is not OK or the method cannot decide */
     const char *certificate;  /* NULL: none */
 };
 
 struct difference {
     enum difference_kind kind;
-    bool whole; /* of a scene: its status, not a pair's answer */
+    bool whole; /* of a whole scene (its status), not of a pair */
     int64_t body_id[2];
-    unsigned frame[2]; /* indices of the frames in the query */
+    unsigned placement[2]; /* indices in the query */
     int dim;
     struct difference_side then, now;
 };
 
 struct compare_options {
-    /* 0: bit for bit. Else ends of intervals may differ by so much times the duration, ends of
-     * boxes by so much times the largest number of both boxes, and certificates are not compared.
-     */
+    /* 0: bit for bit. Otherwise ends of intervals may differ by tolerance * duration, ends of boxes
+     * by tolerance * (largest number of both boxes), and certificates are not compared. */
     double tolerance;
 };
 
 typedef void difference_sink(void *user, const struct difference *difference);
 
-/* Calls the sink for each difference. Returns SAME, DIFFERENT, BUSY or UNKNOWN. */
+/* Calls the sink for each difference. Never returns REPLAY_ALONE. */
 enum replay_outcome compare_pairs(const struct compare_options *options,
                                   const struct pair_query *query, const struct pair_result *then,
                                   const struct pair_result *now, difference_sink *sink, void *user);
@@ -58,8 +57,12 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
                                    const struct scene_result *now, difference_sink *sink,
                                    void *user);
 
-/* Whether two encoded results, the second of them as wire_write_*() writes it, are the same in all
- * that is compared, seen from their bytes alone. False: perhaps. kind: of the query. */
+/* Whether the status depends on the moment, not the query: the service was busy, or did not hold a
+ * body. */
+bool compare_is_of_the_moment(int32_t status);
+
+/* Quick check: true if the compared bytes of two encoded results, the second by wire_write_*(), are
+ * the same; false: not known. kind: of the query. */
 bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t then_size,
                         const unsigned char *now, size_t now_size);
 

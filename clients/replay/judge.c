@@ -1,25 +1,25 @@
 #include "judge.h"
 
 #include "allocate.h"
+#include "any_query.h"
 #include "big_endian.h"
-#include "check.h"
 #include "wire.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
+
+union any_result {
+    struct pair_result pair;
+    struct scene_result scene;
+};
 
 struct judge {
     struct judge_options options;
-    union {
-        struct pair_query pair;
-        struct scene_query scene;
-    } query;
-    union {
-        struct pair_result pair;
-        struct scene_result scene;
-    } then, now;
-    const struct match_item *item; /* the query whose differences are being found */
+    struct any_query query;
+    union any_result then, now;
+    const struct match_item *item; /* whose differences are being found */
+    unsigned char bytes[LOG_DATA_MAX];
 };
 
 struct judge *judge_open(const struct judge_options *options)
@@ -41,82 +41,84 @@ static struct tally *tally_of(const struct judge *judge, const struct match_item
 
 static struct tally_channel *channel_of(const struct judge *judge, const struct match_item *item)
 {
-    return &tally_of(judge, item)->channel[tally_channel_of(item->kind)];
+    return &tally_of(judge, item)->channel[tally_channel_of((enum log_kind) item->key.kind)];
 }
 
-/* ---- Messages ---- */
+/* ---- Reading ---- */
 
-/* Of a query that is longer than a datagram nobody reads more than the header. */
-static void read_header(struct judge *judge, const struct match_item *query)
+static const char *read_result(enum log_kind kind, const unsigned char *bytes, uint32_t size,
+                               union any_result *out)
 {
-    memset(&judge->query, 0, sizeof judge->query);
-    if (query->kind == LOG_PAIR_QUERY) {
-        judge->query.pair.utime = query->ids.utime;
-        judge->query.pair.client_id = query->ids.client_id;
-        judge->query.pair.sequence_number = query->ids.sequence_number;
-    } else {
-        judge->query.scene.utime = query->ids.utime;
-        judge->query.scene.client_id = query->ids.client_id;
-        judge->query.scene.sequence_number = query->ids.sequence_number;
-    }
+    return kind == LOG_PAIR_QUERY ? wire_read_pair_result(bytes, size, &out->pair)
+                                  : wire_read_scene_result(bytes, size, &out->scene);
 }
 
-/* The query, and what it was answered now: both have been read, or written, here before. */
-static void read_query(struct judge *judge, const struct match_item *query)
+const char *judge_read(struct judge *judge, enum log_kind kind, const unsigned char *bytes,
+                       uint32_t size)
 {
-    const char *error = NULL;
-    if (query->size > QUERY_BYTES_MAX)
-        read_header(judge, query);
-    else if (query->kind == LOG_PAIR_QUERY)
-        error = wire_read_pair_query(query->bytes, query->size, &judge->query.pair);
-    else
-        error = wire_read_scene_query(query->bytes, query->size, &judge->query.scene);
-    if (!error)
-        error = query->kind == LOG_PAIR_QUERY
-                    ? wire_read_pair_result(query->more, query->more_size, &judge->now.pair)
-                    : wire_read_scene_result(query->more, query->more_size, &judge->now.scene);
-    assert(!error);
+    return read_result(kind, bytes, size, &judge->then);
+}
+
+bool judge_of_the_moment(const struct judge *judge, enum log_kind kind)
+{
+    return compare_is_of_the_moment(kind == LOG_PAIR_QUERY ? judge->then.pair.status
+                                                           : judge->then.scene.status);
+}
+
+/* The query could be read before. */
+static bool read_query(struct judge *judge, enum log_kind kind, int log, int64_t offset)
+{
+    uint32_t size;
+    if (!again_read(judge->options.again, log, offset, judge->bytes, &size))
+        return false;
+    if (!any_query_read(&judge->query, kind, judge->bytes, size))
+        return true;
+    errno = EIO;
+    return false;
+}
+
+static bool read_both(struct judge *judge, const struct match_item *item)
+{
+    const enum log_kind kind = (enum log_kind) item->key.kind;
+    const char *error = read_result(kind, item->now, item->now_size, &judge->now);
+    assert(!error); /* it was written here, or read before */
     (void) error;
-}
-
-const char *judge_read_result(struct judge *judge, const struct match_item *result)
-{
-    return result->kind == LOG_PAIR_QUERY
-               ? wire_read_pair_result(result->bytes, result->size, &judge->then.pair)
-               : wire_read_scene_result(result->bytes, result->size, &judge->then.scene);
-}
-
-/* With the last 8 bytes results of both types end; of bytes that have been read. */
-static int64_t compute_ns_of(const struct match_item *result)
-{
-    return (int64_t) big_endian_64(result->bytes + result->size - sizeof(int64_t));
+    return read_query(judge, kind, item->place.log, item->place.offset);
 }
 
 /* ---- For the page ---- */
 
-/* Frames that came by key, with what that stands for. */
-static void complete(const struct judge *judge, struct query_frame *frame, int32_t count)
+/* Placements by handle get the geometry that the log defines. */
+static void complete(const struct judge *judge, struct placement *placement, int32_t count)
 {
-    for (int32_t i = 0; i < count && i < QUERY_FRAMES_MAX; i++)
-        if (check_by_key(&frame[i]))
-            known_bodies_complete(judge->options.known, &frame[i]);
+    for (int32_t i = 0; i < count; i++) {
+        if (!placement_by_handle(&placement[i]))
+            continue;
+        const struct geometry *geometry =
+            definitions_find(judge->options.definitions, &placement[i].handle);
+        if (!geometry)
+            continue;
+        placement[i].geometry = *geometry;
+        placement[i].frame_count = (int32_t) big_endian_32(geometry->bytes + 4);
+    }
 }
 
-static void show(struct judge *judge, const struct match_item *query, bool has_then,
+static void show(struct judge *judge, const struct match_item *item, bool has_then,
                  enum replay_outcome outcome)
 {
-    struct replayed replayed = {.log = judge->options.log[query->place.log],
-                                .event_number = query->place.number,
-                                .offset = query->place.offset,
-                                .utime = query->place.utime,
+    struct replayed replayed = {.log = judge->options.log[item->place.log],
+                                .event_number = item->place.number,
+                                .offset = item->place.offset,
+                                .utime = item->place.utime,
                                 .outcome = outcome};
-    if (query->kind == LOG_PAIR_QUERY) {
-        complete(judge, judge->query.pair.frame, 2);
+    int32_t count;
+    struct placement *placement = any_query_placements(&judge->query, &count);
+    complete(judge, placement, count);
+    if (item->key.kind == LOG_PAIR_QUERY) {
         replayed.pair = &judge->query.pair;
         replayed.pair_now = &judge->now.pair;
         replayed.pair_then = has_then ? &judge->then.pair : NULL;
     } else {
-        complete(judge, judge->query.scene.frame, judge->query.scene.frame_count);
         replayed.scene = &judge->query.scene;
         replayed.scene_now = &judge->now.scene;
         replayed.scene_then = has_then ? &judge->then.scene : NULL;
@@ -130,88 +132,94 @@ static void on_difference(void *user, const struct difference *difference)
 {
     struct judge *judge = user;
     const struct match_item *query = judge->item;
-    const struct found found = {query->place, query->kind, query->ids, *difference};
+    const struct found found = {query->place, (enum log_kind) query->key.kind, query->key.client_id,
+                                query->key.sequence_number, *difference};
     channel_of(judge, query)->differences[difference->kind]++;
     judge->options.sink->found(judge->options.sink->user, &found);
 }
 
-static enum replay_outcome compare(struct judge *judge, const struct match_item *query)
+static enum replay_outcome compare(struct judge *judge, difference_sink *sink)
 {
     const struct compare_options *options = &judge->options.compare;
-    judge->item = query;
-    if (query->kind == LOG_PAIR_QUERY)
-        return compare_pairs(options, &judge->query.pair, &judge->then.pair, &judge->now.pair,
-                             on_difference, judge);
-    return compare_scenes(options, &judge->query.scene, &judge->then.scene, &judge->now.scene,
-                          on_difference, judge);
+    if (judge->query.kind == LOG_PAIR_QUERY)
+        return compare_pairs(options, &judge->query.pair, &judge->then.pair, &judge->now.pair, sink,
+                             judge);
+    return compare_scenes(options, &judge->query.scene, &judge->then.scene, &judge->now.scene, sink,
+                          judge);
 }
 
-static void count_time(const struct judge *judge, const struct match_item *query,
-                       const struct match_item *result)
+static void count(struct judge *judge, const struct match_item *query, enum replay_outcome outcome,
+                  int64_t then_ns)
 {
-    const int64_t compute_ns = compute_ns_of(result);
-    if (compute_ns > 0)
-        histogram_add(&tally_of(judge, query)->then, compute_ns);
+    channel_of(judge, query)->outcome[outcome]++;
+    if (then_ns > 0 && (outcome == REPLAY_SAME || outcome == REPLAY_DIFFERENT))
+        histogram_add(&tally_of(judge, query)->then, then_ns);
 }
 
-static void refuse_result(const struct judge *judge, const struct match_item *result,
-                          const char *error)
+/* Results of both types end with compute_ns. */
+bool judge_same(struct judge *judge, const struct match_item *query, const unsigned char *then,
+                size_t size)
 {
-    static const char *const channel[TALLY_CHANNELS] = {WIRE_PAIR_RESULT, WIRE_SCENE_RESULT};
-    channel_of(judge, result)->unreadable[1]++;
-    judge->options.sink->unreadable(judge->options.sink->user, &result->place,
-                                    channel[tally_channel_of(result->kind)], error);
+    if (judge->options.page || !compare_bytes_same((enum log_kind) query->key.kind, then, size,
+                                                   query->now, query->now_size))
+        return false;
+    count(judge, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
+    return true;
 }
 
-/* The bytes were the same, or have to be looked at. */
-static enum replay_outcome judge_bytes(struct judge *judge, const struct match_item *query,
-                                       const struct match_item *result)
-{
-    const bool same =
-        compare_bytes_same(query->kind, result->bytes, result->size, query->more, query->more_size);
-    if (same && !judge->options.page) {
-        count_time(judge, query, result);
-        return REPLAY_SAME;
-    }
-    const char *error = judge_read_result(judge, result);
-    if (error) {
-        refuse_result(judge, result, error);
-        return REPLAY_ALONE;
-    }
-    read_query(judge, query);
-    const enum replay_outcome outcome = compare(judge, query);
-    if (outcome == REPLAY_SAME || outcome == REPLAY_DIFFERENT)
-        count_time(judge, query, result);
-    if (judge->options.page)
-        show(judge, query, true, outcome);
-    return outcome;
-}
-
-void judge_both(struct judge *judge, const struct match_item *query,
-                const struct match_item *result)
-{
-    if (query->place.mine)
-        channel_of(judge, query)->outcome[judge_bytes(judge, query, result)]++;
-}
-
-void judge_query_alone(struct judge *judge, const struct match_item *query)
+bool judge_both(struct judge *judge, const struct match_item *query)
 {
     if (!query->place.mine)
-        return;
-    channel_of(judge, query)->outcome[REPLAY_ALONE]++;
-    if (!judge->options.page)
-        return;
-    read_query(judge, query);
-    show(judge, query, false, REPLAY_ALONE);
+        return true;
+    if (!read_both(judge, query))
+        return false;
+    judge->item = query;
+    const enum replay_outcome outcome = compare(judge, on_difference);
+    count(judge, query, outcome,
+          query->key.kind == LOG_PAIR_QUERY ? judge->then.pair.compute_ns
+                                            : judge->then.scene.compute_ns);
+    if (judge->options.page)
+        show(judge, query, true, outcome);
+    return true;
 }
 
-void judge_result_alone(struct judge *judge, const struct match_item *result)
+bool judge_alone(struct judge *judge, const struct match_item *query)
 {
-    if (!result->place.mine)
-        return;
-    const char *error = judge_read_result(judge, result);
-    if (error)
-        refuse_result(judge, result, error);
-    else
-        channel_of(judge, result)->results_alone++;
+    if (!query->place.mine)
+        return true;
+    count(judge, query, REPLAY_ALONE, 0);
+    if (!judge->options.page)
+        return true;
+    if (!read_both(judge, query))
+        return false;
+    show(judge, query, false, REPLAY_ALONE);
+    return true;
+}
+
+/* ---- Second results ---- */
+
+static void no_difference(void *user, const struct difference *difference)
+{
+    (void) user;
+    (void) difference;
+}
+
+bool judge_second(struct judge *judge, const struct match_note *note,
+                  const struct match_place *place, const unsigned char *first, uint32_t size)
+{
+    static const char *const channel[TALLY_CHANNELS] = {WIRE_PAIR_RESULT, WIRE_SCENE_RESULT};
+    const enum log_kind kind = (enum log_kind) note->key.kind;
+    const int which = tally_channel_of(kind);
+    struct tally_channel *tally = &judge->options.tally[place->log].channel[which];
+    if (!read_query(judge, kind, note->query_log, note->query_offset) ||
+        read_result(kind, first, size, &judge->now))
+        return false;
+    if (compare(judge, no_difference) != REPLAY_DIFFERENT) {
+        tally->results_again++;
+        return true;
+    }
+    tally->contradictions++;
+    judge->options.sink->unreadable(judge->options.sink->user, place, channel[which],
+                                    "contradicts an earlier result of the same query");
+    return true;
 }

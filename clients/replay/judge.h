@@ -1,23 +1,22 @@
-/* Judges the queries of a part of a log once their results are there: compares, counts, and hands
- * on what is different. */
+/* Compares the recorded result of a query with the new one, counts, and reports differences. */
 #ifndef JUDGE_H
 #define JUDGE_H
 
+#include "again.h"
+#include "definitions.h"
 #include "found.h"
-#include "known_bodies.h"
-#include "match.h"
 #include "page.h"
 #include "tally.h"
 
-/* Where it is told what a replay finds. */
+/* What a replay reports while it runs. */
 struct replay_sink {
     void (*found)(void *user, const struct found *found);
-    /* A message that cannot be read, and why. */
+    /* A message that cannot be decoded, and why; or a second result that contradicts the first. */
     void (*unreadable)(void *user, const struct match_place *place, const char *channel,
                        const char *what);
-    /* Bytes that are no event of a log. */
+    /* Damage of a log. */
     void (*damage)(void *user, int log, const struct log_damage *damage);
-    /* So many bytes of the logs have been gone through. */
+    /* So many bytes of the logs have been read so far. */
     void (*progress)(void *user, int64_t bytes);
     void *user;
 };
@@ -26,25 +25,42 @@ struct judge_options {
     struct compare_options compare;
     char *const *log; /* paths */
     const struct replay_sink *sink;
-    struct tally *tally;        /* [log] */
-    struct page *page;          /* takes in all that is judged; NULL: none */
-    struct known_bodies *known; /* for the page */
+    struct tally *tally;             /* [log] */
+    struct page *page;               /* receives everything judged; NULL: none */
+    struct definitions *definitions; /* for the page */
+    struct again *again;
 };
 
 struct judge;
 
-/* Copies the options; owns nothing of them. Never NULL: ends the program where there is no memory.
- */
+/* Copies the options; owns nothing of them. Exits with status 1 if memory is exhausted. */
 struct judge *judge_open(const struct judge_options *options);
 void judge_close(struct judge *judge); /* may be NULL */
 
-/* Whether a result can be read: NULL, or why not. */
-const char *judge_read_result(struct judge *judge, const struct match_item *result);
+/* Quick check of a query with its new result against the bytes of the recorded result. True: they
+ * are the same, and were counted. False: not known, or there is a page. */
+bool judge_same(struct judge *judge, const struct match_item *query, const unsigned char *then,
+                size_t size);
 
-/* Queries have what was answered now in more. What is not mine is not counted. */
-void judge_both(struct judge *judge, const struct match_item *query,
-                const struct match_item *result);
-void judge_query_alone(struct judge *judge, const struct match_item *query);
-void judge_result_alone(struct judge *judge, const struct match_item *result);
+/* Decodes a result for one of the functions below. kind: of the query. Returns NULL; or a static
+ * text: why it cannot be decoded. */
+const char *judge_read(struct judge *judge, enum log_kind kind, const unsigned char *bytes,
+                       uint32_t size);
+
+/* compare_is_of_the_moment() of the status of the decoded result. */
+bool judge_of_the_moment(const struct judge *judge, enum log_kind kind);
+
+/* These read the query from its log again. False: errno. */
+
+/* Judges a query with its new result against the decoded result. Only counted if mine. */
+bool judge_both(struct judge *judge, const struct match_item *query);
+
+/* Judges a query with its new result, but without a recorded one. */
+bool judge_alone(struct judge *judge, const struct match_item *query);
+
+/* Judges the decoded result, the second of its query, against the first, whose bytes must stay
+ * valid. */
+bool judge_second(struct judge *judge, const struct match_note *note,
+                  const struct match_place *place, const unsigned char *first, uint32_t size);
 
 #endif

@@ -14,15 +14,15 @@ struct entry {
 /* A heap, the last one on top: entry[i] is not before entry[2 * i + 1] and entry[2 * i + 2]. */
 struct listing {
     struct entry *entry;
-    size_t count, room, limit;
+    size_t count, capacity, limit;
     int64_t put;
 };
 
 struct listing *listing_open(int64_t limit)
 {
-    struct listing *told = allocate(1, sizeof *told);
-    told->limit = (size_t) limit;
-    return told;
+    struct listing *list = allocate(1, sizeof *list);
+    list->limit = (size_t) limit;
+    return list;
 }
 
 static void free_entry(struct entry *entry)
@@ -31,14 +31,14 @@ static void free_entry(struct entry *entry)
     free(entry->certificate[1]);
 }
 
-void listing_close(struct listing *told)
+void listing_close(struct listing *list)
 {
-    if (!told)
+    if (!list)
         return;
-    for (size_t i = 0; i < told->count; i++)
-        free_entry(&told->entry[i]);
-    free(told->entry);
-    free(told);
+    for (size_t i = 0; i < list->count; i++)
+        free_entry(&list->entry[i]);
+    free(list->entry);
+    free(list);
 }
 
 static int compare_entries(const void *left, const void *right)
@@ -52,34 +52,34 @@ static int compare_entries(const void *left, const void *right)
     return a->number < b->number ? -1 : a->number > b->number;
 }
 
-static bool is_before(const struct listing *told, size_t a, size_t b)
+static bool is_before(const struct listing *list, size_t a, size_t b)
 {
-    return compare_entries(&told->entry[a], &told->entry[b]) < 0;
+    return compare_entries(&list->entry[a], &list->entry[b]) < 0;
 }
 
-static void swap(struct listing *told, size_t a, size_t b)
+static void swap(struct listing *list, size_t a, size_t b)
 {
-    const struct entry entry = told->entry[a];
-    told->entry[a] = told->entry[b];
-    told->entry[b] = entry;
+    const struct entry entry = list->entry[a];
+    list->entry[a] = list->entry[b];
+    list->entry[b] = entry;
 }
 
-static void sift_up(struct listing *told, size_t i)
+static void sift_up(struct listing *list, size_t i)
 {
-    for (size_t above = (i - 1) / 2; i > 0 && is_before(told, above, i); above = (i - 1) / 2) {
-        swap(told, above, i);
+    for (size_t above = (i - 1) / 2; i > 0 && is_before(list, above, i); above = (i - 1) / 2) {
+        swap(list, above, i);
         i = above;
     }
 }
 
-static void sift_down(struct listing *told, size_t i)
+static void sift_down(struct listing *list, size_t i)
 {
-    for (size_t below; (below = 2 * i + 1) < told->count; i = below) {
-        if (below + 1 < told->count && is_before(told, below, below + 1))
+    for (size_t below; (below = 2 * i + 1) < list->count; i = below) {
+        if (below + 1 < list->count && is_before(list, below, below + 1))
             below++;
-        if (!is_before(told, i, below))
+        if (!is_before(list, i, below))
             return;
-        swap(told, i, below);
+        swap(list, i, below);
     }
 }
 
@@ -103,29 +103,29 @@ static void set(struct entry *entry, const struct found *found, int64_t number)
     difference->now.certificate = entry->certificate[1];
 }
 
-void listing_put(struct listing *told, const struct found *found)
+void listing_put(struct listing *list, const struct found *found)
 {
-    const struct entry here = {.found = *found, .number = told->put++};
-    if (told->count < told->limit) {
-        told->entry = allocate_room(told->entry, &told->room, told->count + 1, sizeof here);
-        set(&told->entry[told->count++], found, here.number);
-        sift_up(told, told->count - 1);
-    } else if (told->limit > 0 && compare_entries(&here, &told->entry[0]) < 0) {
-        free_entry(&told->entry[0]);
-        set(&told->entry[0], found, here.number);
-        sift_down(told, 0);
+    const struct entry here = {.found = *found, .number = list->put++};
+    if (list->count < list->limit) {
+        list->entry = allocate_room(list->entry, &list->capacity, list->count + 1, sizeof here);
+        set(&list->entry[list->count++], found, here.number);
+        sift_up(list, list->count - 1);
+    } else if (list->limit > 0 && compare_entries(&here, &list->entry[0]) < 0) {
+        free_entry(&list->entry[0]);
+        set(&list->entry[0], found, here.number);
+        sift_down(list, 0);
     }
 }
 
-int64_t listing_beyond(const struct listing *told)
+int64_t listing_beyond(const struct listing *list)
 {
-    return told->put - (int64_t) told->count;
+    return list->put - (int64_t) list->count;
 }
 
-void listing_each(struct listing *told, found_sink *sink, void *user)
+void listing_each(struct listing *list, found_sink *sink, void *user)
 {
-    if (told->count > 0)
-        qsort(told->entry, told->count, sizeof *told->entry, compare_entries);
-    for (size_t i = 0; i < told->count; i++)
-        sink(user, &told->entry[i].found);
+    if (list->count > 0)
+        qsort(list->entry, list->count, sizeof *list->entry, compare_entries);
+    for (size_t i = 0; i < list->count; i++)
+        sink(user, &list->entry[i].found);
 }

@@ -1,7 +1,6 @@
-/* The differences that are told of a replay: the first ones, so many, in the order of their
- * queries, whatever the order in which they are found. Those of one query stay in the order in
- * which they came. Each takes some 300 bytes of memory, and a certificate that differs its
- * beginning. */
+/* The differences that a replay reports: the first ones up to a limit, sorted by their queries,
+ * whatever the order in which they are found. Differences of one query stay in the order of
+ * arrival. Each takes some 300 bytes of memory, and the beginning of certificates that differ. */
 #ifndef LISTING_H
 #define LISTING_H
 
@@ -9,17 +8,17 @@
 
 struct listing;
 
-/* limit: of those that are kept, from 0. Never NULL: ends the program where there is no memory. */
+/* limit: most differences kept, from 0. Exits with status 1 if memory is exhausted. */
 struct listing *listing_open(int64_t limit);
-void listing_close(struct listing *told); /* may be NULL */
+void listing_close(struct listing *list); /* may be NULL */
 
-/* Copies what it keeps. */
-void listing_put(struct listing *told, const struct found *found);
+/* Adds a difference, and copies what it keeps of it. */
+void listing_put(struct listing *list, const struct found *found);
 
-/* How many there were beyond those that are kept. */
-int64_t listing_beyond(const struct listing *told);
+/* Number of differences beyond the limit. */
+int64_t listing_beyond(const struct listing *list);
 
-/* Calls the sink for each that is kept. No more may be put then. */
-void listing_each(struct listing *told, found_sink *sink, void *user);
+/* Calls the sink for each difference kept. None may be added after that. */
+void listing_each(struct listing *list, found_sink *sink, void *user);
 
 #endif

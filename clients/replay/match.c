@@ -1,54 +1,39 @@
 #include "match.h"
 
 #include "allocate.h"
-#include "recent.h"
-#include "spill.h"
+#include "keyed_hash.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* Of both far more than is ever under way. */
-enum { RECENT_BYTES = 4 << 20 };
+#undef uthash_malloc
+#define uthash_malloc(size) allocate(1, size)
+
+/* Of notes, which consecutive sequence numbers of a client fill one after the other. */
+enum { NOTES = 4096 };
 
 struct match {
-    struct match_sink sink;
-    struct recent *queries, *results;
-    struct spill *spill;
-    int64_t open;
+    /* The first of each key, after `always`, which is never removed: uthash frees the table with
+     * its last item, and most logs have one query at a time that waits. */
+    struct match_item *items, always;
+    struct keyed_hash hash;
+    struct match_note note[NOTES];
 };
 
-static void query_gone(void *user, const struct recent_item *query)
+static unsigned hash_of(const struct match *match, const struct match_key *key)
 {
-    struct match *match = user;
-    if (query->matched)
-        match->open -= query->item.place.mine;
-    else
-        spill_put(match->spill, SPILL_QUERIES, &query->item);
+    return keyed_hash_of(&match->hash, key, sizeof *key);
 }
 
-/* One that nobody has waited for is that of a query with a result, come again, or of one that is no
- * longer here. */
-static void result_gone(void *user, const struct recent_item *result)
-{
-    struct match *match = user;
-    const struct match_item *item = &result->item;
-    if (result->matched)
-        return;
-    const struct recent_item *query = recent_matched(match->queries, item->kind, &item->ids);
-    if (!query) {
-        spill_put(match->spill, SPILL_RESULTS, item);
-        return;
-    }
-    match->open -= item->place.mine;
-    match->sink.both(match->sink.user, &query->item, item);
-}
-
-struct match *match_open(const struct match_sink *sink)
+struct match *match_open(void)
 {
     struct match *match = allocate(1, sizeof *match);
-    *match = (struct match){.sink = *sink,
-                            .queries = recent_open(RECENT_BYTES, query_gone, match),
-                            .results = recent_open(RECENT_BYTES, result_gone, match),
-                            .spill = spill_open()};
+    match->hash = keyed_hash_make();
+    match->always.key.kind = -1;
+    HASH_ADD_BYHASHVALUE(hh, match->items, key, sizeof match->always.key,
+                         hash_of(match, &match->always.key), &match->always);
+    for (int i = 0; i < NOTES; i++)
+        match->note[i].key.kind = -1;
     return match;
 }
 
@@ -56,48 +41,142 @@ void match_close(struct match *match)
 {
     if (!match)
         return;
-    recent_close(match->queries);
-    recent_close(match->results);
-    spill_close(match->spill);
+    for (struct match_item *item; (item = match_any(match));) {
+        match_remove(match, item);
+        match_free(item);
+    }
+    HASH_CLEAR(hh, match->items);
     free(match);
 }
 
-void match_query(struct match *match, const struct match_item *item)
+static struct match_item *find(const struct match *match, const struct match_key *key,
+                               unsigned hash)
 {
-    struct recent_item *query = recent_put(match->queries, item);
-    struct recent_item *result = recent_unmatched(match->results, item->kind, &item->ids);
-    match->open += item->place.mine;
-    if (!result)
-        return;
-    match->open -= result->item.place.mine;
-    recent_match(match->results, result);
-    recent_match(match->queries, query);
-    match->sink.both(match->sink.user, &query->item, &result->item);
+    struct match_item *item;
+    HASH_FIND_BYHASHVALUE(hh, match->items, key, sizeof *key, hash, item);
+    return item;
 }
 
-void match_result(struct match *match, const struct match_item *result)
+struct match_item *match_find(const struct match *match, const struct match_key *key)
 {
-    struct recent_item *query = recent_unmatched(match->queries, result->kind, &result->ids);
-    if (query)
-        recent_match(match->queries, query);
-    else
-        query = recent_matched(match->queries, result->kind, &result->ids);
-    if (query) {
-        match->sink.both(match->sink.user, &query->item, result);
-        return;
+    return match_any(match) ? find(match, key, hash_of(match, key)) : NULL;
+}
+
+static void put(struct match *match, struct match_item *item)
+{
+    const unsigned hash = hash_of(match, &item->key);
+    struct match_item *first = find(match, &item->key, hash);
+    item->waits = true;
+    item->next = NULL;
+    item->last = item;
+    if (first) {
+        first->last->next = item;
+        first->last = item;
+    } else {
+        HASH_ADD_BYHASHVALUE(hh, match->items, key, sizeof item->key, hash, item);
     }
-    match->open += result->place.mine;
-    recent_put(match->results, result);
 }
 
-int64_t match_open_count(const struct match *match)
+struct match_item *match_new(const struct match_key *key, const struct match_place *place)
 {
-    return match->open;
+    struct match_item *item = allocate_unset(sizeof *item);
+    *item = (struct match_item){.key = *key, .place = *place};
+    return item;
 }
 
-bool match_finish(struct match *match)
+struct match_item *match_add(struct match *match, const struct match_key *key,
+                             const struct match_place *place, bool is_result)
 {
-    recent_flush(match->results); /* first: of queries that have one already they are told here */
-    recent_flush(match->queries);
-    return spill_join(match->spill, &match->sink);
+    struct match_item *item = match_new(key, place);
+    item->is_result = is_result;
+    put(match, item);
+    return item;
+}
+
+void match_remove(struct match *match, struct match_item *item)
+{
+    struct match_item *next = item->next;
+    const unsigned hash = item->hh.hashv;
+    HASH_DELETE(hh, match->items, item);
+    item->waits = false;
+    if (!next)
+        return;
+    next->last = item->last;
+    HASH_ADD_BYHASHVALUE(hh, match->items, key, sizeof next->key, hash, next);
+}
+
+void match_free(struct match_item *item)
+{
+    free(item->now);
+    free(item);
+}
+
+struct match_item *match_any(const struct match *match)
+{
+    return match->always.hh.next;
+}
+
+/* ---- The end ---- */
+
+/* Takes all items of one kind out of the table, in the order in which their keys came. */
+static struct match_item *take_all(struct match *match, bool results)
+{
+    struct match_item *first = NULL, **end = &first, *item, *next;
+    for (item = match_any(match); item; item = next) {
+        next = item->hh.next;
+        while (item && item->is_result == results) {
+            struct match_item *same_key = item->next;
+            match_remove(match, item);
+            *end = item;
+            end = &item->next;
+            *end = NULL;
+            item = same_key;
+        }
+    }
+    return first;
+}
+
+void match_finish(struct match *match, match_sink *sink, void *user)
+{
+    struct match_item *results = take_all(match, true), *queries = take_all(match, false), *next;
+    for (struct match_item *item = queries; item; item = next) {
+        next = item->next;
+        item->key.utime = 0;
+        put(match, item);
+    }
+    for (struct match_item *result = results; result; result = next) {
+        next = result->next;
+        result->key.utime = 0;
+        struct match_item *query = match_find(match, &result->key);
+        if (query)
+            match_remove(match, query);
+        sink(user, query, result);
+    }
+}
+
+/* ---- Notes ---- */
+
+static size_t note_of(const struct match_key *key)
+{
+    return ((uint64_t) key->sequence_number + (uint64_t) key->client_id +
+            (uint64_t) key->kind * (NOTES / 2)) %
+           NOTES;
+}
+
+void match_note(struct match *match, const struct match_item *query,
+                const struct match_place *result)
+{
+    if (query->unreadable)
+        return;
+    match->note[note_of(&query->key)] = (struct match_note){.key = query->key,
+                                                            .query_log = query->place.log,
+                                                            .result_log = result->log,
+                                                            .query_offset = query->place.offset,
+                                                            .result_offset = result->offset};
+}
+
+const struct match_note *match_noted(const struct match *match, const struct match_key *key)
+{
+    const struct match_note *note = &match->note[note_of(key)];
+    return memcmp(&note->key, key, sizeof *key) == 0 ? note : NULL;
 }

@@ -1,61 +1,92 @@
-/* Brings together the queries and the results of a log, wherever they stand in it.
+/* Matches queries and results of a log.
  *
- * A result belongs to the query with the same client id and sequence number, and of several such,
- * to one with the same utime too (the service echoes it) that has no result yet. Most stand near
- * each other: the latest megabyte of both is in memory, and up to four of what waits. What finds no
- * partner there goes into temporary files, by a hash of its ids, and is brought together at the
- * end, piece by piece. So memory stays the same whatever the size of the log, and nothing is lost.
+ * A result belongs to the query with the same client id, sequence number, time of sending and kind;
+ * of several such queries, to the first without a result. Unmatched queries and results are kept in
+ * memory: an item takes some 250 bytes, and the answer that its user keeps with it. Matched ones
+ * are removed, except for a note of the places of the last few thousand, by which second results
+ * are recognised.
  *
- * A result that comes again, when all such queries have one, is given again with the one that got
- * one last; if that is no longer in memory, the result is alone. */
+ * The table is hashed with a secret: no log can choose ids that collide. */
 #ifndef MATCH_H
 #define MATCH_H
 
 #include "log_kind.h"
-#include "query.h"
 
-/* Where an event stands. */
+#include <uthash.h>
+
+struct match_key {
+    int64_t kind; /* of the query: LOG_PAIR_QUERY or LOG_SCENE_QUERY */
+    int64_t client_id, sequence_number;
+    int64_t utime; /* of the query, microseconds since 1970, which results echo */
+};
+
+/* The place of an event. */
 struct match_place {
     int32_t log; /* index of the log */
-    bool mine;   /* for the user of this */
+    bool mine;   /* counted: it is in the range of time that is replayed */
     int64_t number, offset, utime;
 };
 
-/* A query or a result. */
 struct match_item {
-    enum log_kind kind; /* of the query: PAIR or SCENE_QUERY */
-    struct query_header ids;
+    struct match_key key;
     struct match_place place;
-    /* As they stand in the log; of a query, behind them, what the user gave besides. */
-    uint32_t size, more_size;
-    const unsigned char *bytes, *more;
-};
-
-/* Called for each result that found its query, as soon as both are there; a result that comes again
- * is given again. And at the end for what is alone. Items are good until the call returns. */
-struct match_sink {
-    void (*both)(void *user, const struct match_item *query, const struct match_item *result);
-    void (*query_alone)(void *user, const struct match_item *query);
-    void (*result_alone)(void *user, const struct match_item *result);
-    void *user;
+    bool is_result; /* otherwise a query; the fields below are for the user */
+    bool unreadable;
+    bool waits;      /* it is in the table */
+    bool has_then;   /* a result was recorded, at then */
+    bool sent_whole; /* sent with frames, after UNKNOWN_BODY */
+    struct match_place then;
+    unsigned char *now; /* owned; the new result; NULL: none yet */
+    uint32_t now_size;
+    struct match_item *pending; /* the next item that waits for the same definition */
+    /* Private: */
+    struct match_item *next, *last; /* items with the same key; last: only of the first item */
+    UT_hash_handle hh;
 };
 
 struct match;
 
-/* Never NULL: ends the program where there is no memory. */
-struct match *match_open(const struct match_sink *sink);
-void match_close(struct match *match); /* may be NULL */
+/* Exits with status 1 if memory is exhausted. */
+struct match *match_open(void);
+void match_close(struct match *match); /* may be NULL; frees all items in the table */
 
-/* The bytes are copied. size and more_size at most LOG_DATA_MAX each. */
-void match_query(struct match *match, const struct match_item *query);
-void match_result(struct match *match, const struct match_item *result);
+/* The first item with this key; NULL: none. Items with the same key are all queries or all results.
+ */
+struct match_item *match_find(const struct match *match, const struct match_key *key);
 
-/* Of how many of the user's own (place.mine) something may still be told before the end: those that
- * have found no partner, and queries in memory, since results may come again. */
-int64_t match_open_count(const struct match *match);
+/* Adds an item to the table. */
+struct match_item *match_add(struct match *match, const struct match_key *key,
+                             const struct match_place *place, bool is_result);
 
-/* The end of the log. False: a temporary file could not be written or read, errno says why, and not
- * all could be brought together. */
-bool match_finish(struct match *match);
+/* Makes an item outside the table. Free it with match_free(). */
+struct match_item *match_new(const struct match_key *key, const struct match_place *place);
+
+/* Removes the first item with its key from the table. Free it with match_free(). */
+void match_remove(struct match *match, struct match_item *item);
+void match_free(struct match_item *item);
+
+/* Any item in the table that is the first with its key; NULL: the table is empty. */
+struct match_item *match_any(const struct match *match);
+
+/* At the end: matches the remaining items without the time of sending, for results that do not echo
+ * it. Calls the sink for each result, with its query or NULL; both were removed, and the sink frees
+ * them. After that only queries are left. */
+typedef void match_sink(void *user, struct match_item *query, struct match_item *result);
+void match_finish(struct match *match, match_sink *sink, void *user);
+
+/* ---- Notes of matches ---- */
+
+struct match_note {
+    struct match_key key;
+    int32_t query_log, result_log;
+    int64_t query_offset, result_offset;
+};
+
+/* Adds a note, except for an unreadable query. */
+void match_note(struct match *match, const struct match_item *query,
+                const struct match_place *result);
+
+/* The note of a key; NULL: there is none, or it was replaced by later ones. */
+const struct match_note *match_noted(const struct match *match, const struct match_key *key);
 
 #endif

@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-static void tell_never(const struct answer_bus_options *options, double patience)
+static void report_never(const struct answer_bus_options *options, double patience)
 {
     const struct args_bus where = {options->url, options->prefix};
     fprintf(stderr, "fmb: no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s",
@@ -14,7 +14,7 @@ static void tell_never(const struct answer_bus_options *options, double patience
     fprintf(stderr, " within %g s\n", patience);
 }
 
-static void tell_no_more(const struct tally_bus *bus, double patience, char *const *log)
+static void report_no_more(const struct tally_bus *bus, double patience, char *const *log)
 {
     char answered[NUMBER_TEXT_MAX];
     fprintf(stderr, "fmb: fmbd answered %s queries, and then nothing for %g s; ",
@@ -23,23 +23,24 @@ static void tell_no_more(const struct tally_bus *bus, double patience, char *con
             bus->offset, log[bus->log]);
 }
 
-/* A service was never there, or is not any more. */
-static void tell_nobody(const struct tally_bus *bus, const struct answer_bus_options *options,
-                        char *const *log)
+/* No service has answered at all, or none does any more. */
+static void report_no_service(const struct tally_bus *bus, const struct answer_bus_options *options,
+                              char *const *log)
 {
     const double patience = options->timeout * (options->retries + 1);
     if (bus->services == 0)
-        tell_never(options, patience);
+        report_never(options, patience);
     else
-        tell_no_more(bus, patience, log);
+        report_no_more(bus, patience, log);
     if (bus->nonsense > 0)
         fprintf(stderr, "fmb: %" PRId64 " results could not be read: another version of fmbd?\n",
                 bus->nonsense);
-    fprintf(stderr, "fmb: start one with 'fmbd%s%s &', or answer without it: leave out --bus\n",
+    fprintf(stderr,
+            "fmb: start one with 'fmbd%s%s &', or replay in this process: leave out --bus\n",
             *options->prefix ? " --prefix " : "", options->prefix);
 }
 
-static void tell_signal(const struct tally_bus *bus)
+static void report_signal(const struct tally_bus *bus)
 {
     char answered[NUMBER_TEXT_MAX];
     fprintf(stderr, "fmb: ended by a signal; counts are of %s queries, answered so far\n",
@@ -51,8 +52,8 @@ void replay_bus_end(const struct tally_bus *bus, const struct answer_bus_options
 {
     switch ((enum answer_bus_end) bus->end) {
     case ANSWER_BUS_NO_END: break;
-    case ANSWER_BUS_SIGNAL: tell_signal(bus); break;
-    case ANSWER_BUS_NOBODY: tell_nobody(bus, options, log); break;
+    case ANSWER_BUS_SIGNAL: report_signal(bus); break;
+    case ANSWER_BUS_NOBODY: report_no_service(bus, options, log); break;
     case ANSWER_BUS_FAILED: fputs("fmb: the bus has failed\n", stderr); break;
     }
 }

@@ -1,133 +1,165 @@
 #include "replay_json.h"
 
-#include "../report.h"
-#include "number.h"
+#include "report.h"
 #include "wire.h"
-
-#include <inttypes.h>
 
 static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
 struct replay_json replay_json_begin(FILE *out)
 {
-    fputs("{\"differences\": [", out);
-    return (struct replay_json){.out = out, .first = true};
+    struct replay_json json = {.json = {.out = out}};
+    json_begin(&json.json, NULL, '{');
+    json_begin(&json.json, "differences", '[');
+    return json;
 }
 
-static void write_side(FILE *out, const char *name, int dim, const struct difference_side *side)
+static void write_status(struct json_writer *json, const char *key, int status)
+{
+    json_begin(json, key, '{');
+    json_string(json, "status", fmb_status_text(status));
+    json_end(json, '}');
+}
+
+static void write_side(struct json_writer *json, const char *key, int dim,
+                       const struct difference_side *side)
 {
     const bool decided = side->status == FMB_OK && side->answer.verdict != 0;
     const struct outcome outcome = {
         .error = decided ? NULL : fmb_status_text(side->status ? side->status : FMB_CANNOT_DECIDE),
         .answer = side->answer,
         .certificate = side->certificate};
-    fprintf(out, ", \"%s\": {", name);
-    report_answer_json(out, dim, &outcome);
-    putc('}', out);
+    json_begin(json, key, '{');
+    report_answer_json(json, dim, &outcome);
+    json_end(json, '}');
 }
 
-void replay_json_found(struct replay_json *json, const struct found *found, const char *log,
+static void write_difference(struct json_writer *json, const struct difference *difference)
+{
+    if (!difference->whole) {
+        json_integer(json, "a", difference->body_id[0]);
+        json_integer(json, "b", difference->body_id[1]);
+        json_begin(json, "placements", '[');
+        json_integer(json, NULL, difference->placement[0]);
+        json_integer(json, NULL, difference->placement[1]);
+        json_end(json, ']');
+    }
+    json_string(json, "kind", difference_name(difference->kind));
+    if (difference->whole) {
+        write_status(json, "then", difference->then.status);
+        write_status(json, "now", difference->now.status);
+    } else {
+        write_side(json, "then", difference->dim, &difference->then);
+        write_side(json, "now", difference->dim, &difference->now);
+    }
+}
+
+void replay_json_found(struct replay_json *replay, const struct found *found, const char *log,
                        int64_t first_utime)
 {
-    FILE *out = json->out;
-    const struct difference *difference = &found->difference;
-    char time[NUMBER_TEXT_MAX];
-    fputs(json->first ? "{\"log\": " : ", {\"log\": ", out);
-    json->first = false;
-    report_string_json(out, log);
-    fprintf(out,
-            ", \"event\": %" PRId64 ", \"offset\": %" PRId64 ", \"utime\": %" PRId64
-            ", \"time\": %s, \"channel\": \"%s\", \"client_id\": %" PRId64
-            ", \"sequence_number\": %" PRId64,
-            found->place.number, found->place.offset, found->place.utime,
-            number_exact(((double) found->place.utime - (double) first_utime) / 1e6, time),
-            channel_name[tally_channel_of(found->kind)], found->ids.client_id,
-            found->ids.sequence_number);
-    if (!difference->whole)
-        fprintf(out, ", \"a\": %" PRId64 ", \"b\": %" PRId64 ", \"frames\": [%u,%u]",
-                difference->body_id[0], difference->body_id[1], difference->frame[0],
-                difference->frame[1]);
-    fprintf(out, ", \"kind\": \"%s\"", difference_name(difference->kind));
-    if (difference->whole) {
-        fputs(", \"then\": {\"status\": ", out);
-        report_string_json(out, fmb_status_text(difference->then.status));
-        fputs("}, \"now\": {\"status\": ", out);
-        report_string_json(out, fmb_status_text(difference->now.status));
-        putc('}', out);
-    } else {
-        write_side(out, "then", difference->dim, &difference->then);
-        write_side(out, "now", difference->dim, &difference->now);
-    }
-    putc('}', out);
+    struct json_writer *json = &replay->json;
+    json_begin(json, NULL, '{');
+    json_string(json, "log", log);
+    json_integer(json, "event", found->place.number);
+    json_integer(json, "offset", found->place.offset);
+    json_integer(json, "utime", found->place.utime);
+    json_number(json, "time", ((double) found->place.utime - (double) first_utime) / 1e6);
+    json_string(json, "channel", channel_name[tally_channel_of(found->kind)]);
+    json_integer(json, "client_id", found->client_id);
+    json_integer(json, "sequence_number", found->sequence_number);
+    write_difference(json, &found->difference);
+    json_end(json, '}');
 }
 
-static void write_counts(FILE *out, const struct tally_channel *channel)
+static void write_counts(struct json_writer *json, const struct tally_channel *channel)
 {
-    static const char *const outcome[REPLAY_ALONE + 1] = {"same", "different", "busy",
-                                                          "unknown_body", "no_result"};
-    fprintf(out, "\"queries\": %" PRId64 ", \"pairs\": %" PRId64, channel->queries, channel->pairs);
-    for (int i = 0; i <= REPLAY_ALONE; i++)
-        fprintf(out, ", \"%s\": %" PRId64, outcome[i], channel->outcome[i]);
-    fprintf(out,
-            ", \"results\": %" PRId64 ", \"results_alone\": %" PRId64
-            ", \"unreadable_queries\": %" PRId64 ", \"unreadable_results\": %" PRId64
-            ", \"different_in\": {",
-            channel->results, channel->results_alone, channel->unreadable[0],
-            channel->unreadable[1]);
+    static const char *const outcome[REPLAY_OUTCOMES] = {
+        "same", "different", "busy", "unknown_body", "not_defined", "no_result"};
+    json_integer(json, "queries", channel->queries);
+    json_integer(json, "pairs", channel->pairs);
+    for (int i = 0; i < REPLAY_OUTCOMES; i++)
+        json_integer(json, outcome[i], channel->outcome[i]);
+    json_integer(json, "results", channel->results);
+    json_integer(json, "results_alone", channel->results_alone);
+    json_integer(json, "second_results", channel->results_again);
+    json_integer(json, "contradictions", channel->contradictions);
+    json_integer(json, "unreadable_queries", channel->unreadable[0]);
+    json_integer(json, "unreadable_results", channel->unreadable[1]);
+    json_begin(json, "different_in", '{');
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
-        fprintf(out, "%s\"%s\": %" PRId64, kind ? ", " : "",
-                difference_name((enum difference_kind) kind), channel->differences[kind]);
-    putc('}', out);
+        json_integer(json, difference_name((enum difference_kind) kind),
+                     channel->differences[kind]);
+    json_end(json, '}');
 }
 
-static void write_times(FILE *out, const char *name, const struct histogram *times)
+static void write_times(struct json_writer *json, const char *key, const struct histogram *times)
 {
-    fprintf(out,
-            ", \"%s\": {\"count\": %" PRId64 ", \"p50_ns\": %" PRId64 ", \"p99_ns\": %" PRId64
-            ", \"max_ns\": %" PRId64 "}",
-            name, times->count, histogram_quantile(times, 0.5), histogram_quantile(times, 0.99),
-            times->max);
+    json_begin(json, key, '{');
+    json_integer(json, "count", times->count);
+    json_integer(json, "p50_ns", histogram_quantile(times, 0.5));
+    json_integer(json, "p99_ns", histogram_quantile(times, 0.99));
+    json_integer(json, "max_ns", times->max);
+    json_end(json, '}');
 }
 
-static void write_bus(FILE *out, const struct tally_bus *bus)
+static void write_bus(struct json_writer *json, const struct tally_bus *bus)
 {
-    static const char *const end[] = {[ANSWER_BUS_NO_END] = "null",
-                                      [ANSWER_BUS_SIGNAL] = "\"signal\"",
-                                      [ANSWER_BUS_NOBODY] = "\"nobody answers\"",
-                                      [ANSWER_BUS_FAILED] = "\"the bus has failed\""};
-    fprintf(out,
-            ", \"bus\": {\"answered\": %" PRId64 ", \"ns\": %" PRId64 ", \"late_ns\": %" PRId64
-            ", \"sent_again\": %" PRId64 ", \"busy\": %" PRId64 ", \"dead_keys\": %" PRId64
-            ", \"brought_bodies\": %" PRId64 ", \"too_long\": %" PRId64 ", \"services\": %" PRId64
-            ", \"unreadable\": %" PRId64 ", \"end\": %s}",
-            bus->answered, bus->ns, bus->late_ns, bus->again, bus->busy, bus->deaths, bus->lessons,
-            bus->too_long, bus->services, bus->nonsense, end[bus->end]);
+    static const char *const end[] = {[ANSWER_BUS_SIGNAL] = "signal",
+                                      [ANSWER_BUS_NOBODY] = "no service answers",
+                                      [ANSWER_BUS_FAILED] = "the bus has failed"};
+    json_begin(json, "bus", '{');
+    json_integer(json, "answered", bus->answered);
+    json_integer(json, "ns", bus->ns);
+    json_integer(json, "late_ns", bus->late_ns);
+    json_integer(json, "sent_again", bus->again);
+    json_integer(json, "sent_whole", bus->whole);
+    json_integer(json, "not_sent", bus->not_sent);
+    json_integer(json, "supplied", bus->supplied);
+    json_integer(json, "services", bus->services);
+    json_integer(json, "unreadable", bus->nonsense);
+    if (bus->end == ANSWER_BUS_NO_END)
+        json_null(json, "end");
+    else
+        json_string(json, "end", end[bus->end]);
+    json_end(json, '}');
 }
 
-void replay_json_end(struct replay_json *json, const struct tally *tally, int64_t untold,
-                     int exit_code)
+static void write_channels(struct json_writer *json, const struct tally *tally)
 {
-    FILE *out = json->out;
-    fprintf(out,
-            "], \"untold\": %" PRId64 ", \"exit\": %d, \"events\": %" PRId64 ", \"bytes\": %" PRId64
-            ", \"other_events\": %" PRId64 ", \"statuses\": %" PRId64 ", \"damages\": %" PRId64
-            ", \"damaged_bytes\": %" PRId64 ", ",
-            untold, exit_code, tally->events, tally->bytes, tally->other_events, tally->statuses,
-            tally->damages, tally->damaged_bytes);
     struct tally_channel all = tally->channel[TALLY_PAIRS];
     tally_add_channel(&all, &tally->channel[TALLY_SCENES]);
-    write_counts(out, &all);
-    fputs(", \"channels\": {", out);
+    write_counts(json, &all);
+    json_begin(json, "channels", '{');
     for (int i = 0; i < TALLY_CHANNELS; i++) {
-        fprintf(out, "%s\"%s\": {", i ? ", " : "", channel_name[i]);
-        write_counts(out, &tally->channel[i]);
-        putc('}', out);
+        json_begin(json, channel_name[i], '{');
+        write_counts(json, &tally->channel[i]);
+        json_end(json, '}');
     }
-    fputs("}, \"compute\": {\"unit\": \"ns\"", out);
-    write_times(out, "then", &tally->then);
-    write_times(out, "now", &tally->now);
-    putc('}', out);
+    json_end(json, '}');
+}
+
+void replay_json_end(struct replay_json *replay, const struct tally *tally, int64_t not_listed,
+                     int exit_code)
+{
+    struct json_writer *json = &replay->json;
+    json_end(json, ']');
+    json_integer(json, "not_listed", not_listed);
+    json_integer(json, "exit", exit_code);
+    json_integer(json, "events", tally->events);
+    json_integer(json, "bytes", tally->bytes);
+    json_integer(json, "other_events", tally->other_events);
+    json_integer(json, "statuses", tally->statuses);
+    json_integer(json, "definitions", tally->definitions);
+    json_integer(json, "unreadable_definitions", tally->unreadable_definitions);
+    json_integer(json, "damages", tally->damages);
+    json_integer(json, "damaged_bytes", tally->damaged_bytes);
+    write_channels(json, tally);
+    json_begin(json, "compute", '{');
+    json_string(json, "unit", "ns");
+    write_times(json, "then", &tally->then);
+    write_times(json, "now", &tally->now);
+    json_end(json, '}');
     if (tally->bus.used)
-        write_bus(out, &tally->bus);
-    fputs("}\n", out);
+        write_bus(json, &tally->bus);
+    json_end(json, '}');
+    json_line_end(json);
 }

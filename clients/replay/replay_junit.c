@@ -1,51 +1,20 @@
 #include "replay_junit.h"
 
+#include "escape.h"
 #include "replay_text.h"
 #include "wire.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 /* Lines that stand in a failed case. */
 enum { LINES_MAX = 100 };
 
 static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
-/* ---- XML ---- */
-
-/* How many bytes of UTF-8 the text begins with that are one character of XML; 0: none. */
-static size_t character_at(const unsigned char *text)
-{
-    static const uint32_t least[] = {0, ' ', 0x80, 0x800, 0x10000};
-    const size_t size = text[0] < 0x80                      ? 1
-                        : text[0] >= 0xc0 && text[0] < 0xe0 ? 2
-                        : text[0] >= 0xe0 && text[0] < 0xf0 ? 3
-                        : text[0] >= 0xf0 && text[0] < 0xf8 ? 4
-                                                            : 0;
-    uint32_t code = size > 1 ? text[0] & (0x7fu >> size) : text[0];
-    for (size_t i = 1; i < size; i++) {
-        if ((text[i] & 0xc0) != 0x80) /* the final 0 too */
-            return 0;
-        code = code << 6 | (text[i] & 0x3f);
-    }
-    const bool bad = size == 0 || (code < least[size] && code != '\n') || code > 0x10ffff ||
-                     (code >= 0xd800 && code < 0xe000) || code == 0xfffe || code == 0xffff;
-    return bad ? 0 : size;
-}
-
-/* As the text of an element, or of an attribute in double quotes. What XML cannot hold becomes '?',
- * byte by byte. */
 static void write_xml(FILE *out, const char *text)
 {
-    for (size_t size; *text; text += size ? size : 1) {
-        size = character_at((const unsigned char *) text);
-        switch (*text) {
-        case '&': fputs("&amp;", out); break;
-        case '<': fputs("&lt;", out); break;
-        case '>': fputs("&gt;", out); break;
-        case '"': fputs("&quot;", out); break;
-        default: fprintf(out, "%.*s", size ? (int) size : 1, size ? text : "?");
-        }
-    }
+    escape(out, ESCAPE_XML, text, strlen(text));
 }
 
 /* ---- Cases ---- */
@@ -86,7 +55,7 @@ static int64_t differences_of(const struct tally_channel *channel)
 }
 
 static void write_channel(FILE *out, const char *log, int index, int channel_index,
-                          struct listing *told, const struct tally_channel *channel,
+                          struct listing *list, const struct tally_channel *channel,
                           int64_t first_utime)
 {
     begin_case(out, log, channel_name[channel_index]);
@@ -96,21 +65,21 @@ static void write_channel(FILE *out, const char *log, int index, int channel_ind
                 " queries are answered differently, in %" PRId64 " pairs\">",
                 channel->outcome[REPLAY_DIFFERENT], channel->queries, differences_of(channel));
         struct lines lines = {out, index, channel_index, 0, first_utime};
-        listing_each(told, write_line, &lines);
+        listing_each(list, write_line, &lines);
         fputs("</failure>\n", out);
     }
     fprintf(out,
             "      <system-out>%" PRId64 " queries: %" PRId64 " same, %" PRId64
             " different, %" PRId64 " busy, %" PRId64 " unknown body, %" PRId64
-            " without result</system-out>\n    </testcase>\n",
+            " not defined, %" PRId64 " without result</system-out>\n    </testcase>\n",
             channel->queries, channel->outcome[REPLAY_SAME], channel->outcome[REPLAY_DIFFERENT],
             channel->outcome[REPLAY_BUSY], channel->outcome[REPLAY_UNKNOWN],
-            channel->outcome[REPLAY_ALONE]);
+            channel->outcome[REPLAY_UNDEFINED], channel->outcome[REPLAY_ALONE]);
 }
 
 static bool is_whole(const struct tally *tally)
 {
-    return tally->damages == 0 && tally_unreadable(tally) == 0;
+    return tally->damages == 0 && tally_unreadable(tally) == 0 && tally_contradictions(tally) == 0;
 }
 
 /* Of a live service. */
@@ -130,7 +99,7 @@ static void write_bus(FILE *out, const char *log, const struct tally *tally)
     fputs("    </testcase>\n", out);
 }
 
-static void write_log(FILE *out, const char *log, int index, struct listing *told,
+static void write_log(FILE *out, const char *log, int index, struct listing *list,
                       const struct tally *tally, int64_t first_utime)
 {
     int failures = 0;
@@ -142,23 +111,24 @@ static void write_log(FILE *out, const char *log, int index, struct listing *tol
             TALLY_CHANNELS + 1 + (int) tally->bus.used, failures,
             !is_whole(tally) + ended_early(tally));
     for (int i = 0; i < TALLY_CHANNELS; i++)
-        write_channel(out, log, index, i, told, &tally->channel[i], first_utime);
+        write_channel(out, log, index, i, list, &tally->channel[i], first_utime);
     begin_case(out, log, "the log is whole");
     if (!is_whole(tally))
         fprintf(out,
                 "      <error message=\"%" PRId64 " damaged places, %" PRId64
-                " messages that cannot be read\"/>\n",
-                tally->damages, tally_unreadable(tally));
+                " messages that cannot be read, %" PRId64
+                " results that contradict earlier ones\"/>\n",
+                tally->damages, tally_unreadable(tally), tally_contradictions(tally));
     fputs("    </testcase>\n", out);
     write_bus(out, log, tally);
     fputs("  </testsuite>\n", out);
 }
 
-void replay_junit(FILE *out, const struct replay_options *options, struct listing *told,
+void replay_junit(FILE *out, const struct replay_options *options, struct listing *list,
                   const struct tally *tally, int64_t first_utime)
 {
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"fmb replay\">\n", out);
     for (int i = 0; i < options->log_count; i++)
-        write_log(out, options->log[i], i, told, &tally[i], first_utime);
+        write_log(out, options->log[i], i, list, &tally[i], first_utime);
     fputs("</testsuites>\n", out);
 }

@@ -91,6 +91,7 @@ static void print_row(FILE *out, const char *name, const struct tally_channel *c
                              channel->outcome[REPLAY_DIFFERENT],
                              channel->outcome[REPLAY_BUSY],
                              channel->outcome[REPLAY_UNKNOWN],
+                             channel->outcome[REPLAY_UNDEFINED],
                              channel->outcome[REPLAY_ALONE],
                              channel->unreadable[0] + channel->unreadable[1]};
     fprintf(out, "%-16s", name);
@@ -103,8 +104,8 @@ static void print_row(FILE *out, const char *name, const struct tally_channel *c
 
 static void print_channels(FILE *out, const struct tally *tally)
 {
-    fprintf(out, "%-16s %12s %12s %12s %12s %12s %12s %12s %12s\n", "", "queries", "pairs", "same",
-            "different", "busy", "unknown body", "no result", "unreadable");
+    fprintf(out, "%-16s %12s %12s %12s %12s %12s %12s %12s %12s %12s\n", "", "queries", "pairs",
+            "same", "different", "busy", "unknown body", "not defined", "no result", "unreadable");
     for (int i = 0; i < TALLY_CHANNELS; i++)
         print_row(out, channel_name[i], &tally->channel[i]);
 }
@@ -143,13 +144,16 @@ static void print_log(FILE *out, const struct tally *tally)
             "%s events, %.1f MB; %s on other channels; %s results of queries that are not here",
             number_grouped(tally->events, events), 1e-6 * (double) tally->bytes,
             number_grouped(tally->other_events, other), number_grouped(results_alone, alone));
+    if (tally_contradictions(tally) > 0)
+        fprintf(out, "; %" PRId64 " results that contradict earlier ones",
+                tally_contradictions(tally));
     if (tally->damages > 0)
         fprintf(out, "; %" PRId64 " damaged places, %" PRId64 " bytes", tally->damages,
                 tally->damaged_bytes);
     putc('\n', out);
 }
 
-/* "asked fmbd: 300,000 queries in 9.72 s (30,864 a second), 3 sent again": counts that are not 0.
+/* "fmbd answered 300,000 queries in 9.72 s (30,864 a second), 3 sent again": counts that are not 0.
  */
 static void print_bus(FILE *out, const struct tally_bus *bus)
 {
@@ -157,15 +161,15 @@ static void print_bus(FILE *out, const struct tally_bus *bus)
         int64_t count;
         const char *what;
     } more[] = {{bus->again, "sent again"},
-                {bus->busy, "refused as busy for a while"},
-                {bus->deaths, "dead keys replaced"},
-                {bus->lessons, "more that brought bodies"},
-                {bus->too_long, "too long to be asked"},
-                {bus->services > 1 ? bus->services - 1 : 0, "times another service, or anew"},
+                {bus->whole, "sent once more with frames"},
+                {bus->not_sent, "that cannot be sent"},
+                {bus->supplied, "more that carried bodies"},
+                {bus->services > 1 ? bus->services - 1 : 0, "changes of the service"},
                 {bus->nonsense, "results that could not be read"}};
     const double seconds = 1e-9 * (double) bus->ns;
     char text[NUMBER_TEXT_MAX];
-    fprintf(out, "asked fmbd: %s queries in %.3f s", number_grouped(bus->answered, text), seconds);
+    fprintf(out, "fmbd answered %s queries in %.3f s", number_grouped(bus->answered, text),
+            seconds);
     if (bus->ns > 0)
         fprintf(out, " (%s a second)",
                 number_grouped((int64_t) ((double) bus->answered / seconds), text));

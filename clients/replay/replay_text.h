@@ -1,11 +1,11 @@
-/* What a replay found, for people. */
+/* The report of a replay, for people. */
 #ifndef REPLAY_TEXT_H
 #define REPLAY_TEXT_H
 
 #include "replay.h"
 
-/* What differs, then and now, as text: "touching" and "separated"; numbers so that they read back
- * as the same bits, certificates cut. */
+/* One side of a difference as text, for example "touching". Numbers read back as the same bits;
+ * certificates are truncated. */
 enum { REPLAY_SIDE_MAX = 320 };
 void replay_side_text(const struct difference *difference, const struct difference_side *side,
                       char text[REPLAY_SIDE_MAX]);
@@ -14,13 +14,13 @@ void replay_side_text(const struct difference *difference, const struct differen
  *
  *     event 17  1.25 s  bodies 3 7  verdict: touching, now separated
  *
- * The time is that of the log, in seconds since first_utime. log: what the log is called; NULL
- * where there is one only. */
+ * The time is log time, in seconds since first_utime. log: name of the log; NULL if there is only
+ * one. */
 enum { REPLAY_LINE_MAX = 2 * REPLAY_SIDE_MAX + 512 };
 void replay_line(const struct found *found, const char *log, int64_t first_utime,
                  char line[REPLAY_LINE_MAX]);
 
-/* The counts, in a few lines. */
+/* Prints the counts. */
 void replay_text_summary(FILE *out, const struct tally *tally);
 
 #endif

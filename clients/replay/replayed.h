@@ -1,4 +1,4 @@
-/* One query of a log that was answered again, beside the result that was recorded. */
+/* A query of a log with its recorded and its new result. */
 #ifndef REPLAYED_H
 #define REPLAYED_H
 
@@ -8,10 +8,12 @@
 enum replay_outcome {
     REPLAY_SAME,
     REPLAY_DIFFERENT,
-    /* Nothing to compare, for reasons of the moment: */
-    REPLAY_BUSY,    /* the service was busy then */
-    REPLAY_UNKNOWN, /* a key that was not held then, or whose components are not in the log */
-    REPLAY_ALONE    /* no result was recorded */
+    /* Nothing to compare: */
+    REPLAY_BUSY,      /* the service was busy */
+    REPLAY_UNKNOWN,   /* the service did not hold a body then */
+    REPLAY_UNDEFINED, /* a handle that the log does not define */
+    REPLAY_ALONE,     /* no result was recorded */
+    REPLAY_OUTCOMES
 };
 
 struct replayed {
@@ -20,9 +22,8 @@ struct replayed {
     int64_t offset;       /* of its header in the log, bytes */
     int64_t utime;        /* of the log, microseconds since 1970 */
     enum replay_outcome outcome;
-    /* A pair or a scene: of the two groups one is NULL. Frames that came by key have their
-     * components here, where the log has them: then count says so. then NULL: no result was
-     * recorded. */
+    /* Either a pair or a scene; the other group is NULL. Placements by handle have their geometry,
+     * and a frame_count, if the log defines them. *_then is NULL if no result was recorded. */
     const struct pair_query *pair;
     const struct pair_result *pair_now, *pair_then;
     const struct scene_query *scene;

@@ -9,12 +9,14 @@ void tally_add_channel(struct tally_channel *to, const struct tally_channel *fro
 {
     to->queries += from->queries;
     to->pairs += from->pairs;
-    for (int i = 0; i <= REPLAY_ALONE; i++)
+    for (int i = 0; i < REPLAY_OUTCOMES; i++)
         to->outcome[i] += from->outcome[i];
     for (int i = 0; i < DIFFERENT_KINDS; i++)
         to->differences[i] += from->differences[i];
     to->results += from->results;
     to->results_alone += from->results_alone;
+    to->results_again += from->results_again;
+    to->contradictions += from->contradictions;
     for (int i = 0; i < 2; i++)
         to->unreadable[i] += from->unreadable[i];
 }
@@ -34,6 +36,8 @@ void tally_add(struct tally *to, const struct tally *from)
     to->events += from->events;
     to->bytes += from->bytes;
     to->statuses += from->statuses;
+    to->definitions += from->definitions;
+    to->unreadable_definitions += from->unreadable_definitions;
     to->other_events += from->other_events;
     to->damages += from->damages;
     to->damaged_bytes += from->damaged_bytes;
@@ -56,7 +60,7 @@ int64_t tally_outcome(const struct tally *tally, enum replay_outcome outcome)
 
 int64_t tally_unreadable(const struct tally *tally)
 {
-    int64_t sum = 0;
+    int64_t sum = tally->unreadable_definitions;
     for (int i = 0; i < TALLY_CHANNELS; i++)
         sum += tally->channel[i].unreadable[0] + tally->channel[i].unreadable[1];
     return sum;
@@ -65,4 +69,9 @@ int64_t tally_unreadable(const struct tally *tally)
 int64_t tally_compared(const struct tally *tally)
 {
     return tally_outcome(tally, REPLAY_SAME) + tally_outcome(tally, REPLAY_DIFFERENT);
+}
+
+int64_t tally_contradictions(const struct tally *tally)
+{
+    return tally->channel[TALLY_PAIRS].contradictions + tally->channel[TALLY_SCENES].contradictions;
 }

@@ -1,7 +1,7 @@
-# For suites that have Chromium open pages; without Chromium their tests are skipped.
+# For suites that open pages in Chromium; without Chromium those tests are skipped.
 
-# as_chromium PART COLOURS [DRIVER]: opens the driver; stops when it has found all. Nothing leaves the
-# machine: no name is known.
+# as_chromium PART COLOURS [DRIVER]: opens the driver, and stops when it has written its findings to
+# PART.json. No host name resolves, so that nothing leaves the machine.
 as_chromium() {
     local log=$BATS_FILE_TMPDIR/$1.log pid
     : > "$log"
@@ -19,11 +19,11 @@ as_chromium() {
     kill $pid 2> /dev/null || true
     wait $pid || true
     sed -n 's/.*"FOUND \(.*\) END", source: .*/\1/p' "$log" > "$BATS_FILE_TMPDIR/$1.json"
-    # What the pages themselves have to say: errors, refusals.
+    # The pages' own messages: errors, refusals.
     grep -a 'CONSOLE:.*source: file:' "$log" | grep -av 'source: [^ ]*\(drive\|drive_mesh\|tools\)\.js' > "$BATS_FILE_TMPDIR/$1.console" || true
 }
 
-# found PART FILTER: jq has to say true of what was found.
+# found PART FILTER: the jq filter must be true of PART.json.
 found() {
     command -v chromium > /dev/null || skip 'there is no chromium'
     jq -e "$2" "$1.json" > /dev/null || {
@@ -38,13 +38,13 @@ data() {
     sed -n '/^<script type="application\/json"/,/^<\/script>/p' "$1" | sed '1d;$d'
 }
 
-# hash_of FILE ELEMENT: of all between the tags, as a policy names it.
+# hash_of FILE ELEMENT: the hash of all between the tags, as a policy writes it.
 hash_of() {
     { echo; sed -n "/^<$2>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
         tr a-f A-F | basenc --base16 -d | base64
 }
 
-# is_alone FILE: it refers to nothing else.
+# is_alone FILE: the file refers to nothing else.
 is_alone() {
     sed '/^<script type="application\/json"/,/^<\/script>/d' "$1" > rest
     [ "$(grep -c '<script>' rest)" = 1 ] || return
@@ -55,7 +55,7 @@ is_alone() {
     [ "$(echo "$output" | sed 's/^[0-9]*://' | sort -u)" = 'http://www.w3.org/2000/svg' ]
 }
 
-# has_policy FILE: its own script and style may run, and nothing else.
+# has_policy FILE: the policy allows the file's own script and style, and nothing else.
 has_policy() {
     policy=$(grep -o 'Content-Security-Policy" content="[^"]*"' "$1")
     [[ $policy == *"default-src 'none'; script-src 'sha256-$(hash_of "$1" script)'; style-src 'sha256-$(hash_of "$1" style)'; img-src data:;"* ]]

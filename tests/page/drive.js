@@ -1,9 +1,9 @@
-/* Opens pages of replays one after the other, and does in each what a reader does (tools.js). */
+/* Opens pages of replays in turn, and operates them as a reader does (tools.js). */
 "use strict";
 
-/* ---- What is seen ---- */
+/* ---- What the page shows ---- */
 
-/* What is said of the bodies that the pointer finds on its ways across the scene. */
+/* The texts shown while the pointer crosses the scene. */
 async function point() {
     const box = one("#stage").getBoundingClientRect(), said = new Set();
     for (let k = 0; k < 1600; k++) {
@@ -18,8 +18,7 @@ async function point() {
     return [...said].sort();
 }
 
-/* How many pixels are drawn at all; how many are nearly of a colour; and a sum that another picture
- * hardly has. */
+/* Counts of pixels: all that are drawn, and those close to a colour; and a checksum. */
 function picture() {
     const data = pixels(), count = { drawn: 0, sum: 0, violet: 0, red: 0, pink: 0 };
     const isNear = (i, red, green, blue) => data[i + 3] > 60 && Math.abs(data[i] - red) < 60
@@ -36,7 +35,7 @@ function picture() {
     return count;
 }
 
-/* What is said of the chosen query. */
+/* The texts about the chosen query. */
 function chosen() {
     return {
         query: text("#event-head h2"), outcome: text("#event-head .outcome"),
@@ -46,7 +45,7 @@ function chosen() {
     };
 }
 
-/* What numbers become that are none. */
+/* Counts texts that stand for a missing or invalid value. */
 function badNumbers() {
     const shown = all("header, #notes, #top, #bottom").map((element) => element.outerHTML).join("");
     return (shown.match(/NaN|Infinity|undefined|null|\[object/g) ?? []).length;
@@ -56,7 +55,7 @@ function marks(row, kind) {
     return all(`.row[data-row="${row}"] ${kind}`);
 }
 
-/* ---- What is done ---- */
+/* ---- Actions ---- */
 
 async function mixed() {
     await open("mixed.html");
@@ -109,7 +108,7 @@ async function space() {
     };
 }
 
-/* The queries from the first one on whose numbers are of all sizes, and what is drawn of each. */
+/* The queries with numbers of all sizes, and those after them. */
 async function sizes() {
     found.sizes = [];
     await new Promise((done) => {
@@ -162,7 +161,7 @@ async function scene() {
     await mouse(one("#play"));
     found.playing = text("#play");
     await mouse(one("#play"));
-    /* A pair that is not named is separated: its row has more queries than name it. */
+    /* A pair that no result names is separated: its row has more queries than name it. */
     found.filled = marks("12 21", ".run").map((run) => run.classList[1]);
 }
 
@@ -176,7 +175,7 @@ async function large() {
     await open("crowd.html");
     found.crowd = {
         ...picture(), rows: all("#event-pairs tbody tr").length, notes: text("#event-pairs"),
-        bad: badNumbers(),
+        missing: texts("#not-drawn li"), bad: badNumbers(),
     };
     await mouse(all("#event-pairs button").pop());
     found.crowdMore = all("#event-pairs tbody tr").length;
@@ -184,7 +183,7 @@ async function large() {
     found.empty = { said: text("#span"), hidden: one("#timeline").hidden };
 }
 
-/* Nothing may be fetched: tried in the page's own name. */
+/* Attempts to fetch, from within the page, are refused. */
 async function network() {
     await open("mixed.html");
     const refused = [];
@@ -206,7 +205,7 @@ async function dark() {
     found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
 }
 
-/* Pages that the test has broken: what goes wrong in them must be seen. */
+/* Pages that the test has damaged. */
 async function broken() {
     await open("changed.html");
     await open("cut.html");

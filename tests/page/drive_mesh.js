@@ -1,17 +1,16 @@
-/* Opens pages of meshes one after the other, and does in each what a reader does (tools.js). */
+/* Opens pages of meshes in turn, and operates them as a reader does (tools.js). */
 "use strict";
 
-/* ---- What is seen ---- */
+/* ---- What the page shows ---- */
 
-/* Until the picture rests: what moves is coarse. */
+/* Waits until the picture is drawn finely: while it moves it is coarse. */
 async function rested() {
     await new Promise((done) => setTimeout(done, 400));
     await drawn();
 }
 
-/* How many pixels are covered at all; how many are nearly of the colour of faces that overlap, that
- * touch, of mesh B; in which column those that are grey are in the mean; and a sum that another picture
- * hardly has. */
+/* Counts of pixels: all that are covered; those close to the colour of overlapping faces, touching
+ * faces and mesh B; the mean column of grey ones; and a checksum. */
 function picture() {
     const data = pixels(), { width } = one("#stage");
     const count = { drawn: 0, red: 0, yellow: 0, blue: 0, grey: 0, sum: 0 };
@@ -53,7 +52,7 @@ async function click(selector) {
     await rested();
 }
 
-/* ---- What is done ---- */
+/* ---- Actions ---- */
 
 async function small() {
     await open("small.html");
@@ -73,7 +72,7 @@ async function small() {
     found.back = picture();
 }
 
-/* The middle of the canvas is where a chosen pair is. */
+/* A chosen pair is in the middle of the canvas. */
 async function pointed() {
     await click('#list tr[data-pair="2"] .pair');
     const box = one("#stage").getBoundingClientRect(), names = new Set();
@@ -120,7 +119,7 @@ async function touching() {
     found.touch = { ...said(), ...picture() };
 }
 
-/* One after the other: before contact, in contact, the pair's own time. */
+/* In turn: before contact, in contact, at the time of the pair. */
 async function moving() {
     await open("moving.html");
     await rested();

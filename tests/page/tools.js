@@ -1,6 +1,6 @@
-/* What drivers of pages need: they open pages one after the other in a frame, do in each what a reader
- * does, and write what they found as JSON to the console. The page is another document, with a
- * policy of its own, that knows nothing of this. */
+/* Common to the drivers, which open pages in turn in an iframe, operate them as a reader does, and
+ * write their findings as JSON to the console. The page is a document of its own, with its own
+ * policy. */
 "use strict";
 
 const frame = document.getElementById("page");
@@ -40,7 +40,8 @@ function texts(selector) {
     return all(selector).map((element) => element.textContent);
 }
 
-/* Presses, moves if asked to, and lets go; x and y: parts of the element's size. */
+/* Presses, moves by `move` pixels where given, and releases; x and y: fractions of the element's
+ * size. */
 async function mouse(element, x = 0.5, y = 0.5, move = null) {
     const box = element.getBoundingClientRect();
     const at = { x: box.left + box.width * x, y: box.top + box.height * y };

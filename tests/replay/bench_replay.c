@@ -8,12 +8,9 @@
  * In turns, on one core; CPU time of the thread or, of programs, of the child, reading included
  * (from memory: the logs have been read once before). Medians. */
 #include "allocate.h"
-#include "answer.h"
-#include "bodies.h"
+#include "definitions.h"
 #include "child.h"
-#include "check.h"
 #include "input.h"
-#include "learn.h"
 #include "machine.h"
 #include "replay.h"
 #include "stopwatch.h"
@@ -26,7 +23,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ROUNDS = 15, SCENES_MAX = 400, BODIES = 65536 };
+enum { ROUNDS = 15, SCENES_MAX = 400, FRAMES = 65536 };
 
 static _Noreturn void fail(const char *what)
 {
@@ -51,20 +48,32 @@ struct scenes {
     unsigned char verdict[QUERY_PAIRS_MAX];
 };
 
-static void prepare(const struct query_frame *frame, struct fmb_prepared *out)
+/* A placement by handle has the geometry that the log defines. */
+static void prepare(const struct placement *placement, struct definitions *definitions,
+                    struct fmb_prepared *out)
 {
+    const struct geometry *geometry = &placement->geometry;
+    struct geometry_frame frame;
     struct fmb_body body;
-    if (fmb_body_make(frame->dim, frame->shape, frame->components.number,
-                      (size_t) frame->components.count, &body) != FMB_OK)
+    int dim;
+    if (placement_by_handle(placement) &&
+        !(geometry = definitions_find(definitions, &placement->handle)))
+        fail("a handle that the log does not define");
+    if (!geometry_read(geometry, &dim, &frame) ||
+        fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), &body) !=
+            FMB_OK)
         fail("a frame of the log is none");
-    const struct fmb_frame placed = bodies_place(frame, &body);
+    struct fmb_frame placed = {.body = &body, .moving = placement->velocity_count > 0};
+    memcpy(placed.origin, placement->position, sizeof placed.origin);
+    memcpy(placed.velocity, placement->velocity, sizeof placed.velocity);
     fmb_prepare(&placed, out);
 }
 
-static void keep_scene(struct scenes *scenes, struct known_bodies *known, struct scene_query *query)
+static void keep_scene(struct scenes *scenes, struct definitions *definitions,
+                       const struct scene_query *query)
 {
     struct scene *scene = &scenes->scene[scenes->count++];
-    scene->frame_count = (size_t) query->frame_count;
+    scene->frame_count = (size_t) query->placement_count;
     scene->pair_count = (size_t) query->index_count / 2;
     scene->duration = query->duration;
     scene->frame = aligned_alloc(64, scene->frame_count * sizeof *scene->frame);
@@ -72,23 +81,16 @@ static void keep_scene(struct scenes *scenes, struct known_bodies *known, struct
     if (!scene->frame || !scene->pair)
         fail("no memory");
     memcpy(scene->pair, query->pair, scene->pair_count * sizeof *scene->pair);
-    for (size_t i = 0; i < scene->frame_count; i++) {
-        if (check_by_key(&query->frame[i]) && !known_bodies_complete(known, &query->frame[i]))
-            fail("a key that the log does not tell");
-        prepare(&query->frame[i], &scene->frame[i]);
-    }
+    for (size_t i = 0; i < scene->frame_count; i++)
+        prepare(&query->placement[i], definitions, &scene->frame[i]);
     scenes->pairs += (int64_t) scene->pair_count;
 }
 
-/* Of a log whose results stand behind their queries. */
 static void read_scenes(char *path, struct scenes *scenes)
 {
     static struct scene_query query;
-    static unsigned char bytes[LOG_DATA_MAX];
     const struct log_channels channels = log_channels("");
-    struct known_bodies *known = known_bodies_create(BODIES);
-    struct learner *learner = learner_open(known);
-    struct match_item asked = {.kind = LOG_SCENE_QUERY, .bytes = bytes}, told = asked;
+    struct definitions *definitions = definitions_open();
     struct input input;
     struct log_event event;
     struct log_damage damage;
@@ -96,20 +98,15 @@ static void read_scenes(char *path, struct scenes *scenes)
     if (!input_open(&input, &path, 1, why))
         fail(why);
     while (scenes->count < SCENES_MAX && input_next(&input, &event, &damage) == LOG_EVENT) {
-        if (log_kind_of(&channels, &event) == LOG_SCENE_QUERY) {
-            memcpy(bytes, event.data, event.kept);
-            asked.size = (uint32_t) event.kept;
-        } else if (log_kind_of(&channels, &event) == LOG_SCENE_RESULT) {
-            told.bytes = event.data;
-            told.size = (uint32_t) event.kept;
-            learn(learner, &asked, &told);
-            if (!wire_read_scene_query(bytes, asked.size, &query) && query.index_count > 0)
-                keep_scene(scenes, known, &query);
-        }
+        if (log_kind_of(&channels, &event) != LOG_SCENE_QUERY ||
+            wire_read_scene_query(event.data, (uint32_t) event.kept, &query))
+            continue;
+        definitions_add_query(definitions, event.data, (uint32_t) event.kept);
+        if (query.index_count > 0)
+            keep_scene(scenes, definitions, &query);
     }
     input_close(&input);
-    learner_close(learner);
-    known_bodies_destroy(known);
+    definitions_close(definitions);
 }
 
 static double batch_ns(struct scenes *scenes)
@@ -164,11 +161,10 @@ static double replay_ns(char *path, struct tally *tally)
 {
     const struct replay_sink sink = {no_found, no_unreadable, no_damage, no_progress, NULL};
     const struct replay_options options = {
-        .log = &path, .log_count = 1, .prefix = "", .to = INFINITY, .bodies = BODIES};
-    const int64_t size = replay_size(&options);
+        .log = &path, .log_count = 1, .prefix = "", .to = INFINITY, .frames = FRAMES};
     memset(tally, 0, sizeof *tally);
     const double begin = stopwatch_now();
-    if (!replay_run(&options, (struct replay_part){0, size}, &sink, tally))
+    if (!replay_run(&options, &sink, tally))
         fail("the replay failed");
     const double took = stopwatch_now() - begin;
     if (tally_compared(tally) != tally_queries(tally))

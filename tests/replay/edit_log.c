@@ -28,6 +28,7 @@ static const char usage[] =
     "  --utime N          result N does not echo the utime of its query\n"
     "  --clock N US       from event N on the clock of the log is behind by so much\n"
     "  --version N        event N is of another message type\n"
+    "  --version-1 N      event N is a pair query of version 1\n"
     "  --shorten N        event N lacks its last byte\n"
     "  --garbage N        before event N stands what is no event\n"
     "  --prefix P         channels begin with P\n"
@@ -250,7 +251,9 @@ static void refuse_pair(const char *status)
 static void refuse_scene(const char *status)
 {
     scene.status = atoi(status);
-    scene.key_count = scene.verdict_count = scene.contact_count = 0;
+    scene.unknown_count = scene.status == FMB_UNKNOWN_BODY;
+    scene.unknown[0] = 0;
+    scene.handle_count = scene.verdict_count = scene.contact_count = 0;
     scene.names_pairs = scene.has_times = scene.has_boxes = false;
 }
 
@@ -380,6 +383,12 @@ static void version(char **argument)
     event[number(is_any, argument[0])].data[7] ^= 1;
 }
 
+static void version_1(char **argument)
+{
+    static const unsigned char fingerprint[] = {0x17, 0x04, 0x23, 0x1d, 0xbc, 0x74, 0xa7, 0x2c};
+    memcpy(event[number(is_any, argument[0])].data, fingerprint, sizeof fingerprint);
+}
+
 static void shorten(char **argument)
 {
     event[number(is_any, argument[0])].size--;
@@ -419,16 +428,17 @@ static const struct edit {
     int arguments;
     void (*make)(char **argument);
 } edits[] = {
-    {"--flip", 1, flip},       {"--nudge", 2, nudge},
-    {"--busy", 1, busy},       {"--unknown", 1, unknown},
-    {"--certify", 2, certify}, {"--utime", 1, utime},
-    {"--drop", 1, drop},       {"--drop-query", 1, drop_query},
-    {"--repeat", 1, repeat},   {"--delay", 1, delay},
-    {"--last", 0, last},       {"--first", 0, first},
-    {"--clock", 2, set_clock}, {"--version", 1, version},
-    {"--shorten", 1, shorten}, {"--garbage", 1, garbage},
-    {"--prefix", 1, prefix},   {"--rename", 2, rename_channel},
-    {"--events", 2, some},     {"--refuse", 2, refuse},
+    {"--flip", 1, flip},           {"--nudge", 2, nudge},
+    {"--busy", 1, busy},           {"--unknown", 1, unknown},
+    {"--certify", 2, certify},     {"--utime", 1, utime},
+    {"--drop", 1, drop},           {"--drop-query", 1, drop_query},
+    {"--repeat", 1, repeat},       {"--delay", 1, delay},
+    {"--last", 0, last},           {"--first", 0, first},
+    {"--clock", 2, set_clock},     {"--version", 1, version},
+    {"--shorten", 1, shorten},     {"--garbage", 1, garbage},
+    {"--prefix", 1, prefix},       {"--rename", 2, rename_channel},
+    {"--events", 2, some},         {"--refuse", 2, refuse},
+    {"--version-1", 1, version_1},
 };
 
 static const struct edit *find_edit(const char *name)

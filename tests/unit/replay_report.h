@@ -1,5 +1,4 @@
-/* Replays that run in this process, and their reports compared: of one part, or of several as
- * replay_jobs() adds them up. */
+/* Replays that run in this process, and their reports compared. */
 #ifndef REPLAY_REPORT_H
 #define REPLAY_REPORT_H
 
@@ -10,21 +9,18 @@ struct replay_report {
     struct tally tally;  /* of all logs */
     struct found *found; /* owned, [found_count], by the places of their queries; no certificates */
     int64_t found_count, found_room;
-    int64_t unreadable, damages, damaged_bytes; /* as they were told */
+    int64_t unreadable, damages, damaged_bytes; /* as they were reported, contradictions too */
+    size_t most_memory;                         /* that malloc() had given out, bytes */
 };
 
-/* On input: boundary[parts + 1]. To be freed. */
-struct replay_report replay_report_of(const struct replay_options *options, const int64_t *boundary,
-                                      int parts);
-/* All in as many parts of the same size. */
-struct replay_report replay_report_in(const struct replay_options *options, int parts);
+/* To be freed. */
+struct replay_report replay_report_of(const struct replay_options *options);
 void replay_report_free(struct replay_report *report);
 
 /* What is not the same in two reports but for the times taken now, static; NULL: nothing. */
 const char *replay_report_differ(const struct replay_report *a, const struct replay_report *b);
 
-/* What does not add up in a report of all of the logs; NULL: all does. once: no query has more
- * results than one. */
-const char *replay_report_odd(const struct replay_report *report, int64_t size, bool once);
+/* What does not add up in a report of logs of size bytes; NULL: all does. */
+const char *replay_report_odd(const struct replay_report *report, int64_t size);
 
 #endif

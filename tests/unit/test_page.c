@@ -1,4 +1,4 @@
-/* The page of a replay: what it keeps of the queries, and how it writes it, whatever they hold. */
+/* The page of a replay: which queries it keeps, and how it writes them, hostile ones too. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,14 +35,13 @@ static char *write_page(const struct page *page)
 
 static const char data_begin[] = "<script type=\"application/json\" id=\"data\">";
 
-/* The data as text, ended where a browser sees their end; to be freed. */
+/* The data as text, up to where a browser ends the element; to be freed. */
 static char *data_text(const struct page *page)
 {
     char *text = write_page(page), *begin = strstr(text, data_begin);
     assert_non_null(begin);
     char *end = strstr(begin, "</script>");
     assert_non_null(end);
-    /* Behind them the page goes on. */
     assert_non_null(strstr(end, "<script>\n"));
     *end = '\0';
     memmove(text, begin + sizeof data_begin - 1, strlen(begin + sizeof data_begin - 1) + 1);
@@ -81,7 +80,6 @@ static const cJSON *event_at(const cJSON *data, int index)
     return event;
 }
 
-/* The value without white space, so that it can be compared. */
 static void expect_json(const cJSON *value, const char *expected)
 {
     char *text = cJSON_PrintUnformatted(value);
@@ -99,26 +97,59 @@ static int count_of(const char *text, const char *part)
 
 /* ---- Queries --------------------------------------------------------------------------------- */
 
-static struct query_frame make_frame(int64_t id, int dim, double size, double at)
+/* Geometries last until as many others have been made. */
+enum { BODIES_MAX = QUERY_PLACEMENTS_MAX + 10 };
+
+static struct geometry encode(int dim, const struct geometry_frame *frame)
 {
-    struct query_frame frame;
-    memset(&frame, 0, sizeof frame);
-    frame.body_id = id;
-    frame.shape = FMB_CUBOID;
-    frame.dim = frame.origin.count = dim;
-    frame.components.count = dim * dim;
-    for (int i = 0; i < dim; i++) {
-        frame.origin.number[i] = at;
-        frame.components.number[i * dim + i] = size;
-    }
+    static unsigned char bytes[BODIES_MAX][GEOMETRY_FRAME_BYTES_MAX];
+    static int next;
+    unsigned char *to = bytes[next++ % BODIES_MAX];
+    return (struct geometry){to, geometry_write(dim, frame, to)};
+}
+
+static struct geometry_frame cuboid(int dim, double size)
+{
+    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    for (int i = 0; i < dim; i++)
+        frame.components[i * dim + i] = size;
     return frame;
+}
+
+static struct placement place(int64_t id, int dim, const struct geometry_frame *frame, double at)
+{
+    struct placement out = {.body_id = id,
+                            .dim = dim,
+                            .frame_count = 1,
+                            .number_count = dim + dim * dim,
+                            .geometry = encode(dim, frame)};
+    for (int i = 0; i < dim; i++)
+        out.position[i] = at;
+    return out;
+}
+
+static struct placement make_body(int64_t id, int dim, double size, double at)
+{
+    const struct geometry_frame frame = cuboid(dim, size);
+    return place(id, dim, &frame, at);
+}
+
+/* As a placement by handle that the log does not define. */
+static struct placement make_undefined(int64_t id, int dim)
+{
+    static unsigned char none[GEOMETRY_NONE_BYTES];
+    struct placement out = {.body_id = id, .dim = dim, .geometry = {none, sizeof none}};
+    geometry_write_none(dim, none);
+    for (int i = 0; i < HANDLE_BYTES; i++)
+        out.handle.bytes[i] = (unsigned char) (0xf7 + i);
+    return out;
 }
 
 static struct pair_query pair_query(int dim)
 {
     return (struct pair_query){.duration = 1,
                                .want = QUERY_WANT_BOX,
-                               .frame = {make_frame(1, dim, 1, 0), make_frame(2, dim, 1, 0.5)}};
+                               .placement = {make_body(1, dim, 1, 0), make_body(2, dim, 1, 0.5)}};
 }
 
 static struct pair_result overlapping(void)
@@ -149,7 +180,7 @@ static struct replayed of_scene(const struct scene_query *query, const struct sc
         .log = "a.log", .outcome = outcome, .scene = query, .scene_then = then, .scene_now = now};
 }
 
-/* The data of a page that took this one in. */
+/* The data of a page of this query alone; to be deleted. */
 static cJSON *data_of_one(const struct replayed *replayed)
 {
     struct page *page = page_open("one", BEGIN);
@@ -166,101 +197,12 @@ static void expect_pairs(const struct replayed *replayed, const char *expected)
     cJSON_Delete(data);
 }
 
-/* A pair of one verdict, contact and box beside another. */
 static void expect_answers(const struct pair_result *then, const struct pair_result *now,
                            const char *expected)
 {
     const struct pair_query query = pair_query(2);
     const struct replayed replayed = of_pair(&query, then, now, REPLAY_DIFFERENT);
     expect_pairs(&replayed, expected);
-}
-
-/* ---- JSON ------------------------------------------------------------------------------------ */
-
-static void expect_escaped(const char *text, const char *expected)
-{
-    struct page_json json = {0};
-    page_json_string(&json, text);
-    assert_int_equal(json.used, strlen(expected));
-    assert_memory_equal(json.bytes, expected, json.used);
-    page_json_clear(&json);
-}
-
-static void strings_are_escaped(void **state)
-{
-    (void) state;
-    expect_escaped("", "\"\"");
-    expect_escaped("a \"b\" \\ c/d", "\"a \\u0022b\\u0022 \\u005c c/d\"");
-    expect_escaped("</script><!-- & ]]>", "\"\\u003c/script\\u003e\\u003c!-- \\u0026 ]]\\u003e\"");
-    expect_escaped("\x01\t\n\x7f", "\"\\u0001\\u0009\\u000a\\u007f\"");
-    expect_escaped("\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80",
-                   "\"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80\"");
-    expect_escaped("\xf4\x8f\xbf\xbf\xed\x9f\xbf", "\"\xf4\x8f\xbf\xbf\xed\x9f\xbf\"");
-}
-
-/* Overlong forms, surrogates, what is cut off or begins nowhere. */
-static void what_is_no_utf8_is_replaced(void **state)
-{
-    static const char *const bad[] = {"\x80",
-                                      "\xff",
-                                      "\xc0\xaf",
-                                      "\xc1\xbf",
-                                      "\xe0\x9f\xbf",
-                                      "\xed\xa0\x80",
-                                      "\xc3",
-                                      "\xe2\x82",
-                                      "\xf0\x8f\xbf\xbf",
-                                      "\xf4\x90\x80\x80",
-                                      "\xf5\x80\x80\x80",
-                                      "\xf0\x9f\x98"};
-    (void) state;
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        char expected[64] = "\"", text[16];
-        for (size_t k = 0; k < strlen(bad[i]); k++)
-            strcat(expected, "\\ufffd");
-        snprintf(text, sizeof text, "%s<", bad[i]);
-        strcat(expected, "\\u003c\"");
-        expect_escaped(text, expected);
-    }
-}
-
-static void numbers_are_exact_or_null(void **state)
-{
-    static const struct {
-        double value;
-        const char *text;
-    } cases[] = {{0.1, "0.1"},
-                 {1.0 / 3, "0.3333333333333333"},
-                 {5e-324, "4.94065645841247e-324"},
-                 {DBL_MAX, "1.7976931348623157e+308"},
-                 {-0.0, "-0"},
-                 {INFINITY, "null"},
-                 {-INFINITY, "null"},
-                 {NAN, "null"}};
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct page_json json = {0};
-        page_json_number(&json, cases[i].value);
-        assert_int_equal(json.used, strlen(cases[i].text));
-        assert_memory_equal(json.bytes, cases[i].text, json.used);
-        page_json_clear(&json);
-    }
-}
-
-static void integers_that_doubles_lose_are_strings(void **state)
-{
-    struct page_json json = {0};
-    (void) state;
-    page_json_integer(&json, QUERY_ID_MAX);
-    page_json_raw(&json, " ");
-    page_json_integer(&json, -QUERY_ID_MAX - 1);
-    page_json_raw(&json, " ");
-    page_json_integer(&json, INT64_MAX);
-    page_json_raw(&json, "");
-    static const char expected[] = "9007199254740991 \"-9007199254740992\" \"9223372036854775807\"";
-    assert_int_equal(json.used, sizeof expected - 1);
-    assert_memory_equal(json.bytes, expected, json.used);
-    page_json_clear(&json);
 }
 
 /* ---- The whole ------------------------------------------------------------------------------- */
@@ -272,7 +214,7 @@ static void an_empty_page_is_whole(void **state)
     cJSON *data = data_of(page);
     assert_string_equal(member(data, "title")->valuestring,
                         "</script><script>alert(1)</script><!--");
-    expect_json(member(data, "count"), "[0,0,0,0,0]");
+    expect_json(member(data, "count"), "[0,0,0,0,0,0]");
     expect_json(member(data, "events"), "[]");
     expect_json(member(data, "shapes"), "[]");
     cJSON_Delete(data);
@@ -293,7 +235,7 @@ static void outcomes_are_counted_and_logs_named(void **state)
     const struct pair_result result = overlapping();
     struct page *page = page_open("many", BEGIN);
     (void) state;
-    for (int outcome = REPLAY_SAME; outcome <= REPLAY_ALONE; outcome++) {
+    for (int outcome = REPLAY_SAME; outcome < REPLAY_OUTCOMES; outcome++) {
         struct replayed replayed = of_pair(&query, &result, &result, (enum replay_outcome) outcome);
         char log[] = "\xff_.log";
         log[1] = (char) ('0' + outcome % 3);
@@ -304,24 +246,24 @@ static void outcomes_are_counted_and_logs_named(void **state)
         log[1] = 'x'; /* a path need not outlive the call */
     }
     cJSON *data = data_of(page);
-    expect_json(member(data, "count"), "[1,2,3,4,5]");
-    expect_json(member(data, "left_out"), "[0,0,0,0,0]");
+    expect_json(member(data, "count"), "[1,2,3,4,5,6]");
+    expect_json(member(data, "left_out"), "[0,0,0,0,0,0]");
     expect_json(member(data, "span"), "[1.714557599999e+15,1.7145576e+15]");
     expect_json(member(data, "logs"),
                 "[\"\xef\xbf\xbd"
                 "0.log\",\"\xef\xbf\xbd"
                 "1.log\",\"\xef\xbf\xbd"
                 "2.log\"]");
-    assert_int_equal(cJSON_GetArraySize(member(data, "events")), 15);
-    assert_int_equal(number(event_at(data, 14), "log"), 1);
-    assert_int_equal(number(event_at(data, 14), "is"), REPLAY_ALONE);
+    assert_int_equal(cJSON_GetArraySize(member(data, "events")), 21);
+    assert_int_equal(number(event_at(data, 20), "log"), 2);
+    assert_int_equal(number(event_at(data, 20), "is"), REPLAY_ALONE);
     cJSON_Delete(data);
     page_close(page);
 }
 
 /* ---- Limits ---------------------------------------------------------------------------------- */
 
-static void beyond_the_events_differences_alone_are_kept(void **state)
+static void beyond_the_event_limit_only_differences_are_kept(void **state)
 {
     const struct pair_query query = pair_query(2);
     const struct pair_result result = overlapping();
@@ -338,14 +280,14 @@ static void beyond_the_events_differences_alone_are_kept(void **state)
     cJSON *data = data_of(page);
     assert_int_equal(cJSON_GetArraySize(member(data, "events")),
                      PAGE_EVENTS_MAX + PAGE_DIFFERENCES_MAX);
-    expect_json(member(data, "count"), "[5010,1003,1,0,0]");
-    expect_json(member(data, "left_out"), "[10,3,1,0,0]");
+    expect_json(member(data, "count"), "[5010,1003,1,0,0,0]");
+    expect_json(member(data, "left_out"), "[10,3,1,0,0,0]");
     expect_json(member(data, "left_span"), "[1.714557600005e+15,1714557600006013]");
     cJSON_Delete(data);
     page_close(page);
 }
 
-static void a_difference_that_is_kept_makes_no_room(void **state)
+static void differences_count_towards_the_limit(void **state)
 {
     const struct pair_query query = pair_query(2);
     const struct pair_result result = overlapping();
@@ -357,7 +299,7 @@ static void a_difference_that_is_kept_makes_no_room(void **state)
     replayed.outcome = REPLAY_SAME;
     page_take(page, &replayed);
     cJSON *data = data_of(page);
-    expect_json(member(data, "left_out"), "[1,0,0,0,0]");
+    expect_json(member(data, "left_out"), "[1,0,0,0,0,0]");
     cJSON_Delete(data);
     page_close(page);
 }
@@ -365,24 +307,24 @@ static void a_difference_that_is_kept_makes_no_room(void **state)
 static struct scene_query scene;
 static struct scene_result result_then, result_now;
 
-/* As many frames as there may be; numbers of fifteen digits, which no other scene has. */
+/* As many placements as there may be; numbers of fifteen digits, which no other scene has. */
 static void make_large_scene(int step)
 {
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
     scene.which = QUERY_PAIRS_ALL;
-    scene.frame_count = QUERY_FRAMES_MAX;
-    for (int i = 0; i < QUERY_FRAMES_MAX; i++) {
-        scene.frame[i] = make_frame(i + 1, 3, 1, i);
+    scene.placement_count = QUERY_PLACEMENTS_MAX;
+    for (int i = 0; i < QUERY_PLACEMENTS_MAX; i++) {
+        struct geometry_frame frame = {.shape = FMB_CUBOID};
         for (int k = 0; k < 9; k++)
-            scene.frame[i].components.number[k] =
-                (1e14 + 9 * (step * QUERY_FRAMES_MAX + i) + k) / 1e14;
+            frame.components[k] = (1e14 + 9 * (step * QUERY_PLACEMENTS_MAX + i) + k) / 1e14;
+        scene.placement[i] = place(i + 1, 3, &frame, i);
     }
 }
 
-static void beyond_the_bytes_differences_alone_are_kept(void **state)
+static void beyond_the_byte_limit_only_differences_are_kept(void **state)
 {
-    const int enough = 300;
+    const int enough = 400;
     struct page *page = page_open("large", BEGIN);
     int64_t taken[] = {0, 0};
     (void) state;
@@ -406,7 +348,15 @@ static void beyond_the_bytes_differences_alone_are_kept(void **state)
     page_close(page);
 }
 
-/* ---- Frames ---------------------------------------------------------------------------------- */
+/* ---- Placements ------------------------------------------------------------------------------ */
+
+static void expect_placements(const struct pair_query *query, const char *expected)
+{
+    const struct replayed replayed = of_pair(query, NULL, NULL, REPLAY_UNDEFINED);
+    cJSON *data = data_of_one(&replayed);
+    expect_json(member(event_at(data, 0), "frames"), expected);
+    cJSON_Delete(data);
+}
 
 static void shapes_are_kept_once(void **state)
 {
@@ -415,9 +365,11 @@ static void shapes_are_kept_once(void **state)
     for (int i = 0; i < 200; i++) {
         struct pair_query query = pair_query(2);
         struct replayed replayed = of_pair(&query, NULL, NULL, REPLAY_ALONE);
-        query.frame[0] = make_frame(1, 2, 1 + i % 100, i);
-        query.frame[1] = make_frame(2, 3, 1 + i % 100, i);
-        query.frame[1].velocity = query.frame[1].origin;
+        query.placement[0] = make_body(1, 2, 1 + i % 100, i);
+        query.placement[1] = make_body(2, 3, 1 + i % 100, i);
+        query.placement[1].velocity_count = 3;
+        memcpy(query.placement[1].velocity, query.placement[1].position,
+               sizeof query.placement[1].velocity);
         page_take(page, &replayed);
     }
     cJSON *data = data_of(page);
@@ -430,48 +382,71 @@ static void shapes_are_kept_once(void **state)
     page_close(page);
 }
 
-static void frames_that_cannot_be_drawn_are_named(void **state)
+/* Replay adds the geometry to placements by handle where the log defines it. */
+static void bodies_by_handle_are_shown_where_they_are_defined(void **state)
 {
     struct pair_query query = pair_query(2);
-    const struct replayed replayed = of_pair(&query, NULL, NULL, REPLAY_UNKNOWN);
     (void) state;
-    query.frame[0].components.count = 0;
-    query.frame[0].key = 4711;
-    query.frame[1].components.count = 0;
-    cJSON *data = data_of_one(&replayed);
-    expect_json(member(event_at(data, 0), "frames"), "[[1,-1,4711],[2,-2]]");
-    cJSON_Delete(data);
-    struct query_frame bad[8];
-    for (int i = 0; i < 8; i++)
-        bad[i] = make_frame(9, 3, 1, 0);
-    bad[0].components.number[8] = NAN;
-    bad[1].origin.number[0] = -INFINITY;
-    bad[2].shape = 17;
+    query.placement[0].handle = query.placement[1].handle = make_undefined(0, 2).handle;
+    query.placement[0].number_count = query.placement[1].number_count = 0;
+    expect_placements(&query, "[[1,0,0,0],[2,0,0.5,0.5]]");
+    query.placement[1] = make_undefined(2, 2);
+    expect_placements(&query, "[[1,0,0,0],[2,-1,\"f7f8f9fafbfcfdfeff00010203040506\"]]");
+}
+
+static void an_origin_in_body_coordinates_is_added(void **state)
+{
+    struct geometry_frame frame = cuboid(2, 1);
+    struct pair_query query = pair_query(2);
+    (void) state;
+    frame.origin[0] = 0.25;
+    frame.origin[1] = -1;
+    query.placement[0] = place(1, 2, &frame, 8);
+    expect_placements(&query, "[[1,0,8.25,7],[2,0,0.5,0.5]]");
+}
+
+static void bodies_that_cannot_be_drawn_are_named(void **state)
+{
+    struct geometry_frame frame = cuboid(3, 1);
+    static unsigned char other_shape[GEOMETRY_FRAME_BYTES_MAX];
+    struct placement bad[12];
+    (void) state;
+    for (int i = 0; i < 12; i++)
+        bad[i] = make_body(9, 3, 1, 0);
+    frame.components[8] = NAN;
+    bad[0].geometry = encode(3, &frame);
+    bad[1].position[0] = -INFINITY;
+    bad[2].dim = 2;
     bad[3].dim = 4;
-    bad[4].components.count = INT32_MAX;
-    bad[5].velocity.count = 2;
-    bad[6].origin.count = -1;
-    bad[7] = make_frame(9, 3, 1, 0);
-    bad[7].velocity.count = 3;
-    bad[7].velocity.number[2] = INFINITY;
-    for (int i = 0; i < 8; i += 2) {
-        query.frame[0] = bad[i];
-        query.frame[1] = bad[i + 1];
-        data = data_of_one(&replayed);
-        expect_json(member(event_at(data, 0), "frames"), "[[9,-2],[9,-2]]");
-        cJSON_Delete(data);
+    bad[4].frame_count = 2;
+    bad[5].velocity_count = 2;
+    bad[6].orientation_count = 4;
+    bad[7].velocity_count = 3;
+    bad[7].velocity[2] = INFINITY;
+    bad[8] = make_undefined(9, 3);
+    memset(&bad[8].handle, 0, sizeof bad[8].handle);
+    frame = cuboid(3, 1);
+    frame.origin[2] = 1.7e308;
+    bad[9] = place(9, 3, &frame, 1.7e308);
+    memcpy(other_shape, bad[10].geometry.bytes, bad[10].geometry.size);
+    other_shape[8] = 17;
+    bad[10].geometry.bytes = other_shape;
+    bad[11].position[2] = NAN;
+    for (int i = 0; i < 12; i += 2) {
+        const struct pair_query query = {.placement = {bad[i], bad[i + 1]}};
+        expect_placements(&query, "[[9,-2],[9,-2]]");
     }
 }
 
-static void a_scene_has_all_its_frames(void **state)
+static void a_scene_has_all_its_placements(void **state)
 {
     (void) state;
     make_large_scene(0);
-    scene.frame_count = QUERY_FRAMES_MAX + 5;
+    scene.placement_count = QUERY_PLACEMENTS_MAX + 5;
     const struct replayed replayed = of_scene(&scene, NULL, NULL, REPLAY_ALONE);
     cJSON *data = data_of_one(&replayed);
     const cJSON *event = event_at(data, 0);
-    assert_int_equal(cJSON_GetArraySize(member(event, "frames")), QUERY_FRAMES_MAX);
+    assert_int_equal(cJSON_GetArraySize(member(event, "frames")), QUERY_PLACEMENTS_MAX);
     assert_int_equal(number(event, "more_frames"), 5);
     expect_json(member(event, "pairs"), "[]");
     cJSON_Delete(data);
@@ -502,7 +477,7 @@ static void results_of_a_pair_stand_side_by_side(void **state)
     expect_answers(&now, &then, "[[0,1,null,[3,null,null,null,0.5,1,null]]]");
 }
 
-static void ends_of_boxes_that_are_no_ends_are_words(void **state)
+static void invalid_ends_of_boxes_are_strings(void **state)
 {
     struct pair_result now = overlapping();
     (void) state;
@@ -512,7 +487,7 @@ static void ends_of_boxes_that_are_no_ends_are_words(void **state)
     expect_answers(&now, &now, "[[0,1,[3,null,null,\"inf\",\"NaN\",\"-inf\",1]]]");
 }
 
-static void statuses_are_said(void **state)
+static void statuses_are_written(void **state)
 {
     const struct pair_query query = pair_query(2);
     struct pair_result then = overlapping(), now = overlapping();
@@ -531,7 +506,7 @@ static void statuses_are_said(void **state)
     cJSON_Delete(data);
 }
 
-static void another_certificate_is_said(void **state)
+static void a_different_certificate_is_reported(void **state)
 {
     const struct pair_query query = pair_query(2);
     struct pair_result then = overlapping(), now = overlapping();
@@ -550,19 +525,19 @@ static void another_certificate_is_said(void **state)
 
 /* ---- Pairs of scenes ------------------------------------------------------------------------- */
 
-static void make_scene(int32_t which, int32_t frames)
+static void make_scene(int32_t which, int32_t bodies)
 {
     memset(&scene, 0, sizeof scene);
     memset(&result_then, 0, sizeof result_then);
     scene.which = which;
-    scene.frame_count = frames;
-    for (int i = 0; i < frames; i++)
-        scene.frame[i] = make_frame(i + 1, 2, 1, i);
-    for (unsigned i = 0; which == QUERY_PAIRS_LISTED && i + 1 < (unsigned) frames; i++) {
+    scene.placement_count = bodies;
+    for (int i = 0; i < bodies; i++)
+        scene.placement[i] = make_body(i + 1, 2, 1, i);
+    for (unsigned i = 0; which == QUERY_PAIRS_LISTED && i + 1 < (unsigned) bodies; i++) {
         scene.pair[i][0] = i;
         scene.pair[i][1] = i + 1;
     }
-    scene.index_count = which == QUERY_PAIRS_LISTED ? 2 * (frames - 1) : 0;
+    scene.index_count = which == QUERY_PAIRS_LISTED ? 2 * (bodies - 1) : 0;
 }
 
 static void add_verdict(struct scene_result *result, unsigned a, unsigned b, int verdict)
@@ -579,7 +554,7 @@ static void expect_scene(const char *expected)
     expect_pairs(&replayed, expected);
 }
 
-/* NaN stands for the times of a pair at rest. */
+/* The times of a pair at rest are NaN. */
 static void listed_pairs_have_times_and_boxes(void **state)
 {
     (void) state;
@@ -601,7 +576,7 @@ static void listed_pairs_have_times_and_boxes(void **state)
         "[1,2,[2,null,null,1,2,3,4]],[0,1,1],[2,3,0]]");
 }
 
-static void without_times_or_boxes_a_verdict_stands_alone(void **state)
+static void without_times_and_boxes_a_pair_is_its_verdict(void **state)
 {
     (void) state;
     make_scene(QUERY_PAIRS_LISTED, 3);
@@ -616,8 +591,8 @@ static void without_times_or_boxes_a_verdict_stands_alone(void **state)
     expect_scene("[[1,2,[3,0,1],3],[0,1,2]]");
 }
 
-/* The second result came farther, and both begin with the second pair. */
-static void results_of_a_part_answer_a_part(void **state)
+/* The second result has more pairs, and both begin with the second pair. */
+static void partial_results_answer_some_pairs(void **state)
 {
     (void) state;
     make_scene(QUERY_PAIRS_LISTED, 5);
@@ -627,7 +602,7 @@ static void results_of_a_part_answer_a_part(void **state)
     add_verdict(&result_now, 0, 0, FMB_OVERLAPPING);
     expect_scene("[[2,3,null,3],[1,2,1]]");
     add_verdict(&result_now, 0, 0, FMB_SEPARATED);
-    add_verdict(&result_now, 0, 0, FMB_SEPARATED); /* of a pair that was not asked */
+    add_verdict(&result_now, 0, 0, FMB_SEPARATED); /* of a pair that is not in the query */
     expect_scene("[[2,3,null,3],[1,2,1],[3,4,null,1]]");
     scene.first_pair = INT32_MAX;
     expect_scene("[]");
@@ -635,7 +610,7 @@ static void results_of_a_part_answer_a_part(void **state)
     expect_scene("[]");
 }
 
-static void of_all_pairs_those_not_named_are_separated(void **state)
+static void pairs_not_named_are_separated(void **state)
 {
     (void) state;
     make_scene(QUERY_PAIRS_ALL, 4); /* (0,1) (0,2) (0,3) (1,2) (1,3) (2,3) */
@@ -648,7 +623,7 @@ static void of_all_pairs_those_not_named_are_separated(void **state)
     add_verdict(&result_now, 1, 3, FMB_OVERLAPPING);
     add_verdict(&result_now, 2, 3, FMB_OVERLAPPING);
     expect_scene("[[0,1,1,2],[0,2,2,1],[2,3,1,3],[1,3,3]]");
-    result_then.end_pair = 5; /* says nothing of the last one */
+    result_then.end_pair = 5; /* does not include the last pair */
     expect_scene("[[0,1,1,2],[0,2,2,1],[1,3,3],[2,3,null,3]]");
     result_now.status = FMB_BUSY;
     expect_scene("[[0,2,2,null],[1,3,3,null]]");
@@ -697,14 +672,14 @@ static void verdicts_of_a_scene_are_counted(void **state)
     assert_int_equal(page_pairs_total(&scene), 0);
 }
 
-/* The last pair differs, the last but one meets. */
-static void of_too_many_pairs_the_worst_are_kept(void **state)
+/* The last pair differs, the one before it touches. */
+static void differing_pairs_are_kept_first(void **state)
 {
-    enum { FRAMES = QUERY_FRAMES_MAX };
+    enum { BODIES = QUERY_PLACEMENTS_MAX };
     (void) state;
-    make_scene(QUERY_PAIRS_LISTED, FRAMES);
-    for (int i = 0; i < FRAMES - 2; i++)
-        add_verdict(&result_then, 0, 0, i == FRAMES - 3 ? FMB_TOUCHING : FMB_SEPARATED);
+    make_scene(QUERY_PAIRS_LISTED, BODIES);
+    for (int i = 0; i < BODIES - 2; i++)
+        add_verdict(&result_then, 0, 0, i == BODIES - 3 ? FMB_TOUCHING : FMB_SEPARATED);
     result_now = result_then;
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
     add_verdict(&result_now, 0, 0, FMB_SEPARATED);
@@ -712,67 +687,65 @@ static void of_too_many_pairs_the_worst_are_kept(void **state)
     cJSON *data = data_of_one(&replayed);
     const cJSON *event = event_at(data, 0), *pairs = member(event, "pairs");
     assert_int_equal(cJSON_GetArraySize(pairs), PAGE_PAIRS_MAX);
-    assert_int_equal(number(event, "more"), FRAMES - 1 - PAGE_PAIRS_MAX);
-    expect_json(cJSON_GetArrayItem(pairs, 0), "[1398,1399,2,1]");
-    expect_json(cJSON_GetArrayItem(pairs, 1), "[1397,1398,2]");
+    assert_int_equal(number(event, "more"), BODIES - 1 - PAGE_PAIRS_MAX);
+    expect_json(cJSON_GetArrayItem(pairs, 0), "[1063,1064,2,1]");
+    expect_json(cJSON_GetArrayItem(pairs, 1), "[1062,1063,2]");
     expect_json(cJSON_GetArrayItem(pairs, 2), "[0,1,1]");
     cJSON_Delete(data);
 }
 
-/* Of a log that anybody may have written: indices of no frame, counts that do not agree. */
-static void results_that_do_not_fit_the_query_do_no_harm(void **state)
+/* Hostile logs: indices beyond the placements, counts that do not agree. */
+static void results_that_do_not_match_the_query_are_harmless(void **state)
 {
     (void) state;
     make_scene(QUERY_PAIRS_ALL, 2);
     result_then.names_pairs = true;
     result_then.end_pair = INT32_MAX;
-    add_verdict(&result_then, 3, 1399, FMB_OVERLAPPING);
+    add_verdict(&result_then, 3, 1064, FMB_OVERLAPPING);
     result_then.contact_count = 0; /* so that there are no numbers for it */
     result_then.has_times = result_then.has_boxes = true;
     result_then.dim = 3;
     result_now = result_then;
     result_now.verdict_count = 0;
-    expect_scene("[[3,1399,3,1]]");
-    scene.frame_count = INT32_MIN;
+    expect_scene("[[3,1064,3,1]]");
+    scene.placement_count = 0;
     scene.split = INT32_MIN;
     scene.which = QUERY_PAIRS_ACROSS;
-    expect_scene("[[3,1399,3,null]]");
+    expect_scene("[[3,1064,3,null]]");
     result_now.names_pairs = false;
     result_now.verdict_count = 5;
     scene.which = INT32_MIN;
-    expect_scene("[[3,1399,3,1]]");
+    expect_scene("[[3,1064,3,1]]");
     scene.which = QUERY_PAIRS_LISTED;
-    scene.index_count = -7;
+    scene.index_count = 1;
     expect_scene("[]");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(strings_are_escaped),
-        cmocka_unit_test(what_is_no_utf8_is_replaced),
-        cmocka_unit_test(numbers_are_exact_or_null),
-        cmocka_unit_test(integers_that_doubles_lose_are_strings),
         cmocka_unit_test(an_empty_page_is_whole),
         cmocka_unit_test(outcomes_are_counted_and_logs_named),
-        cmocka_unit_test(beyond_the_events_differences_alone_are_kept),
-        cmocka_unit_test(a_difference_that_is_kept_makes_no_room),
-        cmocka_unit_test(beyond_the_bytes_differences_alone_are_kept),
+        cmocka_unit_test(beyond_the_event_limit_only_differences_are_kept),
+        cmocka_unit_test(differences_count_towards_the_limit),
+        cmocka_unit_test(beyond_the_byte_limit_only_differences_are_kept),
         cmocka_unit_test(shapes_are_kept_once),
-        cmocka_unit_test(frames_that_cannot_be_drawn_are_named),
-        cmocka_unit_test(a_scene_has_all_its_frames),
+        cmocka_unit_test(bodies_by_handle_are_shown_where_they_are_defined),
+        cmocka_unit_test(an_origin_in_body_coordinates_is_added),
+        cmocka_unit_test(bodies_that_cannot_be_drawn_are_named),
+        cmocka_unit_test(a_scene_has_all_its_placements),
         cmocka_unit_test(results_of_a_pair_stand_side_by_side),
-        cmocka_unit_test(ends_of_boxes_that_are_no_ends_are_words),
-        cmocka_unit_test(statuses_are_said),
-        cmocka_unit_test(another_certificate_is_said),
+        cmocka_unit_test(invalid_ends_of_boxes_are_strings),
+        cmocka_unit_test(statuses_are_written),
+        cmocka_unit_test(a_different_certificate_is_reported),
         cmocka_unit_test(listed_pairs_have_times_and_boxes),
-        cmocka_unit_test(without_times_or_boxes_a_verdict_stands_alone),
-        cmocka_unit_test(results_of_a_part_answer_a_part),
-        cmocka_unit_test(of_all_pairs_those_not_named_are_separated),
+        cmocka_unit_test(without_times_and_boxes_a_pair_is_its_verdict),
+        cmocka_unit_test(partial_results_answer_some_pairs),
+        cmocka_unit_test(pairs_not_named_are_separated),
         cmocka_unit_test(pairs_across_are_counted_across),
         cmocka_unit_test(verdicts_of_a_scene_are_counted),
-        cmocka_unit_test(of_too_many_pairs_the_worst_are_kept),
-        cmocka_unit_test(results_that_do_not_fit_the_query_do_no_harm),
+        cmocka_unit_test(differing_pairs_are_kept_first),
+        cmocka_unit_test(results_that_do_not_match_the_query_are_harmless),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

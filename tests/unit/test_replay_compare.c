@@ -18,7 +18,8 @@
 
 static const struct compare_options exact = {.tolerance = 0};
 
-static struct answerer answerer;
+static struct answerer *answerer;
+static struct scene_job *job;
 
 static uint64_t drawn;
 
@@ -28,50 +29,73 @@ static uint64_t draw(uint64_t below)
     return (drawn >> 33) % below;
 }
 
-/* ---- What is told ---- */
+/* ---- What is reported ---- */
 
-enum { TOLD_MAX = 20000 };
+enum { REPORTED_MAX = 20000 };
 
-static struct difference told[TOLD_MAX];
-static int told_count;
+static struct difference reported[REPORTED_MAX];
+static int reported_count;
 
 static void on_difference(void *user, const struct difference *difference)
 {
     (void) user;
-    assert_true(told_count < TOLD_MAX);
-    told[told_count++] = *difference;
+    assert_true(reported_count < REPORTED_MAX);
+    reported[reported_count++] = *difference;
 }
 
 static int set_up(void **state)
 {
     (void) state;
     drawn = 1;
-    answerer = (struct answerer){.cache = cache_create(2000, 500), .server_id = 99};
-    return answerer.cache && answer_prepare(&answerer) ? 0 : -1;
+    const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
+    answerer = answerer_create(&options);
+    job = scene_job_create();
+    return answerer && job ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
     (void) state;
-    answer_release(&answerer);
-    cache_destroy(answerer.cache);
+    scene_job_destroy(job);
+    answerer_destroy(answerer);
     return 0;
 }
 
 /* ---- Pairs ---- */
 
-/* A unit cube or square at x = at, y = z = 0, which moves along x where speed is not 0. */
-static struct query_frame frame(int64_t id, int dim, double at, double speed)
+/* A unit cube or square at x = at, y = z = 0, which moves along x where speed is not 0; flat: its
+ * first component is 0. What the placements of a test point to stays. */
+static struct placement placed(int64_t id, int dim, double at, double speed, bool flat)
 {
-    struct query_frame out = {.body_id = id, .shape = FMB_CUBOID, .dim = dim};
-    out.origin.count = dim;
-    out.origin.number[0] = at;
-    out.components.count = dim * dim;
-    for (int i = 0; i < dim; i++)
-        out.components.number[i * dim + i] = 1;
-    out.velocity.count = speed != 0 ? dim : 0;
-    out.velocity.number[0] = speed;
-    return out;
+    static unsigned char bytes[2][2][GEOMETRY_FRAME_BYTES_MAX];
+    unsigned char *geometry = bytes[dim - 2][flat];
+    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    for (int i = flat; i < dim; i++)
+        frame.components[i * dim + i] = 1;
+    return (struct placement){.body_id = id,
+                              .dim = dim,
+                              .frame_count = 1,
+                              .number_count = dim * (dim + 1),
+                              .geometry = {geometry, geometry_write(dim, &frame, geometry)},
+                              .position = {at},
+                              .velocity_count = speed != 0 ? dim : 0,
+                              .velocity = {speed}};
+}
+
+static struct placement frame(int64_t id, int dim, double at, double speed)
+{
+    return placed(id, dim, at, speed, false);
+}
+
+/* By a handle that is not held. */
+static void make_unknown(struct placement *placement)
+{
+    static unsigned char bytes[2][GEOMETRY_NONE_BYTES];
+    unsigned char *none = bytes[placement->dim - 2];
+    geometry_write_none(placement->dim, none);
+    placement->geometry = (struct geometry){none, GEOMETRY_NONE_BYTES};
+    placement->frame_count = placement->number_count = 0;
+    placement->handle.bytes[0] = 77;
 }
 
 static struct pair_query pair(int dim, double at, double speed, int32_t want)
@@ -81,7 +105,7 @@ static struct pair_query pair(int dim, double at, double speed, int32_t want)
                                .sequence_number = 5,
                                .duration = 2,
                                .want = want,
-                               .frame = {frame(11, dim, 0, 0), frame(12, dim, at, speed)}};
+                               .placement = {frame(11, dim, 0, 0), frame(12, dim, at, speed)}};
 }
 
 /* Certificates stay good: each has a copy. */
@@ -90,7 +114,7 @@ static struct pair_result answer(const struct pair_query *query)
     static char certificate[64][QUERY_CERTIFICATE_MAX];
     static int next;
     struct pair_result result;
-    answer_pair(&answerer, query, &result);
+    answer_pair(answerer, query, &result);
     if (result.certificate)
         result.certificate = strcpy(certificate[next = (next + 1) % 64], result.certificate);
     return result;
@@ -101,10 +125,10 @@ static enum replay_outcome compare_with(double tolerance, const struct pair_quer
                                         const struct pair_result *now)
 {
     const struct compare_options options = {.tolerance = tolerance};
-    told_count = 0;
+    reported_count = 0;
     const enum replay_outcome outcome =
         compare_pairs(&options, query, then, now, on_difference, NULL);
-    assert_int_equal(told_count, outcome == REPLAY_DIFFERENT);
+    assert_int_equal(reported_count, outcome == REPLAY_DIFFERENT);
     return outcome;
 }
 
@@ -113,12 +137,12 @@ static void expect_kind(double tolerance, const struct pair_query *query,
                         enum difference_kind kind)
 {
     assert_int_equal(compare_with(tolerance, query, then, now), REPLAY_DIFFERENT);
-    assert_int_equal(told[0].kind, kind);
-    assert_int_equal(told[0].body_id[0], 11);
-    assert_int_equal(told[0].body_id[1], 12);
-    assert_false(told[0].whole);
-    assert_int_equal(told[0].then.status, then->status);
-    assert_int_equal(told[0].now.status, now->status);
+    assert_int_equal(reported[0].kind, kind);
+    assert_int_equal(reported[0].body_id[0], 11);
+    assert_int_equal(reported[0].body_id[1], 12);
+    assert_false(reported[0].whole);
+    assert_int_equal(reported[0].then.status, then->status);
+    assert_int_equal(reported[0].now.status, now->status);
 }
 
 static void expect_same(double tolerance, const struct pair_query *query,
@@ -139,7 +163,7 @@ static void test_every_kind(void **state)
     expect_same(0, &query, &then, &now);
     then.certificate = "none such";
     expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
-    assert_string_equal(told[0].then.certificate, "none such");
+    assert_string_equal(reported[0].then.certificate, "none such");
     then.certificate = NULL;
     expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
     expect_kind(0, &query, &now, &then, DIFFERENT_CERTIFICATE);
@@ -165,7 +189,8 @@ static void test_what_is_not_compared(void **state)
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
     (void) state;
-    then.server_id = then.utime = then.compute_ns = then.key[0] = then.key[1] = -1;
+    then.server_id = then.utime = then.compute_ns = -1;
+    then.handle[0].bytes[0] ^= 1;
     then.method = 77;
     expect_same(0, &query, &then, &now);
     const struct pair_result refused = {.status = FMB_BAD_ID, .detail = "client_id: this"};
@@ -184,11 +209,13 @@ static void test_statuses_of_the_moment(void **state)
     for (double tolerance = 0; tolerance < 1; tolerance += 0.5) {
         assert_int_equal(compare_with(tolerance, &query, &busy, &good), REPLAY_BUSY);
         assert_int_equal(compare_with(tolerance, &query, &busy, &bad), REPLAY_BUSY);
+        assert_int_equal(compare_with(tolerance, &query, &good, &busy), REPLAY_BUSY);
         assert_int_equal(compare_with(tolerance, &query, &busy, &unknown), REPLAY_BUSY);
         assert_int_equal(compare_with(tolerance, &query, &unknown, &good), REPLAY_UNKNOWN);
         assert_int_equal(compare_with(tolerance, &query, &unknown, &unknown), REPLAY_UNKNOWN);
-        assert_int_equal(compare_with(tolerance, &query, &good, &unknown), REPLAY_UNKNOWN);
-        assert_int_equal(compare_with(tolerance, &query, &bad, &unknown), REPLAY_UNKNOWN);
+        assert_int_equal(compare_with(tolerance, &query, &unknown, &busy), REPLAY_UNKNOWN);
+        assert_int_equal(compare_with(tolerance, &query, &good, &unknown), REPLAY_UNDEFINED);
+        assert_int_equal(compare_with(tolerance, &query, &bad, &unknown), REPLAY_UNDEFINED);
     }
 }
 
@@ -317,30 +344,30 @@ struct plain {
 enum { PAIRS_MAX = 20000 };
 
 static struct plain plain_then[PAIRS_MAX], plain_now[PAIRS_MAX];
-static unsigned asked[PAIRS_MAX][2];
+static unsigned requested[PAIRS_MAX][2];
 
-/* All pairs that are asked, in their order. */
-static int list_asked(void)
+/* All pairs of the query, in their order. */
+static int list_requested(void)
 {
     int count = 0;
     if (scene.which == QUERY_PAIRS_LISTED) {
         for (; count < scene.index_count / 2; count++)
-            memcpy(asked[count], scene.pair[count], sizeof asked[count]);
+            memcpy(requested[count], scene.pair[count], sizeof requested[count]);
         return count;
     }
-    for (int a = 0; a < scene.frame_count; a++)
-        for (int b = a + 1; b < scene.frame_count; b++)
+    for (int a = 0; a < scene.placement_count; a++)
+        for (int b = a + 1; b < scene.placement_count; b++)
             if (scene.which == QUERY_PAIRS_ALL || (a < scene.split && b >= scene.split)) {
                 assert_true(count < PAIRS_MAX);
-                asked[count][0] = (unsigned) a;
-                asked[count++][1] = (unsigned) b;
+                requested[count][0] = (unsigned) a;
+                requested[count++][1] = (unsigned) b;
             }
     return count;
 }
 
 static int number_of(const unsigned pair_of[2], int from, int count)
 {
-    while (from < count && (asked[from][0] != pair_of[0] || asked[from][1] != pair_of[1]))
+    while (from < count && (requested[from][0] != pair_of[0] || requested[from][1] != pair_of[1]))
         from++;
     return from;
 }
@@ -355,7 +382,7 @@ static void put_plain(const struct scene_result *result, int i, int *contact, st
         out->has_times = true;
         memcpy(out->times, &result->times[2 * at], sizeof out->times);
     }
-    if (result->has_boxes && result->dim == scene.frame[0].dim) {
+    if (result->has_boxes && result->dim == scene.placement[0].dim) {
         out->has_box = true;
         memcpy(out->box, &result->boxes[2 * result->dim * at],
                2 * (size_t) result->dim * sizeof(double));
@@ -393,7 +420,7 @@ static bool same_plain(const struct plain *a, const struct plain *b)
            memcmp(a->box, b->box, sizeof a->box) == 0;
 }
 
-/* What is told is what the model says. */
+/* What is reported is what the model says. */
 static void check_differences(int total)
 {
     int found = 0;
@@ -401,12 +428,12 @@ static void check_differences(int total)
         if (!plain_then[i].there || !plain_now[i].there ||
             same_plain(&plain_then[i], &plain_now[i]))
             continue;
-        assert_true(found < told_count);
-        const struct difference *difference = &told[found++];
+        assert_true(found < reported_count);
+        const struct difference *difference = &reported[found++];
         assert_false(difference->whole);
         for (int f = 0; f < 2; f++) {
-            assert_int_equal(difference->frame[f], asked[i][f]);
-            assert_int_equal(difference->body_id[f], scene.frame[asked[i][f]].body_id);
+            assert_int_equal(difference->placement[f], requested[i][f]);
+            assert_int_equal(difference->body_id[f], scene.placement[requested[i][f]].body_id);
         }
         assert_int_equal(difference->then.answer.verdict, plain_then[i].verdict);
         assert_int_equal(difference->now.answer.verdict, plain_now[i].verdict);
@@ -416,12 +443,12 @@ static void check_differences(int total)
             assert_true(difference->kind == DIFFERENT_INTERVAL ||
                         difference->kind == DIFFERENT_BOX);
     }
-    assert_int_equal(found, told_count);
+    assert_int_equal(found, reported_count);
 }
 
 static enum replay_outcome compare(void)
 {
-    told_count = 0;
+    reported_count = 0;
     return compare_scenes(&exact, &scene, &then, &now, on_difference, NULL);
 }
 
@@ -430,11 +457,13 @@ static void check_scene(void)
     const enum replay_outcome outcome = compare();
     if (then.status == FMB_BUSY || then.status == FMB_UNKNOWN_BODY ||
         now.status == FMB_UNKNOWN_BODY) {
-        assert_true(outcome == (then.status == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNKNOWN));
+        assert_true(outcome == (then.status == FMB_BUSY           ? REPLAY_BUSY
+                                : then.status == FMB_UNKNOWN_BODY ? REPLAY_UNKNOWN
+                                                                  : REPLAY_UNDEFINED));
         return;
     }
-    assert_int_equal(outcome, told_count ? REPLAY_DIFFERENT : REPLAY_SAME);
-    const int total = now.status == FMB_OK ? list_asked() : 0;
+    assert_int_equal(outcome, reported_count ? REPLAY_DIFFERENT : REPLAY_SAME);
+    const int total = now.status == FMB_OK ? list_requested() : 0;
     if (then.status == FMB_OK && now.status == FMB_OK) {
         assert_true(plain_of(&now, total, plain_now));
         if (plain_of(&then, total, plain_then)) {
@@ -442,12 +471,12 @@ static void check_scene(void)
             return;
         }
     } else if (then.status == now.status) {
-        assert_int_equal(told_count, 0);
+        assert_int_equal(reported_count, 0);
         return;
     }
-    assert_int_equal(told_count, 1);
-    assert_true(told[0].whole);
-    assert_int_equal(told[0].kind, DIFFERENT_STATUS);
+    assert_int_equal(reported_count, 1);
+    assert_true(reported[0].whole);
+    assert_int_equal(reported[0].kind, DIFFERENT_STATUS);
 }
 
 /* ---- Scenes: drawn ---- */
@@ -475,15 +504,15 @@ static void draw_scene(void)
     scene.want = (int32_t) (draw(2) * BOX | draw(2) * TIMES);
     scene.which = (int32_t) draw(3);
     scene.method = methods[draw(scene.which == QUERY_PAIRS_LISTED ? 6 : 4)];
-    scene.frame_count = frames;
+    scene.placement_count = frames;
     for (int i = 0; i < frames; i++) {
-        scene.frame[i] = frame(draw(2) ? 20 + i : 0, dim, 0.25 * (double) draw(16),
-                               draw(2) ? 0.25 * (double) draw(5) : 0);
-        if (draw(8) == 0) /* flat: there are methods that cannot decide */
-            scene.frame[i].components.number[0] = 0;
+        const int64_t id = draw(2) ? 20 + i : 0;
+        const double at = 0.25 * (double) draw(16), speed = draw(2) ? 0.25 * (double) draw(5) : 0;
+        /* Of flat ones there are methods that cannot decide. */
+        scene.placement[i] = placed(id, dim, at, speed, draw(8) == 0);
     }
     draw_pairs(frames);
-    const int total = list_asked();
+    const int total = list_requested();
     scene.first_pair = draw(3) ? 0 : (int32_t) draw((uint64_t) total + 1);
 }
 
@@ -493,8 +522,11 @@ static size_t now_size;
 /* Both as they come from the wire. */
 static void answer_now(void)
 {
-    answer_scene(&answerer, &scene, &now);
-    now_size = wire_write_scene_result(&now, now_bytes);
+    static unsigned char query[QUERY_BYTES_MAX];
+    assert_null(scene_job_begin(job, query, wire_write_scene_query(&scene, query)));
+    while (!scene_job_step(job, answerer))
+        continue;
+    now_size = wire_write_scene_result(scene_job_result(job), now_bytes);
     memcpy(then_bytes, now_bytes, now_size);
     assert_null(wire_read_scene_result(now_bytes, (uint32_t) now_size, &now));
     then = now;
@@ -572,7 +604,7 @@ static void test_scenes_against_the_model(void **state)
         draw_scene();
         answer_now();
         check_scene();
-        assert_int_equal(told_count, 0);
+        assert_int_equal(reported_count, 0);
         const int32_t span = now.end_pair - scene.first_pair;
         for (uint64_t changes = draw(4); changes > 0; changes--)
             (draw(3) ? change_one : drop_one)(&then);
@@ -583,8 +615,8 @@ static void test_scenes_against_the_model(void **state)
         if (!through_the_wire(&then) || !through_the_wire(&now))
             continue;
         check_scene();
-        different += told_count > 0;
-        same += told_count == 0;
+        different += reported_count > 0;
+        same += reported_count == 0;
         shorter += then.end_pair != now.end_pair;
     }
     assert_in_range(different, 2000, 20000);
@@ -606,8 +638,8 @@ static void test_results_of_other_queries(void **state)
         for (int i = 0; i < count; i++) {
             then = kept[i];
             check_scene();
-            whole += told_count > 0 && told[0].whole;
-            walked += told_count == 0 || !told[0].whole;
+            whole += reported_count > 0 && reported[0].whole;
+            walked += reported_count == 0 || !reported[0].whole;
         }
         if (round % 100 == 0)
             kept[count++] = now;
@@ -640,9 +672,9 @@ static void test_results_changed_byte_by_byte(void **state)
 static void expect_whole(void)
 {
     assert_int_equal(compare(), REPLAY_DIFFERENT);
-    assert_int_equal(told_count, 1);
-    assert_true(told[0].whole);
-    assert_int_equal(told[0].kind, DIFFERENT_STATUS);
+    assert_int_equal(reported_count, 1);
+    assert_true(reported[0].whole);
+    assert_int_equal(reported[0].kind, DIFFERENT_STATUS);
 }
 
 /* As many pairs as a message has room for, all of them in contact, and nothing else said. */
@@ -651,51 +683,53 @@ static void test_the_most_pairs(void **state)
     (void) state;
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
-    scene.frame_count = 2;
+    scene.placement_count = 2;
     for (int i = 0; i < 2; i++)
-        scene.frame[i] = frame(0, 2, 0, 0);
-    const int pairs = (QUERY_BYTES_MAX - 400) / 4;
+        scene.placement[i] = frame(0, 2, 0, 0);
+    const int pairs = (QUERY_BYTES_MAX - 400) / 4; /* what the placements leave */
     scene.index_count = 2 * pairs;
     for (int i = 0; i < pairs; i++)
         scene.pair[i][1] = 1;
     answer_now();
     assert_int_equal(now.verdict_count, pairs);
     check_scene();
-    assert_int_equal(told_count, 0);
+    assert_int_equal(reported_count, 0);
     memset(then.verdict, FMB_TOUCHING, (size_t) pairs);
     check_scene();
-    assert_int_equal(told_count, pairs);
+    assert_int_equal(reported_count, pairs);
     then.end_pair = pairs + 1;
     expect_whole();
     then.end_pair = INT32_MAX;
     expect_whole();
 }
 
-/* Indices of a scene with the most frames, and beyond it. */
-static void test_the_most_frames(void **state)
+/* Indices of a scene with about the most placements that a query can have, and beyond it. */
+enum { PLACEMENTS = 400 };
+
+static void test_the_most_placements(void **state)
 {
     (void) state;
     for (int which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++) {
         memset(&scene, 0, sizeof scene);
         scene.duration = 1;
         scene.which = which;
-        scene.split = which == QUERY_PAIRS_ACROSS ? 700 : 0;
-        scene.frame_count = QUERY_FRAMES_MAX;
-        for (int i = 0; i < QUERY_FRAMES_MAX; i++)
-            scene.frame[i] = frame(i + 1, 2, 10 * i, 0);
+        scene.split = which == QUERY_PAIRS_ACROSS ? 350 : 0;
+        scene.placement_count = PLACEMENTS;
+        for (int i = 0; i < PLACEMENTS; i++)
+            scene.placement[i] = frame(i + 1, 2, 10 * i, 0);
         answer_now();
         assert_int_equal(now.verdict_count, 0);
         then.names_pairs = true;
         then.verdict_count = then.contact_count = 1;
         then.verdict[0] = FMB_TOUCHING;
-        then.pair[0][0] = 699;
-        then.pair[0][1] = QUERY_FRAMES_MAX - 1;
+        then.pair[0][0] = 349;
+        then.pair[0][1] = PLACEMENTS - 1;
         assert_int_equal(compare(), REPLAY_DIFFERENT);
-        assert_int_equal(told_count, 1);
-        assert_int_equal(told[0].frame[0], 699);
-        assert_int_equal(told[0].body_id[1], QUERY_FRAMES_MAX);
-        assert_int_equal(told[0].now.answer.verdict, FMB_SEPARATED);
-        then.pair[0][1] = QUERY_FRAMES_MAX;
+        assert_int_equal(reported_count, 1);
+        assert_int_equal(reported[0].placement[0], 349);
+        assert_int_equal(reported[0].body_id[1], PLACEMENTS);
+        assert_int_equal(reported[0].now.answer.verdict, FMB_SEPARATED);
+        then.pair[0][1] = PLACEMENTS;
         expect_whole();
         then.pair[0][1] = UINT32_MAX;
         expect_whole();
@@ -727,9 +761,11 @@ static void test_scenes_whose_bytes_are_the_same(void **state)
     (void) state;
     for (int round = 0; round < 300; round++) {
         draw_scene();
-        if (draw(4) == 0 && scene.frame_count > 0) { /* refused in many ways */
-            scene.frame[0].key = draw(2) ? 77 : -1;
-            scene.frame[0].components.count = draw(2) ? 0 : scene.frame[0].components.count;
+        if (draw(4) == 0 && scene.placement_count > 0) { /* refused in many ways */
+            if (draw(2))
+                make_unknown(&scene.placement[0]);
+            else
+                scene.placement[0].handle.bytes[0] = 77;
         }
         answer_now();
         for (size_t at = 0; at < now_size; at++) {
@@ -744,7 +780,7 @@ static void test_scenes_whose_bytes_are_the_same(void **state)
         for (size_t size = 0; size < now_size; size++)
             assert_false(compare_bytes_same(LOG_SCENE_QUERY, now_bytes, size, now_bytes, now_size));
     }
-    assert_in_range(same, 2000, 100000); /* server id, lost, keys, time taken */
+    assert_in_range(same, 2000, 100000); /* ids, handles, time taken */
 }
 
 static struct pair_query drawn_pair(void)
@@ -753,10 +789,8 @@ static struct pair_query drawn_pair(void)
     struct pair_query query = pair(2 + (int) draw(2), 0.25 * (double) draw(8),
                                    draw(2) ? 0.25 * (double) draw(9) - 1 : 0, (int32_t) draw(4));
     query.method = methods[draw(6)];
-    if (draw(4) == 0) {
-        query.frame[draw(2)].key = 77;
-        query.frame[draw(2)].components.count = 0;
-    }
+    if (draw(4) == 0)
+        make_unknown(&query.placement[draw(2)]);
     if (draw(8) == 0)
         query.duration = -1;
     return query;
@@ -764,7 +798,7 @@ static struct pair_query drawn_pair(void)
 
 static void test_pairs_whose_bytes_are_the_same(void **state)
 {
-    static unsigned char a[WIRE_RESULT_BYTES_MAX], b[WIRE_RESULT_BYTES_MAX];
+    static unsigned char a[QUERY_BYTES_MAX], b[QUERY_BYTES_MAX];
     int same = 0, unknown = 0;
     (void) state;
     for (int round = 0; round < 1000; round++) {
@@ -813,7 +847,7 @@ int main(void)
         TEST(results_of_other_queries),
         TEST(results_changed_byte_by_byte),
         TEST(the_most_pairs),
-        TEST(the_most_frames),
+        TEST(the_most_placements),
         TEST(scenes_whose_bytes_are_the_same),
         TEST(pairs_whose_bytes_are_the_same),
         TEST(names),

@@ -89,6 +89,18 @@ function drawText(context, text, x, y, colour, align) {
     context.fillText(text, x, y);
 }
 
+const LABEL_FONT = "700 12px system-ui, sans-serif";
+
+/* Centred at x, with an outline in the colour of the ground. */
+function drawLabel(context, text, x, y, colour) {
+    context.font = LABEL_FONT;
+    context.textAlign = "center";
+    context.strokeStyle = stage.theme.card;
+    context.lineWidth = 4;
+    context.strokeText(text, x, y);
+    drawText(context, text, x, y, colour, "center");
+}
+
 const RING_BELOW = 7;   /* pixels: a smaller box gets a ring, to be found */
 
 function drawRing(context, points) {

@@ -4,14 +4,14 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 
 /* enum replay_outcome. */
-const SAME = 0, DIFFERENT = 1, BUSY = 2, UNKNOWN = 3, ALONE = 4;
-const OUTCOMES = ["same", "different", "busy", "unknown", "without result"];
+const SAME = 0, DIFFERENT = 1, BUSY = 2, UNKNOWN = 3, UNDEFINED = 4, ALONE = 5;
+const OUTCOMES = ["same", "different", "busy", "unknown body", "not defined", "without result"];
 const OUTCOME_SAID = [
     "The result is the one that was recorded.",
     "The result is another one than the one that was recorded.",
     "The service was busy then: there is no answer to compare.",
-    "A key was not held then, or stands for components that are not in the log: there is nothing "
-        + "to compare.",
+    "The service did not hold a body then: there is no answer to compare.",
+    "The log does not define the handle of a body: there is no answer to compare.",
     "No result was recorded: there is nothing to compare.",
 ];
 
@@ -89,9 +89,9 @@ function framesOf(event) {
     return event.frames.map(([id, shape, ...numbers], index) => {
         const frame = { index, id: String(id), shape: null, why: "" };
         if (shape === -1)
-            frame.why = `it came by key ${numbers[0]}, and its components are not in the log`;
+            frame.why = `the log does not define its handle, ${numbers[0]}`;
         else if (shape === -2)
-            frame.why = "its numbers make no frame";
+            frame.why = "it is no frame that can be drawn";
         if (shape < 0)
             return frame;
         frame.shape = data.shapes[shape];
@@ -221,19 +221,6 @@ function fillRow(row) {
     }
     row.filled = true;
     return row;
-}
-
-/* Where at is in the row, or would be put in. */
-function lowerBound(list, value) {
-    let low = 0, high = list.length;
-    while (low < high) {
-        const middle = (low + high) >> 1;
-        if (list[middle] < value)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
 }
 
 /* ---- What differs, in words ---- */

@@ -30,6 +30,27 @@ function show(element, ...children) {
     element.replaceChildren(...children.filter((child) => child !== null && child !== undefined));
 }
 
+/* ---- Parts of both pages ---- */
+
+function makeCount(kind, count, one, many = one) {
+    return make("div", { class: `count ${kind}${count === 0 ? " zero" : ""}` },
+        make("b", {}, grouped(count)), make("span", {}, count === 1 ? one : many));
+}
+
+function warning(...children) {
+    return make("p", { class: "warn" }, ...children);
+}
+
+/* An entry of a legend. */
+function swatch(kind, text) {
+    return make("span", { class: "key" }, make("i", { class: `swatch ${kind}` }), text);
+}
+
+/* An entry of a <dl>. */
+function fact(name, ...value) {
+    return [make("dt", {}, name), make("dd", {}, ...value)];
+}
+
 /* A coloured mark with the verdict's name. */
 function verdictChip(verdict) {
     const kind = verdict < SEPARATED ? "none" : VERDICTS[verdict];
@@ -43,6 +64,8 @@ function verdictChips(then, now) {
     return [verdictChip(then), make("span", { class: "arrow", "aria-label": "then, now" }, "→"),
         verdictChip(now)];
 }
+
+/* ---- Events ---- */
 
 /* begin(event) is called where a drag begins, and what it returns at each step, wherever the pointer
  * goes meanwhile. It may return nothing. */

@@ -6,6 +6,17 @@ function stagePoint(mouse) {
     return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
 }
 
+/* A text beside the pointer; at is null: none. */
+function showTip(at, text) {
+    const tip = find("pointed");
+    tip.hidden = at === null;
+    if (at === null)
+        return;
+    tip.textContent = text;
+    tip.style.left = `${clamp(at.x + 14, 0, stage.width - 200)}px`;
+    tip.style.top = `${clamp(at.y + 14, 0, stage.height - 40)}px`;
+}
+
 const TURN = 0.008; /* radians a pixel */
 
 function dragStage(begin, point, pans) {
@@ -67,4 +78,17 @@ function startStage() {
         redrawStage();
     });
     new ResizeObserver(redrawStage).observe(canvas);
+}
+
+/* keys: functions by the name of the key. Fields keep their keys, buttons their space, and so does
+ * the page where the window cannot be played. */
+function listenToKeys(keys) {
+    document.addEventListener("keydown", (key) => {
+        const own = key.target.closest("input, select, textarea")
+            || (key.key === " " && (key.target.closest("button, summary") || find("window").hidden));
+        if (own || key.ctrlKey || key.metaKey || key.altKey || !Object.hasOwn(keys, key.key))
+            return;
+        key.preventDefault();
+        keys[key.key](key);
+    });
 }

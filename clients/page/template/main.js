@@ -123,20 +123,10 @@ const KEYS = {
     Escape: () => choosePair(-1),
 };
 
-/* Fields keep their keys, a button its space, and the page where nothing is to be played. */
-function onKey(key) {
-    const own = key.target.closest("input, select, textarea")
-        || (key.key === " " && (key.target.closest("button, summary") || find("window").hidden));
-    if (own || key.ctrlKey || key.metaKey || key.altKey || !Object.hasOwn(KEYS, key.key))
-        return;
-    key.preventDefault();
-    KEYS[key.key](key);
-}
-
 /* ---- The beginning ---- */
 
 function listenToSteps() {
-    document.addEventListener("keydown", onKey);
+    listenToKeys(KEYS);
     find("previous").addEventListener("click", (click) => step(false, click.shiftKey));
     find("next").addEventListener("click", (click) => step(true, click.shiftKey));
     find("previous-difference").addEventListener("click", () => stepDifference(false));

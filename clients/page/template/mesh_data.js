@@ -55,17 +55,7 @@ function numberOfFace(id) {
 
 /* Where the face of this number is among all; it is there where it is in a pair. */
 function faceOfNumber(mesh, number) {
-    if (!mesh.number)
-        return mesh.first + number;
-    let low = 0, high = mesh.number.length;
-    while (low < high) {
-        const middle = (low + high) >> 1;
-        if (mesh.number[middle] < number)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return mesh.first + low;
+    return mesh.first + (mesh.number ? lowerBound(mesh.number, number) : number);
 }
 
 /* [[x, y, z], ...] at a moment of the window. */

@@ -51,16 +51,6 @@ const KEYS = {
     Escape: () => choosePair(null, false),
 };
 
-/* Fields keep their keys, a button its space, and the page where nothing is to be played. */
-function onKey(key) {
-    const own = key.target.closest("input, select, textarea")
-        || (key.key === " " && (key.target.closest("button, summary") || !isMoving));
-    if (own || key.ctrlKey || key.metaKey || key.altKey || !Object.hasOwn(KEYS, key.key))
-        return;
-    key.preventDefault();
-    KEYS[key.key](key);
-}
-
 /* A press that moves turns the picture, and is no click. */
 const STILL = 4; /* pixels */
 
@@ -78,7 +68,7 @@ function listenToClicks() {
 }
 
 function listen() {
-    document.addEventListener("keydown", onKey);
+    listenToKeys(KEYS);
     listenToClicks();
     find("list").addEventListener("click", (click) => {
         const row = click.target.closest("tr");
@@ -118,6 +108,7 @@ function start() {
     find("fit-pair").disabled = true;
     for (const id of ["filter", "verdict", "previous", "next"])
         find(id).disabled = pairs.length === 0;
+    find("stage").setAttribute("aria-label", "The meshes, and their faces that meet");
     startStage();
     listen();
     drawBands();

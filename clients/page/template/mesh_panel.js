@@ -5,11 +5,6 @@ const panel = { rows: ROWS_MORE, list: pairs };
 
 /* ---- Counts and notes ---- */
 
-function makeCount(kind, count, one, many) {
-    return make("div", { class: `count ${kind} ${count === 0 ? "zero" : ""}` },
-        make("b", {}, grouped(count)), make("span", {}, count === 1 ? one : many));
-}
-
 function fillHeader() {
     const names = meshes.map((mesh) => baseName(mesh.name));
     const title = isSelf ? `${names[0]} with itself` : `${names[0]} and ${names[1]}`;
@@ -50,14 +45,10 @@ function notesOf() {
 }
 
 function fillNotes() {
-    show(find("notes"), ...notesOf().map((note) => make("p", { class: "warn" }, note)));
+    show(find("notes"), ...notesOf().map((note) => warning(note)));
 }
 
 /* ---- Facts ---- */
-
-function fact(name, ...said) {
-    return [make("dt", {}, name), make("dd", {}, ...said)];
-}
 
 /* Over all pairs that are listed. */
 function timesOfAll() {
@@ -84,11 +75,10 @@ function fillFacts() {
 }
 
 function fillLegend() {
-    const key = (kind, text) =>
-        make("span", { class: "key" }, make("i", { class: `swatch ${kind}` }), text);
-    show(find("stage-legend"), key("met-overlapping", "overlaps"), key("met-touching", "touches"),
-        isMoving ? key("met-later", "meets at another time") : null,
-        ...meshes.map(({ index }) => key(`mesh-${index}`, `the rest of ${meshLetter(index)}`)));
+    show(find("stage-legend"), swatch("met-overlapping", "overlaps"),
+        swatch("met-touching", "touches"),
+        isMoving ? swatch("met-later", "meets at another time") : null,
+        ...meshes.map(({ index }) => swatch(`mesh-${index}`, `the rest of ${meshLetter(index)}`)));
 }
 
 /* ---- The list ---- */

@@ -150,15 +150,6 @@ function strokeHalo(context, colour, width) {
     context.stroke();
 }
 
-function drawName(context, text, x, y, colour) {
-    context.font = "700 12px system-ui, sans-serif";
-    context.textAlign = "center";
-    context.strokeStyle = stage.theme.card;
-    context.lineWidth = 4;
-    context.strokeText(text, x, y);
-    drawText(context, text, x, y, colour, "center");
-}
-
 /* One face's name stands above it, the other's below. */
 function drawPair(context, project) {
     const pair = chosenPair();
@@ -176,7 +167,7 @@ function drawPair(context, project) {
         context.strokeStyle = colour;
         drawRing(context, points);
         const text = `${meshLetter(which)} ${pair.numbers[which]}`;
-        drawName(context, text, x, which ? Math.max(...ys) + 18 : Math.min(...ys) - 9, colour);
+        drawLabel(context, text, x, which ? Math.max(...ys) + 18 : Math.min(...ys) - 9, colour);
     });
 }
 
@@ -187,16 +178,15 @@ function faceBelow({ x, y }) {
 }
 
 function point(at) {
-    const id = at ? faceBelow(at) : NO_FACE, tip = find("pointed");
-    tip.hidden = id === NO_FACE;
-    if (id === NO_FACE)
+    const id = at ? faceBelow(at) : NO_FACE;
+    if (id === NO_FACE) {
+        showTip(null);
         return;
+    }
     const mesh = meshOfFace(id), colour = mesh.colour[id - mesh.first];
     const count = pairsOfFace.get(id)?.length ?? 0;
-    tip.textContent = `${meshLetter(mesh.index)} ${numberOfFace(id)}`
-        + (colour ? `: ${verdictName(colour)}, ${counted(count, "pair", "pairs")}` : "");
-    tip.style.left = `${clamp(at.x + 14, 0, stage.width - 200)}px`;
-    tip.style.top = `${clamp(at.y + 14, 0, stage.height - 40)}px`;
+    showTip(at, `${meshLetter(mesh.index)} ${numberOfFace(id)}`
+        + (colour ? `: ${verdictName(colour)}, ${counted(count, "pair", "pairs")}` : ""));
 }
 
 /* A click on a face that meets chooses its pairs one after the other. */

@@ -120,3 +120,16 @@ function tickText(value, step) {
     }
     return (value + 0).toFixed(clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 9));
 }
+
+/* The first index of an ascending list whose value is not below this one. */
+function lowerBound(list, value) {
+    let low = 0, high = list.length;
+    while (low < high) {
+        const middle = (low + high) >> 1;
+        if (list[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}

@@ -12,23 +12,14 @@ function shapeName(shape) {
 
 /* ---- Header ---- */
 
-function makeCount(number, name, kind) {
-    return make("div", { class: `count ${kind}${number === 0 ? " zero" : ""}` },
-        make("b", {}, grouped(number)), make("span", {}, name));
-}
-
 function fillCounts() {
     const total = data.count.reduce((sum, count) => sum + count, 0);
-    const different = makeCount(data.count[DIFFERENT], "different", "different");
+    const different = makeCount("different", data.count[DIFFERENT], "different");
     if (data.count[DIFFERENT] > 0)
         different.prepend(make("i", { "aria-hidden": "true" }, "≠"));
-    show(find("counts"), makeCount(total, total === 1 ? "query" : "queries", ""),
-        makeCount(data.count[SAME], "same", "same"), different,
-        ...[BUSY, UNKNOWN, ALONE].map((is) => makeCount(data.count[is], OUTCOMES[is], "")));
-}
-
-function note(...children) {
-    return make("p", { class: "warn" }, ...children);
+    show(find("counts"), makeCount("", total, "query", "queries"),
+        makeCount("same", data.count[SAME], "same"), different,
+        ...[BUSY, UNKNOWN, UNDEFINED, ALONE].map((is) => makeCount("", data.count[is], OUTCOMES[is])));
 }
 
 /* What was left out, and how it can be seen. */
@@ -40,7 +31,7 @@ function leftOutNote() {
     const differences = data.left_out[DIFFERENT];
     const kept = differing.length === 0 ? "" : ` Differences were kept longer: ${differences === 0
         ? "all of them are here." : `${grouped(differences)} are left out.`}`;
-    return note(
+    return warning(
         make("b", {}, `${counted(count, "query is", "queries are")} counted, but not shown`),
         `, from ${timeText(seconds[0])} to ${timeText(seconds[1])} s.${kept} Another page, of a `
             + "part of the log, shows them: ",
@@ -57,10 +48,6 @@ function fillHeader() {
                 + `times below count from the beginning of the log, ${dateText(data.begin)}`;
     fillCounts();
     show(find("notes"), leftOutNote());
-}
-
-function swatch(kind, text) {
-    return make("span", { class: "key" }, make("i", { class: `swatch ${kind}` }), text);
 }
 
 function fillLegends() {
@@ -153,10 +140,6 @@ function wantText(want) {
     return ["verdicts", ...names.filter(([bit]) => want & bit).map(([, name]) => name)].join(", ");
 }
 
-function fact(name, ...value) {
-    return [make("dt", {}, name), make("dd", {}, ...value)];
-}
-
 function verdictCounts(result) {
     return [OVERLAPPING, TOUCHING, SEPARATED, 0].filter((verdict) => result.count[verdict] > 0)
         .map((verdict) => `${grouped(result.count[verdict])} ${VERDICTS[verdict]}`)
@@ -179,7 +162,7 @@ function fillFacts(event) {
     show(find("event-facts"), make("dl", {}, ...log,
         ...fact("at", `${timeText(event.seconds)} s, ${dateText(event.t)}, byte `
             + grouped(event.o)),
-        ...fact("asks", `${kindText(event)}; ${wantText(event.want)}; window ${window}`),
+        ...fact("query", `${kindText(event)}; ${wantText(event.want)}; window ${window}`),
         ...fact("then", resultText(event.then, stage.pairs[0]?.then)),
         ...fact("now", resultText(event.now, stage.pairs[0]?.now))));
 }

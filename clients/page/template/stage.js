@@ -199,14 +199,14 @@ function isLabelled(frame) {
     const pair = chosenPair();
     if (frame.index === stage.pointed)
         return true;
-    if (pair && (stage.drawable.length > 12 || stage.drawable.length > LABELS_MAX))
+    if (pair && stage.drawable.length > 12)
         return frame.index === pair.a || frame.index === pair.b;
     return stage.drawable.length <= LABELS_MAX;
 }
 
 function drawLabels(context, project) {
     const labels = [];
-    context.font = "700 12px system-ui, sans-serif";
+    context.font = LABEL_FONT;
     context.lineJoin = "round";
     stage.drawable.forEach((frame, i) => {
         if (!isLabelled(frame))
@@ -217,11 +217,7 @@ function drawLabels(context, project) {
     });
     for (const { x, y, text, index } of labels) {
         context.globalAlpha = isBack(index) && index !== stage.pointed ? 0.4 : 1;
-        context.textAlign = "center";
-        context.strokeStyle = stage.theme.card;
-        context.lineWidth = 3.5;
-        context.strokeText(text, x, y + 4);
-        drawText(context, text, x, y + 4, stage.theme.ink, "center");
+        drawLabel(context, text, x, y + 4, stage.theme.ink);
     }
     context.globalAlpha = 1;
 }

@@ -45,15 +45,9 @@ function point(at) {
     for (const facet of at ? stage.facets : [])
         if (isInside(facet.points, at.x, at.y))
             index = facet.index;
-    const tip = find("pointed");
-    tip.hidden = index < 0;
-    if (index >= 0) {
-        const frame = stage.frames[index];
-        tip.textContent = `body ${bodyName(frame.id)}, ${shapeName(frame.shape)}: `
-            + verdictName(stage.worst[index]);
-        tip.style.left = `${clamp(at.x + 14, 0, stage.width - 200)}px`;
-        tip.style.top = `${clamp(at.y + 14, 0, stage.height - 40)}px`;
-    }
+    const frame = stage.frames[index];
+    showTip(frame ? at : null, frame && `body ${bodyName(frame.id)}, ${shapeName(frame.shape)}: `
+        + verdictName(stage.worst[index]));
     if (index !== stage.pointed) {
         stage.pointed = index;
         redrawStage();

@@ -1,0 +1,294 @@
+#include "replay_parts.h"
+
+#include "allocate.h"
+#include "wire.h"
+
+#include <errno.h>
+#include <string.h>
+
+/* ---- Answers ---- */
+
+static void count_answer(struct replay *replay, const struct match_item *query,
+                         const struct answered *answered)
+{
+    struct tally *tally = &replay->tally[query->place.log];
+    struct tally_channel *channel = replay_channel(replay, &query->key, &query->place);
+    channel->queries++;
+    channel->pairs += answered->pairs;
+    if (answered->status == FMB_OK)
+        histogram_add(&tally->now, answered->compute_ns);
+}
+
+/* Without compute_ns, with which results end: goldens are the same bytes on every machine. */
+static void write_golden(struct replay *replay, const struct match_item *query,
+                         const struct answered *answered)
+{
+    static const unsigned char no_time[sizeof(int64_t)];
+    unsigned char bytes[QUERY_BYTES_MAX];
+    const int kind = query->key.kind == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
+    memcpy(bytes, answered->bytes, answered->size);
+    memcpy(bytes + answered->size - sizeof no_time, no_time, sizeof no_time);
+    if (!log_append(replay->new_golden, query->place.utime, replay->channels.name[kind],
+                    replay->channels.length[kind], bytes, answered->size))
+        replay_fail(replay, replay->options->write_golden);
+}
+
+static void take_answer(struct replay *replay, struct match_item *query,
+                        const struct answered *answered)
+{
+    count_answer(replay, query, answered);
+    if (replay->new_golden)
+        write_golden(replay, query, answered);
+    query->now = memcpy(allocate_unset(answered->size), answered->bytes, answered->size);
+    query->now_size = (uint32_t) answered->size;
+    if (!query->waits)
+        replay_judge_recorded(replay, query);
+}
+
+static void answer_later(struct replay *replay, struct match_item *query)
+{
+    query->pending = NULL;
+    *replay->defined_end = query;
+    replay->defined_end = &query->pending;
+}
+
+/* ---- In this process ---- */
+
+static void answer_here(struct replay *replay, struct match_item *query,
+                        const struct answered *answered)
+{
+    if (handle_is_none(&answered->undefined))
+        take_answer(replay, query, answered);
+    else
+        pending_add(replay->pending, &answered->undefined, query);
+}
+
+/* last: also where handles are not defined. */
+static void answer_again_here(struct replay *replay, struct match_item *query,
+                              const struct message *message, bool last)
+{
+    struct answered answered;
+    if (answer_now(replay->now, (enum log_kind) query->key.kind, message->bytes, message->size,
+                   &answered)) {
+        errno = EIO; /* it could be read before */
+        replay_fail_log(replay, query->place.log);
+        return;
+    }
+    if (last)
+        take_answer(replay, query, &answered);
+    else
+        answer_here(replay, query, &answered);
+}
+
+/* ---- By a service ---- */
+
+/* The library's sink, which may not send. */
+bool replay_on_answered(void *user, struct match_item *query, const struct answered *answered)
+{
+    struct replay *replay = user;
+    const bool is_last = answered->status != FMB_UNKNOWN_BODY || query->sent_whole;
+    if (is_last)
+        take_answer(replay, query, answered);
+    else
+        answer_later(replay, query);
+    return is_last;
+}
+
+/* Puts the frames of the bodies in place of their handles. */
+static void make_whole(struct replay *replay, struct placement *placement, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++) {
+        const struct geometry *geometry =
+            placement_by_handle(&placement[i])
+                ? definitions_find(replay->definitions, &placement[i].handle)
+                : NULL;
+        if (!geometry)
+            continue;
+        placement[i].geometry = *geometry;
+        memset(&placement[i].handle, 0, sizeof placement[i].handle);
+    }
+}
+
+/* Bodies whose query has no space for their frames go ahead of it, as many in one scene query as
+ * fit. The query after them names them by handle. A service keeps bodies with an id. */
+static void supply_service(struct replay *replay, const struct placement *placement, int32_t count)
+{
+    struct scene_query *supply = &replay->supply;
+    for (int32_t next = 0; next < count;) {
+        size_t size = WIRE_SCENE_QUERY_BYTES;
+        for (supply->placement_count = 0; next < count; next++) {
+            struct placement whole = placement[next];
+            if (placement_by_handle(&whole))
+                continue;
+            size += wire_placement_bytes(&whole);
+            if (size > QUERY_BYTES_MAX)
+                break;
+            whole.body_id = whole.body_id ? whole.body_id : 1;
+            supply->placement[supply->placement_count++] = whole;
+        }
+        if (supply->placement_count == 0)
+            return; /* none is left, or one alone is too long */
+        answer_bus_supply(replay->bus, replay->whole,
+                          (uint32_t) wire_write_scene_query(supply, replay->whole));
+    }
+}
+
+/* A query of which the service did not hold all bodies. last: those that are not defined stay
+ * handles. */
+static void answer_again_on_bus(struct replay *replay, struct match_item *query,
+                                const struct message *message, bool last)
+{
+    int32_t count;
+    any_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes, message->size);
+    struct placement *placement = any_query_placements(&replay->query, &count);
+    const struct handle *undefined = answer_now_undefined(replay->definitions, placement, count);
+    if (undefined && !last) {
+        pending_add(replay->pending, undefined, query);
+        return;
+    }
+    make_whole(replay, placement, count);
+    const size_t size = any_query_write(&replay->query, replay->whole);
+    query->sent_whole = true;
+    if (size > 0) {
+        answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
+    } else {
+        supply_service(replay, placement, count);
+        answer_bus_query(replay->bus, query, message->bytes, message->size);
+    }
+}
+
+/* ---- Definitions ---- */
+
+/* Queries that waited for this body can be answered. */
+static void on_defined(struct replay *replay, const struct handle *handle)
+{
+    struct match_item *query = pending_take(replay->pending, handle), *next;
+    for (; query; query = next) {
+        next = query->pending;
+        answer_later(replay, query);
+    }
+}
+
+/* A service keeps bodies that come whole with an id. */
+static void define(struct replay *replay, const struct placement *placement, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++) {
+        const struct geometry *geometry = &placement[i].geometry;
+        if (placement[i].frame_count == 0 || placement[i].body_id == 0 ||
+            !definitions_add(replay->definitions, geometry) || pending_is_empty(replay->pending))
+            continue;
+        const struct handle handle = hasher_handle(replay->hasher, geometry->bytes, geometry->size);
+        on_defined(replay, &handle);
+    }
+}
+
+static void answer_again(struct replay *replay, struct match_item *query, bool last)
+{
+    struct message message;
+    if (!replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message))
+        return;
+    if (replay->bus)
+        answer_again_on_bus(replay, query, &message, last);
+    else
+        answer_again_here(replay, query, &message, last);
+}
+
+static void answer_defined(struct replay *replay, bool last)
+{
+    while (replay->defined) {
+        struct match_item *query = replay->defined;
+        replay->defined = query->pending;
+        if (!replay->defined)
+            replay->defined_end = &replay->defined;
+        answer_again(replay, query, last);
+    }
+}
+
+void replay_take_definition(struct replay *replay, const struct log_event *event,
+                            const struct match_place *place)
+{
+    struct definition *definition = &replay->definition;
+    const char *error =
+        wire_read_definition(event->data, (uint32_t) event->kept, replay->hasher, definition);
+    if (error) {
+        replay->tally[place->log].unreadable_definitions++;
+        replay->sink->unreadable(replay->sink->user, place, replay->channels.name[LOG_DEFINITION],
+                                 error);
+        return;
+    }
+    replay->tally[place->log].definitions++;
+    for (int32_t i = 0; i < definition->body_count; i++)
+        if (definitions_add(replay->definitions, &definition->body[i].geometry))
+            on_defined(replay, &definition->body[i].handle);
+    answer_defined(replay, false);
+}
+
+/* ---- Queries ---- */
+
+/* A query that cannot be read, or is not of the range, has a result all the same, perhaps. */
+static void skip_query(struct replay *replay, struct message *query, bool unreadable)
+{
+    query->place.mine = false;
+    struct match_item *item = replay_begin_query(replay, query, unreadable);
+    if (!item->waits)
+        match_free(item);
+}
+
+/* Reads the query, answers it or has it answered. */
+void replay_take_query(struct replay *replay, struct message *query)
+{
+    const enum log_kind kind = (enum log_kind) query->key.kind;
+    const bool here = replay->now && query->place.mine;
+    struct answered answered = {.placement = NULL};
+    const char *error = here ? answer_now(replay->now, kind, query->bytes, query->size, &answered)
+                             : any_query_read(&replay->query, kind, query->bytes, query->size);
+    if (!here)
+        answered.placement = any_query_placements(&replay->query, &answered.placement_count);
+    if (error && query->place.mine)
+        replay_refuse(replay, kind, query, error);
+    if (error || !query->place.mine) {
+        skip_query(replay, query, error);
+    } else {
+        struct match_item *item = replay_begin_query(replay, query, false);
+        if (here)
+            answer_here(replay, item, &answered);
+        else
+            answer_bus_query(replay->bus, item, query->bytes, query->size);
+    }
+    if (!error && !answered.all_held)
+        define(replay, answered.placement, answered.placement_count);
+    answer_defined(replay, false);
+}
+
+/* ---- The end ---- */
+
+bool replay_has_ended(const struct replay *replay)
+{
+    return replay->bus && !answer_bus_goes_on(replay->bus);
+}
+
+/* Until all queries have their answers but those whose handles are not defined. */
+static void finish_answers(struct replay *replay, bool last)
+{
+    do {
+        answer_defined(replay, last);
+        if (replay->bus)
+            answer_bus_finish(replay->bus);
+    } while (replay->defined && !replay_has_ended(replay));
+}
+
+void replay_finish_answers(struct replay *replay)
+{
+    finish_answers(replay, false);
+}
+
+/* The handles that are not defined will not be. */
+void replay_finish_pending(struct replay *replay)
+{
+    for (struct match_item *query, *next; (query = pending_take(replay->pending, NULL));)
+        for (; query; query = next) {
+            next = query->pending;
+            answer_later(replay, query);
+        }
+    finish_answers(replay, true);
+}
