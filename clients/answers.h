@@ -1,5 +1,5 @@
-/* The answers to all pairs of a scene, in the order asked: decided in this process, or by the
- * service on the bus. */
+/* Answers all pairs of a scene, in their order: decides them in this process, or by the service on
+ * the bus. */
 #ifndef ANSWERS_H
 #define ANSWERS_H
 
@@ -19,9 +19,8 @@ void answers_local(const struct answers_question *question, const struct scene *
 
 struct answers_bus;
 
-/* Opens the bus. Never NULL: where it cannot be opened (which has then been said on stderr), or
- * where nobody answers (which is said once in each outage, with advice), each pair gets an
- * error. */
+/* Opens the bus. Never NULL: if the bus cannot be opened (reported on stderr), or no service
+ * answers (reported once for each outage, with advice), each pair gets an error. */
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      const struct answers_question *question, double timeout,
                                      int retries);

@@ -21,45 +21,46 @@ static const char usage[] =
     "usage: fmb mesh [OPTIONS] A B\n"
     "       fmb mesh [OPTIONS] --self A\n"
     "\n"
-    "Tells which faces of the triangle mesh A meet which of B, or of A itself: exactly. A and B\n"
-    "are files in PLY (text or bytes), STL (likewise) or OBJ. Faces count from 0, as the file has\n"
-    "them.\n"
+    "Decides exactly which faces of the triangle mesh A meet which faces of B, or of A itself. A\n"
+    "and B are files in PLY (ASCII or binary), STL (ASCII or binary) or OBJ. Faces are numbered\n"
+    "from 0, in the order of the file.\n"
     "\n"
-    "Where meshes are, in steps that follow each other: behind a file for that mesh, before the\n"
-    "first one for both.\n"
+    "Transformations, applied in the order given. Those after a file apply to that mesh, those\n"
+    "before the first file to both.\n"
     "  --scale S            S, or X,Y,Z: a factor for each axis\n"
-    "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the rule of the\n"
-    "                       right hand\n"
+    "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the right-hand\n"
+    "                       rule\n"
     "  --mirror AXIS        x becomes -x, or y, or z\n"
     "  --translate X,Y,Z\n"
-    "  --velocity X,Y,Z     it moves so far a second: faces meet at some time of the window, and\n"
-    "                       the answer says when\n"
-    "  --duration T         the window, seconds (1)\n"
+    "  --velocity X,Y,Z     the mesh moves this far per second: faces meet at some time of the\n"
+    "                       window, and the answer says when\n"
+    "  --duration T         length of the window, in seconds (1)\n"
     "\n"
-    "What is asked:\n"
+    "Query:\n"
     "  --self               A with itself. Faces that share a vertex or an edge and have nothing\n"
-    "                       else in common are told apart, and counted by themselves\n"
+    "                       else in common are counted separately\n"
     "  --as tetrahedra      a face is the tetrahedron of its edges and its unit normal, as in\n"
-    "                       the article; --as faces: it is a triangle (the default)\n"
+    "                       the article; --as faces: a triangle (the default)\n"
     "  --method NAME        how to decide: certified (the default), or exact, which takes longer\n"
-    "                       and says the same\n"
+    "                       and gives the same verdicts\n"
     "\n"
-    "What is told:\n"
+    "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
     "  --list               all pairs, a line each\n"
-    "  --ply FILE           write both meshes as one, in colours: red what overlaps, yellow what\n"
-    "                       touches, grey (A) and blue (B) the rest\n"
+    "  --ply FILE           write both meshes as one, coloured: red for faces that overlap,\n"
+    "                       yellow for those that touch, grey (A) and blue (B) for the others\n"
     "  --html FILE          write a page that shows them, and the pairs: for any browser, with\n"
     "                       nothing to install or to fetch\n"
     "  -h, --help\n"
     "\n"
-    "Two faces overlap where inner points of both are the same, and touch where they only have\n"
-    "points of their rims in common. Coordinates in text are taken for the doubles next to them;\n"
-    "steps round each coordinate, the same way on every machine.\n"
+    "Two faces overlap if they have an inner point in common, and touch if they only have points\n"
+    "in common that lie on the rim of one of them. Coordinates in text become the nearest\n"
+    "doubles; transformations round each coordinate, the same way on every machine.\n"
     "\n"
     "  fmb mesh bunny.ply --scale 1000 bunny.ply --scale 1000 --mirror x --translate 50,-10,0\n"
     "\n"
-    "Exit codes: 0 answered, 1 it could not be, 2 wrong usage, or a file that cannot be read.\n";
+    "Exit codes: 0 answered, 1 it could not be answered, 2 wrong usage, or a file that cannot be\n"
+    "read.\n";
 
 enum {
     SCALE = 2, /* 1 is an operand */
@@ -178,7 +179,7 @@ static bool take_step_value(const struct args *args, int option, struct mesh_ste
     }
 }
 
-/* Behind a mesh, for that one; before the first one, for both. */
+/* After a mesh: for that mesh; before the first one: for both. */
 static bool take_step(const struct args *args, int option, struct options *options)
 {
     struct mesh_step step = {0};

@@ -16,13 +16,13 @@ struct command {
 static int cmd_help(int argc, char **argv);
 
 static const struct command commands[] = {
-    {"query", "decide the pairs of a scene, on the bus or here (--local)", cmd_query},
+    {"query", "decide the pairs of a scene, by the service or in process (--local)", cmd_query},
     {"watch", "print the results that pass on the bus", cmd_watch},
     {"record", "write what passes on the bus to a log", cmd_record},
-    {"status", "print how the service is doing", cmd_status},
+    {"status", "print the heartbeat of the service", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
-    {"log", "look into event logs, cut them, take scenes out of them", cmd_log},
-    {"mesh", "which faces of two triangle meshes meet", cmd_mesh},
+    {"log", "inspect and cut event logs, extract scenes", cmd_log},
+    {"mesh", "decide which faces of two triangle meshes meet", cmd_mesh},
     {"help", "help on a command: fmb help query", cmd_help},
 };
 
@@ -49,9 +49,9 @@ static void print_help(FILE *out)
         fprintf(out, "  %-8s  %s\n", commands[i].name, commands[i].help);
     fputs(
         "\n"
-        "'fmb COMMAND --help' says more. 'fmb --version' prints the version.\n"
+        "'fmb COMMAND --help' lists the options. 'fmb --version' prints the version.\n"
         "Exit codes: 0 answered, 1 failed, 2 wrong usage, or input that cannot be\n"
-        "read or is no scene.\n",
+        "read or is not a scene. Some commands define them further.\n",
         out);
 }
 

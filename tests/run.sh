@@ -18,7 +18,7 @@ limit=600 # seconds a suite may take before it has failed
 unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report.bats cli/page.bats'
 unsanitized="$unsanitized cli/mesh_page.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats"
 # Those that take long, and of them where one sanitizer is enough.
-long='system/soak.bats system/fairness.bats system/supervisor.bats system/record.bats'
+long='system/soak.bats system/fairness.bats system/record.bats'
 long="$long system/replay_bus.bats cli/replay.bats cli/mesh.bats"
 sanitized_once="$long system/service.bats"
 slow="$long cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/bus.bats"

@@ -93,7 +93,8 @@ static void use_random_port(void)
 {
     uint16_t number = 0;
     char url[64];
-    getrandom(&number, sizeof number, 0);
+    if (getrandom(&number, sizeof number, 0) != sizeof number)
+        number = (uint16_t) getpid();
     snprintf(url, sizeof url, "udpm://" GROUP ":%d?ttl=0", 20000 + number % 40000);
     setenv("LCM_DEFAULT_URL", url, 1);
     setenv("FMB_NETNS", "in place", 1);

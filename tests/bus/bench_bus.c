@@ -1,5 +1,5 @@
 /* The benchmark of the bus: pairs, scenes and the heartbeat beside a bare LCM echo of as many
- * bytes, with what it takes to decide apart from what the bus takes. */
+ * bytes, with the time to decide apart from that of the bus. */
 #include "bus_bench.h"
 
 #include <errno.h>
@@ -17,7 +17,7 @@ bool bus_bench_wants(const struct bus_bench *bench, const char *section)
     return !bench->section || strcmp(bench->section, section) == 0;
 }
 
-/* What was started ends with this program. */
+/* The programs that were started end with this one. */
 void bus_bench_fail(const char *what)
 {
     fprintf(stderr, "bench-bus: %s\n", what);
@@ -26,13 +26,13 @@ void bus_bench_fail(const char *what)
 
 bool bus_bench_begin(struct bus_bench *bench, int cores)
 {
-    bench->service.lcm = bench->echo.lcm = NULL;
+    bench->service = bench->echo = (struct line){0};
     bench->parties.service = bench->parties.echo = -1;
-    if (!parties_place(cores, &bench->placement)) {
-        fprintf(stderr, "bench-bus: %d cores: not to be had\n", cores);
+    if (!parties_cpus(cores, &bench->cpus)) {
+        fprintf(stderr, "bench-bus: %d cores are not available\n", cores);
         return false;
     }
-    if (parties_start(&bench->placement, &bench->parties) &&
+    if (parties_start(&bench->cpus, &bench->parties) &&
         line_open(bench->parties.service_url, false, &bench->service) &&
         line_open(bench->parties.echo_url, true, &bench->echo))
         return true;
@@ -58,8 +58,7 @@ void bus_bench_put(struct json *json, const char *key, struct spread spread)
 
 /* ---- Sections ---- */
 
-/* A section on one core and on two, with the programs started anew for each. False: it was not to
- * be had. On a machine of one core the second is left out. */
+/* Runs a section on so many cores, with the programs started anew. False: they do not run. */
 static bool run_on(struct bus_bench *bench, int cores, void (*run)(struct bus_bench *))
 {
     const bool begun = bus_bench_begin(bench, cores);
@@ -71,8 +70,8 @@ static bool run_on(struct bus_bench *bench, int cores, void (*run)(struct bus_be
 
 static int most_cores(void)
 {
-    struct placement placement;
-    return parties_place(2, &placement) ? 2 : 1;
+    struct cpus cpus;
+    return parties_cpus(2, &cpus) ? 2 : 1;
 }
 
 static bool run_trips(struct bus_bench *bench, const char *section, void (*run)(struct bus_bench *))
@@ -106,10 +105,11 @@ static bool run_section(struct bus_bench *bench, const char *section, char brack
 static bool run_sections(struct bus_bench *bench)
 {
     return run_trips(bench, "pairs", trips_pairs) && run_trips(bench, "scenes", trips_scenes) &&
-           run_section(bench, "flow", '[',
-                       "Pairs a second from bus to bus, scenes by key; MB/s both ways; engine: its "
-                       "batch of the\nsame pairs, million pairs/s on one core.",
-                       flow_run) &&
+           run_section(
+               bench, "flow", '[',
+               "Pairs a second from bus to bus, scenes by handle; MB/s both ways; engine: its "
+               "batch of the\nsame pairs, million pairs/s on one core.",
+               flow_run) &&
            run_section(bench, "oneway", '[',
                        "The highest rate at which three tries of three lose nothing.",
                        oneway_run) &&
@@ -125,7 +125,7 @@ static const char *network(void)
                                               : "this host's network, a random port, ttl=0";
 }
 
-/* The same buffers for all: what the system grants, as fmbd asks for it. */
+/* The receive buffer is that of a client of fmbd, which is granted as much as fmbd itself. */
 static void put_head(const struct bus_bench *bench, struct json *json)
 {
     char cpu[MACHINE_TEXT_MAX];
@@ -175,7 +175,8 @@ static void print_head(const struct bus_bench *bench)
 static void print_tail(const struct bus_bench *bench)
 {
     printf(
-        "\nReceive buffers: %ld bytes granted. Blocks that lost something and were left out: "
+        "\nReceive buffers of fmbd and its clients: %ld bytes granted. Blocks that lost something "
+        "and were left out: "
         "%d.\n",
         bench->service.receive_buffer, bench->lost);
 }

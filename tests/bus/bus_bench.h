@@ -19,19 +19,19 @@ struct bus_bench {
     struct json json;
     int lost; /* round trips that did not come back, in all */
     /* Meanwhile: */
-    struct placement placement;
+    struct cpus cpus;
     struct parties parties;
     struct line service, echo;
 };
 
 bool bus_bench_wants(const struct bus_bench *bench, const char *section);
 
-/* Both programs run there, and answer. False: they do not, which has been said; what was started is
- * ended by the other, which may be called twice. */
+/* Starts both programs, and waits until they answer. False: they do not, and stderr has the reason.
+ * bus_bench_end() ends what was started, and may be called twice. */
 bool bus_bench_begin(struct bus_bench *bench, int cores);
 void bus_bench_end(struct bus_bench *bench);
 
-/* What cannot be gone on with: a line on stderr, and the end. */
+/* Reports an error on stderr, and exits. */
 void bus_bench_fail(const char *what);
 
 /* Sections. On input: both programs run, on one core or two. */

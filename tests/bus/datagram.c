@@ -2,41 +2,45 @@
 
 #include <string.h>
 
-#include "bytes.h"
+#include "big_endian.h"
 #include "echo.h"
 #include "wire.h"
 
-/* Behind the fingerprint, utime and client id. */
-enum { SEQUENCE_AT = 24 };
-/* Where frames begin: behind the header, which is 48 bytes in a pair query. */
-enum { PAIR_FRAMES_AT = 48, SCENE_FRAMES_AT = 64 };
+enum {
+    SEQUENCE_AT = 24, /* after fingerprint, utime and client id */
+    PAIR_PLACEMENTS_AT = WIRE_PAIR_QUERY_BYTES,
+    SCENE_PLACEMENTS_AT = WIRE_SCENE_QUERY_BYTES - 2 * 4, /* before two more counts */
+    /* In a placement of one frame in 3D: after body id, handle, dim, two counts, shape and
+     * origin. */
+    COMPONENTS_AT = 8 + HANDLE_BYTES + 3 * 4 + 1 + 3 * 8
+};
 
 const char *form_name(enum form form)
 {
-    static const char *const names[FORMS] = {"whole", "by key", "whole, new bodies"};
+    static const char *const names[FORMS] = {"whole", "by handle", "whole, new bodies"};
     return names[form];
 }
 
 void datagram_of_pair(const struct pair_query *query, struct datagram *out)
 {
-    unsigned char bytes[WIRE_BYTES_MAX];
-    *out = (struct datagram){
-        wire_write_pair_query(query, bytes), SEQUENCE_AT, PAIR_FRAMES_AT, 0, 0, {0}};
-    memcpy(out->bytes, bytes, out->size);
+    out->size = wire_write_pair_query(query, out->bytes);
+    out->id_at = SEQUENCE_AT;
+    out->placements_at = PAIR_PLACEMENTS_AT;
+    out->renewed = 0;
 }
 
 void datagram_of_scene(const struct scene_query *query, struct datagram *out)
 {
     out->size = wire_write_scene_query(query, out->bytes);
     out->id_at = SEQUENCE_AT;
-    out->frames_at = SCENE_FRAMES_AT;
+    out->placements_at = SCENE_PLACEMENTS_AT;
     out->renewed = 0;
 }
 
-void datagram_renews(struct datagram *datagram, const struct query_frame *first, int frames)
+void datagram_renew(struct datagram *datagram, const struct placement *first, int placements)
 {
-    datagram->frame_bytes = wire_frame_bytes(first);
-    datagram->renewed = frames;
+    datagram->placement_bytes = wire_placement_bytes(first);
+    datagram->renewed = placements;
 }
 
 void datagram_of_echo(size_t size, size_t reply, struct datagram *out)
@@ -44,16 +48,19 @@ void datagram_of_echo(size_t size, size_t reply, struct datagram *out)
     memset(out, 0, sizeof *out);
     out->size = size;
     out->id_at = ECHO_ID_AT;
-    bytes_put(out->bytes, reply, 4);
+    big_endian_put_32(out->bytes, (uint32_t) reply);
 }
 
-/* The body's id is a frame's first field. */
+static void increment(unsigned char *number)
+{
+    big_endian_put_64(number, big_endian_64(number) + 1);
+}
+
+/* A body is new when one of its numbers is: it grows in its last place. */
 void datagram_next(struct datagram *datagram, int64_t id)
 {
-    bytes_put(datagram->bytes + datagram->id_at, (uint64_t) id, 8);
-    for (int i = 0; i < datagram->renewed; i++) {
-        unsigned char *body_id =
-            datagram->bytes + datagram->frames_at + (size_t) i * datagram->frame_bytes;
-        bytes_put(body_id, bytes_get(body_id, 8) + (uint64_t) datagram->renewed, 8);
-    }
+    big_endian_put_64(datagram->bytes + datagram->id_at, (uint64_t) id);
+    for (int i = 0; i < datagram->renewed; i++)
+        increment(datagram->bytes + datagram->placements_at +
+                  (size_t) i * datagram->placement_bytes + COMPONENTS_AT);
 }

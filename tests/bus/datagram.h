@@ -1,5 +1,5 @@
-/* What is sent: the bytes of a query or of a request to the echo, made before the clock starts, and
- * changed in place from one to the next. */
+/* Messages to send: the bytes of a query or of a request to the echo, encoded before the clock
+ * starts and changed in place from one message to the next. */
 #ifndef DATAGRAM_H
 #define DATAGRAM_H
 
@@ -8,31 +8,33 @@
 struct datagram {
     size_t size;
     size_t id_at; /* of its sequence number or id */
-    /* Frames whose body is to be another one each time, frame_bytes apart; 0: none. */
-    size_t frames_at, frame_bytes;
+    /* Placements whose bodies change with each message, placement_bytes apart; 0: none. */
+    size_t placements_at, placement_bytes;
     int renewed;
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-/* How the bodies of a query come. */
+/* How the bodies of a query are given. */
 enum form {
-    FORM_HELD,   /* whole, and the service holds them */
-    FORM_BY_KEY, /* by the keys that it gave for them */
-    FORM_NEW,    /* whole, and never seen before */
+    FORM_HELD,      /* whole, and the service holds them */
+    FORM_BY_HANDLE, /* by their handles */
+    FORM_NEW,       /* whole, and new to the service each time */
     FORMS
 };
 const char *form_name(enum form form);
 
-/* The queries are as they are to be sent, but for their sequence number. */
+/* Complete but for the sequence number. */
 void datagram_of_pair(const struct pair_query *query, struct datagram *out);
 void datagram_of_scene(const struct scene_query *query, struct datagram *out);
-/* The bodies are to be new ones each time: all frames take as many bytes as the first. */
-void datagram_renews(struct datagram *datagram, const struct query_frame *first, int frames);
 
-/* On input: sizes of ECHO_BYTES_MIN or more; a reply of 0: none. */
+/* From now on each message has new bodies. On input: placements of one frame in 3D, which all take
+ * as many bytes as the first; the first number of its first component is not 0. */
+void datagram_renew(struct datagram *datagram, const struct placement *first, int placements);
+
+/* On input: sizes from ECHO_BYTES_MIN; a reply of 0: none. */
 void datagram_of_echo(size_t size, size_t reply, struct datagram *out);
 
-/* Makes it the next one. */
+/* Turns it into the next message. */
 void datagram_next(struct datagram *datagram, int64_t id);
 
 #endif

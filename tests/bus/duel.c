@@ -9,7 +9,7 @@
 
 enum { BLOCKS_MAX = 256, TRIPS_MAX = 2048 };
 
-/* Milliseconds would do: what takes so long is lost. */
+/* A block takes milliseconds; one that takes so long has lost a message. */
 static const double block_seconds = 3;
 
 struct block {
@@ -29,7 +29,7 @@ static double quantile(const double *values, int count, double share)
     return values[at < 0 ? 0 : at];
 }
 
-/* False: something was lost, and the block says nothing. */
+/* False: something was lost, and the block counts for nothing. */
 static bool run_block(struct line *line, struct datagram *datagram, int trips, struct block *out)
 {
     static double times[TRIPS_MAX], computes[TRIPS_MAX];
@@ -79,7 +79,7 @@ static struct duel sum_up(const struct block *service, const struct block *echo,
                          .compute = SPREAD_OF(service, count, compute)};
 }
 
-static void ask_once(struct bus_bench *bench, struct datagram *query)
+static void query_once(struct bus_bench *bench, struct datagram *query)
 {
     guard_begin(block_seconds);
     const double ns = line_round_trip(&bench->service, query);
@@ -90,13 +90,14 @@ static void ask_once(struct bus_bench *bench, struct datagram *query)
         bus_bench_fail(fmb_status_text(bench->service.status));
 }
 
-/* Who begins changes with each pair of blocks. A pair of which one lost something is left out. */
+/* The side that begins changes with each pair of blocks. A pair in which either lost something is
+ * left out. */
 struct duel duel_run(struct bus_bench *bench, struct datagram *query, int blocks, int trips)
 {
     static struct datagram request;
     static struct block service[BLOCKS_MAX], echo[BLOCKS_MAX];
     int count = 0, lost = 0;
-    ask_once(bench, query);
+    query_once(bench, query);
     const size_t result = bench->service.size;
     datagram_of_echo(query->size, result, &request);
     for (int block = 0; block < blocks; block++) {
@@ -113,7 +114,7 @@ struct duel duel_run(struct bus_bench *bench, struct datagram *query, int blocks
     if (count == 0)
         bus_bench_fail("every block of a comparison lost something");
     if (bench->service.status != FMB_OK || bench->service.size != result)
-        bus_bench_fail("a query was answered otherwise than at first");
+        bus_bench_fail("a query got another answer than at first");
     struct duel duel = sum_up(service, echo, count);
     duel.query_bytes = query->size;
     duel.result_bytes = result;

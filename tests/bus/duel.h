@@ -1,5 +1,5 @@
 /* fmbd against the echo: round trips with datagrams of the same sizes, in blocks, one of fmbd after
- * one of the echo, so that what the machine does meanwhile befalls both. */
+ * one of the echo, so that other load of the machine affects both. */
 #ifndef DUEL_H
 #define DUEL_H
 
@@ -15,11 +15,11 @@ struct duel {
     size_t query_bytes, result_bytes;
     struct duel_side service, echo;
     struct spread ratio_p50, ratio_p99; /* of fmbd's block to the echo's beside it */
-    struct spread compute;              /* what fmbd says that it took to decide, microseconds */
+    struct spread compute;              /* time to decide as fmbd reports it, microseconds */
     int lost;                           /* round trips that did not come back, in these blocks */
 };
 
-/* Asks the query once, so that the echo's replies are as long as its result: a result that is not
+/* Sends the query once, so that the echo's replies are as long as its result: a result that is not
  * OK ends the program. Then the blocks. */
 struct duel duel_run(struct bus_bench *bench, struct datagram *query, int blocks, int trips);
 

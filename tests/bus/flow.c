@@ -1,16 +1,16 @@
-/* Scenes by key, as many pairs as a datagram holds, one query after the other or a few under way:
- * pairs a second from bus to bus; beside the bytes that the echo carries at the same sizes, and
- * beside the engine's own batch of the same pairs. */
+/* Scenes by handle, as many pairs as a datagram holds, one query after the other or a few under
+ * way: pairs a second from bus to bus; beside the bytes that the echo carries at the same sizes,
+ * and beside the engine's own batch of the same pairs. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "ask.h"
 #include "clock.h"
 #include "duel.h"
 #include "guard.h"
 #include "wire.h"
+#include "workload.h"
 
 enum { BLOCKS_MAX = 64, PAIRS_DRAWN = 15000 };
 
@@ -51,7 +51,7 @@ static double run_block(struct line *line, struct datagram *datagram, int querie
 /* ---- The engine alone ---- */
 
 struct engine {
-    const struct ask_scene *scene;
+    const struct workload_scene *scene;
     const struct load *load;
     size_t pairs;
     unsigned char *verdicts;
@@ -59,7 +59,8 @@ struct engine {
     double (*boxes)[2][FMB_DIM_MAX];
 };
 
-static struct engine engine_of(const struct ask_scene *scene, const struct load *load, size_t pairs)
+static struct engine engine_of(const struct workload_scene *scene, const struct load *load,
+                               size_t pairs)
 {
     return (struct engine){scene,
                            load,
@@ -94,7 +95,7 @@ static double engine_rate(const struct engine *engine)
     return (double) engine->pairs / ((stopwatch_now() - begin) / 1e9);
 }
 
-/* What came over the bus is what the engine says. */
+/* The last result holds the verdicts of the engine. */
 static void compare(const struct bus_bench *bench, const struct engine *engine)
 {
     static struct scene_result result;
@@ -192,8 +193,10 @@ static void run_load(struct bus_bench *bench, const struct load *load)
 {
     static struct datagram query;
     static const int windows[] = {1, 2, 4};
-    struct ask_scene scene = ask_scene_draw(load->bodies, load->moving, PAIRS_DRAWN, bench->seed);
-    const size_t pairs = ask_scene(bench, &scene, FORM_BY_KEY, load->which, load->want, &query);
+    struct workload_scene scene =
+        workload_scene_draw(load->bodies, load->moving, PAIRS_DRAWN, bench->seed);
+    const size_t pairs =
+        workload_scene(bench, &scene, FORM_BY_HANDLE, load->which, load->want, &query);
     const bool listed = load->which == QUERY_PAIRS_LISTED;
     struct engine engine = engine_of(&scene, load, listed ? pairs : 1);
     engine_rate(&engine);
@@ -206,7 +209,7 @@ static void run_load(struct bus_bench *bench, const struct load *load)
         put(bench, load, &flow, query.size);
     }
     engine_free(&engine);
-    ask_scene_free(&scene);
+    workload_scene_free(&scene);
 }
 
 void flow_run(struct bus_bench *bench)

@@ -18,7 +18,7 @@ static struct timeval time_of(double seconds)
     return (struct timeval){whole, (long) ((seconds - (double) whole) * 1e6)};
 }
 
-/* Woken in between two system calls, it would be waited on for ever: so it is woken again. */
+/* A signal between two system calls interrupts neither: so it is repeated. */
 void guard_begin(double seconds)
 {
     struct sigaction action = {.sa_handler = on_alarm};

@@ -1,5 +1,5 @@
-/* A limit on what waits: once it is over, what waits in the kernel is woken again and again, so
- * that lcm_handle() gives up (and says so on stderr). One at a time. */
+/* A limit of time on blocking calls. Once it is over, a signal interrupts them again and again, so
+ * that lcm_handle() returns with an error (and reports it on stderr). One at a time. */
 #ifndef GUARD_H
 #define GUARD_H
 

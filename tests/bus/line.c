@@ -3,36 +3,30 @@
 #include <math.h>
 #include <string.h>
 
-#include "bus.h"
-#include "bytes.h"
+#include "big_endian.h"
 #include "clock.h"
 #include "echo.h"
 #include "guard.h"
 #include "random_id.h"
-#include "wire.h"
 
-/* Replies that LCM may keep; more than are ever under way. */
-enum { LCM_QUEUE = 4096 };
+/* Results begin with fingerprint, utime, client id, sequence number and server id; a pair's goes on
+ * with two ids and two handles. compute_ns is the last field. */
+enum {
+    RESULT_SEQUENCE_AT = 24,
+    SCENE_STATUS_AT = 40,
+    PAIR_STATUS_AT = SCENE_STATUS_AT + 2 * 8 + 2 * HANDLE_BYTES,
+    RESULT_BYTES_MIN = PAIR_STATUS_AT + 4 + 8
+};
 
-/* Of results: utime, client id, sequence number, server id come first, compute_ns last. */
-enum { RESULT_SEQUENCE_AT = 24, PAIR_STATUS_AT = 72, SCENE_STATUS_AT = 40, RESULT_BYTES_MIN = 84 };
+/* ---- Replies ---- */
 
-static void read_result(struct line *line, size_t status_at)
-{
-    if (line->size < RESULT_BYTES_MIN)
-        return;
-    line->id = (int64_t) bytes_get(line->bytes + RESULT_SEQUENCE_AT, 8);
-    line->status = (int32_t) bytes_get(line->bytes + status_at, 4);
-    line->compute_ns = (int64_t) bytes_get(line->bytes + line->size - 8, 8);
-}
-
-static bool keep(struct line *line, const lcm_recv_buf_t *buffer)
+static bool keep(struct line *line, const void *bytes, size_t size, size_t least)
 {
     line->arrived_ns = clock_ns();
-    if (buffer->data_size < ECHO_BYTES_MIN || buffer->data_size > sizeof line->bytes)
+    if (size < least || size > sizeof line->bytes)
         return false;
-    line->size = buffer->data_size;
-    memcpy(line->bytes, buffer->data, line->size);
+    line->size = size;
+    memcpy(line->bytes, bytes, size);
     return true;
 }
 
@@ -40,123 +34,184 @@ static void on_echo(const lcm_recv_buf_t *buffer, const char *channel, void *use
 {
     struct line *line = user;
     (void) channel;
-    if (keep(line, buffer))
-        line->id = (int64_t) bytes_get(line->bytes, 8);
+    if (keep(line, buffer->data, buffer->data_size, ECHO_BYTES_MIN))
+        line->id = (int64_t) big_endian_64(line->bytes);
 }
 
-static void on_pair(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static void take_result(struct line *line, const struct bus_message *message, size_t status_at)
+{
+    if (!keep(line, message->bytes, message->size, RESULT_BYTES_MIN))
+        return;
+    line->id = (int64_t) big_endian_64(line->bytes + RESULT_SEQUENCE_AT);
+    line->status = (int32_t) big_endian_32(line->bytes + status_at);
+    line->compute_ns = (int64_t) big_endian_64(line->bytes + line->size - 8);
+}
+
+enum { LISTENER_PAIRS, LISTENER_SCENES, LISTENER_STATUS, LISTENERS };
+static const char *const channels[LISTENERS] = {WIRE_PAIR_RESULT, WIRE_SCENE_RESULT, WIRE_STATUS};
+
+static void on_message(void *user, const struct bus_message *message)
 {
     struct line *line = user;
-    (void) channel;
-    if (keep(line, buffer))
-        read_result(line, PAIR_STATUS_AT);
+    if (message->listener == LISTENER_STATUS)
+        wire_read_status(message->bytes, (uint32_t) message->size, &line->heartbeat);
+    else
+        take_result(line, message,
+                    message->listener == LISTENER_PAIRS ? PAIR_STATUS_AT : SCENE_STATUS_AT);
 }
 
-static void on_scene(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+/* ---- Opening ---- */
+
+static bool open_echo(struct line *line, bool listening)
 {
-    struct line *line = user;
-    (void) channel;
-    if (keep(line, buffer))
-        read_result(line, SCENE_STATUS_AT);
+    line->lcm = lcm_create(line->url);
+    if (!line->lcm || !listening)
+        return line->lcm;
+    lcm_subscription_t *replies = lcm_subscribe(line->lcm, ECHO_RESULT, on_echo, line);
+    return replies && lcm_subscription_set_queue_capacity(replies, ECHO_QUEUE) == 0;
 }
 
-static bool subscribe(struct line *line)
+static bool open_service(struct line *line, bool listening)
 {
-    if (line->echo)
-        return bus_subscribe(line->lcm, ECHO_RESULT, on_echo, line, LCM_QUEUE);
-    return bus_subscribe(line->lcm, WIRE_PAIR_RESULT, on_pair, line, LCM_QUEUE) &&
-           bus_subscribe(line->lcm, WIRE_SCENE_RESULT, on_scene, line, LCM_QUEUE);
+    char why[BUS_WHY_MAX];
+    line->bus = bus_open(line->url, why);
+    bool ok = line->bus;
+    for (int i = 0; ok && listening && i < LISTENERS; i++)
+        ok = bus_listen(line->bus, channels[i], why);
+    if (ok && listening)
+        line->receive_buffer = bus_counts(line->bus).receive_buffer;
+    return ok;
 }
 
-/* How often what is to come up is asked. */
-enum { OFTEN_MS = 50 };
-
-bool line_reopen(const char *url, struct line *line)
+bool line_reopen(struct line *line, bool listening)
 {
-    line->lcm = bus_open("bench-bus", url, &line->receive_buffer);
-    return line->lcm && subscribe(line);
-}
-
-bool line_open(const char *url, bool echo, struct line *out)
-{
-    memset(out, 0, sizeof *out);
-    out->echo = echo;
-    out->client_id = random_id();
-    out->query_channel = echo ? ECHO_QUERY : WIRE_SCENE_QUERY;
-    return line_reopen(url, out) && line_count(out, OFTEN_MS) >= 0;
+    line_close(line);
+    return line->echo ? open_echo(line, listening) : open_service(line, listening);
 }
 
 void line_close(struct line *line)
 {
     if (line->lcm)
         lcm_destroy(line->lcm);
+    bus_close(line->bus);
     line->lcm = NULL;
+    line->bus = NULL;
+}
+
+/* ---- Sending, waiting ---- */
+
+static bool publish(struct line *line, const struct datagram *datagram)
+{
+    if (!line->echo)
+        return bus_publish(line->bus, line->query_channel, datagram->bytes, datagram->size);
+    return lcm_publish(line->lcm, line->query_channel, datagram->bytes,
+                       (unsigned) datagram->size) == 0;
 }
 
 bool line_send(struct line *line, struct datagram *datagram)
 {
     datagram_next(datagram, ++line->sequence);
-    return lcm_publish(line->lcm, line->query_channel, datagram->bytes,
-                       (unsigned) datagram->size) == 0;
+    return publish(line, datagram);
+}
+
+/* Milliseconds after which a wait for fmbd looks at the guard, whose signal may have come just
+ * before it. */
+enum { LOOK_MS = 100 };
+
+/* Waits for a message or more. */
+static bool handle(struct line *line)
+{
+    if (line->echo)
+        return lcm_handle(line->lcm) == 0;
+    return bus_wait(line->bus, -1, LOOK_MS) >= 0 && bus_receive(line->bus, on_message, line) >= 0 &&
+           !guard_hit();
 }
 
 bool line_await(struct line *line, int64_t id)
 {
-    while (line->id != id)
-        if (lcm_handle(line->lcm) != 0)
-            return false;
-    return true;
+    while (line->id < id && handle(line))
+        continue;
+    return line->id >= id;
 }
 
 double line_round_trip(struct line *line, struct datagram *datagram)
 {
     datagram_next(datagram, ++line->sequence);
     const int64_t begin = clock_ns();
-    if (lcm_publish(line->lcm, line->query_channel, datagram->bytes, (unsigned) datagram->size) !=
-            0 ||
-        !line_await(line, line->sequence))
+    if (!publish(line, datagram) || !line_await(line, line->sequence))
         return NAN;
     return (double) (line->arrived_ns - begin);
 }
 
-/* ---- Counting ---- */
+/* ---- Probing, counting ---- */
 
-static void datagram_of_nothing(const struct line *line, struct datagram *out)
-{
-    static const struct scene_query nothing = {.duration = 1};
-    if (line->echo) {
-        datagram_of_echo(ECHO_BYTES_MIN, ECHO_BYTES_MIN, out);
-        return;
-    }
-    datagram_of_scene(&nothing, out);
-    bytes_put(out->bytes + out->id_at - 8, (uint64_t) line->client_id, 8);
-}
+static const int64_t patience_ns = 10000000000;
 
-static int64_t counted(const struct line *line)
+/* A probe is repeated soon where the other end may not have started, and late where a repeat would
+ * be counted besides. */
+enum { SOON_MS = 50, LATE_MS = 2000 };
+
+/* Handles one message or some; returns false where none came in time. */
+static bool handle_for(struct line *line, int timeout_ms)
 {
-    static struct scene_result result;
     if (line->echo)
-        return (int64_t) bytes_get(line->bytes + ECHO_COUNT_AT, 8);
-    return wire_read_scene_result(line->bytes, (uint32_t) line->size, &result) ? -1 : result.lost;
+        return lcm_handle_timeout(line->lcm, timeout_ms) > 0;
+    return bus_wait(line->bus, -1, timeout_ms) > 0 && bus_receive(line->bus, on_message, line) > 0;
 }
 
-static bool has_come(const struct line *line)
+static void make_probe(const struct line *line, struct datagram *out)
 {
-    return line->id == line->sequence;
+    const struct scene_query nothing = {.client_id = line->client_id, .duration = 1};
+    if (line->echo)
+        datagram_of_echo(ECHO_BYTES_MIN, ECHO_BYTES_MIN, out);
+    else
+        datagram_of_scene(&nothing, out);
 }
 
-/* Asked again and again: the other one may not be there yet, or this may be what is lost. The same
- * number asks the same again; what was sent before has been read when it is answered. */
-int64_t line_count(struct line *line, int patience_ms)
+/* A request for nothing, repeated until it is answered. */
+static bool probe(struct line *line, int repeat_ms)
 {
-    static struct datagram nothing;
-    datagram_of_nothing(line, &nothing);
-    datagram_next(&nothing, ++line->sequence);
-    for (int64_t end = clock_ns() + 10000000000; clock_ns() < end && !has_come(line);) {
-        lcm_publish(line->lcm, line->echo ? ECHO_QUERY : WIRE_SCENE_QUERY, nothing.bytes,
-                    (unsigned) nothing.size);
-        while (!has_come(line) && lcm_handle_timeout(line->lcm, patience_ms) > 0)
-            ;
+    static struct datagram datagram;
+    const char *channel = line->query_channel;
+    make_probe(line, &datagram);
+    line->query_channel = line->echo ? ECHO_QUERY : WIRE_SCENE_QUERY;
+    const int64_t first = line->sequence + 1, end = clock_ns() + patience_ns;
+    while (line->id < first && clock_ns() < end) {
+        line_send(line, &datagram);
+        line->probes++;
+        while (line->id < first && handle_for(line, repeat_ms))
+            continue;
     }
-    return has_come(line) ? counted(line) : -1;
+    line->query_channel = channel;
+    return line->id >= first;
+}
+
+bool line_open(const char *url, bool echo, struct line *out)
+{
+    memset(out, 0, sizeof *out);
+    out->url = url;
+    out->echo = echo;
+    out->client_id = random_id();
+    out->query_channel = echo ? ECHO_QUERY : WIRE_SCENE_QUERY;
+    return line_reopen(out, true) && probe(out, SOON_MS);
+}
+
+/* The next heartbeat at which no query waited. */
+static bool await_heartbeat(struct line *line)
+{
+    const int64_t begin = clock_utime(), end = clock_ns() + patience_ns;
+    while ((line->heartbeat.utime < begin || line->heartbeat.waiting > 0) && clock_ns() < end)
+        handle_for(line, LATE_MS);
+    return line->heartbeat.utime >= begin && line->heartbeat.waiting == 0;
+}
+
+/* Messages are read in the order in which they were sent: those before the probe have been read
+ * when it is answered. */
+int64_t line_count(struct line *line)
+{
+    if (!probe(line, LATE_MS))
+        return -1;
+    if (line->echo)
+        return (int64_t) big_endian_64(line->bytes + ECHO_COUNT_AT) - line->probes;
+    return await_heartbeat(line) ? line->heartbeat.pairs : -1;
 }

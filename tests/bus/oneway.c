@@ -1,114 +1,68 @@
-/* The highest rate at which nothing is lost: of datagrams that nobody answers, that the echo
- * answers, and that fmbd decides and answers. The sender waits for each one's moment on the other
- * core; its bus has no subscription, and so nothing to read. */
+/* The highest rate at which nothing is lost: of messages that are not answered, that the echo
+ * answers, and that fmbd decides and answers. The sender, on the other core, waits actively for the
+ * moment of each, and listens to nothing meanwhile. */
 #include <stdio.h>
 
-#include "ask.h"
-#include "bus.h"
 #include "clock.h"
-#include "echo.h"
-#include "guard.h"
-#include "wire.h"
+#include "workload.h"
 
-enum { TRIES = 3, PATIENCE_MS = 2000 };
+enum { TRIES = 3 };
 
 enum receiver { SILENT, ECHO, SERVICE, RECEIVERS };
 static const char *const receiver_names[RECEIVERS] = {"echo that is silent", "echo", "fmbd"};
 
-/* Sends at a rate for some time. Returns how many, and in *reached the rate that it was. */
-static int64_t send_paced(lcm_t *lcm, struct line *line, struct datagram *datagram, double rate,
-                          double seconds, double *reached)
+/* Messages of one kind to one receiver. */
+struct shots {
+    struct line *line;
+    struct datagram *datagram;
+    int64_t pairs; /* that each of them is counted as, see line_count() */
+};
+
+/* Sends at a rate for some time. Returns the count, and in *reached the rate. */
+static int64_t send_paced(const struct shots *shots, double rate, double seconds, double *reached)
 {
     const int64_t begin = clock_ns(), count = (int64_t) (rate * seconds);
     for (int64_t i = 0; i < count; i++) {
-        datagram_next(datagram, ++line->sequence);
         while (clock_ns() < begin + (int64_t) ((double) i * 1e9 / rate))
             ;
-        lcm_publish(lcm, line->query_channel, datagram->bytes, (unsigned) datagram->size);
+        line_send(shots->line, shots->datagram);
     }
     *reached = (double) count / ((double) (clock_ns() - begin) / 1e9);
     return count;
 }
 
-/* What the service could not keep in its queues, as its next heartbeat says. */
-struct hearing {
-    bool heard;
-    int64_t busy;
-};
-
-static void on_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
-{
-    struct hearing *hearing = user;
-    struct wire_status status;
-    (void) channel;
-    if (wire_read_status(buffer->data, buffer->data_size, &status))
-        return;
-    hearing->heard = true;
-    hearing->busy = status.results[FMB_BUSY];
-}
-
-static int64_t busy_so_far(const char *url)
-{
-    struct hearing hearing = {false, -1};
-    lcm_t *lcm = bus_open("bench-bus", url, NULL);
-    guard_begin(3);
-    if (lcm && bus_subscribe(lcm, WIRE_STATUS, on_status, &hearing, 4))
-        while (!hearing.heard && lcm_handle(lcm) == 0)
-            ;
-    guard_end();
-    if (lcm)
-        lcm_destroy(lcm);
-    if (!hearing.heard)
-        bus_bench_fail("no heartbeat");
-    return hearing.busy;
-}
-
-/* ---- A rate ---- */
-
 struct rating {
-    double rate; /* of those asked for, the highest without loss; 0: none */
+    double rate; /* requested, the highest without loss; 0: none */
     double reached;
     double lossy; /* the next one, which lost; 0: not tried */
-    int64_t lost; /* datagrams at that one, of so many: */
+    int64_t lost; /* messages at that one, of so many: */
     int64_t sent;
 };
 
-/* How many were lost: of the service, numbers skipped; of the echo, what it has not seen. -1: not
- * to be known, since it did not answer. */
-static int64_t lost_in_try(struct bus_bench *bench, enum receiver receiver,
-                           struct datagram *datagram, double rate, double *reached, int64_t *sent)
+/* How many were lost. -1: the receiver does not answer. */
+static int64_t lost_in_try(const struct shots *shots, double rate, double seconds, double *reached,
+                           int64_t *sent)
 {
-    struct line *line = receiver == SERVICE ? &bench->service : &bench->echo;
-    const char *url = receiver == SERVICE ? bench->parties.service_url : bench->parties.echo_url;
-    const int64_t before = line_count(line, PATIENCE_MS);
-    line_close(line);
-    lcm_t *sender = bus_open("bench-bus", url, NULL);
-    if (!sender)
+    struct line *line = shots->line;
+    const int64_t before = line_count(line);
+    if (!line_reopen(line, false))
         bus_bench_fail("no bus to send on");
-    *sent = send_paced(sender, line, datagram, rate, bench->seconds, reached);
-    lcm_destroy(sender);
-    if (!line_reopen(url, line))
+    *sent = send_paced(shots, rate, seconds, reached);
+    if (!line_reopen(line, true))
         bus_bench_fail("no bus");
-    const int64_t after = line_count(line, PATIENCE_MS);
-    if (before < 0 || after < 0)
-        return -1;
-    return receiver == SERVICE ? after - before : before + *sent + 1 - after;
+    const int64_t after = line_count(line);
+    return before < 0 || after < 0 ? -1 : *sent - (after - before) / shots->pairs;
 }
 
 /* True: none of the tries lost anything. */
-static bool try_rate(struct bus_bench *bench, enum receiver receiver, struct datagram *datagram,
-                     double rate, struct rating *out)
+static bool try_rate(const struct shots *shots, double rate, double seconds, struct rating *out)
 {
-    const char *url = bench->parties.service_url;
-    const int64_t busy = receiver == SERVICE ? busy_so_far(url) : 0;
     int64_t lost = 0, sent = 0, more;
     double reached = 0;
     for (int i = 0; i < TRIES && lost == 0; i++) {
-        lost = lost_in_try(bench, receiver, datagram, rate, &reached, &more);
+        lost = lost_in_try(shots, rate, seconds, &reached, &more);
         sent += more;
     }
-    if (receiver == SERVICE && lost == 0)
-        lost = busy_so_far(url) - busy;
     if (lost != 0) {
         out->lossy = rate;
         out->lost = lost;
@@ -121,14 +75,14 @@ static bool try_rate(struct bus_bench *bench, enum receiver receiver, struct dat
 }
 
 /* From slow to fast, until something is lost, or the sender is no faster. */
-static struct rating rate_of(struct bus_bench *bench, enum receiver receiver,
-                             struct datagram *datagram, double slowest)
+static struct rating rate_of(const struct bus_bench *bench, const struct shots *shots,
+                             double slowest)
 {
     struct rating out = {0, 0, 0, 0, 0};
     const double step = bench->quick ? 4 : 1.3;
     const int steps = bench->quick ? 2 : 16;
     double rate = slowest;
-    for (int i = 0; i < steps && try_rate(bench, receiver, datagram, rate, &out); i++, rate *= step)
+    for (int i = 0; i < steps && try_rate(shots, rate, bench->seconds, &out); i++, rate *= step)
         if (out.reached < 0.9 * rate)
             break;
     return out;
@@ -149,7 +103,7 @@ static void put(struct bus_bench *bench, const char *what, enum receiver receive
     json_number(json, "lost", (double) rating->lost);
     json_number(json, "sent", (double) rating->sent);
     json_close(json, '}');
-    printf("%-22s %-20s %6zu %9.0f /s %8.1f MB/s", what, receiver_names[receiver], bytes, most,
+    printf("%-24s %-20s %6zu %9.0f /s %8.1f MB/s", what, receiver_names[receiver], bytes, most,
            most * (double) bytes / 1e6);
     if (rating->lossy > 0)
         printf("   %.0f /s lost %lld of %lld", rating->lossy, (long long) rating->lost,
@@ -160,16 +114,19 @@ static void put(struct bus_bench *bench, const char *what, enum receiver receive
     fflush(stdout);
 }
 
-/* The datagram, and what a result of it takes. */
+/* A query of so many pairs, and requests and replies of the same sizes. */
 static void rate_all(struct bus_bench *bench, const char *what, struct datagram *query,
-                     size_t result, double slowest)
+                     size_t pairs, double slowest)
 {
     static struct datagram request;
+    const size_t result = bench->service.size;
     for (int receiver = 0; receiver < RECEIVERS; receiver++) {
         datagram_of_echo(query->size, receiver == ECHO ? result : 0, &request);
+        const struct shots shots = receiver == SERVICE
+                                       ? (struct shots){&bench->service, query, (int64_t) pairs}
+                                       : (struct shots){&bench->echo, &request, 1};
         const struct rating rating =
-            rate_of(bench, (enum receiver) receiver, receiver == SERVICE ? query : &request,
-                    receiver == SERVICE ? slowest / 4 : slowest);
+            rate_of(bench, &shots, receiver == SERVICE ? slowest / 4 : slowest);
         put(bench, what, (enum receiver) receiver, query->size, &rating);
     }
 }
@@ -177,10 +134,11 @@ static void rate_all(struct bus_bench *bench, const char *what, struct datagram 
 void oneway_run(struct bus_bench *bench)
 {
     static struct datagram query;
-    struct ask_scene scene = ask_scene_draw(500, false, 15000, bench->seed);
-    ask_pair(bench, FORM_HELD, &query);
-    rate_all(bench, "pair, whole", &query, bench->service.size, 10000);
-    ask_scene(bench, &scene, FORM_BY_KEY, QUERY_PAIRS_LISTED, 0, &query);
-    rate_all(bench, "scene of 500, by key", &query, bench->service.size, 1000);
-    ask_scene_free(&scene);
+    struct workload_scene scene = workload_scene_draw(500, false, 15000, bench->seed);
+    workload_pair(bench, FORM_HELD, &query);
+    rate_all(bench, "pair, whole", &query, 1, 10000);
+    const size_t pairs =
+        workload_scene(bench, &scene, FORM_BY_HANDLE, QUERY_PAIRS_LISTED, 0, &query);
+    rate_all(bench, "scene of 500, by handle", &query, pairs, 1000);
+    workload_scene_free(&scene);
 }

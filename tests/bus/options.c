@@ -12,14 +12,14 @@ static void help(void)
 {
     printf(
         "Usage: bench-bus [OPTION]...\n\n"
-        "What the service takes from bus to bus, beside an echo that does nothing, in turns.\n"
+        "Times of the service from bus to bus, beside an echo that does nothing, in turns.\n"
         "Starts fmbd and the echo itself. Minutes.\n\n"
         "  --section NAME       one section alone:");
     for (int i = 0; i < SECTIONS; i++)
         printf(" %s", sections[i]);
     printf(
         "\n"
-        "  --json FILE          writes what is measured there too\n"
+        "  --json FILE          writes the figures to a file too\n"
         "  --quick              little of everything, to see that it works\n"
         "  --help               prints this\n");
 }
@@ -66,7 +66,7 @@ int bus_options(int argc, char **argv, struct bus_bench *bench, const char **jso
         case JSON: *json = optarg; break;
         case QUICK: set_quick(bench); break;
         case HELP: help(); return 0;
-        default: return OPTIONS_USAGE; /* it has been said what is wrong */
+        default: return OPTIONS_USAGE; /* getopt_long() has reported it */
         }
     }
     if (outcome == OPTIONS_RUN && optind < argc)

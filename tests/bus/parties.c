@@ -2,6 +2,7 @@
 #include "parties.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,13 +15,15 @@
 
 #include "random_id.h"
 
-enum { PATH_LENGTH_MAX = 4096 };
+/* The echo and its client get as large a receive buffer as fmbd requests, up to the limit of the
+ * system. */
+enum { ECHO_BUFFER = 4 << 20, PATH_LENGTH_MAX = 4096 };
 
 static cpu_set_t allowed;
 static bool allowed_known;
 
 /* The first one and the last one that the program was started with. */
-bool parties_place(int cores, struct placement *out)
+bool parties_cpus(int cores, struct cpus *out)
 {
     if (!allowed_known)
         allowed_known = sched_getaffinity(0, sizeof allowed, &allowed) == 0;
@@ -30,7 +33,7 @@ bool parties_place(int cores, struct placement *out)
             first = first < 0 ? cpu : first;
             last = cpu;
         }
-    *out = (struct placement){cores, last, cores == 1 ? last : first};
+    *out = (struct cpus){cores, last, cores == 1 ? last : first};
     return last >= 0 && (cores == 1 || first < last);
 }
 
@@ -62,8 +65,7 @@ static void say_into(const char *log)
         dup2(fd, STDERR_FILENO);
 }
 
-/* In the child. Whoever has started it may have ended before the system was told that it is to end
- * then. */
+/* In the child. Its parent may have ended before prctl() was called. */
 static void become(int cpu, pid_t parent, const char *program, char *const *arguments)
 {
     char path[PATH_LENGTH_MAX], log[64];
@@ -88,21 +90,32 @@ static pid_t start(int cpu, const char *program, char *const *arguments)
     return child;
 }
 
-bool parties_start(const struct placement *placement, struct parties *out)
+/* fmbd stays the user that it is started as: a process that becomes another one loses the signal
+ * that ends it with its parent. */
+static pid_t start_service(int cpu, char *url)
+{
+    char name[] = "fmbd", url_option[] = "--lcm-url", user_option[] = "--user";
+    const struct passwd *user = getpwuid(geteuid());
+    char *arguments[] = {
+        name, url_option, url, user ? user_option : NULL, user ? user->pw_name : NULL, NULL};
+    return start(cpu, "../fmbd", arguments);
+}
+
+bool parties_start(const struct cpus *cpus, struct parties *out)
 {
     const int port = 20000 + (int) (random_id() % 20000) * 2;
-    char service[] = "fmbd", url_option[] = "--lcm-url", echo[] = "echo";
+    char echo[] = "echo";
     snprintf(out->service_url, sizeof out->service_url, "udpm://239.255.76.67:%d?ttl=0", port);
-    snprintf(out->echo_url, sizeof out->echo_url, "udpm://239.255.76.67:%d?ttl=0", port + 1);
+    snprintf(out->echo_url, sizeof out->echo_url, "udpm://239.255.76.67:%d?ttl=0&recv_buf_size=%d",
+             port + 1, ECHO_BUFFER);
     out->service = out->echo = -1;
-    if (!pin(placement->client_cpu)) {
+    if (!pin(cpus->client)) {
         perror("bench-bus: tying it to a CPU");
         return false;
     }
     fflush(NULL);
-    out->service = start(placement->service_cpu, "../fmbd",
-                         (char *[]){service, url_option, out->service_url, NULL});
-    out->echo = start(placement->service_cpu, "echo", (char *[]){echo, out->echo_url, NULL});
+    out->service = start_service(cpus->service, out->service_url);
+    out->echo = start(cpus->service, "echo", (char *[]){echo, out->echo_url, NULL});
     return out->service > 0 && out->echo > 0;
 }
 

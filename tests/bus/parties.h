@@ -1,5 +1,5 @@
-/* The programs at the other end: fmbd and the echo, each on a bus of its own, so that neither hears
- * what is asked of the other. */
+/* The programs at the other end: fmbd and the echo, each on a bus of its own, so that neither
+ * receives the messages of the other. */
 #ifndef PARTIES_H
 #define PARTIES_H
 
@@ -7,12 +7,12 @@
 #include <sys/types.h>
 
 /* Which CPUs the client and the others run on. */
-struct placement {
-    int cores; /* 1 or 2 */
-    int client_cpu, service_cpu;
+struct cpus {
+    int cores;           /* 1 or 2 */
+    int client, service; /* numbers of CPUs */
 };
 
-enum { PARTIES_URL_MAX = 64 };
+enum { PARTIES_URL_MAX = 96 };
 
 struct parties {
     pid_t service, echo;
@@ -20,12 +20,12 @@ struct parties {
 };
 
 /* The placement on so many cores. False: this program may not use as many. */
-bool parties_place(int cores, struct placement *out);
+bool parties_cpus(int cores, struct cpus *out);
 
 /* Ties this thread, and what it starts from now on, to the client's CPU, and starts fmbd and the
  * echo on the other, beside this program's own file. They end when it does, however that is. False:
  * not possible, and stderr says why. */
-bool parties_start(const struct placement *placement, struct parties *out);
+bool parties_start(const struct cpus *cpus, struct parties *out);
 /* Ends them, by force where they do not within seconds. */
 void parties_stop(struct parties *parties);
 

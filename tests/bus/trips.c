@@ -1,13 +1,13 @@
-/* Round trips of one query at a time: pairs and scenes, by how their bodies come, beside the echo's
- * of the same sizes. */
+/* Round trips of one query at a time: pairs and scenes, for each form of their bodies, beside the
+ * echo's of the same sizes. */
 #include <stdio.h>
 
-#include "ask.h"
 #include "duel.h"
+#include "workload.h"
 
-static void put_place(struct bus_bench *bench, enum form form)
+static void put_form(struct bus_bench *bench, enum form form)
 {
-    json_number(&bench->json, "cores", bench->placement.cores);
+    json_number(&bench->json, "cores", bench->cpus.cores);
     json_text(&bench->json, "form", form_name(form));
 }
 
@@ -16,12 +16,12 @@ void trips_pairs(struct bus_bench *bench)
     static struct datagram query;
     for (int form = 0; form < FORMS; form++) {
         char name[64];
-        ask_pair(bench, (enum form) form, &query);
+        workload_pair(bench, (enum form) form, &query);
         const struct duel duel = duel_run(bench, &query, bench->blocks, bench->trips);
         snprintf(name, sizeof name, "pair %s", form_name((enum form) form));
         duel_print(name, &duel);
         json_open(&bench->json, NULL, '{');
-        put_place(bench, (enum form) form);
+        put_form(bench, (enum form) form);
         duel_put(&bench->json, &duel);
         json_close(&bench->json, '}');
     }
@@ -31,24 +31,26 @@ static void trips_of_scene(struct bus_bench *bench, int bodies, enum form form)
 {
     static struct datagram query;
     enum { PAIRS = 200 };
-    struct ask_scene scene = ask_scene_draw(bodies, false, PAIRS, bench->seed);
+    struct workload_scene scene = workload_scene_draw(bodies, false, PAIRS, bench->seed);
     char name[64];
-    const size_t pairs = ask_scene(bench, &scene, form, QUERY_PAIRS_LISTED, 0, &query);
+    const size_t pairs = workload_scene(bench, &scene, form, QUERY_PAIRS_LISTED, 0, &query);
     const struct duel duel = duel_run(bench, &query, bench->blocks / 3 + 1, bench->scene_trips);
     snprintf(name, sizeof name, "scene of %d %s", bodies, form_name(form));
     duel_print(name, &duel);
     json_open(&bench->json, NULL, '{');
-    put_place(bench, form);
+    put_form(bench, form);
     json_number(&bench->json, "bodies", bodies);
     json_number(&bench->json, "pairs", (double) pairs);
     duel_put(&bench->json, &duel);
     json_close(&bench->json, '}');
-    ask_scene_free(&scene);
+    workload_scene_free(&scene);
 }
 
+/* As many bodies as a query holds whole beside the pairs, and fewer. */
 void trips_scenes(struct bus_bench *bench)
 {
-    for (int bodies = 100; bodies <= 500; bodies += 400)
+    static const int bodies[] = {100, 380};
+    for (int i = 0; i < 2; i++)
         for (int form = 0; form < FORMS; form++)
-            trips_of_scene(bench, bodies, (enum form) form);
+            trips_of_scene(bench, bodies[i], (enum form) form);
 }

@@ -1,10 +1,11 @@
-/* A few queries one after the other, of pairs and of scenes, to a service with a cache of three
- * bodies: each as two bytes of length and its bytes as they come from the bus. Each that can be
- * read is answered, and the result goes through the writer and through all that results.h checks of
- * one. The answer must be what the engine says of the pair, decided alone, with the bodies that a
- * model of the cache says; the keys must be the model's; and what is refused must be wrong.
+/* A few queries one after the other, of pairs, scenes and definitions, to a service with a cache of
+ * three bodies: each as two bytes of length and its bytes as they come from the bus. Each that can
+ * be read is answered, and the result goes through the writer and through all that results.h checks
+ * of one. The answer must be what the engine says of the pair, decided by itself, with the bodies
+ * that a model of the cache says; the handles must be the model's; and what is refused must be
+ * wrong.
  *
- * Pairs are asked between the parts of a scene too, as the server does. */
+ * Pairs are queried between the steps of a scene too, and some scenes are stopped. */
 #include "fuzz.h"
 
 #include "answer.h"
@@ -16,21 +17,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* So many queries of an input are asked; of scenes those of so many frames and pairs. */
-enum { QUERIES_MAX = 3, FRAMES_MAX = 6, PAIRS_MAX = 8 };
+/* So many queries of an input are answered; of scenes those of so many placements and pairs. */
+enum { QUERIES_MAX = 3, PLACEMENTS_MAX = 6, PAIRS_MAX = 8 };
 
 enum { BODIES = 3, BETWEEN_MAX = 4 };
 
-static const int64_t first_key = 500, server_id = 99;
+/* Of a scene that is checked, finds its bodies and keeps its bodies. */
+enum { STEPS_WITH_BODIES = 3 };
+
+static const int64_t server_id = 99;
 
 /* One input's service. */
 struct service {
-    struct answerer answerer;
+    struct answerer *answerer;
+    struct scene_job *job;
     struct model model;
-    /* Asked between the parts of a scene: the last pair that was good. Its results, to be checked
+    /* Queried between the steps of a scene: the last pair that was good. Its results, to be checked
      * after the scene's. */
     bool has_pair;
     struct pair_query pair;
+    unsigned char *pair_bytes; /* owned: where its geometries are */
     int between_count;
     struct pair_result between[BETWEEN_MAX];
 };
@@ -57,33 +63,33 @@ static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
 
 static bool is_good_pair(const struct pair_query *query)
 {
-    return model_good_question(query->client_id, query->sequence_number, query->duration,
-                               query->method, query->want,
-                               QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE) &&
-           model_good_frame(&query->frame[0]) && model_good_frame(&query->frame[1]) &&
-           query->frame[0].dim == query->frame[1].dim;
+    return model_good_request(query->client_id, query->sequence_number, query->duration,
+                              query->method, query->want,
+                              QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE) &&
+           model_good_placement(&query->placement[0]) &&
+           model_good_placement(&query->placement[1]) &&
+           query->placement[0].dim == query->placement[1].dim;
 }
 
-/* Bodies and keys of a good query; false: a key is not held. */
-static bool find_pair(struct model *model, const struct pair_query *query, struct fmb_body body[2],
-                      int64_t key[2])
+/* Bodies and handles of a good query. */
+static enum fmb_status find_pair(struct model *model, const struct pair_query *query,
+                                 struct fmb_body body[2], struct handle handle[2])
 {
-    for (int f = 0; f < 2; f++) {
-        key[f] = query->frame[f].key;
-        if (model_by_key(&query->frame[f]) && !model_find(model, &query->frame[f], &body[f]))
-            return false;
-    }
-    for (int f = 0; f < 2; f++)
-        if (!model_by_key(&query->frame[f]))
-            key[f] = model_keep(model, &query->frame[f], &body[f]);
-    return true;
+    enum fmb_status status = FMB_OK;
+    for (int f = 0; f < 2 && status == FMB_OK; f++)
+        if (model_by_handle(&query->placement[f]))
+            status = model_find(model, &query->placement[f], &body[f]);
+    for (int f = 0; f < 2 && status == FMB_OK; f++)
+        if (!model_by_handle(&query->placement[f]))
+            handle[f] = model_keep(model, &query->placement[f], &body[f]);
+    return status;
 }
 
 static void check_decided(const struct pair_query *query, const struct pair_result *result,
                           const struct fmb_body body[2])
 {
-    const struct fmb_pair pair = {model_frame(&query->frame[0], &body[0]),
-                                  model_frame(&query->frame[1], &body[1]), query->duration};
+    const struct fmb_pair pair = {model_frame(&query->placement[0], &body[0]),
+                                  model_frame(&query->placement[1], &body[1]), query->duration};
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     struct fmb_answer answer;
@@ -91,7 +97,7 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     FUZZ_CHECK(result->status == status);
     FUZZ_CHECK(same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
-    FUZZ_CHECK(result->dim == (answer.has_box ? query->frame[0].dim : 0));
+    FUZZ_CHECK(result->dim == (answer.has_box ? query->placement[0].dim : 0));
     if (result->certificate)
         check_certificate(&pair, result->certificate);
     FUZZ_CHECK(!result->certificate || query->want & QUERY_WANT_CERTIFICATE);
@@ -103,7 +109,7 @@ static void check_echo(const struct pair_query *query, const struct pair_result 
     FUZZ_CHECK(result->sequence_number == query->sequence_number);
     FUZZ_CHECK(result->server_id == server_id && result->compute_ns == 0);
     for (int f = 0; f < 2; f++)
-        FUZZ_CHECK(result->body_id[f] == query->frame[f].body_id);
+        FUZZ_CHECK(result->body_id[f] == query->placement[f].body_id);
     FUZZ_CHECK((result->detail[0] == '\0') == (result->status == FMB_OK));
 }
 
@@ -111,60 +117,65 @@ static void check_pair(struct service *service, const struct pair_query *query,
                        const struct pair_result *result)
 {
     struct fmb_body body[2];
-    int64_t key[2] = {0, 0};
-    const bool good = is_good_pair(query);
-    const bool held = good && find_pair(&service->model, query, body, key);
+    struct handle handle[2] = {0};
     check_echo(query, result);
-    if (held)
-        check_decided(query, result, body);
-    else
-        FUZZ_CHECK(good ? result->status == FMB_UNKNOWN_BODY
-                        : result->status != FMB_OK && result->status != FMB_UNKNOWN_BODY);
+    if (is_good_pair(query)) {
+        const enum fmb_status status = find_pair(&service->model, query, body, handle);
+        if (status == FMB_OK)
+            check_decided(query, result, body);
+        else
+            FUZZ_CHECK(result->status == (int32_t) status);
+    } else {
+        FUZZ_CHECK(result->status != FMB_OK && result->status != FMB_UNKNOWN_BODY);
+    }
     for (int f = 0; f < 2; f++)
-        FUZZ_CHECK(result->key[f] == (result->status == FMB_OK ? key[f] : 0));
+        FUZZ_CHECK(memcmp(&result->handle[f], &handle[f], sizeof handle[f]) == 0);
 }
 
 /* The result as a client reads it. */
 static struct pair_result answer_to(struct service *service, const struct pair_query *query)
 {
-    static unsigned char bytes[WIRE_RESULT_BYTES_MAX];
+    static unsigned char bytes[QUERY_BYTES_MAX];
     struct pair_result result;
-    answer_pair(&service->answerer, query, &result);
+    answer_pair(service->answerer, query, &result);
     const struct pair_result *read =
         results_read_pair(bytes, wire_write_pair_result(&result, bytes));
     FUZZ_CHECK(read);
     return *read;
 }
 
-static void ask_pair(struct service *service, const struct pair_query *query)
+/* Geometries of the query are in bytes; the service keeps these, or frees them. */
+static void query_pair(struct service *service, const struct pair_query *query, uint8_t *bytes)
 {
     const struct pair_result result = answer_to(service, query);
     check_pair(service, query, &result);
-    if (is_good_pair(query)) {
-        service->has_pair = true;
-        service->pair = *query;
+    if (!is_good_pair(query)) {
+        free(bytes);
+        return;
     }
+    free(service->pair_bytes);
+    service->pair_bytes = bytes;
+    service->has_pair = true;
+    service->pair = *query;
 }
 
-/* The certificate is good until the next result is read. */
-static bool ask_between(void *user)
+/* The certificate is valid until the next result is read. */
+static void query_between(struct service *service)
 {
-    struct service *service = user;
     if (!service->has_pair || service->between_count == BETWEEN_MAX)
-        return true;
+        return;
     struct pair_result *result = &service->between[service->between_count++];
     *result = answer_to(service, &service->pair);
     result->certificate = NULL;
-    return true;
 }
 
 /* ---- Scenes ---- */
 
-/* The pairs that a scene asks for, all of them. Returns how many; those beyond PAIRS_MAX are only
+/* All pairs of a scene. Returns how many; those beyond PAIRS_MAX are only
  * counted. */
 static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2])
 {
-    const int frames = query->frame_count;
+    const int frames = query->placement_count;
     int count = 0;
     if (query->which == QUERY_PAIRS_LISTED) {
         for (; count < query->index_count / 2; count++)
@@ -185,18 +196,18 @@ static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2
     return count;
 }
 
-static bool good_frames(const struct scene_query *query)
+static bool good_placements(const struct scene_query *query)
 {
     bool good = true;
-    for (int32_t i = 0; i < query->frame_count; i++)
-        good = good && model_good_frame(&query->frame[i]) &&
-               query->frame[i].dim == query->frame[0].dim;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        good = good && model_good_placement(&query->placement[i]) &&
+               query->placement[i].dim == query->placement[0].dim;
     return good;
 }
 
 static bool good_pairs(const struct scene_query *query)
 {
-    const unsigned frames = (unsigned) query->frame_count;
+    const unsigned frames = (unsigned) query->placement_count;
     bool good = query->index_count % 2 == 0;
     for (int32_t i = 0; i < query->index_count / 2; i++)
         good = good && query->pair[i][0] < frames && query->pair[i][1] < frames &&
@@ -213,57 +224,75 @@ static bool good_which(const struct scene_query *query, int total)
     return query->index_count == 0 && fmb_method_by_number(query->method)->certain &&
            ((query->which == QUERY_PAIRS_ALL && query->split == 0) ||
             (query->which == QUERY_PAIRS_ACROSS && query->split >= 0 &&
-             query->split <= query->frame_count));
+             query->split <= query->placement_count));
 }
 
 static bool is_good_scene(const struct scene_query *query, int total)
 {
-    return model_good_question(query->client_id, query->sequence_number, query->duration,
-                               query->method, query->want, QUERY_WANT_BOX | QUERY_WANT_TIMES) &&
-           good_which(query, total) && good_frames(query) && good_pairs(query);
+    return model_good_request(query->client_id, query->sequence_number, query->duration,
+                              query->method, query->want, QUERY_WANT_BOX | QUERY_WANT_TIMES) &&
+           good_which(query, total) && query->margin == 0 && query->ignored_count == 0 &&
+           good_placements(query) && good_pairs(query);
 }
 
-/* Bodies and keys of a good query; false: keys are not held, and are 0. */
-static bool find_frames(struct model *model, const struct scene_query *query,
-                        struct fmb_body body[FRAMES_MAX], int64_t key[FRAMES_MAX])
+/* Bodies and handles of a good query. */
+struct found {
+    struct fmb_body body[PLACEMENTS_MAX];
+    struct handle handle[PLACEMENTS_MAX];
+    unsigned unknown[PLACEMENTS_MAX];
+    int handles, unknowns;
+};
+
+static enum fmb_status find_bodies(struct model *model, const struct scene_query *query,
+                                   struct found *out)
 {
-    bool all = true;
-    for (int32_t i = 0; i < query->frame_count; i++) {
-        const struct query_frame *frame = &query->frame[i];
-        const bool held = model_by_key(frame) && model_find(model, frame, &body[i]);
-        key[i] = held ? frame->key : 0;
-        all = all && (held || !model_by_key(frame));
+    *out = (struct found){.handles = 0};
+    for (int32_t i = 0; i < query->placement_count; i++) {
+        if (!model_by_handle(&query->placement[i]))
+            continue;
+        const enum fmb_status status = model_find(model, &query->placement[i], &out->body[i]);
+        if (status == FMB_UNKNOWN_BODY)
+            out->unknown[out->unknowns++] = (unsigned) i;
+        else if (status != FMB_OK)
+            return status;
     }
-    for (int32_t i = 0; i < query->frame_count && all; i++)
-        if (!model_by_key(&query->frame[i]))
-            key[i] = model_keep(model, &query->frame[i], &body[i]);
-    return all;
+    if (out->unknowns > 0)
+        return FMB_UNKNOWN_BODY;
+    for (int32_t i = 0; i < query->placement_count; i++) {
+        const struct placement *placement = &query->placement[i];
+        if (model_by_handle(placement))
+            continue;
+        const struct handle handle = model_keep(model, placement, &out->body[i]);
+        if (placement->body_id)
+            out->handle[out->handles++] = handle;
+    }
+    return FMB_OK;
 }
 
-static void check_keys(const struct scene_query *query, const struct scene_result *result,
-                       bool held, const int64_t key[FRAMES_MAX])
+static void check_lists(const struct scene_result *result, enum fmb_status status,
+                        const struct found *found)
 {
-    bool told = !held;
-    for (int32_t i = 0; i < query->frame_count; i++)
-        told = told || (!model_by_key(&query->frame[i]) && query->frame[i].body_id);
-    FUZZ_CHECK(result->key_count == (told ? query->frame_count : 0));
-    for (int32_t i = 0; i < result->key_count; i++)
-        FUZZ_CHECK(result->key[i] == key[i]);
+    const int unknowns = status == FMB_UNKNOWN_BODY ? found->unknowns : 0;
+    FUZZ_CHECK(result->handle_count == found->handles && result->unknown_count == unknowns);
+    for (int i = 0; i < found->handles; i++)
+        FUZZ_CHECK(memcmp(&result->handle[i], &found->handle[i], HANDLE_BYTES) == 0);
+    for (int i = 0; i < unknowns; i++)
+        FUZZ_CHECK(result->unknown[i] == found->unknown[i]);
 }
 
-/* Where the walk along the answers is. */
-struct walk {
+/* How far the result has been read. */
+struct reading {
     const struct scene_query *query;
     const struct scene_result *result;
-    const struct fmb_body *body; /* [frame] */
+    const struct fmb_body *body; /* [placement] */
     int verdicts, contacts;
 };
 
 /* The times and the box of the next contact. */
-static void check_contact(struct walk *walk, const struct fmb_answer *answer)
+static void check_contact(struct reading *reading, const struct fmb_answer *answer)
 {
-    const struct scene_result *result = walk->result;
-    const int contact = walk->contacts++, dim = walk->query->frame[0].dim;
+    const struct scene_result *result = reading->result;
+    const int contact = reading->contacts++, dim = reading->query->placement[0].dim;
     const double *times = &result->times[2 * contact];
     const double *box = &result->boxes[2 * dim * contact];
     FUZZ_CHECK(contact < result->contact_count);
@@ -277,12 +306,12 @@ static void check_contact(struct walk *walk, const struct fmb_answer *answer)
         FUZZ_CHECK(same_doubles(box + side * dim, answer->box[side], (size_t) dim));
 }
 
-static void check_scene_pair(struct walk *walk, const unsigned pair[2])
+static void check_scene_pair(struct reading *reading, const unsigned pair[2])
 {
-    const struct scene_query *query = walk->query;
-    const struct scene_result *result = walk->result;
-    const struct fmb_pair both = {model_frame(&query->frame[pair[0]], &walk->body[pair[0]]),
-                                  model_frame(&query->frame[pair[1]], &walk->body[pair[1]]),
+    const struct scene_query *query = reading->query;
+    const struct scene_result *result = reading->result;
+    const struct fmb_pair both = {model_frame(&query->placement[pair[0]], &reading->body[pair[0]]),
+                                  model_frame(&query->placement[pair[1]], &reading->body[pair[1]]),
                                   query->duration};
     const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     struct fmb_answer answer;
@@ -290,48 +319,56 @@ static void check_scene_pair(struct walk *walk, const unsigned pair[2])
     const bool contact = answer.verdict >= FMB_TOUCHING;
     if (query->which != QUERY_PAIRS_LISTED && !contact)
         return;
-    const int n = walk->verdicts++;
+    const int n = reading->verdicts++;
     FUZZ_CHECK(n < result->verdict_count && result->verdict[n] == answer.verdict);
     if (result->names_pairs)
         FUZZ_CHECK(result->pair[n][0] == pair[0] && result->pair[n][1] == pair[1]);
     if (contact)
-        check_contact(walk, &answer);
+        check_contact(reading, &answer);
 }
 
-/* The form, and the answer to each pair. So few all have room. */
+/* The form, and the answer to each pair. All fit, as they are so few. */
 static void check_answers(const struct scene_query *query, const struct scene_result *result,
-                          const struct fmb_body *body, const unsigned (*pair)[2], int total)
+                          const struct fmb_body *body, const unsigned (*pair)[2], int total,
+                          bool stopped)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    struct walk walk = {query, result, body, 0, 0};
+    struct reading reading = {query, result, body, 0, 0};
     bool moving = false;
-    for (int32_t i = 0; i < query->frame_count; i++)
-        moving = moving || query->frame[i].velocity.count;
-    FUZZ_CHECK(result->method == method->number && result->end_pair == total);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        moving = moving || query->placement[i].velocity_count;
+    FUZZ_CHECK(result->method == method->number);
+    FUZZ_CHECK(stopped ? result->end_pair > query->first_pair && result->end_pair <= total
+                       : result->end_pair == total);
     const bool some = result->contact_count > 0;
     FUZZ_CHECK(result->names_pairs ==
                (query->which != QUERY_PAIRS_LISTED && result->verdict_count > 0));
     FUZZ_CHECK(result->has_times == (some && moving && query->want & QUERY_WANT_TIMES));
     FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & QUERY_WANT_BOX));
-    for (int k = query->first_pair; k < total; k++)
-        check_scene_pair(&walk, pair[k]);
-    FUZZ_CHECK(walk.verdicts == result->verdict_count && walk.contacts == result->contact_count);
+    for (int k = query->first_pair; k < result->end_pair; k++)
+        check_scene_pair(&reading, pair[k]);
+    FUZZ_CHECK(reading.verdicts == result->verdict_count &&
+               reading.contacts == result->contact_count);
 }
 
 static void check_scene(struct service *service, const struct scene_query *query,
-                        const struct scene_result *result, const unsigned (*pair)[2], int total)
+                        const struct scene_result *result, const unsigned (*pair)[2], int total,
+                        bool stopped)
 {
-    struct fmb_body body[FRAMES_MAX];
-    int64_t key[FRAMES_MAX];
+    struct found found;
     const bool good = is_good_scene(query, total);
-    const bool held = good && find_frames(&service->model, query, body, key);
-    FUZZ_CHECK((result->status == FMB_OK) == held);
-    FUZZ_CHECK((result->status == FMB_UNKNOWN_BODY) == (good && !held));
-    FUZZ_CHECK((result->detail[0] == '\0') == held);
-    if (good)
-        check_keys(query, result, held, key);
-    if (held)
-        check_answers(query, result, body, pair, total);
+    const enum fmb_status status =
+        good ? find_bodies(&service->model, query, &found) : FMB_NOT_SUPPORTED;
+    if (good) {
+        FUZZ_CHECK(result->status == (int32_t) status);
+        check_lists(result, status, &found);
+    } else {
+        FUZZ_CHECK(result->status != FMB_OK && result->status != FMB_UNKNOWN_BODY);
+        FUZZ_CHECK(result->handle_count == 0);
+    }
+    FUZZ_CHECK((result->detail[0] == '\0') == (status == FMB_OK));
+    if (status == FMB_OK)
+        check_answers(query, result, found.body, pair, total, stopped);
     else
         FUZZ_CHECK(result->verdict_count == 0 && result->method == 0 && result->end_pair == 0);
 }
@@ -340,26 +377,92 @@ static void check_scene_echo(const struct scene_query *query, const struct scene
 {
     FUZZ_CHECK(result->utime == query->utime && result->client_id == query->client_id);
     FUZZ_CHECK(result->sequence_number == query->sequence_number);
-    FUZZ_CHECK(result->server_id == server_id && result->compute_ns == 0 && result->lost == 0);
+    FUZZ_CHECK(result->server_id == server_id && result->compute_ns == 0);
 }
 
-static void ask_scene(struct service *service, const struct scene_query *query)
+/* Advances the job until it is complete, or is stopped. Returns whether it was stopped. */
+static bool advance(struct service *service, const struct scene_query *query)
 {
-    static struct scene_result result;
-    static unsigned char bytes[QUERY_BYTES_MAX];
+    const bool stops = query->sequence_number % 4 == 3;
+    for (int steps = 1; !scene_job_step(service->job, service->answerer); steps++) {
+        if (steps >= STEPS_WITH_BODIES)
+            query_between(service);
+        if (stops && scene_job_can_stop(service->job)) {
+            scene_job_stop(service->job);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* On input: a query that has been read from the bytes. */
+static void query_scene(struct service *service, const struct scene_query *query,
+                        const uint8_t *bytes, size_t size)
+{
+    static unsigned char written[QUERY_BYTES_MAX];
     unsigned pair[PAIRS_MAX][2];
     const int total = list_pairs(query, pair);
-    if (total > PAIRS_MAX)
+    if (total > PAIRS_MAX || size > QUERY_BYTES_MAX)
         return;
     service->between_count = 0;
-    answer_scene(&service->answerer, query, &result);
-    const struct scene_result *read =
-        results_read_scene(bytes, wire_write_scene_result(&result, bytes));
+    FUZZ_CHECK(!scene_job_begin(service->job, bytes, size));
+    const bool stopped = advance(service, query);
+    const struct scene_result *read = results_read_scene(
+        written, wire_write_scene_result(scene_job_result(service->job), written));
     FUZZ_CHECK(read);
     check_scene_echo(query, read);
-    check_scene(service, query, read, (const unsigned(*)[2]) pair, total);
+    check_scene(service, query, read, (const unsigned(*)[2]) pair, total, stopped);
     for (int i = 0; i < service->between_count; i++)
         check_pair(service, &service->pair, &service->between[i]);
+}
+
+/* ---- Definitions ---- */
+
+static void check_body(const struct model *model, const struct query_body *body)
+{
+    const struct model_body *held = model_peek(model, &body->handle);
+    FUZZ_CHECK(held && held->size == body->geometry.size);
+    FUZZ_CHECK(memcmp(held->bytes, body->geometry.bytes, held->size) == 0);
+}
+
+/* Each that is held, in the order requested; or all that are held, each once. */
+static void check_bodies(const struct model *model, const struct definition_query *query,
+                         const struct definition *result)
+{
+    int count = 0;
+    for (int64_t i = query->first; i < query->handle_count; i++)
+        if (model_peek(model, &query->handle[i])) {
+            FUZZ_CHECK(count < result->body_count);
+            FUZZ_CHECK(memcmp(&result->body[count++].handle, &query->handle[i], HANDLE_BYTES) == 0);
+        }
+    if (query->handle_count == 0)
+        count = query->first < model->count ? model->count - (int) query->first : 0;
+    FUZZ_CHECK(result->body_count == count && result->next == 0);
+    for (int i = 0; i < result->body_count; i++) {
+        check_body(model, &result->body[i]);
+        for (int other = 0; other < i && query->handle_count == 0; other++)
+            FUZZ_CHECK(memcmp(&result->body[i].handle, &result->body[other].handle, HANDLE_BYTES) !=
+                       0);
+    }
+}
+
+static void query_definition(struct service *service, const struct definition_query *query)
+{
+    static struct definition result, read;
+    static unsigned char written[QUERY_BYTES_MAX];
+    const bool good = model_good_request(query->client_id, query->sequence_number, 0, 0, 0, 0) &&
+                      query->first >= 0 &&
+                      (query->handle_count == 0 || query->first <= query->handle_count);
+    answer_definition(service->answerer, query, &result);
+    FUZZ_CHECK(!wire_read_definition(written, (uint32_t) wire_write_definition(&result, written),
+                                     service->model.hasher, &read));
+    FUZZ_CHECK(read.utime == query->utime && read.client_id == query->client_id);
+    FUZZ_CHECK(read.sequence_number == query->sequence_number && read.server_id == server_id);
+    FUZZ_CHECK((read.status == FMB_OK) == good && (read.detail[0] == '\0') == good);
+    if (good)
+        check_bodies(&service->model, query, &read);
+    else
+        FUZZ_CHECK(read.body_count == 0 && read.next == 0);
 }
 
 /* ---- Any bytes ---- */
@@ -369,65 +472,71 @@ struct spread {
     int least, most;
 };
 
-static void widen(struct spread *spread, const struct query_numbers *numbers)
+static void widen(struct spread *spread, double number)
 {
-    const int kept = numbers->count < FMB_COMPONENTS_MAX ? numbers->count : FMB_COMPONENTS_MAX;
-    for (int i = 0; i < kept; i++) {
-        if (numbers->number[i] == 0 || !isfinite(numbers->number[i]))
-            continue;
-        const int exponent = ilogb(numbers->number[i]);
-        spread->least = exponent < spread->least ? exponent : spread->least;
-        spread->most = exponent > spread->most ? exponent : spread->most;
-    }
+    if (number == 0 || !isfinite(number))
+        return;
+    const int exponent = ilogb(number);
+    spread->least = exponent < spread->least ? exponent : spread->least;
+    spread->most = exponent > spread->most ? exponent : spread->most;
 }
 
 /* Numbers from one end of the doubles to the other take exact arithmetic long: of such queries one
- * in sixteen is asked, as its bytes have it. */
-static bool takes_too_long(const struct query_frame *frame, int32_t count, const uint8_t *bytes,
+ * in sixteen is answered, as its bytes have it. */
+static bool takes_too_long(const struct placement *placement, int32_t count, const uint8_t *bytes,
                            size_t size)
 {
     struct spread spread = {0, 0};
     uint32_t hash = 0;
     for (int32_t i = 0; i < count; i++) {
-        widen(&spread, &frame[i].origin);
-        widen(&spread, &frame[i].components);
-        widen(&spread, &frame[i].velocity);
+        for (int32_t n = 0; n < placement[i].number_count; n++)
+            widen(&spread, model_number(&placement[i], n));
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            widen(&spread, placement[i].position[axis]);
+            widen(&spread, placement[i].velocity[axis]);
+        }
     }
     for (size_t i = 0; i < size; i++)
         hash = (hash ^ bytes[i]) * 16777619u;
     return spread.most - spread.least > 100 && hash >> 28 != 0;
 }
 
-static void ask(struct service *service, const uint8_t *data, size_t size)
+static void answer_query(struct service *service, const uint8_t *data, size_t size)
 {
     static struct pair_query pair;
     static struct scene_query scene;
+    static struct definition_query definition;
     uint8_t *bytes = fuzz_copy(data, size);
-    if (!wire_read_pair_query(bytes, (uint32_t) size, &pair)) {
-        if (!takes_too_long(pair.frame, 2, bytes, size))
-            ask_pair(service, &pair);
-    } else if (!wire_read_scene_query(bytes, (uint32_t) size, &scene)) {
-        if (scene.frame_count <= FRAMES_MAX &&
-            !takes_too_long(scene.frame, scene.frame_count, bytes, size))
-            ask_scene(service, &scene);
+    if (!wire_read_pair_query(bytes, (uint32_t) size, &pair) &&
+        !takes_too_long(pair.placement, 2, bytes, size)) {
+        query_pair(service, &pair, bytes);
+        return;
+    }
+    if (!wire_read_scene_query(bytes, (uint32_t) size, &scene)) {
+        if (scene.placement_count <= PLACEMENTS_MAX &&
+            !takes_too_long(scene.placement, scene.placement_count, bytes, size))
+            query_scene(service, &scene, bytes, size);
+    } else if (!wire_read_definition_query(bytes, (uint32_t) size, &definition)) {
+        query_definition(service, &definition);
     }
     free(bytes);
 }
 
-/* Memory of the answerer is taken once: it holds nothing from query to query. */
+/* The job and the hasher are allocated once: they keep nothing from query to query. */
 static struct service *begin(void)
 {
     static struct service service;
-    if (!service.answerer.work)
-        FUZZ_CHECK(answer_prepare(&service.answerer));
-    service.answerer.cache = cache_create(BODIES, first_key);
-    FUZZ_CHECK(service.answerer.cache);
-    service.answerer.server_id = server_id;
-    service.answerer.between = ask_between;
-    service.answerer.user = &service;
+    const struct answerer_options options = {
+        BODIES, server_id, {0x9e3779b97f4a7c15, 0xbf58476d1ce4e5b9}};
+    if (!service.job) {
+        service.job = scene_job_create();
+        service.model.hasher = hasher_create();
+        FUZZ_CHECK(service.job && service.model.hasher);
+    }
+    service.answerer = answerer_create(&options);
+    FUZZ_CHECK(service.answerer);
     service.model.capacity = BODIES;
     service.model.count = 0;
-    service.model.next_key = first_key;
     service.has_pair = false;
     return &service;
 }
@@ -436,12 +545,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct service *service = begin();
     for (int n = 0; n < QUERIES_MAX && size >= 2; n++) {
-        const size_t said = (size_t) data[0] << 8 | data[1], left = size - 2;
-        const size_t count = said < left ? said : left;
-        ask(service, data + 2, count);
+        const size_t length = (size_t) data[0] << 8 | data[1], left = size - 2;
+        const size_t count = length < left ? length : left;
+        answer_query(service, data + 2, count);
         data += 2 + count;
         size = left - count;
     }
-    cache_destroy(service->answerer.cache);
+    answerer_destroy(service->answerer);
+    free(service->pair_bytes);
+    service->pair_bytes = NULL;
     return 0;
 }

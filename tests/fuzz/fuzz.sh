@@ -18,8 +18,8 @@ cd "$(dirname "$0")/../.." || exit
 self=tests/fuzz/fuzz.sh
 out=build/fuzz
 # Those that take longest first.
-targets='replay_log answer scene_json event_log mesh scene_query scene_result pair_result pair_query
-    status'
+targets='replay_log answer scene_json event_log mesh scene_query scene_result definition pair_result
+    pair_query definition_query status'
 runs=${FUZZ_RUNS:-10000000}
 seconds=${FUZZ_SECONDS:-60}
 large=66000 # bytes: a little more than a datagram

@@ -3,6 +3,7 @@
 struct walk {
     const uint8_t *bytes;
     size_t size, at;
+    size_t dim; /* the last dimension */
     bool good;
 };
 
@@ -18,7 +19,7 @@ static void skip(struct walk *walk, size_t count, size_t each)
         walk->at += count * each;
 }
 
-/* Of 4 bytes; a negative one does not fit. */
+/* 4 bytes; a negative count does not fit. */
 static size_t take_count(struct walk *walk)
 {
     const size_t from = walk->at;
@@ -48,11 +49,11 @@ static void skip_string(struct walk *walk)
 
 static void skip_fields(struct walk *walk, const char *layout);
 
-static void skip_frames(struct walk *walk)
+static void skip_structs(struct walk *walk, const char *layout)
 {
     const size_t count = take_count(walk);
     for (size_t i = 0; i < count && walk->good; i++)
-        skip_fields(walk, "F");
+        skip_fields(walk, layout);
 }
 
 static void skip_fields(struct walk *walk, const char *layout)
@@ -61,12 +62,16 @@ static void skip_fields(struct walk *walk, const char *layout)
         switch (*layout) {
         case 'i': skip(walk, 1, 4); break;
         case 'l': skip(walk, 1, 8); break;
+        case 'h': skip(walk, 1, 16); break;
         case 'B': skip_list(walk, 1); break;
         case 'H': skip_list(walk, 2); break;
         case 'L': skip_list(walk, 8); break;
         case 's': skip_string(walk); break;
-        case 'F': skip_fields(walk, "lliLLL"); break;
-        case 'M': skip_frames(walk); break;
+        case 'd': walk->dim = take_count(walk); break;
+        case 'D': skip(walk, walk->dim, 8); break;
+        case 'P': skip_fields(walk, "lhdBLDLL"); break;
+        case 'M': skip_structs(walk, "P"); break;
+        case 'O': skip_structs(walk, "hiBL"); break;
         default: walk->good = false; break;
         }
 }

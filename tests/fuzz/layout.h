@@ -1,11 +1,13 @@
-/* A second opinion on what is a message: a walk by the letters of its type, which shares nothing
- * with the readers of the service.
+/* A second opinion on what is a message: a walk over its bytes by the letters of its type. Shares
+ * nothing with the codec.
  *
- *     i l      4 bytes, 8 bytes
- *     B H L    a count and so many times 1, 2 or 8 bytes
- *     s        a string: its length with the final 0, which is the only one
- *     F        a frame (frame_t.lcm)
- *     M        a count and so many frames */
+ *     i l h    4 bytes, 8 bytes, 16 bytes
+ *     B H L    a count and as many elements of 1, 2 or 8 bytes
+ *     s        a string: its length with the final 0, then its bytes; only the last is 0
+ *     d D      a dimension, not negative; as many elements of 8 bytes as the last dimension
+ *     P        a placement (placement_t.lcm)
+ *     M        a count and as many placements
+ *     O        a count and as many bodies (body_t.lcm) */
 #ifndef LAYOUT_H
 #define LAYOUT_H
 
@@ -13,27 +15,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define LAYOUT_PAIR_QUERY \
-    "llll"                \
-    "iiFF"
-#define LAYOUT_PAIR_RESULT \
-    "llllllll"             \
-    "isiiLLsl"
-#define LAYOUT_SCENE_QUERY \
-    "llll"                 \
-    "iiiiiMH"
-#define LAYOUT_SCENE_RESULT \
-    "llll"                  \
-    "isilLiBHLLl"
-#define LAYOUT_STATUS \
-    "ll"              \
-    "slllllll"        \
-    "L"               \
-    "llllllllllll"    \
-    "L"
+#define LAYOUT_PAIR_QUERY "lllliiPP"
+#define LAYOUT_PAIR_RESULT "llllllhhisiiLLLLLsl"
+#define LAYOUT_SCENE_QUERY "lllliiliiiMHH"
+#define LAYOUT_SCENE_RESULT "llllisiHBiBHLLLLLl"
+#define LAYOUT_DEFINITION_QUERY "llllB"
+#define LAYOUT_DEFINITION "llllislO"
+#define LAYOUT_STATUS "llsllllllllLlllllllllllllll"
 
-/* Whether the bytes are what an encoder of this type can write: then its generated decoder may have
- * them, which reads out of bounds where counts lie. */
+/* Whether an encoder of this type can have written the bytes. If so, the generated decoder reads
+ * them safely; it reads out of bounds where a count is wrong. */
 bool layout_fits(const char *layout, int64_t fingerprint, const uint8_t *bytes, size_t size);
 
 #endif

@@ -1,5 +1,5 @@
-/* Any bytes, read as a pair query: what is accepted is just what encoders write; every field is
- * what lcm-gen's decoder says; and written again it is the same bytes. */
+/* Any bytes, read as a pair query: accepted if and only if an encoder can have written them; every
+ * field is what lcm-gen's decoder reads; and written again they are the same bytes. */
 #include "fuzz.h"
 #include "layout.h"
 #include "same.h"
@@ -15,15 +15,8 @@ static bool same_query(const struct pair_query *query, const fmb_msgs_pair_query
            query->sequence_number == message->sequence_number &&
            same_doubles(&query->duration, &message->duration, 1) &&
            query->method == message->method && query->want == message->want &&
-           same_frame(&query->frame[0], &message->a) && same_frame(&query->frame[1], &message->b);
-}
-
-static void check_header(const struct pair_query *query, const uint8_t *bytes, size_t size)
-{
-    struct query_header header;
-    FUZZ_CHECK(!wire_read_pair_header(bytes, (uint32_t) size, &header));
-    FUZZ_CHECK(header.utime == query->utime && header.client_id == query->client_id &&
-               header.sequence_number == query->sequence_number);
+           same_placement(&query->placement[0], &message->a) &&
+           same_placement(&query->placement[1], &message->b);
 }
 
 static void check_decoder(const struct pair_query *query, const uint8_t *bytes, size_t size)
@@ -36,20 +29,23 @@ static void check_decoder(const struct pair_query *query, const uint8_t *bytes, 
 
 static void check_writer(const struct pair_query *query, const uint8_t *bytes, size_t size)
 {
-    unsigned char written[WIRE_BYTES_MAX];
-    if (same_can_hold(&query->frame[0]) && same_can_hold(&query->frame[1]))
-        same_bytes(written, wire_write_pair_query(query, written), bytes, size);
+    static unsigned char written[QUERY_BYTES_MAX];
+    const struct placement *a = &query->placement[0], *b = &query->placement[1];
+    if (size > QUERY_BYTES_MAX || !same_can_hold(a) || !same_can_hold(b))
+        return;
+    same_bytes(written, wire_write_pair_query(query, written), bytes, size);
+    FUZZ_CHECK(WIRE_PAIR_QUERY_BYTES + wire_placement_bytes(a) + wire_placement_bytes(b) == size);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static struct pair_query query;
+    const int64_t fingerprint = __fmb_msgs_pair_query_t_get_hash();
     uint8_t *bytes = fuzz_copy(data, size);
-    const char *error = wire_read_pair_query(bytes, (uint32_t) size, &query);
-    FUZZ_CHECK(!error ==
-               layout_fits(LAYOUT_PAIR_QUERY, __fmb_msgs_pair_query_t_get_hash(), bytes, size));
-    if (!error) {
-        check_header(&query, bytes, size);
+    const bool accepted = !wire_read_pair_query(bytes, (uint32_t) size, &query);
+    FUZZ_CHECK(accepted == layout_fits(LAYOUT_PAIR_QUERY, fingerprint, bytes, size));
+    same_header(wire_read_pair_header, fingerprint, bytes, size);
+    if (accepted) {
         check_decoder(&query, bytes, size);
         check_writer(&query, bytes, size);
     }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- What wire.h says of results, asked of the decoder's message ---- */
+/* ---- Whether wire.h describes the message, by the generated decoder ---- */
 
 static bool is_verdict(int32_t verdict)
 {
@@ -34,6 +34,12 @@ static bool is_box(const fmb_msgs_pair_result_t *message)
     return good;
 }
 
+/* Lists that this version leaves empty. */
+static bool has_gap(const fmb_msgs_pair_result_t *message)
+{
+    return message->num_gap || message->num_direction || message->num_witness;
+}
+
 static bool is_certificate(const fmb_msgs_pair_result_t *message)
 {
     const char *text = message->certificate;
@@ -48,19 +54,24 @@ static bool is_certificate(const fmb_msgs_pair_result_t *message)
 static bool is_result(const fmb_msgs_pair_result_t *message)
 {
     const bool answered = message->status == FMB_MSGS_PAIR_RESULT_T_STATUS_OK;
-    return answered == is_verdict(message->verdict) && is_contact(message) && is_box(message) &&
+    const bool meet = message->verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
+    return (answered ? is_verdict(message->verdict) : message->verdict == 0) &&
+           is_contact(message) && is_box(message) &&
+           (meet || (message->num_contact == 0 && message->num_box == 0)) && !has_gap(message) &&
            is_certificate(message);
 }
 
 /* ---- The same fields ---- */
 
-static bool same_header(const struct pair_result *result, const fmb_msgs_pair_result_t *message)
+static bool same_ids(const struct pair_result *result, const fmb_msgs_pair_result_t *message)
 {
     return result->utime == message->utime && result->client_id == message->client_id &&
            result->sequence_number == message->sequence_number &&
            result->server_id == message->server_id && result->body_id[0] == message->body_a &&
-           result->body_id[1] == message->body_b && result->key[0] == message->key_a &&
-           result->key[1] == message->key_b && result->compute_ns == message->compute_ns;
+           result->body_id[1] == message->body_b &&
+           same_handles(&result->handle[0], 1, 1, message->handle_a, sizeof message->handle_a) &&
+           same_handles(&result->handle[1], 1, 1, message->handle_b, sizeof message->handle_b) &&
+           result->compute_ns == message->compute_ns;
 }
 
 static bool same_answer(const struct pair_result *result, const fmb_msgs_pair_result_t *message)
@@ -76,12 +87,12 @@ static bool same_answer(const struct pair_result *result, const fmb_msgs_pair_re
     return same;
 }
 
-/* *whole: with a detail that is as it came. */
+/* *whole: detail was not changed. */
 static bool same_result(const struct pair_result *result, const fmb_msgs_pair_result_t *message,
                         bool *whole)
 {
     const char *certificate = result->certificate ? result->certificate : "";
-    return same_header(result, message) && same_answer(result, message) &&
+    return same_ids(result, message) && same_answer(result, message) &&
            result->status == message->status && result->method == message->method &&
            same_text(result->detail, sizeof result->detail, message->detail, whole) &&
            strcmp(certificate, message->certificate) == 0;
@@ -89,7 +100,7 @@ static bool same_result(const struct pair_result *result, const fmb_msgs_pair_re
 
 /* ---- Reading ---- */
 
-/* What the reader should have said. *whole where it accepts. */
+/* What the reader should have returned. On output: *whole, if it accepts. */
 static bool check_decoder(const struct pair_result *result, bool accepted, const uint8_t *bytes,
                           size_t size, bool *whole)
 {
@@ -107,7 +118,7 @@ static bool check_decoder(const struct pair_result *result, bool accepted, const
 static void check_writer(const struct pair_result *result, bool whole, const uint8_t *bytes,
                          size_t size)
 {
-    static unsigned char written[WIRE_RESULT_BYTES_MAX], again[WIRE_RESULT_BYTES_MAX];
+    static unsigned char written[QUERY_BYTES_MAX], again[QUERY_BYTES_MAX];
     struct pair_result read;
     const size_t count = wire_write_pair_result(result, written);
     if (whole)
@@ -121,7 +132,8 @@ const struct pair_result *results_read_pair(const uint8_t *data, size_t size)
     static uint8_t *bytes;
     static struct pair_result result;
     bool whole = false;
-    free(bytes); /* its certificate is there */
+    same_header(wire_read_pair_result_header, __fmb_msgs_pair_result_t_get_hash(), data, size);
+    free(bytes); /* of the call before; its certificate is there */
     bytes = fuzz_copy(data, size);
     const bool accepted = !wire_read_pair_result(bytes, (uint32_t) size, &result);
     FUZZ_CHECK(check_decoder(&result, accepted, bytes, size, &whole) == accepted);

@@ -4,13 +4,12 @@
 #include "same.h"
 
 #include "fmb_msgs_pair_result_t.h"
-#include "fmb_msgs_scene_query_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
 #include <float.h>
 #include <stdlib.h>
 
-/* ---- What wire.h says of results, asked of the decoder's message ---- */
+/* ---- Whether wire.h describes the message, by the generated decoder ---- */
 
 enum { TOUCHING = FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING };
 enum { OVERLAPPING = FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING };
@@ -23,9 +22,31 @@ static int64_t contacts_of(const fmb_msgs_scene_result_t *message)
     return count;
 }
 
+static bool are_unknown(const fmb_msgs_scene_result_t *message)
+{
+    const int32_t count = message->num_unknown;
+    bool good = (message->status == FMB_MSGS_PAIR_RESULT_T_STATUS_UNKNOWN_BODY) == (count > 0);
+    for (int32_t i = 0; i < count && good; i++)
+        good = message->unknown[i] > (i > 0 ? message->unknown[i - 1] : -1) &&
+               message->unknown[i] < QUERY_PLACEMENTS_MAX;
+    return good;
+}
+
+/* What a query that was refused has none of. */
+static bool is_answer(const fmb_msgs_scene_result_t *message)
+{
+    return message->num_verdicts || message->num_handle_bytes || message->end_pair;
+}
+
+/* Lists that this version leaves empty. */
+static bool has_gaps(const fmb_msgs_scene_result_t *message)
+{
+    return message->num_gaps || message->num_directions || message->num_witnesses;
+}
+
 static bool are_verdicts(const fmb_msgs_scene_result_t *message)
 {
-    bool good = message->num_verdicts == 0 || message->status == 0;
+    bool good = true;
     for (int32_t i = 0; i < message->num_verdicts && good; i++)
         good = message->verdicts[i] <= OVERLAPPING;
     return good && message->num_verdicts <= QUERY_VERDICTS_MAX;
@@ -35,14 +56,14 @@ static bool are_names(const fmb_msgs_scene_result_t *message)
 {
     const int64_t count = message->num_indices;
     bool good = count == 0 ||
-                (count == 2 * (int64_t) message->num_verdicts && count <= 2 * QUERY_FOUND_MAX);
-    int32_t before = -1; /* the pair before as one number */
+                (count == 2 * (int64_t) message->num_verdicts && count <= 2 * QUERY_NAMED_MAX);
+    int32_t last = -1; /* the last pair as one number */
     for (int32_t i = 0; i < count / 2 && good; i++) {
         const int16_t a = message->indices[2 * i], b = message->indices[2 * i + 1];
-        const int32_t here = a * QUERY_FRAMES_MAX + b;
-        good = 0 <= a && a < b && b < QUERY_FRAMES_MAX && before < here &&
+        const int32_t here = a * QUERY_PLACEMENTS_MAX + b;
+        good = 0 <= a && a < b && b < QUERY_PLACEMENTS_MAX && last < here &&
                message->verdicts[i] >= TOUCHING;
-        before = here;
+        last = here;
     }
     return good;
 }
@@ -74,27 +95,32 @@ static bool are_boxes(const fmb_msgs_scene_result_t *message, int64_t contacts)
 static bool is_result(const fmb_msgs_scene_result_t *message)
 {
     const int64_t contacts = contacts_of(message);
-    return message->num_keys <= QUERY_FRAMES_MAX && message->end_pair >= 0 &&
+    const bool answered = message->status == FMB_MSGS_PAIR_RESULT_T_STATUS_OK;
+    return are_unknown(message) && (answered || !is_answer(message)) && message->end_pair >= 0 &&
+           message->num_handle_bytes % HANDLE_BYTES == 0 &&
+           message->num_handle_bytes / HANDLE_BYTES <= QUERY_PLACEMENTS_MAX &&
            are_verdicts(message) && are_names(message) && are_times(message, contacts) &&
-           are_boxes(message, contacts);
+           are_boxes(message, contacts) && !has_gaps(message);
 }
 
 /* ---- The same fields ---- */
 
-static bool same_header(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+static bool same_ids(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
 {
     return result->utime == message->utime && result->client_id == message->client_id &&
            result->sequence_number == message->sequence_number &&
            result->server_id == message->server_id && result->status == message->status &&
-           result->method == message->method && result->lost == message->lost &&
-           result->end_pair == message->end_pair && result->compute_ns == message->compute_ns;
+           result->method == message->method && result->end_pair == message->end_pair &&
+           result->compute_ns == message->compute_ns;
 }
 
-static bool same_keys(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+static bool same_bodies(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
 {
-    bool same = result->key_count == message->num_keys;
-    for (int32_t i = 0; i < message->num_keys && same; i++)
-        same = result->key[i] == message->keys[i];
+    bool same = result->unknown_count == message->num_unknown &&
+                same_handles(result->handle, result->handle_count, QUERY_PLACEMENTS_MAX,
+                             message->handles, message->num_handle_bytes);
+    for (int32_t i = 0; i < message->num_unknown && same; i++)
+        same = result->unknown[i] == (unsigned) message->unknown[i];
     return same;
 }
 
@@ -124,7 +150,8 @@ static bool same_contacts(const struct scene_result *result, const fmb_msgs_scen
 
 /* ---- Reading ---- */
 
-/* What the reader should have said. *whole where it accepts: with a detail that is as it came. */
+/* What the reader should have returned. On output: *whole, if it accepts: detail was not changed.
+ */
 static bool check_decoder(const struct scene_result *result, bool accepted, const uint8_t *bytes,
                           size_t size, bool *whole)
 {
@@ -134,9 +161,9 @@ static bool check_decoder(const struct scene_result *result, bool accepted, cons
     FUZZ_CHECK(fmb_msgs_scene_result_t_decode(bytes, 0, (int) size, &message) == (int) size);
     const bool good = is_result(&message);
     if (accepted) {
-        FUZZ_CHECK(same_header(result, &message));
+        FUZZ_CHECK(same_ids(result, &message));
         FUZZ_CHECK(same_text(result->detail, sizeof result->detail, message.detail, whole));
-        FUZZ_CHECK(same_keys(result, &message));
+        FUZZ_CHECK(same_bodies(result, &message));
         FUZZ_CHECK(same_verdicts(result, &message));
         FUZZ_CHECK(same_contacts(result, &message));
     }
@@ -162,6 +189,7 @@ const struct scene_result *results_read_scene(const uint8_t *data, size_t size)
 {
     static struct scene_result result;
     bool whole = false;
+    same_header(wire_read_scene_result_header, __fmb_msgs_scene_result_t_get_hash(), data, size);
     uint8_t *bytes = fuzz_copy(data, size);
     const bool accepted = !wire_read_scene_result(bytes, (uint32_t) size, &result);
     FUZZ_CHECK(check_decoder(&result, accepted, bytes, size, &whole) == accepted);

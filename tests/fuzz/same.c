@@ -1,5 +1,6 @@
 #include "same.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 bool same_doubles(const double *a, const double *b, size_t count)
@@ -7,30 +8,94 @@ bool same_doubles(const double *a, const double *b, size_t count)
     return count == 0 || memcmp(a, b, count * sizeof *a) == 0;
 }
 
-/* The first numbers of a longer list, all of a shorter one, and 0 behind it. */
-static bool same_numbers(const struct query_numbers *numbers, int32_t count, const double *message)
+/* ---- Bodies ---- */
+
+/* Components of a frame by the comments of placement_t.lcm; 0: no such shape. */
+static int32_t components_of(int32_t dim, int shape)
 {
-    const int kept = count < FMB_COMPONENTS_MAX ? count : FMB_COMPONENTS_MAX;
+    if (shape == FMB_MSGS_PLACEMENT_T_SHAPE_FACE)
+        return dim == 3 ? 2 : 0;
+    return (dim == 2 || dim == 3) && (shape == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID ||
+                                      shape == FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON)
+               ? dim
+               : 0;
+}
+
+static bool same_frame(const struct geometry *geometry, const fmb_msgs_body_t *message)
+{
+    const int shape = message->num_frames > 0 ? message->shapes[0] : 0;
+    const int32_t dim = message->dim, count = components_of(dim, shape);
+    struct geometry_frame frame;
+    int read_dim;
+    const bool good = geometry_read(geometry, &read_dim, &frame);
+    if (geometry_shape(geometry) != shape ||
+        good != (count > 0 && message->num_numbers >= dim * (1 + count)))
+        return false;
+    return !good ||
+           (read_dim == dim && frame.shape == shape && frame.count == count &&
+            same_doubles(frame.origin, message->numbers, (size_t) dim) &&
+            same_doubles(frame.components, message->numbers + dim, (size_t) (count * dim)));
+}
+
+/* Bytes of a body_t before its geometry: fingerprint and handle. */
+enum { GEOMETRY_AT = 24 };
+
+bool same_geometry(const struct geometry *geometry, const fmb_msgs_body_t *message)
+{
+    const int size = fmb_msgs_body_t_encoded_size(message);
+    uint8_t *encoded = fuzz_room((size_t) size);
+    FUZZ_CHECK(fmb_msgs_body_t_encode(encoded, 0, size, message) == size);
+    const bool same = geometry->size == (size_t) size - GEOMETRY_AT &&
+                      memcmp(geometry->bytes, encoded + GEOMETRY_AT, geometry->size) == 0;
+    free(encoded);
+    return same && same_frame(geometry, message);
+}
+
+/* The first max numbers of the message, the remainder 0. */
+static bool same_numbers(const double *numbers, int32_t max, const double *message, int32_t count)
+{
     static const double none[FMB_COMPONENTS_MAX];
-    return numbers->count == count && same_doubles(numbers->number, message, (size_t) kept) &&
-           same_doubles(numbers->number + kept, none, (size_t) (FMB_COMPONENTS_MAX - kept));
+    const int32_t kept = count < max ? count : max;
+    return same_doubles(numbers, message, (size_t) kept) &&
+           same_doubles(numbers + kept, none, (size_t) (max - kept));
 }
 
-bool same_frame(const struct query_frame *frame, const fmb_msgs_frame_t *message)
+bool same_placement(const struct placement *placement, const fmb_msgs_placement_t *message)
 {
-    return frame->body_id == message->body_id && frame->key == message->key &&
-           frame->shape == message->shape && frame->dim == message->dim &&
-           same_numbers(&frame->origin, message->dim, message->origin) &&
-           same_numbers(&frame->components, message->num_components, message->components) &&
-           same_numbers(&frame->velocity, message->num_velocity, message->velocity);
+    const fmb_msgs_body_t body = {.dim = message->dim,
+                                  .num_frames = message->num_frames,
+                                  .shapes = message->shapes,
+                                  .num_numbers = message->num_numbers,
+                                  .numbers = message->numbers};
+    return placement->body_id == message->body_id &&
+           memcmp(placement->handle.bytes, message->handle, sizeof message->handle) == 0 &&
+           placement->dim == message->dim && placement->frame_count == message->num_frames &&
+           placement->number_count == message->num_numbers &&
+           placement->orientation_count == message->num_orientation &&
+           placement->velocity_count == message->num_velocity &&
+           same_geometry(&placement->geometry, &body) &&
+           same_numbers(placement->position, FMB_DIM_MAX, message->position, message->dim) &&
+           same_numbers(placement->orientation, QUERY_ORIENTATION_MAX, message->orientation,
+                        message->num_orientation) &&
+           same_numbers(placement->velocity, FMB_DIM_MAX, message->velocity, message->num_velocity);
 }
 
-bool same_can_hold(const struct query_frame *frame)
+bool same_can_hold(const struct placement *placement)
 {
-    return frame->origin.count <= FMB_COMPONENTS_MAX &&
-           frame->components.count <= FMB_COMPONENTS_MAX &&
-           frame->velocity.count <= FMB_COMPONENTS_MAX;
+    return placement->dim <= FMB_DIM_MAX && placement->orientation_count <= QUERY_ORIENTATION_MAX &&
+           placement->velocity_count <= FMB_DIM_MAX;
 }
+
+bool same_handles(const struct handle *handle, int32_t count, int32_t max, const uint8_t *bytes,
+                  int32_t size)
+{
+    bool same = count == size / HANDLE_BYTES;
+    for (int32_t i = 0; i < count && i < max && same; i++)
+        same = memcmp(handle[i].bytes, bytes + HANDLE_BYTES * i, HANDLE_BYTES) == 0;
+    return same;
+}
+
+/* ---- Texts, bytes and headers ---- */
 
 bool same_text(const char *text, size_t size, const char *message, bool *whole)
 {
@@ -49,4 +114,23 @@ void same_bytes(const uint8_t *written, size_t size, const uint8_t *read, size_t
 {
     FUZZ_CHECK(size == read_size);
     FUZZ_CHECK(memcmp(written, read, size) == 0);
+}
+
+static int64_t number_at(const uint8_t *bytes)
+{
+    uint64_t number = 0;
+    for (int i = 0; i < 8; i++)
+        number = number << 8 | bytes[i];
+    return (int64_t) number;
+}
+
+void same_header(const char *(*reader)(const void *, uint32_t, struct query_header *),
+                 int64_t fingerprint, const uint8_t *bytes, size_t size)
+{
+    struct query_header header;
+    const bool accepted = !reader(bytes, (uint32_t) size, &header);
+    FUZZ_CHECK(accepted == (size >= 32 && number_at(bytes) == fingerprint));
+    FUZZ_CHECK(!accepted ||
+               (header.utime == number_at(bytes + 8) && header.client_id == number_at(bytes + 16) &&
+                header.sequence_number == number_at(bytes + 24)));
 }

@@ -1,4 +1,4 @@
-/* Any bytes, read as the result of a scene: results.h says what is checked. */
+/* Any bytes, read as a scene result: the checks of results.h. */
 #include "fuzz.h"
 #include "results.h"
 

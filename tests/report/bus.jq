@@ -43,7 +43,7 @@ def listed($list; $title; $about; f):
 def status_part:
     if (.status.publish_us // null) == null then "" else
         "<h3>The heartbeat</h3>\n"
-        + ("Nobody asks for it, so there is no round trip. Once a second it takes "
+        + ("It answers no query, so there is no round trip. Once a second it takes "
            + "\(.status.publish_us.median | us_text) µs of the service’s time to put its "
            + "\(.status.bytes) bytes together and publish them; publishing as many bytes alone "
            + "takes \(.status.bare_publish_us.median | us_text) µs "
@@ -60,11 +60,11 @@ def bus_part:
          | paragraph)
         + listed(.pairs; "Round trips of pairs"; "Microseconds, one query at a time."; trips_table)
         + listed(.scenes; "Round trips of scenes";
-            "Microseconds; listed pairs, bodies whole and held already, by key, or whole and new "
+            "Microseconds; listed pairs, bodies whole and held already, by handle, or whole and new "
             + "each time."; trips_table)
         + listed(.flow; "Pairs a second";
-            "From bus to bus on two cores, scenes by key, as many pairs as a datagram holds; bytes "
+            "From bus to bus on two cores, scenes by handle, as many pairs as a datagram holds; bytes "
             + "of queries and results together."; flow_table)
         + listed(.oneway; "Rates without loss";
-            "The highest at which three tries of three lost nothing, queries in one way."; oneway_table)
+            "The highest at which three tries of three lost nothing."; oneway_table)
         + status_part end;

@@ -21,8 +21,7 @@
 
 enum { FRAMES = 200, CLIENTS_MAX = 64 };
 
-/* A query is sent so often, each time after so many seconds: an outage of half a minute is waited
- * out. */
+/* A query is given up after their product, in seconds: it survives an outage of half a minute. */
 static const int tries = 300;
 static const double timeout = 0.1;
 
@@ -37,7 +36,7 @@ struct asker {
     pthread_t thread;
     struct fmb_client *client;
     uint64_t random;
-    struct fmb_client_frame frame[FRAMES];
+    struct fmb_client_placement frame[FRAMES];
     struct fmb_body body[FRAMES];
     unsigned (*pair)[2];        /* owned: [plan->pairs] */
     struct fmb_answer *answers; /* owned: what libfmb says of them */
@@ -64,12 +63,12 @@ static double coordinate(struct asker *asker, int i, double size)
 
 static void draw_frame(struct asker *asker, int i)
 {
-    struct fmb_client_frame *frame = &asker->frame[i];
-    *frame = (struct fmb_client_frame){.body_id = 1 + asker->number * FRAMES + i, .dim = 3};
+    struct fmb_client_placement *frame = &asker->frame[i];
+    *frame = (struct fmb_client_placement){.body_id = 1 + asker->number * FRAMES + i, .dim = 3};
     frame->shape = uniform(asker) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON;
     frame->moving = uniform(asker) < 0.5;
     for (int axis = 0; axis < 3; axis++) {
-        frame->origin[axis] = coordinate(asker, i, 4);
+        frame->position[axis] = coordinate(asker, i, 4);
         frame->velocity[axis] = coordinate(asker, i, 2);
         frame->components[4 * axis] = 1 + fabs(coordinate(asker, i, 2));
     }
@@ -79,7 +78,7 @@ static void draw_frame(struct asker *asker, int i)
 static struct fmb_frame frame_of(const struct asker *asker, unsigned i)
 {
     struct fmb_frame frame = {.body = &asker->body[i], .moving = asker->frame[i].moving};
-    memcpy(frame.origin, asker->frame[i].origin, sizeof frame.origin);
+    memcpy(frame.origin, asker->frame[i].position, sizeof frame.origin);
     memcpy(frame.velocity, asker->frame[i].velocity, sizeof frame.velocity);
     return frame;
 }
@@ -119,8 +118,8 @@ static void take(void *user, const struct fmb_client_answer *answer)
 static void ask(struct asker *asker)
 {
     const struct fmb_client_scene scene = {
-        .frames = asker->frame,
-        .frame_count = FRAMES,
+        .placements = asker->frame,
+        .placement_count = FRAMES,
         .which = FMB_CLIENT_LISTED,
         .pairs = (const unsigned(*)[2]) asker->pair,
         .pair_count = (size_t) asker->plan->pairs,
@@ -130,15 +129,15 @@ static void ask(struct asker *asker)
     const int64_t begin = clock_ns();
     asker->seen = 0;
     if (asker->plan->pairs == 1) {
-        const struct fmb_client_frame both[2] = {asker->frame[asker->pair[0][0]],
-                                                 asker->frame[asker->pair[0][1]]};
+        const struct fmb_client_placement both[2] = {asker->frame[asker->pair[0][0]],
+                                                     asker->frame[asker->pair[0][1]]};
         struct fmb_client_answer answer;
-        fmb_client_ask_pair(asker->client, both, 1, FMB_CLIENT_WANT_BOX, &answer);
+        fmb_client_query_pair(asker->client, both, 1, FMB_CLIENT_WANT_BOX, &answer);
         answer.a = asker->pair[0][0];
         answer.b = asker->pair[0][1];
         take(asker, &answer);
     } else {
-        fmb_client_ask(asker->client, &scene, take, asker);
+        fmb_client_query(asker->client, &scene, take, asker);
     }
     asker->unanswered += asker->plan->pairs - (int64_t) asker->seen;
     asker->pairs += asker->plan->pairs;

@@ -1,8 +1,9 @@
-/* Publishes at a given rate what nobody answers, numbered: how much of it does a recording hold?
- * The bus is that of LCM_DEFAULT_URL.
+/* Publishes numbered messages, which are not answered, at a given rate: how much does a recording
+ * hold? The bus is that of LCM_DEFAULT_URL.
  *
  * soak-blast pairs|scenes RATE SECONDS: queries of pairs, or results of scenes as large as a
  * datagram takes, RATE a second; 0: as fast as it can. Prints a line of JSON. */
+#include "big_endian.h"
 #include "clock.h"
 #include "random_id.h"
 #include "wire.h"
@@ -27,14 +28,13 @@ static void prepare_pairs(struct blast *blast)
 {
     static struct pair_query query = {.duration = 1};
     query.client_id = random_id();
-    for (int f = 0; f < 2; f++) {
-        struct query_frame *frame = &query.frame[f];
-        *frame = (struct query_frame){.body_id = f + 1, .shape = FMB_CUBOID, .dim = 3};
-        frame->origin.count = 3;
-        frame->components.count = 9;
-        for (int i = 0; i < 3; i++)
-            frame->components.number[4 * i] = 1;
-    }
+    const struct geometry_frame cube = {.shape = FMB_CUBOID,
+                                        .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    static unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    const struct geometry geometry = {bytes, geometry_write(3, &cube, bytes)};
+    for (int p = 0; p < 2; p++)
+        query.placement[p] = (struct placement){
+            .body_id = p + 1, .dim = 3, .frame_count = 1, .number_count = 12, .geometry = geometry};
     blast->channel = WIRE_PAIR_QUERY;
     blast->size = wire_write_pair_query(&query, blast->bytes);
 }
@@ -56,13 +56,12 @@ static void prepare_scenes(struct blast *blast)
 
 static void publish(struct blast *blast, int64_t number)
 {
-    for (int i = 0; i < 8; i++)
-        blast->bytes[SEQUENCE_AT + i] = (unsigned char) ((uint64_t) number >> (56 - 8 * i));
+    big_endian_put_64(blast->bytes + SEQUENCE_AT, (uint64_t) number);
     lcm_publish(blast->lcm, blast->channel, blast->bytes, (unsigned) blast->size);
 }
 
-/* Where it has been stopped for longer than this, what it had to send meanwhile is left out: sent
- * all at once it would be another rate. */
+/* After a pause longer than this, the messages that were due meanwhile are left out: sent all at
+ * once they would be another rate. */
 static const int64_t late_ns = 2000000;
 
 /* Returns how many were sent, and in *seconds how long it took. */
@@ -95,7 +94,7 @@ int main(int argc, char **argv)
         fputs("usage: soak-blast pairs|scenes RATE SECONDS\n", stderr);
         return 2;
     }
-    blast.lcm = lcm_create(NULL); /* of which nobody asks what it hears: so it does not listen */
+    blast.lcm = lcm_create(NULL); /* without a subscription: it does not listen */
     if (!blast.lcm)
         return EXIT_FAILURE;
     (pairs ? prepare_pairs : prepare_scenes)(&blast);

@@ -20,18 +20,18 @@
 enum { BODIES = 500, PARTS = 10, TRIES = 100, TRY_MS = 100 };
 
 struct soak {
-    lcm_t *lcm;
+    struct bus *bus;
+    unsigned char geometries[BODIES][GEOMETRY_FRAME_BYTES_MAX];
     struct scene_query query;
     struct scene_result result;
     bool answered;
     int64_t asked_again;
 };
 
-static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static void on_result(void *user, const struct bus_message *message)
 {
     struct soak *soak = user;
-    (void) channel;
-    if (wire_read_scene_result(buffer->data, buffer->data_size, &soak->result))
+    if (wire_read_scene_result(message->bytes, (uint32_t) message->size, &soak->result))
         return;
     soak->answered =
         soak->answered || (soak->result.client_id == soak->query.client_id &&
@@ -47,30 +47,37 @@ static bool ask(struct soak *soak)
     soak->answered = false;
     for (int i = 0; i < TRIES && !soak->answered; i++) {
         soak->asked_again += i > 0;
-        lcm_publish(soak->lcm, WIRE_SCENE_QUERY, bytes, (unsigned) size);
-        while (!soak->answered && lcm_handle_timeout(soak->lcm, TRY_MS) > 0)
-            continue;
+        bus_publish(soak->bus, WIRE_SCENE_QUERY, bytes, size);
+        while (!soak->answered && bus_wait(soak->bus, -1, TRY_MS) > 0)
+            bus_receive(soak->bus, on_result, soak);
     }
     return soak->answered && soak->result.status == FMB_OK;
 }
 
-/* A scene of squares, whose ids go on from first. */
-static void set_bodies(struct scene_query *query, int64_t first)
+/* A scene of rectangles, whose ids and sizes go on from first. */
+static void set_bodies(struct soak *soak, int64_t first)
 {
+    struct scene_query *query = &soak->query;
     query->which = QUERY_PAIRS_ALL;
-    query->frame_count = BODIES;
+    query->placement_count = BODIES;
     for (int i = 0; i < BODIES; i++) {
-        struct query_frame *frame = &query->frame[i];
-        *frame = (struct query_frame){.body_id = first + i, .shape = FMB_CUBOID, .dim = 2};
-        frame->origin = (struct query_numbers){2, {2 * i, 0}};
-        frame->components = (struct query_numbers){4, {1, 0, 0, 1}};
+        const struct geometry_frame frame = {.shape = FMB_CUBOID,
+                                             .components = {1, 0, 0, (double) (first + i)}};
+        struct placement *placement = &query->placement[i];
+        *placement = (struct placement){.body_id = first + i,
+                                        .dim = 2,
+                                        .frame_count = 1,
+                                        .number_count = 6,
+                                        .position = {2 * i}};
+        placement->geometry =
+            (struct geometry){soak->geometries[i], geometry_write(2, &frame, soak->geometries[i])};
     }
 }
 
 static bool send_ids(struct soak *soak, int64_t done, int64_t count)
 {
     for (int64_t i = 0; i < count; i += BODIES) {
-        set_bodies(&soak->query, 1 + done + i);
+        set_bodies(soak, 1 + done + i);
         if (!ask(soak))
             return false;
     }
@@ -80,12 +87,12 @@ static bool send_ids(struct soak *soak, int64_t done, int64_t count)
 /* A query now and then: its answer tells that what came before it was taken in. */
 static bool send_channels(struct soak *soak, int64_t done, int64_t count)
 {
-    set_bodies(&soak->query, 1);
-    soak->query.frame_count = 1;
+    set_bodies(soak, 1);
+    soak->query.placement_count = 1;
     for (int64_t i = 0; i < count; i++) {
         char channel[BUS_CHANNEL_MAX];
         snprintf(channel, sizeof channel, "FOREIGN_%" PRId64, done + i);
-        lcm_publish(soak->lcm, channel, "", 1);
+        bus_publish(soak->bus, channel, "", 1);
         if (i % 100 == 99 && !ask(soak))
             return false;
     }
@@ -133,11 +140,14 @@ int main(int argc, char **argv)
         fputs("usage: soak-memory ids|channels PID COUNT\n", stderr);
         return 2;
     }
-    soak.lcm = bus_open("soak-memory", NULL, NULL);
-    if (!soak.lcm || !bus_subscribe(soak.lcm, WIRE_SCENE_RESULT, on_result, &soak, 100))
+    char why[BUS_WHY_MAX];
+    soak.bus = bus_open(NULL, why);
+    if (!soak.bus || !bus_listen(soak.bus, WIRE_SCENE_RESULT, why)) {
+        fprintf(stderr, "soak-memory: %s\n", why);
         return EXIT_FAILURE;
+    }
     soak.query.client_id = random_id();
     const int code = run(&soak, argv[1], argv[2], count);
-    lcm_destroy(soak.lcm);
+    bus_close(soak.bus);
     return code;
 }

@@ -19,14 +19,13 @@ enum {
     QUESTIONS = 1000, /* different ones */
     WINDOW = 1 << 16, /* queries that may be under way; a power of two */
     SEQUENCE_AT = 24, /* of a query's bytes */
-    LCM_QUEUE = 30000
 };
 
 static const int64_t ask_again_ns = 500000000, give_up_ns = 10000000000;
 
 struct question {
     size_t size;
-    unsigned char bytes[WIRE_BYTES_MAX];
+    unsigned char bytes[1024];
     struct fmb_answer answer;
 };
 
@@ -36,7 +35,7 @@ struct under_way {
 };
 
 struct soak {
-    lcm_t *lcm;
+    struct bus *bus;
     int64_t client_id;
     struct question question[QUESTIONS];
     struct under_way under_way[WINDOW]; /* [number % WINDOW] */
@@ -52,20 +51,25 @@ static double grid(int size)
 }
 
 /* Boxes and tetrahedra with corners on a grid, and between: they often touch. */
-static void draw_frame(struct query_frame *frame, int64_t id)
+static void draw_placement(struct placement *out, int64_t id, struct fmb_body *body,
+                           unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
 {
-    *frame = (struct query_frame){.body_id = id, .shape = 1 + rand() % 2, .dim = 3};
-    frame->origin = (struct query_numbers){3, {grid(2), grid(2) + rand() % 2 * 0.1, grid(2)}};
-    frame->components.count = 9;
+    struct geometry_frame frame = {.shape = 1 + rand() % 2};
     for (int i = 0; i < 3; i++)
-        frame->components.number[4 * i] = 1 + rand() % 3;
+        frame.components[4 * i] = 1 + rand() % 3;
+    *out = (struct placement){.body_id = id,
+                              .dim = 3,
+                              .frame_count = 1,
+                              .number_count = 12,
+                              .position = {grid(2), grid(2) + rand() % 2 * 0.1, grid(2)}};
+    out->geometry = (struct geometry){geometry, geometry_write(3, &frame, geometry)};
+    fmb_body_make(3, frame.shape, frame.components, 9, body);
 }
 
-static struct fmb_frame placed(const struct query_frame *frame, struct fmb_body *body)
+static struct fmb_frame placed(const struct placement *placement, const struct fmb_body *body)
 {
-    fmb_body_make(3, frame->shape, frame->components.number, 9, body);
     struct fmb_frame out = {.body = body};
-    memcpy(out.origin, frame->origin.number, sizeof out.origin);
+    memcpy(out.origin, placement->position, sizeof out.origin);
     return out;
 }
 
@@ -76,12 +80,15 @@ static void draw(struct soak *soak)
         struct pair_query query = {
             .client_id = soak->client_id, .duration = 1, .want = QUERY_WANT_BOX};
         struct fmb_body body[2];
+        unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
         for (int f = 0; f < 2; f++)
-            draw_frame(&query.frame[f], 1 + 2 * i + f);
-        const struct fmb_pair pair = {placed(&query.frame[0], &body[0]),
-                                      placed(&query.frame[1], &body[1]), 1};
+            draw_placement(&query.placement[f], 1 + 2 * i + f, &body[f], geometry[f]);
+        const struct fmb_pair pair = {placed(&query.placement[0], &body[0]),
+                                      placed(&query.placement[1], &body[1]), 1};
         fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &question->answer);
-        question->size = wire_write_pair_query(&query, question->bytes);
+        unsigned char bytes[QUERY_BYTES_MAX];
+        question->size = wire_write_pair_query(&query, bytes);
+        memcpy(question->bytes, bytes, question->size);
     }
 }
 
@@ -94,7 +101,7 @@ static void send_query(struct soak *soak, struct under_way *slot, int64_t now)
         question->bytes[SEQUENCE_AT + i] =
             (unsigned char) ((uint64_t) slot->number >> (56 - 8 * i));
     slot->last_ns = now;
-    lcm_publish(soak->lcm, WIRE_PAIR_QUERY, question->bytes, (unsigned) question->size);
+    bus_publish(soak->bus, WIRE_PAIR_QUERY, question->bytes, question->size);
 }
 
 static void ask(struct soak *soak, int64_t now)
@@ -104,12 +111,11 @@ static void ask(struct soak *soak, int64_t now)
     send_query(soak, slot, now);
 }
 
-static void on_result(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+static void on_result(void *user, const struct bus_message *message)
 {
     struct soak *soak = user;
     struct pair_result result;
-    (void) channel;
-    if (wire_read_pair_result(buffer->data, buffer->data_size, &result) ||
+    if (wire_read_pair_result(message->bytes, (uint32_t) message->size, &result) ||
         result.client_id != soak->client_id)
         return;
     struct under_way *slot = &soak->under_way[(uint64_t) result.sequence_number % WINDOW];
@@ -148,7 +154,7 @@ static void run(struct soak *soak, double rate, double seconds)
         const int64_t due = 1 + (int64_t) (rate * 1e-9 * (double) (now - begin));
         if (now < end && soak->next < due && soak->next - soak->oldest < WINDOW)
             ask(soak, now);
-        while (lcm_handle_timeout(soak->lcm, 0) > 0)
+        while (bus_receive(soak->bus, on_result, soak) > 0)
             continue;
         if (now - looked_ns < 1000000)
             continue;
@@ -167,9 +173,12 @@ int main(int argc, char **argv)
         fputs("usage: soak-rate RATE SECONDS\n", stderr);
         return 2;
     }
-    soak.lcm = bus_open("soak-rate", NULL, NULL);
-    if (!soak.lcm || !bus_subscribe(soak.lcm, WIRE_PAIR_RESULT, on_result, &soak, LCM_QUEUE))
+    char why[BUS_WHY_MAX];
+    soak.bus = bus_open(NULL, why);
+    if (!soak.bus || !bus_listen(soak.bus, WIRE_PAIR_RESULT, why)) {
+        fprintf(stderr, "soak-rate: %s\n", why);
         return EXIT_FAILURE;
+    }
     soak.client_id = random_id();
     draw(&soak);
     run(&soak, rate, seconds);
@@ -178,6 +187,6 @@ int main(int argc, char **argv)
            ", \"asked_again\": %" PRId64 ", \"longest_ms\": %.1f}\n",
            rate, seconds, soak.next - 1, soak.late > 0 ? soak.late : 0, soak.unanswered, soak.wrong,
            soak.asked_again, 1e-6 * (double) soak.longest_ns);
-    lcm_destroy(soak.lcm);
+    bus_close(soak.bus);
     return soak.next > 1 && soak.unanswered == 0 && soak.wrong == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

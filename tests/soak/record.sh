@@ -1,8 +1,8 @@
 #!/bin/sh
-# record.sh BUILD_DIR [SECONDS]: how much of what the bus carries a recording holds, and where the rest
-# was lost: fmb record, and lcm-logger, as it is and with a larger receive buffer, in turns. Whoever
-# may also runs fmb record before all others (chrt). One line for each trial; what is written goes to
-# BUILD_DIR/soak/, and is removed.
+# record.sh BUILD_DIR [SECONDS]: how much of what the bus carries a recording holds, and where the
+# remainder was lost: fmb record, and lcm-logger, as it is and with a larger receive buffer, in turns;
+# where the user may, also fmb record scheduled before all others (chrt). One line for each trial. What
+# is written goes to BUILD_DIR/soak/, and is removed.
 set -u
 
 self=$0
@@ -12,7 +12,7 @@ out=$build/soak
 log=$out/record.log
 url='udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304'
 
-# No room in the socket's buffer: of all sockets here there is none but the recorder's.
+# Dropped since the socket's buffer was full: here is no socket but the recorder's.
 overflowed() {
     awk '/^Udp: [0-9]/ { print $6 }' /proc/net/snmp
 }
@@ -39,13 +39,11 @@ one() {
     kill -INT $recorder
     wait $recorder
     kept=$("$build/events" "$log" | wc -l)
-    unwritten=0
-    case $1 in fmb*) unwritten=$(jq .unwritten "$out/record.json") ;; esac
-    echo "$blast" | jq -r --arg who "$1" --argjson kept "$kept" --argjson unwritten "$unwritten" \
+    echo "$blast" | jq -r --arg who "$1" --argjson kept "$kept" \
         --argjson socket "$(overflowed)" --argjson cpu "$cpu" '
         [$who, .what, .bytes, .rate, .mb_per_s, .sent, .sent - $kept,
          ((.sent - $kept) / .sent * 1000 | round / 10), $socket,
-         .sent - $kept - $socket - $unwritten, $unwritten, $cpu / 100] | @tsv'
+         .sent - $kept - $socket, $cpu / 100] | @tsv'
     rm -f "$log"
 }
 
@@ -58,7 +56,7 @@ fi
 recorders='fmb lcm-logger lcm-logger-4MB'
 if chrt -f 10 true 2> /dev/null; then recorders="fmb-first $recorders"; fi
 mkdir -p "$out"
-printf 'recorder\twhat\tbytes\trate\tMB/s\tsent\tlost\t%%\tin the socket\tin LCM\tunwritten\tCPU s\n'
+printf 'recorder\twhat\tbytes\trate\tMB/s\tsent\tlost\t%%\tin the socket\telsewhere\tCPU s\n'
 for trial in 'pairs 20000' 'pairs 50000' 'pairs 100000' 'pairs 0' 'scenes 1000' 'scenes 3000' \
     'scenes 6000' 'scenes 0'; do
     for recorder in $recorders; do

@@ -14,8 +14,9 @@ rate=${FMB_SOAK_RATE:-25000}
 ids=${FMB_SOAK_IDS:-10000000}
 channels=${FMB_SOAK_CHANNELS:-300000}
 
-trials='rate pairs scenes crowd killed poisoned crashed hostile lossy ids channels filtered'
+trials='rate pairs scenes crowd killed poisoned hostile lossy ids channels fair'
 
+mkdir -p "$out" || exit 1
 log=$out/$trial.log
 started=
 
@@ -35,17 +36,13 @@ stop_all() {
 start_fmbd() {
     "$build/fmbd" "$@" 2> "$out/$trial.fmbd" &
     fmbd=$!
+    echo $fmbd > "$out/$trial.pid"
     tries=100
     until grep -q ready "$out/$trial.fmbd"; do
         tries=$((tries - 1))
         [ $tries -gt 0 ] || { echo "soak.sh: fmbd did not start" >&2; exit 1; }
         sleep 0.1
     done
-}
-
-# The daemon that serves; its supervisor stays.
-worker() {
-    tr -d ' ' < "/proc/$fmbd/task/$fmbd/children"
 }
 
 # every PERIOD COMMAND...: again and again, until it is ended.
@@ -58,8 +55,10 @@ every() {
     done
 }
 
-kill_worker() {
-    kill -KILL "$(worker)"
+# As a service manager does.
+restart() {
+    kill -KILL "$(cat "$out/$trial.pid")"
+    start_fmbd
 }
 
 poison() {
@@ -67,8 +66,20 @@ poison() {
     "$build/poison" short FMB_SCENE_QUERY
 }
 
+# What a client gets beside each attack: one id, several, and a client of scenes.
+fair() {
+    code=0
+    for attack in certificates boxes bodies rate definitions ids; do
+        "$build/soak-fair" $attack --seconds "$seconds" || code=1
+        "$build/soak-fair" $attack --seconds "$seconds" --window 8 || code=1
+        "$build/soak-fair" $attack --seconds "$seconds" --ids 4 || code=1
+        "$build/soak-fair" $attack --seconds "$seconds" --scenes || code=1
+    done
+    return $code
+}
+
 damage() {
-    for type in pair_query scene_query pair_result scene_result status; do
+    for type in pair_query scene_query definition_query pair_result scene_result definition status; do
         "$build/poke" FMB_PAIR_QUERY $type
         "$build/poke" FMB_SCENE_QUERY $type
     done
@@ -90,26 +101,23 @@ lose_in_relay() {
 }
 
 run_trial() {
-    case $trial in
-    crashed | channels) start_fmbd --unfiltered ;;
-    *) start_fmbd ;;
-    esac
+    start_fmbd
     case $trial in
     rate) "$build/soak-rate" "$rate" "$seconds" ;;
     pairs) ask --clients 8 ;;
     scenes) ask --clients 2 --pairs 900 ;;
     crowd) ask --clients 16 --pairs 40 ;;
-    killed) start every 1 kill_worker; ask --clients 4 --pairs 40 ;;
-    poisoned | crashed) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
+    killed) start every 1 restart; ask --clients 4 --pairs 40 ;;
+    poisoned) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
     hostile) damage >> "$log" 2>&1; start every 0 damage; ask --clients 4 --pairs 40 ;;
     lossy) lose_in_kernel || lose_in_relay; ask --clients 4 --pairs 40 ;;
-    ids) "$build/soak-memory" ids "$(worker)" "$ids" ;;
-    channels | filtered) "$build/soak-memory" channels "$(worker)" "$channels" ;;
+    ids) "$build/soak-memory" ids "$fmbd" "$ids" ;;
+    channels) "$build/soak-memory" channels "$fmbd" "$channels" ;;
+    fair) fair ;;
     esac
 }
 
-# Inside of a network of its own. Packets that crash LCM, and channels of others, come to a service
-# that filters them (poisoned, filtered) and to one that does not (crashed, channels).
+# Inside of a network of its own.
 if [ -n "$trial" ]; then
     trap stop_all EXIT
     trap 'exit 1' HUP INT TERM
@@ -118,12 +126,13 @@ if [ -n "$trial" ]; then
     stop_all
     unset LCM_DEFAULT_URL
     "$build/fmb" status --json > "$out/$trial.status" 2> /dev/null
+    # A service that restart() started is no child of this shell.
+    fmbd=$(cat "$out/$trial.pid")
     kill "$fmbd"
-    wait "$fmbd" || code=1
+    [ "$trial" = killed ] || wait "$fmbd" || code=1
     exit $code
 fi
 
-mkdir -p "$out" || exit 1
 worst=0
 for trial in $trials; do
     printf '%-9s ' "$trial"

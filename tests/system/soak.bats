@@ -17,7 +17,7 @@ status_was() {
     FMB_SOAK_RATE=1000 trial rate
     jq -e '.queries > 1000' <<< "$report"
     trial pairs
-    status_was pairs '.pairs > 100 and .scenes == 0 and .restarts == 0'
+    status_was pairs '.pairs > 100 and .scenes == 0'
     trial scenes
     status_was scenes '.scenes > 10'
 }
@@ -27,24 +27,19 @@ status_was() {
     jq -e '.clients == 16 and .queries >= 16' <<< "$report"
 }
 
-@test "no answer is lost or wrong while workers are killed" {
+@test "no answer is lost or wrong while the service is killed and started again" {
     trial killed
-    status_was killed '.restarts >= 2'
+    jq -e '.outages >= 1 or .asked_again >= 1' <<< "$report"
 }
 
-@test "no answer is lost or wrong, and no worker, where packets come that crash LCM" {
+@test "no answer is lost or wrong where packets come that crash liblcm" {
     trial poisoned
-    status_was poisoned '.restarts == 0'
-}
-
-@test "no answer is lost or wrong where they do crash it" {
-    trial crashed
-    status_was crashed '.restarts >= 2'
+    status_was poisoned '.foreign > 10'
 }
 
 @test "no answer is lost or wrong among damaged messages" {
     trial hostile
-    status_was hostile '.malformed > 1000 and .restarts == 0'
+    status_was hostile '.malformed > 1000'
 }
 
 @test "no answer is lost or wrong where one datagram in a hundred is lost and one overtaken" {
@@ -59,10 +54,8 @@ status_was() {
     jq -e '.good and (.resident_kb | length) == 11 and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"
 }
 
-@test "channels of others take what LCM itself keeps of them, and nothing where they are filtered" {
+@test "channels of others take no memory" {
     case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
     FMB_SOAK_CHANNELS=10000 trial channels
-    jq -e '.good and .resident_kb[10] - .resident_kb[1] < 10000 * 0.2' <<< "$report"
-    FMB_SOAK_CHANNELS=10000 trial filtered
     jq -e '.good and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"
 }

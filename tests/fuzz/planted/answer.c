@@ -1,5 +1,5 @@
-/* The last byte of a body's components is not compared: one that differs there is taken for the one
- * that is kept. */
+/* The last byte is not compared: a body, or a handle, that differs there alone is taken for the one
+ * that is held. */
 #include <string.h>
 #define memcmp(a, b, size) memcmp(a, b, (size) -1)
 #include "cache.c"

@@ -1,4 +1,4 @@
-/* Of the numbers of a frame one more is kept than there is room for. */
+/* Numbers are read without checking that the message has them. */
 #include "cursor.h"
-#define cursor_doubles(cursor, out, max) cursor_doubles(cursor, out, (max) + 1)
-#include "wire_frame.c"
+#define cursor_take(cursor, size) ((cursor)->at += (size), (cursor)->at - (size))
+#include "wire_placement.c"

@@ -1,4 +1,4 @@
-/* Frames beyond those that a query can have are named. */
+/* Pairs may name placements beyond the capacity of a query. */
 #include "query.h"
-#define QUERY_FRAMES_MAX (QUERY_FRAMES_MAX + 100)
+#define QUERY_PLACEMENTS_MAX (QUERY_PLACEMENTS_MAX + 100)
 #include "wire_scene.c"
