@@ -48,8 +48,17 @@ mode_link_fuzz := $(mode_link_asan)
 flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -g \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
 	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(openmp_flag) $(CPPFLAGS) $(CFLAGS)
-link_user := $(mode_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
-compile = $(CC) $(flags) $(whole) -MMD -MP -c $< -o $@
+# Release builds are hardened. The engine is not: its loops write into arrays whose sizes the
+# compiler sees, and every instruction of them counts. A user who sets _FORTIFY_SOURCE keeps it.
+hardened_release := -fstack-protector-strong -fPIE
+hardened_link_release := -pie -Wl,-z,relro,-z,now
+ifeq ($(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),)
+hardened_release += -D_FORTIFY_SOURCE=2
+endif
+hardened := $(hardened_$(MODE))
+$(O)/service/fmb/%.o $(O)/run/%.o: hardened := -fPIE
+compile = $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
+link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
 
 # What each query goes through, from its bytes to those of its result: faster by a tenth with -O3, and
 # by another where the compiler, if it is gcc, sees all of a program. Tests, and the libraries, whose
@@ -94,16 +103,18 @@ run_objects := $(run_verdicts) $(run_times) $(run_boxes) $(alone_verdicts) $(alo
 	$(alone_boxes)
 lib_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/run.c %/alone.c,$(wildcard service/fmb/*.c))) \
 	$(run_objects)
-message_names := frame_t pair_query_t pair_result_t scene_query_t scene_result_t status_t
+message_names := body_t definition_query_t definition_t pair_query_t pair_result_t placement_t \
+	scene_query_t scene_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
-wire_objects := $(addprefix $(O)/service/,cursor.o wire_frame.o wire_pair.o wire_scene.o \
-	wire_status.o bus.o clock.o random_id.o)
-bus_objects := $(wire_objects) $(addprefix $(O)/service/,wire_type.o bus_open.o filter.o say.o signals.o)
-supervisor_objects := $(addprefix $(O)/service/,supervisor.o worker.o)
-answer_objects := $(addprefix $(O)/service/,answer_pair.o answer_scene.o scene_pairs.o check.o \
-	bodies.o cache.o histogram.o)
-server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o senders.o malformed.o)
+codec_objects := $(patsubst %.c,$(O)/%.o,$(wildcard msgs/codec/*.c))
+receiver_objects := $(patsubst %.c,$(O)/%.o,$(wildcard msgs/bus/*.c))
+wire_objects := $(codec_objects) $(receiver_objects) $(addprefix $(O)/service/,clock.o random_id.o)
+bus_objects := $(wire_objects) $(addprefix $(O)/service/,say.o signals.o)
+answer_objects := $(addprefix $(O)/service/,answerer.o answer_pair.o answer_scene.o \
+	answer_definition.o scene_pairs.o check.o cache.o histogram.o)
+server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o turns.o expect.o \
+	jobs.o meter.o malformed.o)
 page_names := replay mesh
 client_objects := $(patsubst %.c,$(O)/%.o,$(filter-out clients/fmb.c,$(wildcard clients/*.c \
 	clients/log/*.c clients/mesh/*.c clients/page/*.c clients/record/*.c clients/replay/*.c))) \
@@ -114,9 +125,9 @@ programs := $(B)/fmbd $(B)/fmb
 capped_sets := plain $(if $(x86),sse2 avx2)
 capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
 demo_programs := $(B)/netns $(B)/arm
-test_programs := $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
+test_programs := $(B)/plain $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
 	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
-	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-relay $(B)/logs/generate \
+	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-fair $(B)/soak-relay $(B)/logs/generate \
 	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/mesh/bench-mesh $(B)/make-page $(B)/edit-log \
 	$(B)/events $(capped_programs)
 
@@ -140,16 +151,17 @@ $(B)/libfmb.a: $(lib_objects)
 $(B)/libfmb-client.a: $(asking_objects) $(wire_objects) $(message_objects) $(names)
 	$(call archive,fmb_client_*)
 
-fmbd_objects := $(O)/service/main.o $(supervisor_objects) $(server_objects) $(bus_objects) \
-	$(message_objects)
+fmbd_objects := $(addprefix $(O)/service/,main.o daemon.o confine.o notify.o) $(server_objects) \
+	$(bus_objects) $(message_objects)
+fmbd_libraries := -llcm -lglib-2.0 -lseccomp -lgmp -lm
 $(B)/fmbd: $(fmbd_objects) $(B)/libfmb.a
-	$(CC) $(link_whole) -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ $(fmbd_libraries)
 
 # It asks the bus through the library alone; logs it reads, answers and plays itself.
 fmb_objects := $(O)/clients/fmb.o $(client_objects) $(answer_objects) $(bus_objects) \
-	$(O)/service/senders.o $(message_objects)
+	$(message_objects)
 $(B)/fmb: $(fmb_objects) $(B)/libfmb-client.a $(B)/libfmb.a
-	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 $(B)/arm: $(O)/clients/demo/arm.o
 	@mkdir -p $(@D)
@@ -179,16 +191,27 @@ $(sort $(alone_times) $(O)/run/times_alone_plain.o): $(O)/run/times_alone_%.o: s
 $(sort $(alone_boxes) $(O)/run/boxes_alone_plain.o): $(O)/run/boxes_alone_%.o: service/fmb/alone.c $(O)/settings
 	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_BOXES
 
+# The wire: bytes <-> structs.
+glib_flags = $(shell pkg-config --cflags glib-2.0)
+codec_see := -Imsgs/codec -Iservice/fmb
+$(O)/msgs/codec/%.o: msgs/codec/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) $(codec_see) -I$(GEN) $(glib_flags)
+
 $(O)/service/%.o: service/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice -I$(GEN)
+	$(compile) -Iservice $(codec_see) -Imsgs/bus -I$(GEN)
+
+$(O)/msgs/bus/%.o: msgs/bus/%.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Imsgs/bus
 
 clients_see := -Iclients $(addprefix -Iclients/,lib log mesh page record replay) -Iservice \
-	-Iservice/fmb
+	-Imsgs/codec -Imsgs/bus -Iservice/fmb
 
 $(O)/clients/lib/%.o: clients/lib/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iclients/lib -Iservice -Iservice/fmb -I$(GEN)
+	$(compile) -Iclients/lib -Iservice -Imsgs/codec -Imsgs/bus -Iservice/fmb -I$(GEN)
 
 $(O)/clients/%.o: clients/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -201,6 +224,7 @@ $(O)/tests/system/%.o: tests/system/%.c $(O)/settings
 # The pages without their data: text, style and scripts of each in one, and then numbers of C. Their
 # policy lets nothing run but what has the hash of all between the tags, line ends included.
 page_source := clients/page/template/
+page_shared := $(addprefix $(page_source),page.html stage.html)
 page_styles_replay := $(addprefix $(page_source),page.css timeline.css)
 page_scripts_replay := $(addprefix $(page_source),numbers.js verdict.js data.js dom.js clock.js timeline.js \
 	world.js camera.js canvas.js scene.js stage.js play.js hands.js window.js panel.js main.js)
@@ -210,15 +234,17 @@ page_scripts_mesh := $(addprefix $(page_source),numbers.js verdict.js mesh_data.
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
 define page_rule
-build/page/$1.html: $$(page_source)$1.html $$(page_styles_$1) $$(page_scripts_$1) Makefile
+build/page/$1.html: $$(page_source)$1.html $$(page_shared) $$(page_styles_$1) $$(page_scripts_$1) Makefile
 	@mkdir -p $$(@D)
 	@! grep -n -e '</' -e '<!--' $$(page_scripts_$1) $$(page_styles_$1)
 	@cat $$(page_scripts_$1) > $$(@D)/$1.scripts
 	@cat $$(page_styles_$1) > $$(@D)/$1.styles
-	sed -e "s|@SCRIPT_HASH@|$$(call page_hash,$$(@D)/$1.scripts)|" \
+	sed -e '/^@PAGE@$$$$/{r $$<' -e 'd;}' $$(page_source)page.html | \
+		sed -e '/^@STAGE@$$$$/{r $$(page_source)stage.html' -e 'd;}' | \
+		sed -e "s|@SCRIPT_HASH@|$$(call page_hash,$$(@D)/$1.scripts)|" \
 		-e "s|@STYLE_HASH@|$$(call page_hash,$$(@D)/$1.styles)|" \
 		-e '/^@STYLE@$$$$/{r $$(@D)/$1.styles' -e 'd;}' \
-		-e '/^@SCRIPT@$$$$/{r $$(@D)/$1.scripts' -e 'd;}' $$< > $$@
+		-e '/^@SCRIPT@$$$$/{r $$(@D)/$1.scripts' -e 'd;}' > $$@
 	@[ "$$$$(grep -c '@[A-Z_]*@' $$@)" = 1 ] # @DATA@
 endef
 $(foreach name,$(page_names),$(eval $(call page_rule,$(name))))
@@ -243,7 +269,7 @@ $(foreach m,$(message_names),$(GEN)/fmb_msgs_$(m).c $(GEN)/fmb_msgs_$(m).h) &: \
 	lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
 
 # Changes when the flags or the lists of files do, and then everything is built again.
-settings := $(CC) $(flags) $(link_flags) $(link_whole) $(lib_objects) $(client_objects) \
+settings := $(CC) $(flags) $(hardened) $(link_flags) $(link_whole) $(lib_objects) $(client_objects) \
 	$(asking_objects)
 $(O)/settings: Makefile FORCE
 	@mkdir -p $(@D)
@@ -271,11 +297,12 @@ $(E)/lua/fmb_msgs/init.lua: $(message_files) Makefile
 	@mkdir -p $(E)/lua
 	lcm-gen -l --lpath $(E)/lua $(message_files)
 
-$(E)/java/AskPair.class: clients/examples/AskPair.java $(message_files) Makefile
+$(E)/java/AskPair.class: clients/examples/AskPair.java tests/system/Largest.java $(message_files) \
+		Makefile
 	@rm -rf $(E)/java
 	@mkdir -p $(E)/java
 	lcm-gen -j --jpath $(E)/java $(message_files)
-	javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $<
+	javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $(filter %.java,$^)
 
 # ---- Tests ----------------------------------------------------------------------------------
 
@@ -288,15 +315,19 @@ engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(uni
 internal_tests := test_bounds test_limbs test_outward test_kernels
 # Those that draw from the hard families of the campaigns.
 family_tests := test_kernels test_engine_batch test_engine_tree
-# Those of the service that do; they link no clients.
-scene_tests := test_answer_scene test_answer_clients
+# Those of what answers queries; they link no bus and no clients.
+answer_tests := test_cache $(filter test_answer%,$(unit_names))
 comma := ,
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 
 client_tests := $(filter test_client_%,$(unit_names))
-live_tests := test_live test_live_results
-$(client_tests:%=$(B)/tests/%): $(O)/tests/unit/relay.o
+$(B)/tests/test_client_bad: $(hostile_objects)
+$(client_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/relay.o \
+		$(asking_objects) $(answer_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a \
+		| $(B)/netns
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
 
 log_tests := $(filter test_log_%,$(unit_names))
 $(log_tests:%=$(B)/tests/%): $(O)/tests/unit/log_bytes.o
@@ -310,45 +341,57 @@ $(world_tests:%=$(B)/tests/%): $(O)/tests/unit/log_world.o
 # Sees what becomes of each query.
 wraps_test_log_cut := $(addprefix -Wl$(comma)--wrap=,page_open page_take)
 
-$(live_tests:%=$(B)/tests/%): $(O)/tests/unit/world.o
-
 $(B)/tests/test_mesh_read: $(addprefix $(O)/tests/mesh/,bumpy.o formats.o)
 
 # Meshes against the oracle of triangles.
 $(B)/tests/test_mesh_meet: $(addprefix $(O)/tests/oracle/,triangles.o lp.o draw.o) \
 	$(O)/tests/mesh/bumpy.o
 
-$(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
+# A client over plain LCM: it shares nothing with ours but the message types.
+$(B)/plain: $(O)/tests/system/plain.o $(message_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
 
+$(O)/tests/system/plain.o: tests/system/plain.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) -I$(GEN)
+
+$(B)/poke: $(O)/tests/system/poke.o $(hostile_objects) $(message_objects)
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0
+
 $(B)/events: $(O)/tests/system/events.o
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -llcm
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0
 
 $(B)/poison: $(O)/tests/system/poison.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^
 
-$(B)/make-page: $(O)/tests/page/make_page.o $(O)/tests/page/teller.o $(client_objects) $(asking_objects) \
-		$(answer_objects) $(bus_objects) $(O)/service/senders.o $(message_objects) $(B)/libfmb.a
+$(B)/make-page: $(O)/tests/page/make_page.o $(O)/tests/page/sample_log.o $(client_objects) $(asking_objects) \
+		$(answer_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 $(O)/tests/page/%.o: tests/page/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) $(clients_see)
 
 $(B)/edit-log: $(O)/tests/replay/edit_log.o $(O)/tests/unit/log_draft.o $(client_objects) \
-		$(answer_objects) $(bus_objects) $(O)/service/senders.o $(message_objects) \
+		$(answer_objects) $(bus_objects) $(message_objects) \
 		$(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 # Tests of the engine link neither LCM nor the service.
 $(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
+	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lgmp -lm
+
+# Counts what GMP is asked to do.
+$(B)/tests/test_engine_work: $(O)/tests/unit/gmp_work.o $(O)/tests/campaign/climb.o
+wraps_test_engine_work := $(addprefix -Wl$(comma)--wrap=__gmp,z_mul z_addmul z_submul z_add z_sub \
+	z_fdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize)
 
 $(family_tests:%=$(B)/tests/%): $(family_objects)
 
@@ -390,19 +433,43 @@ $(run_wide): $(O)/run/%.o: service/fmb/run.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DLANES=8 -DRUN_NAME=$* $(run_wide_$*)
 
+# The bus: no other part of the program. The test replaces the kernel's counter of
+# drops, and counts yields.
+wraps_test_bus := $(addprefix -Wl$(comma)--wrap=,bus_socket_drops sched_yield)
+$(B)/tests/test_bus: $(O)/tests/unit/test_bus.o $(receiver_objects) | $(B)/netns
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) $(wraps_test_bus) -o $@ $^ -lcmocka -llcm
+
+$(O)/tests/unit/test_bus.o: tests/unit/test_bus.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Imsgs/bus
+
 # Counts what our own code allocates.
 wraps_test_answer_scene := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc aligned_alloc)
-$(scene_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/scene_truth.o \
-		$(family_objects) $(oracle_objects) $(server_objects) $(bus_objects) $(message_objects) \
+$(answer_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/scene_truth.o \
+		$(family_objects) $(oracle_objects) $(answer_objects) $(codec_objects) $(message_objects) \
 		$(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -llcm -lgmp -lm
+	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
 
-$(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(scene_tests)),$(unit_tests)): \
+wire_tests := $(filter test_wire% test_handle,$(unit_names))
+$(wire_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(codec_objects) \
+		$(message_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
+
+service_tests := $(filter test_server% test_turns test_queue test_counters,$(unit_names))
+$(service_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/service.o \
+		$(hostile_objects) $(server_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
+
+$(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(answer_tests) \
+		$(wire_tests) $(client_tests) $(service_tests) test_bus),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
 		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lcjson -llcm -lgmp -lm
+	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 $(O)/tests/oracle/%.o: tests/oracle/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -410,16 +477,16 @@ $(O)/tests/oracle/%.o: tests/oracle/%.c $(O)/settings
 
 $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -I$(GEN)
+	$(compile) -I$(GEN) $(glib_flags)
 
 # Tests of the engine see it and the oracle, those of scenes the service too; of all others that
 # of meshes alone an oracle.
 engine_views := $(engine_tests) $(internal_tests) slab_truth pair_draw
-scene_views := $(scene_tests) scene_truth
-family_views := $(family_tests) $(scene_views) pair_draw
+scene_views := $(answer_tests) scene_truth
+family_views := $(family_tests) $(scene_views) pair_draw test_engine_work
 unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views) test_mesh_meet),-Itests/oracle) \
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
-	$(if $(filter $1,$(engine_views)),,-Iservice) \
+	$(if $(filter $1,$(engine_views)),,-Iservice -Imsgs/codec) \
 	$(if $(filter $1,$(engine_views) $(scene_views)),,\
 		$(clients_see) -Itests/hostile -Itests/mesh -I$(GEN))
 $(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings | $(message_headers)
@@ -432,58 +499,71 @@ $(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 
 # ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
 
-fuzz_targets := pair_query pair_result scene_query scene_result status answer scene_json event_log \
-	replay_log mesh
+message_fuzz_targets := pair_query pair_result scene_query scene_result definition_query definition \
+	status
+fuzz_targets := $(message_fuzz_targets) answer scene_json event_log replay_log mesh
 replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
-fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair.o results_scene.o \
-	model.o)
+fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair.o results_scene.o)
+fuzz_pieces_answer := $(O)/tests/fuzz/model.o
 fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
 fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
-fuzz_pieces_replay_log := $(O)/tests/fuzz/replay_small.o \
-	$(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
+fuzz_pieces_replay_log := $(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
 
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),fuzz)
 $(lib_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
 endif
 
-# Of all objects those that a target needs: what stands before it on a command line replaces one.
-$(O)/fuzz_parts.a: $(fuzz_objects) $(hostile_objects) $(server_objects) $(client_objects) \
-		$(bus_objects) $(message_objects) $(lib_objects)
+# Archives: the linker takes what a target needs, and what stands before an archive on its command
+# line replaces the member of that name. Readers of messages link the codec and the engine, answer
+# the service too, the others everything.
+fuzz_archive_messages := $(O)/fuzz_messages.a
+fuzz_archive_answer := $(O)/fuzz_answer.a $(fuzz_archive_messages)
+fuzz_archive_all := $(O)/fuzz_clients.a $(fuzz_archive_answer)
+fuzz_archives = $(fuzz_archive_$(if $(filter $1,$(message_fuzz_targets)),messages,$(if \
+	$(filter $1,answer seeds),answer,all)))
+$(fuzz_archive_messages): $(fuzz_objects) $(hostile_objects) $(codec_objects) $(message_objects) \
+	$(lib_objects)
+$(O)/fuzz_answer.a: $(answer_objects)
+$(O)/fuzz_clients.a: $(client_objects) $(asking_objects) $(filter-out $(codec_objects),$(bus_objects))
+$(fuzz_archive_all):
 	@rm -f $@
 	$(AR) rcs $@ $^
 
-fuzz_libraries := -lcjson -llcm -lgmp -lm
+fuzz_libraries := -lcjson -llcm -lglib-2.0 -lgmp -lm
 .SECONDEXPANSION:
 $(fuzz_targets:%=$(B)/tests/test_fuzz_%): $(B)/tests/test_fuzz_%: $(O)/tests/fuzz/replay.o \
-		$(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(O)/fuzz_parts.a
+		$(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $$(call fuzz_archives,$$*)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ $(fuzz_libraries)
 
 # The compiler links the fuzzer that it brings: libFuzzer, or AFL++'s.
 fuzzers := $(fuzz_targets:%=$(B)/fuzz_%)
-$(fuzzers): $(B)/fuzz_%: $(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(O)/fuzz_parts.a
+$(fuzzers): $(B)/fuzz_%: $(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $$(call fuzz_archives,$$*)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
 
-# Each file of planted/ breaks one thing of the service or the client, and is named for the target
-# that must find it, with a dash and more where there are several. One of them breaks the pieces.
+# Each file of planted/ is a copy of one file with one fault, and has the name of the target that
+# must find it, followed by a dash and a word where a target has several. One replaces the pieces.
 fuzz_plants := $(patsubst tests/fuzz/planted/%.c,%,$(wildcard tests/fuzz/planted/*.c))
 planted_fuzzers := $(fuzz_plants:%=$(B)/planted/%)
+fuzz_planted_target = $(firstword $(subst -, ,$1))
 $(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
-		$(O)/tests/fuzz/$$(firstword $$(subst -, ,$$*)).o \
-		$$(filter-out $(fuzz_pieces_event_log),$$(fuzz_pieces_$$(firstword $$(subst -, ,$$*)))) \
-		$(O)/fuzz_parts.a
+		$(O)/tests/fuzz/$$(call fuzz_planted_target,$$*).o \
+		$$(filter-out $(fuzz_pieces_event_log),$$(fuzz_pieces_$$(call fuzz_planted_target,$$*))) \
+		$$(call fuzz_archives,$$(call fuzz_planted_target,$$*))
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
 
-$(B)/fuzz_seeds: $(O)/tests/fuzz/seeds.o $(O)/tests/unit/log_draft.o $(O)/fuzz_parts.a
+seed_objects := $(addprefix $(O)/tests/fuzz/,seeds.o seeds_message.o seeds_service.o seeds_file.o) \
+	$(O)/tests/unit/log_draft.o
+$(B)/fuzz_seeds: $(seed_objects) $(call fuzz_archives,seeds)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ $(fuzz_libraries)
 
 $(O)/tests/fuzz/%.o: tests/fuzz/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) $(clients_see) -Itests/fuzz -Itests/unit -Itests/hostile -I$(GEN)
+	$(compile) $(clients_see) -Itests/fuzz -Itests/unit -Itests/hostile -I$(GEN) $(glib_flags)
 
 .PHONY: fuzzers fuzz fuzz-afl fuzz-merge deps-fuzz
 fuzzers: $(fuzzers) $(planted_fuzzers) $(B)/fuzz_seeds
@@ -553,12 +633,17 @@ soak: all $(filter $(B)/soak-% %/poke %/poison,$(test_programs))
 
 $(B)/soak-asker: $(O)/tests/soak/asker.o $(O)/service/clock.o $(B)/libfmb-client.a $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -pthread -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_flags) -pthread -o $@ $^ -llcm -lglib-2.0 -lgmp -lm
 
 $(B)/soak-memory $(B)/soak-rate $(B)/soak-blast: $(B)/soak-%: $(O)/tests/soak/%.o $(bus_objects) $(message_objects) \
 		$(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0 -lgmp -lm
+
+$(B)/soak-fair: $(addprefix $(O)/tests/soak/,fair.o attack.o) $(wire_objects) $(message_objects) \
+		$(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0 -lgmp -lm
 
 $(B)/soak-relay: $(O)/tests/soak/relay.o
 	@mkdir -p $(@D)
@@ -566,28 +651,28 @@ $(B)/soak-relay: $(O)/tests/soak/relay.o
 
 $(O)/tests/soak/%.o: tests/soak/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -pthread -Iservice -Iservice/fmb -Iclients/lib -I$(GEN)
+	$(compile) -pthread -Iservice -Imsgs/codec -Imsgs/bus -Iservice/fmb -Iclients/lib -I$(GEN)
 
 # ---- Logs: what a service was asked, and answered, for fmb replay ----------------------------
 
 logs_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/tell.c,$(wildcard tests/logs/*.c))) $(addprefix \
 	$(O)/tests/campaign/,cell.o contact.o family.o meet.o meeting.o odd.o scene.o solids.o) \
 	$(addprefix $(O)/tests/oracle/,draw.o question.o) $(answer_objects) $(wire_objects) \
-	$(O)/service/senders.o $(message_objects)
+	$(message_objects)
 
 $(B)/logs/generate: $(logs_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0 -lgmp -lm
 
 # Shares nothing with what is tested but the message types.
 $(B)/logs/tell: $(O)/tests/logs/tell.o $(message_objects)
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -llcm
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0
 
 # ---- Meshes: closed ones of any size, for tests and benchmarks --------------------------------
 
 mesh_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/mesh_page.c,$(wildcard clients/mesh/*.c))) \
-	$(addprefix $(O)/clients/,allocate.o number.o) $(addprefix $(O)/service/,clock.o random_id.o)
+	$(addprefix $(O)/clients/,allocate.o escape.o json_write.o keyed_hash.o number.o) $(addprefix $(O)/service/,clock.o random_id.o)
 
 $(B)/mesh/make-mesh: $(addprefix $(O)/tests/mesh/,make_mesh.o bumpy.o formats.o) $(mesh_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
@@ -613,15 +698,15 @@ $(capped_sets:%=$(B)/capped/libfmb-%.a): $(B)/capped/libfmb-%.a: $(O)/capped/%.o
 	$(call archive,fmb_*)
 
 $(capped_sets:%=$(B)/capped/fmbd-%): $(B)/capped/fmbd-%: $(fmbd_objects) $(B)/capped/libfmb-%.a
-	$(CC) $(link_whole) -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ $(fmbd_libraries)
 
 $(capped_sets:%=$(B)/capped/fmb-%): $(B)/capped/fmb-%: $(fmb_objects) $(B)/libfmb-client.a \
 		$(B)/capped/libfmb-%.a
-	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 $(capped_sets:%=$(B)/capped/generate-%): $(B)/capped/generate-%: $(logs_objects) \
 		$(B)/capped/libfmb-%.a
-	$(CC) $(link_flags) -o $@ $^ -llcm -lgmp -lm
+	$(CC) $(link_flags) -o $@ $^ -llcm -lglib-2.0 -lgmp -lm
 
 # What the set is, made anew: the logs, and the results that they are compared with. Neither changes
 # by itself: tests/cli/logs.bats sees to it that this changes nothing.
@@ -636,7 +721,7 @@ goldens: $(B)/fmb
 
 $(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign -I$(GEN)
+	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign -Imsgs/codec -Imsgs/bus -I$(GEN)
 
 # ---- Benchmark -------------------------------------------------------------------------------
 
@@ -684,15 +769,15 @@ bus_bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/echo.c,$(wildcard te
 $(B)/bus/bench-bus: $(bus_bench_objects) $(campaign_objects) $(server_objects) $(bus_objects) \
 		$(message_objects) $(lib_objects) | $(B)/bus/echo $(B)/fmbd
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -pthread -o $@ $(filter %.o,$^) -llcm -lgmp -lm
+	$(CC) $(link_flags) -pthread -o $@ $(filter %.o,$^) -llcm -lglib-2.0 -lgmp -lm
 
-$(B)/bus/echo: $(O)/tests/bus/echo.o $(addprefix $(O)/service/,bus.o bus_open.o)
+$(B)/bus/echo: $(O)/tests/bus/echo.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -llcm
 
 $(O)/tests/bus/%.o: tests/bus/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) -Iservice -Iservice/fmb -Itests/oracle -Itests/campaign -Itests/bench
+	$(compile) -Iservice $(codec_see) -Imsgs/bus -Itests/oracle -Itests/campaign -Itests/bench
 
 # Minutes; what it measured is in bus/report.json then.
 .PHONY: bench-bus
@@ -705,14 +790,14 @@ $(B)/replay/bench-replay: $(O)/tests/replay/bench_replay.o \
 		$(addprefix $(O)/tests/bench/,child.o machine.o stopwatch.o) $(client_objects) \
 		$(answer_objects) $(bus_objects) $(message_objects) $(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
-	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lgmp -lm
+	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 blast_scenes := scenes 400
 blast_pairs := pairs 500000
 blast_pairs-64-bodies := pairs 500000 --bodies 64
 blast_pairs-whole := pairs 500000 --whole
-blast_pairs-by-key := pairs 500000 --by-key
-bench_log_names := scenes pairs pairs-64-bodies pairs-whole pairs-by-key
+blast_pairs-by-handle := pairs 500000 --by-handle
+bench_log_names := scenes pairs pairs-64-bodies pairs-whole pairs-by-handle
 bench_logs := $(bench_log_names:%=$(B)/replay/%.log)
 $(B)/replay/%.log: $(B)/logs/generate
 	@mkdir -p $(@D)
@@ -753,8 +838,8 @@ deps-report:
 # ---- Headers, format -------------------------------------------------------------------------
 
 # Every header compiles alone.
-sources := $(shell find service clients tests -name '*.[ch]')
-headers := $(wildcard service/fmb/*.h service/*.h clients/*.h clients/lib/*.h clients/log/*.h \
+sources := $(shell find service msgs clients tests -name '*.[ch]')
+headers := $(wildcard service/fmb/*.h service/*.h msgs/codec/*.h msgs/bus/*.h clients/*.h clients/lib/*.h clients/log/*.h \
 	clients/mesh/*.h clients/page/*.h clients/record/*.h clients/replay/*.h tests/oracle/*.h \
 	tests/hostile/*.h tests/campaign/*.h tests/bench/*.h tests/bus/*.h tests/fuzz/*.h tests/soak/*.h \
 	tests/logs/*.h tests/mesh/*.h tests/page/*.h)
@@ -803,9 +888,10 @@ clean:
 
 # ---- Packages ----------------------------------------------------------------------------
 
-build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev
+build_packages := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev libglib2.0-dev \
+	libseccomp-dev pkg-config uthash-dev
 test_packages := $(build_packages) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
-	pkg-config liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils
+	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils
 
 fuzz_packages := $(build_packages) clang libclang-rt-14-dev llvm afl++
 
