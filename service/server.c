@@ -295,11 +295,10 @@ static int64_t smaller(int64_t a, int64_t b)
  * behind them, or the work that would begin instead usually takes longer than the waiting. */
 static bool begin_expecting(struct server *server, int client)
 {
-    int64_t lead_ns;
-    const int next = turns_next(server->turns, NULL, NULL, -1, &lead_ns);
-    if (next < 0 || has_work(server, client))
+    const int next = has_work(server, client) ? -1 : turns_least(server->turns);
+    if (next < 0)
         return false;
-    lead_ns = turns_lead(server->turns, client);
+    const int64_t lead_ns = turns_lead(server->turns, client);
     return expect_begin(&server->expect, client, server->meter.wall_ns, lead_ns + TURNS_SLICE_NS,
                         lead_ns > TURNS_SLICE_NS ? INT64_MAX : server->unit_ns[next]);
 }

@@ -143,54 +143,53 @@ void turns_charge(struct turns *turns, int client, int64_t ns)
     turns->client[client].used_ns += ns;
 }
 
-/* How much less the virtual time of an active client is than that of the next other one. */
-static int64_t lead_of(const struct turns *turns, turns_filter *may, const void *user, int client)
+/* The active client with the least virtual time among those that the filter accepts, but for one;
+ * -1: there is none. */
+static int least_of(const struct turns *turns, turns_filter *may, const void *user, int except)
 {
-    int64_t least_ns = INT64_MAX;
+    int found = -1;
     for (int32_t i = 0; i < turns->active_count; i++) {
         const int32_t c = turns->active[i];
-        if (c != client && turns->client[c].used_ns < least_ns && (!may || may(user, c)))
-            least_ns = turns->client[c].used_ns;
+        if (c != except && (!may || may(user, c)) &&
+            (found < 0 || turns->client[c].used_ns < turns->client[found].used_ns))
+            found = c;
     }
-    return least_ns == INT64_MAX ? least_ns : least_ns - turns->client[client].used_ns;
+    return found;
+}
+
+int turns_least(const struct turns *turns)
+{
+    return least_of(turns, NULL, NULL, -1);
+}
+
+/* The virtual time of the other client minus that of the first; INT64_MAX: there is no other. */
+static int64_t lead_over(const struct turns *turns, int client, int other)
+{
+    return other < 0 ? INT64_MAX : turns->client[other].used_ns - turns->client[client].used_ns;
 }
 
 int turns_next(const struct turns *turns, turns_filter *may, const void *user, int last,
                int64_t *lead_ns)
 {
-    int found = -1, other = -1; /* other: the least of all but the last one served */
-    for (int32_t i = 0; i < turns->active_count; i++) {
-        const int32_t c = turns->active[i];
-        if (may && !may(user, c))
-            continue;
-        if (c == last)
-            found = c;
-        else if (other < 0 || turns->client[c].used_ns < turns->client[other].used_ns)
-            other = c;
+    const int other = least_of(turns, may, user, last);
+    if (last >= 0 && turns->client[last].position >= 0 && (!may || may(user, last))) {
+        *lead_ns = lead_over(turns, last, other);
+        if (*lead_ns > -TURNS_SLICE_NS)
+            return last;
     }
-    *lead_ns = INT64_MAX;
-    if (found >= 0 && other >= 0)
-        *lead_ns = turns->client[other].used_ns - turns->client[found].used_ns;
-    if (found >= 0 && *lead_ns > -TURNS_SLICE_NS)
-        return found;
-    if (other >= 0)
-        *lead_ns = lead_of(turns, may, user, other);
+    *lead_ns = other < 0 ? INT64_MAX : lead_over(turns, other, least_of(turns, may, user, other));
     return other;
 }
 
 void turns_begin(struct turns *turns)
 {
-    int64_t least_ns = INT64_MAX;
-    for (int32_t i = 0; i < turns->active_count; i++)
-        if (turns->client[turns->active[i]].used_ns < least_ns)
-            least_ns = turns->client[turns->active[i]].used_ns;
-    if (least_ns != INT64_MAX && least_ns > turns->now_ns)
-        turns->now_ns = least_ns;
+    const int least = turns_least(turns);
+    if (least >= 0 && turns->client[least].used_ns > turns->now_ns)
+        turns->now_ns = turns->client[least].used_ns;
 }
 
 int64_t turns_lead(const struct turns *turns, int client)
 {
-    int64_t lead_ns;
-    const int next = turns_next(turns, NULL, NULL, -1, &lead_ns);
-    return next < 0 ? INT64_MAX : turns->client[next].used_ns - resumes_at(turns, client);
+    const int least = turns_least(turns);
+    return least < 0 ? INT64_MAX : turns->client[least].used_ns - resumes_at(turns, client);
 }

@@ -47,6 +47,9 @@ typedef bool turns_filter(const void *user, int client);
 int turns_next(const struct turns *turns, turns_filter *may, const void *user, int last,
                int64_t *lead_ns);
 
+/* The active client with the least virtual time; -1: none is active. */
+int turns_least(const struct turns *turns);
+
 /* A client is about to be served: the current virtual time becomes the least of the active clients,
  * if that is later. */
 void turns_begin(struct turns *turns);
