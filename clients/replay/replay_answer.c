@@ -133,8 +133,8 @@ static void supply_service(struct replay *replay, const struct placement *placem
     }
 }
 
-/* A query of which the service did not hold all bodies. last: those that are not defined stay
- * handles. */
+/* Sends a query again whose bodies the service did not hold. last: handles that are not defined
+ * stay as they are. */
 static void answer_again_on_bus(struct replay *replay, struct match_item *query,
                                 const struct message *message, bool last)
 {
@@ -174,8 +174,8 @@ static void define(struct replay *replay, const struct placement *placement, int
 {
     for (int32_t i = 0; i < count; i++) {
         const struct geometry *geometry = &placement[i].geometry;
-        if (placement[i].frame_count == 0 || placement[i].body_id == 0 ||
-            !definitions_add(replay->definitions, geometry) || pending_is_empty(replay->pending))
+        if (!definitions_add_placement(replay->definitions, &placement[i]) ||
+            pending_is_empty(replay->pending))
             continue;
         const struct handle handle = hasher_handle(replay->hasher, geometry->bytes, geometry->size);
         on_defined(replay, &handle);
