@@ -40,6 +40,13 @@ INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepar
     }
     set_run_frame(kind, words[0], of_a);
     set_run_frame(kind, words[1], of_b);
+    if (!kind.drifts)
+        return;
+    UNROLL(2)
+    for (int axis = 0; axis < 2; axis++) {
+        of_a->velocity[axis] = side_by_side(prepared_velocity(a)[axis], prepared_velocity(b)[axis]);
+        of_b->velocity[axis] = exchanged(of_a->velocity[axis]);
+    }
 }
 
 INLINE void gather_both(const struct walk_kind kind, const struct fmb_prepared *a,

@@ -13,9 +13,6 @@ enum { BLOCK = 128 };
  * 128 bits take some 12 us a pair. */
 enum { ALONE_MAX = 32 };
 
-/* In place of the verdict of a pair that will be listed as open. */
-enum { VERDICT_OPEN = 0xff };
-
 /* What blocks have in common. */
 struct job {
     const struct fmb_batch *batch;
@@ -39,12 +36,17 @@ struct block {
 
 /* ---- Sorting ---- */
 
-/* In the place of a frame that is not there. */
-static const struct fmb_prepared nobody;
+/* In the place of a frame whose index is too large, and of one that was not prepared. Kernels may
+ * read them in lanes that are not used. */
+static const struct fmb_placement nowhere;
+static const struct fmb_prepared missing = {.placement = &nowhere};
+static const struct fmb_prepared unprepared = {.placement = &nowhere};
 
 static inline const struct fmb_prepared *frame_at(const struct fmb_batch *batch, unsigned index)
 {
-    return index < batch->frame_count ? &batch->frames[index] : &nobody;
+    const struct fmb_prepared *frame =
+        index < batch->frame_count ? &batch->frames[index] : &missing;
+    return frame == &missing || prepared_kind(frame) & PREPARED_GOOD ? frame : &unprepared;
 }
 
 /* Puts the pairs into the block, in the order of the batch. Returns whether their heads are all of
@@ -68,7 +70,7 @@ static bool set_pairs(struct block *block)
         block->pair[i][1] = b;
     }
     for (size_t i = block->count; i < block->count + RUN_LANES; i++)
-        block->pair[i][0] = block->pair[i][1] = &nobody;
+        block->pair[i][0] = block->pair[i][1] = &missing;
     return different == 0;
 }
 
@@ -89,10 +91,10 @@ static void swap(const struct fmb_prepared *pair[2])
 static bool all_drift(const struct block *block)
 {
     const bool space = prepared_kind(block->pair[0][0]) & PREPARED_SPACE;
-    const ptrdiff_t at = prepared_velocity(block->pair[0][0]) - block->pair[0][0]->number;
     bool all = true;
     for (size_t i = 0; i < block->count; i++) {
-        const double *v = block->pair[i][0]->number + at, *w = block->pair[i][1]->number + at;
+        const double *v = prepared_velocity(block->pair[i][0]);
+        const double *w = prepared_velocity(block->pair[i][1]);
         all &= (v[0] != w[0]) | (v[1] != w[1]) | (space && v[2] != w[2]);
     }
     return all;
@@ -174,12 +176,6 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     }
 }
 
-/* Whether what is prepared of a pair does not tell all of it. */
-static bool is_rounded(const struct fmb_prepared *a, const struct fmb_prepared *b)
-{
-    return (prepared_kind(a) | prepared_kind(b)) & PREPARED_ROUNDED;
-}
-
 /* Counts a pair to be decided alone. False: it is left open instead, since enough have been. Boxes
  * are no reason: frames that move have theirs from nowhere else. */
 static bool may_decide_alone(struct block *block)
@@ -188,25 +184,20 @@ static bool may_decide_alone(struct block *block)
     return !batch->open || batch->boxes || block->alone++ < ALONE_MAX;
 }
 
-/* Pair k by itself, with all that is wanted of it; or left open. On input: its contact and box are
- * NAN. */
+/* Pair k by itself, with all that is wanted of it; or left open. On input: its box is NAN, its
+ * contact NAN or already known. */
 static void decide_alone(struct block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    struct fmb_body body[2];
     struct fmb_answer answer = {0};
-    const struct fmb_pair one = {prepared_frame(pair[0], &body[0]),
-                                 prepared_frame(pair[1], &body[1]), batch->duration};
-    if (is_rounded(pair[0], pair[1])) {
-        batch->verdicts[i] = 0;
-        return;
-    }
     const unsigned want = batch->boxes ? FMB_WANT_BOX : 0;
     if (!may_decide_alone(block) ||
-        (batch->open ? certified_decide_quick : certified_decide)(&one, want, &answer) != FMB_OK) {
-        batch->verdicts[i] = VERDICT_OPEN;
+        certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
+                                  &answer) != FMB_OK) {
+        put_nothing(batch, i);
+        batch->verdicts[i] = FMB_LEFT_OPEN;
         return;
     }
     batch->verdicts[i] = (unsigned char) answer.verdict;
@@ -216,30 +207,15 @@ static void decide_alone(struct block *block, size_t k)
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
-/* The verdict of a pair for which the filter is unsure or cannot be used; 0 where it is left open.
- * Not inlined: fmb_meet() needs no stack frame of its own then. */
-static enum fmb_verdict __attribute__((noinline))
-verdict_alone(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-              bool quick)
-{
-    struct fmb_body body[2];
-    if (is_rounded(a, b))
-        return 0;
-    const struct fmb_pair pair = {prepared_frame(a, &body[0]), prepared_frame(b, &body[1]),
-                                  duration};
-    return certified_unsure(&pair, quick);
-}
-
 static void put_verdict_alone(struct block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
-    const bool rounded = is_rounded(pair[0], pair[1]);
     enum fmb_verdict verdict = 0;
-    if (!rounded && may_decide_alone(block))
-        verdict = verdict_alone(pair[0], pair[1], batch->duration, batch->open);
+    if (may_decide_alone(block))
+        verdict = certified_unsure(pair[0], pair[1], batch->duration, batch->open);
     batch->verdicts[block->first + block->slot[k]] =
-        verdict || rounded ? (unsigned char) verdict : VERDICT_OPEN;
+        verdict ? (unsigned char) verdict : FMB_LEFT_OPEN;
 }
 
 static void put_verdicts(struct block *block, size_t start, size_t end)
@@ -265,10 +241,9 @@ static const double *contact_at(const struct block *block, enum run_kind kind, s
     static const double none[2] = {NAN, NAN};
     if (block->outcome[k] != SLABS_OVERLAPPING)
         return none;
-    const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
-    if (kind & RUN_DRIFTS)
-        return prepared_both_plain(a, b) ? none : block->contact[k];
-    return prepared_one_moves(a, b) ? whole : none; /* together */
+    if (!(kind & RUN_DRIFTS))
+        return whole;
+    return prepared_both_plain(block->pair[k][0], block->pair[k][1]) ? none : block->contact[k];
 }
 
 static void put_contacts(struct block *block, enum run_kind kind, size_t start, size_t end)
@@ -298,13 +273,14 @@ static bool has_plain_box(const struct block *block, enum run_kind kind, size_t 
 {
     const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
     return block->outcome[k] == SLABS_OVERLAPPING && !(kind & (RUN_DRIFTS | RUN_FACE)) &&
-           !prepared_both_plain(a, b) && !prepared_one_moves(a, b);
+           !prepared_both_plain(a, b) && !((prepared_kind(a) | prepared_kind(b)) & PREPARED_MOVING);
 }
 
 static void put_boxes(struct block *block, run_function *boxes, enum run_kind kind, size_t start,
                       size_t end)
 {
     const struct fmb_batch *batch = block->batch;
+    const double whole[2] = {0, batch->duration + 0.0}; /* never -0 */
     struct overlaps overlaps;
     overlaps.count = 0;
     for (size_t k = start; k < end; k++) {
@@ -312,6 +288,8 @@ static void put_boxes(struct block *block, run_function *boxes, enum run_kind ki
         batch->verdicts[i] = block->outcome[k];
         put_nothing(batch, i);
         if (has_plain_box(block, kind, k)) {
+            if (batch->contacts)
+                memcpy(batch->contacts[i], whole, sizeof whole);
             overlaps.pair[overlaps.count][0] = block->pair[k][0];
             overlaps.pair[overlaps.count][1] = block->pair[k][1];
             overlaps.of[overlaps.count++] = k;
@@ -322,7 +300,7 @@ static void put_boxes(struct block *block, run_function *boxes, enum run_kind ki
     if (overlaps.count == 0)
         return;
     for (size_t n = overlaps.count; n < overlaps.count + RUN_LANES; n++)
-        overlaps.pair[n][0] = overlaps.pair[n][1] = &nobody;
+        overlaps.pair[n][0] = overlaps.pair[n][1] = &missing;
     const struct run run = {.pairs = overlaps.pair, .count = overlaps.count, .boxes = overlaps.box};
     boxes(&run);
     for (size_t n = 0; n < overlaps.count; n++) {
@@ -357,7 +335,7 @@ static void run_kind(struct block *block, const struct job *job, enum run_kind k
 
 static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
 {
-    if (pair[0] == &nobody || pair[1] == &nobody)
+    if (pair[0] == &missing || pair[1] == &missing)
         return FMB_OVER_LIMIT;
     return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_GOOD ? FMB_DIMENSIONS_DIFFER
                                                                            : FMB_NOT_FINITE;
@@ -372,7 +350,7 @@ static void answer_odd(struct block *block)
             decide_alone(block, k);
             continue;
         }
-        block->batch->verdicts[i] = 0;
+        block->batch->verdicts[i] = FMB_REFUSED;
         if (block->status == FMB_OK)
             block->status = refusal(block->pair[k]);
     }
@@ -397,17 +375,15 @@ static const bool has_threads = true;
 static const bool has_threads = false;
 #endif
 
-/* Lists the pairs that the blocks left open, in ascending order, and gives them the verdict 0. */
+/* Lists the pairs that the blocks left open, in ascending order. */
 static void list_open(const struct fmb_batch *batch)
 {
     unsigned char *at = batch->verdicts;
     /* There may be no array of verdicts for no pairs. */
     const unsigned char *const end = batch->pair_count > 0 ? at + batch->pair_count : at;
     size_t count = 0;
-    while (at < end && (at = memchr(at, VERDICT_OPEN, (size_t) (end - at)))) {
-        batch->open[count++] = (size_t) (at - batch->verdicts);
-        *at++ = 0;
-    }
+    while (at < end && (at = memchr(at, FMB_LEFT_OPEN, (size_t) (end - at))))
+        batch->open[count++] = (size_t) (at++ - batch->verdicts);
     *batch->open_count = count;
 }
 
@@ -443,19 +419,20 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
     return status;
 }
 
-enum fmb_verdict fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                          double duration)
+enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                         double duration, enum fmb_verdict *verdict)
 {
     bool swapped;
     if (!prepared_is_duration(duration))
-        return 0;
+        return FMB_BAD_DURATION;
     const enum run_kind kind = run_kind_of(a, b, duration, &swapped);
     if (kind == RUN_REFUSED)
-        return 0;
+        return refusal((const struct fmb_prepared *const[2]){a, b});
     const enum slabs_outcome outcome =
         kind == RUN_ODD
             ? SLABS_UNSURE
             : run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
-    return outcome == SLABS_UNSURE ? verdict_alone(a, b, duration, false)
-                                   : (enum fmb_verdict) outcome;
+    *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, false)
+                                       : (enum fmb_verdict) outcome;
+    return FMB_OK;
 }

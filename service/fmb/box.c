@@ -117,9 +117,13 @@ struct seen {
     double error[PART_FACES]; /* of vertex, and of what is taken from it */
 };
 
-static double error_of(const struct boxing *boxing, double weight)
+/* Of normal . w, weights and placing included: twice the latter (parameter_of()). */
+static double error_of(const struct boxing *boxing, const struct weighed *normal,
+                       const double weight[FMB_DIM_MAX])
 {
-    return boxing->rounds ? weighed_error(weight) : 0;
+    const struct slabs_pair *slabs = boxing->slabs;
+    const double placing = slabs->inexact ? 2 * normal->length * slabs->placing : 0;
+    return boxing->rounds ? weighed_error(weighed_dot(normal->weight, weight)) + placing : 0;
 }
 
 /* Seen from frame 1 - f, the origin of frame f is at offset + tau drift (f = 1), or at minus that.
@@ -132,16 +136,14 @@ static void set_seen(const struct boxing *boxing, int f, struct seen *out)
     for (int face = 0; face < other->faces; face++) {
         const struct weighed *normal = &other->normal[face];
         const double start = sign * weighed_dot(normal->at, boxing->offset.at);
-        out->error[face] = error_of(boxing, weighed_dot(normal->weight, boxing->reach));
+        out->error[face] = error_of(boxing, normal, boxing->reach);
         out->motion[face] = sign * weighed_dot(normal->at, boxing->drift.at);
-        out->motion_error[face] =
-            error_of(boxing, weighed_dot(normal->weight, boxing->drift.weight));
+        out->motion_error[face] = error_of(boxing, normal, boxing->drift.weight);
         for (int v = 0; v < part->vertices; v++)
             out->vertex[face][v] = start + weighed_dot(normal->at, part->vertex[v]);
         for (int i = 0; i < part->directions; i++) {
             out->direction[i][face] = weighed_dot(normal->at, part->direction[i].at);
-            out->direction_error[i][face] =
-                error_of(boxing, weighed_dot(normal->weight, part->direction[i].weight));
+            out->direction_error[i][face] = error_of(boxing, normal, part->direction[i].weight);
         }
     }
 }
@@ -210,22 +212,22 @@ static void set_crossing(const struct boxing *boxing, int parameters,
     const double det = weighed_dot(of->at, normal[0]->at);
     out->parameters = parameters;
     for (int i = 0; i < parameters; i++) {
-        out->error[i] = error_of(boxing, weighed_dot(normal[i]->weight, boxing->reach));
+        out->error[i] = error_of(boxing, normal[i], boxing->reach);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             out->normal[i][axis] = (det < 0 ? -sign[i] : sign[i]) * normal[i]->at[axis];
     }
     out->det = fabs(det);
-    out->det_error = error_of(boxing, weighed_dot(normal[0]->weight, of->weight));
+    out->det_error = error_of(boxing, normal[0], of->weight);
 }
 
 /* Where a parameter in [0,1], num / det, may lie.
  *
  * Where the sign of det is not known it may have been turned the wrong way, and num with it; the
- * true det is then no larger than what det is off by. That is less than 13/32 of det_error, and
- * what num is off by less than 17/32 of error (of the 32 u in weighed_error(), so many are
- * roundings of these, three of each those of components that are rounded themselves), and
- * det_error <= error, whose weight has all of the monomials of det in it: the reach holds edges and
- * drift. So a true num / det in [0,1] has |num| < error as it is found here, and is possible. */
+ * true det is then no larger than what det is off by. That is less than 10/32 of det_error, and
+ * what num is off by less than 14/32 of error (of the 32 u in weighed_error(), so many are
+ * roundings of these), and half of what both have for placing; and det_error <= error, whose weight
+ * has all of the monomials of det in it: the reach holds edges and drift. So a true num / det in
+ * [0,1] has |num| < error as it is found here, and is possible. */
 struct parameter {
     struct clip outer;
     bool possible, sure; /* in [0,1] */
@@ -386,7 +388,7 @@ static bool include_piercing_edges(struct boxing *boxing, int f, int end)
 static bool include_piercing_paths(struct boxing *boxing, int f)
 {
     const struct part *other = &boxing->part[1 - f];
-    const struct weighed zero = {{0}, {0}};
+    const struct weighed zero = {{0}, {0}, 0};
     const struct weighed way = weighed_sum(&zero, f == 0 ? 1 : -1, &boxing->drift);
     struct crossing crossing;
     set_piercing(boxing, &boxing->part[f], &way, &crossing);
@@ -542,15 +544,14 @@ static bool include_all(struct boxing *boxing)
     return !drifts || boxing->part[0].dim == 2 || include_crossings(boxing);
 }
 
-bool box_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
-            double box[2][FMB_DIM_MAX])
+bool box_of(const struct slabs_pair *slabs, bool rounds, double box[2][FMB_DIM_MAX])
 {
     struct boxing boxing = {.slabs = slabs,
                             .rounds = rounds,
                             .offset = weigh(slabs->motion.offset),
                             .drift = weigh(slabs->motion.drift)};
-    if (!part_set(&pair->a, pair->duration, &boxing.part[0]) ||
-        !part_set(&pair->b, pair->duration, &boxing.part[1]))
+    if (!part_set(&slabs->a, slabs->duration, &boxing.part[0]) ||
+        !part_set(&slabs->b, slabs->duration, &boxing.part[1]))
         return false;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         double size[2] = {0, 0};

@@ -286,14 +286,14 @@ static void write_normal(struct writer *writer, struct exact_pair *exact, int di
 }
 
 static void write_point(struct writer *writer, struct exact_pair *exact,
-                        const struct fmb_pair *pair, bool touching)
+                        const struct frame_pair *pair, bool touching)
 {
     struct certificate_point point;
     certificate_point_init(&point);
     certificate_point_find(&point, exact, pair, touching);
     write_text(writer, " at ");
     write_number(writer, point.time);
-    for (int axis = 0; axis < pair->a.body->dim; axis++) {
+    for (int axis = 0; axis < pair->a.frame->dim; axis++) {
         write_text(writer, axis == 0 ? " (" : " ");
         write_number(writer, point.place[axis]);
     }
@@ -301,26 +301,37 @@ static void write_point(struct writer *writer, struct exact_pair *exact,
     certificate_point_clear(&point);
 }
 
-static void write_certificate(struct writer *writer, const struct fmb_pair *pair)
+static void write_certificate(struct writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
     exact_pair_init(&exact, pair);
     const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
     write_text(writer, fmb_verdict_name(verdict));
     if (verdict != FMB_OVERLAPPING)
-        write_normal(writer, &exact, pair->a.body->dim, verdict);
+        write_normal(writer, &exact, pair->a.frame->dim, verdict);
     if (verdict != FMB_SEPARATED)
         write_point(writer, &exact, pair, verdict == FMB_TOUCHING);
     exact_pair_clear(&exact);
 }
 
-enum fmb_status fmb_certificate(const struct fmb_pair *pair, char *text, size_t size,
-                                size_t *length)
+static enum fmb_status check(const struct fmb_placement *a, const struct fmb_placement *b,
+                             double duration)
+{
+    const enum fmb_status status = placements_check(a, b, duration);
+    if (status == FMB_OK && (a->body->frame_count > 1 || b->body->frame_count > 1))
+        return FMB_CANNOT_DECIDE;
+    return status;
+}
+
+enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
+                                double duration, char *text, size_t size, size_t *length)
 {
     struct writer writer = {.text = text, .size = size};
-    enum fmb_status status = fmb_pair_check(pair);
+    enum fmb_status status = check(a, b, duration);
     if (status == FMB_OK) {
-        write_certificate(&writer, pair);
+        const struct frame_pair pair = {
+            {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
+        write_certificate(&writer, &pair);
         if (writer.length >= size)
             status = FMB_OVER_LIMIT;
     }

@@ -23,6 +23,7 @@
 #include "fmb.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -127,46 +128,97 @@ static void proof_each(struct proof *proof, void (*call)(mpq_ptr))
     call(proof->duration);
 }
 
-/* component + rest */
-static void add_rest(struct side *side, const struct fmb_body *body)
+/* v := R(q) v, as fmb.h defines it, with the plane of 2D in space. */
+static void turn(const struct fmb_placement *placement, mpq_t v[AXES])
 {
-    mpq_t rest;
-    mpq_init(rest);
-    for (int i = 0; i < 2; i++)
-        for (int axis = 0; axis < body->dim; axis++) {
-            mpq_set_d(rest, body->rest[i][axis]);
-            mpq_add(side->edge[i][axis], side->edge[i][axis], rest);
-        }
-    mpq_clear(rest);
+    mpq_t q[4], norm, along, product, cross_of_v[AXES], out[AXES];
+    mpq_inits(q[0], q[1], q[2], q[3], norm, along, product, NULL);
+    each_axis(cross_of_v, mpq_init);
+    each_axis(out, mpq_init);
+    mpq_set_d(q[0], placement->orientation[0]);
+    for (int i = 1; i < placement->orientation_count; i++)
+        mpq_set_d(q[placement->orientation_count == 2 ? 3 : i], placement->orientation[i]);
+
+    /* With r = (x, y, z): n R v = (ww - r.r) v + 2 (r.v) r + 2 w (r x v), n = ww + r.r. */
+    dot(norm, q + 1, q + 1);
+    dot(along, q + 1, v);
+    cross(cross_of_v, q + 1, v);
+    mpq_mul(product, q[0], q[0]);
+    mpq_sub(product, product, norm);
+    add_multiple(out, product, v, AXES);
+    mpq_add(along, along, along);
+    add_multiple(out, along, q + 1, AXES);
+    mpq_add(along, q[0], q[0]);
+    add_multiple(out, along, cross_of_v, AXES);
+    mpq_mul(product, q[0], q[0]);
+    mpq_add(norm, norm, product);
+    for (int axis = 0; axis < AXES; axis++)
+        mpq_div(v[axis], out[axis], norm);
+
+    each_axis(out, mpq_clear);
+    each_axis(cross_of_v, mpq_clear);
+    mpq_clears(q[0], q[1], q[2], q[3], norm, along, product, NULL);
 }
 
-static void set_side(struct side *side, const struct fmb_frame *frame)
+/* Components and origin, in body coordinates. */
+static void set_frame(struct side *side, const struct fmb_frame *frame)
 {
-    const struct fmb_body *body = frame->body;
-    side->count = body->count;
-    side->simplex = body->shape != FMB_CUBOID;
-    for (int axis = 0; axis < body->dim; axis++) {
+    mpq_t number;
+    mpq_init(number);
+    side->count = frame->count;
+    side->simplex = frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
+    for (int axis = 0; axis < frame->dim; axis++) {
+        for (int i = 0; i < frame->count; i++) {
+            mpq_set_d(side->edge[i][axis], frame->component[i][axis]);
+            mpq_set_d(number, frame->rest[i][axis]);
+            mpq_add(side->edge[i][axis], side->edge[i][axis], number);
+        }
         mpq_set_d(side->origin[axis], frame->origin[axis]);
-        if (frame->moving)
-            mpq_set_d(side->velocity[axis], frame->velocity[axis]);
-        for (int i = 0; i < body->count; i++)
-            mpq_set_d(side->edge[i][axis], body->component[i][axis]);
+        if (frame->shape != FMB_BOX)
+            continue;
+        mpq_div_2exp(number, side->edge[axis][axis], 1);
+        mpq_set_d(side->origin[axis], frame->centre[axis]);
+        mpq_sub(side->origin[axis], side->origin[axis], number);
     }
-    if (body->rounded)
-        add_rest(side, body);
+    mpq_clear(number);
+}
+
+static void set_side(struct side *side, const struct fmb_placement *placement)
+{
+    mpq_t position;
+    mpq_init(position);
+    set_frame(side, fmb_body_frame(placement->body, 0));
+    if (placement->orientation_count > 0) {
+        turn(placement, side->origin);
+        for (int i = 0; i < side->count; i++)
+            turn(placement, side->edge[i]);
+    }
+    for (int axis = 0; axis < placement->body->dim; axis++) {
+        mpq_set_d(position, placement->position[axis]);
+        mpq_add(side->origin[axis], side->origin[axis], position);
+        mpq_set_d(side->velocity[axis], placement->velocity[axis]);
+    }
     side->edges = side->count;
     for (int i = 0; side->simplex && i < side->count; i++)
         for (int j = i + 1; j < side->count; j++)
             subtract(side->edge[side->edges++], side->edge[j], side->edge[i]);
+    mpq_clear(position);
 }
 
-static void set_pair(struct proof *proof, const struct fmb_pair *pair)
+static bool is_zero_vector(mpq_t v[AXES])
 {
-    proof->dim = pair->a.body->dim;
-    proof->moving = pair->a.moving || pair->b.moving;
-    mpq_set_d(proof->duration, pair->duration);
-    set_side(&proof->side[0], &pair->a);
-    set_side(&proof->side[1], &pair->b);
+    return mpq_sgn(v[0]) == 0 && mpq_sgn(v[1]) == 0 && mpq_sgn(v[2]) == 0;
+}
+
+static void set_pair(struct proof *proof, const struct fmb_placement *a,
+                     const struct fmb_placement *b, double duration)
+{
+    proof->dim = a->body->dim;
+    mpq_set_d(proof->duration, duration);
+    set_side(&proof->side[0], a);
+    set_side(&proof->side[1], b);
+    proof->moving =
+        !is_zero_vector(proof->side[0].velocity) || !is_zero_vector(proof->side[1].velocity);
     subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
     subtract(proof->d, proof->side[1].origin, proof->side[0].origin);
     mpq_set_ui(proof->z[2], 1, 1);
@@ -582,19 +634,35 @@ static const char *flaw_of(struct proof *proof, enum fmb_verdict verdict, const 
     return flaw;
 }
 
-bool fmb_certificate_holds(const struct fmb_pair *pair, enum fmb_verdict verdict, const char *text,
-                           char *why, size_t size)
+/* NULL, or why there can be no certificate. */
+static const char *flaw_of_placements(const struct fmb_placement *a, const struct fmb_placement *b,
+                                      double duration)
 {
-    const char *flaw;
-    enum fmb_status status = fmb_pair_check(pair);
-    if (status == FMB_OK) {
+    enum fmb_status status = fmb_placement_check(a);
+    if (status == FMB_OK)
+        status = fmb_placement_check(b);
+    if (status != FMB_OK)
+        return fmb_status_text(status);
+    if (a->body->dim != b->body->dim)
+        return fmb_status_text(FMB_DIMENSIONS_DIFFER);
+    if (!(duration >= 0 && isfinite(duration)))
+        return fmb_status_text(FMB_BAD_DURATION);
+    if (a->body->frame_count > 1 || b->body->frame_count > 1)
+        return "a body of several frames has no certificate";
+    return NULL;
+}
+
+bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_placement *b,
+                           double duration, enum fmb_verdict verdict, const char *text, char *why,
+                           size_t size)
+{
+    const char *flaw = flaw_of_placements(a, b, duration);
+    if (!flaw) {
         struct proof proof;
         proof_each(&proof, mpq_init);
-        set_pair(&proof, pair);
+        set_pair(&proof, a, b, duration);
         flaw = flaw_of(&proof, verdict, text);
         proof_each(&proof, mpq_clear);
-    } else {
-        flaw = fmb_status_text(status);
     }
     if (size > 0)
         snprintf(why, size, "%s", flaw ? flaw : "");

@@ -189,8 +189,8 @@ struct chord {
     mpq_t *at, *direction; /* [coordinate] */
     bool bounded;
     mpq_t low, high; /* where the line leaves Q: s from low to high */
-    /* [axis]: the point of the line from the origin of one frame, in the unit of the exact pair,
-     * is place + s way. */
+    /* [axis]: the point of the line from the origin of one frame, in integers of the exact pair, is
+     * place + s way. */
     mpq_t place[3], way[3];
     mpq_t value, slope; /* of what is bounded: value + s slope */
     mpq_t bound[2], number;
@@ -264,20 +264,24 @@ static bool shorten_to_slab(void *context, struct slab *slab)
 }
 
 /* At the time t the point p lies at p - t v - o from the origin of the frame. */
-static void shorten_to_frame(struct chord *chord, const struct fmb_frame *frame, enum slabs_of of)
+static void shorten_to_frame(struct chord *chord, const struct placed_frame *placed, int f)
 {
-    for (int axis = 0; axis < frame->body->dim; axis++) {
-        mpq_set_d(chord->number, frame->moving ? frame->velocity[axis] : 0);
+    const struct exact_pair *exact = chord->exact;
+    for (int axis = 0; axis < placed->frame->dim; axis++) {
+        mpq_set_d(chord->number, placed->placement->velocity[axis]);
         mpq_mul(chord->place[axis], chord->number, chord->at[0]);
         mpq_sub(chord->place[axis], chord->at[1 + axis], chord->place[axis]);
         mpq_mul(chord->way[axis], chord->number, chord->direction[0]);
         mpq_sub(chord->way[axis], chord->direction[1 + axis], chord->way[axis]);
-        mpq_set_d(chord->number, frame->origin[axis]);
+        scale(chord->place[axis], -exact->unit);
+        scale(chord->way[axis], -exact->unit);
+        mpq_set_z(chord->number, exact->scale);
+        mpq_mul(chord->place[axis], chord->place[axis], chord->number);
+        mpq_mul(chord->way[axis], chord->way[axis], chord->number);
+        mpq_set_z(chord->number, exact->frame[f].origin[axis]);
         mpq_sub(chord->place[axis], chord->place[axis], chord->number);
-        scale(chord->place[axis], -chord->exact->unit);
-        scale(chord->way[axis], -chord->exact->unit);
     }
-    slabs_walk(chord->exact, of, shorten_to_slab, chord);
+    slabs_walk(chord->exact, f ? SLABS_OF_B : SLABS_OF_A, shorten_to_slab, chord);
 }
 
 /* Moves the point along its line to where coordinate k, which is 1 in the direction, is the
@@ -295,7 +299,7 @@ static void simplify(struct chord *chord, int k)
 }
 
 static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pair *exact,
-                       const struct fmb_pair *pair)
+                       const struct frame_pair *pair)
 {
     struct chord chord = {.exact = exact, .at = at};
     chord_each(&chord, mpq_init);
@@ -305,8 +309,8 @@ static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pa
         chord.direction = hull->direction[k];
         chord.bounded = false;
         shorten_to_window(&chord, pair->duration);
-        shorten_to_frame(&chord, &pair->a, SLABS_OF_A);
-        shorten_to_frame(&chord, &pair->b, SLABS_OF_B);
+        shorten_to_frame(&chord, &pair->a, 0);
+        shorten_to_frame(&chord, &pair->b, 1);
         assert(chord.bounded && mpq_cmp(chord.low, chord.high) < 0);
         simplify(&chord, k);
     }
@@ -349,7 +353,7 @@ static bool is_wide(struct exact_pair *exact)
 }
 
 void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
-                            const struct fmb_pair *pair, bool touching)
+                            const struct frame_pair *pair, bool touching)
 {
     if (is_wide(exact)) {
         certificate_point_wide(point, exact, pair, touching);

@@ -23,10 +23,10 @@ void simplest_between(mpq_t out, mpq_t low, mpq_t high);
  * On output: a point of both frames at a time of the window; if they overlap, of the relative
  * interiors of both. */
 void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
-                            const struct fmb_pair *pair, bool touching);
+                            const struct frame_pair *pair, bool touching);
 
 /* The same where the numbers of the pair span many bits. */
 void certificate_point_wide(struct certificate_point *point, struct exact_pair *exact,
-                            const struct fmb_pair *pair, bool touching);
+                            const struct frame_pair *pair, bool touching);
 
 #endif

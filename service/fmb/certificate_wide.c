@@ -126,7 +126,7 @@ static void set_sample_mean(struct sample *sample, mpz_t scratch)
 
 /* The mean of so many independent points of Q, or as many as there are. */
 static void find_mean(struct certificate_point *out, struct exact_pair *exact,
-                      const struct fmb_pair *pair, int most)
+                      const struct frame_pair *pair, int most)
 {
     struct sample sample = {.most = most};
     const struct dyadic window = dyadic_of(pair->duration);
@@ -316,7 +316,7 @@ static void simplify(struct inside *inside, long long factor, long exponent, mpq
 }
 
 /* On input: the mean; false if it is not strictly inside of Q. */
-static bool move_inside(struct inside *inside, const struct fmb_pair *pair,
+static bool move_inside(struct inside *inside, const struct frame_pair *pair,
                         struct certificate_point *out)
 {
     const struct dyadic window = dyadic_of(pair->duration);
@@ -327,7 +327,7 @@ static bool move_inside(struct inside *inside, const struct fmb_pair *pair,
         simplify(inside, window.mantissa, window.exponent, out->time);
     else if (mpz_sgn(inside->tau))
         mpq_set_d(out->time, pair->duration);
-    for (int k = 1; k <= pair->a.body->dim; k++) {
+    for (int k = 1; k <= pair->a.frame->dim; k++) {
         set_chord(inside, k);
         simplify(inside, 1, inside->exact->unit, out->place[k - 1]);
     }
@@ -340,7 +340,7 @@ static bool move_inside(struct inside *inside, const struct fmb_pair *pair,
 static const long bits_below[] = {64, 4096};
 
 static bool find_inside(struct certificate_point *out, struct exact_pair *exact,
-                        const struct fmb_pair *pair)
+                        const struct frame_pair *pair)
 {
     struct inside inside = {.exact = exact};
     bool found = false;
@@ -356,9 +356,10 @@ static bool find_inside(struct certificate_point *out, struct exact_pair *exact,
 }
 
 void certificate_point_wide(struct certificate_point *point, struct exact_pair *exact,
-                            const struct fmb_pair *pair, bool touching)
+                            const struct frame_pair *pair, bool touching)
 {
-    const bool solid = !pair->a.body->flat && !pair->b.body->flat;
-    if (touching || !solid || !find_inside(point, exact, pair))
+    const bool solid = !pair->a.frame->flat && !pair->b.frame->flat;
+    const bool turned = mpz_cmp_ui(exact->scale, 1) != 0;
+    if (touching || !solid || turned || !find_inside(point, exact, pair))
         find_mean(point, exact, pair, touching ? 1 : NUMBERS);
 }

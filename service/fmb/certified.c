@@ -1,5 +1,6 @@
 #include "certified.h"
 
+#include "axis.h"
 #include "exact.h"
 #include "faces.h"
 #include "limbs.h"
@@ -10,10 +11,11 @@
 
 /* What is known of a pair, found when it is needed. */
 struct certified {
-    const struct fmb_pair *pair;
-    bool quick;                   /* integers wider than QUICK_LIMBS are not used */
-    bool open;                    /* only with quick: the verdict needs such integers */
-    struct fmb_prepared frame[2]; /* in the places that kind wants */
+    const struct frame_pair *pair;
+    bool quick;                          /* integers wider than QUICK_LIMBS are not used */
+    bool open;                           /* only with quick: the verdict needs such integers */
+    const struct fmb_prepared *frame[2]; /* of a and b */
+    bool swapped;                        /* kernels of this kind take b first */
     enum run_kind kind;
     bool slabs_known, slabs_good; /* slabs_good: doubles can say something of the pair */
     struct slabs_pair slabs;
@@ -28,7 +30,7 @@ struct certified {
  * of limbs, and a pair has at most SLABS_MAX of them: tens of microseconds. */
 enum { QUICK_LIMBS = 2 };
 
-static void begin(struct certified *certified, const struct fmb_pair *pair, bool quick)
+static void begin(struct certified *certified, const struct frame_pair *pair, bool quick)
 {
     certified->pair = pair;
     certified->quick = quick;
@@ -40,7 +42,8 @@ static void begin(struct certified *certified, const struct fmb_pair *pair, bool
 static bool find_slabs(struct certified *certified)
 {
     if (!certified->slabs_known)
-        certified->slabs_good = slabs_prepare(certified->pair, &certified->slabs);
+        certified->slabs_good = slabs_prepare(certified->frame[0], certified->frame[1],
+                                              certified->pair->duration, &certified->slabs);
     certified->slabs_known = true;
     return certified->slabs_good;
 }
@@ -60,13 +63,6 @@ static enum fmb_verdict verdict_of_sign(int sign)
     return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }
 
-/* Whether c + tau g > 0 surely holds at some time. */
-static bool surely_holds(const struct inequality *x)
-{
-    const double c = x->c - x->c_error;
-    return c > 0 || c + (x->g - x->g_error) > 0;
-}
-
 /* The slabs that doubles leave open, each looked at again alone if asked to; returns how many.
  * *separated: one of them separates, and the rest was not looked at. */
 static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_normal out[SLABS_MAX],
@@ -78,6 +74,10 @@ static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_no
     *separated = false;
     for (int i = 0; i < count && !*separated; i++) {
         struct inequality side[2];
+        if (slab[i].error == 0 && pair->inexact) { /* the true edges might not be parallel */
+            out[open++] = slab[i].normal;
+            continue;
+        }
         if (slab[i].error == 0 || slab_gap(&slab[i]) < -slab[i].error)
             continue;
         slab_inequalities(&slab[i], side);
@@ -125,7 +125,7 @@ static enum fmb_verdict verdict_of_slabs(struct certified *certified)
     find_span(certified);
     if (!certified->rounds) {
         certified->path = CERTIFIED_UNROUNDED;
-        return verdict_of_outcome(slabs_filter(&certified->slabs, false));
+        return verdict_of_outcome(slabs_filter_exactly(&certified->slabs));
     }
     struct slab_normal open[SLABS_MAX];
     struct limbs_pair limbs;
@@ -160,9 +160,12 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
     if (!find_slabs(certified))
         return verdict_in_full(certified);
-    const enum fmb_verdict verdict = verdict_of_slabs(certified);
     const bool faces =
-        certified->pair->a.body->shape == FMB_FACE && certified->pair->b.body->shape == FMB_FACE;
+        certified->pair->a.frame->shape == FMB_FACE && certified->pair->b.frame->shape == FMB_FACE;
+    enum fmb_verdict verdict = faces ? 0 : axis_verdict(&certified->slabs);
+    certified->path = CERTIFIED_REFINED;
+    if (!verdict)
+        verdict = verdict_of_slabs(certified);
     if (!faces)
         return verdict;
     if (certified->path == CERTIFIED_EXACT) {
@@ -172,18 +175,23 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;
 }
 
-/* False if doubles can say nothing of the pair. */
-static bool prepare(struct certified *certified)
+/* Sets the kind of a pair from its prepared frames; false if doubles cannot decide it. */
+static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
+                     const struct fmb_prepared *b)
 {
-    const struct fmb_pair *pair = certified->pair;
-    struct fmb_prepared *frame = certified->frame;
-    const struct run_kinds kinds =
-        run_kinds_of(prepared_kind_of(&pair->a), prepared_kind_of(&pair->b), pair->duration);
-    prepared_set(kinds.swapped ? &pair->b : &pair->a, &frame[0]);
-    prepared_set(kinds.swapped ? &pair->a : &pair->b, &frame[1]);
-    certified->kind =
-        kinds.moving && run_drifts(&frame[0], &frame[1]) ? kinds.drifting : kinds.at_rest;
+    certified->frame[0] = a;
+    certified->frame[1] = b;
+    certified->kind = run_kind_of(a, b, certified->pair->duration, &certified->swapped);
     return certified->kind < RUN_KINDS;
+}
+
+/* Runs the kernel of its kind on the pair alone. */
+static enum slabs_outcome run_alone(const struct certified *certified,
+                                    run_alone_function *const *functions, double *out)
+{
+    return functions[certified->kind](certified->frame[certified->swapped],
+                                      certified->frame[!certified->swapped],
+                                      certified->pair->duration, out);
 }
 
 /* On input: a pair that is prepared. contact: NULL, or where the times of a pair that drifts go, as
@@ -192,22 +200,24 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
 {
     run_alone_function *const *functions = contact ? run_times_alone() : run_verdicts_alone();
     certified->path = CERTIFIED_FILTER;
-    const enum slabs_outcome outcome = functions[certified->kind](
-        &certified->frame[0], &certified->frame[1], certified->pair->duration, contact);
+    const enum slabs_outcome outcome = run_alone(certified, functions, contact);
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
 }
 
-/* contact: as in verdict_of(). */
-static enum fmb_verdict verdict_of_any(struct certified *certified, double contact[2])
+/* On input: a pair that has begun. */
+static enum fmb_verdict verdict_of_any(struct certified *certified)
 {
-    return prepare(certified) ? verdict_of(certified, contact) : verdict_in_full(certified);
+    struct fmb_prepared a, b;
+    prepared_set(&certified->pair->a, &a);
+    prepared_set(&certified->pair->b, &b);
+    return set_kind(certified, &a, &b) ? verdict_of(certified, NULL) : verdict_in_full(certified);
 }
 
 static enum fmb_verdict shadow_verdict(struct certified *certified)
 {
     struct certified shadow;
     begin(&shadow, &certified->shadow.pair, certified->quick);
-    const enum fmb_verdict verdict = verdict_of_any(&shadow, NULL);
+    const enum fmb_verdict verdict = verdict_of_any(&shadow);
     certified->path = shadow.path;
     certified->open = shadow.open;
     return verdict;
@@ -217,7 +227,7 @@ static enum fmb_verdict shadow_verdict(struct certified *certified)
  * exact then. */
 static bool is_plain(const struct certified *certified)
 {
-    return prepared_both_plain(&certified->frame[0], &certified->frame[1]);
+    return prepared_both_plain(certified->frame[0], certified->frame[1]);
 }
 
 /* Whether the times are exact in doubles: not asked of numbers that are likely to round. */
@@ -229,8 +239,8 @@ static bool never_rounds(struct certified *certified)
     return !certified->rounds;
 }
 
-static enum fmb_status decide(const struct fmb_pair *pair, unsigned want, bool quick,
-                              struct fmb_answer *answer);
+static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want, bool quick,
+                                   struct fmb_answer *answer);
 
 /* On input: answer->contact, of a pair that drifts, as the filter found it. A pair that does not is
  * in contact over the whole window. False: ask the exact method. Which step gives the times depends
@@ -246,7 +256,7 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
     if (certified->planes == FACES_SHARED) {
         struct fmb_answer shadow = {0};
         const enum fmb_status status =
-            decide(&certified->shadow.pair, 0, certified->quick, &shadow);
+            decide_pair(&certified->shadow.pair, 0, certified->quick, &shadow);
         memcpy(answer->contact, shadow.contact, sizeof shadow.contact);
         return status == FMB_OK;
     }
@@ -265,11 +275,10 @@ static bool answer_box(struct certified *certified, struct fmb_answer *answer)
     answer->has_box = true;
     if (certified->planes != FACES_CROSSING)
         return false;
-    if (answer->verdict == FMB_OVERLAPPING && !answer->has_contact &&
+    if (answer->verdict == FMB_OVERLAPPING && !pair_moves(certified->pair) &&
         !(certified->kind & RUN_FACE) && !never_rounds(certified)) {
         double box[2][FMB_DIM_MAX];
-        run_boxes_alone()[certified->kind](&certified->frame[0], &certified->frame[1], 0,
-                                           (double *) box);
+        run_alone(certified, run_boxes_alone(), (double *) box);
         memcpy(answer->box, box, sizeof box);
         if (!isnan(box[0][0]))
             return true;
@@ -279,12 +288,12 @@ static bool answer_box(struct certified *certified, struct fmb_answer *answer)
     find_span(certified);
     if (answer->verdict == FMB_TOUCHING && certified->rounds)
         return false;
-    return box_of(certified->pair, &certified->slabs, certified->rounds, answer->box);
+    return box_of(&certified->slabs, certified->rounds, answer->box);
 }
 
 /* The exact method gives what the doubles did not, and that alone: which of them gives what is
  * decided by the numbers of the pair, so that the answer is the same wherever it is asked. */
-static void complete(const struct fmb_pair *pair, unsigned want, bool good_contact, bool good_box,
+static void complete(const struct frame_pair *pair, unsigned want, bool good_contact, bool good_box,
                      struct fmb_answer *answer)
 {
     struct fmb_answer exact = {0};
@@ -295,12 +304,13 @@ static void complete(const struct fmb_pair *pair, unsigned want, bool good_conta
         memcpy(answer->box, exact.box, sizeof exact.box);
 }
 
-static enum fmb_status decide(const struct fmb_pair *pair, unsigned want, bool quick,
+static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_prepared *a,
+                              const struct fmb_prepared *b, unsigned want, bool quick,
                               struct fmb_answer *answer)
 {
     struct certified certified;
     begin(&certified, pair, quick);
-    if (!prepare(&certified))
+    if (!set_kind(&certified, a, b))
         return quick ? FMB_CANNOT_DECIDE : exact_decide(pair, want, answer);
     answer->verdict = verdict_of(&certified, certified.kind & RUN_DRIFTS ? answer->contact : NULL);
     if (certified.open)
@@ -309,8 +319,7 @@ static enum fmb_status decide(const struct fmb_pair *pair, unsigned want, bool q
         answer->contact[0] = answer->contact[1] = 0;
         return FMB_OK;
     }
-    const bool moving = pair->a.moving || pair->b.moving;
-    const bool good_contact = !moving || answer_contact(&certified, answer);
+    const bool good_contact = answer_contact(&certified, answer);
     const bool good_box = !(want & FMB_WANT_BOX) || answer_box(&certified, answer);
     if (good_contact && good_box)
         return FMB_OK;
@@ -320,30 +329,44 @@ static enum fmb_status decide(const struct fmb_pair *pair, unsigned want, bool q
     return FMB_OK;
 }
 
-enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
+static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want, bool quick,
+                                   struct fmb_answer *answer)
+{
+    struct fmb_prepared a, b;
+    prepared_set(&pair->a, &a);
+    prepared_set(&pair->b, &b);
+    return decide(pair, &a, &b, want, quick, answer);
+}
+
+enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
-    return decide(pair, want, false, answer);
+    return decide_pair(pair, want, false, answer);
 }
 
-enum fmb_status certified_decide_quick(const struct fmb_pair *pair, unsigned want,
-                                       struct fmb_answer *answer)
+enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
+                                          const struct fmb_prepared *b, double duration,
+                                          unsigned want, bool quick, struct fmb_answer *answer)
 {
-    return decide(pair, want, true, answer);
+    const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
+    return decide(&pair, a, b, want, quick, answer);
 }
 
-enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path)
+enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)
 {
     struct certified certified;
     begin(&certified, pair, false);
-    const enum fmb_verdict verdict = verdict_of_any(&certified, NULL);
+    const enum fmb_verdict verdict = verdict_of_any(&certified);
     *path = certified.path;
     return verdict;
 }
 
-enum fmb_verdict certified_unsure(const struct fmb_pair *pair, bool quick)
+enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                  double duration, bool quick)
 {
+    const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
     struct certified certified;
-    begin(&certified, pair, quick);
+    begin(&certified, &pair, quick);
+    set_kind(&certified, a, b);
     return verdict_of_unsure(&certified);
 }

@@ -19,13 +19,15 @@
 #include "slabs.h"
 
 /* The method. */
-enum fmb_status certified_decide(const struct fmb_pair *pair, unsigned want,
+enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
-/* The same answer, or CANNOT_DECIDE and *answer unspecified where it needs GMP or lengths of more
- * than 128 bits. Takes tens of microseconds at most and allocates nothing. */
-enum fmb_status certified_decide_quick(const struct fmb_pair *pair, unsigned want,
-                                       struct fmb_answer *answer);
+/* The same answer from prepared frames. quick: or CANNOT_DECIDE, and *answer is unspecified, where
+ * it needs GMP or lengths of more than 128 bits; takes tens of microseconds at most then, and
+ * allocates nothing. */
+enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
+                                          const struct fmb_prepared *b, double duration,
+                                          unsigned want, bool quick, struct fmb_answer *answer);
 
 /* Which step decides the verdict of a pair: the filter; the same slabs in doubles that are known
  * not to round; those left open, in doubles with bounds of their own; integers of fixed width;
@@ -39,20 +41,20 @@ enum certified_path {
 };
 
 /* The verdict of a checked pair, and who found it. */
-enum fmb_verdict certified_verdict(const struct fmb_pair *pair, enum certified_path *path);
+enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
-/* The same of a pair of which the filter is known to be unsure. quick: 0 where it needs GMP or
- * lengths of more than 128 bits. */
-enum fmb_verdict certified_unsure(const struct fmb_pair *pair, bool quick);
+/* The same of a prepared pair of which the filter is known to be unsure. quick: 0 where it needs
+ * GMP or lengths of more than 128 bits. */
+enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                  double duration, bool quick);
 
-/* For a pair in contact that drifts: answer->contact. rounds: whether operations on these numbers
+/* For a pair in contact that drifts: its contact. rounds: whether operations on these numbers
  * may round; span: of the pair; exact: where doubles do not give an end within its limit, integers
  * may. False if nothing that may be used does. */
-bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
+bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
 /* For a pair in contact: the box. False if doubles do not give it within its limit. */
-bool box_of(const struct fmb_pair *pair, const struct slabs_pair *slabs, bool rounds,
-            double box[2][FMB_DIM_MAX]);
+bool box_of(const struct slabs_pair *slabs, bool rounds, double box[2][FMB_DIM_MAX]);
 
 #endif

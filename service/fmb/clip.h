@@ -67,6 +67,13 @@ static inline bool never_holds(const struct inequality *x)
     return c < 0 && c + (x->g + x->g_error) < 0;
 }
 
+/* It holds strictly at some s of the segment. */
+static inline bool surely_holds(const struct inequality *x)
+{
+    const double c = x->c - x->c_error;
+    return c > 0 || c + (x->g - x->g_error) > 0;
+}
+
 static inline bool always_holds(const struct inequality *x)
 {
     const double c = x->c - x->c_error;

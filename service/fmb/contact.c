@@ -9,7 +9,8 @@
  *
  * Where outer and inner are too far apart, the slabs whose inner end is beyond the outer one of
  * all are asked for their exact end, in limbs: the tightest doubles, whichever of them it is,
- * since rounding keeps order. */
+ * since rounding keeps order. Not so with frames that have errors: a slab that is missing in the
+ * rounded list, its edges being parallel there, might be the one. */
 #include "certified.h"
 
 #include "clip.h"
@@ -155,7 +156,7 @@ static void settle(const struct slabs *slabs, const struct limbs_pair *limbs,
     exact_end_each(&exact, mpz_clear);
 }
 
-bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
+bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2])
 {
     struct slabs slabs;
@@ -173,7 +174,7 @@ bool contact_of(const struct fmb_pair *pair, const struct slabs_pair *slabs_pair
     contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))
         return true;
-    if (!exact || !limbs_prepare(pair, span, &limbs))
+    if (!exact || slabs_pair->inexact || !limbs_prepare(pair, span, &limbs))
         return false;
     for (int end = 0; end < 2; end++)
         if (!good_end(&times, end))

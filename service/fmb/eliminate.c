@@ -152,15 +152,15 @@ static void bound_variable(const struct elimination *system, int k, double range
 /* The box of { origin of b + tau displacement of b + sum x_i c_i } over the ranges. Rounding may
  * have turned a box of no width inside out: the ends are put in order. False if one is no
  * number: infinities met on the way. */
-static bool answer_box(const struct fmb_pair *pair, const double range[][2],
+static bool answer_box(const struct inexact_pair *pair, const double range[][2],
                        struct fmb_answer *answer)
 {
-    const struct fmb_body *b = pair->b.body;
+    const struct world_frame *b = &pair->b;
     answer->has_box = true;
     for (int axis = 0; axis < b->dim; axis++) {
-        double low = pair->b.origin[axis], high = low;
-        double moved = pair->b.moving ? pair->b.velocity[axis] * pair->duration : 0;
-        for (int i = 0; i < b->dim + pair->b.moving; i++) {
+        double low = b->origin[axis], high = low;
+        const double moved = b->velocity[axis] * pair->duration;
+        for (int i = 0; i < b->dim + pair->moving; i++) {
             double c = i < b->dim ? b->component[i][axis] : moved;
             low += c * range[i][c < 0];
             high += c * range[i][c >= 0];
@@ -173,17 +173,17 @@ static bool answer_box(const struct fmb_pair *pair, const double range[][2],
     return true;
 }
 
-enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
+enum fmb_status eliminate_decide(const struct frame_pair *frames, unsigned want,
                                  struct fmb_answer *answer)
 {
-    if (!pair->a.body->inverted || pair->b.body->flat)
-        return FMB_CANNOT_DECIDE;
-    bool moving = pair->a.moving || pair->b.moving;
+    struct inexact_pair pair;
     struct elimination system;
-    system.vars = pair->a.body->dim + moving;
+    if (!frames->a.frame->inverted || !inexact_pair_of(frames, &pair))
+        return FMB_CANNOT_DECIDE;
+    system.vars = pair.a.dim + pair.moving;
     system.begin[0] = 0;
     system.no_interior = system.overflow = false;
-    if (!rows_of_pair(pair, system.rows, &system.begin[1]))
+    if (!rows_of_pair(&pair, system.rows, &system.begin[1]))
         return FMB_CANNOT_DECIDE;
 
     answer->verdict = FMB_SEPARATED;
@@ -193,15 +193,17 @@ enum fmb_status eliminate_decide(const struct fmb_pair *pair, unsigned want,
     answer->verdict = bounds_verdict(&bounds);
     if (answer->verdict == FMB_SEPARATED)
         return FMB_OK;
-    if (moving)
-        bounds_answer_contact(&bounds, pair->duration, answer);
+    answer->has_contact = true;
+    answer->contact[1] = pair.duration + 0.0; /* never -0 */
+    if (pair.moving)
+        bounds_answer_contact(&bounds, pair.duration, answer);
     if (want & FMB_WANT_BOX) {
         double range[ROWS_VARS_MAX][2];
         int last = system.vars - 1;
         bounds_range(&bounds, range[last]);
         for (int k = last - 1; k >= 0; k--)
             bound_variable(&system, k, range);
-        if (!answer_box(pair, (const double(*)[2]) range, answer))
+        if (!answer_box(&pair, (const double(*)[2]) range, answer))
             return FMB_CANNOT_DECIDE;
     }
     return FMB_OK;

@@ -3,21 +3,29 @@
 
 #include <string.h>
 
-/* The largest power of two of which every length of the pair is a multiple. */
-static long pair_unit(const struct fmb_pair *pair)
+/* The largest power of two of which every length that the pair is given by is a multiple. */
+static long pair_unit(const struct frame_pair *pair)
 {
-    const struct fmb_frame *frames[2] = {&pair->a, &pair->b};
+    const struct placed_frame *placed[2] = {&pair->a, &pair->b};
     long unit = INTEGER_NO_EXPONENT;
     for (int f = 0; f < 2; f++) {
-        const struct fmb_frame *frame = frames[f];
-        int dim = frame->body->dim;
-        unit = integer_vector_unit(unit, frame->origin, dim);
-        for (int i = 0; i < frame->body->count; i++)
-            unit = integer_vector_unit(unit, frame->body->component[i], dim);
-        for (int i = 0; i < 2 && frame->body->rounded; i++)
-            unit = integer_vector_unit(unit, frame->body->rest[i], dim);
-        long speed = frame->moving ? integer_vector_unit(INTEGER_NO_EXPONENT, frame->velocity, dim)
-                                   : INTEGER_NO_EXPONENT;
+        const struct fmb_frame *frame = placed[f]->frame;
+        const struct fmb_placement *placement = placed[f]->placement;
+        const int dim = frame->dim;
+        long lengths = INTEGER_NO_EXPONENT;
+        for (int i = 0; i < frame->count; i++) {
+            lengths = integer_vector_unit(lengths, frame->component[i], dim);
+            lengths = integer_vector_unit(lengths, frame->rest[i], dim);
+        }
+        if (frame->shape == FMB_BOX) { /* halves of sizes */
+            lengths -= lengths < INTEGER_NO_EXPONENT;
+            lengths = integer_vector_unit(lengths, frame->centre, dim);
+        } else {
+            lengths = integer_vector_unit(lengths, frame->origin, dim);
+        }
+        unit = integer_lower_unit(unit, lengths);
+        unit = integer_vector_unit(unit, placement->position, dim);
+        const long speed = integer_vector_unit(INTEGER_NO_EXPONENT, placement->velocity, dim);
         if (speed < INTEGER_NO_EXPONENT)
             unit = integer_lower_unit(unit, speed + dyadic_of(pair->duration).exponent);
     }
@@ -42,36 +50,171 @@ static void set_edges(struct exact_frame *frame, int f)
     }
 }
 
+/* ---- Orientations ----
+ *
+ * With q in integers, n R(q) is a matrix of integers, n = |q|^2. All lengths of a pair are
+ * multiplied by scale: n_a n_b, or n_a if that is n_b. This changes no sign, no time and no
+ * direction; places are divided by it at the end. */
+
+struct turn {
+    bool turned;
+    mpz_t row[3][3], norm; /* n R(q), n; norm is 1 where it is not turned */
+};
+
+static void turn_each(struct turn *turn, void (*call)(mpz_ptr))
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            call(turn->row[i][j]);
+    call(turn->norm);
+}
+
+/* q in the least integers. */
+static void set_quaternion(const struct fmb_placement *placement, mpz_t q[4], mpz_t divisor)
+{
+    const int count = placement->orientation_count;
+    const long unit = integer_vector_unit(INTEGER_NO_EXPONENT, placement->orientation, count);
+    mpz_set_ui(divisor, 0);
+    for (int i = 0; i < count; i++) {
+        const int at = count == 2 && i == 1 ? 3 : i;
+        integer_set(q[at], dyadic_of(placement->orientation[i]), unit);
+        mpz_gcd(divisor, divisor, q[at]);
+    }
+    for (int i = 0; i < 4; i++)
+        mpz_divexact(q[i], q[i], divisor);
+}
+
+/* On input: turn is all 0. */
+static void turn_set(const struct fmb_placement *placement, struct turn *turn)
+{
+    turn->turned = placement->orientation_count != 0;
+    mpz_set_ui(turn->norm, 1);
+    if (!turn->turned)
+        return;
+    mpz_t q[4], product;
+    mpz_inits(q[0], q[1], q[2], q[3], product, NULL);
+    set_quaternion(placement, q, product);
+    mpz_set_ui(turn->norm, 0);
+    for (int k = 0; k < 4; k++) {
+        mpz_mul(product, q[k], q[k]);
+        mpz_add(turn->norm, turn->norm, product);
+        for (int i = 0; i < 3; i++) { /* ww, and v_k v_k: + in row k, else - */
+            if (k == 0 || k == 1 + i)
+                mpz_add(turn->row[i][i], turn->row[i][i], product);
+            else
+                mpz_sub(turn->row[i][i], turn->row[i][i], product);
+        }
+    }
+    for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), cyclic */
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        mpz_mul(product, q[1 + i], q[1 + j]);
+        mpz_mul_2exp(turn->row[i][j], product, 1);
+        mpz_set(turn->row[j][i], turn->row[i][j]);
+        mpz_mul(product, q[0], q[1 + k]);
+        mpz_submul_ui(turn->row[i][j], product, 2);
+        mpz_addmul_ui(turn->row[j][i], product, 2);
+    }
+    mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
+}
+
+/* v := n R(q) v times factor. */
+static void turn_vector(const struct turn *turn, const mpz_t factor, mpz_t v[3])
+{
+    if (turn->turned) {
+        mpz_t out[3];
+        mpz_inits(out[0], out[1], out[2], NULL);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                mpz_addmul(out[i], turn->row[i][j], v[j]);
+        for (int i = 0; i < 3; i++)
+            mpz_swap(v[i], out[i]);
+        mpz_clears(out[0], out[1], out[2], NULL);
+    }
+    if (mpz_cmp_ui(factor, 1) != 0)
+        for (int i = 0; i < 3; i++)
+            mpz_mul(v[i], v[i], factor);
+}
+
+/* ---- Frames ---- */
+
 /* component + rest */
-static void add_rest(struct exact_frame *out, const struct fmb_body *body, long unit)
+static void add_rest(struct exact_frame *out, const struct fmb_frame *frame, long unit)
 {
     mpz_t rest;
     mpz_init(rest);
-    for (int i = 0; i < 2; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            integer_set(rest, dyadic_of(body->rest[i][axis]), unit);
+    for (int i = 0; i < frame->count; i++)
+        for (int axis = 0; axis < frame->dim; axis++) {
+            integer_set(rest, dyadic_of(frame->rest[i][axis]), unit);
             mpz_add(out->component[i][axis], out->component[i][axis], rest);
         }
     mpz_clear(rest);
 }
 
-static void frame_set(struct exact_frame *out, const struct fmb_frame *frame, double duration,
-                      long unit)
+/* Components and origin in body coordinates. */
+static void set_frame(struct exact_frame *out, const struct fmb_frame *frame, long unit)
 {
-    const struct fmb_body *body = frame->body;
-    struct dyadic window = dyadic_of(duration);
-    out->count = body->count;
-    out->simplex = body->shape != FMB_CUBOID;
-    for (int axis = 0; axis < body->dim; axis++) {
-        integer_set(out->origin[axis], dyadic_of(frame->origin[axis]), unit);
-        if (frame->moving)
-            integer_set_product(out->displacement[axis], dyadic_of(frame->velocity[axis]), window,
-                                unit);
-        for (int i = 0; i < body->count; i++)
-            integer_set(out->component[i][axis], dyadic_of(body->component[i][axis]), unit);
+    out->count = frame->count;
+    out->simplex = frame_is_simplex(frame);
+    for (int axis = 0; axis < frame->dim; axis++) {
+        for (int i = 0; i < frame->count; i++)
+            integer_set(out->component[i][axis], dyadic_of(frame->component[i][axis]), unit);
+        if (frame->shape != FMB_BOX) {
+            integer_set(out->origin[axis], dyadic_of(frame->origin[axis]), unit);
+            continue;
+        }
+        integer_set(out->displacement[axis], dyadic_of(frame->centre[axis]), unit);
+        mpz_fdiv_q_2exp(out->origin[axis], out->component[axis][axis], 1); /* is even */
+        mpz_sub(out->origin[axis], out->displacement[axis], out->origin[axis]);
     }
-    if (body->rounded)
-        add_rest(out, body, unit);
+    if (frame->rounded)
+        add_rest(out, frame, unit);
+}
+
+/* Puts it into the world: factor is what vectors that have been turned are multiplied by, scale
+ * what all others are. */
+static void place_frame(struct exact_frame *out, const struct placed_frame *placed, double duration,
+                        long unit, const struct turn *turn, const mpz_t factor, const mpz_t scale)
+{
+    const struct fmb_placement *placement = placed->placement;
+    const struct dyadic window = dyadic_of(duration);
+    mpz_t position;
+    mpz_init(position);
+    for (int i = 0; i < out->count; i++)
+        turn_vector(turn, factor, out->component[i]);
+    turn_vector(turn, factor, out->origin);
+    for (int axis = 0; axis < placed->frame->dim; axis++) {
+        integer_set(position, dyadic_of(placement->position[axis]), unit);
+        mpz_addmul(out->origin[axis], position, scale);
+        integer_set_product(out->displacement[axis], dyadic_of(placement->velocity[axis]), window,
+                            unit);
+        mpz_mul(out->displacement[axis], out->displacement[axis], scale);
+    }
+    mpz_clear(position);
+}
+
+static void set_frames(struct exact_pair *out, const struct frame_pair *pair)
+{
+    const struct placed_frame *placed[2] = {&pair->a, &pair->b};
+    struct turn turn[2];
+    mpz_t one;
+    mpz_init_set_ui(one, 1);
+    for (int f = 0; f < 2; f++) {
+        turn_each(&turn[f], mpz_init);
+        turn_set(placed[f]->placement, &turn[f]);
+        set_frame(&out->frame[f], placed[f]->frame, out->unit);
+    }
+    const bool same = mpz_cmp(turn[0].norm, turn[1].norm) == 0;
+    mpz_set(out->scale, turn[0].norm);
+    if (!same)
+        mpz_mul(out->scale, out->scale, turn[1].norm);
+    for (int f = 0; f < 2; f++)
+        place_frame(&out->frame[f], placed[f], pair->duration, out->unit, &turn[f],
+                    same ? one : turn[!f].norm, out->scale);
+    for (int f = 0; f < 2; f++) {
+        turn_each(&turn[f], mpz_clear);
+        set_edges(&out->frame[f], f);
+    }
+    mpz_clear(one);
 }
 
 /* Calls one of mpz_init and mpz_clear for every number of the frame. */
@@ -95,6 +238,7 @@ static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
         call(pair->offset[axis]);
         call(pair->drift[axis]);
     }
+    call(pair->scale);
     for (int t = 0; t < EXACT_TRIPLES; t++)
         call(pair->triple[t]);
     for (int i = 0; i < EXACT_SCRATCH; i++)
@@ -103,10 +247,10 @@ static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
 
 /* ---- Products ----
  *
- * A vector of the pair is a double, or the product of two, on each axis: one or two limbs, and then
- * zeros. Only offset and drift, differences of two of these, may fill the space between; their
- * products are taken apart. So of the 56 triple products only those of both offset and drift have
- * factors that are wide, and these have one wide vector product in common. */
+ * A vector of a pair that is not turned is a double, or the product of two, on each axis: one or
+ * two limbs, and then zeros. Only offset and drift, differences of two of these, may fill the space
+ * between; their products are taken apart. So of the 56 triple products only those of both offset
+ * and drift have factors that are wide, and these have one wide vector product in common. */
 
 mpz_t *exact_vector(struct exact_pair *pair, int number)
 {
@@ -204,21 +348,18 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
         add_triples(pair, 1, u->minus, v->minus, value);
 }
 
-void exact_pair_init(struct exact_pair *out, const struct fmb_pair *pair)
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
 {
     pair_each(out, mpz_init);
     out->unit = pair_unit(pair);
-    out->moving = pair->a.moving || pair->b.moving;
-    frame_set(&out->frame[0], &pair->a, pair->duration, out->unit);
-    frame_set(&out->frame[1], &pair->b, pair->duration, out->unit);
-    for (int f = 0; f < 2; f++)
-        set_edges(&out->frame[f], f);
+    out->moving = pair->duration > 0 && pair_moves(pair);
+    set_frames(out, pair);
     for (int axis = 0; axis < 3; axis++) {
         mpz_sub(out->offset[axis], out->frame[1].origin[axis], out->frame[0].origin[axis]);
         mpz_sub(out->drift[axis], out->frame[1].displacement[axis],
                 out->frame[0].displacement[axis]);
     }
-    if (pair->a.body->dim == 3) /* in 2D all vectors lie in one plane */
+    if (pair->a.frame->dim == 3) /* in 2D all vectors lie in one plane */
         set_triples(out);
 }
 
@@ -358,16 +499,16 @@ enum fmb_verdict exact_verdict(struct exact_pair *exact, double duration, double
     return verdict;
 }
 
-enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
+enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
+                             struct fmb_answer *answer)
 {
     struct exact_pair exact;
     double contact[2];
     exact_pair_init(&exact, pair);
-    answer->verdict = exact_verdict(&exact, pair->duration, exact.moving ? contact : NULL);
+    answer->verdict = exact_verdict(&exact, pair->duration, contact);
     if (answer->verdict != FMB_SEPARATED) {
-        answer->has_contact = exact.moving;
-        if (exact.moving)
-            memcpy(answer->contact, contact, sizeof contact);
+        answer->has_contact = true;
+        memcpy(answer->contact, contact, sizeof contact);
         answer->has_box = want & FMB_WANT_BOX;
         if (answer->has_box)
             exact_box(&exact, answer->box);

@@ -12,7 +12,7 @@
 #ifndef FMB_EXACT_H
 #define FMB_EXACT_H
 
-#include "fmb.h"
+#include "pair.h"
 
 #include <gmp.h>
 
@@ -39,7 +39,7 @@ struct exact_edge {
     mpz_t *vector; /* [axis] */
 };
 
-/* A frame at tau = 0. Integers, times 2^unit of the pair; vectors are [axis]. */
+/* A frame at tau = 0. Integers, times 2^unit / scale of the pair; vectors are [axis]. */
 struct exact_frame {
     int count;             /* components: 2 or 3 */
     bool simplex;          /* tetrahedron or face; else cuboid */
@@ -54,7 +54,8 @@ struct exact_frame {
 };
 
 struct exact_pair {
-    long unit; /* every length is an integer times 2^unit */
+    long unit;   /* every length is an integer times 2^unit / scale */
+    mpz_t scale; /* > 0; 1 where nothing is turned */
     bool moving;
     struct exact_frame frame[2];
     mpz_t offset[3]; /* origin of frame[1] - origin of frame[0] */
@@ -65,14 +66,13 @@ struct exact_pair {
 };
 
 /* pair must be checked. exact_pair_clear() frees what exact_pair_init() took. */
-void exact_pair_init(struct exact_pair *out, const struct fmb_pair *pair);
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair);
 void exact_pair_clear(struct exact_pair *pair);
 
-/* The inverse of the components of a body that has dim of them, [axis][component] as in
- * fmb_body; every entry is the largest double that is not above the exact one, infinite beyond
- * the doubles. False if there is none: the body is exactly flat. The components are finite. */
-bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
-                   double inverse[FMB_DIM_MAX][FMB_DIM_MAX]);
+/* Sets the inverse of a frame that has dim components, the rest of them included; every entry is
+ * the largest double that is not above the exact one, infinite beyond the doubles. False if there
+ * is none: the frame is exactly flat. */
+bool exact_inverse(struct fmb_frame *frame);
 
 /* By the number of a vector. [axis] */
 mpz_t *exact_vector(struct exact_pair *pair, int number);
@@ -162,7 +162,7 @@ bool span_has_interior(struct span *span);
 
 /* A place in the world and a time of the window, as fractions. */
 struct exact_point {
-    mpz_t at[3], tau; /* numerators; the place in the unit of the pair, tau in windows */
+    mpz_t at[3], tau; /* numerators; the place times 2^unit of the pair, tau in windows */
     mpz_t den;        /* > 0 */
 };
 
@@ -182,6 +182,7 @@ void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX]);
 enum fmb_verdict exact_verdict(struct exact_pair *exact, double duration, double contact[2]);
 
 /* The method. */
-enum fmb_status exact_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer);
+enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
+                             struct fmb_answer *answer);
 
 #endif

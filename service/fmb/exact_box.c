@@ -155,8 +155,8 @@ static void visit_point(struct walk *walk, int f, int v, int w, const mpz_t s, c
             integer_add_product(found->at[axis], 1, walk->weight[i], frame->component[i][axis],
                                 walk->scratch[0]);
     }
-    mpz_set(found->tau, tau);
-    mpz_set(found->den, den);
+    mpz_mul(found->tau, tau, walk->pair->scale);
+    mpz_mul(found->den, den, walk->pair->scale);
     walk->visit(walk->context, found);
 }
 

@@ -1,17 +1,22 @@
 #include "exact.h"
 #include "integer.h"
 
-/* The components in integers; a body in 2D gets the unit vector along z as third. Returns the
+/* The components in integers; a frame in 2D gets the unit vector along z as third. Returns the
  * unit. */
-static long set_components(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
-                           mpz_t out[3][3])
+static long set_components(const struct fmb_frame *frame, mpz_t out[3][3], mpz_t scratch)
 {
+    const int dim = frame->dim;
     long unit = INTEGER_NO_EXPONENT;
+    for (int i = 0; i < dim; i++) {
+        unit = integer_vector_unit(unit, frame->component[i], dim);
+        unit = integer_vector_unit(unit, frame->rest[i], dim);
+    }
     for (int i = 0; i < dim; i++)
-        unit = integer_vector_unit(unit, component[i], dim);
-    for (int i = 0; i < dim; i++)
-        for (int axis = 0; axis < dim; axis++)
-            integer_set(out[i][axis], dyadic_of(component[i][axis]), unit);
+        for (int axis = 0; axis < dim; axis++) {
+            integer_set(out[i][axis], dyadic_of(frame->component[i][axis]), unit);
+            integer_set(scratch, dyadic_of(frame->rest[i][axis]), unit);
+            mpz_add(out[i][axis], out[i][axis], scratch);
+        }
     if (dim == 2)
         mpz_set_ui(out[2][2], 1);
     return unit;
@@ -19,9 +24,9 @@ static long set_components(int dim, const double component[FMB_DIM_MAX][FMB_DIM_
 
 /* With k_0 = c_1 x c_2 and so on around: x_i = k_i . p / (c_2 . k_2). In integers, k is of one
  * degree less than the determinant, so that one unit is left below. */
-bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
-                   double inverse[FMB_DIM_MAX][FMB_DIM_MAX])
+bool exact_inverse(struct fmb_frame *frame)
 {
+    const int dim = frame->dim;
     mpz_t c[3][3], k[3][3], determinant, scratch[2];
     mpz_inits(determinant, scratch[0], scratch[1], NULL);
     for (int i = 0; i < 3; i++) {
@@ -29,7 +34,7 @@ bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
         mpz_inits(k[i][0], k[i][1], k[i][2], NULL);
     }
 
-    long unit = set_components(dim, component, c);
+    const long unit = set_components(frame, c, scratch[0]);
     for (int i = 0; i < 3; i++)
         integer_cross(k[i], c[(i + 1) % 3], c[(i + 2) % 3], scratch[0]);
     integer_dot(determinant, c[2], k[2], scratch[0]);
@@ -39,7 +44,7 @@ bool exact_inverse(int dim, const double component[FMB_DIM_MAX][FMB_DIM_MAX],
         for (int axis = 0; axis < dim; axis++) {
             if (sign < 0)
                 mpz_neg(k[i][axis], k[i][axis]);
-            inverse[axis][i] =
+            frame->inverse[axis][i] =
                 integer_ratio_round(k[i][axis], determinant, -unit, ROUND_DOWN, scratch);
         }
 

@@ -8,8 +8,9 @@
 /* Two faces that stay in one plane, seen along an axis that crosses it: two triangles in 2D, with
  * the same verdict and the same times of contact. */
 struct faces_shadow {
-    struct fmb_body body[2];
-    struct fmb_pair pair; /* points into body */
+    struct fmb_frame frame[2];
+    struct fmb_placement placement[2];
+    struct frame_pair pair; /* of these */
 };
 
 enum faces_planes {
@@ -19,7 +20,7 @@ enum faces_planes {
 };
 
 /* On input: two faces with areas, in range; span: of the pair. */
-enum faces_planes faces_planes_of(const struct fmb_pair *pair, const struct slabs_pair *slabs,
+enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
                                   struct dyadic_span span, struct faces_shadow *shadow);
 
 #endif

@@ -3,6 +3,8 @@
 #include "exact.h"
 #include "integer.h"
 #include "prepared.h"
+#include "rotation.h"
+#include "swept.h"
 
 #include <float.h>
 #include <math.h>
@@ -23,19 +25,19 @@ static void cross(const double u[3], const double v[3], double out[3])
     out[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-/* The components times 2^-*exponent, so that the largest number lies in [0.5, 1); a body in 2D
+/* The components times 2^-*exponent, so that the largest number lies in [0.5, 1); a frame in 2D
  * gets the unit vector along z as third. */
-static void scale_components(const struct fmb_body *body, double scaled[3][3], int *exponent)
+static void scale_components(const struct fmb_frame *frame, double scaled[3][3], int *exponent)
 {
     double largest = 0;
-    for (int i = 0; i < body->count; i++)
-        for (int axis = 0; axis < body->dim; axis++)
-            largest = fmax(largest, fabs(body->component[i][axis]));
+    for (int i = 0; i < frame->count; i++)
+        for (int axis = 0; axis < frame->dim; axis++)
+            largest = fmax(largest, fabs(frame->component[i][axis]));
     frexp(largest, exponent);
     for (int i = 0; i < 3; i++)
         for (int axis = 0; axis < 3; axis++)
-            scaled[i][axis] = ldexp(body->component[i][axis], -*exponent);
-    if (body->dim == 2)
+            scaled[i][axis] = ldexp(frame->component[i][axis], -*exponent);
+    if (frame->dim == 2)
         scaled[2][2] = 1;
 }
 
@@ -46,7 +48,8 @@ static void scale_components(const struct fmb_body *body, double scaled[3][3], i
  * only take factors away. Underflow, in scaling and in products, adds less than 2^-1000 in
  * all. A computed permanent is within the same factor of the exact one. So a determinant
  * beyond 2^-48 permanent + 2^-1000 has the right sign; 2^-48 = 32 u leaves room for the
- * rounding of this bound. Anything else is inverted exactly. */
+ * rounding of this bound, and for components that are rounded themselves (3.01 u). Anything else is
+ * inverted exactly. */
 static bool surely_solid(const double c[3][3], double determinant)
 {
     double permanent = 0;
@@ -59,106 +62,159 @@ static bool surely_solid(const double c[3][3], double determinant)
 }
 
 /* With the components scaled by 2^-e, k_0 = c_1 x c_2 and so on around:
- * x_i = k_i . p / (c_2 . k_2) 2^-e. False, and nothing done, unless the body is surely solid: a
+ * x_i = k_i . p / (c_2 . k_2) 2^-e. False, and nothing done, unless the frame is surely solid: a
  * determinant that rounding may have eaten is not to be divided by. */
-static bool invert_in_doubles(struct fmb_body *body)
+static bool invert_in_doubles(struct fmb_frame *frame)
 {
     double c[3][3], k[3][3];
     int exponent;
-    scale_components(body, c, &exponent);
+    scale_components(frame, c, &exponent);
     for (int i = 0; i < 3; i++)
         cross(c[(i + 1) % 3], c[(i + 2) % 3], k[i]);
     double determinant = c[2][0] * k[2][0] + c[2][1] * k[2][1] + c[2][2] * k[2][2];
     if (!surely_solid((const double(*)[3]) c, determinant))
         return false;
-    for (int axis = 0; axis < body->dim; axis++)
-        for (int i = 0; i < body->dim; i++)
-            body->inverse[axis][i] = ldexp(k[i][axis] / determinant, -exponent);
+    for (int axis = 0; axis < frame->dim; axis++)
+        for (int i = 0; i < frame->dim; i++)
+            frame->inverse[axis][i] = ldexp(k[i][axis] / determinant, -exponent);
     return true;
 }
 
-static void invert(struct fmb_body *body)
+static void invert(struct fmb_frame *frame)
 {
-    body->flat =
-        body->count < body->dim ||
-        (!invert_in_doubles(body) &&
-         !exact_inverse(body->dim, (const double(*)[FMB_DIM_MAX]) body->component, body->inverse));
-    body->inverted = !body->flat && all_finite(body->inverse[0], FMB_COMPONENTS_MAX);
-    if (!body->inverted)
-        memset(body->inverse, 0, sizeof body->inverse);
+    frame->flat = frame->count < frame->dim || (!invert_in_doubles(frame) && !exact_inverse(frame));
+    frame->inverted = !frame->flat && all_finite(frame->inverse[0], FMB_COMPONENTS_MAX);
+    if (!frame->inverted)
+        memset(frame->inverse, 0, sizeof frame->inverse);
 }
 
 /* Sizes whose products of four, sums of a few dozen of them and 2^-53 of those neither overflow
  * nor lose bits to underflow; and no number so small that a product of two underflows. */
 static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
-/* Of x y - z w, the products of numbers in range: whether it is surely not 0, the factors being off
- * by u each; and whether it is exactly 0, they being exact.
- *
- * Each product is rounded twice in its factors, once itself, and once in the difference: 4.01 u of
- * the sum of the magnitudes, and the bound is computed with fewer roundings than it has room for.
- * The error of a product is a double: products are above 2^-800, and errors above 2^-907. */
-static bool surely_differ(double x, double y, double z, double w)
+static double length_of(const double v[FMB_DIM_MAX])
 {
-    return fabs(x * y - z * w) > 0x1p-50 * (fabs(x * y) + fabs(z * w));
+    return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
 }
 
+/* The volume of a solid, or twice the area of a face, against the product of the lengths of its
+ * components; numbers in range. Off by less than 2^-48. */
+static double thickness(const struct fmb_frame *frame)
+{
+    const double(*c)[FMB_DIM_MAX] = frame->component;
+    double normal[3], size = length_of(c[0]) * length_of(c[1]);
+    cross(c[0], c[1], normal);
+    if (frame->count < 3)
+        return length_of(normal) / size;
+    const double volume = normal[0] * c[2][0] + normal[1] * c[2][1] + normal[2] * c[2][2];
+    return fabs(volume) / (size * length_of(c[2]));
+}
+
+/* Whether x y = z w, for products that are doubles with errors that are doubles. */
 static bool are_equal(double x, double y, double z, double w)
 {
     return x * y == z * w && fma(x, y, -(x * y)) == fma(z, w, -(z * w));
 }
 
-/* Whether an edge c_1 - c_0 of doubles is 0 on an axis where the true one is not: the filter takes
- * a coordinate of 0 for what it is. */
-static bool hides_difference(const struct fmb_body *body)
+/* Whether a face, as its doubles have it, has an area. */
+static bool has_area(const struct fmb_frame *frame)
 {
-    const double *c = body->component[0], *d = body->component[1];
-    for (int axis = 0; axis < 3; axis++)
-        if (c[axis] == d[axis] && body->rest[0][axis] != body->rest[1][axis])
-            return true;
-    return false;
-}
-
-/* Whether a face has an area. Of one that is rounded only what is sure counts. */
-static bool has_area(const struct fmb_body *body)
-{
-    const double *c = body->component[0], *d = body->component[1];
+    const double *c = frame->component[0], *d = frame->component[1];
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3;
-        if (surely_differ(c[i], d[j], c[j], d[i]) ||
-            (!body->rounded && !are_equal(c[i], d[j], c[j], d[i])))
+        if (!are_equal(c[i], d[j], c[j], d[i]))
             return true;
     }
     return false;
 }
 
-static void measure_number(struct fmb_body *body, int i, double c, struct dyadic_span *span)
+static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span *span)
 {
-    const double magnitude = fabs(c);
-    body->size[i] = magnitude > body->size[i] ? magnitude : body->size[i];
-    body->in_range = body->in_range && (c == 0 || magnitude >= least_number);
-    dyadic_span_add(span, dyadic_of(c));
+    for (int axis = 0; axis < frame->dim; axis++) {
+        const double c = frame->component[i][axis], magnitude = fabs(c);
+        frame->size[i] = magnitude > frame->size[i] ? magnitude : frame->size[i];
+        frame->in_range = frame->in_range && (c == 0 || magnitude >= least_number);
+        dyadic_span_add(span, dyadic_of(c));
+        dyadic_span_add(span, dyadic_of(frame->rest[i][axis]));
+    }
+    frame->in_range =
+        frame->in_range && frame->size[i] >= least_size && frame->size[i] <= largest_size;
 }
 
-void body_measure(struct fmb_body *body)
+/* What is thinner might be turned inside out by the rounding of a rotation, or of vertices: each of
+ * three components is off by at most ROTATION_ERROR and 2^-52 of itself, less than 2^-48 together,
+ * and the volume by three times that. */
+static const double least_thickness = 0x1p-44;
+
+/* in_range: the filter may use the doubles of a frame that is not turned. They have to be the frame
+ * itself, or one near it that is surely not flat. sturdy: however it is turned. */
+static void measure(struct fmb_frame *frame)
 {
     struct dyadic_span span = dyadic_span_begin();
-    body->in_range = body->shape == FMB_FACE || !body->flat;
-    for (int i = 0; i < body->count; i++) {
-        for (int axis = 0; axis < body->dim; axis++)
-            measure_number(body, i, body->component[i][axis], &span);
-        for (int axis = 0; axis < body->dim && body->rounded; axis++)
-            dyadic_span_add(&span, dyadic_of(body->rest[i][axis]));
-        body->in_range =
-            body->in_range && body->size[i] >= least_size && body->size[i] <= largest_size;
-    }
-    if (body->shape == FMB_FACE && body->in_range)
-        body->in_range = has_area(body) && !hides_difference(body);
-    body->bits[0] = (int) span.unit;
-    body->bits[1] = (int) span.top;
+    memset(frame->size, 0, sizeof frame->size);
+    frame->in_range = frame->shape == FMB_FACE || !frame->flat;
+    for (int i = 0; i < frame->count; i++)
+        measure_component(frame, i, &span);
+    frame->in_range = frame->in_range && (frame->shape != FMB_FACE || has_area(frame));
+    frame->sturdy = frame->in_range && thickness(frame) >= least_thickness;
+    frame->in_range = frame->in_range && (frame->sturdy || !frame->rounded);
+    frame->bits[0] = (int) span.unit;
+    frame->bits[1] = (int) span.top;
 }
 
-void body_set_plane_triangle(const double components[2][2], struct fmb_body *out)
+/* The farthest vertex is no farther than the origin and all components together. */
+static double radius_of(const struct fmb_frame *frame)
+{
+    double radius = 0;
+    for (int axis = 0; axis < frame->dim; axis++) {
+        radius += fabs(frame->origin[axis]);
+        for (int i = 0; i < frame->count; i++)
+            radius += fabs(frame->component[i][axis]);
+    }
+    return radius * (1 + 0x1p-40) + 0x1p-1000;
+}
+
+static double sum_of(const double v[FMB_DIM_MAX])
+{
+    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
+}
+
+/* The origin of a box, centre - size / 2, is off by at most half a unit in the last place on each
+ * axis, which is counted twice. A vertex whose components have a rest is off by at most one of
+ * these. */
+static double slack_of(const struct fmb_frame *frame)
+{
+    double slack = 0;
+    for (int axis = 0; axis < frame->dim && frame->shape == FMB_BOX; axis++) {
+        const double size = frame->component[axis][axis], half = 0.5 * size;
+        if (2 * half != size ||
+            !prepared_exact_sum(frame->centre[axis], -half, frame->origin[axis]))
+            slack += 0x1p-52 * fabs(frame->origin[axis]) + 0x1p-1074;
+    }
+    for (int i = 0; i < frame->count; i++)
+        slack = fmax(slack, sum_of(frame->rest[i]));
+    return slack * (1 + 0x1p-50);
+}
+
+static double turn_error_of(const struct fmb_frame *frame)
+{
+    double lengths = sum_of(frame->origin);
+    for (int i = 0; i < frame->count; i++)
+        lengths += frame->in_range ? prepared_size(frame->head, i) : sum_of(frame->component[i]);
+    return ROTATION_ERROR * (1 + 0x1p-40) * lengths + 0x1p-1060; /* where products underflow */
+}
+
+static void complete(struct fmb_frame *frame)
+{
+    invert(frame);
+    measure(frame);
+    frame->head = prepared_head_of(frame);
+    frame->radius = radius_of(frame);
+    frame->slack = slack_of(frame);
+    frame->turn_error = turn_error_of(frame);
+}
+
+void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *out)
 {
     memset(out, 0, sizeof *out);
     out->dim = 2;
@@ -167,32 +223,57 @@ void body_set_plane_triangle(const double components[2][2], struct fmb_body *out
     for (int i = 0; i < 2; i++)
         memcpy(out->component[i], components[i], sizeof components[i]);
     out->flat = are_equal(components[0][0], components[1][1], components[0][1], components[1][0]);
-    body_measure(out);
+    measure(out);
     out->head = prepared_head_of(out);
 }
 
-enum fmb_status fmb_body_make(int dim, int shape, const double *components, size_t count,
-                              struct fmb_body *out)
+/* ---- Frames from numbers ---- */
+
+static enum fmb_status set_box(const double *centre, const double *size, struct fmb_frame *out)
+{
+    for (int axis = 0; axis < out->dim; axis++) {
+        if (size[axis] < 0)
+            return FMB_BAD_SIZE;
+        out->component[axis][axis] = size[axis] + 0.0; /* never -0 */
+        out->centre[axis] = centre ? centre[axis] : 0;
+        out->origin[axis] = out->centre[axis] - 0.5 * size[axis];
+    }
+    return FMB_OK;
+}
+
+static void set_components(const double *origin, const double *components, struct fmb_frame *out)
+{
+    const size_t dim = (size_t) out->dim;
+    if (origin)
+        memcpy(out->origin, origin, dim * sizeof *origin);
+    for (int i = 0; i < out->count; i++)
+        memcpy(out->component[i], components + (size_t) i * dim, dim * sizeof *components);
+}
+
+enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t count,
+                               struct fmb_frame *out)
 {
     if (!fmb_shape_name(shape))
         return FMB_UNKNOWN_SHAPE;
-    int vectors = fmb_component_count(dim, shape);
-    if (vectors == 0)
+    const int components = fmb_component_count(dim, shape);
+    if (components == 0)
         return FMB_WRONG_DIMENSION;
-    if (count != (size_t) (vectors * dim))
+    const size_t without = (size_t) (shape == FMB_BOX ? dim : components * dim);
+    if (count != without && count != without + (size_t) dim)
         return FMB_WRONG_COUNT;
-    if (!all_finite(components, count))
+    if (!all_finite(numbers, count))
         return FMB_NOT_FINITE;
 
     memset(out, 0, sizeof *out);
     out->dim = dim;
     out->shape = (enum fmb_shape) shape;
-    out->count = vectors;
-    for (int i = 0; i < vectors; i++)
-        memcpy(out->component[i], components + i * dim, (size_t) dim * sizeof *components);
-    invert(out);
-    body_measure(out);
-    out->head = prepared_head_of(out);
+    out->count = components;
+    const double *origin = count == without ? NULL : numbers, *rest = numbers + (count - without);
+    if (shape != FMB_BOX)
+        set_components(origin, rest, out);
+    else if (set_box(origin, rest, out) != FMB_OK)
+        return FMB_BAD_SIZE;
+    complete(out);
     return FMB_OK;
 }
 
@@ -205,28 +286,103 @@ static double difference_error(double x, double y, double difference)
     return fabs(x) >= fabs(y) ? (x - difference) - y : x - (difference + y);
 }
 
-enum fmb_status fmb_body_make_triangle(const double vertex[3][FMB_DIM_MAX], struct fmb_body *out)
+enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertices, size_t count,
+                                        struct fmb_frame *out)
 {
-    double component[2][FMB_DIM_MAX];
-    for (int i = 0; i < 2; i++)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            component[i][axis] = vertex[i + 1][axis] - vertex[0][axis];
-    const enum fmb_status status = fmb_body_make(3, FMB_FACE, component[0], 6, out);
-    if (status != FMB_OK)
-        return status;
-    for (int i = 0; i < 2; i++)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-            out->rest[i][axis] =
-                difference_error(vertex[i + 1][axis], vertex[0][axis], component[i][axis]);
+    const int components = fmb_component_count(dim, shape);
+    if (shape != FMB_TETRAHEDRON && shape != FMB_FACE)
+        return FMB_UNKNOWN_SHAPE;
+    if (components == 0)
+        return FMB_WRONG_DIMENSION;
+    if (count != (size_t) ((components + 1) * dim))
+        return FMB_WRONG_COUNT;
+    memset(out, 0, sizeof *out);
+    out->dim = dim;
+    out->shape = (enum fmb_shape) shape;
+    out->count = components;
+    memcpy(out->origin, vertices, (size_t) dim * sizeof *vertices);
+    for (int i = 0; i < components; i++)
+        for (int axis = 0; axis < dim; axis++) {
+            const double to = vertices[(i + 1) * dim + axis], from = vertices[axis];
+            out->component[i][axis] = to - from;
+            if (!isfinite(out->component[i][axis])) /* nor where a vertex is not */
+                return FMB_NOT_FINITE;
+            out->rest[i][axis] = difference_error(to, from, out->component[i][axis]);
             out->rounded = out->rounded || out->rest[i][axis] != 0;
         }
-    if (!out->rounded)
-        return FMB_OK;
-    memset(out->size, 0, sizeof out->size);
-    body_measure(out);
-    out->head = prepared_head_of(out);
+    complete(out);
     return FMB_OK;
 }
+
+/* ---- Bodies ---- */
+
+/* The box of the frames, where the body is at the origin and not turned. */
+static void set_body_box(struct fmb_body *out)
+{
+    const struct fmb_placement origin = {.body = out};
+    struct swept box;
+    for (unsigned i = 0; i < out->frame_count; i++) {
+        const struct placed_frame placed = {fmb_body_frame(out, i), &origin};
+        struct fmb_prepared prepared;
+        prepared_set(&placed, &prepared);
+        const struct swept one = swept_of(&prepared, 0);
+        box = i == 0 ? one : swept_hull(box, one);
+    }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        out->box[0][axis] = box.end[axis][0];
+        out->box[1][axis] = 0 - box.end[axis][1];
+    }
+}
+
+static void set_one(struct fmb_body *out)
+{
+    out->dim = out->one.dim;
+    out->frame_count = 1;
+    out->frames = NULL;
+    out->radius = out->one.radius;
+    set_body_box(out);
+}
+
+enum fmb_status fmb_body_make(int dim, int shape, const double *numbers, size_t count,
+                              struct fmb_body *out)
+{
+    const enum fmb_status status = fmb_frame_make(dim, shape, numbers, count, &out->one);
+    if (status == FMB_OK)
+        set_one(out);
+    return status;
+}
+
+enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertices, size_t count,
+                                       struct fmb_body *out)
+{
+    const enum fmb_status status = fmb_frame_make_vertices(dim, shape, vertices, count, &out->one);
+    if (status == FMB_OK)
+        set_one(out);
+    return status;
+}
+
+enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t count,
+                                     struct fmb_body *out)
+{
+    if (count == 0 || count > FMB_FRAMES_MAX)
+        return count == 0 ? FMB_NO_FRAMES : FMB_OVER_LIMIT;
+    memset(out, 0, sizeof *out);
+    for (size_t i = 0; i < count; i++) {
+        if (frames[i].dim != frames[0].dim)
+            return FMB_DIMENSIONS_DIFFER;
+        out->radius = fmax(out->radius, frames[i].radius);
+    }
+    out->dim = frames[0].dim;
+    out->frame_count = (unsigned) count;
+    if (count > 1)
+        out->frames = frames;
+    else
+        out->one = frames[0];
+    set_body_box(out);
+    return FMB_OK;
+}
+
+/* ---- Placements ---- */
 
 /* 0 times a number that is not finite is not 0. */
 static bool is_finite(const double v[FMB_DIM_MAX], int dim)
@@ -235,10 +391,24 @@ static bool is_finite(const double v[FMB_DIM_MAX], int dim)
     return (dim == 2 ? none : none + 0 * v[2]) == 0;
 }
 
-static bool frame_is_finite(const struct fmb_frame *frame)
+static enum fmb_status check_orientation(const struct fmb_placement *placement, int dim)
 {
-    const int dim = frame->body->dim;
-    return is_finite(frame->origin, dim) && (!frame->moving || is_finite(frame->velocity, dim));
+    const double *q = placement->orientation;
+    if (placement->orientation_count == 0)
+        return q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? FMB_OK : FMB_WRONG_COUNT;
+    if (placement->orientation_count != (dim == 2 ? 2 : 4))
+        return FMB_WRONG_COUNT;
+    return rotation_is_orientation(q, placement->orientation_count) ? FMB_OK : FMB_BAD_ORIENTATION;
+}
+
+enum fmb_status fmb_placement_check(const struct fmb_placement *placement)
+{
+    const struct fmb_body *body = placement->body;
+    if (!body || body->frame_count == 0)
+        return FMB_NO_FRAMES;
+    if (!is_finite(placement->position, body->dim) || !is_finite(placement->velocity, body->dim))
+        return FMB_NOT_FINITE;
+    return check_orientation(placement, body->dim);
 }
 
 bool prepared_is_duration(double duration)
@@ -246,13 +416,15 @@ bool prepared_is_duration(double duration)
     return duration >= 0 && duration <= DBL_MAX;
 }
 
-enum fmb_status fmb_pair_check(const struct fmb_pair *pair)
+enum fmb_status placements_check(const struct fmb_placement *a, const struct fmb_placement *b,
+                                 double duration)
 {
-    if (pair->a.body->dim != pair->b.body->dim)
-        return FMB_DIMENSIONS_DIFFER;
-    if (!frame_is_finite(&pair->a) || !frame_is_finite(&pair->b))
-        return FMB_NOT_FINITE;
-    if (!prepared_is_duration(pair->duration))
-        return FMB_BAD_DURATION;
-    return FMB_OK;
+    enum fmb_status status = fmb_placement_check(a);
+    if (status == FMB_OK)
+        status = fmb_placement_check(b);
+    if (status == FMB_OK && a->body->dim != b->body->dim)
+        status = FMB_DIMENSIONS_DIFFER;
+    if (status == FMB_OK && !prepared_is_duration(duration))
+        status = FMB_BAD_DURATION;
+    return status;
 }

@@ -1,12 +1,20 @@
-/* Width. Let all lengths of a pair be below 2^t units, with 64 L limbs and t <= 64 L - 3 (a
+/* Orientations. With q scaled to integers, n R(q) is a matrix of integers, n = |q|^2. All lengths
+ * of a pair are multiplied by a common positive factor, which changes no sign and no time: by the
+ * product n_a n_b, or by n_a if that is n_b. With the unit of the pair they are integers then:
+ * vectors of frame a are (n_a R_a v) n_b, positions are p n_a n_b.
+ *
+ * Width. Let all lengths of a pair be below 2^t units, with L limbs of 64 bits and t <= 64 L - 3 (a
  * component with its rest is the difference of two vertices: rest is at most half a unit in the
- * last place of it, so that what a component below 2^t was rounded from is at most 2^t). Their
- * differences (offset, drift, edges of a tetrahedron) are below 2^(t+1) and fit L limbs. An entry
- * of a normal is a difference of two products of those, below 2^(2t+3) <= 2^(128L-3), and fits
- * 2 L limbs. With a component its dot product is a sum of three, below 3 2^(3t+3); with an offset
- * or a drift, below 3 2^(3t+4). A gap sums at most one offset, one drift and six components:
- * 3 2^(3t+3) (2 + 2 + 6) < 2^(3t+8) <= 2^(192L-1): all of it fits 3 L limbs with a sign. In 2D the
- * normal is an edge, and everything is smaller. */
+ * last place of it, so that what a component below 2^t was rounded from is at most 2^t). Lengths
+ * that are multiplied are sums modulo 2^(64 L) of products modulo 2^(64 L), and right because they
+ * are in range at the end: coordinates of numbers below 2^s become less than sqrt(3) n 2^s when
+ * they are turned, n R(q) being n times a rotation, and p + R o is the sum of two such: t = s + 3
+ * and the bits of the factor. Their differences (offset, drift, edges of a tetrahedron) are below
+ * 2^(t+1) and fit L limbs. An entry of a normal is a difference of two products of those, below
+ * 2^(2t+3) <= 2^(128L-3), and fits 2 L limbs. With a component its dot product is a sum of three,
+ * below 3 2^(3t+3); with an offset or a drift, below 3 2^(3t+4). A gap sums at most one offset, one
+ * drift and six components: 3 2^(3t+3) (2 + 2 + 6) < 2^(3t+8) <= 2^(192L-1): all of it fits 3 L
+ * limbs with a sign. In 2D the normal is an edge, and everything is smaller. */
 #include "limbs.h"
 
 #include "inlined.h"
@@ -114,21 +122,41 @@ INLINE void dot(const int n, uint64_t normal[FMB_DIM_MAX][NORMAL_MAX],
 
 /* ---- From doubles ---- */
 
-struct dyadic_span limbs_span_of(const struct fmb_pair *pair)
+/* x / 2 */
+static struct dyadic half_of(double x)
 {
-    const struct fmb_frame *frames[2] = {&pair->a, &pair->b};
+    struct dyadic half = dyadic_of(x);
+    half.exponent -= half.mantissa != 0;
+    return half;
+}
+
+/* The origin of a frame, which of a box is given by the centre and the size. */
+static void add_origin(struct dyadic_span *span, const struct fmb_frame *frame, int axis)
+{
+    if (frame->shape != FMB_BOX) {
+        dyadic_span_add(span, dyadic_of(frame->origin[axis]));
+        return;
+    }
+    dyadic_span_add(span, dyadic_of(frame->centre[axis]));
+    dyadic_span_add(span, half_of(frame->component[axis][axis]));
+}
+
+struct dyadic_span limbs_span_of(const struct frame_pair *pair)
+{
+    const struct placed_frame *placed[2] = {&pair->a, &pair->b};
     const struct dyadic window = dyadic_of(pair->duration);
     struct dyadic_span span = dyadic_span_begin(), speed = dyadic_span_begin();
     struct dyadic_span length = dyadic_span_begin();
     dyadic_span_add(&length, window);
     for (int f = 0; f < 2; f++) {
-        const struct fmb_body *body = frames[f]->body;
-        span.unit = integer_lower_unit(span.unit, body->bits[0]);
-        span.top = -integer_lower_unit(-span.top, -body->bits[1]);
-        for (int axis = 0; axis < body->dim; axis++) {
-            dyadic_span_add(&span, dyadic_of(frames[f]->origin[axis]));
-            if (frames[f]->moving)
-                dyadic_span_add(&speed, dyadic_of(frames[f]->velocity[axis]));
+        const struct fmb_frame *frame = placed[f]->frame;
+        const struct fmb_placement *placement = placed[f]->placement;
+        span.unit = integer_lower_unit(span.unit, frame->bits[0]);
+        span.top = -integer_lower_unit(-span.top, -frame->bits[1]);
+        for (int axis = 0; axis < frame->dim; axis++) {
+            add_origin(&span, frame, axis);
+            dyadic_span_add(&span, dyadic_of(placement->position[axis]));
+            dyadic_span_add(&speed, dyadic_of(placement->velocity[axis]));
         }
     }
     if (speed.unit < INTEGER_NO_EXPONENT && window.mantissa) {
@@ -152,12 +180,12 @@ static double greatest(double x, double y)
  * drift and extents are computed from. */
 bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
 {
-    if (span.top - span.unit > 50 || pair->a->rounded || pair->b->rounded)
+    if (span.top - span.unit > 50 || pair->inexact)
         return false;
-    const bool cuboids = pair->a->shape == FMB_CUBOID && pair->b->shape == FMB_CUBOID;
+    const bool cuboids = pair->a.shape == FMB_CUBOID && pair->b.shape == FMB_CUBOID;
     double largest = pair->drift_size;
-    for (int i = 0; i < pair->a->dim; i++)
-        largest = greatest(largest, greatest(pair->a->size[i], pair->b->size[i]));
+    for (int i = 0; i < pair->a.dim; i++)
+        largest = greatest(largest, greatest(pair->a.size[i], pair->b.size[i]));
     const double scaled = ldexp(largest, (int) -span.unit);
     const double sum = 2 * ldexp(pair->reach, (int) -span.unit);
     return (cuboids ? 6 : 6 * 16) * scaled * scaled * sum < 0x1p53;
@@ -189,57 +217,258 @@ struct unit {
     double inverse; /* 2^-exponent, if lengths have one limb */
 };
 
-/* out := sign x 2^-unit, of n limbs. A number of one limb is below 2^61 units, and units of numbers
- * in range are within 2^-261 and 2^200: the product is exact, and so is its conversion. */
-static void set_length(int n, limbs_length out, double x, int sign, struct unit unit)
+/* out := x 2^-unit, of n limbs. A number of one limb is below 2^61 units, and units of numbers in
+ * range are within 2^-261 and 2^200: the product is exact, and so is its conversion. */
+static void set_length(int n, limbs_length out, double x, struct unit unit)
 {
-    static const struct dyadic one[2] = {{-1, 0}, {1, 0}};
+    static const struct dyadic one = {1, 0};
     if (n == 1)
-        out[0] = (uint64_t) (int64_t) (sign * x * unit.inverse);
+        out[0] = (uint64_t) (int64_t) (x * unit.inverse);
     else
-        set_product(n, out, dyadic_of(x), one[sign > 0], unit.exponent);
+        set_product(n, out, dyadic_of(x), one, unit.exponent);
 }
 
-/* What one frame brings to the pair: the first with sign -1, the second with +1. */
-static void add_frame(const struct fmb_frame *frame, int f, struct dyadic window, struct unit unit,
-                      struct limbs_pair *out)
+/* ---- Orientations ---- */
+
+typedef __int128 wide;
+
+enum { FACTOR_LIMBS = 4 };
+
+/* n R(q), and n. */
+struct turn {
+    bool turned;
+    wide row[FMB_DIM_MAX][FMB_DIM_MAX];
+    two_limbs norm; /* 1 where it is not turned */
+};
+
+/* What the lengths of a frame, once turned, and those of none are multiplied by. */
+struct factor {
+    int bits; /* of all that lengths are multiplied by */
+    uint64_t frame[2][2], all[FACTOR_LIMBS];
+};
+
+static uint64_t divisor_of(uint64_t x, uint64_t y)
 {
-    const int n = out->limbs, sign = f ? 1 : -1;
-    out->body[f] = frame->body;
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const bool there = axis < frame->body->dim;
-        limbs_length term;
-        for (int i = 0; i < frame->body->count; i++)
-            set_length(n, out->component[f][i][axis], frame->body->component[i][axis], 1, unit);
-        for (int i = 0; i < 2 && frame->body->rounded; i++) {
-            set_length(n, term, frame->body->rest[i][axis], 1, unit);
-            add(n, out->component[f][i][axis], term);
+    while (y) {
+        const uint64_t rest = x % y;
+        x = y;
+        y = rest;
+    }
+    return x;
+}
+
+/* The quaternion in the least integers; false if they have more than 62 bits. Products of two and
+ * sums of four of those fit 128 bits with a sign. */
+static bool set_integers(const struct fmb_placement *placement, int64_t q[4])
+{
+    memset(q, 0, 4 * sizeof *q);
+    struct dyadic_span span = dyadic_span_begin();
+    const int count = placement->orientation_count;
+    uint64_t divisor = 0;
+    for (int i = 0; i < count; i++)
+        dyadic_span_add(&span, dyadic_of(placement->orientation[i]));
+    if (span.top - span.unit > 62)
+        return false;
+    for (int i = 0; i < count; i++) {
+        const struct dyadic x = dyadic_of(placement->orientation[i]);
+        q[i] = x.mantissa ? x.mantissa * ((int64_t) 1 << (x.exponent - span.unit)) : 0;
+        if (divisor != 1)
+            divisor = divisor_of((uint64_t) (q[i] < 0 ? -q[i] : q[i]), divisor);
+    }
+    for (int i = 0; i < count; i++)
+        q[i] /= (int64_t) divisor;
+    return true;
+}
+
+static bool set_turn(const struct fmb_placement *placement, struct turn *out)
+{
+    int64_t q[4];
+    out->turned = placement->orientation_count != 0;
+    out->norm = 1;
+    if (!out->turned)
+        return true;
+    if (!set_integers(placement, q))
+        return false;
+    const bool plane = placement->orientation_count == 2;
+    const wide w = q[0], x = plane ? 0 : q[1], y = plane ? 0 : q[2], z = plane ? q[1] : q[3];
+    const wide row[FMB_DIM_MAX][FMB_DIM_MAX] = {
+        {w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)},
+        {2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)},
+        {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z}};
+    memcpy(out->row, row, sizeof row);
+    out->norm = (two_limbs) (w * w + x * x + y * y + z * z);
+    return true;
+}
+
+static int bits_of(int n, const uint64_t *x)
+{
+    while (n > 0 && x[n - 1] == 0)
+        n--;
+    return n == 0 ? 0 : 64 * n - __builtin_clzll(x[n - 1]);
+}
+
+static void set_factor(const struct turn turn[2], struct factor *out)
+{
+    memset(out, 0, sizeof *out);
+    const bool same = turn[0].norm == turn[1].norm;
+    for (int f = 0; f < 2; f++) {
+        const two_limbs norm = same ? 1 : turn[!f].norm;
+        out->frame[f][0] = (uint64_t) norm;
+        out->frame[f][1] = (uint64_t) (norm >> 64);
+    }
+    const uint64_t norm[2] = {(uint64_t) turn[0].norm, (uint64_t) (turn[0].norm >> 64)};
+    multiply_limbs(2, norm, 2, out->frame[0], out->all);
+    out->bits = bits_of(FACTOR_LIMBS, out->all);
+}
+
+/* x := x y modulo 2^(64 n), y of ny limbs without a sign. */
+static void scale(int n, uint64_t *x, int ny, const uint64_t *y)
+{
+    uint64_t product[LIMBS_MAX] = {0};
+    if (bits_of(ny, y) == 1)
+        return;
+    for (int j = 0; j < ny && j < n; j++) {
+        uint64_t carry = 0;
+        for (int i = 0; i + j < n && y[j]; i++) {
+            two_limbs sum = (two_limbs) x[i] * y[j] + product[i + j] + carry;
+            product[i + j] = (uint64_t) sum;
+            carry = (uint64_t) (sum >> 64);
         }
-        set_length(n, term, there ? frame->origin[axis] : 0, sign, unit);
-        add(n, out->offset[axis], term);
-        if (!frame->moving || !there)
-            continue;
-        struct dyadic speed = dyadic_of(frame->velocity[axis]);
-        speed.mantissa *= sign;
-        set_product(n, term, speed, window, unit.exponent);
-        add(n, out->drift[axis], term);
+    }
+    memcpy(x, product, (size_t) n * sizeof *x);
+}
+
+/* v := n R(q) v, and times the factor of its frame. */
+static void turn_vector(int n, limbs_length v[FMB_DIM_MAX], const struct turn *turn,
+                        const uint64_t factor[2])
+{
+    limbs_length out[FMB_DIM_MAX];
+    for (int axis = 0; axis < FMB_DIM_MAX && turn->turned; axis++) {
+        memset(out[axis], 0, (size_t) n * sizeof *out[axis]);
+        for (int j = 0; j < FMB_DIM_MAX; j++) {
+            const wide entry = turn->row[axis][j];
+            const two_limbs magnitude = (two_limbs) (entry < 0 ? -entry : entry);
+            const uint64_t limbs[2] = {(uint64_t) magnitude, (uint64_t) (magnitude >> 64)};
+            limbs_length term;
+            if (entry == 0 || is_zero(n, v[j]))
+                continue;
+            memcpy(term, v[j], (size_t) n * sizeof *term);
+            scale(n, term, 2, limbs);
+            if (entry < 0)
+                subtract(n, out[axis], term);
+            else
+                add(n, out[axis], term);
+        }
+    }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        if (turn->turned)
+            memcpy(v[axis], out[axis], (size_t) n * sizeof *out[axis]);
+        scale(n, v[axis], 2, factor);
     }
 }
 
-bool limbs_prepare(const struct fmb_pair *pair, struct dyadic_span span, struct limbs_pair *out)
+/* ---- Pairs ---- */
+
+/* The origin of the frame in body coordinates. */
+static void set_origin(int n, const struct fmb_frame *frame, struct unit unit,
+                       limbs_length out[FMB_DIM_MAX])
 {
+    static const struct dyadic minus_one = {-1, 0};
+    limbs_length term;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const bool box = frame->shape == FMB_BOX;
+        set_length(n, out[axis], box ? frame->centre[axis] : frame->origin[axis], unit);
+        if (!box || axis >= frame->dim)
+            continue;
+        set_product(n, term, half_of(frame->component[axis][axis]), minus_one, unit.exponent);
+        add(n, out[axis], term);
+    }
+}
+
+static bool has_origin(const struct fmb_frame *frame)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        if (frame->origin[axis] != 0 || frame->centre[axis] != 0)
+            return true;
+    return false;
+}
+
+static void add_signed(int n, uint64_t *x, int f, const uint64_t *y)
+{
+    if (f)
+        add(n, x, y);
+    else
+        subtract(n, x, y);
+}
+
+/* What one frame brings to offset and drift: the first with sign -1, the second with +1. */
+static void add_place(const struct placed_frame *placed, int f, struct dyadic window,
+                      struct unit unit, const struct turn *turn, const struct factor *factor,
+                      struct limbs_pair *out)
+{
+    const int n = out->limbs;
+    const struct fmb_placement *placement = placed->placement;
+    limbs_length origin[FMB_DIM_MAX], term;
+    for (int axis = 0; axis < placed->frame->dim; axis++) {
+        set_length(n, term, placement->position[axis], unit);
+        scale(n, term, FACTOR_LIMBS, factor->all);
+        add_signed(n, out->offset[axis], f, term);
+        set_product(n, term, dyadic_of(placement->velocity[axis]), window, unit.exponent);
+        scale(n, term, FACTOR_LIMBS, factor->all);
+        add_signed(n, out->drift[axis], f, term);
+    }
+    if (!has_origin(placed->frame))
+        return;
+    set_origin(n, placed->frame, unit, origin);
+    turn_vector(n, origin, turn, factor->frame[f]);
+    for (int axis = 0; axis < placed->frame->dim; axis++)
+        add_signed(n, out->offset[axis], f, origin[axis]);
+}
+
+static void set_components(const struct fmb_frame *frame, int f, struct unit unit,
+                           const struct turn *turn, const struct factor *factor,
+                           struct limbs_pair *out)
+{
+    const int n = out->limbs;
+    limbs_length term;
+    for (int i = 0; i < frame->count; i++) {
+        limbs_length *component = out->component[f][i];
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            set_length(n, component[axis], frame->component[i][axis], unit);
+            if (!frame->rounded)
+                continue;
+            set_length(n, term, frame->rest[i][axis], unit);
+            add(n, component[axis], term);
+        }
+        turn_vector(n, component, turn, factor->frame[f]);
+    }
+}
+
+bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struct limbs_pair *out)
+{
+    const struct placed_frame *placed[2] = {&pair->a, &pair->b};
     const struct dyadic window = dyadic_of(pair->duration);
-    const long bits = span.top - span.unit;
+    struct turn turn[2];
+    struct factor factor;
+    if (!set_turn(placed[0]->placement, &turn[0]) || !set_turn(placed[1]->placement, &turn[1]))
+        return false;
+    set_factor(turn, &factor);
+    const bool origins = has_origin(placed[0]->frame) || has_origin(placed[1]->frame);
+    const long bits = span.top - span.unit + factor.bits - 1 +
+                      (turn[0].turned || turn[1].turned ? 3
+                       : origins                        ? 2
+                                                        : 0);
     if (bits > 64 * LIMBS_MAX - 3)
         return false;
     out->limbs = bits <= 64 - 3 ? 1 : bits <= 128 - 3 ? 2 : bits <= 256 - 3 ? 4 : 8;
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        memset(out->offset[axis], 0, (size_t) out->limbs * sizeof *out->offset[axis]);
-        memset(out->drift[axis], 0, (size_t) out->limbs * sizeof *out->drift[axis]);
-    }
+    memset(out->offset, 0, sizeof out->offset);
+    memset(out->drift, 0, sizeof out->drift);
     const struct unit unit = {span.unit, out->limbs == 1 ? ldexp(1, (int) -span.unit) : 0};
-    add_frame(&pair->a, 0, window, unit, out);
-    add_frame(&pair->b, 1, window, unit, out);
+    for (int f = 0; f < 2; f++) {
+        out->frame[f] = placed[f]->frame;
+        add_place(placed[f], f, window, unit, &turn[f], &factor, out);
+        set_components(placed[f]->frame, f, unit, &turn[f], &factor, out);
+    }
     out->drifts = false;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out->drifts = out->drifts || !is_zero(out->limbs, out->drift[axis]);
@@ -261,7 +490,7 @@ INLINE limbs_vector edge_of(const int n, const struct limbs_pair *pair, int edge
     if (edge == SLABS_DRIFT)
         return pair->drift;
     const int f = edge >= SLABS_EDGE_OF_B, e = f ? edge - SLABS_EDGE_OF_B : edge;
-    const int dim = pair->body[f]->dim;
+    const int dim = pair->frame[f]->dim;
     if (e < dim)
         return pair->component[f][e];
     const int p = dim == 2 ? 0 : (e + 1) % 3, q = dim == 2 ? 1 : (e + 2) % 3;
@@ -288,7 +517,7 @@ INLINE void set_normal(const int n, const struct limbs_pair *pair, struct slab_n
     limbs_length scratch[2][FMB_DIM_MAX];
     uint64_t term[NORMAL_MAX];
     const limbs_vector u = edge_of(n, pair, edges.u, scratch[0]);
-    if (pair->body[0]->dim == 2) {
+    if (pair->frame[0]->dim == 2) {
         set_plane_normal(n, u, normal);
         return;
     }
@@ -314,13 +543,13 @@ INLINE void set_extent(const int n, const struct limbs_pair *pair, int f,
                        uint64_t normal[FMB_DIM_MAX][NORMAL_MAX], struct value_range *range)
 {
     const size_t size = (size_t) (3 * n) * sizeof *range->low;
-    const struct fmb_body *body = pair->body[f];
+    const struct fmb_frame *frame = pair->frame[f];
     memset(range->low, 0, size);
     memset(range->high, 0, size);
-    for (int i = 0; i < body->count; i++) {
+    for (int i = 0; i < frame->count; i++) {
         uint64_t at[VALUE_MAX];
         dot(n, normal, pair->component[f][i], at);
-        if (body->shape == FMB_CUBOID)
+        if (!frame_is_simplex(frame))
             add(3 * n, is_negative(3 * n, at) ? range->low : range->high, at);
         else if (less(3 * n, at, range->low))
             memcpy(range->low, at, size);

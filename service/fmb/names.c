@@ -19,6 +19,7 @@ const char *fmb_shape_name(int shape)
     case FMB_CUBOID: return "cuboid";
     case FMB_TETRAHEDRON: return "tetrahedron";
     case FMB_FACE: return "face";
+    case FMB_BOX: return "box";
     }
     return NULL;
 }
@@ -28,6 +29,7 @@ int fmb_component_count(int dim, int shape)
     bool known_dim = dim == 2 || dim == 3;
     switch (shape) {
     case FMB_CUBOID:
+    case FMB_BOX:
     case FMB_TETRAHEDRON: return known_dim ? dim : 0;
     case FMB_FACE: return dim == 3 ? 2 : 0;
     }

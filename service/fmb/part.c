@@ -4,10 +4,10 @@
 
 /* Accuracy: places are rounded outward at each step (range.h). A point between vertices,
  * o + sum x_i c_i + tau v T with x and tau in [0,1], is made from a place by at most 5 more
- * roundings of each term, one more where a component is rounded itself, and a place is off by at
- * most 3 u of the sum of the magnitudes for each of its at most 3 sums (of a face o, c_i, its rest
- * and v T): 15 u in all, within 2^-49 = 16 u. Where a sum of such numbers is smaller than the
- * smallest normal double, 2^-1070 covers what its products lose. */
+ * roundings of each term, and a place is off by at most 3 u of the sum of the magnitudes for each
+ * of its at most 3 sums: 14 u in all, within 2^-49 = 16 u, besides the error of the frame. Where a
+ * sum of such numbers is smaller than the smallest normal double, 2^-1070 covers what its products
+ * lose. */
 static const double point_error = 0x1p-49, point_underflow = 0x1p-1070;
 
 /* Beyond this nothing is said: sums must not overflow. */
@@ -59,7 +59,7 @@ static void set_faces(struct part *part)
         return;
     part->faces = part->dim;
     if (part->dim == 2) {
-        const struct weighed turned = weighed_turn(&c[1]), zero = {{0}, {0}};
+        const struct weighed turned = weighed_turn(&c[1]), zero = {{0}, {0}, 0};
         part->normal[0] = weighed_sum(&zero, -1, &turned);
         part->normal[1] = weighed_turn(&c[0]);
     } else {
@@ -77,17 +77,18 @@ static void set_faces(struct part *part)
     part->faces++;
 }
 
-/* o + sum of components and their rests, + v T */
-static void set_vertex_places(const struct fmb_frame *frame, struct range way, int axis,
+/* o + sum of components, + v T, each within the error of the frame. */
+static void set_vertex_places(const struct world_frame *frame, struct range way, int axis,
                               struct part *part)
 {
+    const struct range error = {-frame->error, frame->error};
     for (int v = 0; v < part->vertices; v++) {
         struct range at = range_of(frame->origin[axis]);
         for (int i = 0; i < part->components; i++)
             if (part->shape == FMB_CUBOID ? v >> i & 1 : v == i + 1)
                 at = range_sum(at, range_of(part->component[i].at[axis]));
-        if (frame->body->rounded && v > 0)
-            at = range_sum(at, range_of(frame->body->rest[v - 1][axis]));
+        if (frame->error != 0)
+            at = range_sum(at, error);
         part->place[0][v][axis] = at;
         part->place[1][v][axis] = range_sum(at, way);
         part->extent[axis] = range_hull(part->extent[axis], at);
@@ -95,32 +96,31 @@ static void set_vertex_places(const struct fmb_frame *frame, struct range way, i
     }
 }
 
-static bool set_places(const struct fmb_frame *frame, double duration, struct part *part)
+static bool set_places(const struct world_frame *frame, double duration, struct part *part)
 {
     bool near = true;
     for (int axis = 0; axis < part->dim; axis++) {
-        const double velocity = frame->moving ? frame->velocity[axis] : 0;
-        part->displacement[axis] = velocity * duration;
+        part->displacement[axis] = frame->velocity[axis] * duration;
         double magnitude = fabs(frame->origin[axis]) + fabs(part->displacement[axis]);
         near = near && magnitude <= largest_place;
         for (int i = 0; i < part->components; i++)
             magnitude += part->component[i].weight[axis];
-        part->slack[axis] = point_error * magnitude + point_underflow;
+        part->slack[axis] = point_error * magnitude + point_underflow + frame->error;
         part->extent[axis] = range_none();
-        part->way[axis] = range_product(velocity, duration);
+        part->way[axis] = range_product(frame->velocity[axis], duration);
         set_vertex_places(frame, part->way[axis], axis, part);
     }
     return near;
 }
 
-bool part_set(const struct fmb_frame *frame, double duration, struct part *part)
+bool part_set(const struct world_frame *frame, double duration, struct part *part)
 {
     memset(part, 0, sizeof *part);
-    part->shape = frame->body->shape;
-    part->dim = frame->body->dim;
-    part->components = frame->body->count;
+    part->shape = frame->shape;
+    part->dim = frame->dim;
+    part->components = frame->count;
     for (int i = 0; i < part->components; i++)
-        part->component[i] = weigh(frame->body->component[i]);
+        part->component[i] = weigh(frame->component[i]);
     if (part->shape == FMB_CUBOID)
         set_cuboid(part);
     else

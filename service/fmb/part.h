@@ -3,7 +3,7 @@
 #ifndef FMB_PART_H
 #define FMB_PART_H
 
-#include "fmb.h"
+#include "prepared.h"
 #include "range.h"
 #include "weighed.h"
 
@@ -35,6 +35,6 @@ struct part {
 
 /* On input: a frame of a body in range, checked; the window, in seconds. False if a place is
  * too far away for doubles. */
-bool part_set(const struct fmb_frame *frame, double duration, struct part *part);
+bool part_set(const struct world_frame *frame, double duration, struct part *part);
 
 #endif

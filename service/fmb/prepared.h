@@ -1,14 +1,21 @@
-/* What a prepared frame holds, and the way back from it.
+/* What a prepared frame holds.
+ *
+ * The numbers are those of a frame near the true one: its world coordinates, rounded. No point of
+ * either is farther from the other frame than error (2-norm), and where error is 0 the two are the
+ * same. Bounds of the filter hold for the rounded frame, whose numbers are exact; slabs.h says what
+ * follows for the true one.
  *
  * The head, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits each, then
  * the bits below. A size is the upper half of a double's upper half, rounded up: a shift to the
  * top of 64 bits makes it a double that is no smaller than the length of the component (its
- * 2-norm) and at most a fifteenth larger. 0 for a component that is not there, or is 0. */
+ * 2-norm), turned and rounded or not, and at most a fifteenth larger. 0 for a component that is not
+ * there, or is 0. */
 #ifndef FMB_PREPARED_H
 #define FMB_PREPARED_H
 
-#include "fmb.h"
+#include "pair.h"
 
+#include <stdint.h>
 #include <string.h>
 
 enum {
@@ -16,12 +23,21 @@ enum {
     PREPARED_TETRAHEDRON = 1 << 0, /* neither: a cuboid */
     PREPARED_FACE = 1 << 1,
     PREPARED_SPACE = 1 << 2,  /* 3D */
-    PREPARED_MOVING = 1 << 3, /* carries a velocity */
+    PREPARED_MOVING = 1 << 3, /* its velocity is not 0 */
     PREPARED_ALONG = 1 << 4,  /* an edge is parallel to a coordinate axis */
-    PREPARED_USABLE = 1 << 5, /* doubles can say something of it: fmb_body.in_range */
-    PREPARED_PLAIN = 1 << 6,  /* components of few bits, as people write them */
+    PREPARED_USABLE = 1 << 5, /* doubles can decide pairs with it */
+    PREPARED_PLAIN = 1 << 6,  /* the error is 0, and the components have few bits */
     PREPARED_GOOD = 1 << 7,   /* it was prepared */
-    PREPARED_ROUNDED = 1 << 8 /* its components are off by a rest that is not here */
+    /* And the next two for y and z: the error does not reach these coordinates. */
+    PREPARED_EXACT_X = 1 << 8
+};
+
+/* Words of struct fmb_prepared, the head being word 0. */
+enum {
+    PREPARED_ERROR_2D = 7,
+    PREPARED_ERROR_3D = 13,
+    PREPARED_FRAME = 14,
+    PREPARED_PLACEMENT = 15
 };
 
 /* The bits of the kind. */
@@ -30,20 +46,23 @@ static inline unsigned prepared_kind(const struct fmb_prepared *frame)
     return (unsigned) (frame->head >> 3 * PREPARED_SIZE_BITS);
 }
 
-/* Of a pair: both frames plain; one of them moving. */
+/* Of a pair: both frames plain. */
 static inline bool prepared_both_plain(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
     return prepared_kind(a) & prepared_kind(b) & PREPARED_PLAIN;
 }
 
-static inline bool prepared_one_moves(const struct fmb_prepared *a, const struct fmb_prepared *b)
-{
-    return (prepared_kind(a) | prepared_kind(b)) & PREPARED_MOVING;
-}
-
+/* On input: a frame that is prepared. */
 static inline const double *prepared_velocity(const struct fmb_prepared *frame)
 {
-    return frame->number + (prepared_kind(frame) & PREPARED_SPACE ? 12 : 6);
+    return frame->placement->velocity;
+}
+
+static inline double prepared_error(const struct fmb_prepared *frame)
+{
+    return frame
+        ->number[(prepared_kind(frame) & PREPARED_SPACE ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) -
+                 1];
 }
 
 /* No smaller than the length of component i. */
@@ -56,32 +75,44 @@ static inline double prepared_size(unsigned long long head, int i)
     return size;
 }
 
-/* size, in_range and bits of a body, which are 0, from the rest of it but the
- * inverse. */
-void body_measure(struct fmb_body *body);
+/* The error of a sum is a double (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem
+ * B): whether it is 0. */
+static inline bool prepared_exact_sum(double x, double y, double sum)
+{
+    const double part = sum - x;
+    return (x - (sum - part)) + (y - part) == 0;
+}
 
 /* A tetrahedron in 2D without its inverse, [component][axis]. Its numbers are 0 or at least 2^-400
  * and at most 2^200, so that doubles tell exactly whether it is flat. */
-void body_set_plane_triangle(const double components[2][2], struct fmb_body *out);
+void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *out);
 
 /* Whether a window may last so long, in seconds: not negative, and finite. */
 bool prepared_is_duration(double duration);
 
-/* The head of a body, of which all else is set; of a frame with it at rest. */
-unsigned long long prepared_head_of(const struct fmb_body *body);
+/* The head of a frame whose other fields are set, without orientation and at rest. */
+unsigned long long prepared_head_of(const struct fmb_frame *frame);
 
-/* The bits of the kind of a frame that is not prepared yet. */
-static inline unsigned prepared_kind_of(const struct fmb_frame *frame)
-{
-    return (unsigned) (frame->body->head >> 3 * PREPARED_SIZE_BITS) |
-           (frame->moving ? PREPARED_MOVING : 0);
-}
+/* As fmb_prepare() of one frame, without a check. */
+void prepared_set(const struct placed_frame *placed, struct fmb_prepared *out);
 
-/* As fmb_prepare(), of a frame that is known to be finite. */
-void prepared_set(const struct fmb_frame *frame, struct fmb_prepared *out);
+/* As fmb_prepare(), without a check. */
+void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,
+                    struct fmb_prepared *out);
 
-/* The frame that was prepared. Its body is put into *body, all of it but the inverse; flat says
- * whether it is usable. */
-struct fmb_frame prepared_frame(const struct fmb_prepared *frame, struct fmb_body *body);
+/* A prepared frame as doubles see it: for steps that decide one pair. A box is a cuboid here. */
+struct world_frame {
+    const struct fmb_frame *frame;
+    enum fmb_shape shape;
+    int dim, count;
+    unsigned long long head;
+    double origin[FMB_DIM_MAX], component[FMB_DIM_MAX][FMB_DIM_MAX]; /* beyond dim: 0 */
+    double velocity[FMB_DIM_MAX];                                    /* exact */
+    double size[FMB_DIM_MAX]; /* largest magnitude in each component */
+    double error;
+    double turn; /* bounds the error of a component, against its length */
+};
+
+void world_frame_of(const struct fmb_prepared *prepared, struct world_frame *out);
 
 #endif

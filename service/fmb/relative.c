@@ -2,20 +2,16 @@
 
 #include <math.h>
 
-static double velocity_of(const struct fmb_frame *frame, int axis)
+bool relative_motion_of(const struct world_frame *a, const struct world_frame *b, double duration,
+                        struct relative_motion *out)
 {
-    return frame->moving ? frame->velocity[axis] : 0;
-}
-
-bool relative_motion_of(const struct fmb_pair *pair, struct relative_motion *out)
-{
-    *out = (struct relative_motion){.moving = pair->a.moving || pair->b.moving};
+    *out = (struct relative_motion){.drifts = false};
     bool finite = true;
-    for (int axis = 0; axis < pair->a.body->dim; axis++) {
-        out->offset[axis] = pair->b.origin[axis] - pair->a.origin[axis];
-        double speed = velocity_of(&pair->b, axis) - velocity_of(&pair->a, axis);
-        out->drift[axis] = speed * pair->duration;
-        out->drifts = out->drifts || (speed != 0 && pair->duration > 0);
+    for (int axis = 0; axis < a->dim; axis++) {
+        out->offset[axis] = b->origin[axis] - a->origin[axis];
+        const double speed = b->velocity[axis] - a->velocity[axis];
+        out->drift[axis] = speed * duration;
+        out->drifts = out->drifts || (speed != 0 && duration > 0);
         finite = finite && isfinite(out->offset[axis]) && isfinite(out->drift[axis]);
     }
     return finite;

@@ -1,7 +1,5 @@
 #include "rows.h"
 
-#include "inexact.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -17,25 +15,23 @@ struct projection {
 };
 
 /* out[i] := sum_axis inverse[axis][i] v[axis] */
-static void project_vector(const struct fmb_body *onto, const double *v, double *out)
+static void project_vector(const struct inexact_pair *pair, const double *v, double *out)
 {
-    for (int i = 0; i < onto->dim; i++) {
+    for (int i = 0; i < pair->a.dim; i++) {
         out[i] = 0;
-        for (int axis = 0; axis < onto->dim; axis++)
-            out[i] += onto->inverse[axis][i] * v[axis];
+        for (int axis = 0; axis < pair->a.dim; axis++)
+            out[i] += pair->inverse[axis][i] * v[axis];
     }
 }
 
-static void project(const struct fmb_pair *pair, const struct relative_motion *motion,
-                    struct projection *out)
+static void project(const struct inexact_pair *pair, struct projection *out)
 {
-    const struct fmb_body *a = pair->a.body;
-    out->dim = a->dim;
-    out->moving = motion->moving;
-    project_vector(a, motion->offset, out->origin);
-    project_vector(a, motion->drift, out->displacement);
-    for (int i = 0; i < a->dim; i++)
-        project_vector(a, pair->b.body->component[i], out->component[i]);
+    out->dim = pair->a.dim;
+    out->moving = pair->moving;
+    project_vector(pair, pair->motion.offset, out->origin);
+    project_vector(pair, pair->motion.drift, out->displacement);
+    for (int i = 0; i < out->dim; i++)
+        project_vector(pair, pair->b.component[i], out->component[i]);
 }
 
 struct builder {
@@ -95,16 +91,13 @@ static bool rows_are_finite(const struct builder *builder)
     return true;
 }
 
-bool rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count)
+bool rows_of_pair(const struct inexact_pair *pair, struct row rows[ROWS_MAX], int *count)
 {
-    struct relative_motion motion;
     struct projection b;
-    if (!relative_motion_of(pair, &motion))
-        return false;
-    project(pair, &motion, &b);
+    project(pair, &b);
     struct builder builder = {.rows = rows};
-    add_rows_of_a(&builder, &b, pair->a.body->shape == FMB_CUBOID);
-    add_rows_of_b(&builder, b.dim, pair->b.body->shape == FMB_CUBOID);
+    add_rows_of_a(&builder, &b, pair->a.shape == FMB_CUBOID);
+    add_rows_of_b(&builder, b.dim, pair->b.shape == FMB_CUBOID);
     if (b.moving) {
         add_row(&builder, 1, false)->a[b.dim] = 1;
         add_row(&builder, 0, false)->a[b.dim] = -1;

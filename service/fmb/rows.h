@@ -3,7 +3,7 @@
 #ifndef FMB_ROWS_H
 #define FMB_ROWS_H
 
-#include "fmb.h"
+#include "inexact.h"
 
 enum {
     ROWS_VARS_MAX = FMB_DIM_MAX + 1, /* x_0 .. x_(dim-1), then tau if moving */
@@ -20,8 +20,8 @@ struct row {
 
 /* The unknowns x are the parameters of frame b; a's bounds are written in them, by projecting
  * b into a's coordinates with a's inverse (Listing 1, PROJ). tau = t / T.
- * On input: neither frame is flat, a is inverted. On output: rows[0..*count), in the order
+ * On input: a is inverted. On output: rows[0..*count), in the order
  * of Listing 1; false if a number overflowed. */
-bool rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count);
+bool rows_of_pair(const struct inexact_pair *pair, struct row rows[ROWS_MAX], int *count);
 
 #endif

@@ -21,6 +21,8 @@ enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
 
 #if LANES == 1 || defined(RUN_ALONE)
 
+enum { GATHERED = 1 }; /* frames */
+
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
     UNROLL(4)
@@ -29,6 +31,8 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 }
 
 #elif LANES == 2
+
+enum { GATHERED = 2 };
 
 INLINE lanes two_at(const double *from)
 {
@@ -48,6 +52,8 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 }
 
 #else
+
+enum { GATHERED = LANES };
 
 typedef double four __attribute__((vector_size(32)));
 
@@ -92,6 +98,7 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 /* A frame of each lane. */
 struct run_frame {
     lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
+    lanes error;
 };
 
 INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
@@ -104,11 +111,11 @@ INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
         out->origin[axis] = words[1 + axis];
         out->size[axis] =
             lanes_from_bits((head << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
-        out->velocity[axis] = words[1 + kind.dim * (1 + kind.dim) + axis];
         UNROLL(3)
         for (int i = 0; i < kind.dim; i++)
             out->component[i][axis] = words[1 + kind.dim * (1 + i) + axis];
     }
+    out->error = words[kind.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D];
 }
 
 /* A word by itself. */
@@ -126,10 +133,24 @@ INLINE lanes gather_one(const double *const frame[LANES], int word)
 #endif
 }
 
-/* Of head, origin, components and, where it is wanted, velocity. */
+/* Of head, origin, components and error. */
 INLINE int word_count(const struct walk_kind kind)
 {
-    return 1 + kind.dim * (1 + kind.dim + (kind.drifts ? 1 : 0));
+    return 1 + (kind.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D);
+}
+
+/* Velocities are in the placements, where more numbers follow. */
+INLINE void gather_velocity(const double *const frame[LANES], struct run_frame *out)
+{
+    const double *velocity[LANES];
+    lanes words[4];
+    UNROLL(8)
+    for (int lane = 0; lane < GATHERED; lane++)
+        velocity[lane] = prepared_velocity((const struct fmb_prepared *) frame[lane]);
+    gather_four(velocity, 0, words);
+    UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        out->velocity[axis] = words[axis];
 }
 
 INLINE void gather(const struct walk_kind kind, const double *const frame[LANES],
@@ -144,6 +165,8 @@ INLINE void gather(const struct walk_kind kind, const double *const frame[LANES]
     if (in_fours < used)
         words[used - 1] = gather_one(frame, used - 1);
     set_run_frame(kind, words, out);
+    if (kind.drifts)
+        gather_velocity(frame, out);
 }
 
 INLINE void set_pair(const struct walk_kind kind, const struct run_frame *a,
@@ -163,7 +186,7 @@ INLINE void set_pair(const struct walk_kind kind, const struct run_frame *a,
             component[1][i][axis] = b->component[i][axis];
         }
     }
-    walk_pair_set(kind, component, size, offset, drift, out);
+    walk_pair_set(kind, component, size, offset, drift, a->error + b->error, out);
 }
 
 INLINE void walk_pair_of(const struct walk_kind kind, const struct walk_pair *pair,

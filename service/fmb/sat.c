@@ -66,7 +66,7 @@ struct sides {
     double drift[3];                         /* of b against a over the window */
 };
 
-enum purpose { WHETHER, VERDICT, WHEN };
+enum purpose { VERDICT, WHEN };
 
 /* A search along one axis after the other. (The sides are no part of it: a compiler does not see
  * through a struct with arrays that are indexed.) */
@@ -140,8 +140,7 @@ INLINE bool meet_along(struct search *search, const double *normal)
     }
     const double middle = start + slope, reach = fabs(slope);
     const double low = range.low - reach, high = range.high + reach;
-    if (search->purpose == VERDICT)
-        search->touching |= (middle == low || middle == high) && low < high;
+    search->touching |= (middle == low || middle == high) && low < high;
     return !((middle < low) | (middle > high));
 }
 
@@ -253,60 +252,7 @@ INLINE void set_offset(const struct kind kind, const double *difference, struct 
     }
 }
 
-/* ---- The verdict of prepared frames ---- */
-
-struct prepared_pair {
-    const struct fmb_prepared *a, *b;
-    double duration;
-};
-
-INLINE bool prepared_meets(const struct prepared_pair *pair, const struct kind kind)
-{
-    const int dim = kind.dim;
-    const double *a = pair->a->number, *b = pair->b->number;
-    double difference[3];
-    struct sides sides;
-    struct search search = {.sides = &sides, .kind = kind, .purpose = WHETHER};
-    UNROLL(3)
-    for (int axis = 0; axis < dim; axis++) {
-        const int velocity = dim + dim * dim + axis;
-        difference[axis] = b[axis] - a[axis];
-        if (kind.moving)
-            sides.drift[axis] = (b[velocity] - a[velocity]) * pair->duration;
-    }
-    set_components(dim, kind.a_simplex, a + dim, dim, sides.a);
-    set_components(dim, kind.b_simplex, b + dim, dim, sides.b);
-    set_offset(kind, difference, &sides);
-    return meet(&search);
-}
-
-#define X(dim, a, b, moving)                                                \
-    static bool meets_##dim##a##b##moving(const struct prepared_pair *pair) \
-    {                                                                       \
-        return prepared_meets(pair, (struct kind){dim, a, b, moving});      \
-    }
-KIND_MAP(X)
-#undef X
-
-bool sat_meets(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
-{
-#define X(dim, a, b, moving) meets_##dim##a##b##moving,
-    static bool (*const meets[])(const struct prepared_pair *pair) = {KIND_MAP(X)};
-#undef X
-    const struct prepared_pair pair = {a, b, duration};
-    const unsigned of_a = prepared_kind(a), of_b = prepared_kind(b);
-    const int dim = of_a & PREPARED_SPACE ? 3 : 2;
-    return meets[kind_index((struct kind){dim, of_a & PREPARED_TETRAHEDRON,
-                                          of_b & PREPARED_TETRAHEDRON,
-                                          (of_a | of_b) & PREPARED_MOVING})](&pair);
-}
-
 /* ---- The method ---- */
-
-struct question {
-    const struct fmb_pair *pair;
-    struct relative_motion motion;
-};
 
 /* Rounding may have put the first contact after the last one, or both out of the window. */
 static void answer_contact(const double when[2], double duration, struct fmb_answer *answer)
@@ -318,22 +264,23 @@ static void answer_contact(const double when[2], double duration, struct fmb_ans
     bounds_answer_contact(&bounds, duration, answer); /* not here: it makes 0 of -0 */
 }
 
-INLINE void decide(const struct question *question, const struct kind kind,
+INLINE void decide(const struct inexact_pair *pair, const struct kind kind,
                    struct fmb_answer *answer)
 {
-    const struct fmb_pair *pair = question->pair;
     struct sides sides;
     struct search search = {.sides = &sides, .kind = kind, .purpose = VERDICT};
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
-        sides.drift[axis] = question->motion.drift[axis];
-    set_components(kind.dim, kind.a_simplex, pair->a.body->component[0], 3, sides.a);
-    set_components(kind.dim, kind.b_simplex, pair->b.body->component[0], 3, sides.b);
-    set_offset(kind, question->motion.offset, &sides);
+        sides.drift[axis] = pair->motion.drift[axis];
+    set_components(kind.dim, kind.a_simplex, pair->a.component[0], 3, sides.a);
+    set_components(kind.dim, kind.b_simplex, pair->b.component[0], 3, sides.b);
+    set_offset(kind, pair->motion.offset, &sides);
     answer->verdict = FMB_SEPARATED;
     if (!meet(&search))
         return;
     answer->verdict = search.touching ? FMB_TOUCHING : FMB_OVERLAPPING;
+    answer->has_contact = true;
+    answer->contact[1] = pair->duration + 0.0; /* never -0 */
     if (!kind.moving)
         return;
     search.purpose = WHEN;
@@ -344,10 +291,10 @@ INLINE void decide(const struct question *question, const struct kind kind,
 }
 
 #define X(dim, a, b, moving)                                                \
-    static void decide_##dim##a##b##moving(const struct question *question, \
+    static void decide_##dim##a##b##moving(const struct inexact_pair *pair, \
                                            struct fmb_answer *answer)       \
     {                                                                       \
-        decide(question, (struct kind){dim, a, b, moving}, answer);         \
+        decide(pair, (struct kind){dim, a, b, moving}, answer);             \
     }
 KIND_MAP(X)
 #undef X
@@ -361,29 +308,28 @@ static double largest_of(const double v[3], double largest)
 
 /* Products of three lengths, differences and sums of a few of them, must neither overflow nor all
  * vanish: the largest length of the pair has to be within 2^-300 and 2^300. */
-static bool in_range(const struct question *question)
+static bool in_range(const struct inexact_pair *pair)
 {
-    double largest = largest_of(question->motion.offset, 0);
-    largest = largest_of(question->motion.drift, largest);
+    double largest = largest_of(pair->motion.offset, 0);
+    largest = largest_of(pair->motion.drift, largest);
     for (int i = 0; i < 3; i++)
-        largest =
-            most(most(question->pair->a.body->size[i], question->pair->b.body->size[i]), largest);
+        largest = most(most(pair->a.size[i], pair->b.size[i]), largest);
     return largest >= 0x1p-300 && largest <= 0x1p300;
 }
 
-enum fmb_status sat_decide(const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
+enum fmb_status sat_decide(const struct frame_pair *frames, unsigned want,
+                           struct fmb_answer *answer)
 {
 #define X(dim, a, b, moving) decide_##dim##a##b##moving,
-    static void (*const decide_kind[])(const struct question *question,
+    static void (*const decide_kind[])(const struct inexact_pair *pair,
                                        struct fmb_answer *answer) = {KIND_MAP(X)};
 #undef X
     (void) want;
-    struct question question = {.pair = pair};
-    if (pair->a.body->flat || pair->b.body->flat || !relative_motion_of(pair, &question.motion) ||
-        !in_range(&question))
+    struct inexact_pair pair;
+    if (!inexact_pair_of(frames, &pair) || !in_range(&pair))
         return FMB_CANNOT_DECIDE;
-    decide_kind[kind_index((struct kind){pair->a.body->dim, pair->a.body->shape == FMB_TETRAHEDRON,
-                                         pair->b.body->shape == FMB_TETRAHEDRON,
-                                         question.motion.moving})](&question, answer);
+    decide_kind[kind_index((struct kind){pair.a.dim, pair.a.shape == FMB_TETRAHEDRON,
+                                         pair.b.shape == FMB_TETRAHEDRON, pair.moving})](&pair,
+                                                                                         answer);
     return FMB_OK;
 }

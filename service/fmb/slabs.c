@@ -62,14 +62,10 @@
  * sum of these three cross products.
  *
  * A face is a simplex of two components; of the products above it needs those without a_2, and its
- * own normal n_2, along which it has no extent. Its components may be rounded before they come here
- * (fmb_body.rest), by a factor within 1 +- u for each coordinate, so that a monomial of two edges
- * and an offset or H is rounded twice more, one of three components three times more: at most 16
- * times in all. 16.01 (2 / sqrt(3)) u + 1.01 u < 19.6 u leaves as much of the 21 u of
- * SLABS_ROUNDING_FACES. Sizes in heads are no smaller than lengths that are longer by u.
+ * own normal n_2, along which it has no extent.
  *
- * Along an axis a coordinate of a component is rounded at most 6 times, of a face once before, and
- * the difference with the bound once: 8.01 u T against 16 u T.
+ * Along an axis a coordinate of a component is rounded at most 6 times, and the difference with the
+ * bound once: 7.01 u T against 16 u T.
  *
  * Overflow and underflow: components and a drift that is not 0 have sizes between 2^-200 and 2^200,
  * offsets are below 2^200 (slabs_prepare, walk_pair.in_range), so that nothing overflows. Entries
@@ -99,17 +95,39 @@ static bool are_not_tiny(const double v[3])
     return true;
 }
 
-bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out)
+/* Placing: let t bound the errors of components against their lengths, and so of edges against
+ * theirs as the scale of a slab has them. The normal u x v is off by at most (2 t + t^2) |u| |v|,
+ * and the gap along it by as much times all lengths; along the rounded normal, the bounds of D are
+ * off by the errors of the frames, times |u| |v|. In 2D the normal is off by t |u|. A product
+ * [u v w] of edges is off by (3 t + 3 t^2 + t^3) |u| |v| |w| (box.c). 4 t is more than all of
+ * these. */
+static void set_placing(struct slabs_pair *out)
 {
-    out->a = pair->a.body;
-    out->b = pair->b.body;
-    if (!out->a->in_range || !out->b->in_range || !relative_motion_of(pair, &out->motion))
+    double lengths = 0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        lengths += prepared_size(out->a.head, axis) + prepared_size(out->b.head, axis);
+        lengths += fabs(out->motion.offset[axis]) + fabs(out->motion.drift[axis]);
+    }
+    out->error = out->a.error + out->b.error;
+    out->inexact = out->error != 0;
+    out->placing = (4 * fmax(out->a.turn, out->b.turn) * lengths + out->error) * (1 + 0x1p-30);
+}
+
+bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                   struct slabs_pair *out)
+{
+    world_frame_of(a, &out->a);
+    world_frame_of(b, &out->b);
+    out->duration = duration;
+    if (!(prepared_kind(a) & prepared_kind(b) & PREPARED_USABLE) ||
+        !relative_motion_of(&out->a, &out->b, duration, &out->motion))
         return false;
+    set_placing(out);
     double offset = largest_of(0, out->motion.offset);
     double drift = largest_of(0, out->motion.drift);
     out->drift_size = drift;
-    out->reach = (offset + drift) + ((out->a->size[0] + out->a->size[1] + out->a->size[2]) +
-                                     (out->b->size[0] + out->b->size[1] + out->b->size[2]));
+    out->reach = (offset + drift) + ((out->a.size[0] + out->a.size[1] + out->a.size[2]) +
+                                     (out->b.size[0] + out->b.size[1] + out->b.size[2]));
     if (!out->motion.drifts)
         return offset <= 0x1p200;
     return offset <= 0x1p200 && drift <= 0x1p200 && drift >= 0x1p-200 &&
@@ -121,16 +139,16 @@ bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out)
 INLINE void set_pair(const struct slabs_pair *pair, const struct walk_kind kind,
                      struct walk_pair *out)
 {
-    const struct fmb_body *body[2] = {pair->a, pair->b};
+    const struct world_frame *frame[2] = {&pair->a, &pair->b};
     double component[2][3][3], size[2][3];
     for (int f = 0; f < 2; f++)
         for (int i = 0; i < 3; i++) {
-            size[f][i] = prepared_size(body[f]->head, i);
+            size[f][i] = prepared_size(frame[f]->head, i);
             for (int axis = 0; axis < 3; axis++)
-                component[f][i][axis] = body[f]->component[i][axis];
+                component[f][i][axis] = frame[f]->component[i][axis];
         }
     walk_pair_set(kind, (const double(*)[3][3]) component, (const double(*)[3]) size,
-                  pair->motion.offset, pair->motion.drift, out);
+                  pair->motion.offset, pair->motion.drift, pair->placing, out);
 }
 
 /* next: where slabs are to be kept, or NULL. */
@@ -140,7 +158,7 @@ INLINE void walk_one(const struct slabs_pair *pair, const struct walk_kind kind,
     struct walk_pair one;
     set_pair(pair, kind, &one);
     if (!rounds)
-        one.unit = one.reach = 0;
+        one.unit = one.reach = one.error = 0;
     walk_begin(found);
     found->next = next;
     walk(&one, kind, found);
@@ -150,16 +168,16 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
                                    struct slab_value *next)
 {
     struct walk_found found;
-#define WALK(dimension, x, y, drift)                                                     \
-    if (pair->a->dim == (dimension) && pair->a->shape == (x) && pair->b->shape == (y) && \
-        pair->motion.drifts == (drift))                                                  \
-        walk_one(pair,                                                                   \
-                 (struct walk_kind){.dim = dimension,                                    \
-                                    .simplex = {(x) != FMB_CUBOID, (y) != FMB_CUBOID},   \
-                                    .face = {(x) == FMB_FACE, (y) == FMB_FACE},          \
-                                    .drifts = drift,                                     \
-                                    .along = (dimension) == 3,                           \
-                                    .ordered = true},                                    \
+#define WALK(dimension, x, y, drift)                                                   \
+    if (pair->a.dim == (dimension) && pair->a.shape == (x) && pair->b.shape == (y) &&  \
+        pair->motion.drifts == (drift))                                                \
+        walk_one(pair,                                                                 \
+                 (struct walk_kind){.dim = dimension,                                  \
+                                    .simplex = {(x) != FMB_CUBOID, (y) != FMB_CUBOID}, \
+                                    .face = {(x) == FMB_FACE, (y) == FMB_FACE},        \
+                                    .drifts = drift,                                   \
+                                    .along = (dimension) == 3,                         \
+                                    .ordered = true},                                  \
                  rounds, next, &found);
 #define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
 #define WALK_PAIR(x, y) WALK_MOTIONS(2, x, y) WALK_MOTIONS(3, x, y)
@@ -178,9 +196,9 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
     return found;
 }
 
-enum slabs_outcome slabs_filter(const struct slabs_pair *pair, bool rounds)
+enum slabs_outcome slabs_filter_exactly(const struct slabs_pair *pair)
 {
-    const struct walk_found found = walk_list(pair, rounds, NULL);
+    const struct walk_found found = walk_list(pair, false, NULL);
     if (found.surely > 0)
         return SLABS_SEPARATED;
     return found.possibly < 0 ? SLABS_OVERLAPPING : SLABS_UNSURE;
@@ -197,12 +215,12 @@ static struct weighed edge_of(const struct slabs_pair *pair, int number)
 {
     if (number == SLABS_DRIFT)
         return weigh(pair->motion.drift);
-    const struct fmb_body *body = number < SLABS_EDGE_OF_B ? pair->a : pair->b;
+    const struct world_frame *frame = number < SLABS_EDGE_OF_B ? &pair->a : &pair->b;
     const int e = number % SLABS_EDGES;
-    if (e < body->dim)
-        return weigh(body->component[e]);
-    const int p = body->dim == 2 ? 0 : next(e % 3), q = body->dim == 2 ? 1 : next(p);
-    const struct weighed from = weigh(body->component[p]), to = weigh(body->component[q]);
+    if (e < frame->dim)
+        return weigh(frame->component[e]);
+    const int p = frame->dim == 2 ? 0 : next(e % 3), q = frame->dim == 2 ? 1 : next(p);
+    const struct weighed from = weigh(frame->component[p]), to = weigh(frame->component[q]);
     return weighed_sum(&to, -1, &from);
 }
 
@@ -236,14 +254,14 @@ static double middle_error(double low, double value, double high)
 /* The largest of 0 and of all x (simplex), or the sum of those that are positive (cuboid), from
  * sign x. A component that surely does not count brings no error. Subtractions and sums round by
  * less than what weighed_error() leaves room for. */
-static struct known farthest(const struct fmb_body *body, const struct known x[FMB_DIM_MAX],
+static struct known farthest(const struct world_frame *frame, const struct known x[FMB_DIM_MAX],
                              double sign)
 {
     double value = 0, low = 0, high = 0;
-    for (int i = 0; i < body->count; i++) {
+    for (int i = 0; i < frame->count; i++) {
         const double at = sign * x[i].value;
         const double below = above_zero(at - x[i].error), above = above_zero(at + x[i].error);
-        if (body->shape == FMB_CUBOID) {
+        if (frame->shape == FMB_CUBOID) {
             value += above_zero(at);
             low += above > 0 ? below - above_zero(at) : 0;
             high += above > 0 ? above - above_zero(at) : 0;
@@ -254,7 +272,7 @@ static struct known farthest(const struct fmb_body *body, const struct known x[F
         }
     }
     return (struct known){
-        value, body->shape == FMB_CUBOID ? greatest(-low, high) : middle_error(low, value, high)};
+        value, frame->shape == FMB_CUBOID ? greatest(-low, high) : middle_error(low, value, high)};
 }
 
 void slab_inequalities(const struct slab_value *slab, struct inequality out[2])
@@ -264,23 +282,40 @@ void slab_inequalities(const struct slab_value *slab, struct inequality out[2])
     out[1] = (struct inequality){slab->high - start, -slope, slab->error, slab->error};
 }
 
+/* The length of an edge, or more. */
+static double size_of(const struct slabs_pair *pair, int number)
+{
+    if (number == SLABS_DRIFT)
+        return (fabs(pair->motion.drift[0]) + fabs(pair->motion.drift[1])) +
+               fabs(pair->motion.drift[2]);
+    const struct world_frame *frame = number < SLABS_EDGE_OF_B ? &pair->a : &pair->b;
+    const int e = number % SLABS_EDGES;
+    if (e < frame->dim)
+        return prepared_size(frame->head, e);
+    const int p = frame->dim == 2 ? 0 : next(e % 3), q = frame->dim == 2 ? 1 : next(p);
+    return prepared_size(frame->head, p) + prepared_size(frame->head, q);
+}
+
 /* Below: start - low, with low = -(farthest of A against the normal) - farthest of B along it. */
 void slabs_refine(const struct slabs_pair *pair, struct slab_normal edges, struct inequality out[2])
 {
+    const bool plane = pair->a.dim == 2;
     const struct weighed u = edge_of(pair, edges.u), v = edge_of(pair, edges.v);
-    const struct weighed normal = pair->a->dim == 2 ? weighed_turn(&u) : weighed_cross(&u, &v);
+    const struct weighed normal = plane ? weighed_turn(&u) : weighed_cross(&u, &v);
     const struct known start = known_dot(&normal, pair->motion.offset);
     const struct known slope = known_dot(&normal, pair->motion.drift);
+    const double scale = size_of(pair, edges.u) * (plane ? 1 : size_of(pair, edges.v));
+    const double placing = pair->inexact ? scale * pair->placing : 0;
     struct known a[FMB_DIM_MAX], b[FMB_DIM_MAX];
-    for (int i = 0; i < pair->a->count; i++)
-        a[i] = known_dot(&normal, pair->a->component[i]);
-    for (int i = 0; i < pair->b->count; i++)
-        b[i] = known_dot(&normal, pair->b->component[i]);
+    for (int i = 0; i < pair->a.count; i++)
+        a[i] = known_dot(&normal, pair->a.component[i]);
+    for (int i = 0; i < pair->b.count; i++)
+        b[i] = known_dot(&normal, pair->b.component[i]);
     for (int side = 0; side < 2; side++) {
         const double sign = side ? -1 : 1;
-        const struct known of_a = farthest(pair->a, a, -sign), of_b = farthest(pair->b, b, sign);
-        out[side] =
-            (struct inequality){sign * start.value + (of_a.value + of_b.value), sign * slope.value,
-                                start.error + (of_a.error + of_b.error), slope.error};
+        const struct known of_a = farthest(&pair->a, a, -sign), of_b = farthest(&pair->b, b, sign);
+        out[side] = (struct inequality){
+            sign * start.value + (of_a.value + of_b.value), sign * slope.value,
+            start.error + (of_a.error + of_b.error) + placing, slope.error + placing};
     }
 }

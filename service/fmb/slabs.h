@@ -22,6 +22,16 @@
  * that of D swept over the open window. But the rest may be anything, and is decided elsewhere
  * (faces.h).
  *
+ * Placed frames. The filter works on rounded frames, of which each is within an error e of the true
+ * one (prepared.h), so that the true D and S are within e = e_a + e_b of the rounded ones: along
+ * every unit vector, their bounds differ by at most e. An offset that is farther than e beyond a
+ * bound of a slab of the rounded S is not in the true one. One that is farther than e inside the
+ * bounds of all slabs of the rounded S is farther than e from its boundary, and so in the interior
+ * of the true S. What a rounded pair of edges hides, being parallel, does not matter: the list is
+ * complete for the rounded S. Where slabs are decided one by one, some in doubles and others
+ * exactly, that is not enough: there the error of each slab also counts how far its own true normal
+ * is from the rounded one (slabs_pair.placing).
+ *
  * How far beyond a bound the offset is, times the length of the normal, is the gap of the slab.
  * Doubles give it with an error that slabs.c bounds; where that leaves its sign open the
  * filter is unsure. */
@@ -32,27 +42,32 @@
 #include "fmb.h"
 #include "relative.h"
 
-/* Bounds on the error of a gap, and of all that it is made of, in 3D, in 2D and with a face,
+/* Bounds on the error of a gap, and of all that it is made of, in 3D and in 2D,
  * relative to the scale of the slab; and along an axis, relative to the sum of all lengths.
  * Derived in slabs.c: a smaller one gives wrong answers, a larger one more that are unsure. */
 #ifndef SLABS_ROUNDING
 #define SLABS_ROUNDING (18 * 0x1p-53)
 #endif
 #define SLABS_ROUNDING_2D (SLABS_ROUNDING * 2 / 3)
-#define SLABS_ROUNDING_FACES (SLABS_ROUNDING * 7 / 6)
 #define SLABS_ROUNDING_AXES 0x1p-49
 
-/* A pair that doubles can say something of. */
+/* A pair that doubles can decide. */
 struct slabs_pair {
-    const struct fmb_body *a, *b;
+    struct world_frame a, b;
+    bool inexact; /* a frame has an error */
+    double error; /* of both */
+    /* Bounds how far off the true gap of a slab is for the errors of the frames, that of a slab of
+     * scale 1. */
+    double placing;
+    double duration;
     struct relative_motion motion; /* a pair that does not drift is decided as a static one */
     double reach; /* sum of the largest magnitudes of the offset, the drift and all components */
     double drift_size; /* the largest magnitude of the drift */
 };
 
-/* False if doubles can say nothing of the pair: a frame is flat and no face with an area, or
- * numbers are out of range. */
-bool slabs_prepare(const struct fmb_pair *pair, struct slabs_pair *out);
+/* False if doubles cannot decide the pair: a frame is not usable, or numbers are out of range. */
+bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                   struct slabs_pair *out);
 
 /* The edges of a pair by number: of A; of B; the drift. A frame's edges are its components, then,
  * of a tetrahedron, c2 - c1, c0 - c2, c1 - c0 (a triangle in 2D: c1 - c0). A face has numbers 0, 1
@@ -89,13 +104,15 @@ enum slabs_outcome {
     SLABS_OVERLAPPING = FMB_OVERLAPPING
 };
 
-/* The filter. rounds: whether an operation on these numbers may round; else every error is 0, and
- * unsure means touching. */
-enum slabs_outcome slabs_filter(const struct slabs_pair *pair, bool rounds);
+/* The filter of a pair on whose numbers no operation rounds, and without errors: unsure means
+ * touching. */
+enum slabs_outcome slabs_filter_exactly(const struct slabs_pair *pair);
 
 enum { SLABS_MAX = 56 }; /* two tetrahedra, moving: 4 + 4 + 36 + 12 */
 
-/* All slabs of the pair; returns how many. */
+/* All slabs of the pair; returns how many. rounds: whether an operation on these numbers may round;
+ * else every error is 0. Errors are those of slabs decided one by one. The true normal of a slab
+ * without an error is surely zero only if the pair is not inexact. */
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
 
 /* A slab as two inequalities of the time, tau in [0,1]: c + tau g >= 0 while the offset is not

@@ -20,8 +20,9 @@
  * none. Inside the error of a sum there might be one where the numbers are among the largest: such
  * a sum steps down.
  *
- * A body that is rounded (fmb_body.rest) has vertices up to half a unit in the last place of a
- * component beyond this: its box is widened by as much, and by no less. */
+ * A frame with an error is widened by it. Where that error, or a coordinate, is not finite, or the
+ * frame is turned without being usable, the box is that of a ball: no point of the frame is farther
+ * than its radius from the position of its body. */
 #ifndef FMB_SWEPT_H
 #define FMB_SWEPT_H
 
@@ -102,41 +103,50 @@ INLINE lanes swept_axis(const double *number, const int dim, bool cuboid)
     return swept_sum(end, cuboid ? third : lanes_least(first, third));
 }
 
-INLINE void swept_axes(const struct fmb_prepared *frame, const int dim, double duration,
-                       struct swept *out)
+INLINE void swept_axes(const struct fmb_prepared *frame, const int dim, struct swept *out)
 {
     const unsigned kind = prepared_kind(frame);
     const bool cuboid = !(kind & (PREPARED_TETRAHEDRON | PREPARED_FACE));
-    const double *velocity = frame->number + dim * (dim + 1);
+    const double error = frame->number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
     UNROLL(3)
     for (int axis = 0; axis < dim; axis++)
         out->end[axis] = swept_axis(frame->number + axis, dim, cuboid);
-    for (int axis = 0; axis < dim && kind & PREPARED_MOVING; axis++)
-        out->end[axis] = swept_along(out->end[axis], velocity[axis], duration);
+    if (error == 0)
+        return;
+    for (int axis = 0; axis < dim; axis++)
+        out->end[axis] = swept_sum(out->end[axis], lanes_of(-error));
 }
 
-/* What a rest may reach beyond o + c_i: at most 2^-53 of the largest component, and that of the
- * smallest double where it is subnormal. */
-INLINE void swept_widen(const struct fmb_prepared *frame, struct swept *out)
+INLINE void swept_ball(const struct fmb_prepared *frame, struct swept *out)
 {
-    UNROLL(3)
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const double c = fabs(frame->number[3 + axis]), d = fabs(frame->number[6 + axis]);
-        const double rest = (c > d ? c : d) * 0x1p-52 + 0x1p-1074;
-        out->end[axis] = swept_sum(out->end[axis], lanes_of(-rest));
+    for (int axis = 0; axis < frame->frame->dim; axis++) {
+        const double at = frame->placement->position[axis];
+        out->end[axis] = swept_sum((lanes){at, -at}, lanes_of(-frame->frame->radius));
     }
+}
+
+/* Whether the numbers of a frame do not bound it. */
+INLINE bool swept_is_wild(const struct fmb_prepared *frame)
+{
+    const double error = prepared_error(frame);
+    return error != 0 && (!(error <= DBL_MAX) || (frame->placement->orientation_count != 0 &&
+                                                  !(prepared_kind(frame) & PREPARED_USABLE)));
 }
 
 /* On input: a prepared frame, a legal duration. */
 INLINE struct swept swept_of(const struct fmb_prepared *frame, double duration)
 {
+    const unsigned kind = prepared_kind(frame);
+    const int dim = kind & PREPARED_SPACE ? 3 : 2;
     struct swept out = {{{0}}};
-    if (prepared_kind(frame) & PREPARED_SPACE)
-        swept_axes(frame, 3, duration, &out);
+    if (swept_is_wild(frame))
+        swept_ball(frame, &out);
+    else if (dim == 3)
+        swept_axes(frame, 3, &out);
     else
-        swept_axes(frame, 2, duration, &out);
-    if (prepared_kind(frame) & PREPARED_ROUNDED)
-        swept_widen(frame, &out);
+        swept_axes(frame, 2, &out);
+    for (int axis = 0; axis < dim && kind & PREPARED_MOVING; axis++)
+        out.end[axis] = swept_along(out.end[axis], prepared_velocity(frame)[axis], duration);
     return out;
 }
 

@@ -577,6 +577,13 @@ static void sort(unsigned *number, size_t count, unsigned most)
     }
 }
 
+size_t tree_find(const struct fmb_tree *tree, const struct swept *box, unsigned from, unsigned *out)
+{
+    const size_t count = tree_walk(tree, box, from, out, NULL);
+    sort(out, count, (unsigned) tree->frame_count);
+    return count;
+}
+
 enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepared *frame,
                              unsigned from, unsigned *out, size_t *count)
 {
@@ -588,8 +595,7 @@ enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepa
     if (dimension_of(frame) != tree->dim)
         return FMB_DIMENSIONS_DIFFER;
     const struct swept box = swept_of(frame, tree->duration);
-    *count = tree_walk(tree, &box, from, out, NULL);
-    sort(out, *count, (unsigned) tree->frame_count);
+    *count = tree_find(tree, &box, from, out);
     return FMB_OK;
 }
 

@@ -66,4 +66,8 @@ INLINE size_t tree_walk(const struct fmb_tree *tree, const struct swept *box, un
     return found;
 }
 
+/* The same in ascending order: fmb_tree_ask() for a box. */
+size_t tree_find(const struct fmb_tree *tree, const struct swept *box, unsigned from,
+                 unsigned *out);
+
 #endif

@@ -25,10 +25,12 @@
  * 1]: 2^-49 covers it. A coordinate is made of the origin, the components and s times one by 8
  * roundings at most: 2^-50 of the sum of the magnitudes.
  *
- * In 2D the products [x y] take the place of the triple ones, with fewer roundings. */
+ * In 2D the products [x y] take the place of the triple ones, with fewer roundings. The errors of
+ * the frames themselves are counted in addition (placing_weight()). */
 #ifndef FMB_WALK_BOX_H
 #define FMB_WALK_BOX_H
 
+#include "rotation.h"
 #include "walk.h"
 
 #define BOX_ROUNDING (14 * 0x1p-53)
@@ -120,6 +122,14 @@ INLINE lanes sum_of_three(const struct box_function function[3], int i)
                  : (function[0].component[i] + function[1].component[i]) + function[2].component[i];
 }
 
+/* What frames with errors add to the weights of a slab of scale 1, as slabs_pair.placing does to
+ * its error: with t = ROTATION_ERROR, 4 t times all lengths, and the errors. */
+INLINE lanes placing_weight(const struct walk_pair *pair)
+{
+    const lanes placing = (4 * ROTATION_ERROR) * pair->reach + pair->error;
+    return lanes_choose(pair->error != 0, placing * (1 / BOX_ROUNDING), lanes_of(0));
+}
+
 /* The offset is that of b from a. */
 INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
                             const lanes way[3], struct box_frame *out)
@@ -128,6 +138,8 @@ INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind
     const lanes(*c)[3] = pair->component[other];
     struct walk_side side;
     struct box_function function[3], weight[3];
+    const lanes placing = placing_weight(pair);
+    const lanes *size = pair->size[other];
     lanes own = lanes_of(0);
     set_side(pair, kind, other, &side);
     out->faces = kind.simplex[other] ? 4 : 3;
@@ -138,7 +150,8 @@ INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind
         if (k == 0)
             own = weight_of(normal_weight, c[0]);
         function[k].at = which ? side.middle[k] : -side.middle[k];
-        weight[k].at = weight_of(normal_weight, way) + own;
+        weight[k].at =
+            (weight_of(normal_weight, way) + own) + placing * (size[next(k)] * size[next(next(k))]);
         UNROLL(3)
         for (int i = 0; i < 3; i++) {
             function[k].component[i] = side.other[k][i];
@@ -172,13 +185,14 @@ INLINE void set_plane_faces(const struct walk_pair *pair, const struct walk_kind
     const int other = !which;
     const lanes(*c)[3] = pair->component[other];
     const lanes area = product(c[0], c[1]), own = plane_weight(c[0], c[1]);
+    const lanes placing = placing_weight(pair);
     struct walk_plane_edges edges;
     struct box_function weight[2];
     set_plane_edges(pair, kind, other, &edges);
     out->faces = edge_count(kind, other);
     UNROLL(2)
     for (int e = 0; e < 2; e++) {
-        weight[e].at = plane_weight(c[e], way) + own;
+        weight[e].at = (plane_weight(c[e], way) + own) + placing * pair->size[other][e];
         UNROLL(2)
         for (int i = 0; i < 2; i++)
             weight[e].component[i] = plane_weight(c[e], pair->component[which][i]);
@@ -215,7 +229,7 @@ INLINE void set_places(const struct walk_pair *pair, const struct walk_kind kind
             sum += lanes_magnitude(function->component[i]);
         }
         function->at = kind.simplex[which] ? at : at + shift_of(kind, pair->component[which], axis);
-        out->slack[axis] = BOX_POINT_ROUNDING * (lanes_magnitude(at) + (sum + sum));
+        out->slack[axis] = BOX_POINT_ROUNDING * (lanes_magnitude(at) + (sum + sum)) + pair->error;
     }
 }
 
@@ -397,8 +411,9 @@ INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind k
             high = sum_above(high, lanes_greatest(c, lanes_of(0)));
         }
     }
-    box[0][axis] = lanes_greatest(low, box[0][axis]);
-    box[1][axis] = lanes_least(high, box[1][axis]);
+    const lanes error = (is_doubled(kind) ? 0.5 : 1.0) * pair->error;
+    box[0][axis] = lanes_greatest(sum_below(low, -error), box[0][axis]);
+    box[1][axis] = lanes_least(sum_above(high, error), box[1][axis]);
 }
 
 /* ---- All of it ---- */

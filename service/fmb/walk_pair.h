@@ -30,7 +30,8 @@ struct walk_pair {
     lanes half[3]; /* of the drift: the offset goes from offset - half to offset + half */
     lanes half_size;
     lanes reach;         /* T (walk_error) */
-    lanes unit;          /* the error of a slab of scale 1 */
+    lanes unit;          /* the error of a slab of scale 1, those of the frames included */
+    lanes error;         /* of both frames (prepared.h) */
     lanes_mask in_range; /* doubles can say something of it */
 };
 
@@ -85,9 +86,7 @@ INLINE lanes product(const lanes x[3], const lanes y[3])
  * derived in slabs.c. */
 INLINE double walk_error(const struct walk_kind kind)
 {
-    return kind.dim == 2                  ? SLABS_ROUNDING_2D
-           : kind.face[0] || kind.face[1] ? SLABS_ROUNDING_FACES
-                                          : SLABS_ROUNDING;
+    return kind.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING;
 }
 
 INLINE bool is_doubled(const struct walk_kind kind)
@@ -141,11 +140,11 @@ INLINE lanes offset_of(const struct walk_kind kind, const lanes component[2][3][
     return at + (shift_of(kind, component[1], axis) - shift_of(kind, component[0], axis));
 }
 
-/* From components, sizes of components, offset of the origins and drift, as the frames have them.
- */
+/* From components, sizes of components, offset of the origins, drift, and the sum of errors, as the
+ * frames have them. */
 INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][3][3],
                           const lanes size[2][3], const lanes offset[3], const lanes drift[3],
-                          struct walk_pair *out)
+                          lanes error, struct walk_pair *out)
 {
     const lanes reach_a = set_frame(kind, 0, component[0], size[0], out);
     const lanes reach_b = set_frame(kind, 1, component[1], size[1], out);
@@ -165,7 +164,8 @@ INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][
     }
     out->half_size = half_size;
     out->reach = (reach_a + reach_b) + (offset_size + (half_size + half_size));
-    out->unit = walk_error(kind) * out->reach;
+    out->error = is_doubled(kind) ? error + error : error;
+    out->unit = walk_error(kind) * out->reach + out->error;
     out->in_range = offset_size <= 0x1p200;
     if (kind.drifts)
         out->in_range &= (half_size <= 0x1p200) & (half_size >= 0x1p-200);

@@ -191,7 +191,7 @@ INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
                                                        extent_of_frame(kind, 1, at[1]));
         gap = lanes_greatest(gap_of(kind, d, pair->offset[axis], pair->half[axis]), gap);
     }
-    found->surely = gap - SLABS_ROUNDING_AXES * pair->reach;
+    found->surely = gap - (SLABS_ROUNDING_AXES * pair->reach + pair->error);
 }
 
 #endif

@@ -12,6 +12,7 @@
 
 struct weighed {
     double at[FMB_DIM_MAX], weight[FMB_DIM_MAX];
+    double length; /* no vector of lengths up to those of its factors is longer */
 };
 
 /* Bounds the error of n . w, where n is a component turned by a right angle (2D), the cross product
@@ -21,8 +22,7 @@ struct weighed {
  * A monomial is rounded at most 3 times before (offset once, drift twice), once in each edge that
  * is a difference, 2 times in a cross product, 2 in the sum of three normals, 3 in a dot product,
  * 4 in sums of components and motion, 2 where a bound is taken from it: 18 times, if all of these
- * applied to one; and once for each of three components that are rounded themselves
- * (fmb_body.rest): 21. 2^-48 = 32 u leaves room for the rounding of the weight and of what the
+ * applied to one. 2^-48 = 32 u leaves room for the rounding of the weight and of what the
  * bound is added to. Underflow: at most 2^8 operations, each off by less than 2^-1074, some of them
  * multiplied later by at most two lengths, of 2^204 each at most: less than 2^-660. */
 static inline double weighed_error(double weight)
@@ -37,6 +37,7 @@ static inline struct weighed weigh(const double v[FMB_DIM_MAX])
         out.at[axis] = v[axis];
         out.weight[axis] = fabs(v[axis]);
     }
+    out.length = (out.weight[0] + out.weight[1]) + out.weight[2];
     return out;
 }
 
@@ -49,6 +50,7 @@ static inline struct weighed weighed_sum(const struct weighed *x, double sign,
         out.at[axis] = x->at[axis] + sign * y->at[axis];
         out.weight[axis] = x->weight[axis] + y->weight[axis];
     }
+    out.length = x->length + y->length;
     return out;
 }
 
@@ -60,13 +62,14 @@ static inline struct weighed weighed_cross(const struct weighed *u, const struct
         out.at[i] = u->at[j] * v->at[k] - u->at[k] * v->at[j];
         out.weight[i] = u->weight[j] * v->weight[k] + u->weight[k] * v->weight[j];
     }
+    out.length = u->length * v->length;
     return out;
 }
 
 /* In the plane z = 0: turned by a right angle, counterclockwise. */
 static inline struct weighed weighed_turn(const struct weighed *u)
 {
-    return (struct weighed){{-u->at[1], u->at[0], 0}, {u->weight[1], u->weight[0], 0}};
+    return (struct weighed){{-u->at[1], u->at[0], 0}, {u->weight[1], u->weight[0], 0}, u->length};
 }
 
 static inline double weighed_dot(const double u[FMB_DIM_MAX], const double v[FMB_DIM_MAX])

@@ -1,0 +1,551 @@
+/* Scenes in steps. Pairs of bodies come from scene_pairs.c, their pairs of frames from
+ * scene_frames.c; blocks of these go through the batch, and the answers of a pair of bodies are put
+ * together from those of its frames.
+ *
+ * Where every body has one frame and all are placed at once, slot i is placement i, and the answers
+ * of the batch are those of the bodies as they are. */
+#include "scene_pairs.h"
+
+#include "certified.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    CACHE_LINE = 64,
+    STEP_PLACEMENTS = 128,
+    /* Pairs of frames in doubles. The batch decides few of them in integers. */
+    BLOCK = 128,
+    /* After a block with pairs left open, and with boxes, which take longer: as many as the batch
+     * decides in integers, so that none is left open for its time. */
+    BLOCK_SLOW = 32
+};
+
+static_assert((int) FMB_SCENE_SLOTS_MIN == 2 * SCENE_CHUNK, "two chunks always fit");
+
+enum stage { PLACING, SEARCHING, DECIDING };
+
+/* Of pairs of frames or of bodies. */
+struct outcomes {
+    unsigned char verdict[BLOCK];
+    double contact[BLOCK][2];
+    double box[BLOCK][2][FMB_DIM_MAX];
+};
+
+struct block {
+    /* Pairs of frames: those before done are in the answers of their bodies. */
+    size_t count, done;
+    const unsigned (*frames)[2]; /* slots */
+    unsigned slots[BLOCK][2];
+    unsigned char owner[BLOCK]; /* the pair of bodies */
+    struct outcomes outcomes;
+    /* Those that need exact arithmetic, ascending; those before next_open have been decided. */
+    size_t open[BLOCK], open_count, next_open;
+    /* Pairs of bodies: those before given have been handed out. */
+    size_t body_count, given;
+    const unsigned (*bodies)[2];
+    unsigned out[BLOCK][2];
+    unsigned long long first; /* FMB_PAIRS_LISTED: the number of the first */
+    struct outcomes answers;
+};
+
+struct fmb_scene_state {
+    struct fmb_scene scene;
+    enum stage stage;
+    size_t next;  /* placement */
+    bool batched; /* the method is that of the batch */
+    bool slow;    /* blocks of BLOCK_SLOW */
+    void *tree;
+    struct scene_frames frames;
+    struct scene_pairs pairs;
+    bool halfway; /* the last pair of bodies of the block has more pairs of frames */
+    struct scene_cursor cursor;
+    size_t answered; /* in the last step, from the pair of bodies first_answer on */
+    size_t first_answer;
+    struct block block;
+};
+
+/* ---- Memory ---- */
+
+static size_t whole_lines(size_t bytes)
+{
+    return (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+}
+
+static size_t most_chunks(const struct fmb_scene_limits *limits)
+{
+    return limits->frames / SCENE_CHUNK + limits->placements;
+}
+
+static void *take(char *base, size_t *at, size_t count, size_t size)
+{
+    void *out = base ? base + *at : NULL;
+    *at += whole_lines(count * size);
+    return out;
+}
+
+/* Lays out the arrays from base on; returns the bytes. base NULL: all arrays are. */
+static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
+                      struct fmb_scene_state *state)
+{
+    struct scene_frames *frames = &state->frames;
+    struct scene_pairs *pairs = &state->pairs;
+    const size_t placements = limits->placements;
+    size_t at = whole_lines(sizeof *state);
+    frames->slot = take(base, &at, limits->slots, sizeof *frames->slot);
+    frames->frame_box = take(base, &at, limits->slots, sizeof *frames->frame_box);
+    frames->chunk = take(base, &at, most_chunks(limits), sizeof *frames->chunk);
+    frames->first_chunk = take(base, &at, placements, sizeof *frames->first_chunk);
+    frames->body_box = take(base, &at, placements, sizeof *frames->body_box);
+    pairs->found = take(base, &at, placements, sizeof *pairs->found);
+    pairs->head = take(base, &at, placements, sizeof *pairs->head);
+    pairs->mark = take(base, &at, placements, sizeof *pairs->mark);
+    pairs->link = take(base, &at, limits->ignored, sizeof *pairs->link);
+    state->tree = take(base, &at, fmb_tree_bytes(placements), 1);
+    return at;
+}
+
+size_t fmb_scene_bytes(const struct fmb_scene_limits *limits)
+{
+    /* Indices have 32 bits; and no sum below overflows. */
+    const size_t most = SIZE_MAX / 4096 < UINT_MAX / 2 ? SIZE_MAX / 4096 : UINT_MAX / 2;
+    struct fmb_scene_state state;
+    if (limits->placements > most || limits->frames > most || limits->ignored > most ||
+        limits->slots > most)
+        return SIZE_MAX;
+    return CACHE_LINE + lay_out(limits, NULL, &state);
+}
+
+static size_t frames_of(const struct fmb_scene *scene)
+{
+    size_t frames = 0;
+    for (size_t i = 0; i < scene->placement_count; i++)
+        if (scene->placements[i].body)
+            frames += scene->placements[i].body->frame_count;
+    return frames;
+}
+
+struct fmb_scene_limits fmb_scene_limits_of(const struct fmb_scene *scene)
+{
+    struct fmb_scene_limits out = {.placements = scene->placement_count,
+                                   .frames = frames_of(scene),
+                                   .ignored = scene->ignored_count};
+    out.slots = out.frames < FMB_SCENE_SLOTS_MIN ? FMB_SCENE_SLOTS_MIN
+                : out.frames < FMB_SCENE_SLOTS   ? out.frames
+                                                 : FMB_SCENE_SLOTS;
+    return out;
+}
+
+/* ---- Checking ---- */
+
+static enum fmb_status check_placements(const struct fmb_scene *scene)
+{
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        const enum fmb_status status = fmb_placement_check(&scene->placements[i]);
+        if (status != FMB_OK)
+            return status;
+        if (scene->placements[i].body->dim != scene->placements[0].body->dim)
+            return FMB_DIMENSIONS_DIFFER;
+    }
+    return FMB_OK;
+}
+
+/* Without branches, so that compilers vectorize it. */
+static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t placements)
+{
+    const unsigned end = (unsigned) placements;
+    unsigned bad = 0;
+    for (size_t i = 0; i < count; i++)
+        bad |= (unsigned) (pair[i][0] >= end) | (unsigned) (pair[i][1] >= end) |
+               (unsigned) (pair[i][0] == pair[i][1]);
+    return !bad;
+}
+
+static enum fmb_status check_pairs(const struct fmb_scene *scene)
+{
+    const bool listed = scene->which == FMB_PAIRS_LISTED;
+    if ((unsigned) scene->which > FMB_PAIRS_ACROSS ||
+        scene->split > (scene->which == FMB_PAIRS_ACROSS ? scene->placement_count : 0))
+        return FMB_BAD_PAIR;
+    if (listed ? scene->ignored_count > 0 : scene->pair_count > 0)
+        return FMB_WRONG_COUNT;
+    if (!are_pairs(scene->pairs, scene->pair_count, scene->placement_count) ||
+        !are_pairs(scene->ignored, scene->ignored_count, scene->placement_count) ||
+        scene->first_pair > scene_pairs_total(scene))
+        return FMB_BAD_PAIR;
+    return listed || !scene->method || scene->method->certain ? FMB_OK : FMB_CANNOT_DECIDE;
+}
+
+static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_scene_limits *limits)
+{
+    if (scene->placement_count > limits->placements || scene->ignored_count > limits->ignored ||
+        limits->slots < FMB_SCENE_SLOTS_MIN || fmb_scene_bytes(limits) == SIZE_MAX)
+        return FMB_OVER_LIMIT;
+    if (!prepared_is_duration(scene->duration))
+        return FMB_BAD_DURATION;
+    const enum fmb_status status = check_placements(scene);
+    if (status != FMB_OK)
+        return status;
+    return frames_of(scene) > limits->frames ? FMB_OVER_LIMIT : check_pairs(scene);
+}
+
+/* ---- Beginning ---- */
+
+static void begin_frames(struct fmb_scene_state *state, const struct fmb_scene_limits *limits)
+{
+    const struct fmb_scene *scene = &state->scene;
+    struct scene_frames *frames = &state->frames;
+    size_t chunks = 0, total = 0;
+    frames->placement = scene->placements;
+    frames->duration = scene->duration;
+    frames->slots = limits->slots;
+    frames->generation = 1;
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        const unsigned count = scene->placements[i].body->frame_count;
+        frames->first_chunk[i] = (unsigned) chunks;
+        chunks += scene_chunks(count);
+        total += count;
+    }
+    memset(frames->chunk, 0, chunks * sizeof *frames->chunk);
+    frames->direct = state->batched && total == scene->placement_count && total <= limits->slots;
+    frames->boxed = !frames->direct || scene->which != FMB_PAIRS_LISTED;
+}
+
+enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
+                                const struct fmb_scene_limits *limits, void *memory,
+                                struct fmb_scene_state **out)
+{
+    const enum fmb_status status = check(scene, limits);
+    if (status != FMB_OK)
+        return status;
+    char *base = memory;
+    base += -(uintptr_t) base % CACHE_LINE;
+    struct fmb_scene_state *state = (void *) base;
+    memset(state, 0, offsetof(struct fmb_scene_state, block));
+    *out = state;
+    state->scene = *scene;
+    if (!scene->method)
+        state->scene.method = fmb_method_default();
+    state->stage = PLACING;
+    state->batched = state->scene.method == fmb_method_default();
+    state->slow = scene->boxes;
+    lay_out(limits, base, state);
+    begin_frames(state, limits);
+    struct block *block = &state->block;
+    block->count = block->done = block->open_count = block->next_open = 0;
+    block->body_count = block->given = 0;
+    block->first = scene->first_pair;
+    return FMB_OK;
+}
+
+unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene)
+{
+    return scene_pairs_total(scene);
+}
+
+/* ---- Blocks ---- */
+
+static bool is_listed(const struct fmb_scene_state *state)
+{
+    return state->scene.which == FMB_PAIRS_LISTED;
+}
+
+static size_t block_size(const struct fmb_scene_state *state)
+{
+    return !state->batched ? 1 : state->slow ? BLOCK_SLOW : BLOCK;
+}
+
+/* Pairs of bodies as pairs of frames. */
+static void fill_direct(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    const size_t max = block_size(state);
+    block->bodies = (const unsigned(*)[2]) block->out;
+    if (is_listed(state)) {
+        const unsigned long long left = state->scene.pair_count - state->pairs.next;
+        block->first = state->pairs.next;
+        block->bodies = state->scene.pairs + block->first;
+        block->body_count = left < max ? (size_t) left : max;
+        state->pairs.next += block->body_count;
+    } else {
+        block->body_count = scene_pairs_next(&state->pairs, block->out, max);
+    }
+    block->frames = block->bodies;
+    block->count = block->body_count;
+}
+
+static void begin_answer(struct fmb_scene_state *state, size_t n)
+{
+    struct outcomes *answers = &state->block.answers;
+    answers->verdict[n] = FMB_SEPARATED;
+    for (int end = 0; end < 2; end++) {
+        answers->contact[n][end] = NAN;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            answers->box[n][end][axis] = NAN;
+    }
+}
+
+static void copy_answer(struct outcomes *answers, size_t to, const struct outcomes *of, size_t from)
+{
+    answers->verdict[to] = of->verdict[from];
+    memcpy(answers->contact[to], of->contact[from], sizeof of->contact[from]);
+    memcpy(answers->box[to], of->box[from], sizeof of->box[from]);
+}
+
+/* The pair of bodies that the last block left halfway, if it still needs pairs of frames. */
+static void keep_halfway(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    const size_t last = block->body_count - 1;
+    const unsigned char verdict = block->answers.verdict[last];
+    const bool verdict_alone = !state->scene.contacts && !state->scene.boxes;
+    memmove(block->out[0], block->out[last], sizeof block->out[0]);
+    copy_answer(&block->answers, 0, &block->answers, last);
+    block->body_count = 1;
+    block->first += last;
+    if (verdict == FMB_REFUSED || (verdict == FMB_OVERLAPPING && verdict_alone))
+        state->halfway = false;
+}
+
+static bool next_bodies(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    const size_t n = block->body_count;
+    if (n == BLOCK || scene_pairs_next(&state->pairs, &block->out[n], 1) == 0)
+        return false;
+    begin_answer(state, n);
+    scene_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1]);
+    block->body_count++;
+    state->halfway = true;
+    return true;
+}
+
+static void fill(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    const size_t max = block_size(state);
+    block->count = 0;
+    block->frames = (const unsigned(*)[2]) block->slots;
+    block->bodies = (const unsigned(*)[2]) block->out;
+    if (state->halfway) {
+        keep_halfway(state);
+    } else {
+        block->first = state->pairs.next;
+        block->body_count = 0;
+    }
+    while (block->count < max && (state->halfway || next_bodies(state))) {
+        bool done;
+        const size_t count =
+            scene_frames_pairs(&state->frames, &state->cursor, block->count == 0,
+                               &block->slots[block->count], max - block->count, &done);
+        memset(block->owner + block->count, (int) (block->body_count - 1), count);
+        block->count += count;
+        state->halfway = !done;
+        if (!done)
+            break;
+    }
+}
+
+/* ---- Deciding ---- */
+
+/* Pairs first to first + count - 1 of the block. *open: positions from first on of those that need
+ * exact arithmetic; NULL: those are decided too. */
+static void decide_batch(struct fmb_scene_state *state, size_t first, size_t count, size_t *open,
+                         size_t *open_count)
+{
+    const struct fmb_scene *scene = &state->scene;
+    struct block *block = &state->block;
+    const struct fmb_batch batch = {
+        .frames = state->frames.slot,
+        .frame_count = state->frames.used,
+        .pairs = block->frames + first,
+        .pair_count = count,
+        .duration = scene->duration,
+        .verdicts = block->outcomes.verdict + first,
+        .contacts = scene->contacts ? block->outcomes.contact + first : NULL,
+        .boxes = scene->boxes ? block->outcomes.box + first : NULL,
+        .open = open,
+        .open_count = open_count};
+    const enum fmb_status status = fmb_decide_batch(&batch);
+    assert(status == FMB_OK);
+    (void) status;
+}
+
+/* The only pair of the block, by a method that has no batch. */
+static void decide_single(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    const struct fmb_prepared *a = &state->frames.slot[block->frames[0][0]];
+    const struct fmb_prepared *b = &state->frames.slot[block->frames[0][1]];
+    const struct frame_pair pair = {
+        {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
+    struct fmb_answer answer = {0};
+    if (state->scene.method->decide(&pair, state->scene.boxes ? FMB_WANT_BOX : 0, &answer) !=
+        FMB_OK)
+        answer = (struct fmb_answer){0};
+    block->outcomes.verdict[0] = (unsigned char) answer.verdict;
+    memcpy(block->outcomes.contact[0], answer.contact, sizeof answer.contact);
+    memcpy(block->outcomes.box[0], answer.box, sizeof answer.box);
+}
+
+static void begin_block(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    state->frames.work = 0;
+    state->pairs.searches = 0;
+    block->done = block->next_open = block->open_count = block->given = 0;
+    if (state->frames.direct)
+        fill_direct(state);
+    else
+        fill(state);
+    if (block->count > 0 && state->batched)
+        decide_batch(state, 0, block->count, block->open, &block->open_count);
+    else if (block->count > 0)
+        decide_single(state);
+    if (block->open_count > 0)
+        state->slow = true;
+}
+
+/* ---- Answers ---- */
+
+static bool is_contact(unsigned char verdict)
+{
+    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
+}
+
+/* Puts the answer of pair of frames k to that of its bodies. */
+static void include(struct fmb_scene_state *state, size_t k)
+{
+    struct block *block = &state->block;
+    struct outcomes *answers = &block->answers;
+    const struct outcomes *one = &block->outcomes;
+    const size_t n = block->owner[k];
+    const unsigned char verdict = one->verdict[k];
+    if (verdict == FMB_SEPARATED || answers->verdict[n] == FMB_REFUSED)
+        return;
+    if (verdict == FMB_REFUSED) {
+        begin_answer(state, n);
+        answers->verdict[n] = FMB_REFUSED;
+        return;
+    }
+    if (verdict > answers->verdict[n])
+        answers->verdict[n] = verdict;
+    /* fmin() and fmax() take the other where one is NAN. */
+    if (state->scene.contacts) {
+        answers->contact[n][0] = fmin(answers->contact[n][0], one->contact[k][0]);
+        answers->contact[n][1] = fmax(answers->contact[n][1], one->contact[k][1]);
+    }
+    for (int axis = 0; state->scene.boxes && axis < FMB_DIM_MAX; axis++) {
+        answers->box[n][0][axis] = fmin(answers->box[n][0][axis], one->box[k][0][axis]);
+        answers->box[n][1][axis] = fmax(answers->box[n][1][axis], one->box[k][1][axis]);
+    }
+}
+
+/* Includes all pairs of frames before the first that is open; returns the end of the pairs of
+ * bodies that are complete. */
+static size_t include_decided(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    const bool open = block->next_open < block->open_count;
+    const size_t end = open ? block->open[block->next_open] : block->count;
+    if (!state->frames.direct)
+        for (; block->done < end; block->done++)
+            include(state, block->done);
+    if (open)
+        return state->frames.direct ? end : block->owner[end];
+    return block->body_count - state->halfway;
+}
+
+/* Moves those that meet to the front of pairs first to end - 1; returns how many. */
+static size_t drop_separated(struct fmb_scene_state *state, struct outcomes *answers, size_t first,
+                             size_t end)
+{
+    unsigned(*pair)[2] = state->block.out;
+    size_t to = first;
+    for (size_t n = first; n < end; n++) {
+        if (!is_contact(answers->verdict[n]))
+            continue;
+        if (to < n) {
+            memcpy(pair[to], pair[n], sizeof pair[to]);
+            copy_answer(answers, to, answers, n);
+        }
+        to++;
+    }
+    return to - first;
+}
+
+static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *out)
+{
+    struct block *block = &state->block;
+    struct outcomes *answers = state->frames.direct ? &block->outcomes : &block->answers;
+    const size_t first = block->given, end = include_decided(state);
+    block->given = end;
+    state->first_answer = first;
+    state->answered = is_listed(state) ? end - first : drop_separated(state, answers, first, end);
+    out->count = state->answered;
+    out->pairs = block->bodies + first;
+    out->verdicts = answers->verdict + first;
+    out->contacts = state->scene.contacts ? (const double(*)[2]) answers->contact + first : NULL;
+    out->boxes = state->scene.boxes ? (const double(*)[2][FMB_DIM_MAX]) answers->box + first : NULL;
+}
+
+static unsigned long long number_of(const struct fmb_scene_state *state, size_t n)
+{
+    const unsigned *pair = state->block.bodies[n];
+    return is_listed(state) ? state->block.first + n
+                            : scene_pairs_number(&state->scene, pair[0], pair[1]);
+}
+
+unsigned long long fmb_scene_number(const struct fmb_scene_state *state, size_t k)
+{
+    assert(k < state->answered);
+    return number_of(state, state->first_answer + k);
+}
+
+unsigned long long fmb_scene_next_pair(const struct fmb_scene_state *state)
+{
+    const struct block *block = &state->block;
+    if (state->stage != DECIDING)
+        return state->scene.first_pair;
+    return block->given < block->body_count ? number_of(state, block->given)
+                                            : scene_pairs_position(&state->pairs);
+}
+
+/* ---- Steps ---- */
+
+static void place_some(struct fmb_scene_state *state)
+{
+    const size_t left = state->scene.placement_count - state->next;
+    const size_t end = state->next + (left < STEP_PLACEMENTS ? left : STEP_PLACEMENTS);
+    for (; state->next < end; state->next++)
+        scene_frames_add(&state->frames, (unsigned) state->next, state->scene.method->certain);
+    if (end == state->scene.placement_count)
+        state->stage = SEARCHING;
+}
+
+static void decide_some(struct fmb_scene_state *state)
+{
+    struct block *block = &state->block;
+    if (block->next_open < block->open_count)
+        decide_batch(state, block->open[block->next_open++], 1, NULL, NULL);
+    else
+        begin_block(state);
+}
+
+bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers)
+{
+    *answers = (struct fmb_scene_answers){0};
+    state->answered = 0;
+    if (state->stage == PLACING) {
+        place_some(state);
+    } else if (state->stage == SEARCHING) {
+        scene_pairs_begin(&state->pairs, &state->scene, state->frames.body_box, state->tree);
+        state->stage = DECIDING;
+    } else {
+        decide_some(state);
+        hand_out(state, answers);
+    }
+    return fmb_scene_next_pair(state) == scene_pairs_total(&state->scene);
+}

@@ -1,0 +1,272 @@
+#include "scene_frames.h"
+
+#include "rotation.h"
+
+enum {
+    WORK_MAX = 30000,
+    WORK_PLACE = 400, /* a chunk */
+    WORK_TILE = 200,  /* the frames of two chunks */
+    WORK_TEST = 4     /* two boxes */
+};
+
+/* ---- Boxes of bodies ---- */
+
+/* Turns the box of a body. With its centre m and half extents h in body coordinates, a point is
+ * m + y, |y_j| <= h_j, and its world coordinate on an axis
+ *
+ *     p + R m + R y,  |R y| <= sum_j |R_j| h_j     for the row R of the axis.
+ *
+ * Accuracy, with u = 2^-53 and S = sum_j |m_j| + h_j, which bounds the length of m + y: a rounded
+ * row is off by less than 17.4 u (rotation.h), which moves the point by 17.4 u S; R m and
+ * sum |R_j| h_j are off by 3.01 u of their terms, 3.01 u S together, their sum, and half, by u S
+ * each. ROTATION_ERROR S, 24 u S, covers all of them. The sum with p steps outward by a unit in its
+ * last place, and by 2^-1060 for what underflows. NaN, from infinite numbers, becomes an end
+ * without bound. */
+static lanes turned_axis(const double *row, const double m[FMB_DIM_MAX],
+                         const double h[FMB_DIM_MAX], double sum, double position)
+{
+    const double centre = (row[0] * m[0] + row[1] * m[1]) + row[2] * m[2];
+    const double reach = (fabs(row[0]) * h[0] + fabs(row[1]) * h[1]) + fabs(row[2]) * h[2];
+    const double half = reach + ROTATION_ERROR * sum;
+    const double low = position + (centre - half), high = -position - (centre + half);
+    const double below = low - (fabs(low) * 0x1p-52 + 0x1p-1060);
+    const double above = high - (fabs(high) * 0x1p-52 + 0x1p-1060);
+    return (lanes){below > -INFINITY ? below : -INFINITY, above > -INFINITY ? above : -INFINITY};
+}
+
+static struct swept turned_box(const struct fmb_placement *placement, double duration)
+{
+    const struct fmb_body *body = placement->body;
+    struct rotation rotation;
+    struct swept out = {{{0}}};
+    double m[FMB_DIM_MAX], h[FMB_DIM_MAX], sum = 0;
+    rotation_of(placement, body->dim, &rotation);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double low = body->box[0][axis], high = body->box[1][axis];
+        m[axis] = 0.5 * low + 0.5 * high;
+        const double above = high - m[axis], below = m[axis] - low;
+        h[axis] = (above > below ? above : below) * (1 + 0x1p-51);
+        sum += fabs(m[axis]) + h[axis];
+    }
+    for (int axis = 0; axis < body->dim; axis++) {
+        const double row[FMB_DIM_MAX] = {rotation_entry(&rotation, axis, 0),
+                                         rotation_entry(&rotation, axis, 1),
+                                         rotation_entry(&rotation, axis, 2)};
+        out.end[axis] = swept_along(turned_axis(row, m, h, sum, placement->position[axis]),
+                                    placement->velocity[axis], duration);
+    }
+    return out;
+}
+
+static struct swept unbounded_box(int dim)
+{
+    struct swept out = {{{0}}};
+    for (int axis = 0; axis < dim; axis++)
+        out.end[axis] = lanes_of(-INFINITY);
+    return out;
+}
+
+/* ---- Places ---- */
+
+static struct scene_chunk *chunk_of(const struct scene_frames *frames, unsigned body, size_t k)
+{
+    return &frames->chunk[frames->first_chunk[body] + k];
+}
+
+static unsigned chunk_size(const struct scene_frames *frames, unsigned body, size_t k)
+{
+    const size_t left = frames->placement[body].body->frame_count - k * SCENE_CHUNK;
+    return (unsigned) (left < SCENE_CHUNK ? left : SCENE_CHUNK);
+}
+
+static bool is_placed(const struct scene_frames *frames, const struct scene_chunk *chunk)
+{
+    return chunk->generation == frames->generation;
+}
+
+static void place(struct scene_frames *frames, unsigned body, size_t k)
+{
+    struct scene_chunk *chunk = chunk_of(frames, body, k);
+    const unsigned count = chunk_size(frames, body, k), first = (unsigned) frames->used;
+    prepared_place(&frames->placement[body], (unsigned) k * SCENE_CHUNK, count,
+                   &frames->slot[first]);
+    chunk->generation = frames->generation;
+    chunk->slot = first;
+    frames->used += count;
+    frames->work += WORK_PLACE;
+    if (!frames->boxed)
+        return;
+    for (unsigned i = first; i < first + count; i++) {
+        frames->frame_box[i] = swept_of(&frames->slot[i], frames->duration);
+        chunk->box =
+            i == first ? frames->frame_box[i] : swept_hull(chunk->box, frames->frame_box[i]);
+    }
+}
+
+static void reuse_slots(struct scene_frames *frames)
+{
+    frames->used = 0;
+    frames->generation++;
+}
+
+/* Places a chunk of a, and one of b. False: there are no slots. */
+static bool place_both(struct scene_frames *frames, const struct scene_cursor *cursor,
+                       bool may_reuse)
+{
+    const unsigned body[2] = {cursor->a, cursor->b};
+    const size_t k[2] = {cursor->chunk_a, cursor->chunk_b};
+    size_t missing = 0;
+    for (int side = 0; side < 2; side++)
+        if (!is_placed(frames, chunk_of(frames, body[side], k[side])))
+            missing += chunk_size(frames, body[side], k[side]);
+    if (missing == 0)
+        return true;
+    if (missing > frames->slots - frames->used) {
+        if (!may_reuse)
+            return false;
+        reuse_slots(frames);
+    }
+    for (int side = 0; side < 2; side++)
+        if (!is_placed(frames, chunk_of(frames, body[side], k[side])))
+            place(frames, body[side], k[side]);
+    return true;
+}
+
+/* The same for the box of one chunk. */
+static bool set_box(struct scene_frames *frames, unsigned body, size_t k, bool may_reuse)
+{
+    if (chunk_of(frames, body, k)->generation > 0)
+        return true;
+    if (chunk_size(frames, body, k) > frames->slots - frames->used) {
+        if (!may_reuse)
+            return false;
+        reuse_slots(frames);
+    }
+    place(frames, body, k);
+    return true;
+}
+
+void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
+{
+    const struct fmb_placement *placement = &frames->placement[i];
+    if (frames->direct) {
+        set_box(frames, i, 0, true);
+        frames->body_box[i] = chunk_of(frames, i, 0)->box;
+    } else {
+        frames->body_box[i] =
+            bounded ? turned_box(placement, frames->duration) : unbounded_box(placement->body->dim);
+    }
+}
+
+/* ---- Pairs of frames ---- */
+
+static bool meet(const struct swept *a, const struct swept *b)
+{
+    const struct swept against = swept_against(b);
+    return swept_meet(a, &against);
+}
+
+/* Slots of the frames of a chunk whose boxes meet a box; returns how many. */
+static unsigned select_frames(const struct scene_frames *frames, unsigned body, size_t k,
+                              const struct swept *box, unsigned out[SCENE_CHUNK])
+{
+    const struct swept against = swept_against(box);
+    const unsigned first = chunk_of(frames, body, k)->slot, size = chunk_size(frames, body, k);
+    unsigned count = 0;
+    for (unsigned slot = first; slot < first + size; slot++) {
+        out[count] = slot;
+        count += swept_meet(&frames->frame_box[slot], &against);
+    }
+    return count;
+}
+
+static void enter(struct scene_frames *frames, struct scene_cursor *cursor)
+{
+    const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
+    const struct swept *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
+    cursor->count_a = select_frames(frames, cursor->a, cursor->chunk_a, b, cursor->of_a);
+    cursor->count_b = select_frames(frames, cursor->b, cursor->chunk_b, a, cursor->of_b);
+    cursor->i = cursor->j = 0;
+    cursor->inside = true;
+    frames->work += WORK_TILE;
+}
+
+static size_t pairs_inside(const struct scene_frames *frames, struct scene_cursor *cursor,
+                           unsigned (*out)[2], size_t max)
+{
+    unsigned i = cursor->i, j = cursor->j;
+    size_t count = 0;
+    for (; i < cursor->count_a; i++, j = 0) {
+        const struct swept against = swept_against(&frames->frame_box[cursor->of_a[i]]);
+        for (; j < cursor->count_b && count < max; j++) {
+            out[count][0] = cursor->of_a[i];
+            out[count][1] = cursor->of_b[j];
+            count += swept_meet(&frames->frame_box[cursor->of_b[j]], &against);
+        }
+        if (count == max)
+            break;
+    }
+    cursor->i = i;
+    cursor->j = j;
+    cursor->inside = i < cursor->count_a;
+    return count;
+}
+
+/* Goes on to two chunks whose boxes meet, and places them. False: there are none, *done is set; or
+ * the search has to pause. */
+static bool find_chunks(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
+                        bool *done)
+{
+    const size_t count_a = scene_chunks(frames->placement[cursor->a].body->frame_count);
+    const size_t count_b = scene_chunks(frames->placement[cursor->b].body->frame_count);
+    const struct swept *body_b = &frames->body_box[cursor->b];
+    for (; cursor->chunk_a < count_a; cursor->chunk_a++, cursor->chunk_b = 0) {
+        if (!set_box(frames, cursor->a, cursor->chunk_a, may_reuse))
+            return false;
+        const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
+        frames->work += WORK_TEST;
+        for (bool skip = !meet(a, body_b); !skip && cursor->chunk_b < count_b; cursor->chunk_b++) {
+            if (frames->work > WORK_MAX || !set_box(frames, cursor->b, cursor->chunk_b, may_reuse))
+                return false;
+            frames->work += WORK_TEST;
+            if (meet(a, &chunk_of(frames, cursor->b, cursor->chunk_b)->box))
+                return place_both(frames, cursor, may_reuse);
+        }
+        if (frames->work > WORK_MAX)
+            return false;
+    }
+    *done = true;
+    return false;
+}
+
+static size_t single_pair(struct scene_frames *frames, const struct scene_cursor *cursor,
+                          bool may_reuse, unsigned (*out)[2], bool *done)
+{
+    if (!place_both(frames, cursor, may_reuse))
+        return 0;
+    out[0][0] = chunk_of(frames, cursor->a, 0)->slot;
+    out[0][1] = chunk_of(frames, cursor->b, 0)->slot;
+    *done = true;
+    return 1;
+}
+
+size_t scene_frames_pairs(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
+                          unsigned (*out)[2], size_t max, bool *done)
+{
+    size_t count = 0;
+    *done = false;
+    if (frames->placement[cursor->a].body->frame_count == 1 &&
+        frames->placement[cursor->b].body->frame_count == 1)
+        return single_pair(frames, cursor, may_reuse, out, done);
+    while (count < max) {
+        if (!cursor->inside) {
+            if (!find_chunks(frames, cursor, may_reuse && count == 0, done))
+                break;
+            enter(frames, cursor);
+        }
+        count += pairs_inside(frames, cursor, out + count, max - count);
+        if (!cursor->inside)
+            cursor->chunk_b++;
+    }
+    return count;
+}

@@ -1,0 +1,69 @@
+/* The frames of a scene, placed where a pair needs them.
+ *
+ * The frames of a body are divided into chunks of up to SCENE_CHUNK successive ones, which are
+ * placed together into successive slots. When the slots run out, all are given up at once; a chunk
+ * that is needed again is placed again. The boxes of chunks and bodies are kept. */
+#ifndef FMB_SCENE_FRAMES_H
+#define FMB_SCENE_FRAMES_H
+
+#include "swept.h"
+
+enum { SCENE_CHUNK = 16 };
+
+struct scene_chunk {
+    struct swept box;              /* holds its frames over the window */
+    unsigned long long generation; /* that of its slots; 0: never placed, and no box */
+    unsigned slot;                 /* of its first frame */
+};
+
+struct scene_frames {
+    const struct fmb_placement *placement;
+    double duration;
+    bool boxed;                /* boxes are needed */
+    bool direct;               /* every body has one frame, slot i that of placement i */
+    unsigned *first_chunk;     /* [placement] */
+    struct scene_chunk *chunk; /* [chunk] */
+    struct swept *body_box;    /* [placement], over the window */
+    struct fmb_prepared *slot; /* [slots] */
+    struct swept *frame_box;   /* [slots] */
+    size_t slots, used;
+    unsigned long long generation; /* of the slots in use, from 1 */
+    long work;                     /* nanoseconds, roughly; reset by the caller */
+};
+
+/* Number of chunks of a body of so many frames. */
+static inline size_t scene_chunks(size_t frames)
+{
+    return (frames + SCENE_CHUNK - 1) / SCENE_CHUNK;
+}
+
+/* Adds the next placement: sets its box and, where direct, places its frame. bounded: its box may
+ * be smaller than those of its frames as inexact methods see them; otherwise it is unbounded. */
+void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded);
+
+/* Where the enumeration of the frame pairs of a pair of bodies stands. */
+struct scene_cursor {
+    unsigned a, b;           /* placements */
+    size_t chunk_a, chunk_b; /* of the bodies, from 0 */
+    /* The frames of two chunks that may meet: slots [of_a[i], of_b[j]] is the next pair. */
+    bool inside;
+    unsigned i, j, count_a, count_b;
+    unsigned of_a[SCENE_CHUNK], of_b[SCENE_CHUNK];
+};
+
+static inline void scene_cursor_begin(struct scene_cursor *cursor, unsigned a, unsigned b)
+{
+    cursor->a = a;
+    cursor->b = b;
+    cursor->chunk_a = cursor->chunk_b = 0;
+    cursor->inside = false;
+}
+
+/* Puts the next pairs of frames whose boxes meet into out, as slots; of two bodies of one frame
+ * that pair, whatever the boxes. Returns how many, at most max. *done: there are no more of these
+ * bodies. Otherwise out is full, the work is at its limit, or the slots ran out. may_reuse: no slot
+ * is in use, so that they may be given up. */
+size_t scene_frames_pairs(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
+                          unsigned (*out)[2], size_t max, bool *done);
+
+#endif

@@ -1,0 +1,172 @@
+#include "scene_pairs.h"
+
+#include "tree.h"
+
+#include <string.h>
+
+/* Placements whose partners are searched for before the caller resets searches: tens of
+ * microseconds. */
+enum { SEARCHES_MAX = 32 };
+
+/* Pairs (a, b) have a below rows() and b from first_partner() on. */
+static unsigned rows(const struct fmb_scene *scene)
+{
+    return (unsigned) (scene->which == FMB_PAIRS_ACROSS ? scene->split : scene->placement_count);
+}
+
+static unsigned first_partner(const struct fmb_scene *scene, unsigned a)
+{
+    return scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : a + 1;
+}
+
+/* The pairs of the placements before a: fewer than 2^63. */
+static unsigned long long pairs_before(const struct fmb_scene *scene, unsigned a)
+{
+    const unsigned long long n = scene->placement_count, i = a;
+    if (scene->which == FMB_PAIRS_ACROSS)
+        return i * (n - scene->split);
+    return i * n - i * (i + 1) / 2;
+}
+
+unsigned long long scene_pairs_number(const struct fmb_scene *scene, unsigned a, unsigned b)
+{
+    return pairs_before(scene, a) + (b - first_partner(scene, a));
+}
+
+unsigned long long scene_pairs_total(const struct fmb_scene *scene)
+{
+    if (scene->which == FMB_PAIRS_LISTED)
+        return scene->pair_count;
+    return pairs_before(scene, rows(scene));
+}
+
+unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
+{
+    const struct fmb_scene *scene = pairs->scene;
+    if (scene->which == FMB_PAIRS_LISTED)
+        return pairs->next;
+    if (pairs->given < pairs->found_count)
+        return scene_pairs_number(scene, pairs->a, pairs->found[pairs->given]);
+    return pairs->a < rows(scene) ? pairs_before(scene, pairs->a + 1) : scene_pairs_total(scene);
+}
+
+/* ---- Ignored pairs ---- */
+
+static void list_ignored(struct scene_pairs *pairs)
+{
+    const struct fmb_scene *scene = pairs->scene;
+    if (scene->ignored_count == 0)
+        return;
+    memset(pairs->head, 0, scene->placement_count * sizeof *pairs->head);
+    memset(pairs->mark, 0, scene->placement_count * sizeof *pairs->mark);
+    for (size_t i = 0; i < scene->ignored_count; i++) {
+        const unsigned *pair = scene->ignored[i];
+        const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
+        pairs->link[i] = pairs->head[lower];
+        pairs->head[lower] = (unsigned) i + 1;
+    }
+}
+
+/* Removes the ignored ones of the partners found. */
+static void remove_ignored(struct scene_pairs *pairs)
+{
+    const struct fmb_scene *scene = pairs->scene;
+    const unsigned a = pairs->a;
+    size_t count = 0;
+    if (scene->ignored_count == 0 || pairs->head[a] == 0)
+        return;
+    for (unsigned at = pairs->head[a]; at; at = pairs->link[at - 1]) {
+        const unsigned *pair = scene->ignored[at - 1];
+        pairs->mark[pair[0] == a ? pair[1] : pair[0]] = a + 1;
+    }
+    for (size_t i = 0; i < pairs->found_count; i++) {
+        pairs->found[count] = pairs->found[i];
+        count += pairs->mark[pairs->found[i]] != a + 1;
+    }
+    pairs->found_count = count;
+}
+
+/* ---- All and across ---- */
+
+static void find_partners(struct scene_pairs *pairs, unsigned from)
+{
+    pairs->found_count =
+        tree_find(&pairs->tree, &pairs->box[pairs->a], from - pairs->first, pairs->found);
+    for (size_t i = 0; pairs->first && i < pairs->found_count; i++)
+        pairs->found[i] += pairs->first;
+    pairs->given = 0;
+    remove_ignored(pairs);
+}
+
+static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const struct scene_pairs *pairs = context;
+    const struct swept *swept = &pairs->box[pairs->first + index];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        box[0][axis] = swept->end[axis][0];
+        box[1][axis] = -swept->end[axis][1];
+    }
+}
+
+static void begin_search(struct scene_pairs *pairs, void *memory)
+{
+    const struct fmb_scene *scene = pairs->scene;
+    pairs->first = scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : 0;
+    if (rows(scene) == 0)
+        return;
+    const struct fmb_boxes boxes = {
+        .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
+    fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
+    list_ignored(pairs);
+    while (pairs->a < rows(scene) && pairs_before(scene, pairs->a + 1) <= scene->first_pair)
+        pairs->a++;
+    const unsigned long long before = pairs_before(scene, pairs->a);
+    if (pairs->a < rows(scene))
+        find_partners(pairs,
+                      first_partner(scene, pairs->a) + (unsigned) (scene->first_pair - before));
+}
+
+void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
+                       const struct swept *box, void *tree)
+{
+    pairs->scene = scene;
+    pairs->box = box;
+    pairs->next = scene->first_pair;
+    pairs->a = 0;
+    pairs->found_count = pairs->given = 0;
+    pairs->searches = 0;
+    if (scene->which != FMB_PAIRS_LISTED)
+        begin_search(pairs, tree);
+}
+
+static size_t next_found(struct scene_pairs *pairs, unsigned (*out)[2], size_t max)
+{
+    size_t count = 0;
+    while (count < max && pairs->a < rows(pairs->scene)) {
+        if (pairs->given < pairs->found_count) {
+            out[count][0] = pairs->a;
+            out[count++][1] = pairs->found[pairs->given++];
+        } else if (pairs->searches == SEARCHES_MAX) {
+            break;
+        } else if (pairs->searches++, ++pairs->a < rows(pairs->scene)) {
+            find_partners(pairs, first_partner(pairs->scene, pairs->a));
+        }
+    }
+    return count;
+}
+
+static size_t next_listed(struct scene_pairs *pairs, unsigned (*out)[2], size_t max)
+{
+    const unsigned long long left = pairs->scene->pair_count - pairs->next;
+    const size_t count = left < max ? (size_t) left : max;
+    if (count > 0)
+        memcpy(out, pairs->scene->pairs[pairs->next], count * sizeof *out);
+    pairs->next += count;
+    return count;
+}
+
+size_t scene_pairs_next(struct scene_pairs *pairs, unsigned (*out)[2], size_t max)
+{
+    return pairs->scene->which == FMB_PAIRS_LISTED ? next_listed(pairs, out, max)
+                                                   : next_found(pairs, out, max);
+}
