@@ -33,8 +33,18 @@ enum { QUERY_ORIENTATION_MAX = 4 };
 
 /* Fields that every query begins with. */
 struct query_header {
-    int64_t utime, client_id, sequence_number;
+    int64_t utime; /* microseconds since 1970 */
+    int64_t client_id, sequence_number;
 };
+
+/* The same as the first fields of a message, by their names and as one. */
+#define QUERY_HEADER                                   \
+    union {                                            \
+        struct query_header header;                    \
+        struct {                                       \
+            int64_t utime, client_id, sequence_number; \
+        };                                             \
+    }
 
 /* A body in body coordinates, encoded: the fields dim to numbers of placement_t. Two bodies are the
  * same if and only if these bytes are (so -0 differs from 0); the handle is their hash. Not owned.
@@ -69,35 +79,66 @@ static inline bool placement_by_handle(const struct placement *placement)
 
 /* One frame of a geometry. */
 struct geometry_frame {
-    int shape;                             /* not checked */
-    int count;                             /* of components */
-    double origin[FMB_DIM_MAX];            /* body coordinates */
-    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis] */
+    int shape;                  /* not checked */
+    int count;                  /* of components */
+    double origin[FMB_DIM_MAX]; /* body coordinates; of a box its centre */
+    /* [component * dim + axis]; of a box [axis], its full size */
+    double components[FMB_COMPONENTS_MAX];
 };
 
-/* Most bytes of a geometry of one frame. */
-enum { GEOMETRY_FRAME_BYTES_MAX = 4 + 4 + 1 + 4 + 8 * (FMB_DIM_MAX + FMB_COMPONENTS_MAX) };
+enum {
+    GEOMETRY_NONE_BYTES = 12,
+    /* Most numbers of a frame, and most bytes of a geometry of one frame. */
+    GEOMETRY_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX,
+    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 8 * GEOMETRY_FRAME_NUMBERS_MAX,
+    /* No frame takes fewer bytes than a box in 2D, and no message has more frames. */
+    GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
+    QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN
+};
 
-/* Encodes a body of one frame. On input: dim and a shape of that dimension; frame->count is not
- * read. Returns the bytes of out used. */
+/* The numbers of a frame in a geometry, those of its origin or centre included. 0: dim and shape do
+ * not go together, or one of them is unknown. */
+int geometry_number_count(int dim, int shape);
+
+/* Bytes of a geometry of these frames. On input: dim and shapes of that dimension; the counts of
+ * components are not read. */
+size_t geometry_size(int dim, const struct geometry_frame *frames, int count);
+
+/* Encodes a body. On input: as for geometry_size(), whose result is the size of out. Returns the
+ * bytes of out used. */
+size_t geometry_write_frames(int dim, const struct geometry_frame *frames, int count,
+                             unsigned char *out);
+
+/* The same for one frame. */
 size_t geometry_write(int dim, const struct geometry_frame *frame,
                       unsigned char out[GEOMETRY_FRAME_BYTES_MAX]);
 
 /* Encodes the geometry of a placement that names its body by handle: dim, and no frames. */
-enum { GEOMETRY_NONE_BYTES = 12 };
 void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES]);
 
-/* Reads the first frame. On input: a geometry of one frame or more, decoded by wire.h. Returns
- * false if dim, shapes and numbers do not match. */
+/* Reads the frames of a geometry one after the other. */
+struct geometry_reader {
+    int dim;             /* not checked */
+    int32_t frames_left; /* not checked: any number from 0 */
+    int32_t numbers_left;
+    const unsigned char *shape, *number; /* the next ones */
+};
+
+/* On input: a geometry that wire.h has decoded, or that was written by the functions above. */
+struct geometry_reader geometry_begin(const struct geometry *geometry);
+
+/* The next frame. False: there are no more; or dim, shape and numbers do not match. Numbers that
+ * are left after the last frame belong to none. */
+bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out);
+
+/* Reads the first frame. Returns false where geometry_next() does. */
 bool geometry_read(const struct geometry *geometry, int *dim, struct geometry_frame *out);
 
 /* Shape of the first frame; 0: there is none. */
 int geometry_shape(const struct geometry *geometry);
 
 struct pair_query {
-    int64_t utime; /* microseconds since 1970 */
-    int64_t client_id;
-    int64_t sequence_number;
+    QUERY_HEADER;
     double duration; /* seconds */
     int32_t method;  /* 0: the default */
     int32_t want;
@@ -105,7 +146,7 @@ struct pair_query {
 };
 
 struct pair_result {
-    int64_t utime, client_id, sequence_number;
+    QUERY_HEADER;
     int64_t server_id;
     int64_t body_id[2];
     struct handle handle[2];     /* of bodies that came whole with an id; else all 0 */
@@ -131,7 +172,7 @@ enum {
 };
 
 struct scene_query {
-    int64_t utime, client_id, sequence_number;
+    QUERY_HEADER;
     double duration;
     int32_t method, want;
     double margin;
@@ -153,7 +194,7 @@ enum {
 };
 
 struct scene_result {
-    int64_t utime, client_id, sequence_number;
+    QUERY_HEADER;
     int64_t server_id;
     int32_t status;              /* enum fmb_status */
     char detail[QUERY_TEXT_MAX]; /* "" where OK */
@@ -178,19 +219,19 @@ struct scene_result {
 
 enum {
     QUERY_HANDLES_MAX = QUERY_BYTES_MAX / (int) sizeof(struct handle),
-    /* A body takes its handle and a geometry of at least 6 numbers (2D). */
-    QUERY_BODIES_MAX = QUERY_BYTES_MAX / (16 + 4 + 4 + 1 + 4 + 48)
+    QUERY_BODIES_MAX =
+        QUERY_BYTES_MAX / (HANDLE_BYTES + GEOMETRY_NONE_BYTES + GEOMETRY_FRAME_BYTES_MIN)
 };
 
 struct definition_query {
-    int64_t utime, client_id, sequence_number;
+    QUERY_HEADER;
     int64_t first;
     int32_t handle_count; /* 0: all bodies held */
     struct handle handle[QUERY_HANDLES_MAX];
 };
 
 struct definition {
-    int64_t utime, client_id, sequence_number;
+    QUERY_HEADER;
     int64_t server_id;
     int32_t status;
     char detail[QUERY_TEXT_MAX]; /* "" where OK */

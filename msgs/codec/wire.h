@@ -7,9 +7,9 @@
  * write: the fingerprint of the type, counts from 0, strings that end where they say, and not one
  * byte more or less. Results must be consistent besides:
  *
- * - A verdict is present if and only if the status is OK. Intervals and boxes are ordered, and only
- *   present for bodies that meet. A certificate is only present with a verdict, is printable ASCII
- *   and shorter than QUERY_CERTIFICATE_MAX.
+ * - A verdict is present if and only if the status is OK; an interval, if and only if the bodies
+ *   meet. Boxes are only present for bodies that meet. Both are ordered. A certificate is only
+ *   present with a verdict, is printable ASCII and shorter than QUERY_CERTIFICATE_MAX.
  * - A scene has as many named pairs, times and boxes as its verdicts require. Named pairs are in
  *   order. Unknown bodies are present if and only if the status is UNKNOWN_BODY, and nothing else
  *   where it is not OK.

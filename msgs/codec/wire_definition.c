@@ -14,9 +14,7 @@ const char *wire_read_definition_query(const void *bytes, uint32_t size,
                                        struct definition_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_definition_query_t_get_hash());
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, &out->header);
     out->first = cursor_int64(&cursor);
     out->handle_count = wire_read_handles(&cursor, out->handle, QUERY_HANDLES_MAX);
     return cursor_end(&cursor);
@@ -27,9 +25,7 @@ size_t wire_write_definition_query(const struct definition_query *query,
 {
     struct writer writer =
         writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_definition_query_t_get_hash());
-    writer_int64(&writer, query->utime);
-    writer_int64(&writer, query->client_id);
-    writer_int64(&writer, query->sequence_number);
+    wire_write_ids(&writer, &query->header);
     writer_int64(&writer, query->first);
     wire_write_handles(&writer, query->handle, query->handle_count);
     return writer_end(&writer, out);
@@ -57,9 +53,7 @@ const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher
                                  struct definition *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_definition_t_get_hash());
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, &out->header);
     out->server_id = cursor_int64(&cursor);
     out->status = cursor_int32(&cursor);
     cursor_string(&cursor, out->detail, sizeof out->detail);
@@ -78,9 +72,7 @@ size_t wire_write_definition(const struct definition *definition,
                              unsigned char out[QUERY_BYTES_MAX])
 {
     struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_definition_t_get_hash());
-    writer_int64(&writer, definition->utime);
-    writer_int64(&writer, definition->client_id);
-    writer_int64(&writer, definition->sequence_number);
+    wire_write_ids(&writer, &definition->header);
     writer_int64(&writer, definition->server_id);
     writer_int32(&writer, definition->status);
     writer_string(&writer, definition->detail);

@@ -18,7 +18,8 @@ static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (2 + 2 * FMB_DIM_MAX) 
 /* The numbers of the messages are those of the engine. */
 static_assert((int) FMB_CUBOID == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID &&
                   (int) FMB_TETRAHEDRON == FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON &&
-                  (int) FMB_FACE == FMB_MSGS_PLACEMENT_T_SHAPE_FACE,
+                  (int) FMB_FACE == FMB_MSGS_PLACEMENT_T_SHAPE_FACE &&
+                  (int) FMB_BOX == FMB_MSGS_PLACEMENT_T_SHAPE_BOX,
               "shapes");
 static_assert((int) FMB_SEPARATED == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED &&
                   (int) FMB_TOUCHING == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING &&
@@ -49,9 +50,7 @@ const char *wire_read_pair_result_header(const void *bytes, uint32_t size, struc
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_query_t_get_hash());
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, &out->header);
     out->duration = cursor_double(&cursor);
     out->method = cursor_int32(&cursor);
     out->want = cursor_int32(&cursor);
@@ -79,16 +78,15 @@ static void read_box(struct cursor *cursor, struct pair_result *out)
             cursor_fail(cursor, "a box that is no box");
 }
 
+/* Present if and only if there is contact. */
 static void read_contact(struct cursor *cursor, struct fmb_answer *out)
 {
     const int32_t count = cursor_doubles(cursor, out->contact, 2);
-    if (count != 0 && count != 2)
-        cursor_fail(cursor, "a contact interval of neither 0 nor 2 numbers");
+    out->has_contact = out->verdict >= FMB_TOUCHING;
+    if (count != (out->has_contact ? 2 : 0))
+        cursor_fail(cursor, "a contact interval has 2 numbers, for a contact alone");
     if (!(0 <= out->contact[0] && out->contact[0] <= out->contact[1] && out->contact[1] <= DBL_MAX))
         cursor_fail(cursor, "a contact interval that is no interval");
-    out->has_contact = count > 0;
-    if (out->has_contact && out->verdict < FMB_TOUCHING)
-        cursor_fail(cursor, "a contact interval without contact");
 }
 
 static void read_certificate(struct cursor *cursor, struct pair_result *out)
@@ -111,9 +109,7 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_pair_result_t_get_hash());
     memset(out, 0, sizeof *out);
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, &out->header);
     out->server_id = cursor_int64(&cursor);
     for (int f = 0; f < 2; f++)
         out->body_id[f] = cursor_int64(&cursor);
@@ -138,9 +134,7 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
 size_t wire_write_pair_query(const struct pair_query *query, unsigned char out[QUERY_BYTES_MAX])
 {
     struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_pair_query_t_get_hash());
-    writer_int64(&writer, query->utime);
-    writer_int64(&writer, query->client_id);
-    writer_int64(&writer, query->sequence_number);
+    wire_write_ids(&writer, &query->header);
     writer_double(&writer, query->duration);
     writer_int32(&writer, query->method);
     writer_int32(&writer, query->want);
@@ -161,9 +155,7 @@ static void write_box(struct writer *writer, const struct pair_result *result)
 size_t wire_write_pair_result(const struct pair_result *result, unsigned char out[QUERY_BYTES_MAX])
 {
     struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_pair_result_t_get_hash());
-    writer_int64(&writer, result->utime);
-    writer_int64(&writer, result->client_id);
-    writer_int64(&writer, result->sequence_number);
+    wire_write_ids(&writer, &result->header);
     writer_int64(&writer, result->server_id);
     for (int f = 0; f < 2; f++)
         writer_int64(&writer, result->body_id[f]);

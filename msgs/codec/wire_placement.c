@@ -6,9 +6,7 @@ const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerpri
                              struct query_header *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, fingerprint);
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, out);
     return cursor.error;
 }
 

@@ -6,7 +6,22 @@
 #include "wire.h"
 #include "writer.h"
 
-/* The fields that all queries and results begin with. */
+/* The fields that all queries and results begin with, after the fingerprint. */
+static inline void wire_read_ids(struct cursor *cursor, struct query_header *out)
+{
+    out->utime = cursor_int64(cursor);
+    out->client_id = cursor_int64(cursor);
+    out->sequence_number = cursor_int64(cursor);
+}
+
+static inline void wire_write_ids(struct writer *writer, const struct query_header *header)
+{
+    writer_int64(writer, header->utime);
+    writer_int64(writer, header->client_id);
+    writer_int64(writer, header->sequence_number);
+}
+
+/* Reads the same of a message, and ignores the remainder. */
 const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
                              struct query_header *out);
 

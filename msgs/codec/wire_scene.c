@@ -8,7 +8,6 @@
 
 #include <assert.h>
 #include <float.h>
-#include <math.h>
 #include <string.h>
 
 static_assert((int) QUERY_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
@@ -53,9 +52,7 @@ const char *wire_read_scene_result_header(const void *bytes, uint32_t size,
 const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene_query *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_query_t_get_hash());
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, &out->header);
     out->duration = cursor_double(&cursor);
     out->method = cursor_int32(&cursor);
     out->want = cursor_int32(&cursor);
@@ -72,9 +69,7 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
 size_t wire_write_scene_query(const struct scene_query *query, unsigned char out[QUERY_BYTES_MAX])
 {
     struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_scene_query_t_get_hash());
-    writer_int64(&writer, query->utime);
-    writer_int64(&writer, query->client_id);
-    writer_int64(&writer, query->sequence_number);
+    wire_write_ids(&writer, &query->header);
     writer_double(&writer, query->duration);
     writer_int32(&writer, query->method);
     writer_int32(&writer, query->want);
@@ -140,11 +135,9 @@ static void read_pairs(struct cursor *cursor, struct scene_result *out)
     out->names_pairs = count > 0;
 }
 
-/* Both NaN: no interval. */
 static bool is_interval(const double times[2])
 {
-    return (isnan(times[0]) && isnan(times[1])) ||
-           (0 <= times[0] && times[0] <= times[1] && times[1] <= DBL_MAX);
+    return 0 <= times[0] && times[0] <= times[1] && times[1] <= DBL_MAX;
 }
 
 static void read_times(struct cursor *cursor, struct scene_result *out)
@@ -175,9 +168,7 @@ static void read_boxes(struct cursor *cursor, struct scene_result *out)
 const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scene_result *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_result_t_get_hash());
-    out->utime = cursor_int64(&cursor);
-    out->client_id = cursor_int64(&cursor);
-    out->sequence_number = cursor_int64(&cursor);
+    wire_read_ids(&cursor, &out->header);
     out->server_id = cursor_int64(&cursor);
     out->status = cursor_int32(&cursor);
     cursor_string(&cursor, out->detail, sizeof out->detail);
@@ -206,9 +197,7 @@ size_t wire_write_scene_result(const struct scene_result *result,
 {
     const int32_t contacts = result->contact_count;
     struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_scene_result_t_get_hash());
-    writer_int64(&writer, result->utime);
-    writer_int64(&writer, result->client_id);
-    writer_int64(&writer, result->sequence_number);
+    wire_write_ids(&writer, &result->header);
     writer_int64(&writer, result->server_id);
     writer_int32(&writer, result->status);
     writer_string(&writer, result->detail);
