@@ -3,6 +3,7 @@
 #include "check.h"
 #include "wire.h"
 
+#include <assert.h>
 #include <stdio.h>
 
 static bool check_definition_query(struct checking *checking, const struct definition_query *query)
@@ -31,10 +32,18 @@ static const struct cached *next_body(const struct cache *cache,
     return NULL;
 }
 
+/* Bytes of a page for bodies: where there are any, the detail is empty. */
+enum { PAGE_BYTES = QUERY_BYTES_MAX - WIRE_DEFINITION_BYTES + QUERY_TEXT_MAX - 1 };
+
+/* The largest body came as the only placement of a scene, in 2D at rest. */
+static_assert(PAGE_BYTES - HANDLE_BYTES >= QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES -
+                                               (QUERY_PLACEMENT_BYTES_MIN - GEOMETRY_NONE_BYTES),
+              "a page has space for any body");
+
 static void append_bodies(const struct cache *cache, const struct definition_query *query,
                           struct definition *result)
 {
-    size_t capacity = QUERY_BYTES_MAX - WIRE_DEFINITION_BYTES;
+    size_t capacity = PAGE_BYTES;
     int64_t position = query->first, here = position;
     for (const struct cached *cached; (cached = next_body(cache, query, &position));
          here = position) {
@@ -52,9 +61,7 @@ static void append_bodies(const struct cache *cache, const struct definition_que
 static void begin_result(const struct answerer *answerer, const struct query_header *query,
                          struct definition *result)
 {
-    result->utime = query->utime;
-    result->client_id = query->client_id;
-    result->sequence_number = query->sequence_number;
+    result->header = *query;
     result->server_id = answerer->server_id;
     result->status = FMB_OK;
     result->detail[0] = '\0';
@@ -65,9 +72,8 @@ static void begin_result(const struct answerer *answerer, const struct query_hea
 void answer_definition(struct answerer *answerer, const struct definition_query *query,
                        struct definition *result)
 {
-    const struct query_header header = {query->utime, query->client_id, query->sequence_number};
     struct checking checking = {.status = &result->status, .detail = result->detail};
-    begin_result(answerer, &header, result);
+    begin_result(answerer, &query->header, result);
     if (check_definition_query(&checking, query))
         append_bodies(answerer->cache, query, result);
 }

@@ -1,9 +1,11 @@
 #include "answerer.h"
 
 #include "check.h"
+#include "wire.h"
 
 #include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void set_side(struct checking *checking, int side)
@@ -28,108 +30,133 @@ static bool check_pair(struct checking *checking, const struct pair_query *query
            check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
 }
 
-/* The bodies of a checked query. */
-struct bodies {
-    const struct fmb_body *of[2]; /* in the cache, or copy[] */
-    struct fmb_body copy[2];
-};
-
 static bool find_body(struct cache *cache, struct checking *checking,
-                      const struct placement *placement, const struct fmb_body **out)
+                      const struct placement *placement, struct used_body *out)
 {
     const struct cached *cached = cache_find(cache, &placement->handle);
     if (!cached)
         return check_refuse(checking, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
-    *out = &cached->body;
+    *out = (struct used_body){&cached->body, cached};
     return check_body_dim(checking, placement, &cached->body);
 }
 
-/* Keeping one body may evict the other. */
-static void copy_body(struct bodies *bodies, int f)
+/* Whether both bodies have one frame, where a certificate is wanted. */
+static bool check_certificate(struct checking *checking, const struct pair_query *query,
+                              const struct used_body used[2])
 {
-    if (bodies->of[f] != &bodies->copy[f])
-        bodies->copy[f] = *bodies->of[f];
-    bodies->of[f] = &bodies->copy[f];
+    checking->part = NULL;
+    for (int f = 0; f < 2 && query->want & QUERY_WANT_CERTIFICATE; f++)
+        if (query->placement[f].frame_count > 1 || (used[f].body && used[f].body->frame_count > 1))
+            return check_refuse(checking, FMB_CANNOT_DECIDE, "want",
+                                "a certificate is for bodies of one frame");
+    return true;
 }
 
-/* Handles come first: a query with one that is not held leaves the cache as it was. */
+/* Handles come first: a query that is refused leaves the cache as it was. */
 static bool find_bodies(struct answerer *answerer, struct checking *checking,
-                        const struct pair_query *query, struct bodies *out, struct handle handle[2])
+                        const struct pair_query *query, struct query_bodies *own,
+                        struct used_body out[2], struct handle handle[2])
 {
-    const bool named[2] = {placement_by_handle(&query->placement[0]),
-                           placement_by_handle(&query->placement[1])};
-    const bool keeps = !named[0] || !named[1];
     for (int f = 0; f < 2; f++) {
         set_side(checking, f);
-        if (named[f] && !find_body(answerer->cache, checking, &query->placement[f], &out->of[f]))
+        if (placement_by_handle(&query->placement[f]) &&
+            !find_body(answerer->cache, checking, &query->placement[f], &out[f]))
             return false;
-        if (named[f] && keeps)
-            copy_body(out, f);
     }
-    for (int f = 0; f < 2; f++) {
-        if (named[f])
-            continue;
-        out->of[f] = answerer_keep(answerer, &query->placement[f], &out->copy[f], &handle[f]);
-        copy_body(out, f);
-    }
+    if (!check_certificate(checking, query, out))
+        return false;
+    own->used = 0;
+    for (int f = 0; f < 2; f++)
+        if (!placement_by_handle(&query->placement[f]))
+            out[f] = answerer_keep(answerer, &query->placement[f], own, &handle[f]);
     return true;
 }
 
 /* A certificate that is too long is left out. */
-static void certify(struct answerer *answerer, const struct fmb_pair *pair,
-                    struct pair_result *result)
+static void certify(struct answerer *answerer, const struct fmb_placement placement[2],
+                    double duration, struct pair_result *result)
 {
     size_t length;
     enum fmb_status status =
-        fmb_certificate(pair, answerer->certificate, sizeof answerer->certificate, &length);
+        fmb_certificate(&placement[0], &placement[1], duration, answerer->certificate,
+                        sizeof answerer->certificate, &length);
     assert(status == FMB_OK || status == FMB_OVER_LIMIT);
     if (status == FMB_OK)
         result->certificate = answerer->certificate;
 }
 
+static void refuse_method(const struct fmb_method *method, enum fmb_status status,
+                          struct pair_result *result)
+{
+    result->status = (int32_t) status;
+    snprintf(result->detail, sizeof result->detail, "method %s: %s", method->name,
+             fmb_status_text(result->status));
+}
+
 static void decide(struct answerer *answerer, struct pair_result *result,
-                   const struct pair_query *query, const struct bodies *bodies)
+                   const struct pair_query *query, const struct used_body used[2])
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    const struct fmb_pair pair = {.a = answerer_place(&query->placement[0], bodies->of[0]),
-                                  .b = answerer_place(&query->placement[1], bodies->of[1]),
-                                  .duration = query->duration};
-    unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
-    result->status = (int32_t) fmb_decide(method, &pair, want, &result->answer);
-    if (result->status != FMB_OK) {
-        snprintf(result->detail, sizeof result->detail, "method %s: %s", method->name,
-                 fmb_status_text(result->status));
+    const struct fmb_placement placement[2] = {answerer_place(&query->placement[0], used[0].body),
+                                               answerer_place(&query->placement[1], used[1].body)};
+    const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
+    const enum fmb_status status =
+        fmb_decide(method, &placement[0], &placement[1], query->duration, want, &result->answer);
+    if (status != FMB_OK) {
+        refuse_method(method, status, result);
         return;
     }
     result->method = method->number;
-    result->dim = result->answer.has_box ? bodies->of[0]->dim : 0;
+    result->dim = result->answer.has_box ? used[0].body->dim : 0;
     if (query->want & QUERY_WANT_CERTIFICATE)
-        certify(answerer, &pair, result);
+        certify(answerer, placement, query->duration, result);
 }
 
 static void begin_result(const struct answerer *answerer, const struct pair_query *query,
                          struct pair_result *result)
 {
     memset(result, 0, sizeof *result);
-    result->utime = query->utime;
-    result->client_id = query->client_id;
-    result->sequence_number = query->sequence_number;
+    result->header = query->header;
     result->server_id = answerer->server_id;
     for (int f = 0; f < 2; f++)
         result->body_id[f] = query->placement[f].body_id;
 }
 
-void answer_pair(struct answerer *answerer, const struct pair_query *query,
+static void release_bodies(struct answerer *answerer, const struct used_body used[2])
+{
+    for (int f = 0; f < 2; f++)
+        answerer_release(answerer, &used[f]);
+}
+
+/* Whether a body has several frames, as far as it is known. */
+static bool has_several_frames(const struct answerer *answerer, const struct pair_query *query)
+{
+    for (int f = 0; f < 2; f++) {
+        const struct placement *placement = &query->placement[f];
+        const struct cached *cached =
+            placement_by_handle(placement) ? cache_peek(answerer->cache, &placement->handle) : NULL;
+        if (placement->frame_count > 1 || (cached && cached->body.frame_count > 1))
+            return true;
+    }
+    return false;
+}
+
+bool answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result)
 {
     for (int f = 0; f < 2; f++) /* arrives while the query is checked */
         cache_prefetch(answerer->cache, &query->placement[f]);
     begin_result(answerer, query, result);
     struct checking checking = {.status = &result->status, .detail = result->detail};
-    struct bodies bodies;
-    if (check_pair(&checking, query) &&
-        find_bodies(answerer, &checking, query, &bodies, result->handle))
-        decide(answerer, result, query, &bodies);
+    struct used_body used[2] = {0};
+    if (!check_pair(&checking, query))
+        return true;
+    if (has_several_frames(answerer, query))
+        return false;
+    if (find_bodies(answerer, &checking, query, &answerer->bodies, used, result->handle))
+        decide(answerer, result, query, used);
+    release_bodies(answerer, used);
+    return true;
 }
 
 void answer_pair_refused(const struct answerer *answerer, const struct pair_query *query,
@@ -138,4 +165,124 @@ void answer_pair_refused(const struct answerer *answerer, const struct pair_quer
     begin_result(answerer, query, result);
     result->status = (int32_t) status;
     snprintf(result->detail, sizeof result->detail, "%s", fmb_status_text(result->status));
+}
+
+/* ---- In steps ---- */
+
+struct pair_job {
+    bool complete;
+    struct pair_query query;
+    struct pair_result result;
+    struct used_body used[2];
+    struct fmb_placement placement[2];
+    void *memory; /* owned: of the scene */
+    struct fmb_scene_state *scene;
+    struct query_bodies bodies;
+    unsigned char bytes[QUERY_BYTES_MAX]; /* the message, where the geometries are */
+};
+
+/* Both bodies came in one message each. */
+static const struct fmb_scene_limits limits = {
+    .placements = 2, .frames = 2 * QUERY_FRAMES_MAX, .slots = 2 * QUERY_FRAMES_MAX};
+
+struct pair_job *pair_job_create(void)
+{
+    struct pair_job *job = aligned_alloc(_Alignof(struct pair_job), sizeof *job);
+    if (!job)
+        return NULL;
+    job->memory = malloc(fmb_scene_bytes(&limits));
+    if (!job->memory) {
+        free(job);
+        return NULL;
+    }
+    return job;
+}
+
+void pair_job_destroy(struct pair_job *job)
+{
+    if (!job)
+        return;
+    free(job->memory);
+    free(job);
+}
+
+/* A scene of two placements. */
+static void begin_scene(struct pair_job *job)
+{
+    static const unsigned pair[1][2] = {{0, 1}};
+    const struct pair_query *query = &job->query;
+    const struct fmb_method *method = fmb_method_by_number(query->method);
+    for (int f = 0; f < 2; f++)
+        job->placement[f] = answerer_place(&query->placement[f], job->used[f].body);
+    const struct fmb_scene scene = {.placements = job->placement,
+                                    .placement_count = 2,
+                                    .duration = query->duration,
+                                    .method = method,
+                                    .contacts = true,
+                                    .boxes = query->want & QUERY_WANT_BOX && method->boxes,
+                                    .which = FMB_PAIRS_LISTED,
+                                    .pairs = pair,
+                                    .pair_count = 1};
+    const enum fmb_status status = fmb_scene_begin(&scene, &limits, job->memory, &job->scene);
+    assert(status == FMB_OK);
+    (void) status;
+}
+
+const char *pair_job_begin(struct pair_job *job, struct answerer *answerer,
+                           const unsigned char *bytes, size_t size)
+{
+    if (size > sizeof job->bytes)
+        return "longer than a query may be";
+    memcpy(job->bytes, bytes, size);
+    const char *error = wire_read_pair_query(job->bytes, (uint32_t) size, &job->query);
+    if (error)
+        return error;
+    memset(job->used, 0, sizeof job->used);
+    begin_result(answerer, &job->query, &job->result);
+    struct checking checking = {.status = &job->result.status, .detail = job->result.detail};
+    job->complete =
+        !check_pair(&checking, &job->query) ||
+        !find_bodies(answerer, &checking, &job->query, &job->bodies, job->used, job->result.handle);
+    if (!job->complete)
+        begin_scene(job);
+    return NULL;
+}
+
+static void take_answer(struct pair_job *job, const struct fmb_scene_answers *answers)
+{
+    const struct fmb_method *method = fmb_method_by_number(job->query.method);
+    struct pair_result *result = &job->result;
+    struct fmb_answer *answer = &result->answer;
+    if (answers->verdicts[0] == FMB_REFUSED) {
+        refuse_method(method, FMB_CANNOT_DECIDE, result);
+        return;
+    }
+    result->method = method->number;
+    answer->verdict = (enum fmb_verdict) answers->verdicts[0];
+    answer->has_contact = answer->verdict >= FMB_TOUCHING;
+    answer->has_box = answer->has_contact && answers->boxes;
+    if (answer->has_contact)
+        memcpy(answer->contact, answers->contacts[0], sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(answer->box, answers->boxes[0], sizeof answer->box);
+    result->dim = answer->has_box ? job->query.placement[0].dim : 0;
+}
+
+bool pair_job_step(struct pair_job *job)
+{
+    struct fmb_scene_answers answers;
+    if (job->complete)
+        return true;
+    job->complete = fmb_scene_step(job->scene, &answers);
+    if (answers.count > 0)
+        take_answer(job, &answers);
+    return job->complete;
+}
+
+struct pair_result *pair_job_end(struct pair_job *job, struct answerer *answerer)
+{
+    release_bodies(answerer, job->used);
+    if (!job->complete)
+        answer_pair_refused(answerer, &job->query, FMB_BUSY, &job->result);
+    return &job->result;
 }

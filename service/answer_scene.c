@@ -1,7 +1,6 @@
 #include "answerer.h"
 
 #include "check.h"
-#include "scene_pairs.h"
 #include "wire.h"
 
 #include <assert.h>
@@ -13,53 +12,44 @@
 /* What one step does at most. */
 enum {
     STEP_PLACEMENTS = 32, /* found or kept: tens of microseconds */
-    /* Pairs in doubles: tens of microseconds. The batch decides few of them in integers. */
-    STEP_PAIRS = 128,
-    /* After a block with pairs left open, and with boxes, which take longer: as many as the batch
-     * decides in integers, so that none is left open for its time. */
-    STEP_PAIRS_SLOW = 32
+    STEP_FRAMES = 64      /* made, after the last body */
 };
 
 enum stage { IDLE, CHECKING, FINDING, KEEPING, PREPARED, DECIDING, COMPLETE };
 
-/* Pairs under decision: those before done are in the result. */
-struct block {
-    const unsigned (*pair)[2]; /* out[], or those of the query */
-    size_t count, done;
-    /* Pairs that need exact arithmetic, ascending; those before next_open have been decided. */
-    size_t open[STEP_PAIRS], open_count, next_open;
-    unsigned out[STEP_PAIRS][2];
-    unsigned char verdict[STEP_PAIRS];
-    double times[STEP_PAIRS][2];
-    double box[STEP_PAIRS][2][FMB_DIM_MAX];
-};
-
 struct scene_job {
-    struct fmb_prepared prepared[QUERY_PLACEMENTS_MAX]; /* first: at multiples of 64 bytes */
-    struct fmb_body body[QUERY_PLACEMENTS_MAX];         /* for methods other than the default */
     enum stage stage;
-    int32_t next; /* placement to be found or kept */
-    const struct fmb_method *method;
-    bool batched;  /* the method is that of the batch */
-    bool slow;     /* blocks of STEP_PAIRS_SLOW */
-    long capacity; /* bytes that are left for answers */
-    struct block block;
-    struct scene_pairs pairs;
-    void *tree; /* owned: fmb_tree_bytes(QUERY_PLACEMENTS_MAX) */
+    struct answerer *answerer; /* of the query in progress */
+    int32_t next;              /* placement to be found or kept */
+    int64_t frames;            /* of all bodies found, and of all that come whole */
+    long capacity;             /* bytes that are left for answers */
+    struct fmb_scene scene;
+    struct fmb_scene_state *state; /* in memory */
+    void *memory;                  /* owned: fmb_scene_bytes(&limits) */
+    struct used_body used[QUERY_PLACEMENTS_MAX];
+    struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
+    /* [lower * QUERY_PLACEMENTS_MAX + upper]: bits of the pairs that are ignored; meaningful for
+     * pairs that are listed. */
+    unsigned char ignored[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
     struct scene_result result;
     struct scene_query query;
+    struct query_bodies bodies;
     unsigned char bytes[QUERY_BYTES_MAX]; /* the message, where the geometries are */
 };
 
+static const struct fmb_scene_limits limits = {.placements = QUERY_PLACEMENTS_MAX,
+                                               .frames = FMB_FRAMES_MAX,
+                                               .ignored = QUERY_PAIRS_MAX,
+                                               .slots = FMB_SCENE_SLOTS};
+
 struct scene_job *scene_job_create(void)
 {
-    const size_t line = 64, size = (sizeof(struct scene_job) + line - 1) / line * line;
-    struct scene_job *job = aligned_alloc(line, size);
+    struct scene_job *job = aligned_alloc(_Alignof(struct scene_job), sizeof *job);
     if (!job)
         return NULL;
     job->stage = IDLE;
-    job->tree = malloc(fmb_tree_bytes(QUERY_PLACEMENTS_MAX));
-    if (!job->tree) {
+    job->memory = malloc(fmb_scene_bytes(&limits));
+    if (!job->memory) {
         free(job);
         return NULL;
     }
@@ -70,7 +60,7 @@ void scene_job_destroy(struct scene_job *job)
 {
     if (!job)
         return;
-    free(job->tree);
+    free(job->memory);
     free(job);
 }
 
@@ -85,13 +75,19 @@ struct scene_result *scene_job_result(struct scene_job *job)
     return &job->result;
 }
 
+/* Ends a query in progress: the cache gets its bodies back. */
+static void release(struct scene_job *job)
+{
+    for (int32_t i = 0; job->answerer && i < job->query.placement_count; i++)
+        answerer_release(job->answerer, &job->used[i]);
+    job->answerer = NULL;
+}
+
 /* The arrays of the result stay as they are. */
 static void begin_result(const struct answerer *answerer, const struct query_header *query,
                          struct scene_result *result)
 {
-    result->utime = query->utime;
-    result->client_id = query->client_id;
-    result->sequence_number = query->sequence_number;
+    result->header = *query;
     result->server_id = answerer->server_id;
     result->status = FMB_OK;
     result->detail[0] = '\0';
@@ -143,29 +139,60 @@ are_good(const unsigned (*restrict pair)[2], unsigned placements)
     return !bad;
 }
 
-static bool check_pair_at(struct checking *checking, const struct scene_query *query, int32_t i)
+static bool refuse_pair(struct checking *checking, const char *field, int32_t index,
+                        const char *reason)
 {
-    const unsigned *pair = query->pair[i], placements = (unsigned) query->placement_count;
-    const bool inside = pair[0] < placements && pair[1] < placements;
-    if (inside && pair[0] != pair[1])
-        return true;
     char place[32];
-    snprintf(place, sizeof place, "indices[%d]", 2 * (int) i + (pair[0] < placements));
-    return check_refuse(checking, FMB_BAD_PAIR, place,
-                        inside ? "a placement against itself" : "no placement has this index");
+    snprintf(place, sizeof place, "%s[%d]", field, (int) index);
+    return check_refuse(checking, FMB_BAD_PAIR, place, reason);
 }
 
-static bool check_pairs(struct checking *checking, const struct scene_query *query)
+static bool check_pair_at(struct checking *checking, const char *field, const unsigned pair[2],
+                          int32_t i, unsigned placements)
 {
-    const int32_t count = query->index_count / 2;
+    const bool inside = pair[0] < placements && pair[1] < placements;
+    return (inside && pair[0] != pair[1]) ||
+           refuse_pair(checking, field, 2 * i + (pair[0] < placements),
+                       inside ? "a placement against itself" : "no placement has this index");
+}
+
+static bool check_indices(struct checking *checking, const char *field, const unsigned (*pair)[2],
+                          int32_t count, int32_t placements)
+{
+    const unsigned end = (unsigned) placements;
     for (int32_t i = 0; i < count; i++) {
         const bool many = i % GOOD_PAIRS == 0 && i + GOOD_PAIRS <= count;
-        if (many &&
-            are_good((const unsigned(*)[2]) query->pair + i, (unsigned) query->placement_count))
+        if (many && are_good(pair + i, end))
             i += GOOD_PAIRS - 1;
-        else if (!check_pair_at(checking, query, i))
+        else if (!check_pair_at(checking, field, pair[i], i, end))
             return false;
     }
+    return true;
+}
+
+static size_t bit_of(const unsigned pair[2])
+{
+    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
+    const unsigned upper = pair[0] < pair[1] ? pair[1] : pair[0];
+    return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
+}
+
+/* No listed pair is ignored. The bits of listed pairs are cleared first, so that no others matter.
+ */
+static bool check_ignored(struct checking *checking, struct scene_job *job)
+{
+    const struct scene_query *query = &job->query;
+    if (query->ignored_count == 0)
+        return true;
+    for (int32_t i = 0; i < query->index_count / 2; i++)
+        job->ignored[bit_of(query->pair[i]) / 8] &=
+            (unsigned char) ~(1u << bit_of(query->pair[i]) % 8);
+    for (int32_t i = 0; i < query->ignored_count / 2; i++)
+        job->ignored[bit_of(query->ignored[i]) / 8] |=
+            (unsigned char) (1u << bit_of(query->ignored[i]) % 8);
+    for (int32_t i = 0; i < query->index_count / 2; i++)
+        if (job->ignored[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
+            return refuse_pair(checking, "indices", 2 * i, "a pair to ignore");
     return true;
 }
 
@@ -188,6 +215,22 @@ static bool check_counts(struct checking *checking, const struct scene_query *qu
     return true;
 }
 
+/* The scene without its placements. On input: counts and which are checked. */
+static struct fmb_scene scene_of(const struct scene_query *query)
+{
+    const bool listed = query->which == QUERY_PAIRS_LISTED;
+    return (struct fmb_scene){.placement_count = (size_t) query->placement_count,
+                              .duration = query->duration,
+                              .method = fmb_method_by_number(query->method),
+                              .which = (enum fmb_pairs) query->which,
+                              .split = (size_t) query->split,
+                              .pairs = query->pair,
+                              .pair_count = (size_t) query->index_count / 2,
+                              .ignored = query->ignored,
+                              .ignored_count = listed ? 0 : (size_t) query->ignored_count / 2,
+                              .first_pair = (unsigned long long) query->first_pair};
+}
+
 static bool check_which(struct checking *checking, const struct scene_query *query)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
@@ -197,37 +240,36 @@ static bool check_which(struct checking *checking, const struct scene_query *que
     if (query->split < 0 || query->split > (across ? query->placement_count : 0))
         return check_refuse(checking, FMB_BAD_PAIR, "split",
                             across ? "not from 0 to num_placements" : "not 0");
-    if (query->first_pair < 0 || query->first_pair > scene_pairs_total(query))
+    const struct fmb_scene scene = scene_of(query);
+    if (query->first_pair < 0 || scene.first_pair > fmb_scene_pair_count(&scene))
         return check_refuse(checking, FMB_BAD_PAIR, "first_pair", "there are not so many");
     if (query->which != QUERY_PAIRS_LISTED && !method->certain)
         return check_refuse(checking, FMB_CANNOT_DECIDE, "method", "listed pairs alone");
     return true;
 }
 
+/* A margin other than 0 is for later versions. */
 static bool check_margin(struct checking *checking, const struct scene_query *query)
 {
-    return (query->margin >= 0 && isfinite(query->margin)) ||
-           check_refuse(checking, FMB_NOT_FINITE, "margin", "negative or not finite");
+    if (!(query->margin >= 0 && isfinite(query->margin)))
+        return check_refuse(checking, FMB_NOT_FINITE, "margin", "negative or not finite");
+    return query->margin == 0 ||
+           check_refuse(checking, FMB_NOT_SUPPORTED, "margin", "not in this version");
 }
 
-/* What later versions support. */
-static bool check_support(struct checking *checking, const struct scene_query *query)
+static bool check_scene(struct checking *checking, struct scene_job *job)
 {
-    if (query->margin != 0)
-        return check_refuse(checking, FMB_NOT_SUPPORTED, "margin", "not in this version");
-    if (query->ignored_count > 0)
-        return check_refuse(checking, FMB_NOT_SUPPORTED, "num_ignored", "not in this version");
-    return true;
-}
-
-static bool check_scene(struct checking *checking, const struct scene_query *query)
-{
+    const struct scene_query *query = &job->query;
     return check_ids(checking, query->client_id, query->sequence_number) &&
            check_request(checking, query->duration, query->method, query->want,
                          QUERY_WANT_BOX | QUERY_WANT_TIMES) &&
-           check_margin(checking, query) && check_counts(checking, query) &&
-           check_which(checking, query) && check_placements(checking, query) &&
-           check_pairs(checking, query) && check_support(checking, query);
+           check_counts(checking, query) && check_which(checking, query) &&
+           check_placements(checking, query) &&
+           check_indices(checking, "indices", query->pair, query->index_count / 2,
+                         query->placement_count) &&
+           check_indices(checking, "ignored", query->ignored, query->ignored_count / 2,
+                         query->placement_count) &&
+           check_ignored(checking, job) && check_margin(checking, query);
 }
 
 static struct checking checking_of(struct scene_job *job)
@@ -235,40 +277,37 @@ static struct checking checking_of(struct scene_job *job)
     return (struct checking){.status = &job->result.status, .detail = job->result.detail};
 }
 
-static enum stage check(struct scene_job *job, const struct answerer *answerer)
+static enum stage check(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
-    const struct query_header header = {query->utime, query->client_id, query->sequence_number};
     struct checking checking = checking_of(job);
-    begin_result(answerer, &header, &job->result);
-    if (!check_scene(&checking, query))
+    begin_result(job->answerer, &query->header, &job->result);
+    if (!check_scene(&checking, job)) {
+        job->answerer = NULL;
         return COMPLETE;
-    job->method = fmb_method_by_number(query->method);
-    job->batched = job->method == fmb_method_default();
+    }
+    memset(job->used, 0, (size_t) query->placement_count * sizeof *job->used);
+    job->bodies.used = 0;
     job->next = 0;
+    job->frames = 0;
     return FINDING;
 }
 
 /* ---- Bodies ---- */
 
-/* Copies, since the next body may evict this one. */
-static void prepare(struct scene_job *job, int32_t i, const struct fmb_body *body)
+static enum stage complete(struct scene_job *job)
 {
-    const struct fmb_frame frame = answerer_place(&job->query.placement[i], body);
-    const enum fmb_status status = fmb_prepare(&frame, &job->prepared[i]);
-    assert(status == FMB_OK);
-    (void) status;
-    if (!job->batched)
-        job->body[i] = *body;
+    release(job);
+    return COMPLETE;
 }
 
 /* The end of the placements of this step, which will be looked up. */
-static int32_t expect_placements(const struct scene_job *job, const struct answerer *answerer)
+static int32_t expect_placements(const struct scene_job *job)
 {
     const int32_t left = job->query.placement_count - job->next;
     const int32_t end = job->next + (left < STEP_PLACEMENTS ? left : STEP_PLACEMENTS);
     for (int32_t i = job->next; i < end; i++)
-        cache_prefetch(answerer->cache, &job->query.placement[i]);
+        cache_prefetch(job->answerer->cache, &job->query.placement[i]);
     return end;
 }
 
@@ -278,139 +317,87 @@ static enum stage refuse_unknown(struct scene_job *job)
     checking.part = "placements";
     checking.index = (int32_t) job->result.unknown[0];
     check_refuse(&checking, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
-    return COMPLETE;
+    return complete(job);
+}
+
+/* Finds the body of a placement by handle, and counts its frames, or those of one that comes whole.
+ * False: the query is refused. */
+static bool find_one(struct scene_job *job, int32_t i)
+{
+    const struct placement *placement = &job->query.placement[i];
+    struct checking checking = checking_of(job);
+    checking.part = "placements";
+    checking.index = i;
+    if (!placement_by_handle(placement))
+        return check_frames(&checking, placement->frame_count, &job->frames);
+    const struct cached *cached = cache_find(job->answerer->cache, &placement->handle);
+    if (!cached) {
+        job->result.unknown[job->result.unknown_count++] = (unsigned) i;
+        return true;
+    }
+    job->used[i] = (struct used_body){&cached->body, cached};
+    return check_body_dim(&checking, placement, &cached->body) &&
+           check_frames(&checking, cached->body.frame_count, &job->frames);
 }
 
 /* Placements that name their body by handle. All of them come before any body is kept: a query with
  * one that is not held leaves the cache as it was. */
-static enum stage find(struct scene_job *job, struct answerer *answerer)
+static enum stage find(struct scene_job *job)
 {
-    const int32_t end = expect_placements(job, answerer);
-    struct scene_result *result = &job->result;
-    for (; job->next < end; job->next++) {
-        const struct placement *placement = &job->query.placement[job->next];
-        if (!placement_by_handle(placement))
-            continue;
-        const struct cached *cached = cache_find(answerer->cache, &placement->handle);
-        struct checking checking = checking_of(job);
-        checking.part = "placements";
-        checking.index = job->next;
-        if (!cached) {
-            result->unknown[result->unknown_count++] = (unsigned) job->next;
-        } else if (check_body_dim(&checking, placement, &cached->body)) {
-            prepare(job, job->next, &cached->body);
-        } else {
-            result->unknown_count = 0;
-            return COMPLETE;
+    const int32_t end = expect_placements(job);
+    for (; job->next < end; job->next++)
+        if (!find_one(job, job->next)) {
+            job->result.unknown_count = 0;
+            return complete(job);
         }
-    }
     if (job->next < job->query.placement_count)
         return FINDING;
-    if (result->unknown_count > 0)
+    if (job->result.unknown_count > 0)
         return refuse_unknown(job);
     job->next = 0;
     return KEEPING;
 }
 
 /* Placements that come whole. */
-static enum stage keep(struct scene_job *job, struct answerer *answerer)
+static enum stage keep(struct scene_job *job)
 {
-    const int32_t end = expect_placements(job, answerer);
+    const int32_t end = expect_placements(job);
     struct scene_result *result = &job->result;
-    for (; job->next < end; job->next++) {
-        const struct placement *placement = &job->query.placement[job->next];
-        struct handle *handle = &result->handle[result->handle_count];
-        struct fmb_body anonymous;
-        if (placement_by_handle(placement))
-            continue;
-        prepare(job, job->next, answerer_keep(answerer, placement, &anonymous, handle));
-        result->handle_count += placement->body_id != 0;
+    for (int32_t frames = 0; job->next < end && frames < STEP_FRAMES; job->next++) {
+        const int32_t i = job->next;
+        const struct placement *placement = &job->query.placement[i];
+        if (!placement_by_handle(placement)) {
+            job->used[i] = answerer_keep(job->answerer, placement, &job->bodies,
+                                         &result->handle[result->handle_count]);
+            result->handle_count += placement->body_id != 0;
+            frames += placement->frame_count;
+        }
+        job->placement[i] = answerer_place(placement, job->used[i].body);
     }
     return job->next < job->query.placement_count ? KEEPING : PREPARED;
 }
 
 /* ---- Pairs ---- */
 
-static bool any_moves(const struct scene_query *query)
-{
-    for (int32_t i = 0; i < query->placement_count; i++)
-        if (query->placement[i].velocity_count > 0)
-            return true;
-    return false;
-}
-
 static enum stage begin_pairs(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
     struct scene_result *result = &job->result;
-    result->method = job->method->number;
+    struct fmb_scene *scene = &job->scene;
+    *scene = scene_of(query);
+    scene->placements = job->placement;
+    scene->contacts = query->want & QUERY_WANT_TIMES;
+    scene->boxes = query->want & QUERY_WANT_BOX && scene->method->boxes;
+    result->method = scene->method->number;
     result->names_pairs = query->which != QUERY_PAIRS_LISTED;
-    result->has_times = query->want & QUERY_WANT_TIMES && any_moves(query);
-    result->has_boxes = query->want & QUERY_WANT_BOX && job->method->boxes;
+    result->has_times = scene->contacts;
+    result->has_boxes = scene->boxes;
     result->dim = result->has_boxes && query->placement_count > 0 ? query->placement[0].dim : 0;
     job->capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * result->handle_count;
-    job->slow = result->has_boxes;
-    job->block.count = job->block.done = job->block.open_count = job->block.next_open = 0;
-    scene_pairs_begin(&job->pairs, query, job->prepared, job->tree);
-    return DECIDING;
-}
-
-/* Decides count pairs of the block from first on. *open: positions from first on of those that need
- * exact arithmetic; NULL: those are decided too. */
-static void decide_batch(struct scene_job *job, size_t first, size_t count, size_t *open,
-                         size_t *open_count)
-{
-    struct block *block = &job->block;
-    const struct fmb_batch batch = {.frames = job->prepared,
-                                    .frame_count = (size_t) job->query.placement_count,
-                                    .pairs = block->pair + first,
-                                    .pair_count = count,
-                                    .duration = job->query.duration,
-                                    .verdicts = block->verdict + first,
-                                    .contacts = job->result.has_times ? block->times + first : NULL,
-                                    .boxes = job->result.has_boxes ? block->box + first : NULL,
-                                    .open = open,
-                                    .open_count = open_count};
-    const enum fmb_status status = fmb_decide_batch(&batch);
+    const enum fmb_status status = fmb_scene_begin(scene, &limits, job->memory, &job->state);
     assert(status == FMB_OK);
     (void) status;
-}
-
-/* The only pair of the block, by a method that has no batch. */
-static void decide_single(struct scene_job *job)
-{
-    struct block *block = &job->block;
-    const unsigned a = block->pair[0][0], b = block->pair[0][1];
-    struct fmb_answer answer;
-    const struct fmb_pair pair = {answerer_place(&job->query.placement[a], &job->body[a]),
-                                  answerer_place(&job->query.placement[b], &job->body[b]),
-                                  job->query.duration};
-    const unsigned want = job->result.has_boxes ? FMB_WANT_BOX : 0;
-    fmb_decide(job->method, &pair, want, &answer); /* no verdict if it cannot */
-    block->verdict[0] = (unsigned char) answer.verdict;
-    memcpy(block->box[0], answer.box, sizeof answer.box);
-    for (int end = 0; end < 2; end++)
-        block->times[0][end] = answer.has_contact ? answer.contact[end] : NAN;
-}
-
-static size_t block_size(const struct scene_job *job)
-{
-    if (!job->batched)
-        return 1;
-    return job->slow ? STEP_PAIRS_SLOW : STEP_PAIRS;
-}
-
-static void begin_block(struct scene_job *job)
-{
-    struct block *block = &job->block;
-    block->count = scene_pairs_next(&job->pairs, block->out, block_size(job), &block->pair);
-    block->done = block->next_open = block->open_count = 0;
-    if (job->batched)
-        decide_batch(job, 0, block->count, block->open, &block->open_count);
-    else if (block->count > 0)
-        decide_single(job);
-    if (block->open_count > 0)
-        job->slow = true;
+    return DECIDING;
 }
 
 /* ---- Result ---- */
@@ -431,25 +418,22 @@ static long size_of(const struct scene_result *result, unsigned char verdict)
     return size;
 }
 
-static void append_contact(struct scene_result *result, const struct block *block)
+static void append_contact(struct scene_result *result, const struct fmb_scene_answers *answers,
+                           size_t k)
 {
     const int32_t contact = result->contact_count++;
-    const size_t k = block->done;
     if (result->has_times)
-        memcpy(&result->times[2 * contact], block->times[k], sizeof block->times[k]);
+        memcpy(&result->times[2 * contact], answers->contacts[k], sizeof answers->contacts[k]);
     for (int i = 0; i < 2 * result->dim && result->has_boxes; i++)
         result->boxes[2 * result->dim * contact + i] =
-            block->box[k][i / result->dim][i % result->dim];
+            answers->boxes[k][i / result->dim][i % result->dim];
 }
 
-/* Appends the next pair. False: there is no space for it. */
-static bool append(struct scene_job *job)
+/* False: there is no space. */
+static bool append(struct scene_job *job, const struct fmb_scene_answers *answers, size_t k)
 {
     struct scene_result *result = &job->result;
-    const struct block *block = &job->block;
-    const unsigned char verdict = block->verdict[block->done];
-    if (result->names_pairs && !is_contact(verdict))
-        return true;
+    const unsigned char verdict = answers->verdicts[k];
     const long size = size_of(result, verdict);
     if (size > job->capacity)
         return false;
@@ -457,84 +441,65 @@ static bool append(struct scene_job *job)
     const int32_t n = result->verdict_count++;
     result->verdict[n] = verdict;
     if (result->names_pairs)
-        memcpy(result->pair[n], block->pair[block->done], sizeof result->pair[n]);
+        memcpy(result->pair[n], answers->pairs[k], sizeof result->pair[n]);
     if (is_contact(verdict))
-        append_contact(result, block);
+        append_contact(result, answers, k);
     return true;
 }
 
-/* The first pair that is not in the result. */
-static int32_t next_pair(const struct scene_job *job)
-{
-    const struct block *block = &job->block;
-    return block->done < block->count ? scene_pairs_number(&job->query, block->pair, block->done)
-                                      : scene_pairs_position(&job->pairs);
-}
-
-static enum stage complete(struct scene_job *job)
-{
-    job->result.end_pair = next_pair(job);
-    return COMPLETE;
-}
-
-/* Appends the pairs before end, each of which takes one byte: most scenes want verdicts alone. */
-static void append_verdicts(struct scene_job *job, size_t end)
+/* Answers each of which takes one byte: most scenes want verdicts alone. */
+static size_t append_verdicts(struct scene_job *job, const struct fmb_scene_answers *answers)
 {
     struct scene_result *result = &job->result;
-    struct block *block = &job->block;
-    const size_t left = end - block->done;
-    const size_t count = job->capacity < (long) left ? (size_t) job->capacity : left;
-    const unsigned char *verdict = block->verdict + block->done;
+    const size_t count =
+        job->capacity < (long) answers->count ? (size_t) job->capacity : answers->count;
     int32_t contacts = 0;
-    memcpy(result->verdict + result->verdict_count, verdict, count);
+    if (count > 0)
+        memcpy(result->verdict + result->verdict_count, answers->verdicts, count);
     for (size_t k = 0; k < count; k++)
-        contacts += is_contact(verdict[k]);
+        contacts += is_contact(answers->verdicts[k]);
     result->contact_count += contacts;
     result->verdict_count += (int32_t) count;
     job->capacity -= (long) count;
-    block->done += count;
+    return count;
 }
 
-/* Appends the pairs before end. False: there is no space for all of them. */
-static bool append_until(struct scene_job *job, size_t end)
+/* Returns how many of the answers there was space for. */
+static size_t append_all(struct scene_job *job, const struct fmb_scene_answers *answers)
 {
     const struct scene_result *result = &job->result;
-    struct block *block = &job->block;
+    size_t k = 0;
     if (!result->names_pairs && !result->has_times && !result->has_boxes)
-        append_verdicts(job, end);
-    else
-        while (block->done < end && append(job))
-            block->done++;
-    return block->done == end;
+        return append_verdicts(job, answers);
+    while (k < answers->count && append(job, answers, k))
+        k++;
+    return k;
 }
 
-/* Appends all up to the first pair that is open. */
-static enum stage append_decided(struct scene_job *job)
+static enum stage complete_at(struct scene_job *job, unsigned long long end_pair)
 {
-    const struct block *block = &job->block;
-    const size_t end =
-        block->next_open < block->open_count ? block->open[block->next_open] : block->count;
-    if (!append_until(job, end))
-        return complete(job);
-    return next_pair(job) == scene_pairs_total(&job->query) ? complete(job) : DECIDING;
+    job->result.end_pair = (int32_t) end_pair;
+    return complete(job);
 }
 
-/* One pair that is open, or a block. */
 static enum stage decide(struct scene_job *job)
 {
-    struct block *block = &job->block;
-    if (block->next_open < block->open_count)
-        decide_batch(job, block->open[block->next_open++], 1, NULL, NULL);
-    else
-        begin_block(job);
-    return append_decided(job);
+    struct fmb_scene_answers answers;
+    const bool done = fmb_scene_step(job->state, &answers);
+    const size_t count = append_all(job, &answers);
+    if (count < answers.count)
+        return complete_at(job, fmb_scene_number(job->state, count));
+    return done ? complete_at(job, fmb_scene_next_pair(job->state)) : DECIDING;
 }
 
 /* ---- Steps ---- */
 
 const char *scene_job_begin(struct scene_job *job, const unsigned char *bytes, size_t size)
 {
+    if (job->stage != IDLE && job->stage != COMPLETE)
+        release(job);
     job->stage = IDLE;
+    job->answerer = NULL;
     if (size > sizeof job->bytes)
         return "longer than a query may be";
     if (size > 0) /* else there may be no address */
@@ -548,9 +513,12 @@ const char *scene_job_begin(struct scene_job *job, const unsigned char *bytes, s
 bool scene_job_step(struct scene_job *job, struct answerer *answerer)
 {
     switch (job->stage) {
-    case CHECKING: job->stage = check(job, answerer); break;
-    case FINDING: job->stage = find(job, answerer); break;
-    case KEEPING: job->stage = keep(job, answerer); break;
+    case CHECKING:
+        job->answerer = answerer;
+        job->stage = check(job);
+        break;
+    case FINDING: job->stage = find(job); break;
+    case KEEPING: job->stage = keep(job); break;
     case PREPARED: job->stage = begin_pairs(job); break;
     case DECIDING: job->stage = decide(job); break;
     case IDLE: assert(!"a job that was begun"); break;
@@ -559,13 +527,18 @@ bool scene_job_step(struct scene_job *job, struct answerer *answerer)
     return job->stage == COMPLETE;
 }
 
-bool scene_job_can_stop(const struct scene_job *job)
+bool scene_job_has_answers(const struct scene_job *job)
 {
-    return job->stage == DECIDING && next_pair(job) > job->query.first_pair;
+    return job->stage == DECIDING && fmb_scene_next_pair(job->state) > job->scene.first_pair;
 }
 
 void scene_job_stop(struct scene_job *job)
 {
-    assert(scene_job_can_stop(job));
+    assert(job->answerer);
+    if (scene_job_has_answers(job)) {
+        job->stage = complete_at(job, fmb_scene_next_pair(job->state));
+        return;
+    }
+    answer_scene_refused(job->answerer, &job->query.header, FMB_BUSY, &job->result);
     job->stage = complete(job);
 }

@@ -30,23 +30,29 @@ struct cache *answerer_cache(struct answerer *answerer)
     return answerer->cache;
 }
 
-struct fmb_frame answerer_place(const struct placement *placement, const struct fmb_body *body)
+struct fmb_placement answerer_place(const struct placement *placement, const struct fmb_body *body)
 {
-    struct fmb_frame out = {.body = body, .moving = placement->velocity_count > 0};
-    memcpy(out.origin, placement->position, sizeof out.origin);
+    struct fmb_placement out = {.body = body, .orientation_count = placement->orientation_count};
+    memcpy(out.position, placement->position, sizeof out.position);
     memcpy(out.velocity, placement->velocity, sizeof out.velocity);
+    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
     return out;
 }
 
-const struct fmb_body *answerer_keep(struct answerer *answerer, const struct placement *placement,
-                                     struct fmb_body *anonymous, struct handle *handle)
+struct used_body answerer_keep(struct answerer *answerer, const struct placement *placement,
+                               struct query_bodies *own, struct handle *handle)
 {
-    if (!placement->body_id) {
-        cache_make_body(&placement->geometry, anonymous);
-        return anonymous;
-    }
+    const struct geometry *geometry = &placement->geometry;
     const struct cached *cached =
-        cache_keep(answerer->cache, placement->body_id, &placement->geometry);
-    *handle = cached->handle;
-    return &cached->body;
+        placement->body_id ? cache_keep(answerer->cache, placement->body_id, geometry, handle)
+                           : NULL;
+    if (cached)
+        return (struct used_body){&cached->body, cached};
+    return (struct used_body){.body = query_bodies_add(own, geometry)};
+}
+
+void answerer_release(struct answerer *answerer, const struct used_body *used)
+{
+    if (used->cached)
+        cache_release(answerer->cache, used->cached);
 }

@@ -1,15 +1,18 @@
 #include "cache.h"
 
 #include "big_endian.h"
+#include "body.h"
+#include "runs.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries are linked by index: each into the chain of its bucket, and all that are used into a ring
- * in the order of use. Entry 0 holds no body. It closes the ring, with the newest entry beyond it
- * on one side and the oldest on the other, and it ends the chains: buckets start as the zeros that
- * calloc() provides without touching them. Entries 1 to counts.bodies are used. */
+/* A body takes a run of slots, one for each frame. Entry e belongs to the body that begins in slot
+ * e - 1. Entries are linked by index: each into the chain of its bucket, and all that no query uses
+ * into a ring in the order of use. Entry 0 holds no body. It closes the ring, with the newest entry
+ * beyond it on one side and the oldest on the other, and it ends the chains: buckets start as the
+ * zeros that calloc() provides without touching them. */
 enum { NONE = 0, ENDS = 0 };
 
 /* Apart from the body: each use of a body changes its neighbours in the order of use, which may be
@@ -18,16 +21,24 @@ struct entry {
     struct handle handle;
     int32_t next;         /* in the bucket */
     int32_t newer, older; /* in the order of use */
-    uint32_t generation;  /* how many bodies have been here before */
+    uint32_t generation;  /* how many bodies have begun here before */
 };
 
-/* What most pairs need of a body is in its first two cache lines. */
 enum { LINE = 64 };
 
+/* What is in the slots of a body: this, the frames but the first, the bytes of the geometry. */
 struct held {
-    _Alignas(LINE) struct cached cached;
-    int32_t ids; /* that lead to this entry */
-    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    int32_t ids;   /* that lead to this entry */
+    int32_t users; /* queries, or placements of them */
+    struct cached cached;
+};
+
+static_assert(sizeof(struct held) == offsetof(struct held, cached.body) + BODY_BYTES(1),
+              "the frames of a body follow each other");
+
+/* Enough for a body of one frame, and the more so for several. */
+enum {
+    SLOT_BYTES = (sizeof(struct held) + GEOMETRY_FRAME_BYTES_MAX + LINE - 1) / LINE * LINE,
 };
 
 /* The latest entry of an id. It is stale once the entry holds another body. */
@@ -49,20 +60,16 @@ struct cache {
     int bucket_shift, set_shift;
     int32_t *bucket;    /* [2^(64 - bucket_shift)]: first entry of each */
     struct id_set *set; /* [2^(64 - set_shift)], in set_memory */
-    void *set_memory;
+    void *set_memory, *entry_memory;
     struct entry *entry; /* [frame_capacity + 1] */
-    struct held *held;   /* [frame_capacity + 1] */
+    unsigned char *slot; /* [frame_capacity][SLOT_BYTES] */
+    struct runs runs;    /* of slots */
+    uint64_t *begins;    /* bit s: a body begins in slot s */
     struct hasher *hasher;
     struct cache_counts counts;
 };
 
 /* ---- Memory ---- */
-
-/* Starts at a cache line, so that no entry straddles two lines. */
-static void *allocate_lines(size_t count, size_t size)
-{
-    return aligned_alloc(LINE, (count * size + LINE - 1) / LINE * LINE);
-}
 
 /* The least number of bits, from 1, that count so many things. */
 static int bits_for(size_t count)
@@ -90,16 +97,24 @@ static void *allocate_zero_lines(size_t count, size_t size, void **memory)
     return *memory ? (char *) *memory + (LINE - (uintptr_t) *memory % LINE) : NULL;
 }
 
+static size_t begins_count(const struct cache *cache)
+{
+    return (size_t) cache->counts.frame_capacity / 64 + 1;
+}
+
 /* Allocates what cache->counts and the shifts say; sets and buckets are empty. */
 static bool allocate(struct cache *cache)
 {
-    const size_t entries = (size_t) cache->counts.frame_capacity + 1;
+    const size_t frames = (size_t) cache->counts.frame_capacity;
     cache->bucket = calloc(bucket_count(cache), sizeof *cache->bucket);
     cache->set = allocate_zero_lines(set_count(cache), sizeof *cache->set, &cache->set_memory);
-    cache->entry = allocate_lines(entries, sizeof *cache->entry);
-    cache->held = allocate_lines(entries, sizeof *cache->held);
+    cache->entry = allocate_zero_lines(frames + 1, sizeof *cache->entry, &cache->entry_memory);
+    cache->slot = aligned_alloc(LINE, frames * SLOT_BYTES);
+    cache->runs.slot = calloc(frames, sizeof *cache->runs.slot);
+    cache->begins = calloc(begins_count(cache), sizeof *cache->begins);
     cache->hasher = hasher_create();
-    return cache->bucket && cache->set && cache->entry && cache->held && cache->hasher;
+    return cache->bucket && cache->set && cache->entry && cache->slot && cache->runs.slot &&
+           cache->begins && cache->hasher;
 }
 
 struct cache *cache_create(size_t frames, const uint64_t secret[2])
@@ -117,6 +132,7 @@ struct cache *cache_create(size_t frames, const uint64_t secret[2])
         cache_destroy(cache);
         return NULL;
     }
+    runs_init(&cache->runs, cache->runs.slot, (int32_t) frames);
     cache->entry[ENDS].newer = cache->entry[ENDS].older = ENDS;
     return cache;
 }
@@ -128,8 +144,10 @@ void cache_destroy(struct cache *cache)
     hasher_destroy(cache->hasher);
     free(cache->bucket);
     free(cache->set_memory);
-    free(cache->entry);
-    free(cache->held);
+    free(cache->entry_memory);
+    free(cache->slot);
+    free(cache->runs.slot);
+    free(cache->begins);
     free(cache);
 }
 
@@ -145,17 +163,19 @@ static void touch_pages(void *memory, size_t size)
 void cache_take_memory(struct cache *cache)
 {
     enum { TAKEN_MAX = 64 << 20 };
-    const size_t entries = (size_t) cache->counts.frame_capacity + 1;
-    const size_t entry_bytes = entries * sizeof *cache->entry;
-    const size_t held_bytes = entries * sizeof *cache->held;
+    const size_t frames = (size_t) cache->counts.frame_capacity;
+    const size_t entry_bytes = (frames + 1) * sizeof *cache->entry;
+    const size_t slot_bytes = frames * SLOT_BYTES;
     const size_t bucket_bytes = bucket_count(cache) * sizeof *cache->bucket;
     const size_t set_bytes = set_count(cache) * sizeof *cache->set;
-    if (entry_bytes + held_bytes + bucket_bytes + set_bytes > TAKEN_MAX)
+    if (entry_bytes + slot_bytes + bucket_bytes + set_bytes > TAKEN_MAX)
         return;
     touch_pages(cache->entry, entry_bytes);
-    touch_pages(cache->held, held_bytes);
+    touch_pages(cache->slot, slot_bytes);
     touch_pages(cache->bucket, bucket_bytes);
     touch_pages(cache->set, set_bytes);
+    touch_pages(cache->begins, begins_count(cache) * sizeof *cache->begins);
+    touch_pages(cache->runs.slot, frames * sizeof *cache->runs.slot);
 }
 
 /* ---- Hashing ----
@@ -191,6 +211,30 @@ static int32_t find(const struct cache *cache, const struct handle *handle)
     return e;
 }
 
+/* ---- Entries ---- */
+
+static struct held *held_of(const struct cache *cache, int32_t e)
+{
+    return (struct held *) (cache->slot + (size_t) (e - 1) * SLOT_BYTES);
+}
+
+static int32_t entry_of(const struct cache *cache, const struct held *held)
+{
+    return (int32_t) (((const unsigned char *) held - cache->slot) / SLOT_BYTES) + 1;
+}
+
+static struct held *held_with(const struct cached *cached)
+{
+    return (struct held *) ((char *) cached - offsetof(struct held, cached));
+}
+
+static void set_begin(struct cache *cache, int32_t e, bool begins)
+{
+    const uint64_t bit = (uint64_t) 1 << (e - 1) % 64;
+    uint64_t *word = &cache->begins[(e - 1) / 64];
+    *word = begins ? *word | bit : *word & ~bit;
+}
+
 /* ---- Order of use ---- */
 
 static void unlink_use(struct cache *cache, int32_t e)
@@ -211,9 +255,18 @@ static void link_newest(struct cache *cache, int32_t e)
 
 static const struct cached *use(struct cache *cache, int32_t e)
 {
-    unlink_use(cache, e);
-    link_newest(cache, e);
-    return &cache->held[e].cached;
+    struct held *held = held_of(cache, e);
+    if (held->users++ == 0)
+        unlink_use(cache, e);
+    return &held->cached;
+}
+
+void cache_release(struct cache *cache, const struct cached *cached)
+{
+    struct held *held = held_with(cached);
+    assert(held->users > 0);
+    if (--held->users == 0)
+        link_newest(cache, entry_of(cache, held));
 }
 
 /* ---- Ids ---- */
@@ -239,7 +292,7 @@ static int32_t find_latest(const struct cache *cache, int64_t id, const struct g
     const int w = way_of(way, id);
     if (w == WAYS || !is_live(cache, &way[w]))
         return NONE;
-    const struct geometry *held = &cache->held[way[w].entry].cached.geometry;
+    const struct geometry *held = &held_of(cache, way[w].entry)->cached.geometry;
     const bool same =
         held->size == geometry->size && memcmp(held->bytes, geometry->bytes, geometry->size) == 0;
     return same ? way[w].entry : NONE;
@@ -248,7 +301,7 @@ static int32_t find_latest(const struct cache *cache, int64_t id, const struct g
 static void forget(struct cache *cache, const struct latest *latest)
 {
     if (is_live(cache, latest)) {
-        cache->held[latest->entry].ids--;
+        held_of(cache, latest->entry)->ids--;
         cache->counts.ids--;
     }
 }
@@ -263,89 +316,113 @@ static void set_latest(struct cache *cache, int64_t id, int32_t e)
     forget(cache, &way[w]);
     memmove(&way[1], &way[0], (size_t) w * sizeof *way);
     way[0] = (struct latest){id, e, cache->entry[e].generation};
-    cache->held[e].ids++;
+    held_of(cache, e)->ids++;
     cache->counts.ids++;
 }
 
 /* ---- Bodies ---- */
 
-static int32_t evict_oldest(struct cache *cache)
+/* Returns the first slot of the free run that the body leaves. */
+static int32_t evict(struct cache *cache, int32_t e)
 {
-    int32_t e = cache->entry[ENDS].newer;
+    const struct held *held = held_of(cache, e);
     int32_t *link = bucket_of(cache, &cache->entry[e].handle);
     while (*link != e)
         link = &cache->entry[*link].next;
     *link = cache->entry[e].next;
     unlink_use(cache, e);
+    set_begin(cache, e, false);
     cache->entry[e].generation++;
-    cache->counts.ids -= cache->held[e].ids;
+    cache->counts.ids -= held->ids;
     cache->counts.evictions++;
     cache->counts.bodies--;
-    return e;
+    cache->counts.frames -= held->cached.body.frame_count;
+    return runs_free(&cache->runs, e - 1);
 }
 
-static int32_t take_entry(struct cache *cache)
+/* Evicts the body that begins in a slot. Returns the first slot of the free run; -1: there is no
+ * such slot, or the body is in use. */
+static int32_t evict_at(struct cache *cache, int32_t slot)
 {
-    if (cache->counts.bodies == cache->counts.frame_capacity)
-        return evict_oldest(cache);
-    const int32_t e = (int32_t) cache->counts.bodies + 1;
-    cache->entry[e].generation = 0;
-    return e;
+    const bool unused = slot >= 0 && held_of(cache, slot + 1)->users == 0;
+    return unused ? evict(cache, slot + 1) : -1;
 }
 
-void cache_make_body(const struct geometry *geometry, struct fmb_body *out)
+/* Evicts the oldest body and its neighbours, until there is a free run of so many slots or the
+ * bodies on both sides are in use. */
+static void evict_around_oldest(struct cache *cache, int32_t slots)
 {
-    struct geometry_frame frame;
-    int dim;
-    const bool readable = geometry_read(geometry, &dim, &frame);
-    const enum fmb_status status =
-        fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), out);
-    assert(readable && status == FMB_OK);
-    (void) readable;
-    (void) status;
+    int32_t free = evict(cache, cache->entry[ENDS].newer);
+    while (free >= 0 && runs_length(&cache->runs, free) < slots) {
+        const int32_t more = evict_at(cache, runs_after(&cache->runs, free));
+        free = more >= 0 ? more : evict_at(cache, runs_before(&cache->runs, free));
+    }
+}
+
+/* A free entry for a body of so many frames. NONE: there is no memory. */
+static int32_t take_entry(struct cache *cache, int32_t frames)
+{
+    enum { ATTEMPTS = 4 };
+    if (frames > cache->counts.frame_capacity)
+        return NONE;
+    int32_t slot = runs_take(&cache->runs, frames);
+    for (int i = 0; slot < 0 && i < ATTEMPTS && cache->entry[ENDS].newer != ENDS; i++) {
+        evict_around_oldest(cache, frames);
+        slot = runs_take(&cache->runs, frames);
+    }
+    return slot + 1;
 }
 
 static void set_held(struct held *held, const struct handle *handle,
                      const struct geometry *geometry)
 {
-    assert(geometry->size <= sizeof held->bytes);
-    cache_make_body(geometry, &held->cached.body);
+    const size_t frames = (size_t) body_frame_count(geometry);
+    unsigned char *bytes = (unsigned char *) &held->cached.body + BODY_BYTES(frames);
+    body_make(geometry, &held->cached.body);
+    memcpy(bytes, geometry->bytes, geometry->size);
     held->cached.handle = *handle;
-    held->cached.geometry = (struct geometry){held->bytes, geometry->size};
-    memcpy(held->bytes, geometry->bytes, geometry->size);
-    held->ids = 0;
+    held->cached.geometry = (struct geometry){bytes, geometry->size};
+    held->ids = held->users = 0;
 }
 
-/* A new entry, linked everywhere. */
+/* A new entry, linked everywhere. NONE: there is no memory. */
 static int32_t insert(struct cache *cache, const struct handle *handle,
                       const struct geometry *geometry)
 {
-    const int32_t e = take_entry(cache);
+    const int32_t frames = body_frame_count(geometry), e = take_entry(cache, frames);
+    if (e == NONE)
+        return NONE;
     int32_t *bucket = bucket_of(cache, handle);
-    set_held(&cache->held[e], handle, geometry);
+    set_held(held_of(cache, e), handle, geometry);
     cache->entry[e].handle = *handle;
     cache->entry[e].next = *bucket;
     *bucket = e;
     link_newest(cache, e);
+    set_begin(cache, e, true);
     cache->counts.bodies++;
+    cache->counts.frames += frames;
     return e;
 }
 
-const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry)
+const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry,
+                                struct handle *handle)
 {
     int32_t e = id ? find_latest(cache, id, geometry) : NONE;
     if (e != NONE) {
         cache->counts.hits++;
+        *handle = cache->entry[e].handle;
         return use(cache, e);
     }
-    const struct handle handle = hasher_handle(cache->hasher, geometry->bytes, geometry->size);
-    e = find(cache, &handle);
+    *handle = hasher_handle(cache->hasher, geometry->bytes, geometry->size);
+    e = find(cache, handle);
     if (e != NONE) {
         cache->counts.hits++;
     } else {
         cache->counts.misses++;
-        e = insert(cache, &handle, geometry);
+        e = insert(cache, handle, geometry);
     }
+    if (e == NONE)
+        return NULL;
     if (id)
         set_latest(cache, id, e);
     return use(cache, e);
@@ -363,14 +440,16 @@ const struct cached *cache_find(struct cache *cache, const struct handle *handle
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle)
 {
     const int32_t e = find(cache, handle);
-    return e == NONE ? NULL : &cache->held[e].cached;
+    return e == NONE ? NULL : &held_of(cache, e)->cached;
 }
 
 /* ---- Prefetching ---- */
 
 static void prefetch_entry(const struct cache *cache, int32_t e)
 {
-    const char *body = (const char *) &cache->held[e];
+    if (e == NONE)
+        return;
+    const char *body = (const char *) held_of(cache, e);
     __builtin_prefetch(&cache->entry[e]);
     __builtin_prefetch(body);
     __builtin_prefetch(body + LINE);
@@ -387,24 +466,34 @@ void cache_prefetch(const struct cache *cache, const struct placement *placement
     if (w == WAYS)
         return;
     prefetch_entry(cache, way[w].entry);
-    for (size_t at = offsetof(struct held, bytes); at < sizeof(struct held); at += LINE)
-        __builtin_prefetch((const char *) &cache->held[way[w].entry] + at);
+    if (placement->frame_count == 1 && way[w].entry != NONE)
+        for (size_t at = sizeof(struct held); at < SLOT_BYTES; at += LINE)
+            __builtin_prefetch((const char *) held_of(cache, way[w].entry) + at);
 }
 
 /* ---- All bodies, and counts ---- */
 
 const struct cached *cache_next(const struct cache *cache, int64_t *position)
 {
-    if (*position < 0 || *position >= cache->counts.bodies)
+    const int64_t capacity = cache->counts.frame_capacity;
+    int64_t slot = *position;
+    if (slot < 0 || slot >= capacity)
         return NULL;
-    return &cache->held[++*position].cached;
+    uint64_t word = cache->begins[slot / 64] >> slot % 64;
+    while (word == 0) {
+        slot = (slot / 64 + 1) * 64;
+        if (slot >= capacity)
+            return NULL;
+        word = cache->begins[slot / 64];
+    }
+    slot += __builtin_ctzll(word);
+    *position = slot + 1;
+    return &held_of(cache, (int32_t) slot + 1)->cached;
 }
 
 struct cache_counts cache_counts(const struct cache *cache)
 {
-    struct cache_counts counts = cache->counts;
-    counts.frames = counts.bodies;
-    return counts;
+    return cache->counts;
 }
 
 int64_t cache_longest_chain(const struct cache *cache)

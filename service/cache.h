@@ -1,11 +1,14 @@
-/* The bodies that the service holds, by handle: geometry and struct fmb_body with its inverse.
+/* The bodies that the service holds, by handle: geometry and struct fmb_body with its frames and
+ * their inverses.
  *
- * The capacity is a fixed number of frames; the least recently used body is evicted first. All
- * memory is allocated by cache_create(). Each geometry has one entry, whatever its ids: two clients
- * that use the same id for different bodies do not disturb each other. A second table maps an id to
- * its latest entry, so that a body that comes whole again under its id is found by comparing bytes,
- * without SHA-256. Both tables are hashed with a secret, so that no client can choose bodies or ids
- * that collide. For one thread at a time. */
+ * The capacity is a fixed number of frames; a body takes as many as it has. The least recently used
+ * body is evicted first, and for a body of several frames its neighbours in memory too. A body that
+ * a query uses is not evicted until the query has released it. All memory is allocated by
+ * cache_create(). Each geometry has one entry, whatever its ids: two clients that use the same id
+ * for different bodies do not disturb each other. A second table maps an id to its latest entry, so
+ * that a body that comes whole again under its id is found by comparing bytes, without SHA-256.
+ * Both tables are hashed with a secret, so that no client can choose bodies or ids that collide.
+ * For one thread at a time. */
 #ifndef CACHE_H
 #define CACHE_H
 
@@ -33,27 +36,30 @@ void cache_destroy(struct cache *cache);
  * is ready. Takes milliseconds. */
 void cache_take_memory(struct cache *cache);
 
-/* A body in the cache. Valid until the next cache_keep(). */
+/* A body in the cache. */
 struct cached {
-    struct fmb_body body;
     struct handle handle;
     struct geometry geometry; /* owned by the cache */
+    struct fmb_body body;     /* last: the frames of a body of several begin where body.one is */
 };
 
-/* The body with this handle, which becomes the most recently used; counts a hit. NULL: not held;
- * counts nothing. */
+/* The body with this handle, which becomes the most recently used; counts a hit. It is valid until
+ * the caller releases it, once for each time it was found or kept. NULL: not held; counts nothing.
+ */
 const struct cached *cache_find(struct cache *cache, const struct handle *handle);
 
-/* The same, without counting or marking it as used. */
+/* The same, without counting or marking it as used; valid until the next cache_keep(). */
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle);
 
-/* The body with this geometry, which becomes the most recently used; it is added if it was not
- * held. On input: id, or 0 for none; a geometry of one frame that fmb_body_make() accepts. Never
- * NULL. */
-const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry);
+/* The body with this geometry, as cache_find() returns it; it is added if it was not held. On
+ * input: id, or 0 for none; a geometry whose frames fmb_frame_make() accepts. *handle: its handle.
+ * NULL: it is not held and has more frames than the capacity, or than there is memory for among
+ * bodies in use. */
+const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry,
+                                struct handle *handle);
 
-/* Prepares a body without adding it. On input: a geometry as for cache_keep(). */
-void cache_make_body(const struct geometry *geometry, struct fmb_body *out);
+/* On input: a body that was found or kept, and not released since. */
+void cache_release(struct cache *cache, const struct cached *cached);
 
 /* Prefetches the memory that a look-up will touch. On input: any placement. */
 void cache_prefetch(const struct cache *cache, const struct placement *placement);

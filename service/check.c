@@ -4,12 +4,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
-/* Of a query. One datagram has no space for so many. */
+/* Of a query. One message has no space for so many, but it may name bodies by handle. */
 enum { FRAMES_MAX = 65536 };
-
-/* A box is a centre and a size. The engine does not have it yet. */
-enum { SHAPE_BOX = 4 };
 
 bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
                   const char *reason)
@@ -49,13 +47,6 @@ static bool check_count(struct checking *checking, const char *field, int64_t ex
     return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
 }
 
-/* 0, or what is expected. */
-static bool check_optional(struct checking *checking, const char *field, int expected,
-                           int32_t found)
-{
-    return found == 0 || check_count(checking, field, expected, found);
-}
-
 static bool check_finite(struct checking *checking, const char *list, const double *number,
                          int count)
 {
@@ -79,21 +70,12 @@ static double number_at(const struct placement *placement, int32_t i)
     return cursor_double_at(shapes_of(placement) + placement->frame_count + 4 + 8 * (size_t) i);
 }
 
-/* Numbers of a frame; 0: there is no such shape, or not in this dimension. */
-static int numbers_of(int dim, int shape)
-{
-    if (shape == SHAPE_BOX)
-        return 2 * dim;
-    const int components = fmb_component_count(dim, shape);
-    return components ? dim * (1 + components) : 0;
-}
-
 static bool check_shapes(struct checking *checking, const struct placement *placement)
 {
     const unsigned char *shape = shapes_of(placement);
     int64_t numbers = 0;
     for (int32_t i = 0; i < placement->frame_count; i++) {
-        const int count = numbers_of(placement->dim, shape[i]);
+        const int count = geometry_number_count(placement->dim, shape[i]);
         if (count == 0)
             return fmb_shape_name(shape[i])
                        ? check_refuse(checking, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
@@ -111,24 +93,25 @@ static bool check_numbers(struct checking *checking, const struct placement *pla
     return true;
 }
 
-/* What later versions support. */
-static bool check_support(struct checking *checking, const struct placement *placement)
+/* On input: shapes and numbers have been checked. */
+static bool check_sizes(struct checking *checking, const struct placement *placement)
 {
-    if (placement->orientation_count > 0)
-        return check_refuse(checking, FMB_NOT_SUPPORTED, "orientation", "not in this version");
-    if (placement->frame_count > 1)
-        return check_refuse(checking, FMB_NOT_SUPPORTED, "num_frames",
-                            "one frame a body in this version");
-    if (placement->frame_count == 0)
-        return true;
-    if (shapes_of(placement)[0] == SHAPE_BOX)
-        return check_refuse(checking, FMB_NOT_SUPPORTED, "shapes[0]",
-                            "a box is not in this version");
-    for (int axis = 0; axis < placement->dim; axis++)
-        if (number_at(placement, axis) != 0)
-            return refuse_at(checking, FMB_NOT_SUPPORTED, "numbers", axis,
-                             "the origin is 0 in this version");
+    const unsigned char *shape = shapes_of(placement);
+    const int dim = placement->dim;
+    int32_t number = 0;
+    for (int32_t i = 0; i < placement->frame_count; i++) {
+        for (int32_t k = number + dim; shape[i] == FMB_BOX && k < number + 2 * dim; k++)
+            if (number_at(placement, k) < 0)
+                return refuse_at(checking, FMB_BAD_SIZE, "numbers", k, "a negative size");
+        number += geometry_number_count(dim, shape[i]);
+    }
     return true;
+}
+
+static bool check_geometry(struct checking *checking, const struct placement *placement)
+{
+    return check_shapes(checking, placement) && check_numbers(checking, placement) &&
+           check_sizes(checking, placement);
 }
 
 /* ---- Placements ---- */
@@ -148,6 +131,30 @@ static bool check_definition(struct checking *checking, const struct placement *
     return true;
 }
 
+/* The engine's rule, which depends on the dimension alone. */
+static bool check_orientation(struct checking *checking, const struct placement *placement)
+{
+    static const struct fmb_body any[FMB_DIM_MAX + 1] = {
+        [2] = {.dim = 2, .frame_count = 1}, [3] = {.dim = 3, .frame_count = 1}};
+    const int32_t count = placement->orientation_count;
+    if (count == 0)
+        return true;
+    if (!check_count(checking, "num_orientation", placement->dim == 2 ? 2 : 4, count))
+        return false;
+    struct fmb_placement placed = {.body = &any[placement->dim], .orientation_count = count};
+    memcpy(placed.orientation, placement->orientation, sizeof placed.orientation);
+    return fmb_placement_check(&placed) == FMB_OK ||
+           check_refuse(checking, FMB_BAD_ORIENTATION, "orientation",
+                        "zero, not finite, or components that differ by more than 2^200");
+}
+
+static bool check_velocity(struct checking *checking, const struct placement *placement)
+{
+    const int32_t count = placement->velocity_count;
+    return count == 0 || (check_count(checking, "num_velocity", placement->dim, count) &&
+                          check_finite(checking, "velocity", placement->velocity, count));
+}
+
 bool check_placement(struct checking *checking, const struct placement *placement)
 {
     const int dim = placement->dim;
@@ -156,14 +163,9 @@ bool check_placement(struct checking *checking, const struct placement *placemen
         return false;
     if (dim != 2 && dim != 3)
         return check_refuse(checking, FMB_WRONG_DIMENSION, "dim", "neither 2 nor 3");
-    return (placement_by_handle(placement) ||
-            (check_shapes(checking, placement) && check_numbers(checking, placement))) &&
+    return (placement_by_handle(placement) || check_geometry(checking, placement)) &&
            check_finite(checking, "position", placement->position, dim) &&
-           check_optional(checking, "num_orientation", dim == 2 ? 2 : 4,
-                          placement->orientation_count) &&
-           check_optional(checking, "num_velocity", dim, placement->velocity_count) &&
-           check_finite(checking, "velocity", placement->velocity, placement->velocity_count) &&
-           check_support(checking, placement);
+           check_orientation(checking, placement) && check_velocity(checking, placement);
 }
 
 bool check_body_dim(struct checking *checking, const struct placement *placement,
@@ -171,6 +173,13 @@ bool check_body_dim(struct checking *checking, const struct placement *placement
 {
     return placement->dim == body->dim || check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
                                                        "not that of the body with this handle");
+}
+
+bool check_frames(struct checking *checking, int64_t frames, int64_t *total)
+{
+    *total += frames;
+    return *total <= FRAMES_MAX || check_refuse(checking, FMB_OVER_LIMIT, "num_frames",
+                                                "more than 65536 frames in the query");
 }
 
 /* ---- Queries ---- */

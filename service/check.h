@@ -25,12 +25,14 @@ bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_nu
 bool check_request(struct checking *checking, double duration, int32_t method, int32_t want,
                    int32_t wants);
 
-/* A placement that comes whole is accepted if it has one frame that fmb_body_make() accepts, with
- * the origin 0. */
+/* A placement that comes whole is accepted if fmb_frame_make() accepts all its frames. */
 bool check_placement(struct checking *checking, const struct placement *placement);
 
 /* The dimension of a placement that names its body by handle. */
 bool check_body_dim(struct checking *checking, const struct placement *placement,
                     const struct fmb_body *body);
+
+/* Adds the frames of a body to *total, which counts those of the query. */
+bool check_frames(struct checking *checking, int64_t frames, int64_t *total);
 
 #endif

@@ -6,8 +6,9 @@ bool jobs_init(struct jobs *jobs)
 {
     *jobs = (struct jobs){.free = JOBS};
     for (int i = 0; i < JOBS; i++) {
-        jobs->job[i] = (struct job){.scene = scene_job_create(), .client = -1};
-        if (!jobs->job[i].scene)
+        jobs->job[i] =
+            (struct job){.scene = scene_job_create(), .pair = pair_job_create(), .client = -1};
+        if (!jobs->job[i].scene || !jobs->job[i].pair)
             return false;
     }
     return true;
@@ -15,8 +16,10 @@ bool jobs_init(struct jobs *jobs)
 
 void jobs_release(struct jobs *jobs)
 {
-    for (int i = 0; i < JOBS; i++)
+    for (int i = 0; i < JOBS; i++) {
         scene_job_destroy(jobs->job[i].scene);
+        pair_job_destroy(jobs->job[i].pair);
+    }
 }
 
 struct job *jobs_take(struct jobs *jobs, int client)
@@ -39,13 +42,17 @@ void jobs_give_back(struct jobs *jobs, struct job *job)
     jobs->free++;
 }
 
+static bool can_stop(const struct job *job)
+{
+    return job->used_ns > JOBS_PATIENCE_NS || (!job->is_pair && scene_job_has_answers(job->scene));
+}
+
 struct job *jobs_longest(struct jobs *jobs)
 {
     struct job *longest = NULL;
     for (int i = 0; i < JOBS; i++) {
         struct job *job = &jobs->job[i];
-        if (job->client >= 0 && scene_job_can_stop(job->scene) &&
-            (!longest || job->used_ns > longest->used_ns))
+        if (job->client >= 0 && can_stop(job) && (!longest || job->used_ns > longest->used_ns))
             longest = job;
     }
     return longest;

@@ -1,4 +1,5 @@
-/* The scenes in progress: at most one per client, JOBS in total. */
+/* The work in progress: a scene, or a pair of bodies of several frames; at most one per client,
+ * JOBS in total. */
 #ifndef JOBS_H
 #define JOBS_H
 
@@ -11,7 +12,9 @@
 enum { JOBS = 16 };
 
 struct job {
-    struct scene_job *scene;
+    struct scene_job *scene; /* in progress, unless is_pair */
+    struct pair_job *pair;
+    bool is_pair;
     int client; /* -1: free */
     int64_t used_ns;
 };
@@ -30,7 +33,9 @@ void jobs_release(struct jobs *jobs);
 struct job *jobs_take(struct jobs *jobs, int client);
 void jobs_give_back(struct jobs *jobs, struct job *job);
 
-/* Of the jobs that can stop, the one that has used most time; NULL: none can. */
+/* Of the jobs that can be stopped, the one that has used most time; NULL: there is none. Those are
+ * scenes with an answer, and jobs without one that have used more than JOBS_PATIENCE_NS. */
+#define JOBS_PATIENCE_NS INT64_C(1000000000)
 struct job *jobs_longest(struct jobs *jobs);
 
 #endif

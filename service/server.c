@@ -151,7 +151,19 @@ static void update_activity(struct server *server, int client)
 
 /* ---- Pairs and definitions ---- */
 
-static void answer_a_pair(struct server *server, size_t size)
+/* The line of scenes, since it needs a job. There is space: it has just been taken from the queue.
+ */
+static void defer_pair(struct server *server, int client, size_t size)
+{
+    const enum queue_put_result result =
+        queue_put(server->queue, client, QUEUE_SCENES, SERVER_PAIRS, server->datagram, size);
+    if (result == QUEUE_KEPT)
+        return;
+    answer_pair_refused(server->answerer, &server->pair, FMB_BUSY, &server->pair_result);
+    publish_pair(server, &server->pair_result);
+}
+
+static void answer_a_pair(struct server *server, int client, size_t size)
 {
     struct pair_result *result = &server->pair_result;
     const char *error = wire_read_pair_query(server->datagram, (uint32_t) size, &server->pair);
@@ -160,7 +172,10 @@ static void answer_a_pair(struct server *server, size_t size)
         return;
     }
     const int64_t begin_ns = server->clocks->wall_ns();
-    answer_pair(server->answerer, &server->pair, result);
+    if (!answer_pair(server->answerer, &server->pair, result)) {
+        defer_pair(server, client, size);
+        return;
+    }
     result->compute_ns = server->clocks->wall_ns() - begin_ns;
     if (result->status == FMB_OK)
         histogram_add(&server->compute_ns, result->compute_ns);
@@ -179,7 +194,16 @@ static void answer_a_definition(struct server *server, size_t size)
     publish_definition(server, &server->definition_result);
 }
 
-/* ---- Scenes ---- */
+/* ---- Scenes, and pairs of bodies of several frames ---- */
+
+static void finish_pair(struct server *server, struct job *job)
+{
+    struct pair_result *result = pair_job_end(job->pair, server->answerer);
+    result->compute_ns = job->used_ns;
+    if (result->status == FMB_OK)
+        histogram_add(&server->compute_ns, result->compute_ns);
+    publish_pair(server, result);
+}
 
 static void finish_scene(struct server *server, struct job *job)
 {
@@ -188,33 +212,51 @@ static void finish_scene(struct server *server, struct job *job)
     if (result->status == FMB_OK)
         histogram_add(&server->compute_ns, result->compute_ns);
     publish_scene(server, scene_job_query(job->scene)->first_pair, result);
+}
+
+static void finish_job(struct server *server, struct job *job)
+{
+    if (job->is_pair)
+        finish_pair(server, job);
+    else
+        finish_scene(server, job);
     jobs_give_back(&server->jobs, job);
 }
 
-/* Stops the longest scene, at the expense of its client. */
+/* A pair is refused as busy, and so is a scene without an answer. */
+static void stop_job(struct server *server, struct job *job)
+{
+    if (!job->is_pair)
+        scene_job_stop(job->scene);
+    finish_job(server, job);
+}
+
+/* Stops the longest job, at the expense of its client. */
 static void free_a_job(struct server *server, int for_client)
 {
     struct job *job = jobs_longest(&server->jobs);
     const int client = job->client;
     turns_charge(server->turns, for_client, meter_read(&server->meter));
-    scene_job_stop(job->scene);
-    finish_scene(server, job);
+    stop_job(server, job);
     turns_charge(server->turns, client, meter_read(&server->meter));
     update_activity(server, client);
 }
 
-/* The next scene of a client. NULL: its bytes are malformed. */
-static struct job *begin_scene(struct server *server, int client)
+/* The next scene or pair of a client. NULL: its bytes are malformed. */
+static struct job *begin_job(struct server *server, int client)
 {
     struct queue_datagram next;
     if (server->jobs.free == 0)
         free_a_job(server, client);
     queue_pop(server->queue, client, QUEUE_SCENES, &next, server->datagram);
     struct job *job = jobs_take(&server->jobs, client);
-    const char *error = scene_job_begin(job->scene, server->datagram, next.size);
+    job->is_pair = next.kind == SERVER_PAIRS;
+    const char *error =
+        job->is_pair ? pair_job_begin(job->pair, server->answerer, server->datagram, next.size)
+                     : scene_job_begin(job->scene, server->datagram, next.size);
     if (!error)
         return job;
-    note_malformed(server, SERVER_SCENES, next.size, error);
+    note_malformed(server, (enum server_kind) next.kind, next.size, error);
     jobs_give_back(&server->jobs, job);
     return NULL;
 }
@@ -224,29 +266,32 @@ static bool other_scenes_wait(const struct server *server)
     return server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0;
 }
 
+static bool step(struct server *server, struct job *job)
+{
+    return job->is_pair ? pair_job_step(job->pair) : scene_job_step(job->scene, server->answerer);
+}
+
 /* A turn of at most so many nanoseconds. */
-static void advance_scene(struct server *server, int client, int64_t most_ns)
+static void advance_job(struct server *server, int client, int64_t most_ns)
 {
     const int64_t begin_ns = server->meter.wall_ns;
     struct job *job = server->jobs.of_client[client];
     if (!job)
-        job = begin_scene(server, client);
+        job = begin_job(server, client);
     if (!job)
         return;
     bool complete = false;
     int64_t turn = 0;
     while (!complete && turn < most_ns) {
-        complete = scene_job_step(job->scene, server->answerer);
+        complete = step(server, job);
         turn = server->clocks->wall_ns() - begin_ns;
     }
     job->used_ns += turn;
-    if (!complete && job->used_ns > scene_ns && other_scenes_wait(server) &&
-        scene_job_can_stop(job->scene)) {
-        scene_job_stop(job->scene);
-        complete = true;
-    }
     if (complete)
-        finish_scene(server, job);
+        finish_job(server, job);
+    else if (job->used_ns > scene_ns && !job->is_pair && other_scenes_wait(server) &&
+             scene_job_has_answers(job->scene))
+        stop_job(server, job);
 }
 
 /* ---- Turns ---- */
@@ -267,7 +312,7 @@ static int64_t price(int64_t used_ns)
     return used_ns > short_ns ? 2 * used_ns - short_ns : used_ns;
 }
 
-static void serve(struct server *server, int client, int64_t scene_most_ns)
+static void serve(struct server *server, int client, int64_t job_most_ns)
 {
     struct queue_datagram next;
     if (client != server->served)
@@ -275,9 +320,9 @@ static void serve(struct server *server, int client, int64_t scene_most_ns)
     server->served = client;
     turns_begin(server->turns);
     if (!queue_pop(server->queue, client, QUEUE_SHORT, &next, server->datagram))
-        advance_scene(server, client, scene_most_ns);
+        advance_job(server, client, job_most_ns);
     else if (next.kind == SERVER_PAIRS)
-        answer_a_pair(server, next.size);
+        answer_a_pair(server, client, next.size);
     else
         answer_a_definition(server, next.size);
     const int64_t used_ns = meter_read(&server->meter);

@@ -4,7 +4,9 @@
  * Clients share compute time (turns.h): of the clients with a query, the one that has used least is
  * served next. A client's pair and definition queries do not wait for its own scenes. Scenes are
  * answered in steps; between them other clients are served and the bus is read. If the queue is
- * full, the client that holds most of it gets FMB_BUSY for its newest query.
+ * full, the client that holds most of it gets FMB_BUSY for its newest query. If all jobs are taken
+ * (jobs.h) and another client needs one, the longest ends: with the pairs answered so far, or as
+ * busy.
  *
  * For one thread. The caller's loop:
  *
