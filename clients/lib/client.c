@@ -112,28 +112,35 @@ static bool is_for(const struct fmb_client *client, const struct query_header *h
     return watched || header->client_id == client->client_id;
 }
 
+/* The result in a message, which is for this client or another one. */
+static void take(struct fmb_client *client, const struct bus_message *message,
+                 const struct query_header *header, struct request_result result)
+{
+    result.bytes = message->bytes;
+    result.size = message->size;
+    result.number = header->sequence_number;
+    if (header->client_id == client->client_id)
+        requests_take(client, &result);
+}
+
 static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
 {
     const bool watched = client->watcher.pair;
     const uint32_t size = (uint32_t) message->size;
-    struct query_header header;
     struct pair_result result;
-    const char *error = wire_read_pair_result_header(message->bytes, size, &header);
-    if (error || !is_for(client, &header, watched))
+    const char *error = wire_read_pair_result_header(message->bytes, size, &result.header);
+    if (error || !is_for(client, &result.header, watched))
         return error;
     error = wire_read_pair_result(message->bytes, size, &result);
     if (error)
         return error;
     if (watched)
         show_pair(client, &result);
-    if (header.client_id == client->client_id)
-        requests_take(client, &(struct request_result){.kind = FMB_CLIENT_PAIR,
-                                                       .status = result.status,
-                                                       .detail = result.detail,
-                                                       .pair = &result,
-                                                       .bytes = message->bytes,
-                                                       .size = message->size,
-                                                       .number = header.sequence_number});
+    take(client, message, &result.header,
+         (struct request_result){.kind = FMB_CLIENT_PAIR,
+                                 .status = result.status,
+                                 .detail = result.detail,
+                                 .pair = &result});
     return NULL;
 }
 
@@ -141,24 +148,20 @@ static const char *on_scene(struct fmb_client *client, const struct bus_message 
 {
     const bool watched = client->watcher.scene;
     const uint32_t size = (uint32_t) message->size;
-    struct query_header header;
     struct scene_result *result = &client->received.scene;
-    const char *error = wire_read_scene_result_header(message->bytes, size, &header);
-    if (error || !is_for(client, &header, watched))
+    const char *error = wire_read_scene_result_header(message->bytes, size, &result->header);
+    if (error || !is_for(client, &result->header, watched))
         return error;
     error = wire_read_scene_result(message->bytes, size, result);
     if (error)
         return error;
     if (watched)
         show_scene(client, result);
-    if (header.client_id == client->client_id)
-        requests_take(client, &(struct request_result){.kind = FMB_CLIENT_SCENE,
-                                                       .status = result->status,
-                                                       .detail = result->detail,
-                                                       .scene = result,
-                                                       .bytes = message->bytes,
-                                                       .size = message->size,
-                                                       .number = header.sequence_number});
+    take(client, message, &result->header,
+         (struct request_result){.kind = FMB_CLIENT_SCENE,
+                                 .status = result->status,
+                                 .detail = result->detail,
+                                 .scene = result});
     return NULL;
 }
 
@@ -167,16 +170,12 @@ static const char *on_definition(struct fmb_client *client, const struct bus_mes
     struct definition *result = &client->received.definition;
     const char *error =
         wire_read_definition(message->bytes, (uint32_t) message->size, client->hasher, result);
-    if (error)
-        return error;
-    if (result->client_id == client->client_id)
-        requests_take(client, &(struct request_result){.kind = FMB_CLIENT_DEFINITION,
-                                                       .status = result->status,
-                                                       .detail = result->detail,
-                                                       .bytes = message->bytes,
-                                                       .size = message->size,
-                                                       .number = result->sequence_number});
-    return NULL;
+    if (!error)
+        take(
+            client, message, &result->header,
+            (struct request_result){
+                .kind = FMB_CLIENT_DEFINITION, .status = result->status, .detail = result->detail});
+    return error;
 }
 
 static const char *on_status(struct fmb_client *client, const struct bus_message *message)
@@ -211,6 +210,10 @@ static const struct {
 static void on_message(void *user, const struct bus_message *message)
 {
     struct fmb_client *client = user;
+    if (client->tap)
+        client->tap(client->tap_user, message);
+    if (message->listener >= client->listener_count) /* received for the tap alone */
+        return;
     const char *error = channels[client->channel[message->listener]].read(client, message);
     if (!error)
         return;
@@ -221,15 +224,28 @@ static void on_message(void *user, const struct bus_message *message)
 
 bool client_listen(struct fmb_client *client, int channel)
 {
-    char name[BUS_CHANNEL_MAX], why[BUS_WHY_MAX];
+    char name[BUS_CHANNEL_MAX];
     for (int i = 0; i < client->listener_count; i++)
         if (client->channel[i] == channel)
             return true;
     bus_channel(name, client->prefix, channels[channel].name);
-    if (!bus_listen(client->bus, name, why))
+    if (!bus_listen(client->bus, name, client->why))
         return false;
     client->channel[client->listener_count++] = channel;
     return true;
+}
+
+/* A message belongs to the first listener for its channel: those of the library come first. */
+bool fmb_client_raw_listen(struct fmb_client *client, bool every, bus_handler *tap, void *user)
+{
+    bool good = true;
+    client->tap = tap;
+    client->tap_user = user;
+    for (int channel = 0; good && channel < CLIENT_CHANNELS; channel++)
+        good = client_listen(client, channel);
+    for (int kind = 0; good && kind < (every ? 1 : FMB_CLIENT_KINDS); kind++)
+        good = bus_listen(client->bus, every ? NULL : client->query_channel[kind], client->why);
+    return good;
 }
 
 void client_wait(struct fmb_client *client, int other_fd, int timeout_ms)
@@ -275,6 +291,16 @@ int fmb_client_handle(struct fmb_client *client, double timeout)
     const int received = client_receive(client);
     client->inside = false;
     return client->failed ? FMB_CLIENT_NO_BUS : received;
+}
+
+int64_t fmb_client_raw_id(const struct fmb_client *client)
+{
+    return client->client_id;
+}
+
+struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client)
+{
+    return bus_counts(client->bus);
 }
 
 struct fmb_client_counts fmb_client_counts(const struct fmb_client *client)
@@ -354,5 +380,6 @@ void fmb_client_close(struct fmb_client *client)
         return;
     bus_close(client->bus);
     hasher_destroy(client->hasher);
+    held_clear(&client->held);
     free(client);
 }

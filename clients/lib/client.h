@@ -21,6 +21,8 @@ struct fmb_client {
     char query_channel[FMB_CLIENT_KINDS][BUS_CHANNEL_MAX];
     int listener_count;
     int channel[CLIENT_CHANNELS]; /* [number of the bus_listen() call]: CLIENT_STATUS or a kind */
+    bus_handler *tap;             /* NULL: none */
+    void *tap_user;
     int64_t client_id, timeout_ns;
     int tries;
     struct fmb_client_watcher watcher;
@@ -39,7 +41,7 @@ struct fmb_client {
     } received;
 };
 
-/* Receives the channel from now on. False: the bus cannot. */
+/* Receives the channel from now on. False: the bus cannot, and client->why is the reason. */
 bool client_listen(struct fmb_client *client, int channel);
 
 /* Waits until a datagram is pending or other_fd (-1: none) is readable, up to timeout_ms (negative:

@@ -1,9 +1,10 @@
 /* libfmb-client: queries an fmbd on an LCM bus: which bodies meet, when, and in which boxes.
  *
+ *     const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
  *     struct fmb_client_placement placement[2] = {
- *         {.body_id = 1, .shape = FMB_CUBOID, .dim = 2, .components = {1,0, 0,1}},
- *         {.body_id = 2, .shape = FMB_CUBOID, .dim = 2, .components = {1,0, 0,1},
- *          .position = {0.5, 0}}};
+ *         {.body_id = 1, .dim = 3, .frames = &cube, .frame_count = 1},
+ *         {.body_id = 2, .dim = 3, .frames = &cube, .frame_count = 1, .position = {0.5, 0, 0},
+ *          .orientation_count = 4, .orientation = {1, 0, 0, 1}}};
  *     struct fmb_client_scene scene = {
  *         .placements = placement, .placement_count = 2, .which = FMB_CLIENT_ALL, .duration = 1};
  *     char why[FMB_CLIENT_WHY_MAX];
@@ -13,14 +14,15 @@
  *
  * (sink is a function of yours that gets the answers; clients/examples/ask_scene.c is complete.)
  *
- * fmb.h defines frames, verdicts, intervals and boxes. The answers are those of libfmb, bit for
- * bit. Link with pkg-config's fmb-client (liblcm and GLib); libfmb and GMP are not needed, but may
- * be linked too.
+ * fmb.h defines frames, poses, verdicts, intervals and boxes. The answers are those of libfmb, bit
+ * for bit. Link with pkg-config's fmb-client (liblcm and GLib); libfmb and GMP are not needed, but
+ * may be linked too.
  *
  * A scene may have any number of bodies and pairs. The library divides it into queries of one
  * datagram each, keeps several under way (no more than a default receive buffer holds), repeats
  * what was lost, and pauses where the service is busy. A body with an id is sent whole until a
- * result shows that the service holds it; then by its handle, in about half the bytes.
+ * result shows that the service holds it; then by its handle, wherever it is and however it is
+ * turned.
  *
  * Threads: a client may be used by one thread at a time. Different clients share nothing, and may
  * be used by different threads at once. A callback may only call functions that take the same
@@ -94,18 +96,29 @@ bool fmb_client_prefix_ok(const char *prefix);
 
 /* ---- Queries ---- */
 
+/* A frame in body coordinates. Numbers beyond those of the shape and dim are not read. */
+struct fmb_client_frame {
+    int shape;                             /* enum fmb_shape */
+    double origin[FMB_DIM_MAX];            /* of a box its centre */
+    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box [axis], its full
+                                              size */
+};
+
 /* A rigid body at a place. */
 struct fmb_client_placement {
-    int64_t body_id; /* 1 to 2^53 - 1; 0: anonymous, always sent whole */
-    int shape;       /* enum fmb_shape */
-    int dim;         /* 2 or 3 */
-    bool moving;     /* has a velocity, which may be 0 */
-    /* [component * dim + axis]. Numbers beyond those of the shape and dim are not read, here and
-     * below. */
-    double components[FMB_COMPONENTS_MAX];
-    double position[FMB_DIM_MAX]; /* world coordinates of the frame's origin at time 0 */
-    double velocity[FMB_DIM_MAX]; /* per second; only read if moving */
+    int64_t body_id;                       /* 1 to 2^53 - 1; 0: anonymous, always sent whole */
+    int dim;                               /* 2 or 3 */
+    const struct fmb_client_frame *frames; /* [frame_count], at least one */
+    size_t frame_count;
+    double position[FMB_DIM_MAX]; /* world coordinates of the body's origin at time 0 */
+    double velocity[FMB_DIM_MAX]; /* per second */
+    double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
+    int orientation_count;        /* 0: not turned; 4 (2D: 2) */
 };
+
+/* The frames of a body have to fit into one datagram: each takes 1 byte and 8 for each of its
+ * numbers, and all together at most this. (654 cuboids or 1295 boxes in 3D.) */
+enum { FMB_CLIENT_BODY_BYTES_MAX = 63500 };
 
 enum fmb_client_which {
     FMB_CLIENT_LISTED = 0, /* the pairs listed */
@@ -128,7 +141,11 @@ struct fmb_client_scene {
     enum fmb_client_which which;
     const unsigned (*pairs)[2]; /* LISTED: [pair_count][a, b], different indices of placements */
     size_t pair_count;
-    size_t split;    /* ACROSS: 0 to placement_count */
+    size_t split; /* ACROSS: 0 to placement_count */
+    /* ALL and ACROSS: [ignored_count][a, b], pairs that are left out, in any order; repeats are
+     * allowed. LISTED: none. */
+    const unsigned (*ignored)[2];
+    size_t ignored_count;
     double duration; /* seconds, finite, not negative */
     unsigned want;   /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts alone */
     int method;      /* fmb_method.number; 0: the default, never wrong and the fastest */
@@ -150,13 +167,16 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
  *
  * Returns FMB_OK: sink was called in the order of the pairs. With LISTED and with WANT_CERTIFICATE,
  * for each pair. Otherwise, with ALL and ACROSS, in the order of (a, b), for each pair that is not
- * separated: pairs left out are separated. Pairs without an answer are passed with their status.
- * Or returns a status of the whole scene, and sink was not called: UNKNOWN_SHAPE, WRONG_DIMENSION,
- * DIMENSIONS_DIFFER, NOT_FINITE, BAD_ID, BAD_DURATION, UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31
- * placements), NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
+ * separated: pairs left out are separated or ignored. Pairs without an answer are passed with their
+ * status.
+ * Or returns a status of the whole scene, and sink was not called: NO_FRAMES, UNKNOWN_SHAPE,
+ * WRONG_DIMENSION, DIMENSIONS_DIFFER, WRONG_COUNT, NOT_FINITE, BAD_SIZE, BAD_ORIENTATION, BAD_ID,
+ * BAD_DURATION, UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31 placements, or a body of too many frames),
+ * NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
  *
- * Memory: 16 bytes for each placement; with ALL and ACROSS also 80 bytes for each contact that
- * waits for earlier ones: at most the contacts of some 250 placements with all others.
+ * Memory: 40 bytes for each placement, 8 for each ignored pair; with ALL and ACROSS also 80 bytes
+ * for each contact that waits for earlier ones: at most the contacts of some 500 placements with
+ * all others. The client keeps a copy of the frames of up to 16,384 bodies.
  *
  * A query without a result after timeout * tries seconds is given up (NO_ANSWER). If no result of
  * any query came in that time, all remaining pairs are given up (NO_SERVICE): start an fmbd. From

@@ -11,6 +11,7 @@
 #ifndef FMB_CLIENT_RAW_H
 #define FMB_CLIENT_RAW_H
 
+#include "bus.h"
 #include "fmb_client.h"
 
 enum { FMB_CLIENT_RAW_WINDOW = 64 };
@@ -41,8 +42,20 @@ int fmb_client_raw_send(struct fmb_client *client, enum fmb_client_kind kind,
                         fmb_client_raw_sink *sink, void *user);
 
 /* Waits until a datagram comes, a query has to be repeated, other_fd (-1: none) is readable, or
- * timeout seconds have passed; then handles what is due. Returns the number of queries under way,
- * or INSIDE. */
+ * timeout seconds have passed; then handles what is due. Returns the number of queries under way;
+ * NO_BUS (errno) or INSIDE. */
 int fmb_client_raw_step(struct fmb_client *client, int other_fd, double timeout);
+
+/* Passes all messages on the service's channels (every: on all channels) to tap from now on, before
+ * the engine reads them, this client's queries and their results included. So one socket serves
+ * both. tap is called from fmb_client_raw_send() and fmb_client_raw_step(), and may call neither.
+ * To be called once, before the first query. Returns false if the bus cannot be received:
+ * fmb_client_why(). */
+bool fmb_client_raw_listen(struct fmb_client *client, bool every, bus_handler *tap, void *user);
+
+/* The id that the engine writes into queries. */
+int64_t fmb_client_raw_id(const struct fmb_client *client);
+
+struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client);
 
 #endif

@@ -11,19 +11,22 @@ enum { HELD_BITS = 14, HELD_MAX = 1 << HELD_BITS };
 
 /* All 0: an empty slot. */
 struct held_body {
-    bool held; /* by the service */
-    unsigned char size;
-    unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX]; /* [size] */
-    struct handle handle;                             /* of these bytes */
+    bool held;               /* by the service */
+    uint64_t serial;         /* another one whenever another body takes the slot */
+    size_t size;             /* 0: unknown, there was no memory */
+    unsigned char *geometry; /* owned, [size] */
+    struct handle handle;    /* of these bytes */
 };
 
 struct held {
     struct hasher *hasher; /* not owned */
+    uint64_t serial;       /* of the last body that entered */
     struct held_body body[HELD_MAX];
 };
 
-/* The entry of a body with this geometry, of at most GEOMETRY_FRAME_BYTES_MAX bytes; valid until
- * the next call. */
+/* The entry of a body with this geometry; valid until the next call. */
 struct held_body *held_find(struct held *held, const struct geometry *geometry);
+
+void held_clear(struct held *held);
 
 #endif

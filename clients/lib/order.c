@@ -92,12 +92,14 @@ static void give_span(const struct order *order, struct part_answers *answers, u
     while (answers->given < answers->count && answers->answer[answers->given].number < span.to) {
         const struct part_answer *found = &answers->answer[answers->given++];
         const unsigned pair[2] = {a, span.partner + (unsigned) (found->number - span.from)};
-        give(order, answers, pair, found);
+        if (!cut_ignores(order->cut, pair))
+            give(order, answers, pair, found);
     }
     int32_t number = span.from > answers->answered ? span.from : answers->answered;
     for (; number < span.to; number++) {
         const unsigned pair[2] = {a, span.partner + (unsigned) (number - span.from)};
-        give_none(order, answers, pair);
+        if (!cut_ignores(order->cut, pair))
+            give_none(order, answers, pair);
     }
 }
 

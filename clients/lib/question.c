@@ -1,6 +1,6 @@
 #include "question.h"
 
-#include "wire.h"
+#include "writer.h"
 
 #include <limits.h>
 #include <math.h>
@@ -37,22 +37,83 @@ static bool check_numbers(struct place *place, size_t placement, const char *fie
     return true;
 }
 
+static bool check_frame(struct place *place, size_t placement, size_t i, int dim,
+                        const struct fmb_client_frame *frame)
+{
+    char field[64];
+    const int count = geometry_number_count(dim, frame->shape) - dim;
+    if (!fmb_shape_name(frame->shape))
+        return refuse(place, FMB_UNKNOWN_SHAPE, "placements[%zu].frames[%zu].shape", placement, i);
+    if (count < 0)
+        return refuse(place, FMB_WRONG_DIMENSION, "placements[%zu].frames[%zu].shape", placement,
+                      i);
+    snprintf(field, sizeof field, "frames[%zu].origin", i);
+    if (!check_numbers(place, placement, field, frame->origin, dim))
+        return false;
+    snprintf(field, sizeof field, "frames[%zu].components", i);
+    if (!check_numbers(place, placement, field, frame->components, count))
+        return false;
+    for (int k = 0; k < count && frame->shape == FMB_BOX; k++)
+        if (frame->components[k] < 0)
+            return refuse(place, FMB_BAD_SIZE, "placements[%zu].%s[%d]", placement, field, k);
+    return true;
+}
+
+static bool check_frames(struct place *place, const struct fmb_client_placement *placement,
+                         size_t i)
+{
+    if (placement->frame_count == 0)
+        return refuse(place, FMB_NO_FRAMES, "placements[%zu].frame_count", i);
+    if (placement->frame_count > FMB_CLIENT_BODY_BYTES_MAX)
+        return refuse(place, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
+    for (size_t k = 0; k < placement->frame_count; k++)
+        if (!check_frame(place, i, k, placement->dim, &placement->frames[k]))
+            return false;
+    return question_geometry_bytes(placement) <= GEOMETRY_NONE_BYTES + FMB_CLIENT_BODY_BYTES_MAX ||
+           refuse(place, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
+}
+
+/* The rule of fmb_placement_check(): no component but 0 is more than 2^200 times smaller than the
+ * largest. */
+static bool is_orientation(const double *q, int count)
+{
+    double largest = 0;
+    for (int i = 0; i < count; i++)
+        largest = fmax(largest, fabs(q[i]));
+    for (int i = 0; i < count; i++)
+        if (!isfinite(q[i]) || (q[i] != 0 && fabs(q[i]) < ldexp(largest, -200)))
+            return false;
+    return largest > 0;
+}
+
+static bool check_orientation(struct place *place, const struct fmb_client_placement *placement,
+                              size_t i)
+{
+    const int count = placement->orientation_count;
+    for (int k = 0; k < 4 && count == 0; k++)
+        if (placement->orientation[k] != 0)
+            return refuse(place, FMB_WRONG_COUNT, "placements[%zu].orientation_count", i);
+    if (count == 0)
+        return true;
+    if (count != (placement->dim == 2 ? 2 : 4))
+        return refuse(place, FMB_WRONG_COUNT, "placements[%zu].orientation_count", i);
+    return is_orientation(placement->orientation, count) ||
+           refuse(place, FMB_BAD_ORIENTATION, "placements[%zu].orientation", i);
+}
+
 static bool check_placement(struct place *place, const struct fmb_client_scene *scene, size_t i)
 {
     const struct fmb_client_placement *placement = &scene->placements[i];
     if (!query_id_ok(placement->body_id))
         return refuse(place, FMB_BAD_ID, "placements[%zu].body_id", i);
-    if (!fmb_shape_name(placement->shape))
-        return refuse(place, FMB_UNKNOWN_SHAPE, "placements[%zu].shape", i);
-    const int vectors = fmb_component_count(placement->dim, placement->shape);
-    if (vectors == 0)
+    if (placement->dim != 2 && placement->dim != 3)
         return refuse(place, FMB_WRONG_DIMENSION, "placements[%zu].dim", i);
     if (placement->dim != scene->placements[0].dim)
         return refuse(place, FMB_DIMENSIONS_DIFFER, "placements[%zu].dim", i);
-    return check_numbers(place, i, "components", placement->components, vectors * placement->dim) &&
+    return check_frames(place, placement, i) &&
            check_numbers(place, i, "position", placement->position, placement->dim) &&
-           check_numbers(place, i, "velocity", placement->velocity,
-                         placement->moving ? placement->dim : 0);
+           check_orientation(place, placement, i) &&
+           check_numbers(place, i, "velocity", placement->velocity, placement->dim);
 }
 
 static bool check_placements(struct place *place, const struct fmb_client_scene *scene)
@@ -65,6 +126,16 @@ static bool check_placements(struct place *place, const struct fmb_client_scene 
     return true;
 }
 
+static bool check_list(struct place *place, const struct fmb_client_scene *scene, const char *name,
+                       const unsigned (*pairs)[2], size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (pairs[i][0] >= scene->placement_count || pairs[i][1] >= scene->placement_count ||
+            pairs[i][0] == pairs[i][1])
+            return refuse(place, FMB_BAD_PAIR, "%s[%zu]", name, i);
+    return true;
+}
+
 static bool check_pairs(struct place *place, const struct fmb_client_scene *scene)
 {
     const int which = (int) scene->which;
@@ -72,13 +143,11 @@ static bool check_pairs(struct place *place, const struct fmb_client_scene *scen
         return refuse(place, FMB_UNKNOWN_WANT, "which");
     if (which == FMB_CLIENT_ACROSS && scene->split > scene->placement_count)
         return refuse(place, FMB_BAD_PAIR, "split");
-    for (size_t i = 0; which == FMB_CLIENT_LISTED && i < scene->pair_count; i++) {
-        const unsigned *pair = scene->pairs[i];
-        if (pair[0] >= scene->placement_count || pair[1] >= scene->placement_count ||
-            pair[0] == pair[1])
-            return refuse(place, FMB_BAD_PAIR, "pairs[%zu]", i);
-    }
-    return true;
+    if (which == FMB_CLIENT_LISTED && scene->ignored_count > 0)
+        return refuse(place, FMB_BAD_PAIR, "ignored_count");
+    return check_list(place, scene, "ignored", scene->ignored, scene->ignored_count) &&
+           (which != FMB_CLIENT_LISTED ||
+            check_list(place, scene, "pairs", scene->pairs, scene->pair_count));
 }
 
 static bool check_rest(struct place *place, const struct fmb_client_scene *scene)
@@ -99,26 +168,68 @@ int question_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY
     return place.status;
 }
 
-void question_placement(const struct fmb_client_placement *of,
-                        unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX], struct placement *out)
+size_t question_geometry_bytes(const struct fmb_client_placement *placement)
 {
-    struct geometry_frame frame = {.shape = of->shape};
-    const size_t axes = (size_t) of->dim * sizeof(double);
-    memcpy(frame.components, of->components, sizeof frame.components);
-    *out = (struct placement){.body_id = of->body_id, .dim = of->dim, .frame_count = 1};
-    out->geometry = (struct geometry){geometry, geometry_write(of->dim, &frame, geometry)};
-    memcpy(out->position, of->position, axes);
-    out->velocity_count = of->moving ? of->dim : 0;
-    if (of->moving)
-        memcpy(out->velocity, of->velocity, axes);
+    size_t bytes = GEOMETRY_NONE_BYTES;
+    for (size_t i = 0; i < placement->frame_count; i++)
+        bytes += 1 + sizeof(double) *
+                         (size_t) geometry_number_count(placement->dim, placement->frames[i].shape);
+    return bytes;
 }
 
-size_t question_placement_bytes(const struct fmb_client_placement *placement)
+/* As geometry_write_frames(). */
+static size_t write_frames(const struct fmb_client_placement *of, unsigned char *out)
 {
-    unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX];
-    struct placement whole;
-    question_placement(placement, geometry, &whole);
-    return wire_placement_bytes(&whole);
+    const size_t size = question_geometry_bytes(of);
+    const int dim = of->dim;
+    struct writer writer = {.at = out, .end = out + size};
+    writer_int32(&writer, dim);
+    writer_int32(&writer, (int32_t) of->frame_count);
+    for (size_t i = 0; i < of->frame_count; i++)
+        *writer_take(&writer, 1) = (unsigned char) of->frames[i].shape;
+    writer_int32(&writer,
+                 (int32_t) ((size - GEOMETRY_NONE_BYTES - of->frame_count) / sizeof(double)));
+    for (size_t i = 0; i < of->frame_count; i++) {
+        const struct fmb_client_frame *frame = &of->frames[i];
+        const int count = geometry_number_count(dim, frame->shape);
+        for (int k = 0; k < count; k++)
+            writer_double(&writer, k < dim ? frame->origin[k] : frame->components[k - dim]);
+    }
+    return size;
+}
+
+static bool is_zero(const double *numbers, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (numbers[i] != 0)
+            return false;
+    return true;
+}
+
+void question_placement(const struct fmb_client_placement *of, unsigned char *geometry,
+                        struct placement *out)
+{
+    const size_t axes = (size_t) of->dim * sizeof(double);
+    *out = (struct placement){.body_id = of->body_id,
+                              .dim = of->dim,
+                              .frame_count = (int32_t) of->frame_count,
+                              .orientation_count = of->orientation_count};
+    out->geometry = (struct geometry){geometry, write_frames(of, geometry)};
+    memcpy(out->position, of->position, axes);
+    memcpy(out->orientation, of->orientation, sizeof out->orientation);
+    if (is_zero(of->velocity, of->dim))
+        return;
+    out->velocity_count = of->dim;
+    memcpy(out->velocity, of->velocity, axes);
+}
+
+void question_use_handle(struct placement *placement, const struct handle *handle,
+                         unsigned char geometry[GEOMETRY_NONE_BYTES])
+{
+    geometry_write_none(placement->dim, geometry);
+    placement->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
+    placement->frame_count = 0;
+    placement->handle = *handle;
 }
 
 /* The first partner of placement a. */

@@ -8,14 +8,19 @@
 /* Checks a scene. Returns FMB_OK; or a status, and why has the place and the reason. */
 int question_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY_MAX]);
 
-/* On input: a checked placement. On output: *out with frames, which are encoded in geometry. */
-void question_placement(const struct fmb_client_placement *of,
-                        unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX], struct placement *out);
+/* Bytes of the encoded frames of a checked placement. */
+size_t question_geometry_bytes(const struct fmb_client_placement *placement);
 
-/* Bytes that a placement with frames takes in a query. */
-size_t question_placement_bytes(const struct fmb_client_placement *placement);
+/* On input: a checked placement; as many bytes of geometry. On output: *out with frames, which are
+ * encoded in geometry. */
+void question_placement(const struct fmb_client_placement *of, unsigned char *geometry,
+                        struct placement *out);
 
-/* Iterates over the pairs in order; all 0 at first. */
+/* Replaces the frames by a handle. geometry: as in geometry_write_none(), of the dimension. */
+void question_use_handle(struct placement *placement, const struct handle *handle,
+                         unsigned char geometry[GEOMETRY_NONE_BYTES]);
+
+/* Iterates over the pairs in order, ignored ones included; all 0 at first. */
 struct question_cursor {
     size_t next; /* listed pairs: index of the next one */
     size_t a, b; /* else: the next pair; b is 0 before the first */

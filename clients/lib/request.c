@@ -101,9 +101,25 @@ static int64_t patience(const struct fmb_client *client)
     return client->requests.silent ? client->timeout_ns : client->timeout_ns * client->tries;
 }
 
+void request_cancel(struct fmb_client *client, struct request *request)
+{
+    end(&client->requests, request);
+}
+
+/* A query that follows another of the same request may be larger than that. */
+static void raise_charge(struct requests *requests, struct request *request)
+{
+    const size_t charge = charge_of(request->size);
+    if (charge <= request->charge)
+        return;
+    requests->charge += charge - request->charge;
+    request->charge = charge;
+}
+
 void request_send(struct fmb_client *client, struct request *request)
 {
     const int64_t retry = client->requests.pace[request->kind].retry;
+    raise_charge(&client->requests, request);
     request->number = client->requests.next_number++;
     big_endian_put_64(request->query + CLIENT_ID_AT, (uint64_t) client->client_id);
     big_endian_put_64(request->query + NUMBER_AT, (uint64_t) request->number);
@@ -308,7 +324,7 @@ static int wait_ms(const struct requests *requests, int64_t until)
 {
     const int64_t time = clock_ns();
     int64_t earliest = until - time < ns_per_s ? until : time + ns_per_s;
-    for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
+    for (int i = 0; i < FMB_CLIENT_RAW_WINDOW && requests->count > 0; i++) {
         const struct request *request = &requests->request[i];
         if (request->under_way && request->deadline < earliest)
             earliest = request->deadline;
@@ -323,6 +339,8 @@ void requests_step(struct fmb_client *client, int other_fd, int64_t until)
     client_receive(client);
     if (client->failed)
         requests_give_up(client, FMB_CLIENT_NO_BUS);
+    if (client->requests.count == 0)
+        return;
     const int64_t time = clock_ns();
     note_oldest(&client->requests);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
@@ -373,5 +391,5 @@ int fmb_client_raw_step(struct fmb_client *client, int other_fd, double timeout)
     client->inside = true;
     requests_step(client, other_fd, clock_ns() + (int64_t) (1e9 * timeout));
     client->inside = false;
-    return client->requests.count;
+    return client->failed ? FMB_CLIENT_NO_BUS : client->requests.count;
 }

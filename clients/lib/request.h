@@ -102,6 +102,9 @@ struct request *request_begin(struct fmb_client *client, enum fmb_client_kind ki
                               request_handler *handler, void *user);
 void request_send(struct fmb_client *client, struct request *request);
 
+/* Ends a request that was begun and not sent. The handler is not called. */
+void request_cancel(struct fmb_client *client, struct request *request);
+
 /* Waits until a datagram comes, a deadline or the time until (clock_ns()) is reached, or other_fd
  * (-1: none) is readable. Receives pending datagrams, then repeats or gives up what is due. */
 void requests_step(struct fmb_client *client, int other_fd, int64_t until);

@@ -2,7 +2,6 @@
 
 #include "wire.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,29 +79,6 @@ static int32_t number_of(const struct taking *taking, int32_t k)
     return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
 }
 
-static bool moves(const struct taking *taking, unsigned placement)
-{
-    return taking->scene->placements[taking->part->placement[placement]].moving;
-}
-
-static bool any_moves(const struct taking *taking)
-{
-    for (int32_t i = 0; i < taking->part->placement_count; i++)
-        if (moves(taking, (unsigned) i))
-            return true;
-    return false;
-}
-
-static bool pair_moves(const struct taking *taking, int32_t k)
-{
-    const struct part *part = taking->part;
-    if (part->which != QUERY_PAIRS_LISTED)
-        return moves(taking, taking->result->pair[k][0]) ||
-               moves(taking, taking->result->pair[k][1]);
-    const uint16_t *pair = part->pair[taking->first + k];
-    return moves(taking, pair[0]) || moves(taking, pair[1]);
-}
-
 /* Each pair that is named is of the query, comes once, in order, and is a contact. */
 static bool fits_named(const struct taking *taking)
 {
@@ -120,21 +96,6 @@ static bool fits_named(const struct taking *taking)
     return true;
 }
 
-/* An interval for each contact of a pair that moves, where wanted, and for no other. */
-static bool fits_times(const struct taking *taking)
-{
-    const struct scene_result *result = taking->result;
-    const bool wanted = taking->scene->want & FMB_CLIENT_WANT_TIMES && any_moves(taking);
-    int32_t contact = 0;
-    if (result->has_times != (wanted && result->contact_count > 0))
-        return false;
-    for (int32_t k = 0; result->has_times && k < result->verdict_count; k++)
-        if (is_contact(result->verdict[k]) &&
-            isnan(result->times[2 * contact++]) == pair_moves(taking, k))
-            return false;
-    return true;
-}
-
 static bool fits(const struct taking *taking)
 {
     const struct scene_result *result = taking->result;
@@ -142,13 +103,16 @@ static bool fits(const struct taking *taking)
     const bool listed = part->which == QUERY_PAIRS_LISTED;
     if (result->end_pair <= taking->first || result->end_pair > part->total)
         return false;
+    const bool times = taking->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
+    if (result->has_times != times)
+        return false;
     if (result->has_boxes && (!(taking->scene->want & FMB_CLIENT_WANT_BOX) ||
                               result->dim != taking->scene->placements[0].dim))
         return false;
     if (listed &&
         (result->names_pairs || result->verdict_count != result->end_pair - taking->first))
         return false;
-    return (listed || fits_named(taking)) && fits_times(taking);
+    return listed || fits_named(taking);
 }
 
 static bool reserve(struct part_answers *answers, size_t more)
@@ -170,10 +134,9 @@ static bool reserve(struct part_answers *answers, size_t more)
 static void fill_contact(const struct scene_result *result, int32_t contact, struct fmb_answer *out)
 {
     const int dim = result->dim;
-    if (result->has_times && !isnan(result->times[2 * contact])) {
-        out->has_contact = true;
+    out->has_contact = result->has_times;
+    if (result->has_times)
         memcpy(out->contact, &result->times[2 * contact], sizeof out->contact);
-    }
     out->has_box = result->has_boxes;
     for (int i = 0; i < 2 * dim && result->has_boxes; i++)
         out->box[i / dim][i % dim] = result->boxes[2 * dim * contact + i];
@@ -204,27 +167,21 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
     return PART_TAKEN;
 }
 
-/* An interval of a contact of a pair that moves single; a box of a contact, and a certificate,
- * where they were wanted. */
-static bool fits_pair(const struct part *part, const struct fmb_client_scene *scene,
-                      const struct pair_result *result)
+/* A box of a contact, and a certificate, only where they were wanted. */
+static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
-    const bool contact = is_contact((int) answer->verdict);
-    const bool moving = scene->placements[part->placement[0]].moving ||
-                        scene->placements[part->placement[1]].moving;
-    if (answer->has_contact && !(contact && moving))
-        return false;
     if (answer->has_box &&
-        !(contact && scene->want & FMB_CLIENT_WANT_BOX && result->dim == scene->placements[0].dim))
+        !(is_contact((int) answer->verdict) && scene->want & FMB_CLIENT_WANT_BOX &&
+          result->dim == scene->placements[0].dim))
         return false;
     return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;
 }
 
-enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
+enum part_taken part_take_pair(const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers)
 {
-    if (!fits_pair(part, scene, result))
+    if (!fits_pair(scene, result))
         return PART_MALFORMED;
     if (!reserve(answers, 1))
         return PART_NO_MEMORY;

@@ -5,23 +5,16 @@
 #include "fmb_client.h"
 #include "question.h"
 
-/* Least bytes of a placement with frames: id, handle, a geometry of 6 numbers, position, and the
- * counts of orientation and velocity, in 2D. */
-enum {
-    PART_PLACEMENT_BYTES_MIN = 8 + HANDLE_BYTES + 4 + 4 + 1 + 4 + 8 * 6 + 8 * 2 + 4 + 4,
-    PART_PLACEMENTS_MAX = QUERY_BYTES_MAX / PART_PLACEMENT_BYTES_MIN
-};
-
 struct part {
     bool single;   /* a pair query */
     int32_t which; /* QUERY_PAIRS_ */
     int32_t split; /* with ACROSS */
     int32_t total; /* of pairs */
     int32_t placement_count;
-    unsigned placement[PART_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
-    uint16_t pair[QUERY_PAIRS_MAX][2];       /* LISTED: [total][a, b], indices in the part */
-    size_t bytes;                            /* of the query, if all placements have frames */
-    size_t row, column;                      /* for cut.h and order.h */
+    unsigned placement[QUERY_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
+    uint16_t pair[QUERY_PAIRS_MAX][2];        /* LISTED: [total][a, b], indices in the part */
+    size_t bytes;                             /* of the query, without ignored pairs */
+    size_t row, column;                       /* for cut.h and order.h */
 };
 
 /* A pair that is not separated. */
@@ -56,7 +49,7 @@ int32_t part_pairs_before(const struct part *part, int32_t a);
 enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers);
-enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
+enum part_taken part_take_pair(const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers);
 
 #endif

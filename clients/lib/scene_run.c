@@ -24,34 +24,54 @@ static struct part_run *part_of(struct scene_run *run, uint64_t part)
 
 /* ---- Queries ---- */
 
-/* The i-th placement of the part, whole, with its geometry in the run. */
-static void whole_placement(const struct part_run *part, int32_t i, struct placement *out)
+/* The i-th placement of the part, whole, with its frames in geometry. */
+static void whole_placement(const struct part_run *part, int32_t i, unsigned char *geometry,
+                            struct placement *out)
+{
+    question_placement(&part->run->scene->placements[part->part.placement[i]], geometry, out);
+}
+
+/* The entry of the i-th placement of the part in the table of held bodies; NULL: it is anonymous.
+ */
+static struct held_body *held_of(const struct part_run *part, int32_t i)
 {
     struct scene_run *run = part->run;
-    question_placement(&run->scene->placements[part->part.placement[i]], run->geometry[i], out);
+    const struct cut_body *body = &run->cut->body[part->part.placement[i]];
+    struct placement placement;
+    if (!body->held || body->held->serial == body->serial)
+        return body->held;
+    unsigned char *scratch = run->geometry + QUERY_BYTES_MAX;
+    whole_placement(part, i, scratch, &placement);
+    return held_find(&run->client->held, &placement.geometry);
 }
 
-/* A body that the service holds is sent by handle. */
-static void write_placement(struct part_run *part, int32_t i, struct placement *out)
+/* A body that the service holds is written by handle; others whole, with their frames in geometry.
+ */
+static void write_placement(struct part_run *part, int32_t i, unsigned char *geometry,
+                            struct placement *out)
 {
-    struct fmb_client *client = part->run->client;
-    whole_placement(part, i, out);
-    part->whole[i] = true;
-    if (out->body_id != 0 && part->unknown < UNKNOWN_MAX) {
-        const struct held_body *body = held_find(&client->held, &out->geometry);
-        part->whole[i] = !body->held;
-        out->handle = body->held ? body->handle : out->handle;
-    }
-    if (!part->whole[i]) {
-        unsigned char *geometry = part->run->geometry[i];
-        geometry_write_none(out->dim, geometry);
-        out->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
-        out->frame_count = 0;
-    }
-    client->counts.whole += part->whole[i];
-    client->counts.by_handle += !part->whole[i];
+    const struct held_body *body = part->unknown < UNKNOWN_MAX ? held_of(part, i) : NULL;
+    part->whole[i] = !body || !body->held;
+    whole_placement(part, i, geometry, out);
+    if (!part->whole[i])
+        question_use_handle(out, &body->handle, part->run->none);
 }
 
+/* Writes the placements. Returns their bytes; or more than max, and not all of them are written. */
+static size_t write_placements(struct part_run *part, size_t max, struct placement *out)
+{
+    unsigned char *geometry = part->run->geometry;
+    size_t bytes = 0;
+    for (int32_t i = 0; i < part->part.placement_count && bytes <= max; i++) {
+        write_placement(part, i, geometry, &out[i]);
+        bytes += wire_placement_bytes(&out[i]);
+        if (part->whole[i])
+            geometry += out[i].geometry.size;
+    }
+    return bytes;
+}
+
+/* Returns 0 if the query is too large. */
 static size_t write_pair(struct part_run *part, unsigned char *out)
 {
     const struct fmb_client_scene *scene = part->run->scene;
@@ -59,69 +79,113 @@ static size_t write_pair(struct part_run *part, unsigned char *out)
                                .duration = scene->duration,
                                .method = scene->method,
                                .want = (int32_t) scene->want & ~QUERY_WANT_TIMES};
-    for (int32_t i = 0; i < 2; i++)
-        write_placement(part, i, &query.placement[i]);
-    return wire_write_pair_query(&query, out);
+    const size_t max = QUERY_BYTES_MAX - WIRE_PAIR_QUERY_BYTES;
+    return write_placements(part, max, query.placement) <= max ? wire_write_pair_query(&query, out)
+                                                               : 0;
 }
 
-static size_t write_scene(struct part_run *part, unsigned char *out)
+static struct scene_query *begin_query(const struct part_run *part)
 {
     const struct fmb_client_scene *scene = part->run->scene;
-    const struct part *of = &part->part;
     struct scene_query *query = &part->run->query;
     query->utime = clock_utime();
     query->duration = scene->duration;
     query->method = scene->method;
     query->want = (int32_t) scene->want;
+    query->which = QUERY_PAIRS_LISTED;
+    query->split = query->first_pair = 0;
+    query->placement_count = query->index_count = query->ignored_count = 0;
+    return query;
+}
+
+/* Only bodies that the service is to hold, as many as fit. Returns 0 if there are none. */
+static size_t write_definitions(struct part_run *part, unsigned char *out)
+{
+    struct scene_query *query = begin_query(part);
+    unsigned char *geometry = part->run->geometry;
+    size_t left = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
+    const bool may = part->unknown < UNKNOWN_MAX && part->definitions < part->part.placement_count;
+    memset(part->whole, 0, sizeof part->whole);
+    for (int32_t i = 0; i < part->part.placement_count && may; i++) {
+        const struct held_body *body = held_of(part, i);
+        if (!body || body->held)
+            continue;
+        struct placement *placement = &query->placement[query->placement_count];
+        whole_placement(part, i, geometry, placement);
+        if (wire_placement_bytes(placement) > left)
+            break;
+        left -= wire_placement_bytes(placement);
+        geometry += placement->geometry.size;
+        part->whole[i] = true;
+        query->placement_count++;
+    }
+    part->defining = query->placement_count > 0;
+    part->definitions += part->defining;
+    return part->defining ? wire_write_scene_query(query, out) : 0;
+}
+
+static size_t write_scene(struct part_run *part, unsigned char *out)
+{
+    const struct part *of = &part->part;
+    const bool listed = of->which == QUERY_PAIRS_LISTED;
+    struct scene_query *query = begin_query(part);
+    const size_t max = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES -
+                       (listed ? WIRE_PAIR_BYTES * (size_t) of->total : 0);
+    const size_t bytes = write_placements(part, max, query->placement);
+    if (bytes > max)
+        return write_definitions(part, out);
     query->which = of->which;
     query->split = of->split;
     query->first_pair = part->answers.answered;
     query->placement_count = of->placement_count;
-    query->index_count = of->which == QUERY_PAIRS_LISTED ? 2 * of->total : 0;
-    for (int32_t i = 0; i < of->placement_count; i++)
-        write_placement(part, i, &query->placement[i]);
+    query->index_count = listed ? 2 * of->total : 0;
     for (int32_t i = 0; i < query->index_count; i++)
         query->pair[i / 2][i % 2] = of->pair[i / 2][i % 2];
+    /* Where there is no space for all of them, order.c drops the answers. */
+    query->ignored_count =
+        2 * cut_ignored(part->run->cut, of, (int32_t) ((max - bytes) / WIRE_PAIR_BYTES),
+                        query->ignored);
     return wire_write_scene_query(query, out);
 }
 
-/* Asks for what the part has no answers to yet. */
-static void write_query(struct part_run *part, struct request *request)
+static void count_placements(struct fmb_client_counts *counts, const struct part_run *part)
+{
+    for (int32_t i = 0; i < part->part.placement_count; i++) {
+        counts->whole += part->whole[i];
+        counts->by_handle += !part->whole[i] && !part->defining;
+    }
+}
+
+/* Requests what the part has no answers to yet. Returns false if no query can be written. */
+static bool write_query(struct part_run *part, struct request *request)
 {
     memcpy(part->whole_earlier, part->whole, sizeof part->whole);
-    request->size = (part->part.single ? write_pair : write_scene)(part, request->query);
+    part->defining = false;
+    const size_t size = (part->part.single ? write_pair : write_scene)(part, request->query);
+    if (size > 0) {
+        request->size = size;
+        count_placements(&part->run->client->counts, part);
+    }
+    return size > 0;
 }
 
 /* ---- Handles in results ---- */
-
-/* The handle of the i-th placement if it was sent whole with an id, and *body; else none. */
-static struct handle handle_of(const struct part_run *part, const bool *whole, int32_t i,
-                               struct held_body **body)
-{
-    static const struct handle none;
-    struct placement placement;
-    if (!whole[i] || part->run->scene->placements[part->part.placement[i]].body_id == 0)
-        return none;
-    whole_placement(part, i, &placement);
-    *body = held_find(&part->run->client->held, &placement.geometry);
-    return (*body)->handle;
-}
 
 /* The handles of a result are those of the bodies that were sent whole: the service holds them. On
  * output: false where they are others. */
 static bool take_handles(const struct part_run *part, const bool *whole,
                          const struct request_result *result)
 {
+    static const struct handle none;
     const bool pair = result->kind == FMB_CLIENT_PAIR;
     const struct handle *handle = pair ? result->pair->handle : result->scene->handle;
     const int32_t count = pair ? 2 : result->scene->handle_count;
     int32_t used = 0;
     for (int32_t i = 0; i < part->part.placement_count; i++) {
-        struct held_body *body = NULL;
-        const struct handle own = handle_of(part, whole, i, &body);
+        struct held_body *body = whole[i] ? held_of(part, i) : NULL;
         if (!body && !pair) /* results of scenes have no handle for it */
             continue;
-        if (used == count || !handle_equal(&own, &handle[used++]))
+        if (used == count || !handle_equal(body ? &body->handle : &none, &handle[used++]))
             return false;
         if (body)
             body->held = true;
@@ -132,11 +196,11 @@ static bool take_handles(const struct part_run *part, const bool *whole,
 /* On output: false where the i-th placement was not sent by handle. */
 static bool forget(const struct part_run *part, int32_t i)
 {
-    struct placement placement;
-    if (i >= part->part.placement_count || part->whole[i])
+    struct held_body *body =
+        i < part->part.placement_count && !part->whole[i] ? held_of(part, i) : NULL;
+    if (!body)
         return false;
-    whole_placement(part, i, &placement);
-    held_find(&part->run->client->held, &placement.geometry)->held = false;
+    body->held = false;
     return true;
 }
 
@@ -175,6 +239,24 @@ static void adapt_pairs(struct scene_run *run, int32_t pairs, int64_t compute_ns
         run->pairs_max = PAIRS_LEAST;
 }
 
+static enum request_taken write_next(struct part_run *part, struct request *request,
+                                     enum request_taken taken)
+{
+    if (write_query(part, request))
+        return taken;
+    part->run->recut = part->run->cut->by_handle;
+    return refuse(part, FMB_OVER_LIMIT, "the bodies of a pair do not fit into one datagram");
+}
+
+/* The result of a query that only has bodies. */
+static enum request_taken take_definitions(struct part_run *part, struct request *request,
+                                           const struct request_result *result)
+{
+    if (result->scene->end_pair != 0 || result->scene->verdict_count != 0)
+        return REQUEST_MALFORMED;
+    return write_next(part, request, REQUEST_NEXT);
+}
+
 static enum request_taken take_answers(struct part_run *part, struct request *request,
                                        const struct request_result *result)
 {
@@ -184,9 +266,11 @@ static enum request_taken take_answers(struct part_run *part, struct request *re
     const int32_t before = answers->answered;
     if (!take_handles(part, whole, result))
         return REQUEST_MALFORMED;
+    if (part->defining && result->number == request->number)
+        return take_definitions(part, request, result);
     const enum part_taken taken =
         result->kind == FMB_CLIENT_PAIR
-            ? part_take_pair(&part->part, run->scene, result->pair, answers)
+            ? part_take_pair(run->scene, result->pair, answers)
             : part_take_scene(&part->part, run->scene, result->scene, answers);
     if (taken == PART_MALFORMED)
         return REQUEST_MALFORMED;
@@ -197,8 +281,7 @@ static enum request_taken take_answers(struct part_run *part, struct request *re
     part->done = answers->answered == part->part.total;
     if (part->done)
         return REQUEST_COMPLETE;
-    write_query(part, request);
-    return REQUEST_NEXT;
+    return write_next(part, request, REQUEST_NEXT);
 }
 
 static enum request_taken take_result(void *user, struct request *request,
@@ -219,8 +302,7 @@ static enum request_taken take_result(void *user, struct request *request,
     if (!take_unknown(part, result))
         return REQUEST_MALFORMED;
     part->unknown++;
-    write_query(part, request);
-    return REQUEST_WHOLE;
+    return write_next(part, request, REQUEST_WHOLE);
 }
 
 /* ---- The window of parts ---- */
@@ -236,7 +318,7 @@ static void begin_part(struct scene_run *run, struct part_run *part, size_t byte
     struct fmb_client *client = run->client;
     const enum fmb_client_kind kind = part->part.single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE;
     part->run = run;
-    part->unknown = 0;
+    part->unknown = part->definitions = 0;
     part->done = part->part.total == 0;
     run->next++;
     if (part->done)
@@ -246,8 +328,10 @@ static void begin_part(struct scene_run *run, struct part_run *part, size_t byte
         return;
     }
     struct request *request = request_begin(client, kind, bytes, take_result, part);
-    write_query(part, request);
-    request_send(client, request);
+    if (write_next(part, request, REQUEST_NEXT) == REQUEST_NEXT)
+        request_send(client, request);
+    else
+        request_cancel(client, request);
 }
 
 /* On output: false once there are no more parts. */
@@ -256,11 +340,11 @@ static bool fill_window(struct scene_run *run, struct cut *cut)
     const struct requests *requests = &run->client->requests;
     while (run->next - run->oldest < FMB_CLIENT_RAW_WINDOW) {
         struct part_run *part = part_of(run, run->next);
-        if (!run->cut && !cut_next(cut, run->pairs_max, &part->part))
+        if (!run->is_cut && !cut_next(cut, run->pairs_max, &part->part))
             return false;
         const size_t bytes = bytes_of(run, &part->part);
-        run->cut = run->status == FMB_OK && !requests_ready(requests, bytes);
-        if (run->cut)
+        run->is_cut = run->status == FMB_OK && !requests_ready(requests, bytes);
+        if (run->is_cut)
             return true;
         begin_part(run, part, bytes);
     }
@@ -271,7 +355,10 @@ static void deliver(struct scene_run *run, struct order *order)
 {
     while (run->oldest < run->next && part_of(run, run->oldest)->done) {
         struct part_run *part = part_of(run, run->oldest++);
-        order_take(order, &part->part, &part->answers);
+        if (run->recut)
+            part_answers_clear(&part->answers);
+        else
+            order_take(order, &part->part, &part->answers);
     }
 }
 
@@ -290,6 +377,7 @@ static void begin(struct scene_run *run, const struct fmb_client_scene *scene)
     const double within = scene->within > 0 && scene->within < most ? scene->within : most;
     if (run->pairs_max == 0 || run->method != scene->method || run->want != scene->want)
         run->pairs_max = PAIRS_FIRST;
+    run->recut = false;
     run->scene = scene;
     run->method = scene->method;
     run->want = scene->want;
@@ -331,6 +419,7 @@ static int query_parts(struct fmb_client *client, const struct fmb_client_scene 
         return fail(client, FMB_CLIENT_NO_MEMORY);
     client->inside = true;
     client->run.client = client;
+    client->run.cut = cut;
     begin(&client->run, scene);
     run_parts(&client->run, cut, &order);
     client->inside = false;
@@ -350,10 +439,16 @@ static int query(struct fmb_client *client, const struct fmb_client_scene *scene
         return status;
     if (client->failed || !client_listen(client, single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE))
         return fail(client, FMB_CLIENT_NO_BUS);
-    if (!cut_begin(scene, single, &cut))
-        return fail(client, FMB_CLIENT_NO_MEMORY);
-    const int done = query_parts(client, scene, &cut, sink, user);
-    cut_end(&cut);
+    int done = FMB_OK;
+    client->run.recut = false;
+    do {
+        const bool whole = client->run.recut;
+        const bool begun =
+            cut_begin(scene, single, whole, &client->held, client->run.geometry, &cut);
+        done = begun ? query_parts(client, scene, &cut, sink, user)
+                     : fail(client, FMB_CLIENT_NO_MEMORY);
+        cut_end(&cut);
+    } while (client->run.recut && done == FMB_OK);
     return done;
 }
 

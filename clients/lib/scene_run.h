@@ -2,11 +2,12 @@
  * several under way, and passes the answers on in the order of the pairs (order.h).
  *
  * A part may take several queries, one after the other: if a result had no space for all answers,
- * or the service did not hold a body. */
+ * or the service did not hold a body. If the bodies that it does not hold do not fit a datagram
+ * together with the remainder of the part, they are sent first, in queries without pairs. */
 #ifndef SCENE_RUN_H
 #define SCENE_RUN_H
 
-#include "scene_part.h"
+#include "cut.h"
 #include "request.h"
 
 /* A part under way. */
@@ -14,27 +15,31 @@ struct part_run {
     struct scene_run *run;
     struct part part;
     struct part_answers answers;
-    bool done;
-    int unknown; /* number of results with status UNKNOWN_BODY */
+    bool done, defining; /* defining: the last query only has bodies */
+    int definitions;     /* number of such queries */
+    int unknown;         /* number of results with status UNKNOWN_BODY */
     /* [placement of the part]: sent with frames, in the last query and in the one before it. */
-    bool whole[PART_PLACEMENTS_MAX], whole_earlier[PART_PLACEMENTS_MAX];
+    bool whole[QUERY_PLACEMENTS_MAX], whole_earlier[QUERY_PLACEMENTS_MAX];
 };
 
 struct scene_run {
     struct fmb_client *client;
     const struct fmb_client_scene *scene;
+    const struct cut *cut;
     int status;            /* not 0: the remaining pairs are given up with it */
     int64_t until;         /* time limit of the whole scene; clock_ns() */
     uint64_t oldest, next; /* parts: first not delivered, first not begun */
-    bool cut;              /* the next part is in its slot already */
+    bool is_cut;           /* the next part is in its slot already */
+    bool recut;            /* the only part has to be divided: nothing is delivered */
     struct part_run part[FMB_CLIENT_RAW_WINDOW]; /* [part % FMB_CLIENT_RAW_WINDOW] */
     /* Most pairs listed in a query, so that the queries under way are decided within half a
      * timeout; estimated from the compute times of results, for this method and want. */
     int32_t pairs_max;
     int method;
     unsigned want;
-    struct scene_query query; /* being written, with the geometries of its placements */
-    unsigned char geometry[PART_PLACEMENTS_MAX][GEOMETRY_FRAME_BYTES_MAX];
+    struct scene_query query; /* being written */
+    /* The frames of its placements, and of one more; and those of a handle. */
+    unsigned char geometry[2 * QUERY_BYTES_MAX], none[GEOMETRY_NONE_BYTES];
 };
 
 #endif

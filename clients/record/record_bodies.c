@@ -1,18 +1,13 @@
 #include "record_bodies.h"
 
-#include "allocate.h"
+#include "any_query.h"
 #include "clock.h"
-#include "definitions.h"
-#include "log_write.h"
 #include "keyed_hash.h"
-#include "random_id.h"
+#include "log_write.h"
 #include "wire.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define uthash_malloc(size) allocate(1, size)
-#include <uthash.h>
 
 /* ---- Sets of handles --------------------------------------------------------------------------
  */
@@ -20,48 +15,38 @@
 struct handle_entry {
     UT_hash_handle hh;
     struct handle handle;
-    int tries;       /* how often it was requested */
-    int64_t next_ns; /* when it is requested again; INT64_MAX: never */
+    bool requested; /* of wanted ones */
 };
 
-struct handle_set {
-    struct handle_entry *entries;
-    struct keyed_hash hash;
-};
-
-static struct handle_entry *set_find(const struct handle_set *set, const struct handle *handle)
+static struct handle_entry *set_find(struct handle_entry *set, const struct handle *handle)
 {
-    const unsigned value = keyed_hash_of(&set->hash, handle, sizeof *handle);
     struct handle_entry *entry;
-    HASH_FIND_BYHASHVALUE(hh, set->entries, handle, sizeof *handle, value, entry);
+    HASH_FIND(hh, set, handle, sizeof *handle, entry);
     return entry;
 }
 
-static void set_add(struct handle_set *set, const struct handle *handle)
+/* Returns the entry, which may be there already. */
+static struct handle_entry *set_add(struct handle_entry **set, const struct handle *handle)
 {
-    if (set_find(set, handle))
-        return;
-    struct handle_entry *entry = allocate(1, sizeof *entry);
+    struct handle_entry *entry = set_find(*set, handle);
+    if (entry)
+        return entry;
+    entry = allocate(1, sizeof *entry);
     entry->handle = *handle;
-    const unsigned value = keyed_hash_of(&set->hash, handle, sizeof *handle);
-    HASH_ADD_BYHASHVALUE(hh, set->entries, handle, sizeof *handle, value, entry);
+    HASH_ADD(hh, *set, handle, sizeof *handle, entry);
+    return entry;
 }
 
-static void set_remove(struct handle_set *set, struct handle_entry *entry)
+static void set_remove(struct handle_entry **set, struct handle_entry *entry)
 {
-    HASH_DEL(set->entries, entry);
+    HASH_DEL(*set, entry);
     free(entry);
 }
 
-static void set_clear(struct handle_set *set)
+static void set_clear(struct handle_entry **set)
 {
-    struct handle_entry *entry = set->entries;
-    HASH_CLEAR(hh, set->entries);
-    while (entry) {
-        struct handle_entry *next = entry->hh.next;
-        free(entry);
-        entry = next;
-    }
+    while (*set)
+        set_remove(set, *set);
 }
 
 /* ---- State ------------------------------------------------------------------------------------
@@ -75,54 +60,49 @@ enum { WAITING_MAX = 256 };
 enum { WANTED_MAX = 1 << 16, DEFINED_MAX = 1 << 20 };
 
 struct waiting {
-    int64_t client_id, sequence_number;
+    struct query_header query;
     struct handle *handle; /* owned; NULL: free */
     size_t count;
 };
 
 struct record_bodies {
-    record_publish *publish;
-    void *user;
-    int64_t client_id, sequence_number;
+    int64_t client_id;
     bool own; /* the message that was taken last is a request of this recorder, or its answer */
     struct definitions *young, *old; /* each up to half of the bytes */
     size_t used_again;               /* bodies of the old ones that are among the young too */
-    struct handle_set defined;       /* by the file */
-    struct handle_set wanted;
+    struct handle_entry *defined;    /* set: by the file */
+    struct handle_entry *wanted;     /* set */
     struct waiting waiting[WAITING_MAX];
     int next_waiting, waiting_count;
-    int64_t requested_ns, due_ns; /* the last request; the next one, INT64_MAX: none */
-    /* The request for all: its page, and when it is repeated. */
-    int64_t all_first, all_number, all_next_ns;
-    int all_tries;
+    struct definition_query query; /* the last request */
+    int64_t requested_ns;          /* its time */
+    bool under_way;                /* its result has not come */
+    bool more;                     /* it is to be continued with another page */
+    bool wants;                    /* there may be wanted handles that were not requested */
     /* Handles that the message that was taken last names: of known bodies, and of others. */
     struct handle *named, *unknown;
     size_t named_count, named_capacity, unknown_count, unknown_capacity;
     struct record_bodies_counts counts;
     struct hasher *hasher;
     union {
-        struct pair_query pair;
-        struct scene_query scene;
+        struct any_query query;
         struct pair_result pair_result;
         struct scene_result scene_result;
         struct definition_query definition_query;
         struct definition definition;
         struct wire_status status;
     } message;
-    struct definition definition; /* that is being written */
-    struct definition_query query;
-    unsigned char bytes[QUERY_BYTES_MAX];
+    struct definition_writer writer;
 };
 
-struct record_bodies *record_bodies_open(record_publish *publish, void *user)
+/* The first request, of zeros, is for all bodies. */
+struct record_bodies *record_bodies_open(int64_t client_id)
 {
     struct record_bodies *bodies = allocate(1, sizeof *bodies);
-    bodies->publish = publish;
-    bodies->user = user;
-    bodies->client_id = random_id();
+    bodies->client_id = client_id;
+    bodies->more = true;
     bodies->young = definitions_open();
     bodies->old = definitions_open();
-    bodies->defined.hash = bodies->wanted.hash = keyed_hash_make();
     bodies->hasher = hasher_create();
     if (!bodies->hasher)
         allocate_failed();
@@ -204,7 +184,7 @@ static void note_handle(struct record_bodies *bodies, const struct handle *handl
         append_handle(&bodies->unknown, &bodies->unknown_count, &bodies->unknown_capacity, handle);
 }
 
-static void await_result(struct record_bodies *bodies, int64_t client_id, int64_t sequence_number)
+static void await_result(struct record_bodies *bodies, const struct query_header *query)
 {
     struct waiting *waiting = &bodies->waiting[bodies->next_waiting];
     if (bodies->unknown_count == 0)
@@ -212,39 +192,40 @@ static void await_result(struct record_bodies *bodies, int64_t client_id, int64_
     bodies->next_waiting = (bodies->next_waiting + 1) % WAITING_MAX;
     bodies->waiting_count += !waiting->handle;
     free(waiting->handle);
-    *waiting = (struct waiting){client_id, sequence_number, bodies->unknown, bodies->unknown_count};
+    *waiting = (struct waiting){*query, bodies->unknown, bodies->unknown_count};
     bodies->unknown = NULL;
     bodies->unknown_capacity = 0;
 }
 
-static void take_query(struct record_bodies *bodies, int64_t client_id, int64_t sequence_number,
-                       const struct placement *placement, int32_t count)
+static void take_query(struct record_bodies *bodies, struct any_query *query)
 {
+    int32_t count;
+    const struct placement *placement = any_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
         if (placement_by_handle(&placement[i]))
             note_handle(bodies, &placement[i].handle);
         else if (definitions_add_placement(bodies->young, &placement[i]))
             make_space(bodies);
     }
-    await_result(bodies, client_id, sequence_number);
+    await_result(bodies,
+                 query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header);
 }
 
 /* An answered query: the service holds what it names. */
-static void take_answer(struct record_bodies *bodies, int64_t client_id, int64_t sequence_number)
+static void take_answer(struct record_bodies *bodies, const struct query_header *result)
 {
     for (int i = 0; i < WAITING_MAX && bodies->waiting_count > 0; i++) {
         struct waiting *waiting = &bodies->waiting[i];
-        if (!waiting->handle || waiting->client_id != client_id ||
-            waiting->sequence_number != sequence_number)
+        if (!waiting->handle || waiting->query.client_id != result->client_id ||
+            waiting->query.sequence_number != result->sequence_number)
             continue;
         for (size_t k = 0; k < waiting->count; k++) {
             if (find_body(bodies, &waiting->handle[k]))
                 continue;
-            if (HASH_COUNT(bodies->wanted.entries) < WANTED_MAX)
-                set_add(&bodies->wanted, &waiting->handle[k]);
+            if (HASH_COUNT(bodies->wanted) < WANTED_MAX)
+                bodies->wants |= !set_add(&bodies->wanted, &waiting->handle[k])->requested;
             else
                 bodies->counts.unresolved++;
-            bodies->due_ns = 0;
         }
         free(waiting->handle);
         waiting->handle = NULL;
@@ -260,19 +241,12 @@ static void take_definition(struct record_bodies *bodies, const struct definitio
         add_body(bodies, &definition->body[i].geometry);
         if (!bodies->own)
             set_add(&bodies->defined, handle);
-        struct handle_entry *wanted = set_find(&bodies->wanted, handle);
+        struct handle_entry *wanted = set_find(bodies->wanted, handle);
         if (wanted && bodies->own)
             append_handle(&bodies->named, &bodies->named_count, &bodies->named_capacity, handle);
         if (wanted)
             set_remove(&bodies->wanted, wanted);
     }
-    if (!bodies->own || definition->sequence_number != bodies->all_number ||
-        definition->status != FMB_OK || bodies->all_next_ns == INT64_MAX)
-        return;
-    bodies->all_first = definition->next;
-    bodies->all_tries = 0;
-    bodies->all_next_ns = definition->next ? 0 : INT64_MAX;
-    bodies->due_ns = 0;
 }
 
 static bool is_answered(int32_t status)
@@ -280,27 +254,17 @@ static bool is_answered(int32_t status)
     return status == FMB_OK || status == FMB_CANNOT_DECIDE;
 }
 
-static int32_t least(int32_t a, int32_t b)
-{
-    return a < b ? a : b;
-}
-
 /* The message that was read. */
 static void take_message(struct record_bodies *bodies, enum log_kind kind)
 {
-    const struct pair_query *pair = &bodies->message.pair;
-    const struct scene_query *scene = &bodies->message.scene;
-    const struct pair_result *pair_result = &bodies->message.pair_result;
-    const struct scene_result *scene_result = &bodies->message.scene_result;
-    if (kind == LOG_PAIR_QUERY)
-        take_query(bodies, pair->client_id, pair->sequence_number, pair->placement, 2);
-    else if (kind == LOG_SCENE_QUERY)
-        take_query(bodies, scene->client_id, scene->sequence_number, scene->placement,
-                   least(scene->placement_count, QUERY_PLACEMENTS_MAX));
-    else if (kind == LOG_PAIR_RESULT && is_answered(pair_result->status))
-        take_answer(bodies, pair_result->client_id, pair_result->sequence_number);
-    else if (kind == LOG_SCENE_RESULT && is_answered(scene_result->status))
-        take_answer(bodies, scene_result->client_id, scene_result->sequence_number);
+    const struct pair_result *pair = &bodies->message.pair_result;
+    const struct scene_result *scene = &bodies->message.scene_result;
+    if (log_kind_is_query(kind))
+        take_query(bodies, &bodies->message.query);
+    else if (kind == LOG_PAIR_RESULT && is_answered(pair->status))
+        take_answer(bodies, &pair->header);
+    else if (kind == LOG_SCENE_RESULT && is_answered(scene->status))
+        take_answer(bodies, &scene->header);
     else if (kind == LOG_DEFINITION_QUERY)
         bodies->own = bodies->message.definition_query.client_id == bodies->client_id;
     else if (kind == LOG_DEFINITION)
@@ -310,10 +274,11 @@ static void take_message(struct record_bodies *bodies, enum log_kind kind)
 static const char *read_message(struct record_bodies *bodies, enum log_kind kind,
                                 const unsigned char *bytes, uint32_t size)
 {
+    bodies->message.query.kind = kind;
     switch (kind) {
-    case LOG_PAIR_QUERY: return wire_read_pair_query(bytes, size, &bodies->message.pair);
+    case LOG_PAIR_QUERY: return wire_read_pair_query(bytes, size, &bodies->message.query.pair);
     case LOG_PAIR_RESULT: return wire_read_pair_result(bytes, size, &bodies->message.pair_result);
-    case LOG_SCENE_QUERY: return wire_read_scene_query(bytes, size, &bodies->message.scene);
+    case LOG_SCENE_QUERY: return wire_read_scene_query(bytes, size, &bodies->message.query.scene);
     case LOG_SCENE_RESULT:
         return wire_read_scene_result(bytes, size, &bodies->message.scene_result);
     case LOG_DEFINITION_QUERY:
@@ -344,54 +309,32 @@ bool record_bodies_is_own(const struct record_bodies *bodies)
 /* ---- What a file defines ----------------------------------------------------------------------
  */
 
-/* Of a definition without its bodies, and of the event that holds it. */
-enum {
-    DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1,
-    EVENT_BYTES = LOG_HEADER_BYTES + 64
-};
-
 size_t record_bodies_needed(const struct record_bodies *bodies)
 {
+    const size_t each = (size_t) log_event_bytes(BUS_CHANNEL_MAX, DEFINITION_BYTES + HANDLE_BYTES);
     size_t bytes = 0;
     for (size_t i = 0; i < bodies->named_count; i++)
-        if (!set_find(&bodies->defined, &bodies->named[i]))
-            bytes += DEFINITION_BYTES + EVENT_BYTES + HANDLE_BYTES +
-                     find_body(bodies, &bodies->named[i])->size;
+        if (!set_find(bodies->defined, &bodies->named[i]))
+            bytes += each + find_body(bodies, &bodies->named[i])->size;
     return bytes;
 }
 
-static bool write_definition(struct record_bodies *bodies, record_write *write, void *user)
+bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, void *user)
 {
-    struct definition *definition = &bodies->definition;
-    bodies->counts.defined += definition->body_count;
-    const size_t size = wire_write_definition(definition, bodies->bytes);
-    definition->body_count = 0;
-    return write(user, bodies->bytes, size);
-}
-
-bool record_bodies_define(struct record_bodies *bodies, record_write *write, void *user)
-{
-    struct definition *definition = &bodies->definition;
-    size_t bytes = DEFINITION_BYTES;
-    if (HASH_COUNT(bodies->defined.entries) > DEFINED_MAX)
+    bodies->writer.sink = sink;
+    bodies->writer.user = user;
+    if (HASH_COUNT(bodies->defined) > DEFINED_MAX)
         set_clear(&bodies->defined);
     for (size_t i = 0; i < bodies->named_count; i++) {
         const struct handle *handle = &bodies->named[i];
-        const struct geometry *geometry = find_body(bodies, handle);
-        if (set_find(&bodies->defined, handle))
+        if (set_find(bodies->defined, handle))
             continue;
-        const size_t more = HANDLE_BYTES + geometry->size;
-        if (definition->body_count > 0 &&
-            (bytes + more > QUERY_BYTES_MAX || definition->body_count == QUERY_BODIES_MAX)) {
-            if (!write_definition(bodies, write, user))
-                return false;
-            bytes = DEFINITION_BYTES;
-        }
-        bytes += more;
-        definition->body[definition->body_count++] = (struct query_body){*handle, *geometry};
+        if (!definition_writer_add(&bodies->writer, handle, find_body(bodies, handle)))
+            return false;
         set_add(&bodies->defined, handle);
+        bodies->counts.defined++;
     }
-    return definition->body_count == 0 || write_definition(bodies, write, user);
+    return definition_writer_flush(&bodies->writer);
 }
 
 void record_bodies_begin_file(struct record_bodies *bodies)
@@ -402,76 +345,67 @@ void record_bodies_begin_file(struct record_bodies *bodies)
 /* ---- Requests ---------------------------------------------------------------------------------
  */
 
-/* After the first and the second request; after the third none comes. */
-static const int64_t retry_ns[] = {100000000, 1000000000, 10000000000};
-enum { TRIES = sizeof retry_ns / sizeof *retry_ns };
-
-static void publish_query(struct record_bodies *bodies)
-{
-    struct definition_query *query = &bodies->query;
-    query->utime = clock_utime();
-    query->client_id = bodies->client_id;
-    query->sequence_number = bodies->sequence_number++;
-    bodies->publish(bodies->user, bodies->bytes, wire_write_definition_query(query, bodies->bytes));
-}
-
-/* On output: when it is tried again. */
-static int64_t try_again(int *tries, int64_t now_ns)
-{
-    return *tries < TRIES ? now_ns + retry_ns[(*tries)++] : INT64_MAX;
-}
-
-static void request_all(struct record_bodies *bodies, int64_t now_ns)
-{
-    if (now_ns < bodies->all_next_ns)
-        return;
-    bodies->all_next_ns = try_again(&bodies->all_tries, now_ns);
-    if (bodies->all_next_ns == INT64_MAX)
-        return;
-    bodies->query.first = bodies->all_first;
-    bodies->query.handle_count = 0;
-    bodies->all_number = bodies->sequence_number;
-    publish_query(bodies);
-}
-
-/* Returns when the next one is due. */
-static int64_t request_wanted(struct record_bodies *bodies, int64_t now_ns)
-{
-    enum { HANDLES = 1024 };
-    int64_t next_ns = INT64_MAX;
-    bodies->query.first = bodies->query.handle_count = 0;
-    for (struct handle_entry *entry = bodies->wanted.entries; entry; entry = entry->hh.next) {
-        if (entry->next_ns <= now_ns && bodies->query.handle_count < HANDLES) {
-            entry->next_ns = try_again(&entry->tries, now_ns);
-            if (entry->next_ns != INT64_MAX)
-                bodies->query.handle[bodies->query.handle_count++] = entry->handle;
-        }
-        next_ns = entry->next_ns < next_ns ? entry->next_ns : next_ns;
-    }
-    if (bodies->query.handle_count > 0)
-        publish_query(bodies);
-    return next_ns;
-}
-
-int64_t record_bodies_request(struct record_bodies *bodies, int64_t now_ns)
+int64_t record_bodies_due(const struct record_bodies *bodies)
 {
     const int64_t step_ns = 10000000; /* between two requests, at least */
-    if (bodies->due_ns < bodies->requested_ns + step_ns)
-        bodies->due_ns = bodies->requested_ns + step_ns;
-    if (now_ns < bodies->due_ns)
-        return bodies->due_ns;
+    return !bodies->under_way && (bodies->more || bodies->wants) ? bodies->requested_ns + step_ns
+                                                                 : INT64_MAX;
+}
+
+/* On output: false if all wanted handles were requested before. */
+static bool choose_handles(struct record_bodies *bodies)
+{
+    enum { HANDLES = 1024 };
+    struct definition_query *query = &bodies->query;
+    query->first = query->handle_count = 0;
+    bodies->wants = false;
+    for (struct handle_entry *entry = bodies->wanted; entry; entry = entry->hh.next) {
+        if (entry->requested)
+            continue;
+        bodies->wants = query->handle_count == HANDLES;
+        if (bodies->wants)
+            break;
+        entry->requested = true;
+        query->handle[query->handle_count++] = entry->handle;
+    }
+    return query->handle_count > 0;
+}
+
+size_t record_bodies_request(struct record_bodies *bodies, int64_t now_ns,
+                             unsigned char out[QUERY_BYTES_MAX])
+{
+    if (now_ns < record_bodies_due(bodies) || (!bodies->more && !choose_handles(bodies)))
+        return 0;
+    bodies->query.utime = clock_utime();
     bodies->requested_ns = now_ns;
-    request_all(bodies, now_ns);
-    bodies->due_ns = request_wanted(bodies, now_ns);
-    if (bodies->all_next_ns < bodies->due_ns)
-        bodies->due_ns = bodies->all_next_ns;
-    return bodies->due_ns;
+    bodies->under_way = true;
+    bodies->more = false;
+    return wire_write_definition_query(&bodies->query, out);
+}
+
+/* The bodies were taken before: the result is a message on the bus. */
+void record_bodies_take_result(void *user, const struct fmb_client_raw_result *result)
+{
+    struct record_bodies *bodies = user;
+    struct definition_query *query = &bodies->query;
+    struct definition *definition = &bodies->message.definition;
+    bodies->under_way = false;
+    if (result->status == FMB_OK &&
+        !wire_read_definition(result->bytes, (uint32_t) result->size, bodies->hasher, definition)) {
+        bodies->more = definition->next != 0;
+        query->first = definition->next;
+    }
+    for (int32_t i = 0; i < query->handle_count && result->status < 0; i++) {
+        struct handle_entry *entry = set_find(bodies->wanted, &query->handle[i]);
+        if (entry)
+            entry->requested = false;
+    }
 }
 
 struct record_bodies_counts record_bodies_counts(const struct record_bodies *bodies)
 {
     struct record_bodies_counts counts = bodies->counts;
-    for (struct handle_entry *entry = bodies->wanted.entries; entry; entry = entry->hh.next)
+    for (struct handle_entry *entry = bodies->wanted; entry; entry = entry->hh.next)
         counts.unresolved += !find_body(bodies, &entry->handle);
     return counts;
 }
