@@ -61,48 +61,71 @@ void answers_bus_close(struct answers_bus *answers)
 
 /* ---- The query ---- */
 
-static struct fmb_client_placement placement_of(const struct scene_body *body)
+/* The numbers that the frame was made from. */
+static void set_frame(const struct fmb_frame *frame, struct fmb_client_frame *out)
 {
-    const int dim = body->body.dim;
-    struct fmb_client_placement out = {
-        .body_id = body->id, .shape = (int) body->body.shape, .dim = dim, .moving = body->moving};
-    for (int i = 0; i < body->body.count; i++)
-        memcpy(out.components + i * dim, body->body.component[i],
-               (size_t) dim * sizeof *out.components);
-    memcpy(out.position, body->origin, sizeof out.position);
+    const bool box = frame->shape == FMB_BOX;
+    *out = (struct fmb_client_frame){.shape = (int) frame->shape};
+    memcpy(out->origin, box ? frame->centre : frame->origin, sizeof out->origin);
+    for (int i = 0; i < frame->count; i++)
+        if (box)
+            out->components[i] = frame->component[i][i];
+        else
+            memcpy(out->components + i * frame->dim, frame->component[i],
+                   (size_t) frame->dim * sizeof *out->components);
+}
+
+static struct fmb_client_placement placement_of(const struct scene_body *body,
+                                                const struct fmb_client_frame *frames)
+{
+    struct fmb_client_placement out = {.body_id = body->id,
+                                       .dim = body->body.dim,
+                                       .frames = frames,
+                                       .frame_count = body->body.frame_count,
+                                       .orientation_count = body->orientation_count};
+    memcpy(out.position, body->position, sizeof out.position);
     memcpy(out.velocity, body->velocity, sizeof out.velocity);
+    memcpy(out.orientation, body->orientation, sizeof out.orientation);
     return out;
 }
 
-static struct fmb_client_placement *placements_of(const struct scene *scene)
+/* The bodies of a scene for the library. */
+struct placed {
+    struct fmb_client_placement *placement; /* owned, [body] */
+    struct fmb_client_frame *frame;         /* owned, of all bodies */
+};
+
+static struct placed placed_of(const struct scene *scene)
 {
-    struct fmb_client_placement *placement = allocate(scene->body_count, sizeof *placement);
+    size_t count = 0;
     for (size_t i = 0; i < scene->body_count; i++)
-        placement[i] = placement_of(&scene->body[i]);
-    return placement;
+        count += scene->body[i].body.frame_count;
+    const struct placed out = {allocate(scene->body_count, sizeof *out.placement),
+                               allocate(count, sizeof *out.frame)};
+    struct fmb_client_frame *frame = out.frame;
+    for (size_t i = 0; i < scene->body_count; i++) {
+        const struct scene_body *body = &scene->body[i];
+        out.placement[i] = placement_of(body, frame);
+        for (unsigned k = 0; k < body->body.frame_count; k++)
+            set_frame(fmb_body_frame(&body->body, k), frame++);
+    }
+    return out;
 }
 
-static unsigned (*pairs_of(const struct scene *scene))[2]
+static unsigned (*indices_of(const struct scene_pair *pairs, size_t count))[2]
 {
-    unsigned(*pair)[2] = allocate(scene->pair_count, sizeof *pair);
-    for (size_t i = 0; i < scene->pair_count; i++) {
-        pair[i][0] = (unsigned) scene->pair[i].a;
-        pair[i][1] = (unsigned) scene->pair[i].b;
+    unsigned(*pair)[2] = allocate(count, sizeof *pair);
+    for (size_t i = 0; i < count; i++) {
+        pair[i][0] = (unsigned) pairs[i].a;
+        pair[i][1] = (unsigned) pairs[i].b;
     }
     return pair;
 }
 
-static unsigned want_of(const struct answers_question *question, const struct scene *scene)
+static unsigned want_of(const struct answers_question *question)
 {
-    unsigned want = 0;
-    if (question->box)
-        want |= FMB_CLIENT_WANT_BOX;
-    if (question->certificate)
-        want |= FMB_CLIENT_WANT_CERTIFICATE;
-    for (size_t i = 0; i < scene->body_count; i++)
-        if (scene->body[i].moving)
-            want |= FMB_CLIENT_WANT_TIMES;
-    return want;
+    return FMB_CLIENT_WANT_TIMES | (question->box ? FMB_CLIENT_WANT_BOX : 0) |
+           (question->certificate ? FMB_CLIENT_WANT_CERTIFICATE : 0);
 }
 
 /* ---- The answers ---- */
@@ -170,22 +193,27 @@ static void query(struct answers_bus *answers, struct run *run)
 {
     const struct answers_question *question = &answers->question;
     const struct scene *scene = run->scene;
-    struct fmb_client_placement *placement = placements_of(scene);
-    unsigned(*pair)[2] = pairs_of(scene);
+    const struct placed placed = placed_of(scene);
+    unsigned(*pair)[2] = indices_of(scene->pair, scene->pair_count);
+    unsigned(*ignored)[2] = indices_of(scene->ignored, scene->ignored_count);
     const struct fmb_client_scene queried = {
-        .placements = placement,
+        .placements = placed.placement,
         .placement_count = scene->body_count,
         .which = scene->all_pairs ? FMB_CLIENT_ALL : FMB_CLIENT_LISTED,
-        .pairs = pair,
+        .pairs = (const unsigned(*)[2]) pair,
         .pair_count = scene->pair_count,
+        .ignored = (const unsigned(*)[2]) ignored,
+        .ignored_count = scene->ignored_count,
         .duration = scene->duration,
-        .want = want_of(question, scene),
+        .want = want_of(question),
         .method = question->method ? question->method->number : 0,
     };
     const int status = fmb_client_query(answers->client, &queried, take_answer, run);
     give_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
-    free(placement);
+    free(placed.placement);
+    free(placed.frame);
     free(pair);
+    free(ignored);
     advise(answers);
 }
 

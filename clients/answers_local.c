@@ -3,6 +3,7 @@
 #include "allocate.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* A text that grows to what certificates need. */
 struct text {
@@ -10,16 +11,16 @@ struct text {
     size_t room;
 };
 
-/* Of a checked pair. Most need a few dozen characters. */
-static const char *certificate(const struct fmb_pair *pair, struct text *text)
+/* Of a pair that was decided. Most need a few dozen characters. NULL: *status tells why. */
+static const char *certificate(const struct fmb_placement *a, const struct fmb_placement *b,
+                               double duration, struct text *text, enum fmb_status *status)
 {
     size_t length = 255;
-    enum fmb_status status;
     do {
         text->at = allocate_room(text->at, &text->room, length + 1, 1);
-        status = fmb_certificate(pair, text->at, text->room, &length);
-    } while (status == FMB_OVER_LIMIT);
-    return text->at;
+        *status = fmb_certificate(a, b, duration, text->at, text->room, &length);
+    } while (*status == FMB_OVER_LIMIT);
+    return *status == FMB_OK ? text->at : NULL;
 }
 
 void answers_local(const struct answers_question *question, const struct scene *scene,
@@ -31,11 +32,15 @@ void answers_local(const struct answers_question *question, const struct scene *
     struct outcome outcome;
     struct text text = {.at = NULL};
     while (scene_next_pair(scene, &cursor, &outcome.pair)) {
-        struct fmb_pair pair = scene_fmb_pair(scene, outcome.pair);
-        enum fmb_status status = fmb_decide(method, &pair, want, &outcome.answer);
+        const struct fmb_placement a = scene_placement(&scene->body[outcome.pair.a]);
+        const struct fmb_placement b = scene_placement(&scene->body[outcome.pair.b]);
+        enum fmb_status status = fmb_decide(method, &a, &b, scene->duration, want, &outcome.answer);
+        outcome.certificate = NULL;
+        if (question->certificate && status == FMB_OK)
+            outcome.certificate = certificate(&a, &b, scene->duration, &text, &status);
         outcome.error = status == FMB_OK ? NULL : fmb_status_text(status);
-        outcome.certificate =
-            question->certificate && !outcome.error ? certificate(&pair, &text) : NULL;
+        if (outcome.error)
+            memset(&outcome.answer, 0, sizeof outcome.answer);
         sink(user, scene, &outcome);
     }
     free(text.at);

@@ -100,20 +100,34 @@ static void keep_bodies(struct answerer *answerer, struct any_query *query)
 {
     int32_t count;
     const struct placement *placement = any_query_placements(query, &count);
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]) && scene_takes(&placement[i].geometry))
-            cache_keep(answerer_cache(answerer), 0, &placement[i].geometry);
+    struct cache *cache = answerer_cache(answerer);
+    struct handle handle;
+    for (int32_t i = 0; i < count; i++) {
+        if (!placement_by_handle(&placement[i]) || !scene_takes(&placement[i].geometry))
+            continue;
+        const struct cached *kept = cache_keep(cache, 0, &placement[i].geometry, &handle);
+        if (kept)
+            cache_release(cache, kept);
+    }
 }
 
 /* The status of a pair that its method cannot decide is no fault of the query. */
-static bool takes_pair(struct answerer *answerer, const struct pair_query *query,
+static bool takes_pair(struct answerer *answerer, const struct log_query *query,
                        char detail[QUERY_TEXT_MAX])
 {
-    struct pair_result *result = allocate(1, sizeof *result);
-    answer_pair(answerer, query, result);
-    const bool taken = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
+    struct pair_result alone, *result = &alone;
+    struct pair_job *job = pair_job_create();
+    if (!job)
+        allocate_failed();
+    if (!answer_pair(answerer, &query->query.pair, result)) {
+        pair_job_begin(job, answerer, query->bytes, query->size);
+        while (!pair_job_step(job))
+            continue;
+        result = pair_job_end(job, answerer);
+    }
     snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
-    free(result);
+    const bool taken = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
+    pair_job_destroy(job);
     return taken;
 }
 
@@ -125,9 +139,9 @@ static bool takes_scene(struct answerer *answerer, const struct log_query *query
     if (!job)
         allocate_failed();
     bool taken = scene_job_begin(job, query->bytes, query->size) == NULL;
-    while (taken && !scene_job_can_stop(job) && !scene_job_step(job, answerer))
+    while (taken && !scene_job_has_answers(job) && !scene_job_step(job, answerer))
         continue;
-    if (taken && !scene_job_can_stop(job)) {
+    if (taken && !scene_job_has_answers(job)) {
         const struct scene_result *result = scene_job_result(job);
         taken = result->status == FMB_OK;
         snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
@@ -138,13 +152,13 @@ static bool takes_scene(struct answerer *answerer, const struct log_query *query
 
 static bool takes(struct log_query *query, char detail[QUERY_TEXT_MAX])
 {
-    const struct answerer_options options = {.frames = QUERY_PLACEMENTS_MAX, .secret = {1, 1}};
+    const struct answerer_options options = {.frames = FMB_FRAMES_MAX, .secret = {1, 1}};
     struct answerer *answerer = answerer_create(&options);
     if (!answerer)
         allocate_failed();
     struct any_query *any = &query->query;
     keep_bodies(answerer, any);
-    const bool taken = any->kind == LOG_PAIR_QUERY ? takes_pair(answerer, &any->pair, detail)
+    const bool taken = any->kind == LOG_PAIR_QUERY ? takes_pair(answerer, query, detail)
                                                    : takes_scene(answerer, query, detail);
     answerer_destroy(answerer);
     return taken;

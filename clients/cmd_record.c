@@ -2,8 +2,10 @@
 #include "commands.h"
 
 #include "args.h"
-#include "bus.h"
+#include "bus_client.h"
 #include "clock.h"
+#include "complain.h"
+#include "fmb_client_raw.h"
 #include "log_choice.h"
 #include "log_write.h"
 #include "output.h"
@@ -12,6 +14,7 @@
 #include "signals.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,7 +62,7 @@ struct options {
 
 struct recording {
     const struct options *options;
-    struct bus *bus;
+    struct fmb_client *client;
     struct log_channels channels;
     struct log_choice others; /* channels of no service that are recorded too */
     struct log_parts parts;
@@ -186,33 +189,40 @@ static void on_message(void *user, const struct bus_message *message)
 
 /* ---- While it runs --------------------------------------------------------------------------- */
 
-enum end { END_ENOUGH, END_REQUESTED, END_BUS_FAILED, END_LOG_FAILED };
-
 static const int64_t line_ns = 250000000, check_ns = 1000000000;
 
 static void show_line(struct recording *recording, int64_t now_ns)
 {
     record_line_show(&recording->line, now_ns, recording->parts.name, recording->events,
                      log_parts_written(&recording->parts),
-                     (int64_t) bus_counts(recording->bus).dropped);
+                     (int64_t) fmb_client_raw_bus_counts(recording->client).dropped);
 }
 
-static enum end bus_failed(struct recording *recording)
+static bool bus_failed(struct recording *recording)
 {
     const int error = errno;
     record_line_end(&recording->line);
     fprintf(stderr, "fmb: the bus has failed: %s\n", strerror(error));
-    return END_BUS_FAILED;
+    return false;
 }
 
-/* Receives what waits, up to a limit, and has the system take it. */
-static bool receive(struct recording *recording)
+/* Sends the request for bodies that is due. A bus that fails is reported by the next step. */
+static void request_bodies(struct recording *recording, int64_t now_ns)
 {
-    enum { BATCHES = 64 };
-    int count = BUS_BATCH;
-    for (int i = 0; i < BATCHES && count == BUS_BATCH; i++)
-        if ((count = bus_receive(recording->bus, on_message, recording)) < 0)
-            return false;
+    unsigned char query[QUERY_BYTES_MAX];
+    const size_t size = record_bodies_request(recording->bodies, now_ns, query);
+    if (size > 0)
+        fmb_client_raw_send(recording->client, FMB_CLIENT_DEFINITION, query, size, sizeof query,
+                            record_bodies_take_result, recording->bodies);
+}
+
+/* Waits for messages until a time or a signal, records them, and passes them to the system. */
+static bool step(struct recording *recording, int signals, int64_t until_ns)
+{
+    const int64_t left_ns = until_ns - clock_ns();
+    if (fmb_client_raw_step(recording->client, signals, left_ns > 0 ? 1e-9 * (double) left_ns : 0) <
+        0)
+        return false;
     if (!recording->error && !log_parts_flush(&recording->parts))
         recording->error = errno;
     return true;
@@ -223,27 +233,22 @@ static int64_t least(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-static int wait_ms(int64_t now_ns, int64_t until_ns)
-{
-    return until_ns > now_ns ? (int) ((until_ns - now_ns + 999999) / 1000000) : 0;
-}
-
-static enum end run(struct recording *recording, int signals)
+/* Until the recording is complete, the log fails, or a signal comes. Returns false if the bus has
+ * failed, which was reported. */
+static bool run(struct recording *recording, int signals)
 {
     const double duration = recording->options->duration;
     const int64_t end_ns =
         duration > 0 ? recording->begin_ns + (int64_t) (1e9 * duration) : INT64_MAX;
     int64_t now_ns = recording->begin_ns, line_at_ns = now_ns, check_at_ns = now_ns;
-    while (!recording->enough && now_ns < end_ns) {
-        const int64_t due_ns = record_bodies_request(recording->bodies, now_ns);
-        const int64_t until_ns = least(least(due_ns, end_ns), least(line_at_ns, check_at_ns));
-        const int ready = bus_wait(recording->bus, signals, wait_ms(now_ns, until_ns));
-        if (ready < 0)
+    struct pollfd signal = {.fd = signals, .events = POLLIN};
+    while (!recording->enough && !recording->error && now_ns < end_ns) {
+        request_bodies(recording, now_ns);
+        const int64_t due_ns = record_bodies_due(recording->bodies);
+        if (!step(recording, signals, least(least(due_ns, end_ns), least(line_at_ns, check_at_ns))))
             return bus_failed(recording);
-        if (ready & 2)
-            return END_REQUESTED;
-        if (!receive(recording))
-            return bus_failed(recording);
+        if (poll(&signal, 1, 0) > 0)
+            return true;
         now_ns = clock_ns();
         if (now_ns >= line_at_ns) {
             show_line(recording, now_ns);
@@ -253,34 +258,33 @@ static enum end run(struct recording *recording, int signals)
             recording->error = log_parts_check(&recording->parts) ? 0 : errno;
             check_at_ns = now_ns + check_ns;
         }
-        if (recording->error)
-            return END_LOG_FAILED;
     }
-    return recording->enough ? END_ENOUGH : END_REQUESTED;
+    return true;
 }
 
 /* What was under way at the end: until something comes that was sent later, or nothing for some
  * time, but no longer than a second. */
-static enum end receive_rest(struct recording *recording)
+static bool receive_rest(struct recording *recording)
 {
-    enum { QUIET_MS = 20 };
-    const int64_t asked_utime = clock_utime(), end_ns = clock_ns() + 1000000000;
+    const int64_t quiet_ns = 20000000, asked_utime = clock_utime(), asked_ns = clock_ns();
+    int64_t now_ns = asked_ns, until_ns = now_ns + quiet_ns;
+    uint64_t received = 0;
     while (!recording->enough && !recording->error && recording->utime <= asked_utime &&
-           clock_ns() < end_ns && bus_wait(recording->bus, -1, QUIET_MS) > 0)
-        if (!receive(recording))
+           now_ns < until_ns) {
+        if (!step(recording, -1, until_ns))
             return bus_failed(recording);
-    return recording->error ? END_LOG_FAILED : END_REQUESTED;
+        const uint64_t before = received;
+        received = fmb_client_raw_bus_counts(recording->client).received;
+        now_ns = clock_ns();
+        if (received != before)
+            until_ns = least(now_ns + quiet_ns, asked_ns + 1000000000);
+    }
+    return true;
 }
 
 /* ---- Begin and end --------------------------------------------------------------------------- */
 
-static void publish(void *user, const void *bytes, size_t size)
-{
-    struct recording *recording = user;
-    bus_publish(recording->bus, recording->channels.name[LOG_DEFINITION_QUERY], bytes, size);
-}
-
-static int end_of_recording(struct recording *recording, enum end end)
+static int end_of_recording(struct recording *recording, bool good)
 {
     struct recorded *recorded = &recording->recorded;
     const int64_t end_ns = clock_ns();
@@ -290,30 +294,27 @@ static int end_of_recording(struct recording *recording, enum end end)
     recorded->bytes = log_parts_written(&recording->parts);
     recorded->seconds = 1e-9 * (double) (end_ns - recording->begin_ns);
     recorded->bodies = record_bodies_counts(recording->bodies);
-    recorded->bus = bus_counts(recording->bus);
+    recorded->bus = fmb_client_raw_bus_counts(recording->client);
     record_line_end(&recording->line);
     if (recording->error)
         log_write_complain(recording->parts.name, recording->error);
     record_report_losses(recorded);
     (recording->options->json ? record_report_json : record_report_text)(recorded,
                                                                          &recording->parts);
-    return output_flush() && !recording->error && end != END_BUS_FAILED ? ARGS_ANSWERED
-                                                                        : ARGS_FAILED;
+    return output_flush() && !recording->error && good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
 /* A file that may not grow is an error, not a signal. */
 static int record(struct recording *recording, int signals)
 {
     signal(SIGXFSZ, SIG_IGN);
-    recording->bodies = record_bodies_open(publish, recording);
+    recording->bodies = record_bodies_open(fmb_client_raw_id(recording->client));
     recording->begin_ns = clock_ns();
     recording->line = record_line_begin(recording->begin_ns);
     fprintf(stderr, "fmb: recording to %s, with a receive buffer of %ld bytes\n",
-            recording->parts.name, bus_counts(recording->bus).receive_buffer);
-    enum end end = run(recording, signals);
-    if (end == END_REQUESTED)
-        end = receive_rest(recording);
-    const int code = end_of_recording(recording, end);
+            recording->parts.name, fmb_client_raw_bus_counts(recording->client).receive_buffer);
+    const bool good = run(recording, signals) && receive_rest(recording);
+    const int code = end_of_recording(recording, good);
     record_bodies_close(recording->bodies);
     return code;
 }
@@ -342,17 +343,14 @@ static int record_from_bus(struct recording *recording)
 static bool open_bus(struct recording *recording, const struct args_bus *args)
 {
     const bool others = recording->options->all || recording->options->channel;
-    char why[BUS_WHY_MAX];
     recording->channels = log_channels(args->prefix);
-    recording->bus = bus_open(args->url, why);
-    bool ok = recording->bus != NULL;
-    for (int kind = 0; ok && !others && kind < LOG_OTHER; kind++)
-        ok = bus_listen(recording->bus, recording->channels.name[kind], why);
-    if (ok && others)
-        ok = bus_listen(recording->bus, NULL, why);
-    if (!ok)
-        fprintf(stderr, "fmb: %s\n", why);
-    return ok;
+    recording->client = bus_client_open(args, (struct fmb_client_options){0});
+    if (!recording->client)
+        return false;
+    const bool good = fmb_client_raw_listen(recording->client, others, on_message, recording);
+    if (!good)
+        complain(fmb_client_why(recording->client));
+    return good;
 }
 
 static bool choose_others(const struct args *args, struct recording *recording)
@@ -378,7 +376,7 @@ int cmd_record(int argc, char **argv)
         code = ARGS_USAGE;
     if (code == ARGS_RUN)
         code = open_bus(&recording, &args.bus) ? record_from_bus(&recording) : ARGS_FAILED;
-    bus_close(recording.bus);
+    fmb_client_close(recording.client);
     log_choice_clear(&recording.others);
     return code;
 }

@@ -1,15 +1,11 @@
 #include "definitions.h"
 
-#include "allocate.h"
+#include "any_query.h"
 #include "big_endian.h"
 #include "keyed_hash.h"
-#include "wire.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define uthash_malloc(size) allocate(1, size)
-#include <uthash.h>
 
 struct body {
     UT_hash_handle by_bytes, by_handle;
@@ -26,10 +22,8 @@ struct definitions {
     struct body *by_bytes, *by_handle; /* heads of the tables */
     struct body *unhashed;
     size_t bytes; /* of all bodies */
-    struct keyed_hash hash;
     struct hasher *hasher;
-    struct pair_query pair;
-    struct scene_query scene;
+    struct any_query query;
     struct definition definition;
 };
 
@@ -42,7 +36,6 @@ struct definitions *definitions_open(void)
     definitions->hasher = hasher_create();
     if (!definitions->hasher)
         allocate_failed();
-    definitions->hash = keyed_hash_make();
     return definitions;
 }
 
@@ -72,19 +65,16 @@ static bool has_frames(const struct geometry *geometry)
 
 bool definitions_add(struct definitions *definitions, const struct geometry *geometry)
 {
-    const unsigned value = keyed_hash_of(&definitions->hash, geometry->bytes, geometry->size);
     struct body *body;
     if (!has_frames(geometry))
         return false;
-    HASH_FIND_BYHASHVALUE(by_bytes, definitions->by_bytes, geometry->bytes, geometry->size, value,
-                          body);
+    HASH_FIND(by_bytes, definitions->by_bytes, geometry->bytes, geometry->size, body);
     if (body)
         return false;
     body = allocate(1, sizeof *body + geometry->size);
     memcpy(body->bytes, geometry->bytes, geometry->size);
     body->geometry = (struct geometry){body->bytes, geometry->size};
-    HASH_ADD_KEYPTR_BYHASHVALUE(by_bytes, definitions->by_bytes, body->bytes, body->geometry.size,
-                                value, body);
+    HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->geometry.size, body);
     definitions->bytes += sizeof *body + TABLE_BYTES + geometry->size;
     body->next = definitions->unhashed;
     definitions->unhashed = body;
@@ -98,30 +88,18 @@ bool definitions_add_placement(struct definitions *definitions, const struct pla
 
 static const char too_long[] = "longer than any message of this type";
 
-static void add_placements(struct definitions *definitions, const struct placement *placement,
-                           int32_t count)
-{
-    for (int32_t i = 0; i < count; i++)
-        definitions_add_placement(definitions, &placement[i]);
-}
-
 const char *definitions_add_query(struct definitions *definitions, const void *bytes, uint32_t size)
 {
-    struct scene_query *scene = &definitions->scene;
+    struct any_query *query = &definitions->query;
     struct query_header header;
+    int32_t count;
     if (size > QUERY_BYTES_MAX)
         return too_long;
-    if (!wire_read_pair_header(bytes, size, &header)) {
-        const char *error = wire_read_pair_query(bytes, size, &definitions->pair);
-        if (!error)
-            add_placements(definitions, definitions->pair.placement, 2);
-        return error;
-    }
-    const char *error = wire_read_scene_query(bytes, size, scene);
-    if (!error)
-        add_placements(definitions, scene->placement,
-                       scene->placement_count < QUERY_PLACEMENTS_MAX ? scene->placement_count
-                                                                     : QUERY_PLACEMENTS_MAX);
+    const bool pair = !wire_read_pair_header(bytes, size, &header);
+    const char *error = any_query_read(query, pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, bytes, size);
+    const struct placement *placement = any_query_placements(query, &count);
+    for (int32_t i = 0; !error && i < count; i++)
+        definitions_add_placement(definitions, &placement[i]);
     return error;
 }
 
@@ -140,31 +118,21 @@ const char *definitions_add_message(struct definitions *definitions, const void 
 /* ---- Finding ----------------------------------------------------------------------------------
  */
 
-static struct body *find(const struct definitions *definitions, const struct handle *handle)
-{
-    const unsigned value = keyed_hash_of(&definitions->hash, handle, sizeof *handle);
-    struct body *body;
-    HASH_FIND_BYHASHVALUE(by_handle, definitions->by_handle, handle, sizeof *handle, value, body);
-    return body;
-}
-
 static void compute_handles(struct definitions *definitions)
 {
     for (struct body *body; (body = definitions->unhashed) != NULL;) {
         definitions->unhashed = body->next;
         body->handle = hasher_handle(definitions->hasher, body->bytes, body->geometry.size);
-        const unsigned value =
-            keyed_hash_of(&definitions->hash, &body->handle, sizeof body->handle);
-        HASH_ADD_BYHASHVALUE(by_handle, definitions->by_handle, handle, sizeof body->handle, value,
-                             body);
+        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
     }
 }
 
 const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle)
 {
+    const struct body *body;
     compute_handles(definitions);
-    const struct body *body = find(definitions, handle);
+    HASH_FIND(by_handle, definitions->by_handle, handle, sizeof *handle, body);
     return body ? &body->geometry : NULL;
 }
 
@@ -176,4 +144,33 @@ size_t definitions_count(const struct definitions *definitions)
 size_t definitions_bytes(const struct definitions *definitions)
 {
     return definitions->bytes;
+}
+
+/* ---- Writing ----------------------------------------------------------------------------------
+ */
+
+bool definition_writer_flush(struct definition_writer *writer)
+{
+    if (writer->definition.body_count == 0)
+        return true;
+    const size_t size = wire_write_definition(&writer->definition, writer->bytes);
+    writer->definition.body_count = 0;
+    writer->size = 0;
+    return writer->sink(writer->user, writer->bytes, size);
+}
+
+/* One geometry fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
+ * shorter. */
+bool definition_writer_add(struct definition_writer *writer, const struct handle *handle,
+                           const struct geometry *geometry)
+{
+    struct definition *definition = &writer->definition;
+    const size_t size = HANDLE_BYTES + geometry->size;
+    if ((DEFINITION_BYTES + writer->size + size > QUERY_BYTES_MAX ||
+         definition->body_count == QUERY_BODIES_MAX) &&
+        !definition_writer_flush(writer))
+        return false;
+    writer->size += size;
+    definition->body[definition->body_count++] = (struct query_body){*handle, *geometry};
+    return true;
 }

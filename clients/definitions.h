@@ -9,7 +9,7 @@
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H
 
-#include "query.h"
+#include "wire.h"
 
 struct definitions;
 
@@ -39,5 +39,28 @@ const struct geometry *definitions_find(struct definitions *definitions,
 /* Number of bodies, and the bytes of memory that they take, tables included. */
 size_t definitions_count(const struct definitions *definitions);
 size_t definitions_bytes(const struct definitions *definitions);
+
+/* ---- Writing ---- */
+
+/* Bytes of a definition_t without bodies, of client 0 and server 0. */
+enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
+
+/* Writes a message. Returns false if it failed. */
+typedef bool definition_sink(void *user, const void *bytes, size_t size);
+
+/* Packs bodies into such messages. Set sink and user; the remainder is 0 at first. */
+struct definition_writer {
+    definition_sink *sink;
+    void *user;
+    size_t size; /* of the bodies in the message */
+    struct definition definition;
+    unsigned char bytes[QUERY_BYTES_MAX];
+};
+
+/* Adds a body, whose geometry must stay valid until it is written: at the latest by
+ * definition_writer_flush(). Return false if the sink does. */
+bool definition_writer_add(struct definition_writer *writer, const struct handle *handle,
+                           const struct geometry *geometry);
+bool definition_writer_flush(struct definition_writer *writer);
 
 #endif

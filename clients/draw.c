@@ -1,9 +1,9 @@
 #include "draw.h"
 
 #include "allocate.h"
+#include "escape.h"
 #include "number.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 /* Pixels. */
 enum { CAPTION_HEIGHT = 46, EDGE = 14, TICKS_HEIGHT = 16, TICKS_WIDTH = 34, TRIAD = 24 };
 
-/* More bodies than this cannot be labelled; their ids show when pointed at. */
+/* More bodies than this cannot be labelled; their names show when pointed at. */
 enum { LABELS_MAX = 80 };
 
 struct drawing {
@@ -178,22 +178,52 @@ static struct facet make_facet(const struct view *view, const struct outline *ou
     return facet;
 }
 
+static size_t frame_count(const struct panel *panel)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < panel->body_count; i++)
+        count += panel->body[i].body.frame_count;
+    return count;
+}
+
 static struct facet *make_facets(const struct drawing *drawing, size_t *count)
 {
     const struct panel *panel = drawing->panel;
-    struct facet *facets = allocate(panel->body_count * OUTLINE_FACES_MAX, sizeof *facets);
+    struct facet *facets = allocate(frame_count(panel) * OUTLINE_FACES_MAX, sizeof *facets);
     *count = 0;
-    for (size_t body = 0; body < panel->body_count; body++) {
-        struct outline outline = outline_make(&panel->body[body], 0);
-        for (int face = 0; face < outline.face_count; face++) {
-            struct facet *facet = &facets[*count];
-            *facet = make_facet(&drawing->view, &outline, face);
-            facet->body = body;
-            facet->order = (*count)++;
+    for (size_t body = 0; body < panel->body_count; body++)
+        for (unsigned frame = 0; frame < panel->body[body].body.frame_count; frame++) {
+            struct outline outline = outline_make(&panel->body[body], frame, 0);
+            for (int face = 0; face < outline.face_count; face++) {
+                struct facet *facet = &facets[*count];
+                *facet = make_facet(&drawing->view, &outline, face);
+                facet->body = body;
+                facet->order = (*count)++;
+            }
         }
-    }
     qsort(facets, *count, sizeof *facets, by_depth);
     return facets;
+}
+
+/* The middle of a body's frames at this time. */
+static struct point middle_of(const struct drawing *drawing, size_t body, double time)
+{
+    const struct scene_body *of = &drawing->panel->body[body];
+    const unsigned count = of->body.frame_count;
+    double centre[FMB_DIM_MAX] = {0};
+    for (unsigned frame = 0; frame < count; frame++) {
+        struct outline outline = outline_make(of, frame, time);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            centre[axis] += outline.centre[axis] / count;
+    }
+    return view_point(&drawing->view, centre);
+}
+
+static void write_label(const struct drawing *drawing, const struct scene_body *body)
+{
+    char text[SCENE_LABEL_MAX];
+    const char *label = scene_label(body, text);
+    escape(drawing->out, ESCAPE_XML, label, strlen(label));
 }
 
 static const char *verdict_text(enum fmb_verdict verdict)
@@ -211,10 +241,11 @@ static void draw_facet(const struct drawing *drawing, const struct facet *facet)
         fprintf(drawing->out, " class=\"back\" stroke=\"%s\"/>\n", stroke);
         return;
     }
-    fprintf(drawing->out,
-            " class=\"%s\" fill=\"%s\" stroke=\"%s\"><title>%" PRId64 ": %s</title></path>\n",
+    fprintf(drawing->out, " class=\"%s\" fill=\"%s\" stroke=\"%s\"><title>",
             drawing->panel->dim == 2 ? "flat" : "front", draw_colour(verdict, facet->light, fill),
-            stroke, drawing->panel->body[facet->body].id, verdict_text(verdict));
+            stroke);
+    write_label(drawing, &drawing->panel->body[facet->body]);
+    fprintf(drawing->out, ": %s</title></path>\n", verdict_text(verdict));
 }
 
 static void draw_facets(const struct drawing *drawing)
@@ -233,18 +264,18 @@ static bool goes_anywhere(const struct panel *panel, const struct scene_body *bo
     bool still = true;
     for (int axis = 0; axis < panel->dim; axis++)
         still = still && body->velocity[axis] == 0;
-    return body->moving && panel->duration > 0 && !still;
+    return panel->duration > 0 && !still;
 }
 
 /* An arrow shorter than its head is none. */
 static const double arrow_min_px = 5;
 
-static void draw_motion(const struct drawing *drawing, size_t body)
+static void draw_ghost(const struct drawing *drawing, size_t body, unsigned frame)
 {
     char stroke[8];
-    struct outline start = outline_make(&drawing->panel->body[body], 0);
-    struct outline end = outline_make(&drawing->panel->body[body], drawing->panel->duration);
-    draw_colour(drawing->panel->verdict[body], 0, stroke);
+    const struct panel *panel = drawing->panel;
+    struct outline end = outline_make(&panel->body[body], frame, panel->duration);
+    draw_colour(panel->verdict[body], 0, stroke);
     for (int face = 0; face < end.face_count; face++) {
         struct facet facet = make_facet(&drawing->view, &end, face);
         if (!facet.front)
@@ -252,8 +283,14 @@ static void draw_motion(const struct drawing *drawing, size_t body)
         draw_polygon(drawing, facet.point, facet.count);
         fprintf(drawing->out, " class=\"ghost\" stroke=\"%s\"/>\n", stroke);
     }
-    struct point from = view_point(&drawing->view, start.centre);
-    struct point to = view_point(&drawing->view, end.centre);
+}
+
+static void draw_motion(const struct drawing *drawing, size_t body)
+{
+    for (unsigned frame = 0; frame < drawing->panel->body[body].body.frame_count; frame++)
+        draw_ghost(drawing, body, frame);
+    struct point from = middle_of(drawing, body, 0);
+    struct point to = middle_of(drawing, body, drawing->panel->duration);
     if (hypot(to.x - from.x, to.y - from.y) >= arrow_min_px)
         draw_line(drawing, from, to, "class=\"arrow\" marker-end=\"url(#head)\"");
 }
@@ -267,8 +304,11 @@ static void draw_box_title(const struct drawing *drawing, const struct panel_box
 {
     const struct scene_body *body = drawing->panel->body;
     char text[REPORT_TEXT_MAX];
-    fprintf(drawing->out, "<title>%" PRId64 " and %" PRId64 ": %s", body[box->pair.a].id,
-            body[box->pair.b].id, verdict_text(box->answer.verdict));
+    fputs("<title>", drawing->out);
+    write_label(drawing, &body[box->pair.a]);
+    fputs(" and ", drawing->out);
+    write_label(drawing, &body[box->pair.b]);
+    fprintf(drawing->out, ": %s", verdict_text(box->answer.verdict));
     if (box->answer.has_contact)
         fprintf(drawing->out, ", %s", report_contact_text(&box->answer, text));
     fputs("</title>\n", drawing->out);
@@ -334,13 +374,14 @@ static void draw_labels(const struct drawing *drawing)
     if (panel->body_count > LABELS_MAX)
         return;
     for (size_t i = 0; i < panel->body_count; i++) {
-        char text[NUMBER_TEXT_MAX];
-        struct outline outline = outline_make(&panel->body[i], 0);
-        struct point at = view_point(&drawing->view, outline.centre);
-        int length = snprintf(text, sizeof text, "%" PRId64, panel->body[i].id);
+        char text[SCENE_LABEL_MAX];
+        struct point at = middle_of(drawing, i, 0);
+        const double length = (double) escape_characters(scene_label(&panel->body[i], text));
         placed[i] = place_label((struct label){at.x, at.y, 3.6 * length}, placed, i);
-        draw_text(drawing, placed[i].x, placed[i].y + 4, "class=\"id\" text-anchor=\"middle\"",
-                  text);
+        fprintf(drawing->out, "<text x=\"%.1f\" y=\"%.1f\" class=\"id\" text-anchor=\"middle\">",
+                placed[i].x, placed[i].y + 4);
+        write_label(drawing, &panel->body[i]);
+        fputs("</text>\n", drawing->out);
     }
 }
 

@@ -1,7 +1,7 @@
 #include "escape.h"
 
-#include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 static const uint32_t replacement = 0xfffd;
 
@@ -51,6 +51,11 @@ static const char *json_of(uint32_t code, char text[16])
     return text;
 }
 
+static bool is_control(uint32_t code)
+{
+    return code < ' ' || (code >= 0x7f && code < 0xa0);
+}
+
 static const char *xml_of(uint32_t code)
 {
     switch (code) {
@@ -60,8 +65,7 @@ static const char *xml_of(uint32_t code)
     case '"': return "&quot;";
     case '\n': return NULL;
     }
-    const bool control = code < ' ' || (code >= 0x7f && code < 0xa0);
-    return control || (code >= replacement && code <= 0xffff) ? "\xef\xbf\xbd" : NULL;
+    return is_control(code) || (code >= replacement && code <= 0xffff) ? "\xef\xbf\xbd" : NULL;
 }
 
 void escape(FILE *out, enum escape form, const char *text, size_t size)
@@ -80,4 +84,25 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
         at += length;
     }
     fwrite(kept, 1, (size_t) (at - kept), out);
+}
+
+bool escape_is_text(const char *text)
+{
+    const unsigned char *at = (const unsigned char *) text;
+    size_t left = strlen(text), length;
+    for (; left > 0; at += length, left -= length) {
+        uint32_t code;
+        length = decode(at, left, &code);
+        if (is_control(code) || (code == replacement && length == 1))
+            return false;
+    }
+    return true;
+}
+
+size_t escape_characters(const char *text)
+{
+    size_t count = 0;
+    for (; *text; text++)
+        count += ((unsigned char) *text & 0xc0) != 0x80;
+    return count;
 }

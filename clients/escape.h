@@ -1,7 +1,8 @@
-/* Escapes text for JSON and XML. */
+/* Text in UTF-8: checks it, and escapes it for JSON and XML. */
 #ifndef ESCAPE_H
 #define ESCAPE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -13,5 +14,11 @@ enum escape { ESCAPE_JSON, ESCAPE_XML };
  * written in printable ASCII. In XML, control characters other than the line feed become U+FFFD
  * too. */
 void escape(FILE *out, enum escape form, const char *text, size_t size);
+
+/* Whether the text is valid UTF-8 without control characters. */
+bool escape_is_text(const char *text);
+
+/* The number of its characters. */
+size_t escape_characters(const char *text);
 
 #endif

@@ -8,8 +8,11 @@
 #include "json.h"
 
 #include "allocate.h"
+#include "escape.h"
+#include "fmb_client.h"
 #include "number.h"
 #include "text.h"
+#include "turned_box.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -195,7 +198,7 @@ static bool read_id(struct json_reader *reader, const struct place *place, const
     return true;
 }
 
-/* ---- Bodies ---------------------------------------------------------------------------------- */
+/* ---- Frames ---------------------------------------------------------------------------------- */
 
 static bool read_shape(struct json_reader *reader, const struct place *place, const cJSON *item,
                        int dim, int *out)
@@ -210,51 +213,280 @@ static bool read_shape(struct json_reader *reader, const struct place *place, co
         return fmb_component_count(dim, shape) > 0 ||
                refuse(reader, place, "there is no %s in %dD", fmb_shape_name(shape), dim);
     }
-    return refuse(reader, place, "unknown shape \"%s\" (there are cuboid, tetrahedron, face)",
+    return refuse(reader, place, "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box)",
                   quoted(item->valuestring, text));
 }
 
 static bool read_components(struct json_reader *reader, const struct place *place,
-                            const cJSON *item, int dim, int shape, struct fmb_body *out)
+                            const cJSON *item, int dim, int shape, double *out)
 {
     size_t count = (size_t) fmb_component_count(dim, shape);
-    double components[FMB_COMPONENTS_MAX];
     if (!check_array(reader, place, item, count, "vectors"))
         return false;
     struct place at = {place, NULL, 0};
     for (const cJSON *child = item->child; child; child = child->next, at.index++)
-        if (!read_vector(reader, &at, child, dim, components + at.index * (size_t) dim))
+        if (!read_vector(reader, &at, child, dim, out + at.index * (size_t) dim))
             return false;
-    enum fmb_status status = fmb_body_make(dim, shape, components, count * (size_t) dim, out);
+    return true;
+}
+
+static bool read_size(struct json_reader *reader, const struct place *place, const cJSON *item,
+                      int dim, double *out)
+{
+    if (!read_vector(reader, place, item, dim, out))
+        return false;
+    for (int axis = 0; axis < dim; axis++) {
+        struct place at = {place, NULL, (size_t) axis};
+        if (out[axis] < 0)
+            return refuse_value(reader, &at, out[axis], "a number of at least 0");
+    }
+    return true;
+}
+
+/* Whether the engine takes it. item: NULL for none. */
+static bool read_orientation(struct json_reader *reader, const struct place *place,
+                             const cJSON *item, int dim, double out[4], int *count)
+{
+    static const double size[FMB_DIM_MAX] = {1, 1, 1};
+    struct fmb_body body;
+    *count = item ? (dim == 2 ? 2 : 4) : 0;
+    if (item && !read_vector(reader, place, item, *count, out))
+        return false;
+    if (item && out[0] == 0 && out[1] == 0 && (dim == 2 || (out[2] == 0 && out[3] == 0)))
+        return refuse(reader, place, "a quaternion of zeros is no rotation");
+    fmb_body_make(dim, FMB_BOX, size, (size_t) dim, &body);
+    struct fmb_placement placement = {.body = &body, .orientation_count = *count};
+    memcpy(placement.orientation, out, (size_t) *count * sizeof *out);
+    return fmb_placement_check(&placement) == FMB_OK ||
+           refuse(reader, place, "the numbers differ in size by more than 2^200");
+}
+
+/* The keys of a frame come first: a body may be one. */
+enum { SHAPE, ORIGIN, COMPONENTS, SIZE, POSITION, ORIENTATION, FRAME_KEYS };
+enum { ID = FRAME_KEYS, NAME, VELOCITY, FRAMES, BODY_KEYS };
+
+static const struct key body_keys[BODY_KEYS] = {
+    [SHAPE] = {"shape", true},
+    [ORIGIN] = {"origin", true},
+    [COMPONENTS] = {"components", true},
+    [SIZE] = {"size", true},
+    [POSITION] = {"position", true},
+    [ORIENTATION] = {"orientation", true},
+    [ID] = {"id", false},
+    [NAME] = {"name", true},
+    [VELOCITY] = {"velocity", true},
+    [FRAMES] = {"frames", true},
+};
+
+/* An object, its values by key, and their places. */
+struct members {
+    struct place place[BODY_KEYS];
+    const cJSON *value[BODY_KEYS];
+};
+
+static bool read_members(struct json_reader *reader, const struct place *place, const cJSON *item,
+                         int keys, struct members *out)
+{
+    for (int i = 0; i < keys; i++)
+        out->place[i] = (struct place){place, body_keys[i].name, 0};
+    return read_object(reader, place, item, body_keys, keys, out->value);
+}
+
+/* Refuses the first of the keys that is there: of things that have no such member. */
+static bool check_absent(struct json_reader *reader, const struct place *place,
+                         const struct members *of, const int *keys, int count, const char *what)
+{
+    for (int i = 0; i < count; i++)
+        if (of->value[keys[i]])
+            return refuse(reader, place, "%s has no \"%s\"", what, body_keys[keys[i]].name);
+    return true;
+}
+
+static bool check_present(struct json_reader *reader, const struct place *place,
+                          const struct members *of, int key)
+{
+    return of->value[key] || refuse(reader, place, "missing key \"%s\"", body_keys[key].name);
+}
+
+/* A frame being read: its shape, and its numbers as fmb_frame_make() takes them. */
+struct frame_numbers {
+    int shape;
+    double number[FMB_DIM_MAX + FMB_COMPONENTS_MAX]; /* origin, components | centre, size */
+    size_t count;
+};
+
+static bool read_box(struct json_reader *reader, const struct place *place,
+                     const struct members *of, int dim, struct frame_numbers *out)
+{
+    static const int others[] = {ORIGIN, COMPONENTS};
+    out->count = 2 * (size_t) dim;
+    return check_absent(reader, place, of, others, 2, "a box") &&
+           check_present(reader, place, of, SIZE) &&
+           read_size(reader, &of->place[SIZE], of->value[SIZE], dim, out->number + dim);
+}
+
+/* Of a frame of components. Without "origin" it is 0. */
+static bool read_parts(struct json_reader *reader, const struct place *place,
+                       const struct members *of, int dim, struct frame_numbers *out)
+{
+    static const int others[] = {SIZE};
+    out->count = (size_t) (dim + dim * fmb_component_count(dim, out->shape));
+    if (!check_absent(reader, place, of, others, 1, "a frame of components") ||
+        !check_present(reader, place, of, COMPONENTS))
+        return false;
+    return (!of->value[ORIGIN] ||
+            read_vector(reader, &of->place[ORIGIN], of->value[ORIGIN], dim, out->number)) &&
+           read_components(reader, &of->place[COMPONENTS], of->value[COMPONENTS], dim, out->shape,
+                           out->number + dim);
+}
+
+static bool read_numbers(struct json_reader *reader, const struct place *place,
+                         const struct members *of, int dim, struct frame_numbers *out)
+{
+    *out = (struct frame_numbers){.shape = 0};
+    if (!check_present(reader, place, of, SHAPE) ||
+        !read_shape(reader, &of->place[SHAPE], of->value[SHAPE], dim, &out->shape))
+        return false;
+    return (out->shape == FMB_BOX ? read_box : read_parts)(reader, place, of, dim, out);
+}
+
+/* Whether any number beyond the first is not 0. */
+static bool turns(const double *orientation, int count)
+{
+    for (int i = 1; i < count; i++)
+        if (orientation[i] != 0)
+            return true;
+    return false;
+}
+
+/* Where a box lies in its body. One that is turned there becomes a cuboid. */
+static bool read_box_place(struct json_reader *reader, const struct members *of, int dim,
+                           struct frame_numbers *box)
+{
+    double orientation[4] = {0}, centre_size[2 * FMB_DIM_MAX];
+    int count;
+    if (of->value[POSITION] &&
+        !read_vector(reader, &of->place[POSITION], of->value[POSITION], dim, box->number))
+        return false;
+    if (!read_orientation(reader, &of->place[ORIENTATION], of->value[ORIENTATION], dim, orientation,
+                          &count))
+        return false;
+    if (!turns(orientation, count))
+        return true;
+    memcpy(centre_size, box->number, sizeof centre_size);
+    turned_box(dim, centre_size, centre_size + dim, orientation, box->number);
+    box->shape = FMB_CUBOID;
+    box->count = (size_t) (dim + dim * dim);
+    return true;
+}
+
+/* An element of "frames". */
+static bool read_frame(struct json_reader *reader, const struct place *place, const cJSON *item,
+                       int dim, struct fmb_frame *out)
+{
+    static const int others[] = {POSITION, ORIENTATION};
+    struct members members;
+    struct frame_numbers frame;
+    if (!read_members(reader, place, item, FRAME_KEYS, &members) ||
+        !read_numbers(reader, place, &members, dim, &frame))
+        return false;
+    if (frame.shape == FMB_BOX
+            ? !read_box_place(reader, &members, dim, &frame)
+            : !check_absent(reader, place, &members, others, 2, "a frame of components"))
+        return false;
+    const enum fmb_status status = fmb_frame_make(dim, frame.shape, frame.number, frame.count, out);
     return status == FMB_OK || refuse(reader, place, "%s", fmb_status_text(status));
 }
 
-enum { ID, SHAPE, ORIGIN, COMPONENTS, VELOCITY, BODY_KEYS };
+/* ---- Bodies ---------------------------------------------------------------------------------- */
 
-static const struct key body_keys[BODY_KEYS] = {
-    [ID] = {"id", false},
-    [SHAPE] = {"shape", false},
-    [ORIGIN] = {"origin", false},
-    [COMPONENTS] = {"components", false},
-    [VELOCITY] = {"velocity", true},
-};
+/* Bytes in a message: a shape, and 8 for each number. */
+static size_t frames_bytes(const struct fmb_frame *frames, size_t count)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < count; i++) {
+        const int vectors = frames[i].shape == FMB_BOX ? 2 : 1 + frames[i].count;
+        bytes += 1 + 8 * (size_t) (vectors * frames[i].dim);
+    }
+    return bytes;
+}
+
+static bool read_frames(struct json_reader *reader, const struct place *place, const cJSON *item,
+                        int dim, struct scene_body *out)
+{
+    if (!cJSON_IsArray(item))
+        return refuse_kind(reader, place, item, "an array");
+    const size_t count = (size_t) cJSON_GetArraySize(item);
+    out->frames = allocate(count, sizeof *out->frames);
+    struct place at = {place, NULL, 0};
+    for (const cJSON *child = item->child; child; child = child->next, at.index++)
+        if (!read_frame(reader, &at, child, dim, &out->frames[at.index]))
+            return false;
+    const size_t bytes = frames_bytes(out->frames, count);
+    if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
+        return refuse(reader, place, "%s: %zu bytes in a message, which has space for %d",
+                      fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
+    const enum fmb_status status = fmb_body_make_frames(out->frames, count, &out->body);
+    return status == FMB_OK || refuse(reader, place, "%s", fmb_status_text(status));
+}
+
+/* A body that is one frame. Its "origin", if it has neither "position" nor "orientation", is its
+ * position. */
+static bool read_only_frame(struct json_reader *reader, const struct place *place,
+                            const struct members *of, int dim, struct scene_body *out)
+{
+    struct frame_numbers frame;
+    if (!read_numbers(reader, place, of, dim, &frame))
+        return false;
+    if (frame.shape != FMB_BOX && !of->value[POSITION] && !of->value[ORIENTATION]) {
+        if (!check_present(reader, place, of, ORIGIN))
+            return false;
+        memcpy(out->position, frame.number, (size_t) dim * sizeof *frame.number);
+        memset(frame.number, 0, (size_t) dim * sizeof *frame.number);
+    }
+    const enum fmb_status status =
+        fmb_body_make(dim, frame.shape, frame.number, frame.count, &out->body);
+    return status == FMB_OK || refuse(reader, place, "%s", fmb_status_text(status));
+}
+
+static bool read_name(struct json_reader *reader, const struct place *place, const cJSON *item,
+                      char out[SCENE_NAME_MAX + 1])
+{
+    if (!item)
+        return true;
+    if (!cJSON_IsString(item))
+        return refuse_kind(reader, place, item, "a string");
+    if (strlen(item->valuestring) > SCENE_NAME_MAX)
+        return refuse(reader, place, "expected at most %d bytes, found %zu", (int) SCENE_NAME_MAX,
+                      strlen(item->valuestring));
+    if (!escape_is_text(item->valuestring))
+        return refuse(reader, place, "expected UTF-8 without control characters");
+    strcpy(out, item->valuestring);
+    return true;
+}
 
 static bool read_body(struct json_reader *reader, const struct place *place, const cJSON *item,
                       int dim, struct scene_body *out)
 {
-    const cJSON *value[BODY_KEYS];
-    if (!read_object(reader, place, item, body_keys, BODY_KEYS, value))
+    static const int of_frames[] = {SHAPE, ORIGIN, COMPONENTS, SIZE};
+    struct members members;
+    if (!read_members(reader, place, item, BODY_KEYS, &members))
         return false;
-    struct place at[BODY_KEYS];
-    for (int i = 0; i < BODY_KEYS; i++)
-        at[i] = (struct place){place, body_keys[i].name, 0};
-    out->moving = value[VELOCITY] != NULL;
-    int shape = 0;
-    return read_id(reader, &at[ID], value[ID], &out->id) &&
-           read_shape(reader, &at[SHAPE], value[SHAPE], dim, &shape) &&
-           read_vector(reader, &at[ORIGIN], value[ORIGIN], dim, out->origin) &&
-           read_components(reader, &at[COMPONENTS], value[COMPONENTS], dim, shape, &out->body) &&
-           (!out->moving ||
+    const struct place *at = members.place;
+    const cJSON *const *value = members.value;
+    if (!read_id(reader, &at[ID], value[ID], &out->id) ||
+        !read_name(reader, &at[NAME], value[NAME], out->name))
+        return false;
+    const bool good = value[FRAMES] ? check_absent(reader, place, &members, of_frames, 4,
+                                                   "a body of \"frames\"") &&
+                                          read_frames(reader, &at[FRAMES], value[FRAMES], dim, out)
+                                    : read_only_frame(reader, place, &members, dim, out);
+    return good &&
+           (!value[POSITION] ||
+            read_vector(reader, &at[POSITION], value[POSITION], dim, out->position)) &&
+           read_orientation(reader, &at[ORIENTATION], value[ORIENTATION], dim, out->orientation,
+                            &out->orientation_count) &&
+           (!value[VELOCITY] ||
             read_vector(reader, &at[VELOCITY], value[VELOCITY], dim, out->velocity));
 }
 
@@ -266,9 +498,9 @@ static bool read_bodies(struct json_reader *reader, const cJSON *item, struct sc
     out->body = allocate((size_t) cJSON_GetArraySize(item), sizeof *out->body);
     struct place at = {&place, NULL, 0};
     for (const cJSON *child = item->child; child; child = child->next, at.index++) {
+        out->body_count++;
         if (!read_body(reader, &at, child, out->dim, &out->body[at.index]))
             return false;
-        out->body_count++;
     }
     return true;
 }
@@ -294,22 +526,46 @@ static bool read_pair(struct json_reader *reader, const struct place *place, con
            refuse(reader, place, "a body is no pair with itself (%lld)", (long long) id);
 }
 
-static bool read_pairs(struct json_reader *reader, const cJSON *item, const struct scene_ids *ids,
-                       struct scene *out)
+static bool read_list(struct json_reader *reader, const struct place *place, const cJSON *item,
+                      const struct scene_ids *ids, struct scene_pair **list, size_t *count)
 {
-    struct place place = {NULL, "pairs", 0};
-    out->all_pairs = !item;
-    if (!item)
-        return true;
     if (!cJSON_IsArray(item))
-        return refuse_kind(reader, &place, item, "an array");
-    out->pair = allocate((size_t) cJSON_GetArraySize(item), sizeof *out->pair);
-    struct place at = {&place, NULL, 0};
+        return refuse_kind(reader, place, item, "an array");
+    *list = allocate((size_t) cJSON_GetArraySize(item), sizeof **list);
+    struct place at = {place, NULL, 0};
     for (const cJSON *child = item->child; child; child = child->next, at.index++) {
-        if (!read_pair(reader, &at, child, ids, &out->pair[at.index]))
+        if (!read_pair(reader, &at, child, ids, &(*list)[at.index]))
             return false;
-        out->pair_count++;
+        ++*count;
     }
+    return true;
+}
+
+/* No listed pair is ignored. */
+static bool check_listed(struct json_reader *reader, const struct place *pairs,
+                         const struct scene *scene)
+{
+    for (size_t i = 0; i < scene->pair_count; i++) {
+        struct place at = {pairs, NULL, i};
+        if (scene_ignores(scene, scene->pair[i]))
+            return refuse(reader, &at, "\"ignore\" has this pair too");
+    }
+    return true;
+}
+
+static bool read_pairs(struct json_reader *reader, const cJSON *pairs, const cJSON *ignore,
+                       const struct scene_ids *ids, struct scene *out)
+{
+    const struct place of_pairs = {NULL, "pairs", 0}, of_ignore = {NULL, "ignore", 0};
+    out->all_pairs = !pairs;
+    if (pairs && !read_list(reader, &of_pairs, pairs, ids, &out->pair, &out->pair_count))
+        return false;
+    if (ignore && !read_list(reader, &of_ignore, ignore, ids, &out->ignored, &out->ignored_count))
+        return false;
+    scene_sort_ignored(out);
+    if (!check_listed(reader, &of_pairs, out))
+        return false;
+    out->ignored_count = out->all_pairs ? out->ignored_count : 0;
     return true;
 }
 
@@ -323,13 +579,14 @@ static bool refuse_repeated_id(struct json_reader *reader, const struct scene *s
                   (long long) scene->body[second].id, first);
 }
 
-static bool link_pairs(struct json_reader *reader, const cJSON *item, struct scene *out)
+static bool link_pairs(struct json_reader *reader, const cJSON *pairs, const cJSON *ignore,
+                       struct scene *out)
 {
     struct scene_ids ids;
     size_t first, second;
     scene_ids_make(out, &ids);
     bool unique = !scene_ids_repeated(&ids, &first, &second);
-    bool good = unique ? read_pairs(reader, item, &ids, out)
+    bool good = unique ? read_pairs(reader, pairs, ignore, &ids, out)
                        : refuse_repeated_id(reader, out, first, second);
     scene_ids_clear(&ids);
     return good;
@@ -360,13 +617,11 @@ static bool read_duration(struct json_reader *reader, const cJSON *item, struct 
            refuse_value(reader, &place, out->duration, "a number of at least 0");
 }
 
-enum { DIM, DURATION, BODIES, PAIRS, SCENE_KEYS };
+enum { DIM, DURATION, BODIES, PAIRS, IGNORE, SCENE_KEYS };
 
 static const struct key scene_keys[SCENE_KEYS] = {
-    [DIM] = {"dim", false},
-    [DURATION] = {"duration", true},
-    [BODIES] = {"bodies", false},
-    [PAIRS] = {"pairs", true},
+    [DIM] = {"dim", false},    [DURATION] = {"duration", true}, [BODIES] = {"bodies", false},
+    [PAIRS] = {"pairs", true}, [IGNORE] = {"ignore", true},
 };
 
 static bool read_scene(struct json_reader *reader, const cJSON *item, struct scene *out)
@@ -374,7 +629,8 @@ static bool read_scene(struct json_reader *reader, const cJSON *item, struct sce
     const cJSON *value[SCENE_KEYS];
     return read_object(reader, NULL, item, scene_keys, SCENE_KEYS, value) &&
            read_dim(reader, value[DIM], out) && read_duration(reader, value[DURATION], out) &&
-           read_bodies(reader, value[BODIES], out) && link_pairs(reader, value[PAIRS], out);
+           read_bodies(reader, value[BODIES], out) &&
+           link_pairs(reader, value[PAIRS], value[IGNORE], out);
 }
 
 /* ---- The input ------------------------------------------------------------------------------- */

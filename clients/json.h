@@ -2,15 +2,34 @@
  * one line that names the place. The form:
  *
  *     {"dim": 3, "duration": 1.0,
- *      "bodies": [{"id": 1, "shape": "cuboid", "origin": [0,0,0],
- *                  "components": [[1,0,0],[0,1,0],[0,0,1]], "velocity": [0,0,0]}],
- *      "pairs": [[1,2]]}
+ *      "bodies": [{"id": 1, "name": "table", "shape": "box", "size": [2,1,0.25],
+ *                  "position": [0,0,0.125]},
+ *                 {"id": 2, "position": [0.5,0,0.5], "orientation": [0.9239,0,0,0.3827],
+ *                  "velocity": [0,0,-0.1],
+ *                  "frames": [{"shape": "box", "size": [0.1,0.1,0.2], "position": [0,0,0.1]},
+ *                             {"shape": "tetrahedron", "origin": [0,0,0],
+ *                              "components": [[1,0,0],[0,1,0],[0,0,1]]}]},
+ *                 {"id": 3, "shape": "cuboid", "origin": [0,0,0],
+ *                  "components": [[1,0,0],[0,1,0],[0,0,1]]}],
+ *      "ignore": [[1,3]]}
  *
- * dim (2 or 3) and bodies must be there, and each body's id, shape, origin and components.
- * Numbers are taken as the doubles they read as, ids too: 1e0 is the id 1, and of integers beyond
- * 2^53 - 1, which two texts may share, none is an id. Missing duration: 1. Missing pairs: all, in
- * body order. Keys may come in any order, but once. An input holds one or more such objects, one
- * after the other. */
+ * dim (2 or 3) and bodies are required, and each body's id. A body has frames, or is one frame
+ * itself. A frame is a box of full size, or has components. Numbers are taken as the doubles they
+ * read as, ids too: 1e0 is the id 1, and no integer beyond 2^53 - 1, which two texts may share, is
+ * an id. Keys may come in any order, but once. What is missing:
+ *
+ * - duration: 1.
+ * - pairs: all but those to ignore, in body order.
+ * - position and origin: 0. (A body that is one frame of components needs one of position,
+ *   orientation and origin.)
+ * - orientation: not turned. velocity: at rest.
+ *
+ * origin of a body that is one frame is its position, unless it has position or orientation too;
+ * then, as in frames, it is in body coordinates. In frames, position and orientation belong to
+ * boxes alone: the place of the box in its body. A box that is turned there becomes a cuboid, whose
+ * numbers are rounded once (turned_box.h).
+ *
+ * An input holds one or more such objects, one after the other. */
 #ifndef JSON_H
 #define JSON_H
 

@@ -1,5 +1,6 @@
 #include "keyed_hash.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
@@ -56,4 +57,14 @@ unsigned keyed_hash_of(const struct keyed_hash *hash, const void *key, size_t si
     for (int i = 0; i < 3; i++)
         mix(v);
     return (unsigned) (v[0] ^ v[1] ^ v[2] ^ v[3]);
+}
+
+unsigned keyed_hash_value(const void *key, size_t size)
+{
+    static struct keyed_hash hash;
+    static bool made;
+    if (!made)
+        hash = keyed_hash_make();
+    made = true;
+    return keyed_hash_of(&hash, key, size);
 }

@@ -1,10 +1,19 @@
-/* A keyed hash for tables (uthash) with keys from untrusted input: without the secret, no sender
- * can compute keys that collide. uthash's own functions have no secret. */
+/* Hash tables: uthash with a keyed hash, and with allocation that exits with status 1 on failure.
+ * Keys come from untrusted input: without the secret, no sender can compute keys that collide.
+ * uthash's own functions have no secret. Include this in place of uthash.h.
+ *
+ * For one thread at a time. */
 #ifndef KEYED_HASH_H
 #define KEYED_HASH_H
 
+#include "allocate.h"
+
 #include <stddef.h>
 #include <stdint.h>
+
+#define uthash_malloc(size) allocate(1, size)
+#define HASH_FUNCTION(key, size, value) ((value) = keyed_hash_value(key, size))
+#include <uthash.h>
 
 struct keyed_hash {
     uint64_t secret[2];
@@ -15,5 +24,8 @@ struct keyed_hash keyed_hash_make(void);
 
 /* SipHash-1-3 of `size` bytes. The value depends on the machine's byte order. */
 unsigned keyed_hash_of(const struct keyed_hash *hash, const void *key, size_t size);
+
+/* The same with one secret for all tables, made when it is first used. */
+unsigned keyed_hash_value(const void *key, size_t size);
 
 #endif

@@ -19,8 +19,8 @@ struct outline {
     const struct outline_face *face;
 };
 
-/* The frame at this time, in seconds. */
-struct outline outline_make(const struct scene_body *body, double time);
+/* Frame `index` of a body at this time, in seconds. */
+struct outline outline_make(const struct scene_body *body, unsigned index, double time);
 
 /* The same of an axis-aligned box. */
 struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double high[FMB_DIM_MAX]);

@@ -7,9 +7,11 @@
 
 static void add_to_bounds(struct panel *panel, const struct scene_body *body)
 {
-    struct outline start = outline_make(body, 0), end = outline_make(body, panel->duration);
-    view_add(&panel->bounds, &start, panel->dim);
-    view_add(&panel->bounds, &end, panel->dim);
+    for (unsigned frame = 0; frame < body->body.frame_count; frame++)
+        for (int end = 0; end < 2; end++) {
+            struct outline outline = outline_make(body, frame, end ? panel->duration : 0);
+            view_add(&panel->bounds, &outline, panel->dim);
+        }
 }
 
 void panel_take_scene(struct panel *panel, const struct scene *scene, size_t bodies_max)
@@ -23,7 +25,7 @@ void panel_take_scene(struct panel *panel, const struct scene *scene, size_t bod
     panel->verdict = allocate(panel->body_count, sizeof *panel->verdict);
     panel->bounds = view_nothing();
     for (size_t i = 0; i < panel->body_count; i++) {
-        panel->body[i] = scene->body[i];
+        panel->body[i] = scene_body_copy(&scene->body[i]);
         add_to_bounds(panel, &panel->body[i]);
     }
 }
@@ -54,6 +56,8 @@ void panel_take_outcome(struct panel *panel, const struct outcome *outcome, size
 
 void panel_clear(struct panel *panel)
 {
+    for (size_t i = 0; i < panel->body_count; i++)
+        scene_body_clear(&panel->body[i]);
     free(panel->body);
     free(panel->verdict);
     free(panel->box);

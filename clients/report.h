@@ -53,7 +53,7 @@ struct report_text {
     FILE *out;
     bool box; /* boxes were asked for: a column more */
     size_t scenes;
-    int id_width;
+    int id_width;                        /* of names, or else ids */
     struct report_columns columns;       /* of the scene */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
 };

@@ -1,6 +1,7 @@
 #include "report.h"
 
-#include <inttypes.h>
+#include "escape.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +28,7 @@ static struct report_columns columns_for(const struct scene *scene)
     struct report_columns columns = report_columns();
     for (size_t i = 0; i < scene->body_count; i++)
         for (int axis = 0; axis < scene->dim; axis++)
-            if (fabs(scene->body[i].origin[axis]) >= large_end)
+            if (fabs(scene->body[i].position[axis]) >= large_end)
                 columns.box[axis][0] = columns.box[axis][1] = LARGE_END_WIDTH;
     return columns;
 }
@@ -97,9 +98,17 @@ static void write_certificate(FILE *out, int column, const char *certificate)
     putc('\n', out);
 }
 
-static int width_of(int64_t id)
+/* In characters. */
+static int label_width(const struct scene_body *body)
 {
-    return snprintf(NULL, 0, "%" PRId64, id);
+    char text[SCENE_LABEL_MAX];
+    return (int) escape_characters(scene_label(body, text));
+}
+
+static void write_label(FILE *out, int width, const struct scene_body *body)
+{
+    char text[SCENE_LABEL_MAX];
+    fprintf(out, "  %*s%s", width - label_width(body), "", scene_label(body, text));
 }
 
 static const char *plural(uint64_t count)
@@ -115,8 +124,8 @@ static void text_begin(struct report *report, const struct scene *scene)
     text->columns = columns_for(scene);
     text->id_width = 1;
     for (size_t i = 0; i < scene->body_count; i++)
-        if (width_of(scene->body[i].id) > text->id_width)
-            text->id_width = width_of(scene->body[i].id);
+        if (label_width(&scene->body[i]) > text->id_width)
+            text->id_width = label_width(&scene->body[i]);
     uint64_t count = scene_count_pairs(scene);
     fprintf(text->out, "%sscene %zu: %zu bod%s in %dD, %s pair%s, 0 to %s s\n",
             text->scenes > 0 ? "\n" : "", text->scenes + 1, scene->body_count,
@@ -134,8 +143,9 @@ static void text_pair(struct report *report, const struct scene *scene,
                       const struct outcome *outcome)
 {
     struct report_text *text = (struct report_text *) report;
-    fprintf(text->out, "  %*" PRId64 "  %*" PRId64 "  ", text->id_width,
-            scene->body[outcome->pair.a].id, text->id_width, scene->body[outcome->pair.b].id);
+    write_label(text->out, text->id_width, &scene->body[outcome->pair.a]);
+    write_label(text->out, text->id_width, &scene->body[outcome->pair.b]);
+    fputs("  ", text->out);
     if (outcome->error)
         fprintf(text->out, "not decided: %s", outcome->error);
     else

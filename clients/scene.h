@@ -9,15 +9,31 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { SCENE_NAME_MAX = 64 }; /* bytes */
+
 struct scene_body {
-    int64_t id; /* 1 to 2^53-1, unique in the scene */
-    struct fmb_body body;
-    double origin[FMB_DIM_MAX];
-    double velocity[FMB_DIM_MAX]; /* per second; 0 where not moving */
-    bool moving;                  /* carries a velocity, zero included */
+    int64_t id;                    /* 1 to 2^53-1, unique in the scene */
+    char name[SCENE_NAME_MAX + 1]; /* UTF-8 without control characters; "": none */
+    struct fmb_body body;          /* of one frame, or of those in frames */
+    struct fmb_frame *frames;      /* owned; NULL: one, held in body */
+    double position[FMB_DIM_MAX];
+    double velocity[FMB_DIM_MAX]; /* per second */
+    double orientation[4];
+    int orientation_count; /* 0, 4 (2D: 2) */
 };
 
-/* Indices of two different bodies, in the orientation asked. */
+/* A copy, for scene_body_clear(). */
+struct scene_body scene_body_copy(const struct scene_body *body);
+void scene_body_clear(struct scene_body *body);
+
+/* The body as the engine takes it. It points into the scene's body. */
+struct fmb_placement scene_placement(const struct scene_body *body);
+
+/* The name, or else the id, written into text. */
+enum { SCENE_LABEL_MAX = 24 };
+const char *scene_label(const struct scene_body *body, char text[SCENE_LABEL_MAX]);
+
+/* Indices of two different bodies. */
 struct scene_pair {
     size_t a, b;
 };
@@ -27,28 +43,34 @@ struct scene {
     double duration; /* seconds, >= 0 */
     size_t body_count;
     struct scene_body *body; /* owned */
-    bool all_pairs;          /* i before j, in body order: never stored, there may be many */
+    bool all_pairs;          /* i before j, in body order, minus ignored; not stored */
     size_t pair_count;       /* of those listed; 0 with all_pairs */
     struct scene_pair *pair; /* owned; NULL with all_pairs */
+    /* With all_pairs, those that are left out: a < b, in the order of (a, b), each once. */
+    size_t ignored_count;
+    struct scene_pair *ignored; /* owned */
 };
 
 /* Frees what the scene owns and leaves it empty. All 0 is an empty scene. */
 void scene_clear(struct scene *scene);
 
+/* Sorts the ignored pairs as above; each has two different indices, in any order. */
+void scene_sort_ignored(struct scene *scene);
+
+/* Whether the pair is among the ignored ones, in either order. */
+bool scene_ignores(const struct scene *scene, struct scene_pair pair);
+
 uint64_t scene_count_pairs(const struct scene *scene);
 
-/* Runs over the pairs in the order asked; start with all 0. */
+/* Iterates over the pairs in the order of the scene; all 0 at first. */
 struct scene_cursor {
-    size_t next; /* listed pairs: index of the next one */
-    size_t a, b; /* all pairs: the last one given */
+    size_t next; /* index of the next listed pair, or of the next ignored one */
+    size_t a, b; /* all pairs: the last one */
 };
 
 /* On output: true and *out, or false after the last one. */
 bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor,
                      struct scene_pair *out);
-
-/* The pair as the engine takes it. It points into the scene. */
-struct fmb_pair scene_fmb_pair(const struct scene *scene, struct scene_pair pair);
 
 /* From ids to indices in O(log n), after O(n log n). */
 struct scene_ids {

@@ -1,7 +1,6 @@
 #include "scene_of_query.h"
 
 #include "allocate.h"
-#include "big_endian.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -9,33 +8,52 @@
 
 /* ---- Bodies ---- */
 
-static bool read_body(const struct geometry *geometry, struct fmb_body *out)
+/* On output: what *out owns is to be freed even if it returns false. */
+static bool read_body(const struct geometry *geometry, struct scene_body *out)
 {
+    struct geometry_reader reader = geometry_begin(geometry);
     struct geometry_frame frame;
-    int dim;
-    if (big_endian_32(geometry->bytes + 4) != 1 || !geometry_read(geometry, &dim, &frame))
-        return false;
-    for (int axis = 0; axis < dim; axis++)
-        if (frame.origin[axis] != 0)
+    const size_t count = (size_t) reader.frames_left;
+    const bool several = count > 1;
+    if (several)
+        out->frames = allocate(count, sizeof *out->frames);
+    for (size_t i = 0; i < count; i++) {
+        double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
+        if (!geometry_next(&reader, &frame))
             return false;
-    return fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), out) ==
-           FMB_OK;
+        const int used = geometry_number_count(reader.dim, frame.shape);
+        memcpy(numbers, frame.origin, (size_t) reader.dim * sizeof *numbers);
+        memcpy(numbers + reader.dim, frame.components,
+               (size_t) (used - reader.dim) * sizeof *numbers);
+        const enum fmb_status status =
+            several
+                ? fmb_frame_make(reader.dim, frame.shape, numbers, (size_t) used, &out->frames[i])
+                : fmb_body_make(reader.dim, frame.shape, numbers, (size_t) used, &out->body);
+        if (status != FMB_OK)
+            return false;
+    }
+    if (reader.numbers_left > 0)
+        return false;
+    return !several ? count == 1 : fmb_body_make_frames(out->frames, count, &out->body) == FMB_OK;
 }
 
 bool scene_takes(const struct geometry *geometry)
 {
-    struct fmb_body body;
-    return read_body(geometry, &body);
+    struct scene_body body = {.id = 0};
+    const bool taken = read_body(geometry, &body);
+    scene_body_clear(&body);
+    return taken;
 }
 
 static void set_body(const struct placement *placement, struct scene_body *out)
 {
-    const bool taken = read_body(&placement->geometry, &out->body);
+    const bool taken = read_body(&placement->geometry, out);
     assert(taken);
     (void) taken;
-    memcpy(out->origin, placement->position, sizeof out->origin);
+    memcpy(out->position, placement->position, sizeof out->position);
     memcpy(out->velocity, placement->velocity, sizeof out->velocity);
-    out->moving = placement->velocity_count > 0;
+    memcpy(out->orientation, placement->orientation, sizeof out->orientation);
+    out->orientation_count = placement->orientation_count;
 }
 
 static int compare(const void *left, const void *right)
@@ -102,6 +120,8 @@ static void add(struct list *list, size_t a, size_t b)
         list->skip--;
         return;
     }
+    if (scene_ignores(scene, (struct scene_pair){a, b}))
+        return;
     scene->pair =
         allocate_room(scene->pair, &list->room, scene->pair_count + 1, sizeof *scene->pair);
     scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
@@ -121,10 +141,20 @@ static void list_all(struct list *list)
             add(list, a, b);
 }
 
+static void set_ignored(const struct scene_query *query, struct scene *scene)
+{
+    scene->ignored_count = (size_t) (query->ignored_count / 2);
+    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
+    for (size_t k = 0; k < scene->ignored_count; k++)
+        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
+    scene_sort_ignored(scene);
+}
+
 static void set_pairs(const struct scene_query *query, struct scene *scene)
 {
     struct list list = {.scene = scene, .skip = query->first_pair};
     scene->all_pairs = query->which == QUERY_PAIRS_ALL && query->first_pair == 0;
+    set_ignored(query, scene);
     if (query->which == QUERY_PAIRS_ACROSS)
         list_across(&list, (size_t) query->split);
     else if (query->which == QUERY_PAIRS_LISTED)
@@ -132,6 +162,7 @@ static void set_pairs(const struct scene_query *query, struct scene *scene)
             add(&list, query->pair[k][0], query->pair[k][1]);
     else if (!scene->all_pairs)
         list_all(&list);
+    scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
 }
 
 void scene_of_query(const struct any_query *query, struct scene *out)

@@ -12,8 +12,7 @@
  * placement has the same: then it gets the lowest free id. */
 void scene_of_query(const struct any_query *query, struct scene *out);
 
-/* Whether a scene can have this body: one frame that the engine takes, at the origin of body
- * coordinates. */
+/* Whether a scene can have this body: frames that the engine takes. */
 bool scene_takes(const struct geometry *geometry);
 
 #endif

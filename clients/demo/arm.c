@@ -1,12 +1,13 @@
 /* Prints scenes for fmb query: a robot arm that swings over a table with parts on it, in six
  * steps of a quarter of a second, one scene and one line each.
  *
- * Within a step a frame does not turn: each link stands as its joints say at the start of the
- * step, and goes straight to where its middle is at the end. The table, and what rests on it, are
- * laid out in multiples of 1/64 m, which doubles hold exactly: so what rests touches, and nothing
- * is a rounding error above or below. */
+ * Within a step a body does not turn: each link has the orientation that its joints have at the
+ * start of the step, and moves straight to where its middle is at the end. The table, and what
+ * rests on it, have positions and sizes in multiples of 1/64 m, which doubles hold exactly: so what
+ * rests touches. Neighbouring links always meet at their joint: these pairs are ignored. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { STEPS = 6, LINKS = 3 };
 
@@ -26,75 +27,59 @@ enum id {
     PUCK = 25,  /* slides over the table */
 };
 
-/* Frames as they are printed: metres, seconds. */
-struct frame {
+/* A body as it is printed: metres, seconds. */
+struct body {
     int id;
-    const char *shape;
-    double origin[3];
+    const char *name;
+    double size[3]; /* of a box; 0: the components of a tetrahedron */
+    double position[3];
     double component[3][3]; /* [component][axis] */
-    int moving;
+    double orientation[4];  /* w, x, y, z; all 0: none */
     double velocity[3];
 };
 
 /* The parts rest on the table's top at z = 3/4, the lid on the crate at z = 7/8. */
-static const struct frame still[] = {
-    {TABLE,
-     "cuboid",
-     {0.3125, -0.625, 0.6875},
-     {{0.75, 0, 0}, {0, 1.25, 0}, {0, 0, 0.0625}},
-     0,
-     {0}},
-    {COLUMN, "cuboid", {-0.125, -0.125, 0.5}, {{0.25, 0, 0}, {0, 0.25, 0}, {0, 0, 0.375}}, 0, {0}},
-    {CRATE,
-     "cuboid",
-     {0.625, -0.0625, 0.75},
-     {{0.1875, 0, 0}, {0, 0.1875, 0}, {0, 0, 0.125}},
-     0,
-     {0}},
-    {LID,
-     "cuboid",
-     {0.640625, -0.046875, 0.875},
-     {{0.15625, 0, 0}, {0, 0.15625, 0}, {0, 0, 0.03125}},
-     0,
-     {0}},
+static const struct body still[] = {
+    {TABLE, "table", {0.75, 1.25, 0.0625}, {0.6875, 0, 0.71875}, {{0}}, {0}, {0}},
+    {COLUMN, "column", {0.25, 0.25, 0.375}, {0, 0, 0.6875}, {{0}}, {0}, {0}},
+    {CRATE, "crate", {0.1875, 0.1875, 0.125}, {0.71875, 0.03125, 0.8125}, {{0}}, {0}, {0}},
+    {LID, "lid", {0.15625, 0.15625, 0.03125}, {0.71875, 0.03125, 0.890625}, {{0}}, {0}, {0}},
     {WEDGE,
-     "tetrahedron",
+     "wedge",
+     {0},
      {0.578125, 0.359375, 0.75},
      {{0.1875, 0.0625, 0}, {-0.03125, 0.1875, 0}, {0, 0, 0.25}},
-     0,
+     {0},
      {0}},
     {SPIKE,
-     "tetrahedron",
+     "spike",
+     {0},
      {0.875, 0.1875, 0.75},
      {{0.125, 0, 0}, {0, 0.125, 0}, {0.03125, 0.03125, 0.25}},
-     0,
+     {0},
      {0}},
     {PUCK,
-     "cuboid",
-     {0.375, -0.5, 0.75},
-     {{0.125, 0, 0}, {0, 0.125, 0}, {0, 0, 0.0625}},
-     1,
+     "puck",
+     {0.125, 0.125, 0.0625},
+     {0.4375, -0.4375, 0.78125},
+     {{0}},
+     {0},
      {0.0625, 0.25, 0}},
 };
 enum { STILL = sizeof still / sizeof *still };
 
-static const int pairs[][2] = {
-    {CRATE, TABLE},   {LID, CRATE},       {WEDGE, TABLE},   {SPIKE, TABLE},   {PUCK, TABLE},
-    {PUCK, CRATE},    {UPPER_ARM, TABLE}, {FOREARM, TABLE}, {FOREARM, CRATE}, {FOREARM, LID},
-    {FOREARM, SPIKE}, {GRIPPER, TABLE},   {GRIPPER, CRATE}, {GRIPPER, LID},   {GRIPPER, WEDGE},
-    {GRIPPER, SPIKE}, {GRIPPER, PUCK},
-};
-enum { PAIRS = sizeof pairs / sizeof *pairs };
+static const int ignored[][2] = {{COLUMN, UPPER_ARM}, {UPPER_ARM, FOREARM}, {FOREARM, GRIPPER}};
+enum { IGNORED = sizeof ignored / sizeof *ignored };
 
 /* ---- The arm --------------------------------------------------------------------------------- */
 
-struct link {
+static const struct link {
     int id;
-    double length, width, height; /* metres */
-};
-
-static const struct link links[LINKS] = {
-    {UPPER_ARM, 0.50, 0.11, 0.11}, {FOREARM, 0.45, 0.09, 0.08}, {GRIPPER, 0.17, 0.10, 0.05}};
+    const char *name;
+    double size[3]; /* length, width, height; metres */
+} links[LINKS] = {{UPPER_ARM, "upper arm", {0.50, 0.11, 0.11}},
+                  {FOREARM, "forearm", {0.45, 0.09, 0.08}},
+                  {GRIPPER, "gripper", {0.17, 0.10, 0.05}}};
 
 static const double shoulder[3] = {0, 0, 0.93};
 
@@ -112,100 +97,98 @@ static struct pose pose_at(int step)
                          .pitch = {56 - 8 * dip, -30 - 6 * dip, -78 - 6 * dip}};
 }
 
-/* The link's frame, which begins in the middle of a face at *joint; moves *joint to its end. */
-static struct frame place_link(const struct link *link, double waist, double pitch, double joint[3])
+/* The link begins at *joint, turned by the pitch about y, then by the waist about z; moves *joint
+ * to its end. */
+static struct body place_link(const struct link *link, double waist, double pitch, double joint[3])
 {
-    double a = waist * degree, p = pitch * degree;
-    double along[3] = {cos(a) * cos(p), sin(a) * cos(p), sin(p)};
-    double side[3] = {-sin(a), cos(a), 0};
-    double up[3] = {-cos(a) * sin(p), -sin(a) * sin(p), cos(p)};
-    struct frame frame = {.id = link->id, .shape = "cuboid", .moving = 1};
+    const double a = waist * degree, p = pitch * degree;
+    const double along[3] = {cos(a) * cos(p), sin(a) * cos(p), sin(p)};
+    struct body body = {.id = link->id, .name = link->name};
+    memcpy(body.size, link->size, sizeof body.size);
     for (int axis = 0; axis < 3; axis++) {
-        frame.origin[axis] =
-            joint[axis] - side[axis] * link->width / 2 - up[axis] * link->height / 2;
-        frame.component[0][axis] = along[axis] * link->length;
-        frame.component[1][axis] = side[axis] * link->width;
-        frame.component[2][axis] = up[axis] * link->height;
-        joint[axis] += frame.component[0][axis];
+        body.position[axis] = joint[axis] + along[axis] * link->size[0] / 2;
+        joint[axis] += along[axis] * link->size[0];
     }
-    return frame;
+    body.orientation[0] = cos(a / 2) * cos(p / 2);
+    body.orientation[1] = sin(a / 2) * sin(p / 2);
+    body.orientation[2] = -cos(a / 2) * sin(p / 2);
+    body.orientation[3] = sin(a / 2) * cos(p / 2);
+    return body;
 }
 
-static void place_arm(const struct pose *pose, struct frame out[LINKS])
+static void place_arm(const struct pose *pose, struct body out[LINKS])
 {
     double joint[3] = {shoulder[0], shoulder[1], shoulder[2]};
     for (int i = 0; i < LINKS; i++)
         out[i] = place_link(&links[i], pose->waist, pose->pitch[i], joint);
 }
 
-static double middle(const struct frame *frame, int axis)
-{
-    return frame->origin[axis] +
-           (frame->component[0][axis] + frame->component[1][axis] + frame->component[2][axis]) / 2;
-}
-
 /* The links at the start of the step, with the velocities that take them to the next one. */
-static void make_arm(int step, struct frame out[LINKS])
+static void make_arm(int step, struct body out[LINKS])
 {
-    struct frame next[LINKS];
+    struct body next[LINKS];
     struct pose here = pose_at(step), there = pose_at(step + 1);
     place_arm(&here, out);
     place_arm(&there, next);
     for (int i = 0; i < LINKS; i++)
         for (int axis = 0; axis < 3; axis++)
-            out[i].velocity[axis] = (middle(&next[i], axis) - middle(&out[i], axis)) / step_s;
+            out[i].velocity[axis] = (next[i].position[axis] - out[i].position[axis]) / step_s;
 }
 
 /* What slides has come further, by whole 64ths of a metre. */
-static struct frame still_at(int index, int step)
+static struct body still_at(int index, int step)
 {
-    struct frame frame = still[index];
+    struct body body = still[index];
     for (int axis = 0; axis < 3; axis++)
-        frame.origin[axis] += step * step_s * frame.velocity[axis];
-    return frame;
+        body.position[axis] += step * step_s * body.velocity[axis];
+    return body;
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------ */
 
-static void print_vector(const double v[3])
+static void print_vector(const char *key, const double *v, int count)
 {
-    printf("[%.17g,%.17g,%.17g]", v[0], v[1], v[2]);
+    printf("%s[", key);
+    for (int i = 0; i < count; i++)
+        printf("%s%.17g", i ? "," : "", v[i]);
+    printf("]");
 }
 
-static void print_frame(const struct frame *frame)
+static void print_body(const struct body *body)
 {
-    printf("{\"id\": %d, \"shape\": \"%s\", \"origin\": ", frame->id, frame->shape);
-    print_vector(frame->origin);
-    printf(", \"components\": [");
-    for (int i = 0; i < 3; i++) {
-        printf("%s", i ? "," : "");
-        print_vector(frame->component[i]);
+    printf("{\"id\": %d, \"name\": \"%s\", ", body->id, body->name);
+    if (body->size[0] > 0) {
+        print_vector("\"shape\": \"box\", \"size\": ", body->size, 3);
+    } else {
+        printf("\"shape\": \"tetrahedron\", \"components\": [");
+        for (int i = 0; i < 3; i++)
+            print_vector(i ? "," : "", body->component[i], 3);
+        printf("]");
     }
-    printf("]");
-    if (frame->moving) {
-        printf(", \"velocity\": ");
-        print_vector(frame->velocity);
-    }
+    print_vector(", \"position\": ", body->position, 3);
+    if (body->orientation[0] != 0)
+        print_vector(", \"orientation\": ", body->orientation, 4);
+    print_vector(", \"velocity\": ", body->velocity, 3);
     printf("}");
 }
 
 static void print_scene(int step)
 {
-    struct frame arm[LINKS];
+    struct body arm[LINKS];
     make_arm(step, arm);
     printf("{\"dim\": 3, \"duration\": %.17g, \"bodies\": [", step_s);
     for (int i = 0; i < STILL; i++) {
-        struct frame frame = still_at(i, step);
-        printf("%s", i ? ", " : "");
-        print_frame(&frame);
+        struct body body = still_at(i, step);
+        print_body(&body);
+        printf(", ");
     }
     for (int i = 0; i < LINKS; i++) {
-        printf(", ");
-        print_frame(&arm[i]);
+        print_body(&arm[i]);
+        printf("%s", i + 1 < LINKS ? ", " : "");
     }
-    printf("], \"pairs\": [");
-    for (int i = 0; i < PAIRS; i++)
-        printf("%s[%d,%d]", i ? "," : "", pairs[i][0], pairs[i][1]);
+    printf("], \"ignore\": [");
+    for (int i = 0; i < IGNORED; i++)
+        printf("%s[%d,%d]", i ? "," : "", ignored[i][0], ignored[i][1]);
     printf("]}\n");
 }
 

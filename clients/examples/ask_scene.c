@@ -11,21 +11,25 @@ static void print_contact(void *user, const struct fmb_client_answer *answer)
     const int64_t a = placement[answer->a].body_id, b = placement[answer->b].body_id;
     if (answer->status)
         printf("%d and %d: %s\n", (int) a, (int) b, answer->text);
-    else if (answer->answer.has_contact)
+    else
         printf("%d and %d: %s from %g s\n", (int) a, (int) b,
                fmb_verdict_name((int) answer->answer.verdict), answer->answer.contact[0]);
-    else
-        printf("%d and %d: %s\n", (int) a, (int) b, fmb_verdict_name((int) answer->answer.verdict));
 }
 
 int main(void)
 {
+    const struct fmb_client_frame table = {.shape = FMB_BOX, .components = {9, 9, 1}};
+    const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
     struct fmb_client_placement placement[4] = {
-        {1, FMB_CUBOID, 3, false, {9, 0, 0, 0, 9, 0, 0, 0, 1}, {0, 0, -1}, {0}}, /* the table */
-        {2, FMB_CUBOID, 3, false, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 1, 0}, {0}},
-        {3, FMB_CUBOID, 3, false, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {2.5, 1, 0}, {0}},
-        {4, FMB_CUBOID, 3, true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {3.25, 1, 2}, {0, 0, -2}},
+        {.body_id = 1, .frames = &table, .position = {4.5, 4.5, -0.5}},
+        {.body_id = 2, .frames = &cube, .position = {1.5, 1.5, 0.5}},
+        {.body_id = 3, .frames = &cube, .position = {3, 1.5, 0.5}},
+        {.body_id = 4, .frames = &cube, .position = {3.75, 1.5, 2.5}, .velocity = {0, 0, -2}},
     };
+    for (int i = 0; i < 4; i++) {
+        placement[i].dim = 3;
+        placement[i].frame_count = 1;
+    }
     const struct fmb_client_scene scene = {.placements = placement,
                                            .placement_count = 4,
                                            .which = FMB_CLIENT_ALL,

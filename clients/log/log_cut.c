@@ -4,16 +4,12 @@
 #include "definitions.h"
 #include "log_survey.h"
 #include "log_write.h"
-#include "wire.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* Bytes between two reports of progress. */
-enum { PROGRESS_BYTES = 1 << 20 };
 
 struct cut {
     const struct log_cut_options *options;
@@ -23,11 +19,10 @@ struct cut {
     struct input input;
     struct log_writer *output; /* NULL: not opened */
     struct log_survey survey;
-    int64_t event;            /* number of the event that is being copied, over all logs */
-    int64_t passed, reported; /* bytes */
-    bool failed, begun;       /* begun: the definitions are written */
-    struct definition definition;
-    unsigned char bytes[QUERY_BYTES_MAX];
+    int64_t event;      /* number of the event that is being copied, over all logs */
+    bool failed, begun; /* begun: the definitions are written */
+    int64_t utime;      /* of the first event that is copied */
+    struct definition_writer definitions;
 };
 
 /* Reports what cannot be read or written, once. */
@@ -52,14 +47,10 @@ static void fail_input(struct cut *cut, int error)
 }
 
 /* All is read twice. */
-static void on_progress(void *user, int64_t bytes)
+static void on_progress(void *user)
 {
     struct cut *cut = user;
-    cut->passed += bytes;
-    if (cut->passed - cut->reported < PROGRESS_BYTES)
-        return;
-    cut->reported = cut->passed;
-    cut->sink->progress(cut->sink->user, cut->passed / 2, input_size(&cut->input));
+    cut->sink->progress(cut->sink->user, cut->input.passed / 2, input_size(&cut->input));
 }
 
 /* ---- Writing ---- */
@@ -87,44 +78,28 @@ static void copy(struct cut *cut, const struct log_event *event)
 
 /* ---- Definitions ---- */
 
-/* Of a definition without its bodies. */
-enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
-
-static void write_definition(struct cut *cut, int64_t utime)
+static bool write_definition(void *user, const void *bytes, size_t size)
 {
-    const struct log_event event = {.utime = utime,
+    struct cut *cut = user;
+    const struct log_event event = {.utime = cut->utime,
                                     .channel = cut->channels.name[LOG_DEFINITION],
                                     .channel_length = cut->channels.length[LOG_DEFINITION]};
-    if (cut->definition.body_count == 0)
-        return;
-    append(cut, &event, cut->bytes, wire_write_definition(&cut->definition, cut->bytes));
+    append(cut, &event, bytes, size);
     cut->counts->definitions++;
-    cut->counts->defined += cut->definition.body_count;
-    cut->definition.body_count = 0;
+    return true;
 }
 
-/* One geometry fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
- * shorter. */
-static void define(struct cut *cut, int64_t utime)
+static void define(struct cut *cut)
 {
     const struct log_survey *survey = &cut->survey;
-    size_t bytes = DEFINITION_BYTES;
     for (size_t i = 0; i < survey->wanted_count; i++) {
         const struct geometry *geometry = definitions_find(survey->definitions, &survey->wanted[i]);
-        if (!geometry) {
-            cut->counts->unknown++;
-            continue;
-        }
-        if (bytes + HANDLE_BYTES + geometry->size > QUERY_BYTES_MAX ||
-            cut->definition.body_count == QUERY_BODIES_MAX) {
-            write_definition(cut, utime);
-            bytes = DEFINITION_BYTES;
-        }
-        bytes += HANDLE_BYTES + geometry->size;
-        cut->definition.body[cut->definition.body_count++] =
-            (struct query_body){survey->wanted[i], *geometry};
+        cut->counts->defined += geometry != NULL;
+        cut->counts->unknown += !geometry;
+        if (geometry)
+            definition_writer_add(&cut->definitions, &survey->wanted[i], geometry);
     }
-    write_definition(cut, utime);
+    definition_writer_flush(&cut->definitions);
 }
 
 /* ---- Copying ---- */
@@ -137,8 +112,10 @@ static void take_event(struct cut *cut, const struct log_event *event)
     counts->bytes += event->length;
     if (!log_survey_is_chosen(&cut->survey, number))
         return;
-    if (!cut->begun)
-        define(cut, event->utime);
+    if (!cut->begun) {
+        cut->utime = event->utime;
+        define(cut);
+    }
     cut->begun = true;
     const enum log_kind kind = log_kind_of(&cut->channels, event);
     counts->kept_events++;
@@ -161,13 +138,12 @@ static void copy_all(struct cut *cut)
     struct log_damage damage;
     enum log_outcome outcome = LOG_END;
     input_rewind(&cut->input);
-    while (!cut->failed && ((outcome = input_next(&cut->input, &event, &damage)) == LOG_EVENT ||
-                            outcome == LOG_DAMAGE)) {
+    while (!cut->failed && (outcome = input_next(&cut->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
             take_event(cut, &event);
         else
             take_damage(cut, &damage);
-        on_progress(cut, outcome == LOG_EVENT ? event.length : damage.length);
+        on_progress(cut);
     }
     if (outcome == LOG_FAILED)
         fail_input(cut, errno);
@@ -234,6 +210,8 @@ bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *s
     cut->options = options;
     cut->sink = sink;
     cut->counts = counts;
+    cut->definitions.sink = write_definition;
+    cut->definitions.user = cut;
     if (open_cut(cut))
         run(cut);
     else

@@ -1,12 +1,12 @@
 #include "log_info.h"
 
-#include "allocate.h"
 #include "big_endian.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOTS = 2 * LOG_INFO_ROWS_MAX };
+/* Of a key, before the channel: fingerprint, known. */
+enum { TYPE_BYTES = sizeof(int64_t) + 1 };
 
 struct log_info *log_info_open(void)
 {
@@ -17,8 +17,9 @@ struct log_info *log_info_open(void)
 
 void log_info_close(struct log_info *info)
 {
+    HASH_CLEAR(hh, info->table);
     for (unsigned i = 0; i < info->row_count; i++)
-        free(info->row[i].channel);
+        free(info->row[i].key);
     free(info);
 }
 
@@ -65,62 +66,48 @@ static struct log_type type_of(const struct log_event *event)
     return (struct log_type){true, (int64_t) big_endian_64(event->data)};
 }
 
-static bool is_row_of(const struct log_row *row, const struct log_event *event,
-                      struct log_type type)
+/* Returns the bytes of the key. */
+static size_t key_of(const struct log_event *event, struct log_type type,
+                     unsigned char out[TYPE_BYTES + LOG_CHANNEL_MAX])
 {
-    return row->type.fingerprint == type.fingerprint && row->type.known == type.known &&
-           row->channel_length == event->channel_length &&
-           memcmp(row->channel, event->channel, event->channel_length) == 0;
+    memcpy(out, &type.fingerprint, sizeof type.fingerprint);
+    out[TYPE_BYTES - 1] = type.known;
+    memcpy(out + TYPE_BYTES, event->channel, event->channel_length);
+    return TYPE_BYTES + event->channel_length;
 }
 
-/* FNV-1a. Who makes names that meet makes a search of a few thousand steps. */
-static unsigned hash(const struct log_event *event, struct log_type type)
+/* NULL: there is none, and no space for one. */
+static struct log_row *find_row(struct log_info *info, const unsigned char *key, size_t size,
+                                struct log_type type)
 {
-    uint64_t sum = UINT64_C(0xcbf29ce484222325) ^ (uint64_t) type.fingerprint;
-    for (size_t i = 0; i < event->channel_length; i++)
-        sum = (sum ^ (unsigned char) event->channel[i]) * UINT64_C(0x100000001b3);
-    return (unsigned) (sum ^ sum >> 32) % SLOTS;
-}
-
-static unsigned add_row(struct log_info *info, const struct log_event *event, struct log_type type)
-{
-    struct log_row *row = &info->row[info->row_count];
-    row->channel = allocate(event->channel_length, 1);
-    memcpy(row->channel, event->channel, event->channel_length);
-    row->channel_length = event->channel_length;
+    struct log_row *row;
+    HASH_FIND(hh, info->table, key, size, row);
+    if (row || info->row_count == LOG_INFO_ROWS_MAX)
+        return row;
+    row = &info->row[info->row_count++];
+    row->key = allocate(size, 1);
+    memcpy(row->key, key, size);
+    row->channel = (const char *) row->key + TYPE_BYTES;
+    row->channel_length = size - TYPE_BYTES;
     row->type = type;
-    return info->row_count++;
-}
-
-/* LOG_INFO_ROWS_MAX: there is none, and no room for one. At least half of the slots are empty. */
-static unsigned find_row(struct log_info *info, const struct log_event *event, struct log_type type)
-{
-    unsigned slot = hash(event, type);
-    for (; info->slot[slot] != 0; slot = (slot + 1) % SLOTS)
-        if (is_row_of(&info->row[info->slot[slot] - 1], event, type))
-            return info->slot[slot] - 1u;
-    if (info->row_count == LOG_INFO_ROWS_MAX)
-        return LOG_INFO_ROWS_MAX;
-    const unsigned row = add_row(info, event, type);
-    info->slot[slot] = (unsigned short) (row + 1);
+    HASH_ADD_KEYPTR(hh, info->table, row->key, size, row);
     return row;
 }
 
 /* Messages alternate: mostly the row is the one that came after the last row before. */
 static struct log_tally *tally_of(struct log_info *info, const struct log_event *event)
 {
+    unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX];
     const struct log_type type = type_of(event);
-    const unsigned guess = info->row[info->last].next;
-    if (is_row_of(&info->row[guess], event, type)) {
-        info->last = guess;
-        return &info->row[guess].tally;
-    }
-    const unsigned row = find_row(info, event, type);
-    if (row == LOG_INFO_ROWS_MAX)
+    const size_t size = key_of(event, type, key);
+    struct log_row *row = &info->row[info->row[info->last].next];
+    if (row->hh.keylen != size || memcmp(row->key, key, size) != 0)
+        row = find_row(info, key, size, type);
+    if (!row)
         return &info->others;
-    info->row[info->last].next = row;
-    info->last = row;
-    return &info->row[row].tally;
+    info->row[info->last].next = (unsigned) (row - info->row);
+    info->last = (unsigned) (row - info->row);
+    return &row->tally;
 }
 
 /* ---- One after the other --------------------------------------------------------------------- */
@@ -159,6 +146,7 @@ static int compare_rows(const void *a, const void *b)
 
 void log_info_end(struct log_info *info)
 {
+    HASH_CLEAR(hh, info->table); /* sorting moves the rows */
     qsort(info->row, info->row_count, sizeof *info->row, compare_rows);
     info->all = info->others;
     for (unsigned i = 0; i < info->row_count; i++)

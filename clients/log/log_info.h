@@ -2,6 +2,7 @@
 #ifndef LOG_INFO_H
 #define LOG_INFO_H
 
+#include "keyed_hash.h"
 #include "log_read.h"
 
 /* Limits: the first so many combinations of channel and type are counted separately, and the first
@@ -22,11 +23,14 @@ struct log_type {
 };
 
 struct log_row {
-    char *channel; /* not zero-terminated */
+    const char *channel; /* not zero-terminated */
     size_t channel_length;
     struct log_type type;
     struct log_tally tally;
-    unsigned next; /* the row that last followed this one: a guess for the next event */
+    /* Private. */
+    unsigned next;      /* the row that last followed this one: a guess for the next event */
+    unsigned char *key; /* owned; type and channel */
+    UT_hash_handle hh;
 };
 
 struct log_info {
@@ -38,9 +42,9 @@ struct log_info {
     unsigned row_count;
     struct log_row row[LOG_INFO_ROWS_MAX]; /* sorted by channel and type after log_info_end() */
     /* Private. */
-    int64_t utime;                              /* of the last event */
-    unsigned last;                              /* its row */
-    unsigned short slot[2 * LOG_INFO_ROWS_MAX]; /* [hash] a row's index + 1, or 0 */
+    int64_t utime;         /* of the last event */
+    unsigned last;         /* its row */
+    struct log_row *table; /* of the rows, by key */
 };
 
 /* The caller closes it. */

@@ -40,6 +40,18 @@ static inline bool log_kind_is_result(enum log_kind kind)
     return kind == LOG_PAIR_RESULT || kind == LOG_SCENE_RESULT;
 }
 
+/* The kind of query that a query or result belongs to. */
+static inline enum log_kind log_kind_query_of(enum log_kind kind)
+{
+    return kind == LOG_PAIR_QUERY || kind == LOG_PAIR_RESULT ? LOG_PAIR_QUERY : LOG_SCENE_QUERY;
+}
+
+/* The kind of its results. */
+static inline enum log_kind log_kind_result_of(enum log_kind query)
+{
+    return query == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
+}
+
 /* Reads the ids of a query or result, and nothing else of it. Returns NULL; or a static text: why
  * they cannot be read. A query may be longer than the kept data of the event: the service answers
  * it with a refusal. */

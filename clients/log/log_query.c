@@ -10,9 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes between two reports of progress. */
-enum { PROGRESS_BYTES = 1 << 20 };
-
 /* Of several events that match, so many are listed. */
 enum { LISTED_MAX = 8 };
 
@@ -21,7 +18,6 @@ struct search {
     struct log_query *out;
     struct log_channels channels;
     struct input input;
-    int64_t passed, reported;       /* bytes */
     enum log_query_outcome outcome; /* once it is not FOUND, the search ends */
     /* The events that match; of the first its kind, its number in out->number and so on. */
     int64_t count;
@@ -44,13 +40,9 @@ static void fail(struct search *search, const char *what, int error)
 /* ---- Reading the logs ---- */
 
 /* The last log is read three times at most, the others once. */
-static void pass_bytes(struct search *search, int64_t bytes)
+static void report_progress(struct search *search)
 {
-    search->passed += bytes;
-    if (search->passed - search->reported < PROGRESS_BYTES)
-        return;
-    search->reported = search->passed;
-    const int64_t of = input_size(&search->input), half = search->passed / 2;
+    const int64_t of = input_size(&search->input), half = search->input.passed / 2;
     search->options->progress(search->options->user, half < of ? half : of, of);
 }
 
@@ -64,7 +56,7 @@ static void for_each_event(struct search *search,
     while ((outcome = input_next(&search->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT && !take(search, &event))
             return;
-        pass_bytes(search, outcome == LOG_EVENT ? event.length : damage.length);
+        report_progress(search);
     }
     if (outcome == LOG_FAILED)
         fail(search, search->options->log[search->input.log], errno);
@@ -199,9 +191,9 @@ static bool take_query_of_result(struct search *search, const struct log_event *
     const enum log_kind kind = log_kind_of(&search->channels, event);
     const struct query_header *result = &search->out->ids;
     struct query_header ids;
-    if (kind != (search->kind == LOG_PAIR_RESULT ? LOG_PAIR_QUERY : LOG_SCENE_QUERY) ||
-        log_kind_ids(kind, event, &ids) || ids.client_id != result->client_id ||
-        ids.sequence_number != result->sequence_number || ids.utime != result->utime)
+    if (kind != log_kind_query_of(search->kind) || log_kind_ids(kind, event, &ids) ||
+        ids.client_id != result->client_id || ids.sequence_number != result->sequence_number ||
+        ids.utime != result->utime)
         return true;
     keep_event(search, event);
     return false;

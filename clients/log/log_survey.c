@@ -58,16 +58,6 @@ static bool is_chosen_query(struct survey *survey, int64_t utime)
            log_choice_has_body(choice, placement, count);
 }
 
-static enum log_kind result_of(enum log_kind query)
-{
-    return query == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
-}
-
-static enum log_kind query_of(enum log_kind kind)
-{
-    return kind == LOG_PAIR_QUERY || kind == LOG_PAIR_RESULT ? LOG_PAIR_QUERY : LOG_SCENE_QUERY;
-}
-
 /* In: query->mine: is_chosen_query(). */
 static void settle_result(struct survey *survey, enum log_kind kind,
                           const struct match_place *query, const struct match_place *result)
@@ -149,7 +139,7 @@ static void take_query(struct survey *survey, const struct match_key *key,
         match_add(survey->match, key, place, false);
         return;
     }
-    settle_result(survey, result_of(kind), place, &result->place);
+    settle_result(survey, log_kind_result_of(kind), place, &result->place);
     match_remove(survey->match, result);
     match_free(result);
 }
@@ -162,7 +152,7 @@ static void take_result(struct survey *survey, const struct match_key *key,
         match_add(survey->match, key, place, true);
         return;
     }
-    settle_result(survey, result_of((enum log_kind) key->kind), &query->place, place);
+    settle_result(survey, log_kind_result_of((enum log_kind) key->kind), &query->place, place);
     match_remove(survey->match, query);
     match_free(query);
 }
@@ -177,7 +167,8 @@ static bool take_message(struct survey *survey, const struct log_event *event, e
                                 .utime = event->utime};
     if (kind >= LOG_STATUS || log_kind_ids(kind, event, &ids))
         return false;
-    const struct match_key key = {query_of(kind), ids.client_id, ids.sequence_number, ids.utime};
+    const struct match_key key = {log_kind_query_of(kind), ids.client_id, ids.sequence_number,
+                                  ids.utime};
     if (log_kind_is_result(kind)) {
         take_result(survey, &key, &place);
         return true;
@@ -213,7 +204,7 @@ static bool take_events(struct survey *survey)
     while ((outcome = input_next(options->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
             take_event(survey, &event);
-        options->progress(options->user, outcome == LOG_EVENT ? event.length : damage.length);
+        options->progress(options->user);
     }
     if (outcome == LOG_FAILED)
         fprintf(stderr, "fmb: %s: %s\n", options->log[options->input->log], strerror(errno));
@@ -223,8 +214,8 @@ static bool take_events(struct survey *survey)
 static void on_rest(void *user, struct match_item *query, struct match_item *result)
 {
     struct survey *survey = user;
-    settle_result(survey, result_of((enum log_kind) result->key.kind), query ? &query->place : NULL,
-                  &result->place);
+    settle_result(survey, log_kind_result_of((enum log_kind) result->key.kind),
+                  query ? &query->place : NULL, &result->place);
     if (query)
         match_free(query);
     match_free(result);

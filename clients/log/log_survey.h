@@ -13,8 +13,8 @@ struct log_survey_options {
     char *const *log;    /* paths */
     const struct log_channels *channels;
     const struct log_choice *choice;
-    /* So many more bytes have been read. */
-    void (*progress)(void *user, int64_t bytes);
+    /* input->passed has grown. */
+    void (*progress)(void *user);
     void *user;
 };
 

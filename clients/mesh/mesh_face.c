@@ -32,9 +32,10 @@ static void set_components(const double vertex[3][3], double out[3][3])
 
 static enum fmb_status make_tetrahedron(const double vertex[3][3], struct fmb_body *out)
 {
-    double component[3][3];
-    set_components(vertex, component);
-    return fmb_body_make(3, FMB_TETRAHEDRON, component[0], 9, out);
+    double number[4][3]; /* the origin and the components */
+    memcpy(number[0], vertex[0], sizeof number[0]);
+    set_components(vertex, number + 1);
+    return fmb_body_make(3, FMB_TETRAHEDRON, number[0], 12, out);
 }
 
 /* A sum is off by at most 2^-53 of itself; where it overflows it is an end of all. A normal that is
@@ -57,17 +58,16 @@ void mesh_face_tetrahedron_box(const struct mesh *mesh, unsigned face, double bo
     }
 }
 
-bool mesh_face_frame(const struct mesh *mesh, enum mesh_as as, unsigned face,
-                     const double *velocity, struct fmb_body *body, struct fmb_frame *out)
+bool mesh_face_place(const struct mesh *mesh, enum mesh_as as, unsigned face,
+                     const double *velocity, struct mesh_placed_face *out)
 {
     double vertex[3][3];
     mesh_face_vertices(mesh, face, vertex);
-    const double(*corners)[3] = (const double(*)[3]) vertex;
     const enum fmb_status status =
-        as == MESH_FACES ? fmb_body_make_triangle(corners, body) : make_tetrahedron(corners, body);
-    *out = (struct fmb_frame){.body = body, .moving = velocity != NULL};
-    memcpy(out->origin, vertex[0], sizeof out->origin);
+        as == MESH_FACES ? fmb_body_make_vertices(3, FMB_FACE, vertex[0], 9, &out->body)
+                         : make_tetrahedron((const double(*)[3]) vertex, &out->body);
+    out->placement = (struct fmb_placement){.body = &out->body};
     if (velocity)
-        memcpy(out->velocity, velocity, sizeof out->velocity);
+        memcpy(out->placement.velocity, velocity, sizeof out->placement.velocity);
     return status == FMB_OK;
 }

@@ -1,11 +1,8 @@
 #include "mesh_join.h"
 
-#include "allocate.h"
+#include "keyed_hash.h"
 
 #include <stdlib.h>
-
-#define uthash_malloc(size) allocate(1, size)
-#include <uthash.h>
 
 struct mesh_joined {
     double position[3];
@@ -15,7 +12,7 @@ struct mesh_joined {
 
 void mesh_join_open(struct mesh_join *join, struct mesh_build *build)
 {
-    *join = (struct mesh_join){.build = build, .hash = keyed_hash_make()};
+    *join = (struct mesh_join){.build = build};
 }
 
 void mesh_join_close(struct mesh_join *join)
@@ -32,16 +29,15 @@ bool mesh_join_vertex(struct mesh_join *join, const double position[3], unsigned
 {
     /* -0 + 0 is 0; all else plus 0 is what it was. */
     const double clean[3] = {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0};
-    const unsigned hash = keyed_hash_of(&join->hash, clean, sizeof clean);
     struct mesh_joined *joined;
-    HASH_FIND_BYHASHVALUE(hh, join->vertex, clean, sizeof clean, hash, joined);
+    HASH_FIND(hh, join->vertex, clean, sizeof clean, joined);
     if (!joined) {
         if (!mesh_add_vertex(join->build, clean))
             return false;
         joined = allocate(1, sizeof *joined);
         memcpy(joined->position, clean, sizeof clean);
         joined->index = (unsigned) join->build->mesh->vertex_count - 1;
-        HASH_ADD_BYHASHVALUE(hh, join->vertex, position, sizeof clean, hash, joined);
+        HASH_ADD(hh, join->vertex, position, sizeof clean, joined);
     }
     *index = joined->index;
     return true;

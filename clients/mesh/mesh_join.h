@@ -2,13 +2,11 @@
 #ifndef MESH_JOIN_H
 #define MESH_JOIN_H
 
-#include "keyed_hash.h"
 #include "mesh_build.h"
 
 struct mesh_join {
     struct mesh_build *build;   /* not owned; all its vertices were added here */
     struct mesh_joined *vertex; /* owned: a table by coordinates; NULL: empty */
-    struct keyed_hash hash;
 };
 
 void mesh_join_open(struct mesh_join *join, struct mesh_build *build);

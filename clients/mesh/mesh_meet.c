@@ -21,8 +21,9 @@ struct meeter {
     /* The block: candidates, and their frames. */
     unsigned face[BLOCK][2], pair[BLOCK][2]; /* of the meshes; of frames */
     size_t count, frame_count;
-    struct fmb_prepared *frame; /* [FRAMES] */
-    struct slot {               /* which frame a face has, in the block that is numbered so */
+    struct mesh_placed_face *placed; /* [FRAMES] */
+    struct fmb_prepared *frame;      /* [FRAMES], of these */
+    struct slot {                    /* which frame a face has, in the block that is numbered so */
         unsigned face, frame, block;
         int mesh;
     } slot[SLOTS];
@@ -101,13 +102,12 @@ static unsigned frame_of(struct meeter *meeter, int which, unsigned face)
     struct slot *slot = slot_of(meeter, is_self(question) ? 0 : which, face);
     if (slot->block == meeter->block)
         return slot->frame;
-    struct fmb_body body;
-    struct fmb_frame frame;
+    struct mesh_placed_face *placed = &meeter->placed[meeter->frame_count];
     struct fmb_prepared *out = &meeter->frame[meeter->frame_count];
-    memset(out, 0, sizeof *out); /* what it stays where the face has no frame: it is refused */
-    if (mesh_face_frame(mesh_of(question, which), question->as, face, question->velocity[which],
-                        &body, &frame))
-        fmb_prepare(&frame, out);
+    memset(out, 0, sizeof *out); /* a face without a frame is refused */
+    if (mesh_face_place(mesh_of(question, which), question->as, face, question->velocity[which],
+                        placed))
+        fmb_prepare(&placed->placement, 0, 1, out);
     *slot = (struct slot){face, (unsigned) meeter->frame_count, meeter->block,
                           is_self(question) ? 0 : which};
     return (unsigned) meeter->frame_count++;
@@ -125,19 +125,18 @@ static void keep(struct meeter *meeter, const unsigned face[2], enum fmb_verdict
         (struct mesh_pair){face[0], face[1], verdict, {contact[0], contact[1]}};
 }
 
-/* By one method, from the vertices. */
-static void decide_alone(struct meeter *meeter, const struct fmb_method *method,
-                         const unsigned face[2])
+/* By the method of the question. */
+static void decide_alone(struct meeter *meeter, const unsigned face[2])
 {
     const struct mesh_question *question = meeter->question;
-    struct fmb_body body[2];
-    struct fmb_pair pair = {.duration = question->duration};
+    struct mesh_placed_face a, b;
     struct fmb_answer answer;
-    const bool frames = mesh_face_frame(question->a, question->as, face[0], question->velocity[0],
-                                        &body[0], &pair.a) &&
-                        mesh_face_frame(question->b, question->as, face[1], question->velocity[1],
-                                        &body[1], &pair.b);
-    const enum fmb_status status = frames ? fmb_decide(method, &pair, 0, &answer) : FMB_NOT_FINITE;
+    const bool frames =
+        mesh_face_place(question->a, question->as, face[0], question->velocity[0], &a) &&
+        mesh_face_place(question->b, question->as, face[1], question->velocity[1], &b);
+    const enum fmb_status status = frames ? fmb_decide(question->method, &a.placement, &b.placement,
+                                                       question->duration, 0, &answer)
+                                          : FMB_NOT_FINITE;
     if (status == FMB_OK)
         keep(meeter, face, answer.verdict, answer.contact);
     else
@@ -147,11 +146,9 @@ static void decide_alone(struct meeter *meeter, const struct fmb_method *method,
 static void decide_each(struct meeter *meeter)
 {
     for (size_t i = 0; i < meeter->count; i++)
-        decide_alone(meeter, meeter->question->method, meeter->face[i]);
+        decide_alone(meeter, meeter->face[i]);
 }
 
-/* Those that are left open are decided from the vertices: touching faces whose edges had to be
- * rounded. */
 static void decide_block(struct meeter *meeter)
 {
     static const double none[2] = {0, 0};
@@ -169,13 +166,9 @@ static void decide_block(struct meeter *meeter)
     const enum fmb_status status = fmb_decide_batch(&batch);
     if (status != FMB_OK)
         meeter->status = status;
-    for (size_t i = 0; i < meeter->count && status == FMB_OK; i++) {
-        if (meeter->verdict[i] == 0)
-            decide_alone(meeter, fmb_method_default(), meeter->face[i]);
-        else
-            keep(meeter, meeter->face[i], (enum fmb_verdict) meeter->verdict[i],
-                 moving ? meeter->contact[i] : none);
-    }
+    for (size_t i = 0; i < meeter->count && status == FMB_OK; i++)
+        keep(meeter, meeter->face[i], (enum fmb_verdict) meeter->verdict[i],
+             moving ? meeter->contact[i] : none);
 }
 
 /* Of one mesh: takes out of the block the pairs that share vertices. */
@@ -285,6 +278,7 @@ enum fmb_status mesh_meet(const struct mesh_question *question, struct mesh_meet
     out->moving = question->velocity[0] || question->velocity[1];
     meeter->question = question;
     meeter->meeting = out;
+    meeter->placed = allocate(FRAMES, sizeof *meeter->placed);
     meeter->frame = allocate(FRAMES, sizeof *meeter->frame);
     if (self)
         mesh_near_open(question->a, &meeter->near);
@@ -300,6 +294,7 @@ enum fmb_status mesh_meet(const struct mesh_question *question, struct mesh_meet
     if (self)
         mesh_near_close(&meeter->near);
     free(meeter->frame);
+    free(meeter->placed);
     free(meeter);
     if (status != FMB_OK) {
         mesh_meeting_free(out);

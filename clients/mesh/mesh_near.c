@@ -116,12 +116,10 @@ static enum fmb_verdict verdict_of(const double x[3][3], const double y[3][3])
 {
     struct fmb_body body[2];
     struct fmb_answer answer;
-    fmb_body_make_triangle(x, &body[0]);
-    fmb_body_make_triangle(y, &body[1]);
-    const struct fmb_pair pair = {{.body = &body[0], .origin = {x[0][0], x[0][1], x[0][2]}},
-                                  {.body = &body[1], .origin = {y[0][0], y[0][1], y[0][2]}},
-                                  0};
-    fmb_decide(fmb_method_default(), &pair, 0, &answer);
+    fmb_body_make_vertices(3, FMB_FACE, x[0], 9, &body[0]);
+    fmb_body_make_vertices(3, FMB_FACE, y[0], 9, &body[1]);
+    const struct fmb_placement a = {.body = &body[0]}, b = {.body = &body[1]};
+    fmb_decide(fmb_method_default(), &a, &b, 0, 0, &answer);
     return answer.verdict;
 }
 

@@ -1,5 +1,6 @@
 #include "page_event.h"
 
+#include "any_query.h"
 #include "page_pairs.h"
 
 #include <math.h>
@@ -18,19 +19,36 @@ static bool are_finite(const double *numbers, int count)
     return true;
 }
 
-/* The frame of a body of one frame, with its origin in world coordinates. False: it is no such
- * body, or invalid: logs hold refused queries too. */
-static bool read_frame(const struct placement *placement, struct geometry_frame *out)
+static bool is_orientation(const double *orientation, int count)
 {
-    int dim;
-    if (placement->frame_count != 1 || placement->orientation_count != 0 ||
-        !geometry_read(&placement->geometry, &dim, out) || dim != placement->dim ||
-        (placement->velocity_count != 0 && placement->velocity_count != dim))
-        return false;
-    for (int axis = 0; axis < dim; axis++)
-        out->origin[axis] += placement->position[axis];
-    return are_finite(out->origin, dim) && are_finite(out->components, out->count * dim) &&
-           are_finite(placement->velocity, dim);
+    double largest = 0;
+    for (int i = 0; i < count; i++)
+        largest = fmax(largest, fabs(orientation[i]));
+    return count == 0 || (largest > 0 && are_finite(orientation, count));
+}
+
+/* Whether there are frames, all of which are valid: logs hold refused queries too. */
+static bool has_frames(const struct geometry *geometry, int dim)
+{
+    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_frame frame;
+    bool good = reader.dim == dim && reader.frames_left > 0;
+    while (good && reader.frames_left > 0)
+        good = geometry_next(&reader, &frame) && are_finite(frame.origin, FMB_DIM_MAX) &&
+               are_finite(frame.components, FMB_COMPONENTS_MAX);
+    return good && reader.numbers_left == 0;
+}
+
+static bool is_drawable(const struct placement *placement)
+{
+    const int dim = placement->dim;
+    return placement->frame_count > 0 && has_frames(&placement->geometry, dim) &&
+           are_finite(placement->position, dim) &&
+           (placement->orientation_count == 0 ||
+            placement->orientation_count == (dim == 2 ? 2 : 4)) &&
+           is_orientation(placement->orientation, placement->orientation_count) &&
+           (placement->velocity_count == 0 || placement->velocity_count == dim) &&
+           are_finite(placement->velocity, placement->velocity_count);
 }
 
 static void write_numbers(struct json_writer *out, const double *numbers, int count)
@@ -50,13 +68,13 @@ static void write_handle(struct json_writer *out, const struct handle *handle)
 static void write_placement(const struct placement *placement, struct page_shapes *shapes,
                             struct json_writer *out)
 {
-    struct geometry_frame frame;
     json_begin(out, NULL, '[');
     json_integer(out, NULL, placement->body_id);
-    if (read_frame(placement, &frame)) {
-        json_integer(out, NULL, (int64_t) page_shapes_index(shapes, placement->dim, &frame));
-        write_numbers(out, frame.origin, placement->dim);
-        write_numbers(out, placement->velocity, placement->velocity_count);
+    if (is_drawable(placement)) {
+        json_integer(out, NULL, (int64_t) page_shapes_index(shapes, &placement->geometry));
+        json_numbers(out, NULL, placement->position, placement->dim);
+        json_numbers(out, NULL, placement->orientation, placement->orientation_count);
+        json_numbers(out, NULL, placement->velocity, placement->velocity_count);
     } else if (placement_by_handle(placement)) {
         json_integer(out, NULL, SHAPE_UNKNOWN);
         write_handle(out, &placement->handle);
@@ -221,7 +239,7 @@ static void write_query(const struct replayed *replayed, struct json_writer *out
     if (scene) {
         json_integer(out, "first", scene->first_pair);
         json_integer(out, "split", scene->split);
-        json_integer(out, "total", page_pairs_total(scene));
+        json_integer(out, "total", any_query_pairs(scene));
     }
 }
 

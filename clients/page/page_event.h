@@ -16,8 +16,9 @@ enum { PAGE_PAIRS_MAX = 1000 };
  *     T want         duration in seconds, wants
  *     first split    of a scene
  *     total          number of pairs of the query
- *     frames         [[id, shape, origin..., velocity...], ...]: index of the shape; or
- *                    [id, -1, handle], the log does not define it; or [id, -2], it cannot be drawn
+ *     frames         [[id, shape, position, orientation, velocity], ...], the last two empty where
+ *                    there are none: index of the shape; or [id, -1, handle], the log does not
+ *                    define it; or [id, -2], it cannot be drawn
  *     more_frames    number of placements without space, if any
  *     then now       results or null: {status, says, detail, method, ns}, of scenes {end, count}
  *                    too: end_pair, pairs of each verdict

@@ -1,5 +1,7 @@
 #include "page_pairs.h"
 
+#include "any_query.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -58,35 +60,11 @@ static bool next_of_pair(struct page_pairs *pairs, struct page_pair *out)
 
 /* ---- A scene --------------------------------------------------------------------------------- */
 
-/* Of the placements that are kept. */
-static int64_t placement_count(const struct scene_query *query)
-{
-    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                         : QUERY_PLACEMENTS_MAX;
-}
-
 /* Of the pairs that are kept. */
 static int32_t listed_count(const struct scene_query *query)
 {
     const int32_t count = query->index_count / 2;
     return count < QUERY_PAIRS_MAX ? count : QUERY_PAIRS_MAX;
-}
-
-/* The number of a pair of all or across, in the order of (a, b). */
-static int64_t pair_number(const struct scene_query *query, int64_t a, int64_t b)
-{
-    const int64_t n = placement_count(query);
-    if (query->which == QUERY_PAIRS_ACROSS)
-        return a * (n - query->split) + b - query->split;
-    return a * n - a * (a + 1) / 2 + b - (a + 1);
-}
-
-int64_t page_pairs_total(const struct scene_query *query)
-{
-    if (query->which == QUERY_PAIRS_LISTED)
-        return query->index_count / 2;
-    const int64_t n = placement_count(query);
-    return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
 }
 
 static bool has_verdict(const struct page_place *place)
@@ -105,8 +83,7 @@ static struct page_side take(struct page_place *place)
     if (side.verdict < FMB_TOUCHING || place->contact >= result->contact_count)
         return side;
     const int32_t contact = place->contact++, dim = result->has_boxes ? result->dim : 0;
-    /* NaN: the pair is at rest, and has none. */
-    side.has_times = result->has_times && !isnan(result->times[2 * contact]);
+    side.has_times = result->has_times;
     if (side.has_times)
         memcpy(side.times, &result->times[2 * contact], sizeof side.times);
     side.dim = dim;
@@ -156,7 +133,7 @@ static struct page_side side_of_named(const struct scene_query *query, struct pa
     if (has_verdict(place) && place->result->names_pairs &&
         place->result->pair[place->verdict][0] == a && place->result->pair[place->verdict][1] == b)
         return take(place);
-    const int64_t number = pair_number(query, a, b);
+    const int64_t number = any_query_pair_number(query, a, b);
     side.answered = number >= query->first_pair && number < place->result->end_pair;
     side.verdict = side.answered ? FMB_SEPARATED : 0;
     return side;

@@ -39,9 +39,6 @@ void page_pairs_begin(const struct replayed *replayed, struct page_pairs *out);
 /* On output: true and *out, or false after the last one. */
 bool page_pairs_next(struct page_pairs *pairs, struct page_pair *out);
 
-/* The number of pairs of the query, answered or not. */
-int64_t page_pairs_total(const struct scene_query *query);
-
 /* Counts the pairs that the result answers with each verdict, including those it does not name. On
  * input: a result to the query, or NULL. */
 void page_pairs_count(const struct scene_query *query, const struct scene_result *result,

@@ -1,31 +1,20 @@
 #include "page_shapes.h"
 
-#include "allocate.h"
+#include "keyed_hash.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define uthash_malloc(size) allocate(1, size)
-#include <uthash.h>
-
-/* The key: compared as bytes. */
-struct shape {
-    int32_t shape, dim, count;
-    double number[FMB_COMPONENTS_MAX]; /* 0 beyond count */
-};
-
 struct page_shape {
-    struct shape shape;
     size_t index;
     UT_hash_handle hh;
+    unsigned char bytes[]; /* the key: the encoded geometry */
 };
 
 void page_shapes_open(struct page_shapes *out)
 {
     memset(out, 0, sizeof *out);
     page_json_open(&out->json);
-    out->hash = keyed_hash_make();
 }
 
 void page_shapes_close(struct page_shapes *shapes)
@@ -39,40 +28,39 @@ void page_shapes_close(struct page_shapes *shapes)
     page_json_close(&shapes->json);
 }
 
-static struct shape shape_of(int dim, const struct geometry_frame *frame)
+static void write_frame(struct json_writer *json, int dim, const struct geometry_frame *frame)
 {
-    struct shape shape;
-    memset(&shape, 0, sizeof shape); /* what lies between the members too: bytes are compared */
-    shape.shape = frame->shape;
-    shape.dim = dim;
-    shape.count = frame->count * dim;
-    assert(shape.count >= 0 && shape.count <= FMB_COMPONENTS_MAX);
-    memcpy(shape.number, frame->components, (size_t) shape.count * sizeof *shape.number);
-    return shape;
+    json_begin(json, NULL, '[');
+    json_integer(json, NULL, frame->shape);
+    for (int i = 0; i < geometry_number_count(dim, frame->shape); i++)
+        json_number(json, NULL, i < dim ? frame->origin[i] : frame->components[i - dim]);
+    json_end(json, ']');
 }
 
-static void write_shape(struct json_writer *json, const struct shape *shape)
+static void write_shape(struct json_writer *json, const struct geometry *geometry)
 {
+    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_frame frame;
     json_break(json, "\n");
     json_begin(json, NULL, '{');
-    json_integer(json, "shape", shape->shape);
-    json_integer(json, "dim", shape->dim);
-    json_numbers(json, "c", shape->number, shape->count);
+    json_integer(json, "dim", reader.dim);
+    json_begin(json, "frames", '[');
+    while (geometry_next(&reader, &frame))
+        write_frame(json, reader.dim, &frame);
+    json_end(json, ']');
     json_end(json, '}');
 }
 
-size_t page_shapes_index(struct page_shapes *shapes, int dim, const struct geometry_frame *frame)
+size_t page_shapes_index(struct page_shapes *shapes, const struct geometry *geometry)
 {
-    const struct shape shape = shape_of(dim, frame);
-    const unsigned hash = keyed_hash_of(&shapes->hash, &shape, sizeof shape);
     struct page_shape *found;
-    HASH_FIND_BYHASHVALUE(hh, shapes->shape, &shape, sizeof shape, hash, found);
+    HASH_FIND(hh, shapes->shape, geometry->bytes, geometry->size, found);
     if (found)
         return found->index;
-    found = allocate(1, sizeof *found);
-    memcpy(&found->shape, &shape, sizeof shape);
+    found = allocate(1, sizeof *found + geometry->size);
+    memcpy(found->bytes, geometry->bytes, geometry->size);
     found->index = shapes->count++;
-    HASH_ADD_BYHASHVALUE(hh, shapes->shape, shape, sizeof shape, hash, found);
-    write_shape(&shapes->json.json, &shape);
+    HASH_ADD_KEYPTR(hh, shapes->shape, found->bytes, geometry->size, found);
+    write_shape(&shapes->json.json, geometry);
     return found->index;
 }

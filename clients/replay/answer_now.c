@@ -2,9 +2,9 @@
 
 #include "allocate.h"
 #include "answer.h"
-#include "big_endian.h"
 #include "clock.h"
 #include "random_id.h"
+#include "scene_of_query.h"
 #include "wire.h"
 
 #include <stdlib.h>
@@ -16,6 +16,7 @@ enum { SERVER_ID = 1 };
 struct answer_now {
     struct answerer *answerer;
     struct scene_job *job;
+    struct pair_job *pair_job;
     struct definitions *definitions;
     struct any_query query; /* a pair, or one that is too long */
     struct pair_result pair;
@@ -33,7 +34,8 @@ struct answer_now *answer_now_open(size_t frames, struct definitions *definition
     now->definitions = definitions;
     now->answerer = answerer_create(&options);
     now->job = scene_job_create();
-    if (!now->answerer || !now->job)
+    now->pair_job = pair_job_create();
+    if (!now->answerer || !now->job || !now->pair_job)
         allocate_failed();
     return now;
 }
@@ -43,6 +45,7 @@ void answer_now_close(struct answer_now *now)
     if (!now)
         return;
     scene_job_destroy(now->job);
+    pair_job_destroy(now->pair_job);
     answerer_destroy(now->answerer);
     free(now);
 }
@@ -59,35 +62,32 @@ const struct handle *answer_now_undefined(struct definitions *definitions,
     return NULL;
 }
 
-/* Whether a service keeps the body: not one that it refuses. */
-static bool can_be_kept(const struct geometry *geometry)
+/* Whether the cache holds the body, which is then its most recently used one. */
+static bool is_held(struct cache *cache, const struct handle *handle)
 {
-    struct geometry_frame frame;
-    struct fmb_body body;
-    int dim;
-    if (big_endian_32(geometry->bytes + 4) != 1 || !geometry_read(geometry, &dim, &frame))
-        return false;
-    for (int axis = 0; axis < dim; axis++)
-        if (frame.origin[axis] != 0)
-            return false;
-    return fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), &body) ==
-           FMB_OK;
+    const struct cached *cached = cache_find(cache, handle);
+    if (cached)
+        cache_release(cache, cached);
+    return cached != NULL;
 }
 
-/* Puts what the handles stand for into the cache. Those that it holds are looked up first: they are
- * not evicted for the others then. */
+/* Puts what the handles stand for into the cache, except bodies that a service refuses. Those that
+ * it holds are looked up first: they are not evicted for the others then. */
 static void supply(struct answer_now *now, const struct placement *placement, int32_t count)
 {
     struct cache *cache = answerer_cache(now->answerer);
+    struct handle handle;
     for (int32_t i = 0; i < count; i++)
         if (placement_by_handle(&placement[i]))
-            cache_find(cache, &placement[i].handle);
+            is_held(cache, &placement[i].handle);
     for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]) || cache_find(cache, &placement[i].handle))
+        if (!placement_by_handle(&placement[i]) || is_held(cache, &placement[i].handle))
             continue;
         const struct geometry *geometry = definitions_find(now->definitions, &placement[i].handle);
-        if (geometry && can_be_kept(geometry))
-            cache_keep(cache, 0, geometry);
+        const struct cached *kept =
+            geometry && scene_takes(geometry) ? cache_keep(cache, 0, geometry, &handle) : NULL;
+        if (kept)
+            cache_release(cache, kept);
     }
 }
 
@@ -105,13 +105,22 @@ static bool helps(struct answer_now *now, struct answered *out)
 
 /* ---- Pairs ---- */
 
-static void decide_pair(struct answer_now *now, struct answered *out)
+/* A pair of bodies of several frames is decided by a job. */
+static const struct pair_result *decide_pair(struct answer_now *now, const unsigned char *bytes,
+                                             uint32_t size, struct answered *out)
 {
     const int64_t begin = clock_ns();
-    answer_pair(now->answerer, &now->query.pair, &now->pair);
-    now->pair.compute_ns = out->compute_ns = clock_ns() - begin;
-    out->status = now->pair.status;
+    struct pair_result *result = &now->pair;
+    if (!answer_pair(now->answerer, &now->query.pair, result)) {
+        pair_job_begin(now->pair_job, now->answerer, bytes, size);
+        while (!pair_job_step(now->pair_job))
+            continue;
+        result = pair_job_end(now->pair_job, now->answerer);
+    }
+    result->compute_ns = out->compute_ns = clock_ns() - begin;
+    out->status = result->status;
     out->pairs = out->status == FMB_OK;
+    return result;
 }
 
 static const char *answer_one_pair(struct answer_now *now, const unsigned char *bytes,
@@ -122,10 +131,10 @@ static const char *answer_one_pair(struct answer_now *now, const unsigned char *
         return error;
     out->placement = now->query.pair.placement;
     out->placement_count = 2;
-    decide_pair(now, out);
+    const struct pair_result *result = decide_pair(now, bytes, size, out);
     if (out->status == FMB_UNKNOWN_BODY && helps(now, out))
-        decide_pair(now, out);
-    out->size = wire_write_pair_result(&now->pair, now->bytes);
+        result = decide_pair(now, bytes, size, out);
+    out->size = wire_write_pair_result(result, now->bytes);
     return NULL;
 }
 
@@ -178,9 +187,7 @@ static const char *refuse(struct answer_now *now, enum log_kind kind, const unsi
         out->size = wire_write_pair_result(&now->pair, now->bytes);
         return NULL;
     }
-    const struct scene_query *query = &now->query.scene;
-    const struct query_header header = {query->utime, query->client_id, query->sequence_number};
-    answer_scene_refused(now->answerer, &header, FMB_OVER_LIMIT, &now->refused);
+    answer_scene_refused(now->answerer, &now->query.scene.header, FMB_OVER_LIMIT, &now->refused);
     out->size = wire_write_scene_result(&now->refused, now->bytes);
     return NULL;
 }

@@ -6,20 +6,12 @@
 
 static const char *read_header(struct any_query *out, const unsigned char *bytes, uint32_t size)
 {
-    struct query_header header = {.utime = 0};
     if (out->kind == LOG_PAIR_QUERY) {
-        const char *error = wire_read_pair_header(bytes, size, &header);
-        out->pair = (struct pair_query){.utime = header.utime,
-                                        .client_id = header.client_id,
-                                        .sequence_number = header.sequence_number};
-        return error;
+        memset(&out->pair, 0, sizeof out->pair);
+        return wire_read_pair_header(bytes, size, &out->pair.header);
     }
-    const char *error = wire_read_scene_header(bytes, size, &header);
     memset(&out->scene, 0, sizeof out->scene);
-    out->scene.utime = header.utime;
-    out->scene.client_id = header.client_id;
-    out->scene.sequence_number = header.sequence_number;
-    return error;
+    return wire_read_scene_header(bytes, size, &out->scene.header);
 }
 
 const char *any_query_read(struct any_query *out, enum log_kind kind, const unsigned char *bytes,
@@ -86,4 +78,27 @@ size_t any_query_write(const struct any_query *query, unsigned char out[QUERY_BY
         return 0;
     return query->kind == LOG_PAIR_QUERY ? wire_write_pair_query(&query->pair, out)
                                          : wire_write_scene_query(&query->scene, out);
+}
+
+/* Of the placements that the struct holds. */
+static int64_t placement_count(const struct scene_query *query)
+{
+    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                         : QUERY_PLACEMENTS_MAX;
+}
+
+int64_t any_query_pairs(const struct scene_query *query)
+{
+    const int64_t n = placement_count(query);
+    if (query->which == QUERY_PAIRS_LISTED)
+        return query->index_count / 2;
+    return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
+}
+
+int64_t any_query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
+{
+    const int64_t n = placement_count(query), first = a, second = b;
+    if (query->which == QUERY_PAIRS_ACROSS)
+        return first * (n - query->split) + second - query->split;
+    return first * n - first * (first + 1) / 2 + second - (first + 1);
 }

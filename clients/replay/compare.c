@@ -1,7 +1,7 @@
 #include "compare.h"
 
 #include "big_endian.h"
-#include "scene_pairs.h"
+#include "any_query.h"
 
 #include <math.h>
 #include <string.h>
@@ -169,7 +169,8 @@ static int32_t number_at(const struct answers *answers)
         return INT32_MAX;
     if (!answers->result->names_pairs)
         return answers->query->first_pair + answers->next;
-    return scene_pairs_number(answers->query, answers->result->pair, (size_t) answers->next);
+    const unsigned *pair = answers->result->pair[answers->next];
+    return (int32_t) any_query_pair_number(answers->query, pair[0], pair[1]);
 }
 
 /* The box of a contact, if it is of the query's dimension. */
@@ -189,7 +190,7 @@ static struct fmb_answer take(struct answers *answers)
     if (!is_contact((unsigned char) answer.verdict))
         return answer;
     const int32_t contact = answers->contact++;
-    answer.has_contact = result->has_times && !isnan(result->times[2 * contact]);
+    answer.has_contact = result->has_times;
     for (int end = 0; end < 2 && answer.has_contact; end++)
         answer.contact[end] = result->times[2 * contact + end];
     take_box(answers, contact, &answer);
@@ -247,7 +248,7 @@ static bool compare_answers(const struct compare_options *options, struct answer
 static bool goes_with(const struct scene_query *query, const struct scene_result *result)
 {
     const bool names = query->which != QUERY_PAIRS_LISTED;
-    if (result->end_pair < query->first_pair || result->end_pair > scene_pairs_total(query))
+    if (result->end_pair < query->first_pair || result->end_pair > any_query_pairs(query))
         return false;
     if (!names)
         return (!result->names_pairs || result->verdict_count == 0) &&
@@ -260,7 +261,7 @@ static bool goes_with(const struct scene_query *query, const struct scene_result
         if (query->which == QUERY_PAIRS_ACROSS &&
             (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
             return false;
-        const int32_t number = scene_pairs_number(query, result->pair, (size_t) i);
+        const int32_t number = (int32_t) any_query_pair_number(query, pair[0], pair[1]);
         if (number <= before || number >= result->end_pair)
             return false;
         before = number;

@@ -50,6 +50,8 @@ enum log_outcome input_next(struct input *input, struct log_event *event, struct
     while ((outcome = log_next(input->reader[input->log], event, damage)) == LOG_END &&
            input->log + 1 < input->count)
         log_rewind(input->reader[++input->log]);
+    if (outcome < LOG_END)
+        input->passed += outcome == LOG_EVENT ? event->length : damage->length;
     return outcome;
 }
 

@@ -8,7 +8,8 @@ struct input {
     struct log_reader **reader; /* owned; [count] */
     int64_t *begin;             /* owned; [count + 1]: total bytes of the logs before */
     int count;
-    int log; /* index of the current log */
+    int log;        /* index of the current log */
+    int64_t passed; /* bytes that input_next() has read */
 };
 
 /* Opens all logs. False: one cannot be opened; why names it and the reason. */
@@ -18,7 +19,7 @@ void input_close(struct input *input);
 /* Total bytes of the logs. */
 int64_t input_size(const struct input *input);
 
-/* As log_next(); input->log is the log of the event. */
+/* As log_next(); input->log is the log of the event or damage. */
 enum log_outcome input_next(struct input *input, struct log_event *event,
                             struct log_damage *damage);
 

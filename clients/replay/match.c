@@ -1,13 +1,7 @@
 #include "match.h"
 
-#include "allocate.h"
-#include "keyed_hash.h"
-
 #include <stdlib.h>
 #include <string.h>
-
-#undef uthash_malloc
-#define uthash_malloc(size) allocate(1, size)
 
 /* Of notes, which consecutive sequence numbers of a client fill one after the other. */
 enum { NOTES = 4096 };
@@ -16,22 +10,14 @@ struct match {
     /* The first of each key, after `always`, which is never removed: uthash frees the table with
      * its last item, and most logs have one query at a time that waits. */
     struct match_item *items, always;
-    struct keyed_hash hash;
     struct match_note note[NOTES];
 };
-
-static unsigned hash_of(const struct match *match, const struct match_key *key)
-{
-    return keyed_hash_of(&match->hash, key, sizeof *key);
-}
 
 struct match *match_open(void)
 {
     struct match *match = allocate(1, sizeof *match);
-    match->hash = keyed_hash_make();
     match->always.key.kind = -1;
-    HASH_ADD_BYHASHVALUE(hh, match->items, key, sizeof match->always.key,
-                         hash_of(match, &match->always.key), &match->always);
+    HASH_ADD(hh, match->items, key, sizeof match->always.key, &match->always);
     for (int i = 0; i < NOTES; i++)
         match->note[i].key.kind = -1;
     return match;
@@ -49,23 +35,17 @@ void match_close(struct match *match)
     free(match);
 }
 
-static struct match_item *find(const struct match *match, const struct match_key *key,
-                               unsigned hash)
-{
-    struct match_item *item;
-    HASH_FIND_BYHASHVALUE(hh, match->items, key, sizeof *key, hash, item);
-    return item;
-}
-
 struct match_item *match_find(const struct match *match, const struct match_key *key)
 {
-    return match_any(match) ? find(match, key, hash_of(match, key)) : NULL;
+    struct match_item *item = NULL;
+    if (match_any(match))
+        HASH_FIND(hh, match->items, key, sizeof *key, item);
+    return item;
 }
 
 static void put(struct match *match, struct match_item *item)
 {
-    const unsigned hash = hash_of(match, &item->key);
-    struct match_item *first = find(match, &item->key, hash);
+    struct match_item *first = match_find(match, &item->key);
     item->waits = true;
     item->next = NULL;
     item->last = item;
@@ -73,7 +53,7 @@ static void put(struct match *match, struct match_item *item)
         first->last->next = item;
         first->last = item;
     } else {
-        HASH_ADD_BYHASHVALUE(hh, match->items, key, sizeof item->key, hash, item);
+        HASH_ADD(hh, match->items, key, sizeof item->key, item);
     }
 }
 
@@ -96,13 +76,12 @@ struct match_item *match_add(struct match *match, const struct match_key *key,
 void match_remove(struct match *match, struct match_item *item)
 {
     struct match_item *next = item->next;
-    const unsigned hash = item->hh.hashv;
     HASH_DELETE(hh, match->items, item);
     item->waits = false;
     if (!next)
         return;
     next->last = item->last;
-    HASH_ADD_BYHASHVALUE(hh, match->items, key, sizeof next->key, hash, next);
+    HASH_ADD(hh, match->items, key, sizeof next->key, next);
 }
 
 void match_free(struct match_item *item)

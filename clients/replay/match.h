@@ -4,15 +4,12 @@
  * of several such queries, to the first without a result. Unmatched queries and results are kept in
  * memory: an item takes some 250 bytes, and the answer that its user keeps with it. Matched ones
  * are removed, except for a note of the places of the last few thousand, by which second results
- * are recognised.
- *
- * The table is hashed with a secret: no log can choose ids that collide. */
+ * are recognised. */
 #ifndef MATCH_H
 #define MATCH_H
 
+#include "keyed_hash.h"
 #include "log_kind.h"
-
-#include <uthash.h>
 
 struct match_key {
     int64_t kind; /* of the query: LOG_PAIR_QUERY or LOG_SCENE_QUERY */

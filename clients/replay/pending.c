@@ -1,8 +1,5 @@
 #include "pending.h"
 
-#include "allocate.h"
-#include "keyed_hash.h"
-
 #include <stdlib.h>
 
 struct waiting {
@@ -13,14 +10,11 @@ struct waiting {
 
 struct pending {
     struct waiting *handles;
-    struct keyed_hash hash;
 };
 
 struct pending *pending_open(void)
 {
-    struct pending *pending = allocate(1, sizeof *pending);
-    pending->hash = keyed_hash_make();
-    return pending;
+    return allocate(1, sizeof(struct pending));
 }
 
 void pending_free_list(struct match_item *first)
@@ -44,24 +38,15 @@ bool pending_is_empty(const struct pending *pending)
     return !pending->handles;
 }
 
-static struct waiting *find(const struct pending *pending, const struct handle *handle,
-                            unsigned *hash)
-{
-    struct waiting *waiting;
-    *hash = keyed_hash_of(&pending->hash, handle, sizeof *handle);
-    HASH_FIND_BYHASHVALUE(hh, pending->handles, handle, sizeof *handle, *hash, waiting);
-    return waiting;
-}
-
 void pending_add(struct pending *pending, const struct handle *handle, struct match_item *item)
 {
-    unsigned hash;
-    struct waiting *waiting = find(pending, handle, &hash);
+    struct waiting *waiting;
+    HASH_FIND(hh, pending->handles, handle, sizeof *handle, waiting);
     if (!waiting) {
         waiting = allocate(1, sizeof *waiting);
         waiting->handle = *handle;
         waiting->end = &waiting->first;
-        HASH_ADD_BYHASHVALUE(hh, pending->handles, handle, sizeof *handle, hash, waiting);
+        HASH_ADD(hh, pending->handles, handle, sizeof *handle, waiting);
     }
     item->pending = NULL;
     *waiting->end = item;
@@ -70,8 +55,9 @@ void pending_add(struct pending *pending, const struct handle *handle, struct ma
 
 struct match_item *pending_take(struct pending *pending, const struct handle *handle)
 {
-    unsigned hash;
-    struct waiting *waiting = handle ? find(pending, handle, &hash) : pending->handles;
+    struct waiting *waiting = pending->handles;
+    if (handle)
+        HASH_FIND(hh, pending->handles, handle, sizeof *handle, waiting);
     if (!waiting)
         return NULL;
     struct match_item *first = waiting->first;

@@ -9,9 +9,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Bytes between two reports of progress. */
-enum { PROGRESS_BYTES = 1 << 16 };
-
 /* Reports what cannot be read or written; the replay continues. */
 void replay_fail(struct replay *replay, const char *what)
 {
@@ -66,9 +63,8 @@ static const char *read_key(enum log_kind kind, const struct log_event *event, s
 {
     struct query_header ids = {.utime = 0};
     const char *error = log_kind_ids(kind, event, &ids);
-    const bool pair = kind == LOG_PAIR_QUERY || kind == LOG_PAIR_RESULT;
-    out->key = (struct match_key){pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, ids.client_id,
-                                  ids.sequence_number, ids.utime};
+    out->key =
+        (struct match_key){log_kind_query_of(kind), ids.client_id, ids.sequence_number, ids.utime};
     out->bytes = event->data;
     out->size = (uint32_t) event->kept;
     return error;
@@ -170,7 +166,6 @@ static void take_event(struct replay *replay, const struct log_event *event)
         const struct match_place place = place_of(replay, event);
         replay_take_definition(replay, event, &place);
     }
-    replay->at = replay->input.begin[replay->input.log] + event->offset + event->length;
 }
 
 static void take_damage(struct replay *replay, const struct log_damage *damage)
@@ -180,7 +175,6 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
     tally->damaged_bytes += damage->length;
     tally->bytes += damage->length;
     replay->sink->damage(replay->sink->user, replay->input.log, damage);
-    replay->at = replay->input.begin[replay->input.log] + damage->offset + damage->length;
 }
 
 /* ---- Opening and closing ---- */
@@ -281,15 +275,6 @@ static void close_replay(struct replay *replay)
 
 /* ---- The run ---- */
 
-/* A bus may take long for few bytes. */
-static void report_progress(struct replay *replay)
-{
-    if (replay->at - replay->reported < PROGRESS_BYTES && !replay->bus)
-        return;
-    replay->reported = replay->at;
-    replay->sink->progress(replay->sink->user, replay->at);
-}
-
 static void fail_version_1(struct replay *replay)
 {
     fprintf(stderr,
@@ -303,13 +288,12 @@ static void read_logs(struct replay *replay)
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    while ((outcome = input_next(&replay->input, &event, &damage)) == LOG_EVENT ||
-           outcome == LOG_DAMAGE) {
+    while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
             take_event(replay, &event);
         else
             take_damage(replay, &damage);
-        report_progress(replay);
+        replay->sink->progress(replay->sink->user, replay->input.passed);
         if (replay->version_1)
             fail_version_1(replay);
         if (replay->version_1 || replay_has_ended(replay))

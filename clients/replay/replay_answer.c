@@ -25,7 +25,7 @@ static void write_golden(struct replay *replay, const struct match_item *query,
 {
     static const unsigned char no_time[sizeof(int64_t)];
     unsigned char bytes[QUERY_BYTES_MAX];
-    const int kind = query->key.kind == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
+    const enum log_kind kind = log_kind_result_of((enum log_kind) query->key.kind);
     memcpy(bytes, answered->bytes, answered->size);
     memcpy(bytes + answered->size - sizeof no_time, no_time, sizeof no_time);
     if (!log_append(replay->new_golden, query->place.utime, replay->channels.name[kind],

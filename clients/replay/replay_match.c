@@ -3,9 +3,7 @@
 static void refuse_result(struct replay *replay, const struct message *result, const char *error)
 {
     if (result->place.mine)
-        replay_refuse(replay,
-                      result->key.kind == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT,
-                      result, error);
+        replay_refuse(replay, log_kind_result_of((enum log_kind) result->key.kind), result, error);
 }
 
 /* ---- Both are there ---- */

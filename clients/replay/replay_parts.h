@@ -26,7 +26,7 @@ struct replay {
     struct pending *pending;
     /* Queries to answer again, since their handles are now defined; linked by ->pending. */
     struct match_item *defined, **defined_end;
-    int64_t first_utime, at, reported;
+    int64_t first_utime;
     bool started, failed, version_1;
     struct any_query query;
     struct definition definition;

@@ -15,6 +15,7 @@ const OUTCOME_SAID = [
     "No result was recorded: there is nothing to compare.",
 ];
 
+const CUBOID = 1, FACE = 3, BOX = 4;
 const WANT_BOX = 1, WANT_CERTIFICATE = 2, WANT_TIMES = 4;
 const KIND_PAIR = 0, KIND_LISTED = 1, KIND_ALL = 2, KIND_ACROSS = 3;
 
@@ -84,19 +85,45 @@ function worstOf(event) {
     return worst;
 }
 
-/* The components of a frame, its origin and its velocity (null: none); or why there are none. */
+/* R(q) of fmb.h as rows, of an orientation of any length; null: not turned. */
+function rotationOf(orientation) {
+    if (orientation.length === 0)
+        return null;
+    const largest = Math.max(...orientation.map(Math.abs));
+    const q = orientation.map((value) => value / largest), norm = q.reduce((s, x) => s + x * x, 0);
+    const [w, x, y, z] = q.length === 2 ? [q[0], 0, 0, q[1]] : q;
+    return [[w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z]]
+        .map((row) => row.map((value) => value / norm));
+}
+
+/* A box as a cuboid: [shape, origin..., components...]. */
+function cuboidOf(dim, [shape, ...numbers]) {
+    if (shape !== BOX)
+        return [shape, ...numbers];
+    const size = numbers.slice(dim), components = [];
+    for (let i = 0; i < dim * dim; i++)
+        components.push(i % (dim + 1) === 0 ? size[i / (dim + 1)] : 0);
+    return [CUBOID, ...size.map((value, axis) => numbers[axis] - value / 2), ...components];
+}
+
+/* Of each placed body: its shape, position, rotation (null: none) and velocity (null: none); or why
+ * there are none. */
 function framesOf(event) {
     return event.frames.map(([id, shape, ...numbers], index) => {
         const frame = { index, id: String(id), shape: null, why: "" };
         if (shape === -1)
             frame.why = `the log does not define its handle, ${numbers[0]}`;
         else if (shape === -2)
-            frame.why = "it is no frame that can be drawn";
+            frame.why = "it is no body that can be drawn";
         if (shape < 0)
             return frame;
         frame.shape = data.shapes[shape];
-        frame.origin = numbers.slice(0, frame.shape.dim);
-        frame.velocity = numbers.length > frame.shape.dim ? numbers.slice(frame.shape.dim) : null;
+        frame.position = numbers[0];
+        frame.orientation = numbers[1];
+        frame.rotation = rotationOf(numbers[1]);
+        frame.velocity = numbers[2].length > 0 ? numbers[2] : null;
         return frame;
     });
 }

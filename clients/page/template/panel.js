@@ -4,10 +4,12 @@ const PAIRS_FIRST = 30, PAIRS_MORE = 200, DIFFERENCES_FIRST = 50, DIFFERENCES_MO
 const FRAMES_FIRST = 200;
 const panel = { pairs: PAIRS_FIRST, differences: DIFFERENCES_FIRST };
 
-const SHAPES = { 1: ["parallelogram", "cuboid"], 2: ["triangle", "tetrahedron"], 3: ["", "face"] };
+const SHAPES = { 1: ["parallelogram", "cuboid"], 2: ["triangle", "tetrahedron"], 3: ["", "face"],
+    4: ["rectangle", "box"] };
 
-function shapeName(shape) {
-    return SHAPES[shape.shape]?.[shape.dim - 2] ?? "frame";
+function shapeName({ dim, frames }) {
+    return frames.length === 1 ? SHAPES[frames[0][0]]?.[dim - 2] ?? "frame"
+        : `${frames.length} frames`;
 }
 
 /* ---- Header ---- */
@@ -84,7 +86,7 @@ function makeDifference(event) {
     const changes = changesOf(event), more = changes.length - CHANGES_SHOWN;
     const names = event.frames.slice(0, 2).map((frame) => bodyName(String(frame[0]))).join(" – ");
     const subject = event.kind === KIND_PAIR ? names
-        : counted(event.frames.length, "frame", "frames");
+        : counted(event.frames.length, "body", "bodies");
     return make("li", {}, make("button", {
         class: "difference", "data-at": event.at, onclick: () => choose(event.at, null),
     }, make("span", { class: "line" }, make("i", { class: "flag-key" }, "≠"),
@@ -126,7 +128,7 @@ function markDifference() {
 /* ---- The chosen query ---- */
 
 function kindText(event) {
-    const frames = counted(event.frames.length + (event.more_frames ?? 0), "frame", "frames");
+    const frames = counted(event.frames.length + (event.more_frames ?? 0), "body", "bodies");
     return {
         [KIND_PAIR]: "one pair", [KIND_LISTED]: `a scene of ${frames}, pairs as listed`,
         [KIND_ALL]: `a scene of ${frames}, all pairs`,
@@ -302,16 +304,19 @@ function makeFrameRow(frame) {
     const exactly = (numbers) => numbers ? numbers.map(exact).join(", ") : null;
     return make("tr", {}, make("td", {}, bodyName(frame.id)),
         make("td", {}, shapeName(frame.shape)),
-        make("td", { class: "number", title: exactly(frame.origin) }, vectorText(frame.origin)),
+        make("td", { class: "number", title: exactly(frame.position) },
+            vectorText(frame.position)),
+        make("td", { class: "number", title: exactly(frame.orientation) },
+            frame.rotation ? vectorText(frame.orientation) : "none"),
         make("td", { class: "number", title: exactly(frame.velocity) },
             frame.velocity ? vectorText(frame.velocity) : "at rest"));
 }
 
 function fillFrames() {
     const known = stage.drawable, shown = known.slice(0, FRAMES_FIRST);
-    const names = ["body", "shape", "origin", "velocity, 1/s"], left = known.length - shown.length;
+    const names = ["body", "shape", "position", "orientation", "velocity, 1/s"], left = known.length - shown.length;
     show(find("event-frames"), known.length === 0 ? null : make("details", {},
-        make("summary", {}, counted(known.length, "frame", "frames")),
+        make("summary", {}, counted(known.length, "body", "bodies")),
         makeTable("frames", names, shown.map(makeFrameRow)),
         left > 0 ? dimNote(`and ${grouped(left)} more`) : null));
 }
@@ -327,7 +332,7 @@ function fillNotDrawn(event) {
         lines.push(`not drawn: ${grouped(event.more_frames)} frames beyond the most of a scene`);
     show(find("not-drawn"), ...lines.map((line) => make("li", {}, line)));
     find("stage-said").textContent = stage.drawable.length > 0 ? ""
-        : event.frames.length === 0 ? "no frames" : "nothing that can be drawn";
+        : event.frames.length === 0 ? "no bodies" : "nothing that can be drawn";
 }
 
 function describeStage(event) {
@@ -335,7 +340,7 @@ function describeStage(event) {
         + verdictName(verdictOf(pair.now ?? pair.then)));
     const dim = stage.drawable[0]?.shape.dim;
     find("stage").setAttribute("aria-label", `${dim ? `${dim}D, ` : ""}`
-        + `${counted(stage.drawable.length, "frame", "frames")} drawn. ${pairs.join("; ")}`);
+        + `${counted(stage.drawable.length, "body", "bodies")} drawn. ${pairs.join("; ")}`);
     find("scene-title").textContent = dim ? `Scene, ${dim}D` : "Scene";
     find("views").hidden = dim !== 3;
     find("scene-hint").textContent = dim === 3 ? "drag turns, with shift moves; wheel zooms"

@@ -15,10 +15,8 @@ function isBack(index) {
 }
 
 /* A face of a solid is turned to the viewer where its normal, pointed away from the middle of the
- * body, is. */
-function isFront(points, middle, solid) {
-    if (!solid)
-        return true;
+ * frame, is. */
+function isFront(points, middle) {
     const normal = cross(minus(points[1], points[0]), minus(points[2], points[0]));
     const out = dot(normal, minus(middleOf(points), middle));
     return out >= 0 ? normal[2] >= 0 : normal[2] <= 0;
@@ -31,15 +29,16 @@ function standing(point) {
 
 /* Faces, and how near they are. */
 function facetsOf(project, frame, outline) {
-    const points = outline.corners.map(project), middle = standing(project(outline.middle));
-    const solid = outline.faces.length > 1;
-    return outline.faces.map((face) => {
+    const points = outline.corners.map(project);
+    return outline.faces.map((face, i) => {
+        const middle = outline.middles[i];
         const corners = face.map((k) => points[k]), world = face.map((k) => outline.corners[k]);
         return {
             index: frame.index, face, points: corners, flat: stage.units.dim === 2,
             depth: corners.reduce((sum, p) => sum + p[2], 0) / corners.length,
             light: stage.units.dim === 2 ? 0.8 : lightOf(world[0], world[1], world[2]),
-            front: isFront(corners.map(standing), middle, solid),
+            front: middle === null
+                || isFront(corners.map(standing), standing(project(middle))),
         };
     });
 }

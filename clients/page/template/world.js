@@ -1,6 +1,6 @@
 /* Frames and boxes as points to be drawn.
  *
- * Numbers may have any size. So everything is taken relative to the first frame's origin and scaled
+ * Numbers may have any size. So everything is taken relative to the first body's position and scaled
  * by a power of two, such that all sums lie between -1 and 1: both are exact, or nearly so, and
  * neither is infinite. What lies farther out, infinite ends of boxes too, is cut. */
 
@@ -13,11 +13,10 @@ const CUBOID_3D = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1
 const CUBOID_2D = [[0, 1, 3, 2]];
 const TETRAHEDRON = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 2, 3]];
 const TRIANGLE = [[0, 1, 2]];
-const CUBOID = 1, FACE = 3;
 
-function facesOf(shape) {
-    const solid = shape.dim === 3 && shape.shape !== FACE;
-    if (shape.shape === CUBOID)
+function facesOf(dim, shape) {
+    const solid = dim === 3 && shape !== FACE;
+    if (shape === CUBOID)
         return solid ? CUBOID_3D : CUBOID_2D;
     return solid ? TETRAHEDRON : TRIANGLE;
 }
@@ -34,8 +33,8 @@ function largestOf(frames, T, origin) {
         largest = Math.max(largest, Math.abs(finite(value)));
     };
     for (const frame of frames) {
-        frame.origin.forEach((value, axis) => add(value - origin[axis]));
-        frame.shape.c.forEach(add);
+        frame.position.forEach((value, axis) => add(value - origin[axis]));
+        frame.shape.frames.forEach(([, ...numbers]) => numbers.forEach(add));
         (frame.velocity ?? []).forEach((value) => add(value * T));
     }
     return largest;
@@ -47,11 +46,11 @@ function factors(power) {
     return [2 ** half, 2 ** (power - half)];
 }
 
-/* Of the drawable frames of an event. A sum of five numbers, none larger than the largest, is
+/* Of the drawable bodies of an event. A sum of some dozen numbers, none larger than the largest, is
  * smaller than 1. */
 function makeUnits(dim, frames, T) {
-    const origin = frames[0].origin, largest = largestOf(frames, T, origin);
-    const power = largest > 0 ? -Math.floor(Math.log2(largest)) - 4 : 0;
+    const origin = frames[0].position, largest = largestOf(frames, T, origin);
+    const power = largest > 0 ? -Math.floor(Math.log2(largest)) - 5 : 0;
     return { dim, origin, power, factor: factors(power) };
 }
 
@@ -76,7 +75,24 @@ function unscaled(units, value) {
 /* ---- Outlines ---- */
 
 function cornerAdds(shape, corner, component) {
-    return shape.shape === CUBOID ? (corner >> component) & 1 : corner === component + 1;
+    return shape === CUBOID ? (corner >> component) & 1 : corner === component + 1;
+}
+
+/* The corners of a frame in body coordinates, scaled: [x, y, z]. */
+function bodyCorners(units, dim, [shape, ...numbers]) {
+    const count = numbers.length / dim - 1, corners = [];
+    const number = shape === CUBOID ? 1 << count : count + 1;
+    for (let k = 0; k < number; k++) {
+        const corner = [0, 0, 0];
+        for (let axis = 0; axis < dim; axis++) {
+            corner[axis] = scaled(units, numbers[axis]);
+            for (let i = 0; i < count; i++)
+                corner[axis] += cornerAdds(shape, k, i)
+                    ? scaled(units, numbers[(i + 1) * dim + axis]) : 0;
+        }
+        corners.push(corner);
+    }
+    return corners;
 }
 
 function middleOf(points) {
@@ -84,22 +100,33 @@ function middleOf(points) {
         / points.length);
 }
 
-/* corners: [x, y, z]; z is 0 in 2D. */
-function outlineOf(units, frame, time) {
-    const { shape } = frame, count = shape.c.length / shape.dim, corners = [];
-    const number = shape.shape === CUBOID ? 1 << count : count + 1;
-    for (let k = 0; k < number; k++) {
-        const corner = [0, 0, 0];
-        for (let axis = 0; axis < shape.dim; axis++) {
-            let at = placed(units, frame.origin[axis], axis);
-            for (let i = 0; i < count; i++)
-                at += cornerAdds(shape, k, i) ? scaled(units, shape.c[i * shape.dim + axis]) : 0;
-            at += frame.velocity && time > 0 ? scaled(units, frame.velocity[axis] * time) : 0;
-            corner[axis] = clamp(at, -CUT, CUT);
-        }
-        corners.push(corner);
+/* A corner of a body in the world, z = 0 in 2D. */
+function placeCorner(units, body, corner, time) {
+    const out = [0, 0, 0];
+    for (let axis = 0; axis < body.shape.dim; axis++) {
+        let at = placed(units, body.position[axis], axis);
+        at += body.rotation ? dot(body.rotation[axis], corner) : corner[axis];
+        at += body.velocity && time > 0 ? scaled(units, body.velocity[axis] * time) : 0;
+        out[axis] = clamp(at, -CUT, CUT);
     }
-    return { corners, faces: facesOf(shape), middle: middleOf(corners) };
+    return out;
+}
+
+/* All frames of a body in one. faces: indices of corners; middles: [face] that of its frame. */
+function outlineOf(units, body, time) {
+    const { dim, frames } = body.shape, corners = [], faces = [], middles = [];
+    for (const given of frames) {
+        const frame = cuboidOf(dim, given), first = corners.length;
+        const own = bodyCorners(units, dim, frame).map((corner) =>
+            placeCorner(units, body, corner, time));
+        const middle = middleOf(own), ownFaces = facesOf(dim, frame[0]);
+        corners.push(...own);
+        for (const face of ownFaces) {
+            faces.push(face.map((k) => first + k));
+            middles.push(ownFaces.length > 1 ? middle : null);
+        }
+    }
+    return { corners, faces, middles, middle: middleOf(corners) };
 }
 
 /* An end is null where it is infinite, and a word where it is no number. */
