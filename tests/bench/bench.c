@@ -37,7 +37,7 @@ void bench_put_cell(struct json *json, const struct cell *cell)
 void arena_open(const struct bench *bench, const struct cell *cell, bool in_contact,
                 struct arena *out)
 {
-    out->scene = scene_draw(cell, bench->bodies, bench->seed, false);
+    out->scene = scene_draw(cell, bench->bodies, bench->seed);
     out->pairs = pairs_draw_of(&out->scene, in_contact, 5 * bench->pairs, bench->seed);
     out->work = work_of(&out->scene, &out->pairs);
     out->work.count = bench->pairs;
@@ -149,6 +149,7 @@ int main(int argc, char **argv)
     instructions_run(&bench);
     growth_run(&bench);
     grids_run(&bench);
+    poses_run(&bench);
     broad_run(&bench);
     worst_run(&bench);
     print_noise(pinned);

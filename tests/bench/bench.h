@@ -40,6 +40,7 @@ void article_run(struct bench *bench);      /* article */
 void instructions_run(struct bench *bench); /* instructions */
 void growth_run(struct bench *bench);       /* growth */
 void grids_run(struct bench *bench);        /* grids */
+void poses_run(struct bench *bench);        /* poses */
 void broad_run(struct bench *bench);        /* broad */
 void worst_run(struct bench *bench);        /* worst */
 

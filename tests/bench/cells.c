@@ -152,11 +152,11 @@ static double volume_ratio_of(const struct work *work, int dim)
     double ratio[MOST];
     int count = 0;
     for (size_t i = 0; i < work->count && count < MOST; i++) {
-        const struct fmb_frame *frame = work->scene->frame;
-        const struct fmb_pair pair = {frame[work->pair[i][0]], frame[work->pair[i][1]], 1};
+        const struct fmb_placement *a = &work->scene->placement[work->pair[i][0]],
+                                   *b = &work->scene->placement[work->pair[i][1]];
         struct fmb_answer tight, loose;
-        fmb_decide(fmb_method_by_name("certified"), &pair, FMB_WANT_BOX, &tight);
-        fmb_decide(fmb_method_by_name("fmb"), &pair, FMB_WANT_BOX, &loose);
+        fmb_decide(fmb_method_by_name("certified"), a, b, 1, FMB_WANT_BOX, &tight);
+        fmb_decide(fmb_method_by_name("fmb"), a, b, 1, FMB_WANT_BOX, &loose);
         if (tight.has_box && loose.has_box && volume_of(&tight, dim) > 0)
             ratio[count++] = volume_of(&loose, dim) / volume_of(&tight, dim);
     }

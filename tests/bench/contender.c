@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "inexact.h"
 #include "ordered.h"
 #include "peers.h"
 
@@ -58,40 +57,68 @@ static void batch_box(const struct work *work)
     run_batch(work, false, true);
 }
 
+static unsigned meets(const struct fmb_prepared *a, const struct fmb_prepared *b)
+{
+    enum fmb_verdict verdict;
+    return fmb_meet(a, b, 1, &verdict) == FMB_OK ? verdict : 0;
+}
+
 static void single(const struct work *work)
 {
     const struct fmb_prepared *prepared = work->scene->prepared;
     for (size_t i = 0; i < work->count; i++)
-        sink += fmb_meet(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]], 1);
+        sink += meets(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]]);
 }
 
 static void single_computed(const struct work *work)
 {
-    const struct fmb_frame *frame = work->scene->frame;
+    const struct fmb_placement *placement = work->scene->placement;
     for (size_t i = 0; i < work->count; i++) {
         struct fmb_prepared a, b;
-        fmb_prepare(&frame[work->pair[i][0]], &a);
-        fmb_prepare(&frame[work->pair[i][1]], &b);
-        sink += fmb_meet(&a, &b, 1);
+        fmb_prepare(&placement[work->pair[i][0]], 0, 1, &a);
+        fmb_prepare(&placement[work->pair[i][1]], 0, 1, &b);
+        sink += meets(&a, &b);
     }
 }
 
 static void sat(const struct work *work)
 {
-    const struct fmb_prepared *prepared = work->scene->prepared;
+    const struct lean_frame *lean = work->scene->lean;
     for (size_t i = 0; i < work->count; i++)
-        sink += sat_meets(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]], 1);
+        sink += lean_meets(&lean[work->pair[i][0]], &lean[work->pair[i][1]], 1);
 }
 
-/* Pairs are put together in the call; 'first' is the side that is A. */
+static void sat_placed(const struct work *work)
+{
+    const struct fmb_placement *placement = work->scene->placement;
+    for (size_t i = 0; i < work->count; i++) {
+        const struct fmb_placement *a = &placement[work->pair[i][0]],
+                                   *b = &placement[work->pair[i][1]];
+        struct lean_frame lean[2];
+        lean_place(fmb_body_frame(a->body, 0), a, &lean[0]);
+        lean_place(fmb_body_frame(b->body, 0), b, &lean[1]);
+        sink += lean_meets(&lean[0], &lean[1], 1);
+    }
+}
+
+/* A frame for a pair: those of the scene, one after the other. */
+static void placing(const struct work *work)
+{
+    const struct scene *scene = work->scene;
+    struct fmb_prepared out;
+    for (size_t i = 0, at = 0; i < work->count; i++, at = at + 1 < scene->count ? at + 1 : 0)
+        sink += fmb_prepare(&scene->placement[at], 0, 1, &out);
+}
+
+/* first: the side that is A. */
 static void run_method(const struct work *work, const struct fmb_method *method, unsigned want,
                        int first)
 {
-    const struct fmb_frame *frame = work->scene->frame;
+    const struct fmb_placement *placement = work->scene->placement;
     for (size_t i = 0; i < work->count; i++) {
-        const struct fmb_pair pair = {frame[work->pair[i][first]], frame[work->pair[i][!first]], 1};
         struct fmb_answer answer;
-        fmb_decide(method, &pair, want, &answer);
+        fmb_decide(method, &placement[work->pair[i][first]], &placement[work->pair[i][!first]], 1,
+                   want, &answer);
         sink += answer.verdict;
     }
 }
@@ -148,19 +175,19 @@ static void fmb_reversed(const struct work *work)
 /* The body of a, whose inverse it is, is made anew. */
 static void fmb_computed(const struct work *work)
 {
-    const struct fmb_frame *frame = work->scene->frame;
+    const struct fmb_placement *placement = work->scene->placement;
     for (size_t i = 0; i < work->count; i++) {
-        struct fmb_pair pair = {frame[work->pair[i][0]], frame[work->pair[i][1]], 1};
-        const struct fmb_body *body = pair.a.body;
-        const size_t dim = (size_t) body->dim;
+        struct fmb_placement a = placement[work->pair[i][0]];
+        const struct fmb_frame *frame = fmb_body_frame(a.body, 0);
+        const size_t dim = (size_t) frame->dim;
         double number[FMB_COMPONENTS_MAX];
         for (size_t k = 0; k < dim; k++)
-            memcpy(&number[k * dim], body->component[k], dim * sizeof *number);
+            memcpy(&number[k * dim], frame->component[k], dim * sizeof *number);
         struct fmb_body made;
-        fmb_body_make(body->dim, body->shape, number, dim * dim, &made);
-        pair.a.body = &made;
+        fmb_body_make(frame->dim, frame->shape, number, dim * dim, &made);
+        a.body = &made;
         struct fmb_answer answer;
-        fmb_decide(fmb_method_by_name("fmb"), &pair, 0, &answer);
+        fmb_decide(fmb_method_by_name("fmb"), &a, &placement[work->pair[i][1]], 1, 0, &answer);
         sink += answer.verdict;
     }
 }
@@ -205,7 +232,8 @@ void contender_help(void)
         "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
         "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
         "doubles,\n"
-        "verdict alone, of prepared frames: the yardstick. gjk, mpr: libccd's%s.\n",
+        "verdict alone, of placed frames: the yardstick; placed: in the call. gjk, mpr: "
+        "libccd's%s.\n",
         peers_are_there() ? "" : " (not in this build: make deps-bench)");
 }
 

@@ -40,6 +40,8 @@ enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_3D_STATIC = 2 };
     X(FMB_SORTED, "fmb sorted", fmb_sorted, ANYWHERE)                \
     X(FMB_REVERSED, "fmb reversed", fmb_reversed, ANYWHERE)          \
     X(SAT, "sat", sat, ANYWHERE)                                     \
+    X(SAT_PLACED, "sat placed", sat_placed, ANYWHERE)                \
+    X(PLACING, "placing", placing, ANYWHERE)                         \
     X(SAT_QUERY, "sat query", sat_query, ANYWHERE)                   \
     X(EXACT, "exact", exact, ANYWHERE)                               \
     X(GJK, "gjk", peers_gjk, ONLY_3D_STATIC)                         \

@@ -58,7 +58,9 @@ static const double most_bytes = 2e9;
 
 static double bytes_of(double bodies, double pairs)
 {
-    return bodies * sizeof(struct fmb_prepared) + pairs * (2 * sizeof(unsigned) + 1 + 8 * 8);
+    return bodies * (sizeof(struct fmb_prepared) + sizeof(struct fmb_body) +
+                     sizeof(struct fmb_placement)) +
+           pairs * (2 * sizeof(unsigned) + 1 + 8 * 8);
 }
 
 /* Nanoseconds a pair: all pairs, in calls of so many. */
@@ -105,7 +107,7 @@ static void grow_bodies(struct bench *bench)
         if (bytes_of((double) bodies, (double) count) > most_bytes)
             continue;
         bench_progress("growth, bodies");
-        struct scene scene = scene_draw(&growing, bodies, bench->seed, true);
+        struct scene scene = scene_draw(&growing, bodies, bench->seed);
         struct pairs pairs = pairs_draw(&scene, count, bench->seed);
         struct work work = work_of(&scene, &pairs);
         work.instructions = bench->instructions;
@@ -120,7 +122,7 @@ static void grow_bodies(struct bench *bench)
 static void grow_pairs(struct bench *bench)
 {
     const size_t most = bench->quick ? 10000 : 10000000;
-    struct scene scene = scene_draw(&growing, bench->bodies, bench->seed, true);
+    struct scene scene = scene_draw(&growing, bench->bodies, bench->seed);
     for (size_t call = 10; call <= most; call *= 10) {
         const size_t all = call < 100000 ? 100000 : call, count = bench->quick ? 10000 : all;
         if (bytes_of((double) scene.count, (double) count) > most_bytes)

@@ -6,7 +6,7 @@
 
 static const char *const sections[] = {"cells", "inverse", "order",        "hybrid",
                                        "box",   "article", "instructions", "growth",
-                                       "grids", "broad",   "worst"};
+                                       "grids", "poses",   "broad",        "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

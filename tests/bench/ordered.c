@@ -41,7 +41,7 @@ static void reverse(struct row *rows, int count)
     }
 }
 
-bool ordered_rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count)
+bool ordered_rows_of_pair(const struct inexact_pair *pair, struct row rows[ROWS_MAX], int *count)
 {
     if (!rows_of_pair(pair, rows, count))
         return false;

@@ -3,7 +3,6 @@
 #ifndef ORDERED_H
 #define ORDERED_H
 
-#include "fmb.h"
 #include "rows.h"
 
 /* SORTED: such rows first as have least room (inequality 11). */
@@ -13,8 +12,8 @@ enum order { ORDER_SORTED, ORDER_REVERSED };
 void ordered_choose(enum order order);
 
 /* As eliminate_decide() and rows_of_pair(). */
-enum fmb_status ordered_decide(const struct fmb_pair *pair, unsigned want,
+enum fmb_status ordered_decide(const struct frame_pair *pair, unsigned want,
                                struct fmb_answer *answer);
-bool ordered_rows_of_pair(const struct fmb_pair *pair, struct row rows[ROWS_MAX], int *count);
+bool ordered_rows_of_pair(const struct inexact_pair *pair, struct row rows[ROWS_MAX], int *count);
 
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "family.h"
+#include "posed.h"
 
 static void *or_end(void *memory)
 {
@@ -24,13 +25,13 @@ void *scene_allocate(size_t count, size_t size)
 
 /* Many of them in huge pages, where the system has them: what is looked up at random is then not
  * looked for in the tables of pages too. */
-static struct fmb_prepared *allocate_frames(size_t count)
+static void *allocate_frames(size_t count, size_t frame)
 {
-    const size_t huge = (size_t) 1 << 21, size = (count ? count : 1) * sizeof(struct fmb_prepared);
+    const size_t huge = (size_t) 1 << 21, size = (count ? count : 1) * frame;
     if (size < huge)
         return or_end(aligned_alloc(64, size));
     const size_t whole = (size + huge - 1) / huge * huge;
-    struct fmb_prepared *frames = or_end(aligned_alloc(huge, whole));
+    void *frames = or_end(aligned_alloc(huge, whole));
 #ifdef MADV_HUGEPAGE
     madvise(frames, whole, MADV_HUGEPAGE);
 #endif
@@ -39,62 +40,90 @@ static struct fmb_prepared *allocate_frames(size_t count)
 
 static struct scene scene_of_size(size_t count, size_t bodies)
 {
-    struct scene scene = {.count = count};
-    scene.prepared = allocate_frames(count);
-    if (bodies) {
-        scene.frame = scene_allocate(count, sizeof *scene.frame);
-        scene.body = scene_allocate(bodies, sizeof *scene.body);
-    }
-    return scene;
+    return (struct scene){.count = count,
+                          .prepared = allocate_frames(count, sizeof(struct fmb_prepared)),
+                          .placement = scene_allocate(count, sizeof(struct fmb_placement)),
+                          .body = scene_allocate(bodies, sizeof(struct fmb_body)),
+                          .lean = allocate_frames(count, sizeof(struct lean_frame))};
 }
 
 void scene_free(struct scene *scene)
 {
     free(scene->prepared);
-    free(scene->frame);
+    free(scene->placement);
     free(scene->body);
+    free(scene->lean);
     *scene = (struct scene){.count = 0};
 }
 
-static void prepare(const struct fmb_frame *frame, struct fmb_prepared *out)
+static void prepare(const struct scene *scene, size_t at)
 {
-    if (fmb_prepare(frame, out) != FMB_OK) {
+    if (fmb_prepare(&scene->placement[at], 0, 1, &scene->prepared[at]) != FMB_OK) {
         fputs("bench: a frame is refused\n", stderr);
         exit(EXIT_FAILURE);
     }
+    const struct fmb_placement *placement = &scene->placement[at];
+    lean_place(fmb_body_frame(placement->body, 0), placement, &scene->lean[at]);
 }
 
-static struct fmb_frame frame_of(const struct solid *solid, struct fmb_body *body)
+static void add(const struct solid *solid, struct scene *scene, size_t at)
 {
-    struct fmb_frame frame = {.body = body, .moving = solid->moving};
-    double number[FMB_COMPONENTS_MAX];
-    const size_t dim = (size_t) solid->dim, count = (size_t) solid_count(solid);
-    for (size_t i = 0; i < count; i++)
-        memcpy(&number[i * dim], solid->component[i], dim * sizeof *number);
-    fmb_body_make(solid->dim, solid->shape, number, count * dim, body);
-    memcpy(frame.origin, solid->origin, sizeof frame.origin);
-    memcpy(frame.velocity, solid->velocity, sizeof frame.velocity);
-    return frame;
+    double number[SOLID_NUMBERS_MAX];
+    const int count = solid_numbers(solid, number);
+    fmb_body_make(solid->dim, solid->shape, number, (size_t) count, &scene->body[at]);
+    scene->placement[at] = solid_placement(solid, &scene->body[at]);
+    prepare(scene, at);
 }
 
-struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed, bool large)
+static struct scene draw_scene(const struct cell *cell, size_t bodies, uint64_t seed, bool posed)
 {
-    const struct family *random = family_by_name("random");
     struct draw draw = cell_draw(seed, "scene", cell, 0);
-    struct scene scene = scene_of_size(bodies, large ? 0 : bodies);
+    struct scene scene = scene_of_size(bodies, bodies);
     const size_t half = bodies / 2;
     for (size_t i = 0; i < half; i++) {
         struct question question;
-        family_draw(random, cell, &draw, &question);
-        for (size_t side = 0; side < 2; side++) {
-            const size_t at = i + side * half;
-            struct fmb_body body;
-            const struct fmb_frame frame =
-                frame_of(side ? &question.b : &question.a, large ? &body : &scene.body[at]);
-            prepare(&frame, &scene.prepared[at]);
-            if (!large)
-                scene.frame[at] = frame;
-        }
+        if (posed)
+            family_draw_posed(&draw, cell, &question);
+        else
+            family_draw_random(&draw, cell, &question);
+        add(&question.a, &scene, i);
+        add(&question.b, &scene, i + half);
+    }
+    return scene;
+}
+
+struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed)
+{
+    return draw_scene(cell, bodies, seed, false);
+}
+
+struct scene scene_draw_posed(const struct cell *cell, size_t bodies, uint64_t seed)
+{
+    return draw_scene(cell, bodies, seed, true);
+}
+
+struct scene scene_of_corners(const struct scene *posed)
+{
+    struct scene scene = scene_of_size(posed->count, posed->count);
+    for (size_t at = 0; at < posed->count; at++) {
+        const struct lean_frame *lean = &posed->lean[at];
+        struct solid solid = {.dim = posed->body[at].dim,
+                              .shape = lean->kind & LEAN_SIMPLEX ? FMB_TETRAHEDRON : FMB_CUBOID,
+                              .moving = lean->kind & LEAN_MOVING};
+        memcpy(solid.component, lean->component, sizeof solid.component);
+        memcpy(solid.origin, lean->origin, sizeof solid.origin);
+        memcpy(solid.velocity, lean->velocity, sizeof solid.velocity);
+        add(&solid, &scene, at);
+    }
+    return scene;
+}
+
+struct scene scene_of_questions(const struct question *questions, size_t count)
+{
+    struct scene scene = scene_of_size(2 * count, 2 * count);
+    for (size_t i = 0; i < count; i++) {
+        add(&questions[i].a, &scene, i);
+        add(&questions[i].b, &scene, i + count);
     }
     return scene;
 }
@@ -108,10 +137,10 @@ struct scene scene_of_grid(double pitch, int side)
     for (size_t at = 0; at < cubes; at++) {
         const int i = (int) at;
         const int place[3] = {i / side / side, i / side % side, i % side};
-        scene.frame[at].body = scene.body;
+        scene.placement[at].body = scene.body;
         for (int axis = 0; axis < 3; axis++)
-            scene.frame[at].origin[axis] = place[axis] * pitch;
-        prepare(&scene.frame[at], &scene.prepared[at]);
+            scene.placement[at].position[axis] = place[axis] * pitch;
+        prepare(&scene, at);
     }
     return scene;
 }
@@ -123,20 +152,18 @@ struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours
                             uint64_t seed)
 {
     struct draw draw = {seed};
-    struct scene scene = scene_of_size(count, 0);
+    struct scene scene = scene_of_size(count, count);
     const double size = shape == FMB_CUBOID ? 0.75 : 5.0 / 12;
     const double wide = 2 * size * cbrt((double) count / neighbours);
     for (size_t i = 0; i < count; i++) {
         struct solid solid = {.dim = 3, .shape = shape, .moving = moving};
-        struct fmb_body body;
         for (int axis = 0; axis < 3; axis++) {
             solid.origin[axis] = draw_uniform(&draw, 0, wide);
             solid.velocity[axis] = draw_uniform(&draw, -0.05, 0.05);
             for (int c = 0; c < solid_count(&solid); c++)
                 solid.component[c][axis] = draw_uniform(&draw, -0.5, 0.5);
         }
-        const struct fmb_frame frame = frame_of(&solid, &body);
-        prepare(&frame, &scene.prepared[i]);
+        add(&solid, &scene, i);
     }
     return scene;
 }

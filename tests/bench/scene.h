@@ -8,12 +8,15 @@
 
 #include "cell.h"
 #include "fmb.h"
+#include "lean_sat.h"
+#include "question.h"
 
 struct scene {
     size_t count;
-    struct fmb_prepared *prepared; /* [count], each in two cache lines */
-    struct fmb_frame *frame;       /* [count], or NULL */
-    struct fmb_body *body;         /* the frames'; NULL where these are */
+    struct fmb_prepared *prepared;   /* [count], each in two cache lines */
+    struct fmb_placement *placement; /* [count] */
+    struct fmb_body *body;           /* the placements' */
+    struct lean_frame *lean;         /* [count], placed; faces are no cuboids or tetrahedra */
 };
 
 struct pairs {
@@ -24,9 +27,14 @@ struct pairs {
 /* All end the program if there is no memory. */
 void *scene_allocate(size_t count, size_t size);
 
-/* Bodies with the article's distribution: the first half of them of A's shape, the rest of B's.
- * Large ones are prepared, and nothing else. */
-struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed, bool large);
+/* Bodies with the article's distribution: the first half of them of A's shape, the rest of B's. */
+struct scene scene_draw(const struct cell *cell, size_t bodies, uint64_t seed);
+/* The same with random poses, of any shapes; and its frames given by world coordinates, rounded:
+ * boxes as cuboids. */
+struct scene scene_draw_posed(const struct cell *cell, size_t bodies, uint64_t seed);
+struct scene scene_of_corners(const struct scene *posed);
+/* Those of the questions: all a, then all b; one frame each. */
+struct scene scene_of_questions(const struct question *questions, size_t count);
 /* Cubes in a grid, side of them along each axis: origins are whole multiples of the pitch as
  * doubles give them, and so is the edge. */
 struct scene scene_of_grid(double pitch, int side);

@@ -31,22 +31,26 @@ static void read_scene(const struct bus_bench *bench, struct scene_result *out)
 
 /* ---- Placements ---- */
 
-static void set_whole(const struct fmb_frame *frame, int64_t body_id, struct placement *out,
+static void set_whole(const struct fmb_placement *from, int64_t body_id, struct placement *out,
                       unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX])
 {
-    const struct fmb_body *body = frame->body;
-    struct geometry_frame own = {.shape = (int) body->shape};
-    for (int i = 0; i < body->count; i++)
-        memcpy(own.components + i * body->dim, body->component[i],
-               (size_t) body->dim * sizeof(double));
+    const struct fmb_frame *frame = fmb_body_frame(from->body, 0);
+    const int dim = frame->dim;
+    struct geometry_frame own = {.shape = (int) frame->shape};
+    for (int i = 0; i < frame->count; i++)
+        memcpy(own.components + i * dim, frame->component[i], (size_t) dim * sizeof(double));
     *out = (struct placement){.body_id = body_id,
-                              .dim = body->dim,
+                              .dim = dim,
                               .frame_count = 1,
-                              .number_count = body->dim * (1 + body->count),
-                              .velocity_count = frame->moving ? body->dim : 0,
-                              .geometry = {bytes, geometry_write(body->dim, &own, bytes)}};
-    memcpy(out->position, frame->origin, sizeof frame->origin);
-    memcpy(out->velocity, frame->velocity, sizeof frame->velocity);
+                              .number_count = geometry_number_count(dim, frame->shape),
+                              .orientation_count = from->orientation_count,
+                              .velocity_count = dim,
+                              .geometry = {bytes, geometry_write(dim, &own, bytes)}};
+    memcpy(out->position, from->position, sizeof from->position);
+    memcpy(out->orientation, from->orientation, sizeof from->orientation);
+    memcpy(out->velocity, from->velocity, sizeof from->velocity);
+    if (from->velocity[0] == 0 && from->velocity[1] == 0 && from->velocity[2] == 0)
+        out->velocity_count = 0;
 }
 
 static void set_handle(struct placement *placement, struct handle handle)
@@ -67,13 +71,12 @@ void workload_pair(struct bus_bench *bench, enum form form, struct datagram *out
     struct fmb_body body[2];
     fmb_body_make(3, FMB_CUBOID, components, 9, &body[0]);
     fmb_body_make(3, FMB_TETRAHEDRON, components, 9, &body[1]);
-    const struct fmb_frame frame[2] = {
-        {.body = &body[0]},
-        {.body = &body[1], .origin = {2, 0, 0}, .velocity = {-1.5, 0, 0}, .moving = true}};
+    const struct fmb_placement placement[2] = {
+        {.body = &body[0]}, {.body = &body[1], .position = {2, 0, 0}, .velocity = {-1.5, 0, 0}}};
     struct pair_query query = {.client_id = bench->service.client_id, .duration = 1};
     struct pair_result result;
     for (int i = 0; i < 2; i++)
-        set_whole(&frame[i], 1 + i, &query.placement[i], geometry[i]);
+        set_whole(&placement[i], 1 + i, &query.placement[i], geometry[i]);
     bench->service.query_channel = WIRE_PAIR_QUERY;
     datagram_of_pair(&query, out);
     query_once(bench, out);
@@ -104,7 +107,7 @@ static void shuffle(struct pairs *pairs, uint64_t seed)
 struct workload_scene workload_scene_draw(int bodies, bool moving, size_t pairs, uint64_t seed)
 {
     const struct cell cell = {3, moving, {FMB_CUBOID, FMB_TETRAHEDRON}};
-    struct workload_scene out = {.scene = scene_draw(&cell, (size_t) bodies, seed, false),
+    struct workload_scene out = {.scene = scene_draw(&cell, (size_t) bodies, seed),
                                  .moving = moving};
     out.pairs = pairs_draw_of(&out.scene, true, pairs, seed);
     struct pairs apart = pairs_draw_of(&out.scene, false, pairs / 2, seed);
@@ -184,7 +187,7 @@ size_t workload_scene(struct bus_bench *bench, const struct workload_scene *scen
                                  .placement_count = (int32_t) scene->scene.count};
     bench->service.query_channel = WIRE_SCENE_QUERY;
     for (int i = 0; i < query.placement_count; i++)
-        set_whole(&scene->scene.frame[i], scene_bodies + i, &query.placement[i], geometry[i]);
+        set_whole(&scene->scene.placement[i], scene_bodies + i, &query.placement[i], geometry[i]);
     if (form == FORM_BY_HANDLE)
         set_handles(bench, &query);
     if (which == QUERY_PAIRS_LISTED) {

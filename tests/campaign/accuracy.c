@@ -9,6 +9,7 @@
 #include "family.h"
 #include "measure.h"
 #include "options.h"
+#include "posed.h"
 #include "report.h"
 #include "workers.h"
 
@@ -22,6 +23,15 @@ static const struct option option_list[] = {{"pairs", required_argument, NULL, O
                                             {"json", required_argument, NULL, OPTION_JSON},
                                             {"help", no_argument, NULL, OPTION_HELP},
                                             {NULL, 0, NULL, 0}};
+
+/* Those of placed bodies after the others. */
+static const struct family *any_family_at(size_t index)
+{
+    size_t others = 0;
+    while (family_at(others))
+        others++;
+    return index < others ? family_at(index) : family_posed_at(index - others);
+}
 
 static void help(void)
 {
@@ -43,8 +53,8 @@ static void help(void)
         "\n"
         "Families:\n",
         usual_pairs);
-    for (size_t i = 0; family_at(i); i++)
-        printf("  %-20s  %s\n", family_at(i)->name, family_at(i)->summary);
+    for (size_t i = 0; any_family_at(i); i++)
+        printf("  %-20s  %s\n", any_family_at(i)->name, any_family_at(i)->summary);
 }
 
 struct campaign {
@@ -55,7 +65,7 @@ struct campaign {
 
 static void add_cells(struct campaign *campaign, const struct family *family)
 {
-    struct cell cell[CELL_WITH_FACES];
+    struct cell cell[CELL_OF_ALL_SHAPES];
     const int count = family_cells(family, cell);
     for (int i = 0; i < count; i++) {
         struct measure *measure = &campaign->measure[campaign->measures++];
@@ -70,13 +80,13 @@ static bool list_cells(struct campaign *campaign)
     const struct options *options = campaign->options;
     size_t families = (size_t) options->families;
     if (families == 0)
-        while (family_at(families))
+        while (any_family_at(families))
             families++;
-    campaign->measure = calloc(families * CELL_WITH_FACES, sizeof *campaign->measure);
+    campaign->measure = calloc(families * CELL_OF_ALL_SHAPES, sizeof *campaign->measure);
     if (!campaign->measure)
         return false;
     for (size_t i = 0; i < families; i++)
-        add_cells(campaign, options->families ? options->family[i] : family_at(i));
+        add_cells(campaign, options->families ? options->family[i] : any_family_at(i));
     return true;
 }
 

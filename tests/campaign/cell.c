@@ -2,18 +2,28 @@
 
 #include <stdio.h>
 
-int cell_list(bool faces, struct cell *out)
+static int list(const enum fmb_shape last[2], struct cell *out)
 {
     int count = 0;
     for (int dim = 2; dim <= 3; dim++)
-        for (int moving = 0; moving < 2; moving++) {
-            const int last = faces && dim == 3 ? FMB_FACE : FMB_TETRAHEDRON;
-            for (int a = FMB_CUBOID; a <= last; a++)
-                for (int b = FMB_CUBOID; b <= last; b++)
-                    out[count++] =
-                        (struct cell){dim, moving, {(enum fmb_shape) a, (enum fmb_shape) b}};
-        }
+        for (int moving = 0; moving < 2; moving++)
+            for (enum fmb_shape a = FMB_CUBOID; a <= last[dim - 2]; a++)
+                for (enum fmb_shape b = FMB_CUBOID; b <= last[dim - 2]; b++)
+                    if (fmb_component_count(dim, a) && fmb_component_count(dim, b))
+                        out[count++] = (struct cell){dim, moving, {a, b}};
     return count;
+}
+
+int cell_list(bool faces, struct cell *out)
+{
+    const enum fmb_shape last[2] = {FMB_TETRAHEDRON, faces ? FMB_FACE : FMB_TETRAHEDRON};
+    return list(last, out);
+}
+
+int cell_list_all(struct cell *out)
+{
+    const enum fmb_shape last[2] = {FMB_BOX, FMB_BOX};
+    return list(last, out);
 }
 
 const char *cell_space_text(const struct cell *cell, char text[CELL_TEXT_MAX])
@@ -24,7 +34,7 @@ const char *cell_space_text(const struct cell *cell, char text[CELL_TEXT_MAX])
 
 const char *cell_shapes_text(const struct cell *cell, char text[CELL_TEXT_MAX])
 {
-    static const char letters[] = "?CTF";
+    static const char letters[] = "?CTFB";
     snprintf(text, CELL_TEXT_MAX, "%c%c", letters[cell->shape[0]], letters[cell->shape[1]]);
     return text;
 }

@@ -16,12 +16,15 @@ struct cell {
     enum fmb_shape shape[2]; /* of A, of B */
 };
 
-/* With faces, three shapes in 3D. */
-enum { CELL_ORDINARY = 16, CELL_WITH_FACES = 26 };
+/* With faces, three shapes in 3D; with boxes too, three in 2D and four in 3D. */
+enum { CELL_ORDINARY = 16, CELL_WITH_FACES = 26, CELL_OF_ALL_SHAPES = 50 };
 
 /* The cells: 2D before 3D, static before moving, CC, CT, TC, TT. With faces: those with faces too.
  * On input: room for CELL_WITH_FACES. Returns how many. */
 int cell_list(bool faces, struct cell *out);
+
+/* Those of all shapes, likewise. On input: room for CELL_OF_ALL_SHAPES. */
+int cell_list_all(struct cell *out);
 
 /* "3D moving CT"; "3D moving"; "CT". Returns text. */
 enum { CELL_TEXT_MAX = 16 };

@@ -44,9 +44,86 @@ static double *any_number(struct climber *climber, struct question *question)
     return &any_vector(climber, solid)[draw_int(climber->draw, 0, solid->dim - 1)];
 }
 
+/* ---- Poses ---- */
+
+static int orientation_count(const struct solid *solid)
+{
+    return solid->dim == 2 ? 2 : 4;
+}
+
+/* Of any length, components up to 2^200 apart: 0, of few bits or of many. */
+static void draw_orientation(struct climber *climber, struct solid *solid)
+{
+    const int most = draw_int(climber->draw, climber->least + 200, climber->most);
+    const int apart = draw_coin(climber->draw) ? 199 : 2;
+    solid->orientation_count = orientation_count(solid);
+    for (int i = 0; i < solid->orientation_count; i++) {
+        const int exponent = draw_coin(climber->draw) ? most : most - apart;
+        solid->orientation[i] = draw_int(climber->draw, 0, 7) == 0
+                                    ? 0
+                                    : ldexp(draw_uniform(climber->draw, 1, 2), exponent);
+        if (draw_coin(climber->draw))
+            solid->orientation[i] = -solid->orientation[i];
+    }
+}
+
+static void draw_pose(struct climber *climber, double (*number)(struct climber *),
+                      struct solid *solid)
+{
+    for (int axis = 0; axis < solid->dim; axis++)
+        solid->local[axis] = draw_coin(climber->draw) ? number(climber) : 0;
+    draw_orientation(climber, solid);
+    if (draw_int(climber->draw, 0, 3) == 0)
+        solid->shape = FMB_BOX;
+}
+
+/* A change to the pose of one of them. */
+static void step_pose(struct climber *climber, struct question *question)
+{
+    struct solid *solid = draw_coin(climber->draw) ? &question->a : &question->b;
+    const struct solid *other = solid == &question->a ? &question->b : &question->a;
+    double *q = &solid->orientation[draw_int(climber->draw, 0, orientation_count(solid) - 1)];
+    const int axis = draw_int(climber->draw, 0, solid->dim - 1);
+    switch (draw_int(climber->draw, 0, 7)) {
+    case 0: draw_orientation(climber, solid); break;
+    case 1: *q = nextafter(*q, draw_coin(climber->draw) ? INFINITY : -INFINITY); break;
+    case 2: *q = ldexp(*q, draw_int(climber->draw, -100, 100)); break;
+    case 3:
+        memcpy(solid->orientation, other->orientation, sizeof solid->orientation);
+        solid->orientation_count = other->orientation_count;
+        break;
+    case 4: solid->shape = draw_coin(climber->draw) ? FMB_BOX : FMB_CUBOID; break;
+    case 5: solid->local[axis] = draw_number(climber); break;
+    case 6: solid->local[axis] = draw_end(climber); break;
+    default: *q = -*q; break;
+    }
+}
+
+/* The matrix of fmb.h times a vector, in doubles. */
+static void turn(const struct solid *solid, double *vector)
+{
+    const double *p = solid->orientation;
+    double q[4], most = 0;
+    for (int i = 0; i < 4; i++)
+        most = fmax(most, fabs(p[i]));
+    if (solid->orientation_count == 0 || most == 0)
+        return;
+    for (int i = 0; i < 4; i++)
+        q[i] = p[i] / most;
+    const bool plane = solid->orientation_count == 2;
+    const double w = q[0], x = plane ? 0 : q[1], y = plane ? 0 : q[2], z = plane ? q[1] : q[3];
+    const double n = w * w + x * x + y * y + z * z, v[3] = {vector[0], vector[1], vector[2]};
+    vector[0] = ((w * w + x * x - y * y - z * z) / n) * v[0] + (2 * (x * y - w * z) / n) * v[1] +
+                (2 * (x * z + w * y) / n) * v[2];
+    vector[1] = (2 * (x * y + w * z) / n) * v[0] + ((w * w - x * x + y * y - z * z) / n) * v[1] +
+                (2 * (y * z - w * x) / n) * v[2];
+    vector[2] = (2 * (x * z - w * y) / n) * v[0] + (2 * (y * z + w * x) / n) * v[1] +
+                ((w * w - x * x - y * y + z * z) / n) * v[2];
+}
+
 /* ---- Contact ---- */
 
-/* A point of the solid from its origin: a vertex, or one inside. */
+/* A point of the solid from its position: a vertex, or one inside. */
 static void draw_point(struct climber *climber, const struct solid *solid, double *point)
 {
     const bool vertex = draw_coin(climber->draw);
@@ -56,9 +133,13 @@ static void draw_point(struct climber *climber, const struct solid *solid, doubl
         const double x = vertex ? draw_int(climber->draw, 0, 1) : 0.25;
         for (int axis = 0; axis < solid->dim; axis++)
             point[axis] += x * solid->component[i][axis];
-        if (x == 1 && solid->shape != FMB_CUBOID)
+        if (x == 1 && solid->shape != FMB_CUBOID && solid->shape != FMB_BOX)
             break;
     }
+    for (int axis = 0; axis < solid->dim; axis++)
+        point[axis] +=
+            solid->local[axis] - (solid->shape == FMB_BOX ? 0.5 * solid->component[axis][axis] : 0);
+    turn(solid, point);
 }
 
 /* Moves B to where a point of A and one of B coincide at the time, but for rounding. */
@@ -101,6 +182,8 @@ static void begin(struct climber *climber, struct question *out)
             for (int i = 0; i < solid_count(solid); i++)
                 solid->component[i][axis] = number(climber);
         }
+        if (climber->posed)
+            draw_pose(climber, number, solid);
     }
     bring_together(climber, out);
 }
@@ -139,6 +222,8 @@ static void copy_solid(struct question *question)
 
 static void step(struct climber *climber, struct question *question)
 {
+    if (climber->posed && draw_int(climber->draw, 0, 2) == 0)
+        step_pose(climber, question);
     double *number = any_number(climber, question);
     switch (draw_int(climber->draw, 0, 12)) {
     case 0:
@@ -172,20 +257,41 @@ static void step(struct climber *climber, struct question *question)
         bring_together(climber, question);
 }
 
-/* What went beyond the doubles comes back to the last one; components that a shape does not have
- * are 0. */
+/* A box has a size along the axes, not negative. */
+static void make_legal_box(struct solid *solid)
+{
+    for (int i = 0; i < FMB_DIM_MAX && solid->shape == FMB_BOX; i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            solid->component[i][axis] = i == axis ? fabs(solid->component[i][axis]) : 0;
+}
+
+/* An orientation that is none goes. */
+static void make_legal_orientation(struct solid *solid)
+{
+    struct fmb_body body = {.dim = solid->dim, .frame_count = 1};
+    const struct fmb_placement placement = solid_placement(solid, &body);
+    if (fmb_placement_check(&placement) == FMB_OK)
+        return;
+    memset(solid->orientation, 0, sizeof solid->orientation);
+    solid->orientation_count = 0;
+}
+
+/* What went beyond the doubles comes back to the last one. */
 static void make_legal(struct question *question)
 {
     struct solid *solids[2] = {&question->a, &question->b};
     for (int f = 0; f < 2; f++) {
-        double *vectors[] = {solids[f]->origin, solids[f]->velocity, solids[f]->component[0],
-                             solids[f]->component[1], solids[f]->component[2]};
-        for (int v = 0; v < 5; v++)
+        double *vectors[] = {solids[f]->origin,       solids[f]->velocity,
+                             solids[f]->component[0], solids[f]->component[1],
+                             solids[f]->component[2], solids[f]->local};
+        for (int v = 0; v < 6; v++)
             for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
                 double *number = &vectors[v][axis];
                 if (!isfinite(*number))
                     *number = copysign(0x1.fffffffffffffp+1023, *number);
             }
+        make_legal_box(solids[f]);
+        make_legal_orientation(solids[f]);
     }
 }
 

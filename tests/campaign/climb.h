@@ -1,5 +1,5 @@
-/* A search for the legal pair that costs most: hill climbing over exponents, mantissas, shapes and
- * motions. */
+/* A search for the legal pair that costs most: hill climbing over exponents, mantissas, shapes,
+ * motions and poses. */
 #ifndef CLIMB_H
 #define CLIMB_H
 
@@ -13,6 +13,7 @@ struct climber {
     struct draw *draw;
     climb_cost *cost;
     int least, most; /* exponents, as far as steps do not lead out of them; -1074 and 1023: all */
+    bool posed;      /* with orientations, origins in body coordinates, and boxes */
 };
 
 /* Starts afresh `climbs` times, each with so many steps, and puts the question that cost most into

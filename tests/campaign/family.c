@@ -131,19 +131,28 @@ const struct family *family_by_name(const char *name)
     return NULL;
 }
 
-static bool has_cell(const struct family *family, const struct cell *cell)
+static bool is_simplex(enum fmb_shape shape)
 {
+    return shape == FMB_TETRAHEDRON || shape == FMB_FACE;
+}
+
+bool family_has_cell(const struct family *family, const struct cell *cell)
+{
+    const bool simplices = is_simplex(cell->shape[0]) && is_simplex(cell->shape[1]);
     const bool a_face = cell->shape[0] == FMB_FACE || cell->shape[1] == FMB_FACE;
     return !(family->cells & FAMILY_3D && cell->dim != 3) &&
            !(family->cells & FAMILY_MOVING && !cell->moving) &&
-           !(family->cells & FAMILY_A_FACE && !a_face);
+           !(family->cells & FAMILY_A_FACE && !a_face) &&
+           !(family->cells & FAMILY_SIMPLICES && !simplices);
 }
 
 int family_cells(const struct family *family, struct cell *out)
 {
-    int all = cell_list(family->cells & FAMILY_FACES, out), count = 0;
+    const int all = family->cells & FAMILY_POSED ? cell_list_all(out)
+                                                 : cell_list(family->cells & FAMILY_FACES, out);
+    int count = 0;
     for (int i = 0; i < all; i++)
-        if (has_cell(family, &out[i]))
+        if (family_has_cell(family, &out[i]))
             out[count++] = out[i];
     return count;
 }

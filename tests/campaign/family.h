@@ -11,10 +11,12 @@
 
 /* Which cells a family has, where not all of the ordinary ones. */
 enum {
-    FAMILY_3D = 1,     /* only those in 3D */
-    FAMILY_MOVING = 2, /* only moving ones */
-    FAMILY_FACES = 4,  /* faces too */
-    FAMILY_A_FACE = 8  /* and only cells with a face */
+    FAMILY_3D = 1,        /* only those in 3D */
+    FAMILY_MOVING = 2,    /* only moving ones */
+    FAMILY_FACES = 4,     /* faces too */
+    FAMILY_A_FACE = 8,    /* and only cells with a face */
+    FAMILY_POSED = 16,    /* all shapes */
+    FAMILY_SIMPLICES = 32 /* only cells of tetrahedra and faces */
 };
 
 struct family {
@@ -33,8 +35,12 @@ struct family {
 const struct family *family_at(size_t index);
 const struct family *family_by_name(const char *name); /* NULL: none of that name */
 
-/* The cells it has. On input: room for CELL_WITH_FACES. Returns how many. */
+/* The cells it has. On input: room for CELL_WITH_FACES;
+ * of a family of placed bodies, for CELL_OF_ALL_SHAPES. Returns how many. */
 int family_cells(const struct family *family, struct cell *out);
+
+/* Of a cell with shapes that the family may have: whether it has that one. */
+bool family_has_cell(const struct family *family, const struct cell *cell);
 
 /* Draws a question. What was computed beyond the doubles is pulled back to the last one. */
 void family_draw(const struct family *family, const struct cell *cell, struct draw *draw,

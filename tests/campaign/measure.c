@@ -67,6 +67,22 @@ static void check_promises(struct tally *tally, const struct fmb_method *method,
         tally_broken(tally, &trial->question, "another verdict without the box");
 }
 
+/* Of bodies of several frames, the last step that any pair of them needs. */
+static enum certified_path path_of(const struct pair *pair)
+{
+    enum certified_path most = CERTIFIED_FILTER;
+    for (unsigned i = 0; i < pair->a.body->frame_count; i++)
+        for (unsigned j = 0; j < pair->b.body->frame_count; j++) {
+            const struct frame_pair frames = {{fmb_body_frame(pair->a.body, i), &pair->a},
+                                              {fmb_body_frame(pair->b.body, j), &pair->b},
+                                              pair->duration};
+            enum certified_path path;
+            certified_verdict(&frames, &path);
+            most = path > most ? path : most;
+        }
+    return most;
+}
+
 static void judge_pair(struct measure *measure, const struct batch *batch, int i,
                        struct oracle_answer *truth)
 {
@@ -76,9 +92,7 @@ static void judge_pair(struct measure *measure, const struct batch *batch, int i
     measure->truth[truth->verdict]++;
     measure->not_as_made +=
         measure->family->verdict != 0 && (int) truth->verdict != measure->family->verdict;
-    enum certified_path path;
-    certified_verdict(&trial->pair[0], &path);
-    measure->path[path]++;
+    measure->path[path_of(&trial->pair[0])]++;
     for (int m = 0; m < trial_methods(); m++) {
         const struct fmb_method *method = fmb_method_at((size_t) m);
         struct tally *tally = &measure->method[m].tally;

@@ -5,7 +5,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "posed.h"
 #include "workers.h"
 
 /* The seed of the oracle's tests. */
@@ -49,6 +51,8 @@ static bool take_seed(const struct options_program *program, uint64_t *out)
 static bool take_family(const struct options_program *program, struct options *out)
 {
     const struct family *family = family_by_name(optarg);
+    for (size_t i = 0; !family && family_posed_at(i); i++)
+        family = strcmp(family_posed_at(i)->name, optarg) == 0 ? family_posed_at(i) : NULL;
     if (!family)
         return refuse(program, "--family: there is no '%s'", optarg);
     if (out->families == OPTIONS_FAMILIES_MAX)

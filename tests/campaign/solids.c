@@ -44,7 +44,7 @@ int solid_vertices(const struct solid *solid, double vertex[VERTICES_MAX][FMB_DI
 {
     const int count = solid_count(solid);
     memset(vertex[0], 0, sizeof vertex[0]);
-    if (solid->shape != FMB_CUBOID) {
+    if (solid->shape == FMB_TETRAHEDRON || solid->shape == FMB_FACE) {
         for (int i = 0; i < count; i++)
             memcpy(vertex[i + 1], solid->component[i], sizeof vertex[0]);
         return count + 1;

@@ -56,8 +56,8 @@ static void count_ends(struct tally_ends *ends, const struct oracle_excess *exce
     spread_add(&ends->out, excess->out);
 }
 
-void tally_reply(struct tally *tally, const struct oracle_answer *truth,
-                 const struct fmb_pair *pair, const struct reply *reply)
+void tally_reply(struct tally *tally, const struct oracle_answer *truth, const struct pair *pair,
+                 const struct reply *reply)
 {
     struct oracle_excess contact, box;
     tally->queries++;

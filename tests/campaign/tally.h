@@ -45,8 +45,8 @@ uint64_t tally_false_kind(const struct tally *tally); /* touching <-> overlappin
 uint64_t tally_wrong_verdicts(const struct tally *tally);
 
 /* One reply against the truth: counts all but the orders. */
-void tally_reply(struct tally *tally, const struct oracle_answer *truth,
-                 const struct fmb_pair *pair, const struct reply *reply);
+void tally_reply(struct tally *tally, const struct oracle_answer *truth, const struct pair *pair,
+                 const struct reply *reply);
 
 /* Both orders. */
 void tally_orders(struct tally *tally, const struct reply *one, const struct reply *other);

@@ -31,25 +31,29 @@ static void expect_ok(enum fmb_status status, const struct question *question)
 }
 
 static void make_body(const struct question *question, const struct solid *solid,
-                      struct fmb_body *out)
+                      struct fmb_frame frame[SOLID_FRAMES_MAX], struct fmb_body *out)
 {
-    double number[FMB_COMPONENTS_MAX];
-    const int count = solid_count(solid);
-    for (int i = 0; i < count; i++)
-        memcpy(&number[i * solid->dim], solid->component[i],
-               (size_t) solid->dim * sizeof number[0]);
-    expect_ok(fmb_body_make(solid->dim, solid->shape, number, (size_t) (count * solid->dim), out),
-              question);
+    const int count = solid_frames(solid);
+    for (int i = 0; i < count; i++) {
+        double number[SOLID_NUMBERS_MAX];
+        const struct solid one = solid_frame(solid, i);
+        const int numbers = solid_numbers(&one, number);
+        expect_ok((one.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+                      one.dim, one.shape, number, (size_t) numbers, &frame[i]),
+                  question);
+    }
+    expect_ok(fmb_body_make_frames(frame, (size_t) count, out), question);
 }
 
 void trial_begin(const struct question *question, struct trial *out)
 {
     out->question = *question;
-    question_pair(&out->question, out->body, &out->pair[0]); /* the frames; the bodies follow */
-    make_body(question, &question->a, &out->body[0]);
-    make_body(question, &question->b, &out->body[1]);
-    out->pair[1] = (struct fmb_pair){out->pair[0].b, out->pair[0].a, out->pair[0].duration};
-    expect_ok(fmb_pair_check(&out->pair[0]), question);
+    make_body(question, &question->a, out->frame[0], &out->body[0]);
+    make_body(question, &question->b, out->frame[1], &out->body[1]);
+    out->pair[0] = (struct pair){solid_placement(&question->a, &out->body[0]),
+                                 solid_placement(&question->b, &out->body[1]), question->duration};
+    out->pair[1] = (struct pair){out->pair[0].b, out->pair[0].a, out->pair[0].duration};
+    expect_ok(pair_check(&out->pair[0]), question);
 }
 
 struct reply trial_ask(const struct trial *trial, const struct fmb_method *method, int order,
@@ -57,7 +61,7 @@ struct reply trial_ask(const struct trial *trial, const struct fmb_method *metho
 {
     struct reply reply;
     memset(&reply, 0xa5, sizeof reply); /* what is not written shows */
-    reply.status = fmb_decide(method, &trial->pair[order], want, &reply.answer);
+    reply.status = pair_decide(method, &trial->pair[order], want, &reply.answer);
     return reply;
 }
 

@@ -16,11 +16,12 @@ int trial_methods(void);
 /* Whether the method is documented never to be wrong. */
 bool trial_never_wrong(const struct fmb_method *method);
 
-/* Not to be copied: the pairs point into body. */
+/* Not to be copied: the pairs point into body, and bodies into frame. */
 struct trial {
     struct question question;
+    struct fmb_frame frame[2][SOLID_FRAMES_MAX];
     struct fmb_body body[2];
-    struct fmb_pair pair[2]; /* (A, B), and (B, A) */
+    struct pair pair[2]; /* (A, B), and (B, A) */
 };
 
 /* Ends the program, with the question printed, if the engine refuses it: those drawn are legal. */

@@ -10,13 +10,15 @@ setup() {
 @test "bench --quick measures every section, in every cell, by every method" {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
-    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .broad,
-                   .worst;
+    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .poses,
+                   .rest, .broad, .worst;
                length > 0)' "$JSON"
     jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
     jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",
                                                        "exact"]))' "$JSON"
     jq -e 'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' "$JSON"
+    jq -e '[.poses[] | [.dim, .moving, .shapes, .contact]] | unique | length == 72' "$JSON"
+    jq -e '.unsure.unsure < 5' "$JSON"
     jq -e '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)' "$JSON"
 }
 

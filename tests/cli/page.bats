@@ -127,7 +127,7 @@ setup() {
     found light '.sizes[] | select(.query == "Query 101") | .outcome == "not defined" and .missing
         == ["not drawn: body 8: the log does not define its handle, 47474747474747474747474747474747"]'
     found light '.sizes[] | select(.query == "Query 103")
-        | .missing == ["not drawn: body 7: it is no frame that can be drawn"]'
+        | .missing == ["not drawn: body 7: it is no body that can be drawn"]'
 }
 
 @test "bodies by handle are drawn by their definitions" {

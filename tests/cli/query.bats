@@ -43,10 +43,10 @@ query() {
     done
 }
 
-@test "without --box there is no box, and no contact where nothing moves" {
+@test "without --box there is no box" {
     query "$scene"
     ended 0
-    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching"}]}'
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}]}'
 }
 
 @test "separated pairs have neither contact nor box" {
@@ -59,7 +59,7 @@ query() {
 @test "pairs are answered as asked: both orientations, repeats" {
     query "$two, \"pairs\": [[2,1],[1,2],[2,1]]}"
     ended 0
-    is '{"pairs": [{"a": 2, "b": 1, "verdict": "touching"}, {"a": 1, "b": 2, "verdict": "touching"}, {"a": 2, "b": 1, "verdict": "touching"}]}'
+    is '{"pairs": [{"a": 2, "b": 1, "verdict": "touching", "contact": [0, 1]}, {"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}, {"a": 2, "b": 1, "verdict": "touching", "contact": [0, 1]}]}'
 }
 
 @test "no pairs asked, no pairs answered" {
@@ -72,7 +72,7 @@ query() {
     query "{\"dim\": 3, \"bodies\": [{\"id\": 9, $cube, \"origin\": [0,0,0]},
            {\"id\": 5, $cube, \"origin\": [1,0,0]}, {\"id\": 7, $cube, \"origin\": [5,0,0]}]}"
     ended 0
-    is '{"pairs": [{"a": 9, "b": 5, "verdict": "touching"}, {"a": 9, "b": 7, "verdict": "separated"}, {"a": 5, "b": 7, "verdict": "separated"}]}'
+    is '{"pairs": [{"a": 9, "b": 5, "verdict": "touching", "contact": [0, 1]}, {"a": 9, "b": 7, "verdict": "separated"}, {"a": 5, "b": 7, "verdict": "separated"}]}'
 }
 
 @test "one line for each scene of an input" {
@@ -102,12 +102,12 @@ $two, \"pairs\": []}"
         {\"id\": 1, $square, \"origin\": [0.1,5e-324]},
         {\"id\": 9007199254740991, $square, \"origin\": [0.30000000000000004,-0.7000000000000001]}]}" --box
     ended 0
-    is '{"pairs": [{"a": 1, "b": 9007199254740991, "verdict": "overlapping", "box": {"min": [0.30000000000000004,4.94065645841247e-324], "max": [1.1,0.29999999999999993]}}]}'
+    is '{"pairs": [{"a": 1, "b": 9007199254740991, "verdict": "overlapping", "contact": [0, 1], "box": {"min": [0.30000000000000004,4.94065645841247e-324], "max": [1.1,0.29999999999999993]}}]}'
 }
 
 @test "a file, a dash and nothing are read alike" {
     echo "$scene" > "$BATS_TEST_TMPDIR/scene.json"
-    expected='{"pairs": [{"a": 1, "b": 2, "verdict": "touching"}]}'
+    expected='{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}]}'
     run "$FMB" query --local --json "$BATS_TEST_TMPDIR/scene.json"
     is "$expected"
     query "$scene" -
@@ -125,7 +125,7 @@ $two, \"pairs\": []}"
     is "scene 1: 3 bodies in 2D, 3 pairs, 0 to 3 s
    a   b  verdict      contact               box
    1  20  overlapping  0.333333 to 1 s       x        0 .. 1         y        0 .. 1
-   1   3  touching                           x        0 .. 1         y        1 .. 1
+   1   3  touching     0 to 3 s              x        0 .. 1         y        1 .. 1
   20   3  touching     0.333333 to 1 s       x        0 .. 1         y        1 .. 1
 1 overlapping, 2 touching, 0 separated"
 }
@@ -138,10 +138,67 @@ $two, \"pairs\": []}"
     ended 0
     is "scene 1: 3 bodies in 2D, 3 pairs, 0 to 1 s
   a  b  verdict      contact               box
-  1  2  overlapping                        x   500000.125 .. 500001        y   5400000.25 .. 5400000.3125
+  1  2  overlapping  0 to 1 s              x   500000.125 .. 500001        y   5400000.25 .. 5400000.3125
   1  3  overlapping  0 to 1 s              x       500000 .. 500001        y    5400000.5 .. 5400001
   2  3  separated
 2 overlapping, 0 touching, 1 separated"
+}
+
+# ---- Poses -----------------------------------------------------------------------------------
+
+@test "boxes, frames, orientations and names" {
+    query '{"dim": 3, "bodies": [
+        {"id": 1, "name": "table", "shape": "box", "size": [2,1,0.25], "position": [0,0,0.125]},
+        {"id": 2, "name": "tool", "position": [0.5,0,0.5], "orientation": [3,0,0,-3], "velocity": [0,0,-0.5],
+         "frames": [{"shape": "box", "size": [0.5,0.25,0.25], "position": [0,0,-0.125]},
+                    {"shape": "cuboid", "origin": [0,0,0], "components": [[1,0,0],[0,1,0],[0,0,1]]}]},
+        {"id": 3, "shape": "cuboid", "origin": [8,0,0.25], "components": [[1,0,0],[0,1,0],[0,0,1]]}]}' --box
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1], "box": {"min": [0.375,-0.5,0], "max": [1,0.25,0.25]}}, {"a": 1, "b": 3, "verdict": "separated"}, {"a": 2, "b": 3, "verdict": "separated"}]}'
+}
+
+# A quarter turn puts the corner of one square onto that of the other.
+@test "an origin without a pose is the position, and with one in body coordinates" {
+    corner='"shape": "cuboid", "components": [[1,0],[0,1]], "origin": [1,0]'
+    for pose in '' ', "position": [0,0]' ', "orientation": [1,0]'; do
+        query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $corner $pose}, {\"id\": 2, $square, \"origin\": [0,0]}]}"
+        is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}]}'
+    done
+    query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $corner, \"orientation\": [1,1]},
+        {\"id\": 2, $square, \"origin\": [0,0]}]}" --box
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "box": {"min": [0,1], "max": [0,1]}}]}'
+}
+
+# 3-4-5: the quarter turn of a rotation by (3, 4), squared.
+@test "a box that is turned within its body is a cuboid, rounded once" {
+    query '{"dim": 2, "bodies": [
+        {"id": 1, "frames": [{"shape": "box", "size": [2,2], "position": [5,0], "orientation": [1,1]}]},
+        {"id": 2, "shape": "box", "size": [2,2], "position": [3,0]},
+        {"id": 3, "shape": "box", "size": [2,2], "position": [7,2]}]}' --box
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "box": {"min": [4,-1], "max": [4,1]}}, {"a": 1, "b": 3, "verdict": "touching", "contact": [0, 1], "box": {"min": [6,1], "max": [6,1]}}, {"a": 2, "b": 3, "verdict": "separated"}]}'
+}
+
+@test "names stand in tables, and in the picture, escaped" {
+    scene="{\"dim\": 2, \"bodies\": [{\"id\": 1, \"name\": \"Tür <1>\", $square, \"origin\": [0,0]},
+        {\"id\": 20, $square, \"origin\": [2,0]}]}"
+    run "$FMB" query --local --svg "$BATS_TEST_TMPDIR/out.svg" <<< "$scene"
+    ended 0
+    [ "${lines[2]}" = '  Tür <1>       20  separated' ]
+    grep -q '>Tür &lt;1&gt;</text>' "$BATS_TEST_TMPDIR/out.svg"
+    query "$scene"
+    is '{"pairs": [{"a": 1, "b": 20, "verdict": "separated"}]}'
+}
+
+@test "ignored pairs are left out, in either order, once or more" {
+    row='"shape": "box", "size": [1,1]'
+    bodies="{\"dim\": 2, \"bodies\": [{\"id\": 1, $row}, {\"id\": 2, $row, \"position\": [1,0]},
+        {\"id\": 3, $row, \"position\": [0,1]}]"
+    query "$bodies, \"ignore\": [[2,1],[1,2],[2,3]]}"
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 3, "verdict": "touching", "contact": [0, 1]}]}'
+    query "$bodies, \"ignore\": [[2,1]], \"pairs\": [[3,1]]}"
+    is '{"pairs": [{"a": 3, "b": 1, "verdict": "touching", "contact": [0, 1]}]}'
 }
 
 # ---- Certificates ----------------------------------------------------------------------------
@@ -173,8 +230,8 @@ squares() {
     run "$FMB" query --local --certificate <<< "$(squares)"
     ended 0
     [ "${#lines[@]}" = 9 ]
-    [ "${lines[2]}" = '  1  2  touching' ]
-    [ "${lines[4]}" = '  1  3  overlapping' ]
+    [ "${lines[2]}" = '  1  2  touching     0 to 1 s' ]
+    [ "${lines[4]}" = '  1  3  overlapping  0 to 1 s' ]
     [ "${lines[6]}" = '  2  3  separated' ]
     [ "$(sed -n '4p;6p;8p' <<< "$output" | sed 's/^        //')" = "$certificates" ]
 }
@@ -268,7 +325,7 @@ squares() {
 @test "what came before a bad scene stands, what comes behind is not read" {
     query "$scene {\"dim\": 3, \"bodies\": [], \"bodies\": []} $scene"
     ended 2
-    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching"}]}'
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}]}'
     said 'fmb: standard input: scene 2: repeated key "bodies"'
 }
 
@@ -292,6 +349,44 @@ squares() {
     query "$two, \"pairs\": [[1,1]]}"
     ended 2
     said 'fmb: standard input: pairs[0]: a body is no pair with itself (1)'
+}
+
+# refused BODIES REST ERROR: a 3D scene of these bodies.
+refused() {
+    query "{\"dim\": ${dim:-3}, \"bodies\": [{\"id\": 9, $cube, \"origin\": [0,0,0]}, {\"id\": 1, $1}]$2}"
+    ended 2
+    is ''
+    said "fmb: standard input: $3"
+}
+
+@test "bad poses, boxes, frames, names and ignored pairs: one line with the place" {
+    box='"shape": "box", "size": [1,1,1]'
+    refused "$box, \"orientation\": [0,0,0,0]" '' 'bodies[1].orientation: a quaternion of zeros is no rotation'
+    refused "$box, \"orientation\": [1,0,0]" '' 'bodies[1].orientation: expected 4 numbers, found 3'
+    refused "$box, \"orientation\": [1,0,0,0,0]" '' 'bodies[1].orientation: expected 4 numbers, found 5'
+    refused "$box, \"orientation\": [1,0,1e999,0]" '' 'bodies[1].orientation[2]: expected a finite number, found infinity (doubles end at 1.8e308)'
+    refused "$box, \"orientation\": [1e200,0,0,1e-200]" '' 'bodies[1].orientation: the numbers differ in size by more than 2^200'
+    refused "$box, \"frames\": []" '' 'bodies[1]: a body of "frames" has no "shape"'
+    refused '"frames": []' '' 'bodies[1].frames: a body without frames'
+    refused '"frames": [{"shape": "box", "size": [1,1]}]' '' 'bodies[1].frames[0].size: expected 3 numbers, found 2'
+    refused '"frames": [{"shape": "face", "components": [[1,0,0],[0,1,0]], "position": [0,0,0]}]' '' 'bodies[1].frames[0]: a frame of components has no "position"'
+    refused '"frames": [{"id": 3}]' '' 'bodies[1].frames[0]: unknown key "id"'
+    refused '"shape": "box", "size": [1,-1,1]' '' 'bodies[1].size[1]: expected a number of at least 0, found -1'
+    refused "$box, \"origin\": [0,0,0]" '' 'bodies[1]: a box has no "origin"'
+    refused "$cube, \"origin\": [0,0,0], \"size\": [1,1,1]" '' 'bodies[1]: a frame of components has no "size"'
+    refused "$cube" '' 'bodies[1]: missing key "origin"'
+    refused '"shape": "box"' '' 'bodies[1]: missing key "size"'
+    refused "$box, \"name\": 5" '' 'bodies[1].name: expected a string, found a number'
+    refused "$box, \"name\": \"a\\u0085b\"" '' 'bodies[1].name: expected UTF-8 without control characters'
+    refused "$box, \"name\": \"$(printf '%065d' 0)\"" '' 'bodies[1].name: expected at most 64 bytes, found 65'
+    refused "$box" ', "ignore": [[1,9],[1,2]]' 'ignore[1][1]: no body has the id 2'
+    refused "$box" ', "ignore": [[1,1]]' 'ignore[0]: a body is no pair with itself (1)'
+    refused "$box" ', "ignore": [[1,9]], "pairs": [[9,1]]' 'pairs[0]: "ignore" has this pair too'
+    frames=$(printf '{"shape": "face", "components": [[1,0,0],[0,1,0]]},%.0s' $(seq 900))
+    refused "\"frames\": [${frames%,}]" '' 'bodies[1].frames: over the limit: 65700 bytes in a message, which has space for 63500'
+    query '{"dim": 2, "bodies": [{"id": 1, "shape": "box", "size": [1,1], "orientation": [1,0,0,0]}]}'
+    ended 2
+    said 'fmb: standard input: bodies[0].orientation: expected 2 numbers, found 4'
 }
 
 @test "an empty input" {
@@ -405,10 +500,10 @@ all_pairs() {
 }
 
 @test "the example of the help is a scene" {
-    "$FMB" query --help | sed -n '/^A scene/,/^Exit/p' | sed '1d;$d' > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --help | sed -n '/^  {"dim"/,/^Exit/p' | sed '$d' > "$BATS_TEST_TMPDIR/scene.json"
     run "$FMB" query --local --json "$BATS_TEST_TMPDIR/scene.json"
     ended 0
-    [ "$(jq '.pairs | length' <<< "$output")" = 1 ]
+    [ "$(jq '.pairs | length' <<< "$output")" = 2 ]
 }
 
 @test "the version" {

@@ -1,9 +1,8 @@
-/* A few queries one after the other, of pairs, scenes and definitions, to a service with a cache of
- * three bodies: each as two bytes of length and its bytes as they come from the bus. Each that can
- * be read is answered, and the result goes through the writer and through all that results.h checks
- * of one. The answer must be what the engine says of the pair, decided by itself, with the bodies
- * that a model of the cache says; the handles must be the model's; and what is refused must be
- * wrong.
+/* A few queries one after the other, of pairs, scenes and definitions, to a service: each as two
+ * bytes of length and its bytes as they come from the bus. Each that can be read is answered, and
+ * the result goes through the writer and through all that results.h checks of one. The answer must
+ * be what the engine says of the pair, decided by itself, with the bodies that a model of the
+ * service says; the handles must be the model's; and what is refused must be wrong.
  *
  * Pairs are queried between the steps of a scene too, and some scenes are stopped. */
 #include "fuzz.h"
@@ -20,7 +19,7 @@
 /* So many queries of an input are answered; of scenes those of so many placements and pairs. */
 enum { QUERIES_MAX = 3, PLACEMENTS_MAX = 6, PAIRS_MAX = 8 };
 
-enum { BODIES = 3, BETWEEN_MAX = 4 };
+enum { FRAMES = 2048, BETWEEN_MAX = 4 };
 
 /* Of a scene that is checked, finds its bodies and keeps its bodies. */
 enum { STEPS_WITH_BODIES = 3 };
@@ -31,6 +30,7 @@ static const int64_t server_id = 99;
 struct service {
     struct answerer *answerer;
     struct scene_job *job;
+    struct pair_job *pair_job;
     struct model model;
     /* Queried between the steps of a scene: the last pair that was good. Its results, to be checked
      * after the scene's. */
@@ -44,11 +44,14 @@ struct service {
 /* ---- One pair, as the engine decides it ---- */
 
 /* The certificate is that of the right verdict, whatever the method. */
-static void check_certificate(const struct fmb_pair *pair, const char *certificate)
+static void check_certificate(const struct fmb_placement place[2], double duration,
+                              const char *certificate)
 {
     struct fmb_answer right;
-    FUZZ_CHECK(fmb_decide(fmb_method_default(), pair, 0, &right) == FMB_OK);
-    FUZZ_CHECK(fmb_certificate_holds(pair, right.verdict, certificate, NULL, 0));
+    FUZZ_CHECK(fmb_decide(fmb_method_default(), &place[0], &place[1], duration, 0, &right) ==
+               FMB_OK);
+    FUZZ_CHECK(
+        fmb_certificate_holds(&place[0], &place[1], duration, right.verdict, certificate, NULL, 0));
 }
 
 static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
@@ -71,35 +74,48 @@ static bool is_good_pair(const struct pair_query *query)
            query->placement[0].dim == query->placement[1].dim;
 }
 
+/* The frames of a placement of a good query. */
+static unsigned frames_of(const struct model *model, const struct placement *placement)
+{
+    if (!model_by_handle(placement))
+        return (unsigned) placement->frame_count;
+    struct model_made made;
+    return model_find(model, placement, &made) == FMB_UNKNOWN_BODY ? 0 : made.body.frame_count;
+}
+
 /* Bodies and handles of a good query. */
 static enum fmb_status find_pair(struct model *model, const struct pair_query *query,
-                                 struct fmb_body body[2], struct handle handle[2])
+                                 struct model_made made[2], struct handle handle[2])
 {
     enum fmb_status status = FMB_OK;
     for (int f = 0; f < 2 && status == FMB_OK; f++)
         if (model_by_handle(&query->placement[f]))
-            status = model_find(model, &query->placement[f], &body[f]);
+            status = model_find(model, &query->placement[f], &made[f]);
+    for (int f = 0; f < 2 && status == FMB_OK && query->want & QUERY_WANT_CERTIFICATE; f++)
+        if (frames_of(model, &query->placement[f]) > 1)
+            status = FMB_CANNOT_DECIDE;
     for (int f = 0; f < 2 && status == FMB_OK; f++)
         if (!model_by_handle(&query->placement[f]))
-            handle[f] = model_keep(model, &query->placement[f], &body[f]);
+            handle[f] = model_keep(model, &query->placement[f], &made[f]);
     return status;
 }
 
 static void check_decided(const struct pair_query *query, const struct pair_result *result,
-                          const struct fmb_body body[2])
+                          const struct model_made made[2])
 {
-    const struct fmb_pair pair = {model_frame(&query->placement[0], &body[0]),
-                                  model_frame(&query->placement[1], &body[1]), query->duration};
+    const struct fmb_placement place[2] = {model_place(&query->placement[0], &made[0]),
+                                           model_place(&query->placement[1], &made[1])};
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     struct fmb_answer answer;
-    const int32_t status = (int32_t) fmb_decide(method, &pair, want, &answer);
+    const int32_t status =
+        (int32_t) fmb_decide(method, &place[0], &place[1], query->duration, want, &answer);
     FUZZ_CHECK(result->status == status);
     FUZZ_CHECK(same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
     FUZZ_CHECK(result->dim == (answer.has_box ? query->placement[0].dim : 0));
     if (result->certificate)
-        check_certificate(&pair, result->certificate);
+        check_certificate(place, query->duration, result->certificate);
     FUZZ_CHECK(!result->certificate || query->want & QUERY_WANT_CERTIFICATE);
 }
 
@@ -116,13 +132,13 @@ static void check_echo(const struct pair_query *query, const struct pair_result 
 static void check_pair(struct service *service, const struct pair_query *query,
                        const struct pair_result *result)
 {
-    struct fmb_body body[2];
+    static struct model_made made[2];
     struct handle handle[2] = {0};
     check_echo(query, result);
     if (is_good_pair(query)) {
-        const enum fmb_status status = find_pair(&service->model, query, body, handle);
+        const enum fmb_status status = find_pair(&service->model, query, made, handle);
         if (status == FMB_OK)
-            check_decided(query, result, body);
+            check_decided(query, result, made);
         else
             FUZZ_CHECK(result->status == (int32_t) status);
     } else {
@@ -132,12 +148,25 @@ static void check_pair(struct service *service, const struct pair_query *query,
         FUZZ_CHECK(memcmp(&result->handle[f], &handle[f], sizeof handle[f]) == 0);
 }
 
+/* A pair that takes a job: the message is written again, and copied. */
+static void answer_in_steps(struct service *service, const struct pair_query *query,
+                            struct pair_result *result)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    FUZZ_CHECK(!pair_job_begin(service->pair_job, service->answerer, bytes,
+                               wire_write_pair_query(query, bytes)));
+    while (!pair_job_step(service->pair_job))
+        ;
+    *result = *pair_job_end(service->pair_job, service->answerer);
+}
+
 /* The result as a client reads it. */
 static struct pair_result answer_to(struct service *service, const struct pair_query *query)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     struct pair_result result;
-    answer_pair(service->answerer, query, &result);
+    if (!answer_pair(service->answerer, query, &result))
+        answer_in_steps(service, query, &result);
     const struct pair_result *read =
         results_read_pair(bytes, wire_write_pair_result(&result, bytes));
     FUZZ_CHECK(read);
@@ -171,11 +200,10 @@ static void query_between(struct service *service)
 
 /* ---- Scenes ---- */
 
-/* All pairs of a scene. Returns how many; those beyond PAIRS_MAX are only
- * counted. */
+/* All pairs of a scene. Returns how many; those beyond PAIRS_MAX are only counted. */
 static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2])
 {
-    const int frames = query->placement_count;
+    const int placements = query->placement_count;
     int count = 0;
     if (query->which == QUERY_PAIRS_LISTED) {
         for (; count < query->index_count / 2; count++)
@@ -183,8 +211,8 @@ static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2
                 memcpy(out[count], query->pair[count], sizeof out[count]);
         return count;
     }
-    for (int a = 0; a < frames; a++)
-        for (int b = a + 1; b < frames; b++) {
+    for (int a = 0; a < placements; a++)
+        for (int b = a + 1; b < placements; b++) {
             if (query->which == QUERY_PAIRS_ACROSS && (a >= query->split || b < query->split))
                 continue;
             if (count < PAIRS_MAX) {
@@ -196,6 +224,17 @@ static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2
     return count;
 }
 
+static bool is_ignored(const struct scene_query *query, const unsigned pair[2])
+{
+    for (int32_t i = 0; i < query->ignored_count / 2; i++) {
+        const unsigned *ignored = query->ignored[i];
+        if ((ignored[0] == pair[0] && ignored[1] == pair[1]) ||
+            (ignored[0] == pair[1] && ignored[1] == pair[0]))
+            return true;
+    }
+    return false;
+}
+
 static bool good_placements(const struct scene_query *query)
 {
     bool good = true;
@@ -205,13 +244,22 @@ static bool good_placements(const struct scene_query *query)
     return good;
 }
 
+static bool good_indices(const struct scene_query *query, const unsigned (*pair)[2], int32_t count)
+{
+    const unsigned placements = (unsigned) query->placement_count;
+    bool good = count % 2 == 0;
+    for (int32_t i = 0; i < count / 2; i++)
+        good =
+            good && pair[i][0] < placements && pair[i][1] < placements && pair[i][0] != pair[i][1];
+    return good;
+}
+
 static bool good_pairs(const struct scene_query *query)
 {
-    const unsigned frames = (unsigned) query->placement_count;
-    bool good = query->index_count % 2 == 0;
-    for (int32_t i = 0; i < query->index_count / 2; i++)
-        good = good && query->pair[i][0] < frames && query->pair[i][1] < frames &&
-               query->pair[i][0] != query->pair[i][1];
+    bool good = good_indices(query, (const unsigned(*)[2]) query->pair, query->index_count) &&
+                good_indices(query, (const unsigned(*)[2]) query->ignored, query->ignored_count);
+    for (int32_t i = 0; good && i < query->index_count / 2; i++)
+        good = !is_ignored(query, query->pair[i]);
     return good;
 }
 
@@ -231,13 +279,13 @@ static bool is_good_scene(const struct scene_query *query, int total)
 {
     return model_good_request(query->client_id, query->sequence_number, query->duration,
                               query->method, query->want, QUERY_WANT_BOX | QUERY_WANT_TIMES) &&
-           good_which(query, total) && query->margin == 0 && query->ignored_count == 0 &&
-           good_placements(query) && good_pairs(query);
+           good_which(query, total) && query->margin == 0 && good_placements(query) &&
+           good_pairs(query);
 }
 
 /* Bodies and handles of a good query. */
 struct found {
-    struct fmb_body body[PLACEMENTS_MAX];
+    struct model_made made[PLACEMENTS_MAX];
     struct handle handle[PLACEMENTS_MAX];
     unsigned unknown[PLACEMENTS_MAX];
     int handles, unknowns;
@@ -246,11 +294,11 @@ struct found {
 static enum fmb_status find_bodies(struct model *model, const struct scene_query *query,
                                    struct found *out)
 {
-    *out = (struct found){.handles = 0};
+    out->handles = out->unknowns = 0;
     for (int32_t i = 0; i < query->placement_count; i++) {
         if (!model_by_handle(&query->placement[i]))
             continue;
-        const enum fmb_status status = model_find(model, &query->placement[i], &out->body[i]);
+        const enum fmb_status status = model_find(model, &query->placement[i], &out->made[i]);
         if (status == FMB_UNKNOWN_BODY)
             out->unknown[out->unknowns++] = (unsigned) i;
         else if (status != FMB_OK)
@@ -262,7 +310,7 @@ static enum fmb_status find_bodies(struct model *model, const struct scene_query
         const struct placement *placement = &query->placement[i];
         if (model_by_handle(placement))
             continue;
-        const struct handle handle = model_keep(model, placement, &out->body[i]);
+        const struct handle handle = model_keep(model, placement, &out->made[i]);
         if (placement->body_id)
             out->handle[out->handles++] = handle;
     }
@@ -284,7 +332,7 @@ static void check_lists(const struct scene_result *result, enum fmb_status statu
 struct reading {
     const struct scene_query *query;
     const struct scene_result *result;
-    const struct fmb_body *body; /* [placement] */
+    const struct model_made *made; /* [placement] */
     int verdicts, contacts;
 };
 
@@ -297,8 +345,7 @@ static void check_contact(struct reading *reading, const struct fmb_answer *answ
     const double *box = &result->boxes[2 * dim * contact];
     FUZZ_CHECK(contact < result->contact_count);
     if (result->has_times)
-        FUZZ_CHECK(answer->has_contact ? same_doubles(times, answer->contact, 2)
-                                       : isnan(times[0]) && isnan(times[1]));
+        FUZZ_CHECK(answer->has_contact && same_doubles(times, answer->contact, 2));
     if (!result->has_boxes)
         return;
     FUZZ_CHECK(result->dim == dim && answer->has_box);
@@ -310,12 +357,13 @@ static void check_scene_pair(struct reading *reading, const unsigned pair[2])
 {
     const struct scene_query *query = reading->query;
     const struct scene_result *result = reading->result;
-    const struct fmb_pair both = {model_frame(&query->placement[pair[0]], &reading->body[pair[0]]),
-                                  model_frame(&query->placement[pair[1]], &reading->body[pair[1]]),
-                                  query->duration};
+    const struct fmb_placement a = model_place(&query->placement[pair[0]], &reading->made[pair[0]]);
+    const struct fmb_placement b = model_place(&query->placement[pair[1]], &reading->made[pair[1]]);
     const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     struct fmb_answer answer;
-    fmb_decide(fmb_method_by_number(query->method), &both, want, &answer);
+    if (query->which != QUERY_PAIRS_LISTED && is_ignored(query, pair))
+        return;
+    fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, &answer);
     const bool contact = answer.verdict >= FMB_TOUCHING;
     if (query->which != QUERY_PAIRS_LISTED && !contact)
         return;
@@ -329,21 +377,18 @@ static void check_scene_pair(struct reading *reading, const unsigned pair[2])
 
 /* The form, and the answer to each pair. All fit, as they are so few. */
 static void check_answers(const struct scene_query *query, const struct scene_result *result,
-                          const struct fmb_body *body, const unsigned (*pair)[2], int total,
+                          const struct model_made *made, const unsigned (*pair)[2], int total,
                           bool stopped)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    struct reading reading = {query, result, body, 0, 0};
-    bool moving = false;
-    for (int32_t i = 0; i < query->placement_count; i++)
-        moving = moving || query->placement[i].velocity_count;
+    struct reading reading = {query, result, made, 0, 0};
     FUZZ_CHECK(result->method == method->number);
     FUZZ_CHECK(stopped ? result->end_pair > query->first_pair && result->end_pair <= total
                        : result->end_pair == total);
     const bool some = result->contact_count > 0;
     FUZZ_CHECK(result->names_pairs ==
                (query->which != QUERY_PAIRS_LISTED && result->verdict_count > 0));
-    FUZZ_CHECK(result->has_times == (some && moving && query->want & QUERY_WANT_TIMES));
+    FUZZ_CHECK(result->has_times == (some && query->want & QUERY_WANT_TIMES));
     FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & QUERY_WANT_BOX));
     for (int k = query->first_pair; k < result->end_pair; k++)
         check_scene_pair(&reading, pair[k]);
@@ -355,10 +400,10 @@ static void check_scene(struct service *service, const struct scene_query *query
                         const struct scene_result *result, const unsigned (*pair)[2], int total,
                         bool stopped)
 {
-    struct found found;
+    static struct found found;
     const bool good = is_good_scene(query, total);
     const enum fmb_status status =
-        good ? find_bodies(&service->model, query, &found) : FMB_NOT_SUPPORTED;
+        good ? find_bodies(&service->model, query, &found) : FMB_UNKNOWN_WANT;
     if (good) {
         FUZZ_CHECK(result->status == (int32_t) status);
         check_lists(result, status, &found);
@@ -368,7 +413,7 @@ static void check_scene(struct service *service, const struct scene_query *query
     }
     FUZZ_CHECK((result->detail[0] == '\0') == (status == FMB_OK));
     if (status == FMB_OK)
-        check_answers(query, result, found.body, pair, total, stopped);
+        check_answers(query, result, found.made, pair, total, stopped);
     else
         FUZZ_CHECK(result->verdict_count == 0 && result->method == 0 && result->end_pair == 0);
 }
@@ -387,7 +432,7 @@ static bool advance(struct service *service, const struct scene_query *query)
     for (int steps = 1; !scene_job_step(service->job, service->answerer); steps++) {
         if (steps >= STEPS_WITH_BODIES)
             query_between(service);
-        if (stops && scene_job_can_stop(service->job)) {
+        if (stops && scene_job_has_answers(service->job)) {
             scene_job_stop(service->job);
             return true;
         }
@@ -495,10 +540,21 @@ static bool takes_too_long(const struct placement *placement, int32_t count, con
             widen(&spread, placement[i].position[axis]);
             widen(&spread, placement[i].velocity[axis]);
         }
+        for (int k = 0; k < QUERY_ORIENTATION_MAX; k++)
+            widen(&spread, placement[i].orientation[k]);
     }
     for (size_t i = 0; i < size; i++)
         hash = (hash ^ bytes[i]) * 16777619u;
     return spread.most - spread.least > 100 && hash >> 28 != 0;
+}
+
+/* More than the model has memory for. */
+static bool has_many_frames(const struct placement *placement, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (placement[i].frame_count > MODEL_FRAMES_MAX)
+            return true;
+    return false;
 }
 
 static void answer_query(struct service *service, const uint8_t *data, size_t size)
@@ -508,12 +564,13 @@ static void answer_query(struct service *service, const uint8_t *data, size_t si
     static struct definition_query definition;
     uint8_t *bytes = fuzz_copy(data, size);
     if (!wire_read_pair_query(bytes, (uint32_t) size, &pair) &&
-        !takes_too_long(pair.placement, 2, bytes, size)) {
+        !has_many_frames(pair.placement, 2) && !takes_too_long(pair.placement, 2, bytes, size)) {
         query_pair(service, &pair, bytes);
         return;
     }
     if (!wire_read_scene_query(bytes, (uint32_t) size, &scene)) {
         if (scene.placement_count <= PLACEMENTS_MAX &&
+            !has_many_frames(scene.placement, scene.placement_count) &&
             !takes_too_long(scene.placement, scene.placement_count, bytes, size))
             query_scene(service, &scene, bytes, size);
     } else if (!wire_read_definition_query(bytes, (uint32_t) size, &definition)) {
@@ -527,15 +584,15 @@ static struct service *begin(void)
 {
     static struct service service;
     const struct answerer_options options = {
-        BODIES, server_id, {0x9e3779b97f4a7c15, 0xbf58476d1ce4e5b9}};
+        FRAMES, server_id, {0x9e3779b97f4a7c15, 0xbf58476d1ce4e5b9}};
     if (!service.job) {
         service.job = scene_job_create();
+        service.pair_job = pair_job_create();
         service.model.hasher = hasher_create();
-        FUZZ_CHECK(service.job && service.model.hasher);
+        FUZZ_CHECK(service.job && service.pair_job && service.model.hasher);
     }
     service.answerer = answerer_create(&options);
     FUZZ_CHECK(service.answerer);
-    service.model.capacity = BODIES;
     service.model.count = 0;
     service.has_pair = false;
     return &service;

@@ -2,6 +2,7 @@
 
 #include "fuzz.h"
 
+#include <math.h>
 #include <string.h>
 
 bool model_by_handle(const struct placement *placement)
@@ -14,69 +15,60 @@ bool model_by_handle(const struct placement *placement)
 
 /* ---- Bodies ---- */
 
-/* To the front. */
-static void use(struct model *model, int i)
-{
-    const struct model_body used = model->newest[i];
-    memmove(&model->newest[1], &model->newest[0], (size_t) i * sizeof used);
-    model->newest[0] = used;
-}
-
-static int find(const struct model *model, const struct handle *handle)
-{
-    int i = 0;
-    while (i < model->count &&
-           memcmp(model->newest[i].handle.bytes, handle->bytes, HANDLE_BYTES) != 0)
-        i++;
-    return i;
-}
-
-static struct fmb_body make(const unsigned char *bytes, size_t size)
+static void make(const unsigned char *bytes, size_t size, struct model_made *out)
 {
     const struct geometry geometry = {bytes, size};
+    struct geometry_reader reader = geometry_begin(&geometry);
     struct geometry_frame frame;
-    struct fmb_body body;
-    int dim;
-    FUZZ_CHECK(geometry_read(&geometry, &dim, &frame));
-    FUZZ_CHECK(fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim),
-                             &body) == FMB_OK);
-    return body;
-}
-
-enum fmb_status model_find(struct model *model, const struct placement *placement,
-                           struct fmb_body *out)
-{
-    const int i = find(model, &placement->handle);
-    if (i == model->count)
-        return FMB_UNKNOWN_BODY;
-    use(model, i);
-    *out = make(model->newest[0].bytes, model->newest[0].size);
-    return out->dim == placement->dim ? FMB_OK : FMB_WRONG_DIMENSION;
+    size_t count = 0;
+    while (geometry_next(&reader, &frame)) {
+        double number[GEOMETRY_FRAME_NUMBERS_MAX];
+        const int dim = reader.dim, numbers = geometry_number_count(dim, frame.shape);
+        for (int i = 0; i < numbers; i++)
+            number[i] = i < dim ? frame.origin[i] : frame.components[i - dim];
+        FUZZ_CHECK(count < MODEL_FRAMES_MAX);
+        FUZZ_CHECK(fmb_frame_make(dim, frame.shape, number, (size_t) numbers,
+                                  &out->frame[count++]) == FMB_OK);
+    }
+    FUZZ_CHECK(reader.frames_left == 0 && reader.numbers_left == 0);
+    FUZZ_CHECK(fmb_body_make_frames(out->frame, count, &out->body) == FMB_OK);
 }
 
 const struct model_body *model_peek(const struct model *model, const struct handle *handle)
 {
-    const int i = find(model, handle);
-    return i < model->count ? &model->newest[i] : NULL;
+    for (int i = 0; i < model->count; i++)
+        if (memcmp(model->body[i].handle.bytes, handle->bytes, HANDLE_BYTES) == 0)
+            return &model->body[i];
+    return NULL;
+}
+
+enum fmb_status model_find(const struct model *model, const struct placement *placement,
+                           struct model_made *out)
+{
+    const struct model_body *body = model_peek(model, &placement->handle);
+    if (!body)
+        return FMB_UNKNOWN_BODY;
+    make(body->bytes, body->size, out);
+    return out->body.dim == placement->dim ? FMB_OK : FMB_WRONG_DIMENSION;
 }
 
 struct handle model_keep(struct model *model, const struct placement *placement,
-                         struct fmb_body *out)
+                         struct model_made *out)
 {
     const struct geometry *geometry = &placement->geometry;
-    struct model_body body = {.size = geometry->size};
-    *out = make(geometry->bytes, geometry->size);
+    struct handle handle = {{0}};
+    make(geometry->bytes, geometry->size, out);
     if (placement->body_id == 0)
-        return body.handle;
-    memcpy(body.bytes, geometry->bytes, geometry->size);
-    body.handle = hasher_handle(model->hasher, geometry->bytes, geometry->size);
-    int i = find(model, &body.handle);
-    if (i == model->count) {
-        i = model->count < model->capacity ? model->count++ : model->count - 1;
-        model->newest[i] = body;
+        return handle;
+    handle = hasher_handle(model->hasher, geometry->bytes, geometry->size);
+    if (!model_peek(model, &handle)) {
+        FUZZ_CHECK(model->count < MODEL_BODIES_MAX);
+        struct model_body *body = &model->body[model->count++];
+        body->handle = handle;
+        body->size = geometry->size;
+        memcpy(body->bytes, geometry->bytes, geometry->size);
     }
-    use(model, i);
-    return body.handle;
+    return handle;
 }
 
 /* ---- Good queries ---- */
@@ -112,21 +104,51 @@ double model_number(const struct placement *placement, int i)
     return number;
 }
 
-/* One frame with its origin at 0, and no handle. */
+/* The numbers of a frame by the comments of placement_t.lcm; 0: no such shape. */
+static int numbers_of(int dim, int shape)
+{
+    switch (shape) {
+    case FMB_CUBOID:
+    case FMB_TETRAHEDRON: return dim + dim * dim;
+    case FMB_FACE: return dim == 3 ? 9 : 0;
+    case FMB_BOX: return 2 * dim;
+    default: return 0;
+    }
+}
+
 static bool good_frames(const struct placement *placement)
 {
     const int dim = placement->dim;
     const struct handle none = {{0}};
-    if (placement->frame_count != 1 ||
-        memcmp(placement->handle.bytes, none.bytes, HANDLE_BYTES) != 0)
+    bool good = placement->frame_count >= 1 &&
+                memcmp(placement->handle.bytes, none.bytes, HANDLE_BYTES) == 0;
+    int64_t numbers = 0;
+    for (int f = 0; good && f < placement->frame_count; f++) {
+        const int shape = placement->geometry.bytes[8 + f], count = numbers_of(dim, shape);
+        good = count > 0 && numbers + count <= placement->number_count;
+        for (int i = 0; good && i < count; i++) {
+            const double number = model_number(placement, (int) numbers + i);
+            good = is_finite(number) && !(shape == FMB_BOX && i >= dim && number < 0);
+        }
+        numbers += count;
+    }
+    return good && numbers == placement->number_count;
+}
+
+static bool good_orientation(const struct placement *placement)
+{
+    const int count = placement->orientation_count;
+    const double *q = placement->orientation;
+    double least = HUGE_VAL, most = 0;
+    if (count == 0)
+        return true;
+    if (count != (placement->dim == 2 ? 2 : 4) || !are_finite(q, count))
         return false;
-    const int shape = placement->geometry.bytes[8];
-    bool good = shape >= FMB_CUBOID && shape <= (dim == 2 ? FMB_TETRAHEDRON : FMB_FACE) &&
-                placement->number_count == dim * (1 + (shape == FMB_FACE ? 2 : dim));
-    for (int i = 0; good && i < placement->number_count; i++)
-        good =
-            is_finite(model_number(placement, i)) && (i >= dim || model_number(placement, i) == 0);
-    return good;
+    for (int i = 0; i < count; i++) {
+        most = fmax(most, fabs(q[i]));
+        least = q[i] != 0 ? fmin(least, fabs(q[i])) : least;
+    }
+    return most > 0 && !(most > least * 0x1p200);
 }
 
 bool model_good_placement(const struct placement *placement)
@@ -134,7 +156,7 @@ bool model_good_placement(const struct placement *placement)
     const int dim = placement->dim;
     return good_id(placement->body_id) && (dim == 2 || dim == 3) &&
            (model_by_handle(placement) || good_frames(placement)) &&
-           are_finite(placement->position, dim) && placement->orientation_count == 0 &&
+           are_finite(placement->position, dim) && good_orientation(placement) &&
            (placement->velocity_count == 0 ||
             (placement->velocity_count == dim && are_finite(placement->velocity, dim)));
 }
@@ -146,12 +168,15 @@ bool model_good_request(int64_t client_id, int64_t sequence_number, double durat
            method >= 0 && method <= 4 && (want | wants) == wants;
 }
 
-struct fmb_frame model_frame(const struct placement *placement, const struct fmb_body *body)
+struct fmb_placement model_place(const struct placement *placement, const struct model_made *made)
 {
-    struct fmb_frame out = {.body = body, .moving = placement->velocity_count > 0};
+    struct fmb_placement out = {.body = &made->body,
+                                .orientation_count = placement->orientation_count};
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        out.origin[axis] = placement->position[axis];
+        out.position[axis] = placement->position[axis];
         out.velocity[axis] = placement->velocity[axis];
     }
+    for (int i = 0; i < placement->orientation_count; i++)
+        out.orientation[i] = placement->orientation[i];
     return out;
 }

@@ -1,20 +1,31 @@
-/* The service's cache of bodies once more, as its contract has it and as simple as can be: a list,
- * the most recently used first. And what msgs/ says of good queries. */
+/* The bodies that the service holds once more, as simple as can be: a list. And what msgs/ says of
+ * good queries. Nothing is ever evicted: the service's capacity is beyond what an input can send.
+ */
 #ifndef MODEL_H
 #define MODEL_H
 
 #include "query.h"
 
-enum { MODEL_BODIES_MAX = 8 };
+enum {
+    MODEL_BODIES_MAX = 24,
+    MODEL_FRAMES_MAX = 32, /* of a body */
+    MODEL_BYTES_MAX = GEOMETRY_NONE_BYTES + MODEL_FRAMES_MAX * (1 + 8 * GEOMETRY_FRAME_NUMBERS_MAX)
+};
 
 struct model {
-    int count, capacity; /* up to MODEL_BODIES_MAX */
+    int count;
     struct hasher *hasher;
     struct model_body {
         struct handle handle;
         size_t size;
-        unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    } newest[MODEL_BODIES_MAX];
+        unsigned char bytes[MODEL_BYTES_MAX];
+    } body[MODEL_BODIES_MAX];
+};
+
+/* A body as the engine has it; must not be copied. */
+struct model_made {
+    struct fmb_body body;
+    struct fmb_frame frame[MODEL_FRAMES_MAX];
 };
 
 /* Whether a placement and a request are such as msgs/ requires, as far as this version goes. */
@@ -23,21 +34,21 @@ bool model_good_request(int64_t client_id, int64_t sequence_number, double durat
                         int32_t want, int32_t wants);
 bool model_by_handle(const struct placement *placement);
 
-/* On input: placements that are good. Both copy, since the next one may evict the body. */
+/* On input: placements that are good, with at most MODEL_FRAMES_MAX frames. */
 
 /* The body of a placement by handle. OK; UNKNOWN_BODY; or WRONG_DIMENSION. */
-enum fmb_status model_find(struct model *model, const struct placement *placement,
-                           struct fmb_body *out);
+enum fmb_status model_find(const struct model *model, const struct placement *placement,
+                           struct model_made *out);
 
 /* The body of a placement that comes whole. Returns its handle, or none for an anonymous one. */
 struct handle model_keep(struct model *model, const struct placement *placement,
-                         struct fmb_body *out);
+                         struct model_made *out);
 
-/* The body with this handle; NULL: it is not held. No use of it. */
+/* The body with this handle; NULL: it is not held. */
 const struct model_body *model_peek(const struct model *model, const struct handle *handle);
 
 /* The body at its place. It points to it. */
-struct fmb_frame model_frame(const struct placement *placement, const struct fmb_body *body);
+struct fmb_placement model_place(const struct placement *placement, const struct model_made *made);
 
 /* Number i of all frames of a placement. */
 double model_number(const struct placement *placement, int i);

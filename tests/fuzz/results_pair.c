@@ -21,8 +21,7 @@ static bool is_verdict(int32_t verdict)
 static bool is_contact(const fmb_msgs_pair_result_t *message)
 {
     const double *t = message->contact;
-    return message->num_contact == 0 ||
-           (message->num_contact == 2 && t[0] >= 0 && t[1] >= t[0] && t[1] <= DBL_MAX);
+    return message->num_contact == 2 && t[0] >= 0 && t[1] >= t[0] && t[1] <= DBL_MAX;
 }
 
 static bool is_box(const fmb_msgs_pair_result_t *message)
@@ -56,9 +55,9 @@ static bool is_result(const fmb_msgs_pair_result_t *message)
     const bool answered = message->status == FMB_MSGS_PAIR_RESULT_T_STATUS_OK;
     const bool meet = message->verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
     return (answered ? is_verdict(message->verdict) : message->verdict == 0) &&
-           is_contact(message) && is_box(message) &&
-           (meet || (message->num_contact == 0 && message->num_box == 0)) && !has_gap(message) &&
-           is_certificate(message);
+           (meet ? is_contact(message) && is_box(message)
+                 : message->num_contact == 0 && message->num_box == 0) &&
+           !has_gap(message) && is_certificate(message);
 }
 
 /* ---- The same fields ---- */

@@ -68,15 +68,13 @@ static bool are_names(const fmb_msgs_scene_result_t *message)
     return good;
 }
 
-/* Both NaN: none. */
 static bool are_times(const fmb_msgs_scene_result_t *message, int64_t contacts)
 {
     const int64_t count = message->num_times;
     bool good = count == 0 || (count == 2 * contacts && count <= QUERY_NUMBERS_MAX);
     for (int32_t i = 0; i < count && good; i += 2) {
         const double first = message->times[i], last = message->times[i + 1];
-        const bool none = first != first && last != last;
-        good = none || (first >= 0 && last >= first && last <= DBL_MAX);
+        good = first >= 0 && last >= first && last <= DBL_MAX;
     }
     return good;
 }

@@ -10,31 +10,45 @@ bool same_doubles(const double *a, const double *b, size_t count)
 
 /* ---- Bodies ---- */
 
-/* Components of a frame by the comments of placement_t.lcm; 0: no such shape. */
-static int32_t components_of(int32_t dim, int shape)
+/* Numbers of a frame by the comments of placement_t.lcm; 0: no such shape. */
+static int32_t numbers_of(int32_t dim, int shape)
 {
-    if (shape == FMB_MSGS_PLACEMENT_T_SHAPE_FACE)
-        return dim == 3 ? 2 : 0;
-    return (dim == 2 || dim == 3) && (shape == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID ||
-                                      shape == FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON)
-               ? dim
-               : 0;
+    if (dim != 2 && dim != 3)
+        return 0;
+    switch (shape) {
+    case FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID:
+    case FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON: return dim + dim * dim;
+    case FMB_MSGS_PLACEMENT_T_SHAPE_FACE: return dim == 3 ? 9 : 0;
+    case FMB_MSGS_PLACEMENT_T_SHAPE_BOX: return 2 * dim;
+    default: return 0;
+    }
 }
 
-static bool same_frame(const struct geometry *geometry, const fmb_msgs_body_t *message)
+/* Frame after frame, until one does not fit. */
+static bool same_frames(const struct geometry *geometry, const fmb_msgs_body_t *message)
 {
-    const int shape = message->num_frames > 0 ? message->shapes[0] : 0;
-    const int32_t dim = message->dim, count = components_of(dim, shape);
+    const int32_t dim = message->dim;
+    struct geometry_reader reader = geometry_begin(geometry);
     struct geometry_frame frame;
-    int read_dim;
-    const bool good = geometry_read(geometry, &read_dim, &frame);
-    if (geometry_shape(geometry) != shape ||
-        good != (count > 0 && message->num_numbers >= dim * (1 + count)))
+    int32_t number = 0, f = 0;
+    if (geometry_shape(geometry) != (message->num_frames > 0 ? message->shapes[0] : 0))
         return false;
-    return !good ||
-           (read_dim == dim && frame.shape == shape && frame.count == count &&
-            same_doubles(frame.origin, message->numbers, (size_t) dim) &&
-            same_doubles(frame.components, message->numbers + dim, (size_t) (count * dim)));
+    for (; f < message->num_frames; f++) {
+        const int shape = message->shapes[f];
+        const int32_t count = numbers_of(dim, shape);
+        const bool fits = count > 0 && count <= message->num_numbers - number;
+        if (geometry_next(&reader, &frame) != fits)
+            return false;
+        if (!fits)
+            return true;
+        if (reader.dim != dim || frame.shape != shape ||
+            !same_doubles(frame.origin, message->numbers + number, (size_t) dim) ||
+            !same_doubles(frame.components, message->numbers + number + dim,
+                          (size_t) (count - dim)))
+            return false;
+        number += count;
+    }
+    return !geometry_next(&reader, &frame) && reader.numbers_left == message->num_numbers - number;
 }
 
 /* Bytes of a body_t before its geometry: fingerprint and handle. */
@@ -48,7 +62,7 @@ bool same_geometry(const struct geometry *geometry, const fmb_msgs_body_t *messa
     const bool same = geometry->size == (size_t) size - GEOMETRY_AT &&
                       memcmp(geometry->bytes, encoded + GEOMETRY_AT, geometry->size) == 0;
     free(encoded);
-    return same && same_frame(geometry, message);
+    return same && same_frames(geometry, message);
 }
 
 /* The first max numbers of the message, the remainder 0. */

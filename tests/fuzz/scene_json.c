@@ -1,23 +1,21 @@
-/* Any text, read as scenes: what is accepted is a scene, printed it reads as the same, and its
- * pairs can be decided, either way round with the same answer; what is refused gets one line that
- * says why. In which pieces the text comes makes no difference. */
+/* Any text, read as scenes: what is accepted is a scene, reads as the same when it is written, and
+ * its pairs can be decided, in either order with the same answer; what is refused gets one line
+ * that says why. In which pieces the text comes makes no difference. */
 #include "fuzz.h"
 
 #include "answers.h"
+#include "escape.h"
 #include "json.h"
-#include "number.h"
 #include "pieces.h"
 #include "same.h"
+#include "scene_json.h"
 
-#include <inttypes.h>
-#include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of an input so many scenes are looked at; of larger scenes no pair is decided. */
-enum { SCENES_MAX = 8, DECIDED_PAIRS_MAX = 3 };
+/* The scenes of an input that are checked. Of scenes with more pairs or frames none is decided. */
+enum { SCENES_MAX = 8, DECIDED_PAIRS_MAX = 3, DECIDED_FRAMES_MAX = 6 };
 
 /* ---- What a scene is ---- */
 
@@ -34,17 +32,37 @@ static bool finite_numbers(const double *number, int count)
     return good;
 }
 
+/* The origin of a box is computed, and may be infinite. */
+static bool is_frame(const struct fmb_frame *frame, int dim)
+{
+    const int shape = (int) frame->shape;
+    bool good = frame->dim == dim && shape >= FMB_CUBOID && shape <= FMB_BOX &&
+                (dim == 3 || shape != FMB_FACE) && frame->count == (shape == FMB_FACE ? 2 : dim) &&
+                finite_numbers(shape == FMB_BOX ? frame->centre : frame->origin, dim);
+    for (int i = 0; i < frame->count; i++)
+        good = good && finite_numbers(frame->component[i], dim);
+    for (int axis = 0; axis < dim && shape == FMB_BOX; axis++)
+        good = good && frame->component[axis][axis] >= 0;
+    return good;
+}
+
+static bool is_orientation(const double *orientation, int count, int dim)
+{
+    bool turned = false;
+    for (int i = 0; i < count; i++)
+        turned = turned || orientation[i] != 0;
+    return count == 0 ||
+           (count == (dim == 2 ? 2 : 4) && turned && finite_numbers(orientation, count));
+}
+
 static bool is_body(const struct scene_body *body, int dim)
 {
-    const int shape = (int) body->body.shape;
-    bool good = body->id >= 1 && body->id < INT64_C(1) << 53 && body->body.dim == dim &&
-                shape >= FMB_CUBOID && shape <= (dim == 2 ? FMB_TETRAHEDRON : FMB_FACE) &&
-                body->body.count == (shape == FMB_FACE ? 2 : dim) &&
-                finite_numbers(body->origin, dim) && finite_numbers(body->velocity, dim);
-    for (int i = 0; i < body->body.count; i++)
-        good = good && finite_numbers(body->body.component[i], dim);
-    for (int axis = 0; axis < dim && !body->moving; axis++)
-        good = good && body->velocity[axis] == 0;
+    bool good = body->id >= 1 && body->id < INT64_C(1) << 53 && escape_is_text(body->name) &&
+                body->body.dim == dim && body->body.frame_count >= 1 &&
+                finite_numbers(body->position, dim) && finite_numbers(body->velocity, dim) &&
+                is_orientation(body->orientation, body->orientation_count, dim);
+    for (unsigned i = 0; good && i < body->body.frame_count; i++)
+        good = is_frame(fmb_body_frame(&body->body, i), dim);
     return good;
 }
 
@@ -68,6 +86,27 @@ static bool unique_ids(const struct scene *scene)
     return unique;
 }
 
+static bool is_pair(const struct scene *scene, struct scene_pair pair)
+{
+    return pair.a < scene->body_count && pair.b < scene->body_count && pair.a != pair.b;
+}
+
+static bool is_before(struct scene_pair left, struct scene_pair right)
+{
+    return left.a < right.a || (left.a == right.a && left.b < right.b);
+}
+
+static void check_pairs(const struct scene *scene)
+{
+    FUZZ_CHECK(scene->all_pairs ? scene->pair_count == 0 : scene->ignored_count == 0);
+    for (size_t i = 0; i < scene->pair_count; i++)
+        FUZZ_CHECK(is_pair(scene, scene->pair[i]));
+    for (size_t i = 0; i < scene->ignored_count; i++) {
+        FUZZ_CHECK(is_pair(scene, scene->ignored[i]) && scene->ignored[i].a < scene->ignored[i].b);
+        FUZZ_CHECK(i == 0 || is_before(scene->ignored[i - 1], scene->ignored[i]));
+    }
+}
+
 static void check_scene(const struct scene *scene)
 {
     FUZZ_CHECK(scene->dim == 2 || scene->dim == 3);
@@ -75,23 +114,39 @@ static void check_scene(const struct scene *scene)
     for (size_t i = 0; i < scene->body_count; i++)
         FUZZ_CHECK(is_body(&scene->body[i], scene->dim));
     FUZZ_CHECK(unique_ids(scene));
-    FUZZ_CHECK(!scene->all_pairs || scene->pair_count == 0);
-    for (size_t i = 0; i < scene->pair_count; i++) {
-        const struct scene_pair pair = scene->pair[i];
-        FUZZ_CHECK(pair.a < scene->body_count && pair.b < scene->body_count && pair.a != pair.b);
-    }
+    check_pairs(scene);
 }
 
 /* ---- The same scene ---- */
 
+static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
+{
+    bool same = a->dim == b->dim && a->shape == b->shape && a->count == b->count &&
+                same_doubles(a->origin, b->origin, FMB_DIM_MAX) &&
+                same_doubles(a->centre, b->centre, FMB_DIM_MAX);
+    for (int i = 0; i < FMB_DIM_MAX; i++)
+        same = same && same_doubles(a->component[i], b->component[i], FMB_DIM_MAX);
+    return same;
+}
+
 static bool same_body(const struct scene_body *a, const struct scene_body *b)
 {
-    const size_t axes = FMB_DIM_MAX;
-    bool same = a->id == b->id && a->moving == b->moving && a->body.dim == b->body.dim &&
-                a->body.shape == b->body.shape && same_doubles(a->origin, b->origin, axes) &&
-                same_doubles(a->velocity, b->velocity, axes);
-    for (int i = 0; i < FMB_DIM_MAX; i++)
-        same = same && same_doubles(a->body.component[i], b->body.component[i], axes);
+    bool same = a->id == b->id && strcmp(a->name, b->name) == 0 && a->body.dim == b->body.dim &&
+                a->body.frame_count == b->body.frame_count &&
+                a->orientation_count == b->orientation_count &&
+                same_doubles(a->position, b->position, FMB_DIM_MAX) &&
+                same_doubles(a->velocity, b->velocity, FMB_DIM_MAX) &&
+                same_doubles(a->orientation, b->orientation, 4);
+    for (unsigned i = 0; same && i < a->body.frame_count; i++)
+        same = same_frame(fmb_body_frame(&a->body, i), fmb_body_frame(&b->body, i));
+    return same;
+}
+
+static bool same_pairs(const struct scene_pair *a, const struct scene_pair *b, size_t count)
+{
+    bool same = true;
+    for (size_t i = 0; i < count; i++)
+        same = same && a[i].a == b[i].a && a[i].b == b[i].b;
     return same;
 }
 
@@ -99,91 +154,33 @@ static bool same_scene(const struct scene *a, const struct scene *b)
 {
     bool same = a->dim == b->dim && same_doubles(&a->duration, &b->duration, 1) &&
                 a->body_count == b->body_count && a->all_pairs == b->all_pairs &&
-                a->pair_count == b->pair_count;
+                a->pair_count == b->pair_count && a->ignored_count == b->ignored_count;
     for (size_t i = 0; same && i < a->body_count; i++)
         same = same_body(&a->body[i], &b->body[i]);
-    for (size_t i = 0; same && i < a->pair_count; i++)
-        same = a->pair[i].a == b->pair[i].a && a->pair[i].b == b->pair[i].b;
-    return same;
+    return same && same_pairs(a->pair, b->pair, a->pair_count) &&
+           same_pairs(a->ignored, b->ignored, a->ignored_count);
 }
 
-/* ---- Printed and read again ---- */
-
-struct text {
-    char *at;
-    size_t used;
-};
-
-/* Of a body: four keys and an id, and 15 numbers. */
-enum { BODY_BYTES = 160 + 16 * NUMBER_TEXT_MAX, PAIR_BYTES = 2 * NUMBER_TEXT_MAX };
-
-static void print(struct text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void print(struct text *text, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    text->used += (size_t) vsprintf(text->at + text->used, format, list);
-    va_end(list);
-}
-
-static void print_vector(struct text *text, const double *number, int dim)
-{
-    char room[NUMBER_TEXT_MAX];
-    for (int axis = 0; axis < dim; axis++)
-        print(text, "%s%s", axis ? "," : "[", number_exact(number[axis], room));
-    print(text, "]");
-}
-
-static void print_body(struct text *text, const struct scene_body *body)
-{
-    print(text, "{\"id\":%" PRId64 ",\"shape\":\"%s\",\"origin\":", body->id,
-          fmb_shape_name((int) body->body.shape));
-    print_vector(text, body->origin, body->body.dim);
-    for (int i = 0; i < body->body.count; i++) {
-        print(text, i ? "," : ",\"components\":[");
-        print_vector(text, body->body.component[i], body->body.dim);
-    }
-    print(text, "]");
-    if (body->moving) {
-        print(text, ",\"velocity\":");
-        print_vector(text, body->velocity, body->body.dim);
-    }
-    print(text, "}");
-}
-
-static struct text print_scene(const struct scene *scene)
-{
-    char room[NUMBER_TEXT_MAX];
-    struct text text = {
-        .at = fuzz_room(256 + scene->body_count * BODY_BYTES + scene->pair_count * PAIR_BYTES)};
-    print(&text, "{\"dim\":%d,\"duration\":%s,\"bodies\":[", scene->dim,
-          number_exact(scene->duration, room));
-    for (size_t i = 0; i < scene->body_count; i++) {
-        print(&text, "%s", i ? "," : "");
-        print_body(&text, &scene->body[i]);
-    }
-    print(&text, scene->all_pairs ? "]" : "],\"pairs\":[");
-    for (size_t i = 0; i < scene->pair_count; i++)
-        print(&text, "%s[%" PRId64 ",%" PRId64 "]", i ? "," : "", scene->body[scene->pair[i].a].id,
-              scene->body[scene->pair[i].b].id);
-    print(&text, scene->all_pairs ? "}" : "]}");
-    return text;
-}
+/* ---- Written and read again ---- */
 
 /* The reader is that of another input. */
-static void check_printed(const struct scene *scene)
+static void check_written(const struct scene *scene)
 {
-    struct text text = print_scene(scene);
+    char *text = NULL;
+    size_t size = 0;
     struct scene again;
-    pieces_begin((const uint8_t *) text.at, text.used, text.used);
+    FILE *out = open_memstream(&text, &size);
+    FUZZ_CHECK(out);
+    scene_json_write(out, scene);
+    FUZZ_CHECK(fclose(out) == 0);
+    pieces_begin((const uint8_t *) text, size, size);
     struct json_reader *reader = json_open(-1);
     FUZZ_CHECK(json_next(reader, &again) == JSON_SCENE);
     FUZZ_CHECK(same_scene(scene, &again));
     scene_clear(&again);
     FUZZ_CHECK(json_next(reader, &again) == JSON_END);
     json_close(reader);
-    free(text.at);
+    free(text);
 }
 
 /* ---- Decided ---- */
@@ -198,21 +195,24 @@ static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
 
 static void check_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
 {
-    const struct fmb_pair pair = scene_fmb_pair(scene, outcome->pair);
-    const struct fmb_pair turned = {pair.b, pair.a, pair.duration};
+    const struct fmb_placement a = scene_placement(&scene->body[outcome->pair.a]);
+    const struct fmb_placement b = scene_placement(&scene->body[outcome->pair.b]);
     struct fmb_answer answer;
     uint64_t *count = user;
     ++*count;
     FUZZ_CHECK(!outcome->error && fmb_verdict_name((int) outcome->answer.verdict));
-    FUZZ_CHECK(fmb_decide(fmb_method_default(), &turned, FMB_WANT_BOX, &answer) == FMB_OK);
+    FUZZ_CHECK(fmb_decide(fmb_method_default(), &b, &a, scene->duration, FMB_WANT_BOX, &answer) ==
+               FMB_OK);
     FUZZ_CHECK(same_answer(&outcome->answer, &answer));
 }
 
 static void check_decided(const struct scene *scene)
 {
     const struct answers_question question = {.box = true};
-    uint64_t count = 0;
-    if (scene_count_pairs(scene) > DECIDED_PAIRS_MAX)
+    uint64_t count = 0, frames = 0;
+    for (size_t i = 0; i < scene->body_count; i++)
+        frames += scene->body[i].body.frame_count;
+    if (scene_count_pairs(scene) > DECIDED_PAIRS_MAX || frames > DECIDED_FRAMES_MAX)
         return;
     answers_local(&question, scene, check_outcome, &count);
     FUZZ_CHECK(count == scene_count_pairs(scene));
@@ -278,7 +278,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_same(&scenes, &pieces);
     for (size_t i = 0; i < scenes.count; i++) {
         check_scene(&scenes.scene[i]);
-        check_printed(&scenes.scene[i]);
+        check_written(&scenes.scene[i]);
         check_decided(&scenes.scene[i]);
     }
     clear_scenes(&scenes);

@@ -36,7 +36,7 @@ static const double edges[][FMB_COMPONENTS_MAX] = {
 /* Memory of geometries, never reused. */
 static unsigned char *take_bytes(void)
 {
-    static unsigned char bytes[4096][GEOMETRY_FRAME_BYTES_MAX];
+    static unsigned char bytes[4096][4 * GEOMETRY_FRAME_BYTES_MAX];
     static size_t used;
     FUZZ_CHECK(used < sizeof bytes / sizeof *bytes);
     return bytes[used++];
@@ -45,19 +45,37 @@ static unsigned char *take_bytes(void)
 struct placement seeds_body(int64_t id, int shape, int dim, const double *components)
 {
     unsigned char *bytes = take_bytes();
-    const int count = fmb_component_count(dim, shape);
+    const int numbers = geometry_number_count(dim, shape);
     struct geometry_frame frame = {.shape = shape};
-    memcpy(frame.components, components, (size_t) (count * dim) * sizeof(double));
+    memcpy(frame.components, components, (size_t) (numbers - dim) * sizeof(double));
     return (struct placement){.body_id = id,
                               .dim = dim,
                               .frame_count = 1,
-                              .number_count = dim * (1 + count),
+                              .number_count = numbers,
                               .geometry = {bytes, geometry_write(dim, &frame, bytes)}};
+}
+
+/* A body of a box and two frames more, away from its origin. */
+static struct placement several(int64_t id, int dim)
+{
+    unsigned char *bytes = take_bytes();
+    struct placement out = {.body_id = id, .dim = dim, .frame_count = 3};
+    struct geometry_frame frames[3] = {{.shape = FMB_BOX, .components = {1, 0.5, 0}},
+                                       {.shape = FMB_CUBOID, .origin = {0, 1}},
+                                       {.shape = FMB_TETRAHEDRON, .origin = {-2, 0.25}}};
+    for (int i = 0; i < 3; i++) {
+        if (i > 0)
+            memcpy(frames[i].components, edges[dim], (size_t) (dim * dim) * sizeof(double));
+        out.number_count += geometry_number_count(dim, frames[i].shape);
+    }
+    out.geometry = (struct geometry){bytes, geometry_write_frames(dim, frames, 3, bytes)};
+    return out;
 }
 
 struct placement seeds_placement(int64_t id, int shape, int dim, double at, double speed)
 {
-    struct placement out = seeds_body(id, shape, dim, edges[dim]);
+    static const double size[FMB_DIM_MAX] = {1, 1, 1};
+    struct placement out = seeds_body(id, shape, dim, shape == FMB_BOX ? size : edges[dim]);
     for (int axis = 0; axis < dim; axis++)
         out.position[axis] = at;
     out.velocity_count = speed != 0 ? dim : 0;
@@ -101,28 +119,50 @@ struct pair_query seeds_pair(struct placement a, struct placement b, int32_t met
 
 enum { BOX = QUERY_WANT_BOX, CERTIFICATE = QUERY_WANT_CERTIFICATE };
 
+/* In place of a shape. */
+enum { SEVERAL = 0 };
+
 static const struct {
     const char *name;
     int shape[2], dim;
     double at, speed;
     int32_t method, want;
+    double turn; /* z of the second orientation; 0: none */
 } pairs[SEEDS_PAIRS] = {
-    {"cubes", {FMB_CUBOID, FMB_CUBOID}, 3, 0.5, 0, 0, 0},
-    {"touching", {FMB_CUBOID, FMB_TETRAHEDRON}, 3, 1, 0, 0, BOX},
-    {"moving", {FMB_TETRAHEDRON, FMB_TETRAHEDRON}, 3, 0.25, -2, 4, BOX | CERTIFICATE},
-    {"faces", {FMB_FACE, FMB_FACE}, 3, 0, 0, 1, BOX | CERTIFICATE},
-    {"plate", {FMB_FACE, FMB_CUBOID}, 3, -0.5, 3, 0, BOX},
-    {"apart", {FMB_CUBOID, FMB_CUBOID}, 3, 5, 0, 2, BOX},
-    {"squares", {FMB_CUBOID, FMB_CUBOID}, 2, 0.5, 1, 3, 0},
-    {"triangles", {FMB_TETRAHEDRON, FMB_TETRAHEDRON}, 2, 0.5, 0, 0, BOX | CERTIFICATE},
+    {"cubes", {FMB_CUBOID, FMB_CUBOID}, 3, 0.5, 0, 0, 0, 0},
+    {"touching", {FMB_CUBOID, FMB_TETRAHEDRON}, 3, 1, 0, 0, BOX, 0},
+    {"moving", {FMB_TETRAHEDRON, FMB_TETRAHEDRON}, 3, 0.25, -2, 4, BOX | CERTIFICATE, 0},
+    {"faces", {FMB_FACE, FMB_FACE}, 3, 0, 0, 1, BOX | CERTIFICATE, 0},
+    {"plate", {FMB_FACE, FMB_CUBOID}, 3, -0.5, 3, 0, BOX, 0},
+    {"apart", {FMB_CUBOID, FMB_CUBOID}, 3, 5, 0, 2, BOX, 0},
+    {"squares", {FMB_CUBOID, FMB_CUBOID}, 2, 0.5, 1, 3, 0, 0},
+    {"triangles", {FMB_TETRAHEDRON, FMB_TETRAHEDRON}, 2, 0.5, 0, 0, BOX | CERTIFICATE, 0},
+    {"boxes", {FMB_BOX, FMB_BOX}, 3, 0.5, 0, 0, BOX | CERTIFICATE, 1},
+    {"rectangles", {FMB_BOX, FMB_TETRAHEDRON}, 2, 0.5, 1, 0, BOX, -0.1},
+    {"several", {SEVERAL, FMB_FACE}, 3, 0.5, 1, 0, BOX, 0.3},
+    {"both-several", {SEVERAL, SEVERAL}, 2, 0.5, 0, 1, 0, 1e-9},
 };
+
+static struct placement place(int i, int f)
+{
+    const int shape = pairs[i].shape[f], dim = pairs[i].dim;
+    struct placement out =
+        shape == SEVERAL ? several(1 + f, dim) : seeds_placement(1 + f, shape, dim, 0, 0);
+    if (f == 0)
+        return out;
+    for (int axis = 0; axis < dim; axis++)
+        out.position[axis] = pairs[i].at;
+    out.velocity_count = pairs[i].speed != 0 ? dim : 0;
+    out.velocity[0] = pairs[i].speed;
+    out.orientation_count = pairs[i].turn != 0 ? 2 * (dim - 1) : 0;
+    out.orientation[0] = out.orientation_count ? 1 : 0;
+    out.orientation[dim == 2 ? 1 : 3] = pairs[i].turn;
+    return out;
+}
 
 struct pair_query seeds_pair_number(int i)
 {
-    return seeds_pair(
-        seeds_placement(1, pairs[i].shape[0], pairs[i].dim, 0, 0),
-        seeds_placement(2, pairs[i].shape[1], pairs[i].dim, pairs[i].at, pairs[i].speed),
-        pairs[i].method, pairs[i].want);
+    return seeds_pair(place(i, 0), place(i, 1), pairs[i].method, pairs[i].want);
 }
 
 const char *seeds_pair_name(int i)
@@ -150,6 +190,10 @@ const struct scene_query *seeds_scene(int placements, int32_t which, int32_t wan
         query.pair[i][0] = (unsigned) i;
         query.pair[i][1] = (unsigned) i + 1;
     }
+    query.ignored_count = which != QUERY_PAIRS_LISTED && placements > 3 ? 4 : 0;
+    query.ignored[0][0] = 2;
+    query.ignored[0][1] = 3;
+    query.ignored[1][0] = 1; /* these overlap */
     return &query;
 }
 

@@ -23,7 +23,7 @@ void seeds_meshes(void);
  * geometry is valid to the end of the program. */
 struct placement seeds_placement(int64_t id, int shape, int dim, double at, double speed);
 
-/* The same with other components. */
+/* The same with other components; of a box the full size. */
 struct placement seeds_body(int64_t id, int shape, int dim, const double *components);
 
 struct handle seeds_handle(const struct placement *placement);
@@ -34,8 +34,8 @@ struct placement seeds_by_handle(struct placement placement);
 /* Sequence numbers ascend from call to call. */
 struct pair_query seeds_pair(struct placement a, struct placement b, int32_t method, int32_t want);
 
-/* Pairs of all shapes, methods and wants. */
-enum { SEEDS_PAIRS = 8 };
+/* Pairs of all shapes, methods and wants, turned and of several frames. */
+enum { SEEDS_PAIRS = 12 };
 struct pair_query seeds_pair_number(int i);
 const char *seeds_pair_name(int i);
 

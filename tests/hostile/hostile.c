@@ -404,13 +404,17 @@ size_t hostile_lie(const void *query, size_t size, char *certificate,
 {
     fmb_msgs_pair_query_t query_read;
     char detail[] = "";
+    double contact[2] = {0};
     if (fmb_msgs_pair_query_t_decode(query, 0, (int) size, &query_read) < 0)
         return 0;
+    contact[1] = query_read.duration;
     fmb_msgs_pair_result_t result = {.client_id = query_read.client_id,
                                      .sequence_number = query_read.sequence_number,
                                      .detail = detail,
                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
                                      .verdict = FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
+                                     .num_contact = 2,
+                                     .contact = contact,
                                      .certificate = certificate,
                                      .body_a = query_read.a.body_id,
                                      .body_b = query_read.b.body_id};
@@ -427,6 +431,7 @@ size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTI
     char detail[] = "";
     uint8_t verdict[] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING};
     int16_t pair[] = {0, 1};
+    double times[2] = {0};
     uint8_t handles[HOSTILE_BYTES_MAX];
     int32_t handle_bytes = 0;
     if (fmb_msgs_scene_query_t_decode(query, 0, (int) size, &query_read) < 0)
@@ -434,6 +439,7 @@ size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTI
     for (int32_t i = 0; i < query_read.num_placements && handle_bytes < HOSTILE_BYTES_MAX; i++)
         if (lie_handle(&query_read.placements[i], handles + handle_bytes))
             handle_bytes += 16;
+    times[1] = query_read.duration;
     fmb_msgs_scene_result_t result = {
         .client_id = query_read.client_id,
         .sequence_number = query_read.sequence_number,
@@ -445,7 +451,9 @@ size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTI
         .num_verdicts = 1,
         .verdicts = verdict,
         .num_indices = 2,
-        .indices = pair};
+        .indices = pair,
+        .num_times = query_read.want & FMB_MSGS_SCENE_QUERY_T_WANT_TIMES ? 2 : 0,
+        .times = times};
     fmb_msgs_scene_query_t_decode_cleanup(&query_read);
     int written = fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
     return written < 0 ? 0 : (size_t) written;

@@ -23,6 +23,7 @@ bool instance_open(struct instance *instance, struct tape *tape,
         bus_channel(instance->channel[i], options->prefix, names[i]);
     instance->answerer = answerer_create(&answerer);
     instance->job = scene_job_create();
+    instance->pair_job = pair_job_create();
     if (instance->answerer && instance->job)
         return true;
     instance_close(instance);
@@ -34,6 +35,7 @@ void instance_close(struct instance *instance)
     answerer_destroy(instance->answerer);
     if (instance->job)
         scene_job_destroy(instance->job);
+    pair_job_destroy(instance->pair_job);
 }
 
 /* ---- What goes onto the tape ---- */
@@ -95,7 +97,12 @@ static bool answer_pair_at(struct instance *instance, int64_t utime, const unsig
     if (size > QUERY_BYTES_MAX) {
         answer_pair_refused(instance->answerer, &query, FMB_OVER_LIMIT, result);
     } else {
-        answer_pair(instance->answerer, &query, result);
+        if (!answer_pair(instance->answerer, &query, result)) {
+            pair_job_begin(instance->pair_job, instance->answerer, bytes, size);
+            while (!pair_job_step(instance->pair_job))
+                continue;
+            *result = *pair_job_end(instance->pair_job, instance->answerer);
+        }
         result->compute_ns = draw_int(&instance->draw, 300, 5000);
     }
     put_pair_result(instance, utime, result);
@@ -118,7 +125,7 @@ static const struct scene_result *run_job(struct instance *instance)
     struct scene_job *job = instance->job;
     int steps = 0;
     while (!scene_job_step(job, instance->answerer))
-        if (instance->stop_after > 0 && scene_job_can_stop(job) &&
+        if (instance->stop_after > 0 && scene_job_has_answers(job) &&
             ++steps == instance->stop_after) {
             scene_job_stop(job);
             break;

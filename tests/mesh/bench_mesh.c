@@ -127,20 +127,24 @@ static void bench_sweep(const struct scene *scene)
 
 /* ---- Every pair ---- */
 
-static struct fmb_prepared *prepare_all(const struct scene *scene, enum mesh_as as)
+/* The faces of both meshes. */
+struct faces {
+    struct mesh_placed_face *placed; /* the prepared frames refer to them */
+    struct fmb_prepared *prepared;
+};
+
+static struct faces prepare_all(const struct scene *scene, enum mesh_as as)
 {
     const size_t count = scene->mesh[0].face_count;
-    struct fmb_prepared *out = aligned_alloc(64, 2 * count * sizeof *out);
-    if (!out)
+    const struct faces out = {malloc(2 * count * sizeof *out.placed),
+                              aligned_alloc(64, 2 * count * sizeof *out.prepared)};
+    if (!out.placed || !out.prepared)
         fail("no memory");
-    for (int which = 0; which < 2; which++)
-        for (size_t face = 0; face < count; face++) {
-            struct fmb_body body;
-            struct fmb_frame frame;
-            if (!mesh_face_frame(&scene->mesh[which], as, (unsigned) face, NULL, &body, &frame) ||
-                fmb_prepare(&frame, &out[(size_t) which * count + face]) != FMB_OK)
-                fail("a face cannot be prepared");
-        }
+    for (size_t i = 0; i < 2 * count; i++)
+        if (!mesh_face_place(&scene->mesh[i / count], as, (unsigned) (i % count), NULL,
+                             &out.placed[i]) ||
+            fmb_prepare(&out.placed[i].placement, 0, 1, &out.prepared[i]) != FMB_OK)
+            fail("a face cannot be prepared");
     return out;
 }
 
@@ -151,7 +155,7 @@ static double every_pair_ns(const struct scene *scene, enum mesh_as as)
     static unsigned pair[BLOCK][2];
     static unsigned char verdict[BLOCK];
     const size_t count = scene->mesh[0].face_count;
-    struct fmb_prepared *frames = prepare_all(scene, as);
+    const struct faces faces = prepare_all(scene, as);
     double took = 0;
     size_t b = 0, a = 0;
     for (size_t done = 0; done < SAMPLE; done += BLOCK) {
@@ -160,7 +164,7 @@ static double every_pair_ns(const struct scene *scene, enum mesh_as as)
             pair[i][1] = (unsigned) (count + b);
         }
         a = (a + count / 977 + 1) % count;
-        const struct fmb_batch batch = {.frames = frames,
+        const struct fmb_batch batch = {.frames = faces.prepared,
                                         .frame_count = 2 * count,
                                         .pairs = (const unsigned(*)[2]) pair,
                                         .pair_count = BLOCK,
@@ -171,7 +175,8 @@ static double every_pair_ns(const struct scene *scene, enum mesh_as as)
             fail("the batch refused");
         took += stopwatch_now() - begin;
     }
-    free(frames);
+    free(faces.prepared);
+    free(faces.placed);
     return took / (double) ((SAMPLE + BLOCK - 1) / BLOCK * BLOCK);
 }
 

@@ -8,31 +8,79 @@ int solid_count(const struct solid *solid)
     return solid->shape == FMB_FACE ? 2 : solid->dim;
 }
 
+int solid_frames(const struct solid *solid)
+{
+    return solid->frames > 1 ? solid->frames : 1;
+}
+
+/* About the middle of the face opposite to the origin: the vertices of the face stay. */
+static void turn_over(struct solid *solid)
+{
+    const int count = solid_count(solid);
+    double sum[FMB_DIM_MAX] = {0};
+    for (int i = 0; i < count; i++)
+        for (int axis = 0; axis < solid->dim; axis++)
+            sum[axis] += solid->component[i][axis];
+    for (int axis = 0; axis < solid->dim; axis++) {
+        solid->local[axis] += sum[axis];
+        for (int i = 0; i < count; i++)
+            solid->component[i][axis] -= sum[axis];
+    }
+}
+
+struct solid solid_frame(const struct solid *solid, int i)
+{
+    const bool simplex = solid->shape == FMB_TETRAHEDRON || solid->shape == FMB_FACE;
+    const int steps = simplex ? i / 2 : i;
+    struct solid one = *solid;
+    one.frames = 1;
+    for (int axis = 0; axis < solid->dim; axis++)
+        one.local[axis] += steps * solid->component[0][axis];
+    if (simplex && i % 2)
+        turn_over(&one);
+    return one;
+}
+
+int solid_numbers(const struct solid *solid, double number[SOLID_NUMBERS_MAX])
+{
+    const int dim = solid->dim;
+    int count = dim;
+    memcpy(number, solid->local, (size_t) dim * sizeof *number);
+    for (int i = 0; i < solid_count(solid); i++)
+        for (int axis = 0; axis < dim; axis++)
+            if (solid->shape != FMB_BOX || axis == i)
+                number[count++] = solid->component[i][axis];
+    return count;
+}
+
+struct fmb_placement solid_placement(const struct solid *solid, const struct fmb_body *body)
+{
+    struct fmb_placement placement = {.body = body, .orientation_count = solid->orientation_count};
+    memcpy(placement.position, solid->origin, sizeof placement.position);
+    if (solid->moving)
+        memcpy(placement.velocity, solid->velocity, sizeof placement.velocity);
+    memcpy(placement.orientation, solid->orientation, sizeof placement.orientation);
+    return placement;
+}
+
 static void fill_body(const struct solid *solid, struct fmb_body *body)
 {
     memset(body, 0, sizeof *body);
-    body->dim = solid->dim;
-    body->shape = solid->shape;
-    body->count = solid_count(solid);
-    memcpy(body->component, solid->component, sizeof body->component);
+    body->dim = body->one.dim = solid->dim;
+    body->frame_count = 1;
+    body->one.shape = solid->shape;
+    body->one.count = solid_count(solid);
+    memcpy(body->one.component, solid->component, sizeof body->one.component);
+    memcpy(solid->shape == FMB_BOX ? body->one.centre : body->one.origin, solid->local,
+           sizeof solid->local);
 }
 
-static void fill_frame(const struct solid *solid, const struct fmb_body *body,
-                       struct fmb_frame *frame)
-{
-    frame->body = body;
-    memcpy(frame->origin, solid->origin, sizeof frame->origin);
-    memcpy(frame->velocity, solid->velocity, sizeof frame->velocity);
-    frame->moving = solid->moving;
-}
-
-void question_pair(const struct question *question, struct fmb_body body[2], struct fmb_pair *pair)
+void question_pair(const struct question *question, struct fmb_body body[2], struct pair *pair)
 {
     fill_body(&question->a, &body[0]);
     fill_body(&question->b, &body[1]);
-    fill_frame(&question->a, &body[0], &pair->a);
-    fill_frame(&question->b, &body[1], &pair->b);
-    pair->duration = question->duration;
+    *pair = (struct pair){solid_placement(&question->a, &body[0]),
+                          solid_placement(&question->b, &body[1]), question->duration};
 }
 
 struct question question_swapped(const struct question *question)
@@ -62,7 +110,9 @@ static void print_vector(const double *number)
 
 static void print_solid(const char *name, const struct solid *solid)
 {
-    static const char *const shapes[] = {"0", "FMB_CUBOID", "FMB_TETRAHEDRON", "FMB_FACE"};
+    static const char *const shapes[] = {"0", "FMB_CUBOID", "FMB_TETRAHEDRON", "FMB_FACE",
+                                         "FMB_BOX"};
+    const double *q = solid->orientation;
     printf("#   .%s = {%d, %s, {", name, solid->dim, shapes[solid->shape]);
     for (int i = 0; i < FMB_DIM_MAX; i++) {
         print_vector(solid->component[i]);
@@ -71,7 +121,10 @@ static void print_solid(const char *name, const struct solid *solid)
     print_vector(solid->origin);
     printf(", ");
     print_vector(solid->velocity);
-    printf(", %s},\n", solid->moving ? "true" : "false");
+    printf(", %s,\n#      ", solid->moving ? "true" : "false");
+    print_vector(solid->local);
+    printf(", {%a, %a, %a, %a}, %d, %d, %s},\n", q[0], q[1], q[2], q[3], solid->orientation_count,
+           solid->frames, solid->by_vertices ? "true" : "false");
 }
 
 void question_print(const struct question *question)

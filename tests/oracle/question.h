@@ -1,5 +1,5 @@
-/* A pair as plain values: what tests draw, change, copy and print. A struct fmb_pair points to
- * its bodies; a question holds all of itself. */
+/* A pair as plain values: what tests draw, change, copy and print. A struct pair points to its
+ * bodies; a question holds all of itself. */
 #ifndef QUESTION_H
 #define QUESTION_H
 
@@ -7,15 +7,28 @@
 
 #include "draw.h"
 #include "fmb.h"
+#include "placed_pair.h"
 
+/* Tests write questions by position, and leave out what is 0. */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
+/* A placed body. */
 struct solid {
     int dim;
     enum fmb_shape shape;
-    double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
-    double origin[FMB_DIM_MAX];
+    double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis]; of a box the size, [i][i] */
+    double origin[FMB_DIM_MAX];                 /* the position of the body */
     double velocity[FMB_DIM_MAX];
-    bool moving;
+    bool moving; /* has its velocity; else 0 */
+    double
+        local[FMB_DIM_MAX]; /* the origin of the frame in body coordinates; of a box its centre */
+    double orientation[4];  /* as in struct fmb_placement */
+    int orientation_count;
+    int frames; /* 0 and 1: one; more: a row of them, each sharing a face with the one before */
+    bool by_vertices; /* of a simplex of one frame: local and components are its vertices */
 };
+
+enum { SOLID_FRAMES_MAX = 8 };
 
 struct question {
     struct solid a, b;
@@ -26,14 +39,30 @@ struct question {
  * of the engine. */
 int solid_count(const struct solid *solid);
 
-/* On output: the pair, with bodies in body[0] and body[1], of which only dim, shape, count and
- * component are filled: enough for the oracle, not for the engine. */
-void question_pair(const struct question *question, struct fmb_body body[2], struct fmb_pair *pair);
+/* How many frames it has, at least 1. */
+int solid_frames(const struct solid *solid);
+
+/* Frame i of the row, as a solid of one frame: each cuboid and box, and every second simplex, is
+ * the first one further along component 0; the simplices between are turned over, about the middle
+ * of the face opposite to the origin. Rounded where its numbers are not small and whole. */
+struct solid solid_frame(const struct solid *solid, int i);
+
+/* The numbers of fmb_frame_make(), or of fmb_frame_make_vertices(): origin and components, or
+ * centre and size, or vertices. Returns how many. */
+enum { SOLID_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX };
+int solid_numbers(const struct solid *solid, double number[SOLID_NUMBERS_MAX]);
+
+/* The placement of the body. */
+struct fmb_placement solid_placement(const struct solid *solid, const struct fmb_body *body);
+
+/* In: solids of one frame, not by vertices. Out: the pair, with bodies in body[0] and body[1], of
+ * which only what the oracle reads is filled: not enough for the engine. */
+void question_pair(const struct question *question, struct fmb_body body[2], struct pair *pair);
 
 /* The same question with a and b in each other's place. */
 struct question question_swapped(const struct question *question);
 
-/* Any shape of the dimension. */
+/* Any shape of the dimension but a box. */
 enum fmb_shape question_draw_shape(struct draw *draw, int dim);
 
 /* Who carries a velocity: A, B or both; or, one time in four, none. */

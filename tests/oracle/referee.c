@@ -18,23 +18,19 @@ void referee_fail(const struct question *question, const char *what)
 static void make_body(const struct question *question, const struct solid *solid,
                       struct fmb_body *body)
 {
-    double number[FMB_COMPONENTS_MAX];
-    const int count = solid_count(solid);
-    for (int i = 0; i < count; i++)
-        memcpy(&number[i * solid->dim], solid->component[i],
-               (size_t) solid->dim * sizeof number[0]);
-    enum fmb_status status =
-        fmb_body_make(solid->dim, solid->shape, number, (size_t) (count * solid->dim), body);
+    double number[SOLID_NUMBERS_MAX];
+    const int count = solid_numbers(solid, number);
+    enum fmb_status status = fmb_body_make(solid->dim, solid->shape, number, (size_t) count, body);
     if (status != FMB_OK)
         referee_fail(question, fmb_status_text(status));
 }
 
 void referee_ready(const struct question *question, struct ready *ready)
 {
-    question_pair(question, ready->body, &ready->pair); /* the frames; the bodies follow */
+    question_pair(question, ready->body, &ready->pair); /* the placements; the bodies follow */
     make_body(question, &question->a, &ready->body[0]);
     make_body(question, &question->b, &ready->body[1]);
-    enum fmb_status status = fmb_pair_check(&ready->pair);
+    enum fmb_status status = pair_check(&ready->pair);
     if (status != FMB_OK)
         referee_fail(question, fmb_status_text(status));
 }
@@ -49,10 +45,10 @@ static const struct never_wrong exact = {"exact", ORACLE_TIGHTEST};
 static const struct never_wrong certified = {"certified", ORACLE_DESIGN};
 
 static void ask(const struct never_wrong *method, const struct question *question,
-                const struct fmb_pair *pair, unsigned want, struct fmb_answer *answer)
+                const struct pair *pair, unsigned want, struct fmb_answer *answer)
 {
     memset(answer, 0xa5, sizeof *answer); /* what is not written shows */
-    enum fmb_status status = fmb_decide(fmb_method_by_name(method->name), pair, want, answer);
+    enum fmb_status status = pair_decide(fmb_method_by_name(method->name), pair, want, answer);
     if (status != FMB_OK)
         referee_fail(question, fmb_status_text(status));
 }
@@ -82,7 +78,7 @@ bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other)
 
 /* On output: *answer, with the box, held against the truth. */
 static void assert_truth(const struct never_wrong *method, const struct question *question,
-                         const struct fmb_pair *pair, const struct oracle_answer *truth,
+                         const struct pair *pair, const struct oracle_answer *truth,
                          struct fmb_answer *answer)
 {
     char why[200];
@@ -92,9 +88,9 @@ static void assert_truth(const struct never_wrong *method, const struct question
 }
 
 static void assert_consistent(const struct never_wrong *method, const struct question *question,
-                              const struct fmb_pair *pair, const struct fmb_answer *answer)
+                              const struct pair *pair, const struct fmb_answer *answer)
 {
-    const struct fmb_pair reversed = {pair->b, pair->a, pair->duration};
+    const struct pair reversed = {pair->b, pair->a, pair->duration};
     struct fmb_answer boxless, swapped;
     ask(method, question, &reversed, FMB_WANT_BOX, &swapped);
     if (!referee_same(answer, &swapped))

@@ -10,10 +10,11 @@
 /* A question ready for the engine. Not to be copied: pair points into body. */
 struct ready {
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
 };
 
-/* Bodies and pair through fmb_body_make and fmb_pair_check; fails the test if these refuse. */
+/* In: solids of one frame. Bodies and pair through fmb_body_make and pair_check; fails the test if
+ * these refuse. */
 void referee_ready(const struct question *question, struct ready *ready);
 
 /* The answer of the exact method, box wanted. */

@@ -143,6 +143,7 @@ void sample_move(struct placement *placement, const double *velocity)
 
 void sample_define(struct sample_log *log, struct placement *placement)
 {
-    placement->handle =
-        cache_keep(answerer_cache(log->answerer), placement->body_id, &placement->geometry)->handle;
+    struct cache *cache = answerer_cache(log->answerer);
+    cache_release(cache,
+                  cache_keep(cache, placement->body_id, &placement->geometry, &placement->handle));
 }

@@ -35,6 +35,10 @@ static _Noreturn void fail(const char *what)
 
 /* A scene of the log, ready for the batch. */
 struct scene {
+    struct placed {
+        struct fmb_body body;
+        struct fmb_placement placement;
+    } * placed;                 /* owned: the prepared frames refer to them */
     struct fmb_prepared *frame; /* owned */
     unsigned (*pair)[2];        /* owned */
     size_t frame_count, pair_count;
@@ -48,25 +52,30 @@ struct scenes {
     unsigned char verdict[QUERY_PAIRS_MAX];
 };
 
-/* A placement by handle has the geometry that the log defines. */
+/* A body of one frame. A placement by handle has the geometry that the log defines. */
 static void prepare(const struct placement *placement, struct definitions *definitions,
-                    struct fmb_prepared *out)
+                    struct placed *placed, struct fmb_prepared *out)
 {
     const struct geometry *geometry = &placement->geometry;
     struct geometry_frame frame;
-    struct fmb_body body;
+    double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
     int dim;
     if (placement_by_handle(placement) &&
         !(geometry = definitions_find(definitions, &placement->handle)))
         fail("a handle that the log does not define");
-    if (!geometry_read(geometry, &dim, &frame) ||
-        fmb_body_make(dim, frame.shape, frame.components, (size_t) (frame.count * dim), &body) !=
-            FMB_OK)
+    if (!geometry_read(geometry, &dim, &frame))
         fail("a frame of the log is none");
-    struct fmb_frame placed = {.body = &body, .moving = placement->velocity_count > 0};
-    memcpy(placed.origin, placement->position, sizeof placed.origin);
-    memcpy(placed.velocity, placement->velocity, sizeof placed.velocity);
-    fmb_prepare(&placed, out);
+    const int count = geometry_number_count(dim, frame.shape);
+    memcpy(numbers, frame.origin, (size_t) dim * sizeof *numbers);
+    memcpy(numbers + dim, frame.components, (size_t) (count - dim) * sizeof *numbers);
+    placed->placement = (struct fmb_placement){.body = &placed->body,
+                                               .orientation_count = placement->orientation_count};
+    memcpy(placed->placement.position, placement->position, sizeof placement->position);
+    memcpy(placed->placement.velocity, placement->velocity, sizeof placement->velocity);
+    memcpy(placed->placement.orientation, placement->orientation, sizeof placement->orientation);
+    if (fmb_body_make(dim, frame.shape, numbers, (size_t) count, &placed->body) != FMB_OK ||
+        fmb_prepare(&placed->placement, 0, 1, out) != FMB_OK)
+        fail("a frame of the log is none");
 }
 
 static void keep_scene(struct scenes *scenes, struct definitions *definitions,
@@ -77,12 +86,13 @@ static void keep_scene(struct scenes *scenes, struct definitions *definitions,
     scene->pair_count = (size_t) query->index_count / 2;
     scene->duration = query->duration;
     scene->frame = aligned_alloc(64, scene->frame_count * sizeof *scene->frame);
+    scene->placed = calloc(scene->frame_count, sizeof *scene->placed);
     scene->pair = malloc(scene->pair_count * sizeof *scene->pair);
-    if (!scene->frame || !scene->pair)
+    if (!scene->frame || !scene->placed || !scene->pair)
         fail("no memory");
     memcpy(scene->pair, query->pair, scene->pair_count * sizeof *scene->pair);
     for (size_t i = 0; i < scene->frame_count; i++)
-        prepare(&query->placement[i], definitions, &scene->frame[i]);
+        prepare(&query->placement[i], definitions, &scene->placed[i], &scene->frame[i]);
     scenes->pairs += (int64_t) scene->pair_count;
 }
 

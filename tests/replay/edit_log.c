@@ -207,6 +207,7 @@ static void flip_pair(const char *argument)
 {
     (void) argument;
     pair.answer.verdict = (enum fmb_verdict) other((unsigned char) pair.answer.verdict);
+    pair.answer.has_contact = true;
 }
 
 static void flip_scene(const char *argument)

@@ -36,7 +36,8 @@ struct asker {
     pthread_t thread;
     struct fmb_client *client;
     uint64_t random;
-    struct fmb_client_placement frame[FRAMES];
+    struct fmb_client_placement placement[FRAMES];
+    struct fmb_client_frame frame[FRAMES];
     struct fmb_body body[FRAMES];
     unsigned (*pair)[2];        /* owned: [plan->pairs] */
     struct fmb_answer *answers; /* owned: what libfmb says of them */
@@ -63,24 +64,27 @@ static double coordinate(struct asker *asker, int i, double size)
 
 static void draw_frame(struct asker *asker, int i)
 {
-    struct fmb_client_placement *frame = &asker->frame[i];
-    *frame = (struct fmb_client_placement){.body_id = 1 + asker->number * FRAMES + i, .dim = 3};
-    frame->shape = uniform(asker) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON;
-    frame->moving = uniform(asker) < 0.5;
+    struct fmb_client_placement *placement = &asker->placement[i];
+    struct fmb_client_frame *frame = &asker->frame[i];
+    *frame =
+        (struct fmb_client_frame){.shape = uniform(asker) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON};
+    *placement = (struct fmb_client_placement){
+        .body_id = 1 + asker->number * FRAMES + i, .dim = 3, .frames = frame, .frame_count = 1};
+    const bool moving = uniform(asker) < 0.5;
     for (int axis = 0; axis < 3; axis++) {
-        frame->position[axis] = coordinate(asker, i, 4);
-        frame->velocity[axis] = coordinate(asker, i, 2);
+        placement->position[axis] = coordinate(asker, i, 4);
+        placement->velocity[axis] = moving ? coordinate(asker, i, 2) : 0;
         frame->components[4 * axis] = 1 + fabs(coordinate(asker, i, 2));
     }
     fmb_body_make(3, frame->shape, frame->components, 9, &asker->body[i]);
 }
 
-static struct fmb_frame frame_of(const struct asker *asker, unsigned i)
+static struct fmb_placement placement_of(const struct asker *asker, unsigned i)
 {
-    struct fmb_frame frame = {.body = &asker->body[i], .moving = asker->frame[i].moving};
-    memcpy(frame.origin, asker->frame[i].position, sizeof frame.origin);
-    memcpy(frame.velocity, asker->frame[i].velocity, sizeof frame.velocity);
-    return frame;
+    struct fmb_placement placement = {.body = &asker->body[i]};
+    memcpy(placement.position, asker->placement[i].position, sizeof placement.position);
+    memcpy(placement.velocity, asker->placement[i].velocity, sizeof placement.velocity);
+    return placement;
 }
 
 static void draw_pair(struct asker *asker, long k)
@@ -88,8 +92,8 @@ static void draw_pair(struct asker *asker, long k)
     unsigned *pair = asker->pair[k];
     pair[0] = (unsigned) (uniform(asker) * FRAMES);
     pair[1] = (pair[0] + 1 + (unsigned) (uniform(asker) * (FRAMES - 1))) % FRAMES;
-    const struct fmb_pair both = {frame_of(asker, pair[0]), frame_of(asker, pair[1]), 1};
-    fmb_decide(fmb_method_default(), &both, FMB_WANT_BOX, &asker->answers[k]);
+    const struct fmb_placement a = placement_of(asker, pair[0]), b = placement_of(asker, pair[1]);
+    fmb_decide(fmb_method_default(), &a, &b, 1, FMB_WANT_BOX, &asker->answers[k]);
 }
 
 /* Half of the bodies turn now and then: their ids get other components. */
@@ -118,7 +122,7 @@ static void take(void *user, const struct fmb_client_answer *answer)
 static void ask(struct asker *asker)
 {
     const struct fmb_client_scene scene = {
-        .placements = asker->frame,
+        .placements = asker->placement,
         .placement_count = FRAMES,
         .which = FMB_CLIENT_LISTED,
         .pairs = (const unsigned(*)[2]) asker->pair,
@@ -129,8 +133,8 @@ static void ask(struct asker *asker)
     const int64_t begin = clock_ns();
     asker->seen = 0;
     if (asker->plan->pairs == 1) {
-        const struct fmb_client_placement both[2] = {asker->frame[asker->pair[0][0]],
-                                                     asker->frame[asker->pair[0][1]]};
+        const struct fmb_client_placement both[2] = {asker->placement[asker->pair[0][0]],
+                                                     asker->placement[asker->pair[0][1]]};
         struct fmb_client_answer answer;
         fmb_client_query_pair(asker->client, both, 1, FMB_CLIENT_WANT_BOX, &answer);
         answer.a = asker->pair[0][0];

@@ -62,14 +62,20 @@ static void draw_placement(struct placement *out, int64_t id, struct fmb_body *b
                               .frame_count = 1,
                               .number_count = 12,
                               .position = {grid(2), grid(2) + rand() % 2 * 0.1, grid(2)}};
+    if (rand() % 2) { /* a quarter turn and others */
+        out->orientation_count = 4;
+        out->orientation[0] = 1;
+        out->orientation[1 + rand() % 3] = rand() % 3 - 1;
+    }
     out->geometry = (struct geometry){geometry, geometry_write(3, &frame, geometry)};
     fmb_body_make(3, frame.shape, frame.components, 9, body);
 }
 
-static struct fmb_frame placed(const struct placement *placement, const struct fmb_body *body)
+static struct fmb_placement placed(const struct placement *placement, const struct fmb_body *body)
 {
-    struct fmb_frame out = {.body = body};
-    memcpy(out.origin, placement->position, sizeof out.origin);
+    struct fmb_placement out = {.body = body, .orientation_count = placement->orientation_count};
+    memcpy(out.position, placement->position, sizeof out.position);
+    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
     return out;
 }
 
@@ -83,9 +89,9 @@ static void draw(struct soak *soak)
         unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
         for (int f = 0; f < 2; f++)
             draw_placement(&query.placement[f], 1 + 2 * i + f, &body[f], geometry[f]);
-        const struct fmb_pair pair = {placed(&query.placement[0], &body[0]),
-                                      placed(&query.placement[1], &body[1]), 1};
-        fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &question->answer);
+        const struct fmb_placement a = placed(&query.placement[0], &body[0]);
+        const struct fmb_placement b = placed(&query.placement[1], &body[1]);
+        fmb_decide(fmb_method_default(), &a, &b, 1, FMB_WANT_BOX, &question->answer);
         unsigned char bytes[QUERY_BYTES_MAX];
         question->size = wire_write_pair_query(&query, bytes);
         memcpy(question->bytes, bytes, question->size);

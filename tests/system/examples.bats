@@ -89,6 +89,24 @@ first_answers() {
     first_answers java
 }
 
+@test "Lua: two posed bodies" {
+    need lua
+    start_fmbd
+    run env LUA_PATH='build/examples/lua/?.lua;;' timeout 60 lua5.2 clients/examples/posed_pair.lua
+    [ "$output" = overlapping ]
+    stop_fmbd
+}
+
+@test "Java: two posed bodies" {
+    need java
+    start_fmbd
+    timeout 60 java -Djava.net.preferIPv4Stack=true \
+        -cp /usr/share/java/lcm.jar:build/examples/java PosedPair > "$BATS_TEST_TMPDIR/output" \
+        2> "$BATS_TEST_TMPDIR/said"
+    [ "$(cat "$BATS_TEST_TMPDIR/output")" = overlapping ]
+    stop_fmbd
+}
+
 # A cache of one frame does not hold both bodies when the second query comes with their handles.
 bodies_not_held() {
     need "$1"

@@ -23,10 +23,18 @@ setup() {
     start_fmbd
     run "$BATS_TEST_TMPDIR/ask_scene"
     [ "$status" = 0 ]
-    [ "$output" = "1 and 2: touching
-1 and 3: touching
+    [ "$output" = "1 and 2: touching from 0 s
+1 and 3: touching from 0 s
 1 and 4: touching from 1 s
 3 and 4: overlapping from 0.5 s" ]
+    for example in posed_pair robot; do
+        $compiler -std=c99 -Wall -Wextra -Werror $flags clients/examples/$example.c \
+            $(pkg-config --static --cflags --libs fmb-client) -lm -o "$BATS_TEST_TMPDIR/$example"
+    done
+    [ "$("$BATS_TEST_TMPDIR/posed_pair")" = overlapping ]
+    run "$BATS_TEST_TMPDIR/robot"
+    [ "$status" = 0 ]
+    [[ ${lines[-1]} == *', 11 bodies whole, '* ]]
     stop_fmbd
 }
 

@@ -109,8 +109,13 @@ static size_t answer(struct relay *relay, struct answerer *service,
     case RELAY_PAIR:
         if (wire_read_pair_query(message->bytes, size, &query))
             return 0;
-        answer_pair(service, &query, &result);
-        return wire_write_pair_result(&result, out);
+        if (answer_pair(service, &query, &result))
+            return wire_write_pair_result(&result, out);
+        if (pair_job_begin(relay->pair_job, service, message->bytes, size))
+            return 0;
+        while (!pair_job_step(relay->pair_job))
+            continue;
+        return wire_write_pair_result(pair_job_end(relay->pair_job, service), out);
     case RELAY_SCENE:
         if (scene_job_begin(relay->job, message->bytes, size))
             return 0;
@@ -190,6 +195,16 @@ static struct answerer *start(size_t frames)
     return answerer;
 }
 
+/* before() runs with the lock held and may restart the service. */
+static void make_recursive(pthread_mutex_t *lock)
+{
+    pthread_mutexattr_t attributes;
+    pthread_mutexattr_init(&attributes);
+    pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_RECURSIVE);
+    pthread_mutex_init(lock, &attributes);
+    pthread_mutexattr_destroy(&attributes);
+}
+
 struct relay *relay_new(void)
 {
     struct relay *relay = calloc(1, sizeof *relay);
@@ -209,8 +224,9 @@ void relay_open(struct relay *relay, size_t frames)
         assert_true(bus_listen(relay->bus, channel[kind], why));
     relay->service[0] = start(frames);
     relay->job = scene_job_create();
-    assert_non_null(relay->job);
-    pthread_mutex_init(&relay->lock, NULL);
+    relay->pair_job = pair_job_create();
+    assert_true(relay->job && relay->pair_job);
+    make_recursive(&relay->lock);
     assert_int_equal(pipe2(relay->stop, O_CLOEXEC), 0);
     assert_int_equal(pthread_create(&relay->thread, NULL, serve, relay), 0);
 }
@@ -222,6 +238,7 @@ void relay_close(struct relay *relay)
     for (int i = 0; i < RELAY_SERVICES; i++)
         answerer_destroy(relay->service[i]);
     scene_job_destroy(relay->job);
+    pair_job_destroy(relay->pair_job);
     bus_close(relay->bus);
     close(relay->stop[0]);
     close(relay->stop[1]);
@@ -231,8 +248,10 @@ void relay_close(struct relay *relay)
 
 void relay_restart(struct relay *relay, size_t frames)
 {
+    pthread_mutex_lock(&relay->lock);
     answerer_destroy(relay->service[0]);
     relay->service[0] = start(frames);
+    pthread_mutex_unlock(&relay->lock);
 }
 
 void relay_add_service(struct relay *relay, size_t frames)
@@ -290,47 +309,104 @@ static double draw(unsigned *state, double low, double high)
     return low + (high - low) * (*state >> 8) / (double) (1 << 24);
 }
 
+/* Frames of bodies, reachable until the program ends. */
+static struct fmb_client_frame *new_frames(size_t count)
+{
+    static struct block {
+        struct block *next;
+        struct fmb_client_frame frame[];
+    } * blocks;
+    struct block *block = calloc(1, sizeof *block + count * sizeof *block->frame);
+    assert_non_null(block);
+    block->next = blocks;
+    blocks = block;
+    return block->frame;
+}
+
+struct fmb_client_frame *relay_frame(const struct fmb_client_placement *placement)
+{
+    return (struct fmb_client_frame *) placement->frames; /* of new_frames() */
+}
+
+/* whole: its components are unit vectors, its origin 0. */
+static void draw_frame(struct fmb_client_frame *out, int dim, int shape, bool whole, unsigned *seed)
+{
+    const int count = fmb_component_count(dim, shape) * (shape == FMB_BOX ? 1 : dim);
+    *out = (struct fmb_client_frame){.shape = shape};
+    for (int k = 0; k < count; k++) {
+        const double drawn = draw(seed, shape == FMB_BOX ? 0 : -1, 1);
+        out->components[k] = whole ? shape == FMB_BOX || k / dim == k % dim : drawn;
+    }
+    for (int k = 0; k < dim && !whole; k++)
+        out->origin[k] = draw(seed, -0.5, 0.5);
+}
+
+static void draw_place(struct fmb_client_placement *out, double size, bool whole, unsigned *seed)
+{
+    const bool moving = draw(seed, 0, 1) < 0.5 && !whole;
+    for (int k = 0; k < out->dim; k++) {
+        out->position[k] = draw(seed, 0, size);
+        out->velocity[k] = moving ? draw(seed, -1, 1) : 0;
+    }
+    /* Some are at whole places, and touch. */
+    for (int k = 0; k < out->dim && whole; k++)
+        out->position[k] = floor(out->position[k]);
+    out->orientation_count = draw(seed, 0, 1) < 0.5 ? 0 : out->dim == 2 ? 2 : 4;
+    for (int k = 0; k < out->orientation_count; k++)
+        out->orientation[k] = whole ? k == 0 : draw(seed, -2, 2);
+}
+
 void relay_draw(struct fmb_client_placement *out, size_t count, int dim, double size,
                 int64_t first_id, unsigned seed)
 {
+    static const int shapes[] = {FMB_CUBOID, FMB_TETRAHEDRON, FMB_BOX};
+    struct fmb_client_frame *frame = new_frames(3 * count);
     for (size_t i = 0; i < count; i++) {
-        struct fmb_client_placement *placement = &out[i];
-        memset(placement, 0, sizeof *placement);
-        placement->body_id = first_id ? first_id + (int64_t) i : 0;
-        placement->dim = dim;
-        placement->shape = draw(&seed, 0, 1) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON;
-        if (dim == 3 && i % 20 == 7) /* few: they are slow to decide */
-            placement->shape = FMB_FACE;
-        placement->moving = draw(&seed, 0, 1) < 0.5;
-        const int numbers = fmb_component_count(dim, placement->shape) * dim;
-        for (int k = 0; k < numbers; k++)
-            placement->components[k] = draw(&seed, -1, 1);
-        for (int k = 0; k < dim; k++) {
-            placement->position[k] = draw(&seed, 0, size);
-            placement->velocity[k] = draw(&seed, -1, 1);
+        const bool whole = i % 3 == 0;
+        out[i] = (struct fmb_client_placement){.body_id = first_id ? first_id + (int64_t) i : 0,
+                                               .dim = dim,
+                                               .frames = frame,
+                                               .frame_count = i % 5 == 1 ? 3 : 1};
+        for (size_t k = 0; k < out[i].frame_count; k++) {
+            int shape = shapes[(int) draw(&seed, 0, 2.999)];
+            if (dim == 3 && i % 20 == 7) /* few: they are slow to decide */
+                shape = FMB_FACE;
+            draw_frame(frame++, dim, shape, whole, &seed);
         }
-        /* Some stand at whole places and touch. */
-        for (int k = 0; k < dim && i % 3 == 0; k++)
-            placement->position[k] = floor(placement->position[k]);
-        for (int k = 0; k < numbers && i % 3 == 0; k++)
-            placement->components[k] = k / dim == k % dim;
-        placement->moving = placement->moving && i % 3 != 0;
+        draw_place(&out[i], size, whole, &seed);
     }
 }
 
-static void prepare(const struct fmb_client_scene *scene, struct fmb_prepared *out)
+/* ---- Truth ---- */
+
+struct fmb_placement relay_place(const struct fmb_client_placement *placement,
+                                 struct fmb_body *body)
 {
-    for (size_t i = 0; i < scene->placement_count; i++) {
-        const struct fmb_client_placement *of = &scene->placements[i];
-        struct fmb_body body;
-        struct fmb_frame frame = {.body = &body, .moving = of->moving};
-        const int count = fmb_component_count(of->dim, of->shape) * of->dim;
-        assert_int_equal(fmb_body_make(of->dim, of->shape, of->components, (size_t) count, &body),
+    struct fmb_frame *frames = malloc(placement->frame_count * sizeof *frames);
+    assert_non_null(frames);
+    for (size_t i = 0; i < placement->frame_count; i++) {
+        const struct fmb_client_frame *of = &placement->frames[i];
+        const int dim = placement->dim;
+        const int count = fmb_component_count(dim, of->shape) * (of->shape == FMB_BOX ? 1 : dim);
+        double number[FMB_DIM_MAX + FMB_COMPONENTS_MAX];
+        memcpy(number, of->origin, (size_t) dim * sizeof *number);
+        memcpy(number + dim, of->components, (size_t) count * sizeof *number);
+        assert_int_equal(fmb_frame_make(dim, of->shape, number, (size_t) (dim + count), &frames[i]),
                          FMB_OK);
-        memcpy(frame.origin, of->position, sizeof frame.origin);
-        memcpy(frame.velocity, of->velocity, sizeof frame.velocity);
-        assert_int_equal(fmb_prepare(&frame, &out[i]), FMB_OK);
     }
+    assert_int_equal(fmb_body_make_frames(frames, placement->frame_count, body), FMB_OK);
+    if (body->frames != frames) /* a single frame is held in the body */
+        free(frames);
+    struct fmb_placement out = {.body = body, .orientation_count = placement->orientation_count};
+    memcpy(out.position, placement->position, sizeof out.position);
+    memcpy(out.velocity, placement->velocity, sizeof out.velocity);
+    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
+    return out;
+}
+
+void relay_body_free(struct fmb_body *body)
+{
+    free((void *) body->frames);
 }
 
 static void add(struct relay_truth *truth, const unsigned pair[2], const struct fmb_answer *answer)
@@ -343,76 +419,71 @@ static void add(struct relay_truth *truth, const unsigned pair[2], const struct 
     truth->pair[truth->count++] = (struct relay_pair){pair[0], pair[1], *answer};
 }
 
-enum { BATCH = 4096 };
-
-/* Some pairs at a time. */
-struct batch {
-    unsigned pair[BATCH][2];
-    unsigned char verdict[BATCH];
-    double contact[BATCH][2], box[BATCH][2][FMB_DIM_MAX];
+/* The bodies of a scene. */
+struct bodies {
+    struct fmb_body *body;
+    struct fmb_placement *placement;
 };
 
-static void decide(const struct fmb_client_scene *scene, const struct fmb_prepared *frame,
-                   struct batch *batch, size_t count, struct relay_truth *out)
+/* Whether the pair is surely separated: no vertex is as far from a body's position as this. */
+static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b, double duration)
 {
-    const bool times = scene->want & FMB_CLIENT_WANT_TIMES, box = scene->want & FMB_CLIENT_WANT_BOX;
-    const struct fmb_batch question = {.frames = frame,
-                                       .frame_count = scene->placement_count,
-                                       .pairs = (const unsigned(*)[2]) batch->pair,
-                                       .pair_count = count,
-                                       .duration = scene->duration,
-                                       .verdicts = batch->verdict,
-                                       .contacts = times ? batch->contact : NULL,
-                                       .boxes = box ? batch->box : NULL};
-    assert_int_equal(fmb_decide_batch(&question), FMB_OK);
-    for (size_t i = 0; i < count; i++) {
-        const bool contact = batch->verdict[i] != FMB_SEPARATED;
-        struct fmb_answer answer = {.verdict = (enum fmb_verdict) batch->verdict[i]};
-        if (scene->which != FMB_CLIENT_LISTED && !contact)
-            continue;
-        if (contact && times && !isnan(batch->contact[i][0])) {
-            answer.has_contact = true;
-            memcpy(answer.contact, batch->contact[i], sizeof answer.contact);
-        }
-        answer.has_box = contact && box;
-        for (int k = 0; k < 2 * FMB_DIM_MAX && answer.has_box; k++)
-            if (k % FMB_DIM_MAX < scene->placements[0].dim)
-                answer.box[k / FMB_DIM_MAX][k % FMB_DIM_MAX] =
-                    batch->box[i][k / FMB_DIM_MAX][k % FMB_DIM_MAX];
-        add(out, batch->pair[i], &answer);
+    double distance = 0, speed = 0;
+    for (int axis = 0; axis < a->body->dim; axis++) {
+        distance += pow(a->position[axis] - b->position[axis], 2);
+        speed += fabs(a->velocity[axis] - b->velocity[axis]);
     }
+    return sqrt(distance) > a->body->radius + b->body->radius + duration * speed + 0.001;
+}
+
+static bool is_ignored(const struct fmb_client_scene *scene, unsigned a, unsigned b)
+{
+    for (size_t i = 0; i < scene->ignored_count; i++) {
+        const unsigned *pair = scene->ignored[i];
+        if ((pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a))
+            return true;
+    }
+    return false;
+}
+
+static void decide(const struct fmb_client_scene *scene, const struct bodies *bodies,
+                   const unsigned pair[2], struct relay_truth *out)
+{
+    const struct fmb_placement *a = &bodies->placement[pair[0]], *b = &bodies->placement[pair[1]];
+    struct fmb_answer answer = {.verdict = FMB_SEPARATED};
+    if (is_ignored(scene, pair[0], pair[1]))
+        return;
+    if (!are_far(a, b, scene->duration))
+        assert_int_equal(fmb_decide(fmb_method_default(), a, b, scene->duration,
+                                    scene->want & FMB_CLIENT_WANT_BOX ? FMB_WANT_BOX : 0, &answer),
+                         FMB_OK);
+    if (!(scene->want & FMB_CLIENT_WANT_TIMES)) {
+        answer.has_contact = false;
+        memset(answer.contact, 0, sizeof answer.contact);
+    }
+    if (scene->which == FMB_CLIENT_LISTED || answer.verdict != FMB_SEPARATED)
+        add(out, pair, &answer);
 }
 
 /* The pairs in their order, counted here by other means than the library's. */
 void relay_truth_make(const struct fmb_client_scene *scene, struct relay_truth *out)
 {
-    struct fmb_prepared *frame = calloc(scene->placement_count + 1, sizeof *frame);
-    struct batch *batch = malloc(sizeof *batch);
-    size_t count = 0;
     const unsigned n = (unsigned) scene->placement_count, split = (unsigned) scene->split;
+    const struct bodies bodies = {calloc(n + 1, sizeof *bodies.body),
+                                  calloc(n + 1, sizeof *bodies.placement)};
     *out = (struct relay_truth){.count = 0};
-    prepare(scene, frame);
-    for (size_t i = 0; scene->which == FMB_CLIENT_LISTED && i < scene->pair_count; i++) {
-        memcpy(batch->pair[count++], scene->pairs[i], sizeof *scene->pairs);
-        if (count == BATCH || i + 1 == scene->pair_count) {
-            decide(scene, frame, batch, count, out);
-            count = 0;
-        }
-    }
+    for (unsigned i = 0; i < n; i++)
+        bodies.placement[i] = relay_place(&scene->placements[i], &bodies.body[i]);
+    for (size_t i = 0; scene->which == FMB_CLIENT_LISTED && i < scene->pair_count; i++)
+        decide(scene, &bodies, scene->pairs[i], out);
     for (unsigned a = 0; scene->which != FMB_CLIENT_LISTED && a < n; a++)
-        for (unsigned b = a + 1; b < n; b++) {
-            if (scene->which == FMB_CLIENT_ACROSS && (a >= split) == (b >= split))
-                continue;
-            batch->pair[count][0] = a;
-            batch->pair[count++][1] = b;
-            if (count == BATCH) {
-                decide(scene, frame, batch, count, out);
-                count = 0;
-            }
-        }
-    decide(scene, frame, batch, count, out);
-    free(batch);
-    free(frame);
+        for (unsigned b = a + 1; b < n; b++)
+            if (scene->which == FMB_CLIENT_ALL || (a < split && b >= split))
+                decide(scene, &bodies, (const unsigned[]){a, b}, out);
+    for (unsigned i = 0; i < n; i++)
+        relay_body_free(&bodies.body[i]);
+    free(bodies.body);
+    free(bodies.placement);
 }
 
 void relay_truth_clear(struct relay_truth *truth)
@@ -425,6 +496,7 @@ void relay_check(void *user, const struct fmb_client_answer *answer)
     struct relay_truth *truth = user;
     if (answer->status != FMB_OK) {
         assert_true(strlen(answer->text) > 0);
+        print_message("# %u and %u: %s\n", answer->a, answer->b, answer->text);
         truth->failed++;
         return;
     }

@@ -50,6 +50,7 @@ struct relay {
     int stop[2];
     struct bus *bus;
     struct scene_job *job;
+    struct pair_job *pair_job;
     struct scene_result result;
     struct definition_query definition_query;
     struct definition definition;
@@ -69,7 +70,7 @@ struct relay *relay_new(void);
 void relay_open(struct relay *relay, size_t frames);
 void relay_close(struct relay *relay); /* and frees it */
 
-/* The service ends, and another one begins. From before(), or while no query is under way. */
+/* The service ends, and another one begins, between two queries. From before() or any thread. */
 void relay_restart(struct relay *relay, size_t frames);
 
 /* A second service, which answers each query before the first one. */
@@ -85,12 +86,21 @@ struct fmb_client *relay_client(struct relay *relay, double timeout, int tries);
 
 /* ---- Scenes, and what libfmb decides ---- */
 
-/* Bodies of all shapes, of one dimension, some of them moving; ids from first_id on, 0: none.
- * size: of the space they are in, per axis. */
+/* Bodies of all shapes, of one dimension, some of them moving, turned, or of several frames; ids
+ * from first_id on, 0: none. size: of the space they are in, per axis. Their frames stay until the
+ * program ends. */
 void relay_draw(struct fmb_client_placement *out, size_t count, int dim, double size,
                 int64_t first_id, unsigned seed);
 
-/* All answers that fmb_client_query() has to give, in their order, by fmb_decide_batch(). */
+/* The first frame of a body of relay_draw(), to be changed. */
+struct fmb_client_frame *relay_frame(const struct fmb_client_placement *placement);
+
+/* The same placement for libfmb. *body is to be cleared by relay_body_free(). */
+struct fmb_placement relay_place(const struct fmb_client_placement *placement,
+                                 struct fmb_body *body);
+void relay_body_free(struct fmb_body *body);
+
+/* All answers that fmb_client_query() has to give, in their order, by fmb_decide(). */
 struct relay_truth {
     size_t count, capacity;
     struct relay_pair {

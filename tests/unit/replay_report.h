@@ -11,6 +11,7 @@ struct replay_report {
     int64_t found_count, found_room;
     int64_t unreadable, damages, damaged_bytes; /* as they were reported, contradictions too */
     size_t most_memory;                         /* that malloc() had given out, bytes */
+    int64_t progress;                           /* calls so far */
 };
 
 /* To be freed. */

@@ -4,30 +4,55 @@
 
 #include "query.h"
 
-/* Number i: 2D and 3D, all shapes, whole and by handle, at rest and moving. bytes must live as long
- * as the placement. */
-static inline struct placement sample_placement(int i,
-                                                unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX])
+enum {
+    SAMPLE_FRAMES = 3,
+    SAMPLE_BYTES_MAX =
+        GEOMETRY_NONE_BYTES + SAMPLE_FRAMES * (GEOMETRY_FRAME_BYTES_MAX - GEOMETRY_NONE_BYTES)
+};
+
+static inline struct geometry_frame sample_frame(int dim, int shape)
 {
-    const int dim = 2 + i % 2, shape = dim == 3 ? 1 + i / 2 % 3 : 1 + i / 2 % 2;
-    struct placement out = {.body_id = i, .dim = dim, .velocity_count = i % 5 ? 0 : dim};
-    struct geometry_frame frame = {.shape = shape};
-    for (int k = 0; k < FMB_COMPONENTS_MAX; k++)
-        frame.components[k] = k * 0.1 - 0x1p-1074;
-    for (int axis = 0; axis < dim; axis++) {
-        frame.origin[axis] = axis + 0.5;
-        out.position[axis] = axis ? -0.0 : 1.0 / (i + 1);
-        out.velocity[axis] = out.velocity_count ? (axis ? 1e308 : -i) : 0;
+    struct geometry_frame out = {.shape = shape, .count = fmb_component_count(dim, shape)};
+    const int numbers = geometry_number_count(dim, shape) - dim;
+    for (int axis = 0; axis < dim; axis++)
+        out.origin[axis] = axis ? axis + 0.5 : -0.0;
+    for (int k = 0; k < numbers; k++)
+        out.components[k] = k * 0.1 - 0x1p-1074;
+    return out;
+}
+
+static inline void sample_pose(int i, struct placement *out)
+{
+    for (int axis = 0; axis < out->dim; axis++) {
+        out->position[axis] = axis ? -0.0 : 1.0 / (i + 1);
+        out->velocity[axis] = out->velocity_count ? (axis ? 1e308 : -i) : 0;
     }
-    if (i % 3 == 1) {
+    for (int k = 0; k < out->orientation_count; k++)
+        out->orientation[k] = k ? 0x1p-600 * k : -i;
+}
+
+/* Number i: 2D and 3D, all shapes, whole and by handle, of one frame (0, 6 and others) and of
+ * several, at rest and moving, with and without orientation. bytes: SAMPLE_BYTES_MAX, or
+ * GEOMETRY_FRAME_BYTES_MAX for one frame; they must live as long as the placement. */
+static inline struct placement sample_placement(int i, unsigned char *bytes)
+{
+    const int dim = 2 + i % 2;
+    const int shape = i % 7 == 5 ? FMB_BOX : dim == 3 ? 1 + i / 2 % 3 : 1 + i / 2 % 2;
+    struct placement out = {.body_id = i,
+                            .dim = dim,
+                            .orientation_count = i % 3 == 2 ? 2 * (dim - 1) : 0,
+                            .velocity_count = i % 5 ? 0 : dim};
+    const struct geometry_frame frames[SAMPLE_FRAMES] = {
+        sample_frame(dim, shape), sample_frame(dim, FMB_BOX), sample_frame(dim, FMB_TETRAHEDRON)};
+    sample_pose(i, &out);
+    if (i % 3 == 1)
         memset(out.handle.bytes, i, sizeof out.handle.bytes);
-        geometry_write_none(dim, bytes);
-        out.geometry = (struct geometry){bytes, GEOMETRY_NONE_BYTES};
-    } else {
-        out.frame_count = 1;
-        out.number_count = dim * (1 + fmb_component_count(dim, shape));
-        out.geometry = (struct geometry){bytes, geometry_write(dim, &frame, bytes)};
-    }
+    else
+        out.frame_count = i % 7 == 3 ? SAMPLE_FRAMES : 1;
+    for (int f = 0; f < out.frame_count; f++)
+        out.number_count += geometry_number_count(dim, frames[f].shape);
+    out.geometry =
+        (struct geometry){bytes, geometry_write_frames(dim, frames, out.frame_count, bytes)};
     return out;
 }
 

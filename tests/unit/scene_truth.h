@@ -6,34 +6,40 @@
 #include "draw.h"
 #include "question.h"
 
+/* Most bytes of the geometry of a solid. */
+enum { SCENE_GEOMETRY_MAX = SOLID_FRAMES_MAX * GEOMETRY_FRAME_BYTES_MAX };
+
 /* A query, and the geometries of the placements that come whole. */
 struct scene {
     struct scene_query query;
-    unsigned char geometry[QUERY_PLACEMENTS_MAX][GEOMETRY_FRAME_BYTES_MAX];
+    unsigned char geometry[QUERY_PLACEMENTS_MAX][SCENE_GEOMETRY_MAX];
 };
 
-/* A placement that comes whole, its geometry in bytes. body_id 0: anonymous. */
-void scene_set_placement(const struct solid *solid, int64_t body_id,
-                         unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], struct placement *out);
+/* A placement that comes whole, its geometry in bytes: GEOMETRY_FRAME_BYTES_MAX for each frame.
+ * body_id 0: anonymous. */
+void scene_set_placement(const struct solid *solid, int64_t body_id, unsigned char *bytes,
+                         struct placement *out);
 
 /* Placement i of the scene. */
 void scene_set(struct scene *scene, int32_t i, const struct solid *solid, int64_t body_id);
 
-/* Number k of the geometry of a placement that comes whole. */
+/* Number k of the geometry of a placement of one frame that comes whole. */
 void scene_put_number(struct scene *scene, int32_t i, int k, double value);
 
 /* The handle in place of the frames. */
 void scene_name(struct placement *placement, const struct handle *handle);
 
-/* Frames of hard pairs (pair_draw.h), all of this dimension: 2 i and 2 i + 1 are of one. Anonymous;
- * the remainder of the query is left alone. moving: -1 some, 0 none, 1 such pairs alone. */
+/* Bodies of hard pairs (pair_draw.h), all of this dimension: 2 i and 2 i + 1 are of one. Some are
+ * turned or have several frames. Anonymous; the remainder of the query is left alone. moving: -1
+ * some, 0 none, 1 such pairs alone. */
 void scene_draw_placements(struct draw *draw, int dim, int moving, int32_t count,
                            struct scene *out);
 
 /* Any pairs of two different placements of the query, half of them 2 i and 2 i + 1. */
 void scene_draw_pairs(struct draw *draw, int32_t count, struct scene_query *out);
 
-/* All pairs of a query, in their order. Returns the count; *out is valid until the next call. */
+/* All pairs of a query, ignored ones included, in their order. Returns the count; *out is valid
+ * until the next call. */
 int32_t scene_list(const struct scene_query *query, const unsigned (**out)[2]);
 
 /* The truth of a pair of placements that come whole. */

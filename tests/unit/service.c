@@ -157,6 +157,41 @@ void service_query_pair(int64_t client_id, int64_t sequence_number)
     service_send_pair(&query);
 }
 
+static struct placement grating(int frames)
+{
+    static struct geometry_frame frame[900];
+    static unsigned char geometry[GEOMETRY_NONE_BYTES + 900 * GEOMETRY_FRAME_BYTES_MIN];
+    for (int i = 0; i < frames; i++)
+        frame[i] =
+            (struct geometry_frame){.shape = FMB_BOX, .origin = {0.0001 * i}, .components = {1, 1}};
+    const size_t size = geometry_write_frames(2, frame, frames, geometry);
+    return (struct placement){
+        .dim = 2, .frame_count = frames, .number_count = 4 * frames, .geometry = {geometry, size}};
+}
+
+void service_query_frames(int64_t client_id, int64_t sequence_number, int frames)
+{
+    const struct placement placement = grating(frames);
+    const struct pair_query query = {.client_id = client_id,
+                                     .sequence_number = sequence_number,
+                                     .duration = 1,
+                                     .placement = {placement, placement}};
+    service_send_pair(&query);
+}
+
+void service_query_frames_scene(int64_t client_id, int64_t sequence_number, int frames)
+{
+    static struct scene_query query;
+    query = (struct scene_query){.client_id = client_id,
+                                 .sequence_number = sequence_number,
+                                 .duration = 1,
+                                 .want = QUERY_WANT_TIMES,
+                                 .which = QUERY_PAIRS_ALL,
+                                 .placement_count = 2};
+    query.placement[0] = query.placement[1] = grating(frames);
+    service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&query, bytes));
+}
+
 void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bodies)
 {
     const struct geometry_frame strip = {.shape = FMB_TETRAHEDRON,

@@ -47,6 +47,11 @@ struct pair_query service_pair(int64_t client_id, int64_t sequence_number);
 void service_send_pair(const struct pair_query *query);
 void service_query_pair(int64_t client_id, int64_t sequence_number);
 
+/* Two gratings of so many frames each, up to 900, all of which overlap: as a pair, and as a scene
+ * of one pair with its contact interval. */
+void service_query_frames(int64_t client_id, int64_t sequence_number, int frames);
+void service_query_frames_scene(int64_t client_id, int64_t sequence_number, int frames);
+
 /* All pairs of slanting strips, all whose boxes overlap. */
 void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bodies);
 

@@ -3,20 +3,23 @@
 
 #include "slab_kernel.h"
 
-static struct walk_kind kind_of(const struct fmb_pair *pair, bool along)
+static struct walk_kind kind_of(const struct frame_pair *pair, bool along)
 {
     struct slabs_pair slabs;
-    struct walk_kind kind = {.dim = pair->a.body->dim};
-    kind.simplex[0] = pair->a.body->shape != FMB_CUBOID;
-    kind.simplex[1] = pair->b.body->shape != FMB_CUBOID;
-    kind.face[0] = pair->a.body->shape == FMB_FACE;
-    kind.face[1] = pair->b.body->shape == FMB_FACE;
-    kind.drifts = slabs_prepare(pair, &slabs) && slabs.motion.drifts;
+    struct fmb_prepared a, b;
+    struct walk_kind kind = {.dim = pair->a.frame->dim};
+    prepared_set(&pair->a, &a);
+    prepared_set(&pair->b, &b);
+    kind.simplex[0] = pair->a.frame->shape != FMB_CUBOID;
+    kind.simplex[1] = pair->b.frame->shape != FMB_CUBOID;
+    kind.face[0] = pair->a.frame->shape == FMB_FACE;
+    kind.face[1] = pair->b.frame->shape == FMB_FACE;
+    kind.drifts = slabs_prepare(&a, &b, pair->duration, &slabs) && slabs.motion.drifts;
     kind.along = along && kind.dim == 3;
     return kind;
 }
 
-static void set_walk_pair(const struct fmb_pair *pair, const struct walk_kind kind,
+static void set_walk_pair(const struct frame_pair *pair, const struct walk_kind kind,
                           struct walk_pair *out)
 {
     struct fmb_prepared prepared[2];
@@ -30,7 +33,7 @@ static void set_walk_pair(const struct fmb_pair *pair, const struct walk_kind ki
     set_pair(kind, &frame[0], &frame[1], pair->duration, out);
 }
 
-int slab_kernel_list(const struct fmb_pair *pair, bool along, struct slab_value out[SLABS_MAX])
+int slab_kernel_list(const struct frame_pair *pair, bool along, struct slab_value out[SLABS_MAX])
 {
     const struct walk_kind kind = kind_of(pair, along);
     struct walk_pair one;
@@ -42,7 +45,7 @@ int slab_kernel_list(const struct fmb_pair *pair, bool along, struct slab_value 
     return (int) (found.next - out);
 }
 
-double slab_kernel_axes(const struct fmb_pair *pair, double *bound)
+double slab_kernel_axes(const struct frame_pair *pair, double *bound)
 {
     const struct walk_kind kind = kind_of(pair, false);
     struct walk_pair one;

@@ -5,16 +5,17 @@
 
 #include <stdbool.h>
 
+#include "pair.h"
 #include "slabs.h"
 
 /* On input: a checked pair of which doubles can say something; a cuboid before a tetrahedron.
  * along: as if an edge were parallel to a coordinate axis. Returns how many. */
-typedef int slab_kernel_function(const struct fmb_pair *pair, bool along,
+typedef int slab_kernel_function(const struct frame_pair *pair, bool along,
                                  struct slab_value out[SLABS_MAX]);
 
 /* On input: likewise, in space. What the coordinate axes make of the pair: more than 0 where one of
  * them surely parts it; *bound is what the gap was made smaller by. */
-typedef double slab_kernel_axes_function(const struct fmb_pair *pair, double *bound);
+typedef double slab_kernel_axes_function(const struct frame_pair *pair, double *bound);
 
 /* Compiled as run.c is; with fused operations; with a bound that is wrong (Makefile). */
 slab_kernel_function slab_kernel_list, fused_slab_kernel_list, planted_slab_kernel_list;

@@ -77,28 +77,28 @@ static void add_product(struct slab_truth *truth, mpz_t out, int sign, double x,
     mpz_add(out, out, truth->scratch[0]);
 }
 
-static void lower_to_frame(long *unit, const struct fmb_frame *frame, double duration)
+static void lower_to_placed(long *unit, const struct fmb_placement *placement, double duration)
 {
-    for (int axis = 0; axis < frame->body->dim; axis++) {
-        lower(unit, frame->origin[axis], 1);
-        if (frame->moving)
-            lower(unit, frame->velocity[axis], duration);
-        for (int i = 0; i < frame->body->count; i++)
-            lower(unit, frame->body->component[i][axis], 1);
+    const struct fmb_frame *frame = fmb_body_frame(placement->body, 0);
+    for (int axis = 0; axis < frame->dim; axis++) {
+        lower(unit, placement->position[axis], 1);
+        lower(unit, placement->velocity[axis], duration);
+        for (int i = 0; i < frame->count; i++)
+            lower(unit, frame->component[i][axis], 1);
     }
 }
 
-static void set_frame(struct slab_truth *truth, int f, const struct fmb_frame *frame,
+static void set_frame(struct slab_truth *truth, int f, const struct fmb_placement *placement,
                       double duration)
 {
+    const struct fmb_frame *frame = fmb_body_frame(placement->body, 0);
     const int sign = f ? 1 : -1;
-    truth->shape[f] = frame->body->shape;
+    truth->shape[f] = frame->shape;
     for (int axis = 0; axis < truth->dim; axis++) {
-        add_product(truth, truth->offset[axis], sign, frame->origin[axis], 1);
-        if (frame->moving)
-            add_product(truth, truth->drift[axis], sign, frame->velocity[axis], duration);
+        add_product(truth, truth->offset[axis], sign, placement->position[axis], 1);
+        add_product(truth, truth->drift[axis], sign, placement->velocity[axis], duration);
         for (int i = 0; i < truth->dim; i++)
-            add_product(truth, truth->component[f][i][axis], 1, frame->body->component[i][axis], 1);
+            add_product(truth, truth->component[f][i][axis], 1, frame->component[i][axis], 1);
     }
 }
 
@@ -118,13 +118,22 @@ static void zero(mpz_ptr x)
     mpz_set_ui(x, 0);
 }
 
-void slab_truth_set(struct slab_truth *truth, const struct fmb_pair *pair)
+bool slab_truth_prepare(const struct pair *pair, struct slabs_pair *out)
+{
+    const struct frame_pair frames = pair_frames(pair);
+    struct fmb_prepared a, b;
+    prepared_set(&frames.a, &a);
+    prepared_set(&frames.b, &b);
+    return slabs_prepare(&a, &b, pair->duration, out);
+}
+
+void slab_truth_set(struct slab_truth *truth, const struct pair *pair)
 {
     each(truth, zero);
     truth->dim = pair->a.body->dim;
     truth->unit = 2000;
-    lower_to_frame(&truth->unit, &pair->a, pair->duration);
-    lower_to_frame(&truth->unit, &pair->b, pair->duration);
+    lower_to_placed(&truth->unit, &pair->a, pair->duration);
+    lower_to_placed(&truth->unit, &pair->b, pair->duration);
     truth->unit--;
     set_frame(truth, 0, &pair->a, pair->duration);
     set_frame(truth, 1, &pair->b, pair->duration);

@@ -6,6 +6,8 @@
 #include <gmp.h>
 #include <stdbool.h>
 
+#include "placed_pair.h"
+#include "prepared.h"
 #include "slabs.h"
 
 struct slab_truth {
@@ -28,8 +30,12 @@ struct slab_truth {
 void slab_truth_init(struct slab_truth *truth);
 void slab_truth_clear(struct slab_truth *truth);
 
-/* On input: a checked pair of solid or flat cuboids and tetrahedra. */
-void slab_truth_set(struct slab_truth *truth, const struct fmb_pair *pair);
+/* slabs_prepare() of a checked pair. */
+bool slab_truth_prepare(const struct pair *pair, struct slabs_pair *out);
+
+/* On input: a checked pair of cuboids, tetrahedra and faces that are not turned, each with its
+ * origin at that of the body. */
+void slab_truth_set(struct slab_truth *truth, const struct pair *pair);
 
 /* On output: low to zero, of this slab of the pair that is set. */
 void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal);

@@ -2,6 +2,7 @@
  * way, and whatever others do with the same ids: simulated clients against fmb_decide(). */
 #include "answer.h"
 #include "scene_truth.h"
+#include "wire.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,6 +25,7 @@ static struct {
     struct draw draw;
     struct answerer *answerer;
     struct scene_job *job;
+    struct pair_job *pair_job;
     struct client client[CLIENTS];
     struct scene content[2]; /* [dim - 2]: CONTENTS placements */
     bool quiet;              /* nothing is lost or interrupted */
@@ -41,7 +43,8 @@ static void begin(bool quiet, size_t frames)
     world.quiet = quiet;
     world.answerer = answerer_create(&options);
     world.job = scene_job_create();
-    assert_true(world.answerer && world.job);
+    world.pair_job = pair_job_create();
+    assert_true(world.answerer && world.job && world.pair_job);
     for (int dim = 2; dim <= 3; dim++)
         scene_draw_placements(&world.draw, dim, -1, CONTENTS, &world.content[dim - 2]);
     for (int c = 0; c < CLIENTS; c++) {
@@ -55,6 +58,7 @@ static void begin(bool quiet, size_t frames)
 static void end(void)
 {
     scene_job_destroy(world.job);
+    pair_job_destroy(world.pair_job);
     answerer_destroy(world.answerer);
 }
 
@@ -198,6 +202,19 @@ static void query_scene(struct client *client)
     world.answered++;
 }
 
+/* At once, or in steps where a body has several frames. */
+static void answer_to_pair(const struct pair_query *query, struct pair_result *out)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    if (answer_pair(world.answerer, query, out))
+        return;
+    assert_null(
+        pair_job_begin(world.pair_job, world.answerer, bytes, wire_write_pair_query(query, bytes)));
+    while (!pair_job_step(world.pair_job))
+        continue;
+    *out = *pair_job_end(world.pair_job, world.answerer);
+}
+
 /* The same, pair by pair. */
 static void query_pair(struct client *client)
 {
@@ -212,10 +229,10 @@ static void query_pair(struct client *client)
         sent.placement[f] = whole.placement[f];
         shorten(client, &sent.placement[f]);
     }
-    answer_pair(world.answerer, &sent, &result);
+    answer_to_pair(&sent, &result);
     if (result.status == FMB_UNKNOWN_BODY) {
         memcpy(sent.placement, whole.placement, sizeof sent.placement);
-        answer_pair(world.answerer, &sent, &result);
+        answer_to_pair(&sent, &result);
         world.unknown++;
     }
     assert_int_equal(result.status, FMB_OK);
@@ -248,7 +265,8 @@ static void test_clients_that_share_ids_and_lose_datagrams(void **state)
         const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
         assert_true(world.answered > 0 && world.by_handle > 0 && world.unknown > 0);
         assert_true(counts.evictions > 0 && counts.hits > 0);
-        assert_int_equal(counts.bodies, counts.frame_capacity);
+        assert_true(counts.frames <= counts.frame_capacity);
+        assert_true(counts.frames + SOLID_FRAMES_MAX > counts.frame_capacity);
         assert_true(counts.ids <= IDS);
         end();
     }
@@ -259,7 +277,7 @@ static void test_clients_that_share_ids_and_lose_datagrams(void **state)
 static void test_clients_that_share_ids_do_not_disturb_each_other(void **state)
 {
     (void) state;
-    begin(true, 2 * CONTENTS);
+    begin(true, 2 * CONTENTS * SOLID_FRAMES_MAX);
     query_much();
     const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
     assert_true(world.by_handle > 0);

@@ -105,6 +105,34 @@ static void test_by_handle(void **state)
     }
 }
 
+/* A body that is nearly as large as a message, among small ones: every page ends, and has it. */
+static void test_the_largest_body(void **state)
+{
+    (void) state;
+    enum { FRAMES = 657 }; /* of 97 bytes each */
+    static struct geometry_frame frame[FRAMES];
+    static unsigned char geometry_bytes[QUERY_BYTES_MAX];
+    struct cache *cache = answerer_cache(answerer);
+    struct handle handle;
+    keep(3, 1);
+    for (int i = 0; i < FRAMES; i++)
+        frame[i] = (struct geometry_frame){.shape = FMB_CUBOID, .components = {1 + i}};
+    const struct geometry geometry = {geometry_bytes,
+                                      geometry_write_frames(3, frame, FRAMES, geometry_bytes)};
+    cache_release(cache, cache_keep(cache, 0, &geometry, &handle));
+    keep(3, 2);
+    int bodies = 0, pages = 0, found = 0;
+    do {
+        assert_true(answer_query() <= QUERY_BYTES_MAX);
+        for (int i = 0; i < again.body_count; i++)
+            found += handle_equal(&again.body[i].handle, &handle);
+        bodies += again.body_count;
+        query.first = again.next;
+    } while (again.next != 0 && ++pages < 10);
+    assert_int_equal(bodies, 3);
+    assert_int_equal(found, 1);
+}
+
 /* Requests page after page; counts the bodies, each of which comes once. */
 static int read_all_pages(size_t body_bytes)
 {
@@ -230,11 +258,9 @@ static void test_refused_without_being_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_by_handle),
-        TEST(test_pages),
-        TEST(test_definitions_are_no_uses),
-        TEST(test_refusals),
-        TEST(test_refused_without_being_read),
+        TEST(test_by_handle), TEST(test_the_largest_body),
+        TEST(test_pages),     TEST(test_definitions_are_no_uses),
+        TEST(test_refusals),  TEST(test_refused_without_being_read),
     };
     return cmocka_run_group_tests_name("answer_definition", tests, NULL, NULL);
 }

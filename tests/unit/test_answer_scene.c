@@ -415,13 +415,15 @@ static void test_bad_placements(void **state)
     scene_name(&query->placement[2], &(struct handle){{1}});
     query->placement[2].dim = 2;
     scene_name(&query->placement[2], &(struct handle){{1}});
-    expect(FMB_DIMENSIONS_DIFFER, "placements[2].dim: a 2D frame against a 3D one");
+    expect(FMB_DIMENSIONS_DIFFER, "placements[2].dim: a 2D body against a 3D one");
     set_row(7);
     query->placement[2].body_id = -1;
     expect(FMB_BAD_ID, "placements[2].body_id: not from 0 to 2^53 - 1");
     set_row(7);
-    scene_put_number(&scene, 4, 1, 0x1p-1074);
-    expect(FMB_NOT_SUPPORTED, "placements[4].numbers[1]: the origin is 0 in this version");
+    query->placement[1].orientation_count = 4;
+    expect(FMB_BAD_ORIENTATION,
+           "placements[1].orientation: zero, not finite, or components that differ by more than "
+           "2^200");
 }
 
 /* Placements of dimension 0 are so short that a message has more of them than are valid. */
@@ -485,6 +487,105 @@ static void test_bad_pairs(void **state)
     answer_and_check(query);
 }
 
+static void set_ignored(int32_t i, unsigned a, unsigned b)
+{
+    query->ignored[i][0] = a;
+    query->ignored[i][1] = b;
+}
+
+static void test_bad_ignored_pairs(void **state)
+{
+    (void) state;
+    set_row(7);
+    query->ignored_count = 4;
+    set_ignored(0, 1, 2);
+    set_ignored(1, 3, 7);
+    expect(FMB_BAD_PAIR, "ignored[3]: no placement has this index");
+    set_ignored(1, UINT32_MAX, 3);
+    expect(FMB_BAD_PAIR, "ignored[2]: no placement has this index");
+    set_ignored(1, 5, 5);
+    expect(FMB_BAD_PAIR, "ignored[3]: a placement against itself");
+    query->which = QUERY_PAIRS_LISTED;
+    query->index_count = 6;
+    for (unsigned i = 0; i < 3; i++) {
+        query->pair[i][0] = i + 3;
+        query->pair[i][1] = i;
+    }
+    set_ignored(1, 1, 4);
+    expect(FMB_BAD_PAIR, "indices[2]: a pair to ignore");
+    set_ignored(1, 4, 1);
+    expect(FMB_BAD_PAIR, "indices[2]: a pair to ignore");
+    set_ignored(1, 4, 2);
+    answer_and_check(query);
+    assert_int_equal(result.verdict_count, 3);
+}
+
+/* Ignored pairs count in the numbering, and get no answer, wherever the answers begin. */
+static void test_ignored_pairs(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "ignored pairs");
+    for (long round = 0; round < draw_sample(24); round++) {
+        const unsigned(*pair)[2];
+        scene_draw_placements(&draw, 2 + round % 2, -1, 10, &scene);
+        query->which = QUERY_PAIRS_ALL + round % 4 / 2;
+        query->split = query->which == QUERY_PAIRS_ACROSS ? 5 : 0;
+        query->want = wants[round % 4];
+        query->ignored_count = 2 * draw_int(&draw, 1, 30);
+        for (int32_t i = 0; i < query->ignored_count / 2; i++) {
+            const unsigned a = (unsigned) draw_int(&draw, 0, 9);
+            set_ignored(i, a, (a + (unsigned) draw_int(&draw, 1, 9)) % 10);
+        }
+        const int32_t total = scene_list(query, &pair);
+        for (query->first_pair = 0; query->first_pair <= total; query->first_pair++)
+            answer_and_check(query);
+        query->first_pair = 0;
+    }
+}
+
+/* A body of many frames, in 2D: boxes in a row. Returns its handle. */
+static struct handle keep_large_body(int32_t frames)
+{
+    static unsigned char geometry[QUERY_BYTES_MAX];
+    static struct geometry_frame frame[QUERY_FRAMES_MAX];
+    for (int32_t i = 0; i < frames; i++)
+        frame[i] =
+            (struct geometry_frame){.shape = FMB_BOX, .origin = {2 * i, 0}, .components = {1, 1}};
+    query->placement_count = 1;
+    query->placement[0] = (struct placement){
+        .body_id = 5, .dim = 2, .frame_count = frames, .number_count = 4 * frames};
+    query->placement[0].geometry =
+        (struct geometry){geometry, geometry_write_frames(2, frame, frames, geometry)};
+    answer_to(query);
+    assert_int_equal(result.status, FMB_OK);
+    return result.handle[0];
+}
+
+/* 64 placements of 1024 frames are as many as a query may have. */
+static void test_too_many_frames(void **state)
+{
+    (void) state;
+    const struct answerer_options options = {2048, .server_id = 99, .secret = {1, 2}};
+    answerer_destroy(answerer);
+    answerer = answerer_create(&options);
+    assert_non_null(answerer);
+    const struct handle handle = keep_large_body(1024);
+    query->placement_count = 64;
+    for (int32_t i = 0; i < 65; i++) {
+        query->placement[i] = query->placement[0];
+        scene_name(&query->placement[i], &handle);
+        query->placement[i].position[1] = 1.5 * i;
+    }
+    query->placement[7].position[1] = query->placement[6].position[1] + 0.5;
+    answer_to(query);
+    assert_string_equal(result.detail, "");
+    assert_int_equal(result.contact_count, 1);
+    assert_int_equal(result.end_pair, 64 * 63 / 2);
+    query->placement_count = 65;
+    expect(FMB_OVER_LIMIT, "placements[64].num_frames: more than 65536 frames in the query");
+}
+
 static void test_bad_requests(void **state)
 {
     (void) state;
@@ -527,7 +628,7 @@ static void test_bad_requests(void **state)
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
 }
 
-/* Later versions support these. What is wrong besides comes first. */
+/* Later versions support it. What is wrong besides comes first. */
 static void test_not_supported(void **state)
 {
     (void) state;
@@ -536,13 +637,6 @@ static void test_not_supported(void **state)
     expect(FMB_NOT_SUPPORTED, "margin: not in this version");
     query->placement[2].position[0] = NAN;
     expect(FMB_NOT_FINITE, "placements[2].position[0]: not a finite number");
-    set_row(3);
-    query->margin = 0;
-    query->ignored_count = 2;
-    expect(FMB_NOT_SUPPORTED, "num_ignored: not in this version");
-    query->ignored_count = 0;
-    query->placement[1].orientation_count = 4;
-    expect(FMB_NOT_SUPPORTED, "placements[1].orientation: not in this version");
 }
 
 static void test_refused_without_being_read(void **state)
@@ -672,6 +766,7 @@ static void test_one_id_with_two_bodies(void **state)
     assert_int_equal(counts().misses, 2);
 }
 
+/* Bodies in use are not evicted: those that come later are used once. */
 static void test_more_bodies_than_the_cache_holds(void **state)
 {
     (void) state;
@@ -691,8 +786,9 @@ static void test_more_bodies_than_the_cache_holds(void **state)
         assert_int_equal(result.status, FMB_UNKNOWN_BODY);
         assert_int_equal(result.unknown_count, 2 * BODIES);
         for (int32_t i = 0; i < 2 * BODIES; i++) {
-            assert_int_equal(result.unknown[i], i);
-            other.placement[i] = query->placement[i];
+            const unsigned unknown = result.unknown[i];
+            assert_int_equal(unknown, BODIES + i);
+            other.placement[unknown] = query->placement[unknown];
         }
         answer_to(&other);
         scene_assert(query, &result);
@@ -818,6 +914,30 @@ static void test_queries_between_steps_do_not_show(void **state)
         }
 }
 
+/* After any number of steps; its bodies can be evicted at once. */
+static void test_a_scene_without_answers_stops_as_busy(void **state)
+{
+    (void) state;
+    int steps = 1;
+    for (;; steps++) {
+        set_row(BODIES);
+        scene_begin(job, query);
+        for (int i = 0; i < steps; i++)
+            assert_false(scene_job_step(job, answerer));
+        if (scene_job_has_answers(job))
+            break;
+        scene_job_stop(job);
+        result = *scene_job_result(job);
+        assert_int_equal(result.status, FMB_BUSY);
+        assert_int_equal(result.header.sequence_number, query->sequence_number);
+        assert_int_equal(result.end_pair + result.verdict_count + result.handle_count, 0);
+        const struct cache_counts before = counts();
+        evict_all();
+        assert_int_equal(counts().evictions - before.evictions, before.bodies);
+    }
+    assert_in_range(steps, 6, 10);
+}
+
 /* Two jobs of one answerer, in turns. */
 static void test_two_jobs_at_once(void **state)
 {
@@ -886,7 +1006,7 @@ static void test_scenes_that_are_stopped(void **state)
                 int more = draw_int(&draw, 0, 1);
                 scene_begin(job, query);
                 while (!scene_job_step(job, answerer))
-                    if (scene_job_can_stop(job) && more-- == 0) {
+                    if (scene_job_has_answers(job) && more-- == 0) {
                         scene_job_stop(job);
                         break;
                     }
@@ -925,14 +1045,14 @@ static void test_exact_pairs_are_one_a_step(void **state)
     set_slivers(8);
     scene_begin(job, query);
     while (!scene_job_step(job, answerer))
-        steps += scene_job_can_stop(job);
+        steps += scene_job_has_answers(job);
     scene_assert(query, scene_job_result(job));
     assert_in_range(steps, 8 * 7 / 2 - 2, 8 * 7 / 2);
     for (query->first_pair = 0; query->first_pair < 8 * 7 / 2; query->first_pair++) {
         set_slivers(8);
         scene_begin(job, query);
         bool complete = false;
-        while (!scene_job_can_stop(job) && !complete)
+        while (!scene_job_has_answers(job) && !complete)
             complete = scene_job_step(job, answerer);
         if (!complete)
             scene_job_stop(job);
@@ -961,7 +1081,7 @@ static void test_steps_are_short(void **state)
         query->method = fmb_method_by_name(each[i].method)->number;
         query->want = each[i].want;
         scene_begin(job, query);
-        while (!scene_job_can_stop(job))
+        while (!scene_job_has_answers(job))
             assert_false(scene_job_step(job, answerer));
         scene_job_stop(job);
         scene_assert(query, scene_job_result(job));
@@ -987,6 +1107,9 @@ int main(void)
         TEST(test_too_many_placements),
         TEST(test_bad_counts),
         TEST(test_bad_pairs),
+        TEST(test_bad_ignored_pairs),
+        TEST(test_ignored_pairs),
+        TEST(test_too_many_frames),
         TEST(test_bad_requests),
         TEST(test_not_supported),
         TEST(test_refused_without_being_read),
@@ -998,6 +1121,7 @@ int main(void)
         TEST(test_more_bodies_than_the_cache_holds),
         TEST(test_answers_allocate_nothing),
         TEST(test_queries_between_steps_do_not_show),
+        TEST(test_a_scene_without_answers_stops_as_busy),
         TEST(test_two_jobs_at_once),
         TEST(test_begun_anew),
         TEST(test_scenes_that_are_stopped),

@@ -16,6 +16,7 @@
 
 #include <math.h>
 
+#include "certified.h"
 #include "draw.h"
 #include "question.h"
 #include "referee.h"
@@ -146,10 +147,11 @@ struct subject {
 };
 
 /* index also says whether a kernel looks for normals that are zero. */
-static int list_of(const struct subject *subject, const struct fmb_pair *pair,
+static int list_of(const struct subject *subject, const struct pair *pair,
                    const struct slabs_pair *slabs, int index, struct slab_value out[SLABS_MAX])
 {
-    return subject->kernel ? subject->kernel(pair, index % 2, out)
+    const struct frame_pair frames = pair_frames(pair);
+    return subject->kernel ? subject->kernel(&frames, index % 2, out)
                            : subject->list(slabs, true, out);
 }
 
@@ -158,9 +160,9 @@ static void set_pair(const struct subject *subject, const struct question *quest
                      struct ready *out)
 {
     referee_ready(question, out);
-    const struct fmb_pair pair = out->pair;
-    if ((subject->kernel || subject->axes) && pair.a.body->shape > pair.b.body->shape)
-        out->pair = (struct fmb_pair){pair.b, pair.a, pair.duration};
+    const struct pair pair = out->pair;
+    if ((subject->kernel || subject->axes) && pair.a.body->one.shape > pair.b.body->one.shape)
+        out->pair = (struct pair){pair.b, pair.a, pair.duration};
 }
 
 /* The worst error of slab number index (modulo how many there are) relative to its bound; -1 where
@@ -172,12 +174,13 @@ static double ratio_of(const struct subject *subject, const struct question *que
     struct slabs_pair pair;
     struct slab_value slab[SLABS_MAX];
     set_pair(subject, question, &ready);
-    if (!slabs_prepare(&ready.pair, &pair))
+    if (!slab_truth_prepare(&ready.pair, &pair))
         return -1;
     slab_truth_set(truth, &ready.pair);
     if (subject->axes) {
+        const struct frame_pair frames = pair_frames(&ready.pair);
         double bound;
-        const double surely = subject->axes(&ready.pair, &bound);
+        const double surely = subject->axes(&frames, &bound);
         return slab_truth_axes(truth, surely, bound);
     }
     const int count = list_of(subject, &ready.pair, &pair, index, slab);
@@ -382,13 +385,14 @@ static void fused_operations_are_fused(void **state)
         struct slabs_pair pair;
         struct slab_value plain[SLABS_MAX], fused[SLABS_MAX];
         referee_ready(&question, &ready);
-        if (!slabs_prepare(&ready.pair, &pair))
+        if (!slab_truth_prepare(&ready.pair, &pair))
             continue;
+        const struct frame_pair frames = pair_frames(&ready.pair);
         const int count = slabs_list(&pair, true, plain);
         assert_int_equal(count, fused_slabs_list(&pair, true, fused));
         different[0] += differences(plain, fused, count);
-        assert_int_equal(count, slab_kernel_list(&ready.pair, false, plain));
-        assert_int_equal(count, fused_slab_kernel_list(&ready.pair, false, fused));
+        assert_int_equal(count, slab_kernel_list(&frames, false, plain));
+        assert_int_equal(count, fused_slab_kernel_list(&frames, false, fused));
         different[1] += differences(plain, fused, count);
     }
     assert_true(different[0] > 0 && different[1] > 0);
@@ -469,7 +473,7 @@ static void bounds_hold_at_the_ends_of_the_range(void **state)
 
 /* The sign of how far apart boxes along the axes are along one of them, over the window, exactly:
  * that of the gap of the slab across it. */
-static int gap_sign(struct slab_truth *truth, const struct fmb_pair *pair, int axis)
+static int gap_sign(struct slab_truth *truth, const struct pair *pair, int axis)
 {
     const int dim = pair->a.body->dim, u = (axis + 1) % dim, v = (axis + 2) % dim;
     slab_truth_set(truth, pair);
@@ -518,7 +522,7 @@ static void extents_part_no_pair_that_touches(void **state)
         struct ready ready;
         struct slabs_pair pair;
         referee_ready(&question, &ready);
-        if (!slabs_prepare(&ready.pair, &pair))
+        if (!slab_truth_prepare(&ready.pair, &pair))
             referee_fail(&question, "doubles say nothing of it");
         int sign = -1;
         for (int axis = 0; axis < question.a.dim; axis++) {
@@ -526,12 +530,16 @@ static void extents_part_no_pair_that_touches(void **state)
             sign = one > sign ? one : sign;
         }
         count[sign + 1]++;
-        const enum slabs_outcome outcome = slabs_filter(&pair, true);
-        if (outcome == SLABS_SEPARATED && sign <= 0 && !pair.motion.drifts)
+        const struct frame_pair frames = pair_frames(&ready.pair);
+        enum certified_path path;
+        const enum fmb_verdict verdict = certified_verdict(&frames, &path);
+        if (path != CERTIFIED_FILTER)
+            continue;
+        if (verdict == FMB_SEPARATED && sign <= 0 && !pair.motion.drifts)
             referee_fail(&question, "parted, and they touch");
-        if (outcome == SLABS_OVERLAPPING && sign >= 0)
+        if (verdict == FMB_OVERLAPPING && sign >= 0)
             referee_fail(&question, "overlapping, and they do not");
-        if (outcome == SLABS_SEPARATED && sign <= 0 && pair.motion.drifts &&
+        if (verdict == FMB_SEPARATED && sign <= 0 && pair.motion.drifts &&
             referee_assert(&question) != FMB_SEPARATED)
             referee_fail(&question, "parted, and they meet");
     }

@@ -1,9 +1,10 @@
 /* Hit, miss, eviction, ids, pages, and bodies or ids that are chosen to collide. */
 #include "cache.h"
-#include "scene_truth.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,16 +23,21 @@ static struct geometry cuboid(double x, double y)
     return (struct geometry){bytes, geometry_write(3, &frame, bytes)};
 }
 
-/* Keeps a cube. */
+/* Keeps a cube, without using it. */
 static struct handle keep(struct cache *cache, int64_t id, double edge)
 {
     const struct geometry geometry = cuboid(edge, edge);
-    const struct cached *cached = cache_keep(cache, id, &geometry);
-    assert_true(cached->body.component[2][2] == edge);
-    assert_true(cached->body.inverse[2][2] == 1 / edge);
+    struct handle handle;
+    const struct cached *cached = cache_keep(cache, id, &geometry, &handle);
+    assert_true(handle_equal(&cached->handle, &handle));
+    assert_int_equal(cached->body.frame_count, 1);
+    assert_null(cached->body.frames);
+    assert_true(cached->body.one.component[2][2] == edge);
+    assert_true(cached->body.one.inverse[2][2] == 1 / edge);
     assert_int_equal(cached->geometry.size, geometry.size);
     assert_memory_equal(cached->geometry.bytes, geometry.bytes, geometry.size);
-    return cached->handle;
+    cache_release(cache, cached);
+    return handle;
 }
 
 /* The edge of the body with this handle, or 0. */
@@ -41,7 +47,18 @@ static double find(struct cache *cache, struct handle handle)
     if (!cached)
         return 0;
     assert_true(handle_equal(&cached->handle, &handle));
-    return cached->body.component[0][0];
+    cache_release(cache, cached);
+    return fmb_body_frame(&cached->body, 0)->component[0][0];
+}
+
+/* Keeps a geometry, without using it. */
+static struct handle keep_geometry(struct cache *cache, int64_t id, const struct geometry *geometry)
+{
+    struct handle handle;
+    const struct cached *cached = cache_keep(cache, id, geometry, &handle);
+    assert_non_null(cached);
+    cache_release(cache, cached);
+    return handle;
 }
 
 static void test_hit_and_miss(void **state)
@@ -142,10 +159,10 @@ static void test_bodies_are_compared_bit_by_bit(void **state)
         frame.components[8] = i == 2 ? 1 + 0x1p-52 : 1;
         frame.shape = i == 3 ? FMB_TETRAHEDRON : FMB_CUBOID;
         const struct geometry geometry = {bytes, geometry_write(i == 4 ? 2 : 3, &frame, bytes)};
-        const struct cached *cached = cache_keep(cache, 1, &geometry);
+        handle[i] = keep_geometry(cache, 1, &geometry);
+        const struct cached *cached = cache_peek(cache, &handle[i]);
         assert_int_equal(cached->body.dim, i == 4 ? 2 : 3);
-        assert_int_equal(cached->body.shape, frame.shape);
-        handle[i] = cached->handle;
+        assert_int_equal(cached->body.one.shape, frame.shape);
         for (int other = 0; other < i; other++)
             assert_false(handle_equal(&handle[i], &handle[other]));
     }
@@ -256,13 +273,12 @@ static void test_pages_have_all_bodies(void **state)
         const struct cached *cached;
         keep(cache, b, b);
         for (position = 0; (cached = cache_next(cache, &position)); count++) {
-            const int edge = (int) cached->body.component[0][0];
+            const int edge = (int) cached->body.one.component[0][0];
             assert_false(seen[edge]);
             seen[edge] = true;
             keep(cache, 0, edge); /* a use does not change the order */
         }
         assert_int_equal(count, b < CAPACITY ? b : CAPACITY);
-        assert_int_equal(position, count);
     }
     position = -1;
     assert_null(cache_next(cache, &position));
@@ -282,8 +298,8 @@ static void test_prefetch(void **state)
     cache_prefetch(cache, &placement);
     placement.handle = keep(cache, 1, 1);
     cache_prefetch(cache, &placement);
-    placement.frame_count = 1;
-    cache_prefetch(cache, &placement);
+    for (placement.frame_count = 1; placement.frame_count < 3; placement.frame_count++)
+        cache_prefetch(cache, &placement);
     assert_int_equal(cache_counts(cache).hits, 0);
     cache_destroy(cache);
 }
@@ -295,6 +311,191 @@ static void test_memory_taken_is_as_it_was(void **state)
     const struct handle handle = keep(cache, 1, 1);
     cache_take_memory(cache);
     assert_true(find(cache, handle) == 1);
+    cache_destroy(cache);
+}
+
+/* ---- Bodies of several frames, and in use ---- */
+
+enum { FRAMES_MAX = 40 };
+
+/* The geometry of count boxes in 2D, of which the last one is so long. Valid until the next call.
+ */
+static struct geometry boxes(int count, double length)
+{
+    static unsigned char bytes[GEOMETRY_NONE_BYTES + FRAMES_MAX * GEOMETRY_FRAME_BYTES_MIN];
+    struct geometry_frame frame[FRAMES_MAX] = {0};
+    for (int i = 0; i < count; i++) {
+        frame[i].shape = FMB_BOX;
+        frame[i].origin[0] = 10 * i;
+        frame[i].components[0] = i == count - 1 ? length : 1;
+        frame[i].components[1] = 1;
+    }
+    return (struct geometry){bytes, geometry_write_frames(2, frame, count, bytes)};
+}
+
+static struct handle keep_boxes(struct cache *cache, int64_t id, int count, double length)
+{
+    const struct geometry geometry = boxes(count, length);
+    return keep_geometry(cache, id, &geometry);
+}
+
+/* Whether the body is held; as it was kept. */
+static bool has_boxes(struct cache *cache, const struct handle *handle, int count, double length)
+{
+    const struct geometry geometry = boxes(count, length);
+    const struct cached *cached = cache_peek(cache, handle);
+    if (!cached)
+        return false;
+    assert_int_equal(cached->body.frame_count, count);
+    for (int i = 0; i < count; i++) {
+        const struct fmb_frame *frame = fmb_body_frame(&cached->body, (unsigned) i);
+        assert_int_equal(frame->shape, FMB_BOX);
+        assert_true(frame->centre[0] == 10 * i);
+        assert_true(frame->size[0] == (i == count - 1 ? length : 1));
+    }
+    assert_int_equal(cached->geometry.size, geometry.size);
+    assert_memory_equal(cached->geometry.bytes, geometry.bytes, geometry.size);
+    return true;
+}
+
+/* A body takes as many frames of the capacity as it has. */
+static void test_capacity_in_frames(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(40, secret);
+    struct handle handle[5];
+    for (int i = 0; i < 5; i++) {
+        handle[i] = keep_boxes(cache, 1 + i, 10, 1 + i);
+        assert_int_equal(cache_counts(cache).frames, i < 4 ? 10 * (i + 1) : 40);
+    }
+    assert_false(has_boxes(cache, &handle[0], 10, 1));
+    for (int i = 1; i < 5; i++)
+        assert_true(has_boxes(cache, &handle[i], 10, 1 + i));
+    assert_int_equal(cache_counts(cache).bodies, 4);
+    assert_int_equal(cache_counts(cache).evictions, 1);
+    const struct handle again = keep_boxes(cache, 9, 10, 5);
+    assert_true(handle_equal(&again, &handle[4]));
+    assert_int_equal(cache_counts(cache).hits, 1);
+    cache_destroy(cache);
+}
+
+/* Many small bodies go for a large one, but no more than it needs and one more. */
+static void test_a_large_body_among_small_ones(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(100, secret);
+    struct handle small[100];
+    for (int i = 0; i < 100; i++)
+        small[i] = keep(cache, 0, 1 + i);
+    for (int i = 0; i < 99; i += 2) /* the oldest are apart from each other in memory */
+        find(cache, small[i]);
+    const struct handle large = keep_boxes(cache, 1, 30, 7);
+    assert_true(has_boxes(cache, &large, 30, 7));
+    assert_int_equal(cache_counts(cache).evictions, 30);
+    assert_int_equal(cache_counts(cache).frames, 100);
+    assert_int_equal(cache_counts(cache).bodies, 71);
+    const struct handle one = keep_boxes(cache, 1, 1, 7);
+    assert_true(has_boxes(cache, &one, 1, 7));
+    assert_int_equal(cache_counts(cache).frames, 100);
+    cache_destroy(cache);
+}
+
+static void test_more_frames_than_the_capacity(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(20, secret);
+    const struct handle held = keep_boxes(cache, 1, 20, 2);
+    const struct geometry geometry = boxes(21, 3);
+    struct handle handle = {{0}};
+    assert_null(cache_keep(cache, 2, &geometry, &handle));
+    assert_false(handle_is_none(&handle));
+    assert_null(cache_peek(cache, &handle));
+    assert_true(has_boxes(cache, &held, 20, 2));
+    assert_int_equal(cache_counts(cache).misses, 2);
+    assert_int_equal(cache_counts(cache).ids, 1);
+    cache_destroy(cache);
+}
+
+/* A body in use stays where it is, whatever is kept meanwhile, until its last user releases it. */
+static void test_bodies_in_use_stay(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(30, secret);
+    const struct geometry geometry = boxes(10, 4);
+    struct handle handle, other;
+    const struct cached *used = cache_keep(cache, 1, &geometry, &handle);
+    assert_ptr_equal(cache_find(cache, &handle), used);
+    cache_release(cache, used); /* one user is left */
+    for (int i = 0; i < 50; i++) {
+        const int count = 1 + i % 20;
+        const struct handle kept = keep_boxes(cache, 2, count, 5 + i);
+        assert_true(has_boxes(cache, &kept, count, 5 + i));
+        assert_ptr_equal(cache_peek(cache, &handle), used);
+        assert_true(has_boxes(cache, &handle, 10, 4));
+    }
+    const struct geometry large = boxes(21, 9);
+    assert_null(cache_keep(cache, 3, &large, &other));
+    cache_release(cache, used);
+    keep_boxes(cache, 4, 30, 1);
+    assert_null(cache_peek(cache, &handle));
+    cache_destroy(cache);
+}
+
+/* All frames are in use: nothing can be kept, and the id leads nowhere. */
+static void test_all_in_use(void **state)
+{
+    (void) state;
+    struct cache *cache = cache_create(2, secret);
+    const struct cached *used[2];
+    struct handle handle;
+    for (int i = 0; i < 2; i++) {
+        const struct geometry geometry = cuboid(1 + i, 1);
+        used[i] = cache_keep(cache, 1 + i, &geometry, &handle);
+    }
+    const struct geometry geometry = cuboid(3, 1);
+    assert_null(cache_keep(cache, 3, &geometry, &handle));
+    assert_int_equal(cache_counts(cache).bodies, 2);
+    assert_int_equal(cache_counts(cache).evictions, 0);
+    cache_release(cache, used[1]);
+    keep_geometry(cache, 3, &geometry);
+    assert_int_equal(cache_counts(cache).evictions, 1);
+    cache_release(cache, used[0]);
+    cache_destroy(cache);
+}
+
+/* Bodies of all sizes, some in use: what is held is what was kept, the counts are those of the
+ * pages, and the latest is always held. */
+static void test_bodies_of_all_sizes(void **state)
+{
+    (void) state;
+    enum { ROUNDS = 20000, CAPACITY = 100, USED = 4 };
+    struct cache *cache = cache_create(CAPACITY, secret);
+    const struct cached *used[USED] = {NULL};
+    srand(2);
+    for (int round = 0; round < ROUNDS; round++) {
+        const int count = rand() % 4 ? 1 : 1 + rand() % 12, length = 1 + rand() % 9;
+        const int u = rand() % (3 * USED);
+        const struct geometry geometry = boxes(count, length);
+        struct handle handle;
+        const struct cached *cached = cache_keep(cache, rand() % 5, &geometry, &handle);
+        assert_non_null(cached);
+        assert_true(has_boxes(cache, &handle, count, length));
+        if (u < USED && used[u])
+            cache_release(cache, used[u]);
+        if (u < USED)
+            used[u] = cached;
+        else
+            cache_release(cache, cached);
+        int64_t bodies = 0, frames = 0, position = 0;
+        while ((cached = cache_next(cache, &position))) {
+            bodies++;
+            frames += cached->body.frame_count;
+            assert_ptr_equal(cache_peek(cache, &cached->handle), cached);
+        }
+        assert_int_equal(cache_counts(cache).bodies, bodies);
+        assert_int_equal(cache_counts(cache).frames, frames);
+        assert_in_range(frames, 1, CAPACITY);
+    }
     cache_destroy(cache);
 }
 
@@ -323,7 +524,7 @@ static int64_t ids_known(const int64_t id[ATTACK], const uint64_t used[2])
     struct cache *cache = cache_create(CAPACITY_ATTACKED, used);
     const struct geometry geometry = cuboid(1, 1);
     for (int i = 0; i < ATTACK; i++)
-        cache_keep(cache, id[i], &geometry);
+        keep_geometry(cache, id[i], &geometry);
     const int64_t ids = cache_counts(cache).ids;
     cache_destroy(cache);
     return ids;
@@ -356,7 +557,7 @@ static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int ca
             half = half << 8 | handle.bytes[i];
         if (half * (multiplier | 1) >> (64 - bits) != 5)
             continue;
-        cache_keep(cache, 0, &geometry);
+        keep_geometry(cache, 0, &geometry);
         kept++;
     }
     const int64_t longest = cache_longest_chain(cache);
@@ -390,6 +591,12 @@ int main(void)
         cmocka_unit_test(test_pages_have_all_bodies),
         cmocka_unit_test(test_prefetch),
         cmocka_unit_test(test_memory_taken_is_as_it_was),
+        cmocka_unit_test(test_capacity_in_frames),
+        cmocka_unit_test(test_a_large_body_among_small_ones),
+        cmocka_unit_test(test_more_frames_than_the_capacity),
+        cmocka_unit_test(test_bodies_in_use_stay),
+        cmocka_unit_test(test_all_in_use),
+        cmocka_unit_test(test_bodies_of_all_sizes),
         cmocka_unit_test(test_ids_chosen_to_collide),
         cmocka_unit_test(test_bodies_chosen_to_collide),
     };

@@ -140,21 +140,6 @@ static void test_many_pairs_listed(void **state)
 
 /* ---- Methods and certificates ---- */
 
-static struct fmb_pair pair_of(const struct fmb_client_scene *scene, unsigned a, unsigned b,
-                               struct fmb_body body[2])
-{
-    const struct fmb_client_placement *of[2] = {&scene->placements[a], &scene->placements[b]};
-    struct fmb_frame frame[2];
-    for (int f = 0; f < 2; f++) {
-        const int count = fmb_component_count(of[f]->dim, of[f]->shape) * of[f]->dim;
-        fmb_body_make(of[f]->dim, of[f]->shape, of[f]->components, (size_t) count, &body[f]);
-        frame[f] = (struct fmb_frame){.body = &body[f], .moving = of[f]->moving};
-        memcpy(frame[f].origin, of[f]->position, sizeof frame[f].origin);
-        memcpy(frame[f].velocity, of[f]->velocity, sizeof frame[f].velocity);
-    }
-    return (struct fmb_pair){frame[0], frame[1], scene->duration};
-}
-
 /* Answers against fmb_decide(), called for each pair up to the one that is given. */
 struct giving {
     const struct fmb_client_scene *scene;
@@ -164,12 +149,17 @@ struct giving {
 
 static enum fmb_status decide(struct giving *giving, struct fmb_answer *answer)
 {
+    const struct fmb_client_scene *scene = giving->scene;
     struct fmb_body body[2];
-    const struct fmb_pair pair = pair_of(giving->scene, giving->a, giving->b, body);
-    if (++giving->b == giving->scene->placement_count)
+    const struct fmb_placement a = relay_place(&scene->placements[giving->a], &body[0]);
+    const struct fmb_placement b = relay_place(&scene->placements[giving->b], &body[1]);
+    if (++giving->b == scene->placement_count)
         giving->b = ++giving->a + 1;
-    return fmb_decide(fmb_method_by_number(giving->scene->method), &pair,
-                      giving->scene->want & FMB_WANT_BOX, answer);
+    const enum fmb_status status = fmb_decide(fmb_method_by_number(scene->method), &a, &b,
+                                              scene->duration, scene->want & FMB_WANT_BOX, answer);
+    relay_body_free(&body[0]);
+    relay_body_free(&body[1]);
+    return status;
 }
 
 static void check_method(void *user, const struct fmb_client_answer *answer)
@@ -228,10 +218,13 @@ static void check_certificate(void *user, const struct fmb_client_answer *answer
     assert_int_equal(decide(giving, &should), FMB_OK);
     assert_int_equal(answer->answer.verdict, should.verdict);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
-    const struct fmb_pair pair = pair_of(giving->scene, answer->a, answer->b, body);
+    const struct fmb_placement a = relay_place(&giving->scene->placements[answer->a], &body[0]);
+    const struct fmb_placement b = relay_place(&giving->scene->placements[answer->b], &body[1]);
     assert_non_null(answer->certificate);
-    assert_true(
-        fmb_certificate_holds(&pair, answer->answer.verdict, answer->certificate, why, sizeof why));
+    assert_true(fmb_certificate_holds(&a, &b, giving->scene->duration, answer->answer.verdict,
+                                      answer->certificate, why, sizeof why));
+    relay_body_free(&body[0]);
+    relay_body_free(&body[1]);
     giving->given++;
 }
 
@@ -242,6 +235,8 @@ static void test_certificates_of_all_pairs(void **state)
     relay_open(relay, 20); /* fewer than there are */
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_placement *frame = frames_of(40, 2, 3, 1);
+    for (int i = 0; i < 40; i++)
+        frame[i].frame_count = 1; /* certificates are of those */
     const struct fmb_client_scene scene =
         scene_of(frame, 40, FMB_CLIENT_ALL, ALL_WANTS | FMB_CLIENT_WANT_CERTIFICATE);
     struct giving giving = {.scene = &scene, .b = 1};
@@ -303,15 +298,27 @@ static void test_wrong_scenes_are_refused(void **state)
     relay_draw(good, 3, 3, 1, 1, 1);
     memcpy(frame, good, sizeof good);
     struct fmb_client_scene scene = scene_of(frame, 3, FMB_CLIENT_LISTED, 0);
-    frame[2].shape = 4;
-    wrong(client, &scene, FMB_UNKNOWN_SHAPE, "placements[2].shape: ");
-    frame[2] = good[2], frame[1].dim = 2, frame[1].shape = FMB_CUBOID;
+    relay_frame(&frame[2])->shape = 5;
+    wrong(client, &scene, FMB_UNKNOWN_SHAPE, "placements[2].frames[0].shape: ");
+    *relay_frame(&frame[2]) = (struct fmb_client_frame){FMB_BOX, {0}, {1, -1, 1}};
+    wrong(client, &scene, FMB_BAD_SIZE, "placements[2].frames[0].components[1]: ");
+    relay_frame(&frame[2])->components[1] = 1, frame[2].frame_count = 0;
+    wrong(client, &scene, FMB_NO_FRAMES, "placements[2].frame_count: ");
+    frame[2] = good[2], frame[2].orientation_count = 3;
+    wrong(client, &scene, FMB_WRONG_COUNT, "placements[2].orientation_count: ");
+    frame[2].orientation_count = 4, memset(frame[2].orientation, 0, sizeof frame[2].orientation);
+    wrong(client, &scene, FMB_BAD_ORIENTATION, "placements[2].orientation: ");
+    frame[2].orientation[1] = 1, frame[2].orientation[3] = 0x1p-201;
+    wrong(client, &scene, FMB_BAD_ORIENTATION, "placements[2].orientation: ");
+    frame[2] = good[2], frame[1].dim = 2;
     wrong(client, &scene, FMB_DIMENSIONS_DIFFER, "placements[1].dim: ");
     frame[1].dim = 4;
     wrong(client, &scene, FMB_WRONG_DIMENSION, "placements[1].dim: ");
-    frame[1] = good[1], frame[0].components[4] = NAN;
-    wrong(client, &scene, FMB_NOT_FINITE, "placements[0].components[4]: ");
-    frame[0] = good[0], frame[0].body_id = INT64_C(1) << 53;
+    frame[1] = good[1], frame[0].velocity[1] = NAN;
+    wrong(client, &scene, FMB_NOT_FINITE, "placements[0].velocity[1]: ");
+    frame[0] = good[0], relay_frame(&frame[0])->components[1] = NAN;
+    wrong(client, &scene, FMB_NOT_FINITE, "placements[0].frames[0].components[1]: ");
+    relay_frame(&frame[0])->components[1] = 0, frame[0].body_id = INT64_C(1) << 53;
     wrong(client, &scene, FMB_BAD_ID, "placements[0].body_id: ");
     frame[0].body_id = -1;
     wrong(client, &scene, FMB_BAD_ID, "placements[0].body_id: ");
@@ -321,6 +328,11 @@ static void test_wrong_scenes_are_refused(void **state)
     wrong(client, &scene, FMB_BAD_PAIR, "pairs[1]: ");
     scene.pairs = beyond, scene.pair_count = 1;
     wrong(client, &scene, FMB_BAD_PAIR, "pairs[0]: ");
+    scene.ignored = same, scene.ignored_count = 1, scene.pair_count = 0;
+    wrong(client, &scene, FMB_BAD_PAIR, "ignored_count: ");
+    scene.which = FMB_CLIENT_ALL, scene.ignored_count = 2;
+    wrong(client, &scene, FMB_BAD_PAIR, "ignored[1]: ");
+    scene.ignored_count = 0;
     scene.which = FMB_CLIENT_ACROSS, scene.split = 4;
     wrong(client, &scene, FMB_BAD_PAIR, "split: ");
     scene.which = (enum fmb_client_which) 3;
@@ -414,13 +426,15 @@ static void test_bodies_go_by_handle_the_second_time(void **state)
     print_message("# 100 bodies whole: %d bytes, by handle: %d\n", (int) first.bytes,
                   (int) second.bytes);
     /* A body that has other components, be it in the sign of a zero, goes whole. */
-    world.frame[3].components[1] = -world.frame[3].components[1];
+    relay_frame(&world.frame[3])->origin[1] = -0.0;
     assert_int_equal(query_world(&world).whole, 2);
     /* The body from before is still held. */
-    world.frame[3].components[1] = -world.frame[3].components[1];
+    relay_frame(&world.frame[3])->origin[1] = 0;
     assert_int_equal(query_world(&world).whole, 1);
-    /* The place does not matter. */
+    /* The pose does not matter. */
     world.frame[3].position[1] += 1;
+    world.frame[3].orientation_count = 4;
+    world.frame[3].orientation[2] += 0.5;
     assert_int_equal(query_world(&world).whole, 1);
     close_world(&world);
 }
@@ -435,7 +449,7 @@ static void test_equal_ids_of_two_clients_do_not_matter(void **state)
     struct fmb_client *other = relay_client(world.relay, 5, 1);
     struct fmb_client_placement *others = frames_of(10, 3, 5, 41);
     for (int i = 0; i < 10; i++)
-        others[i].components[0] += 7;
+        relay_frame(&others[i])->components[0] += 7;
     const struct fmb_client_scene scene = scene_of(others, 10, FMB_CLIENT_ALL, ALL_WANTS);
     relay_query(other, &scene);
     const struct fmb_client_counts counts = query_world(&world);
@@ -490,10 +504,11 @@ static void test_bodies_that_are_never_held_end(void **state)
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
+    const uint64_t repeated = fmb_client_counts(world.client).repeated;
     world.relay->before = steal;
     for (int i = 0; i < 3; i++)
         assert_int_equal(query_world(&world).queries, 2);
-    assert_int_equal(stolen, 6);
+    assert_int_equal(stolen, 6 + fmb_client_counts(world.client).repeated - repeated);
     struct fmb_client_answer answer;
     assert_int_equal(fmb_client_query_pair(world.client, world.frame, 1, 0, &answer), FMB_OK);
     close_world(&world);
@@ -510,6 +525,77 @@ static void test_an_id_may_stand_twice(void **state)
     for (int i = 0; i < 3; i++)
         query_world(&world);
     close_world(&world);
+}
+
+/* ---- Ignored pairs, and bodies of many frames ---- */
+
+static void test_ignored_pairs_are_left_out(void **state)
+{
+    (void) state;
+    struct world world;
+    open_world(&world, 1000);
+    enum { PAIRS = 500 };
+    unsigned(*pair)[2] = list_of(PAIRS, 100);
+    world.scene.ignored = (const unsigned(*)[2]) pair;
+    world.scene.ignored_count = PAIRS;
+    query_world(&world);
+    world.scene.which = FMB_CLIENT_ACROSS;
+    for (world.scene.split = 0; world.scene.split <= 100; world.scene.split += 25)
+        query_world(&world);
+    world.scene.which = FMB_CLIENT_ALL; /* more than fit into one datagram */
+    free(pair);
+    unsigned(*all)[2] = malloc(100 * 100 * sizeof *all);
+    size_t count = 0;
+    for (unsigned a = 0; a < 100; a++)
+        for (unsigned b = 0; b < 100; b++)
+            if (a != b && (a + b) % 10 != 0)
+                all[count][0] = a, all[count++][1] = b;
+    world.scene.ignored = (const unsigned(*)[2]) all;
+    world.scene.ignored_count = count;
+    query_world(&world);
+    free(all);
+    close_world(&world);
+}
+
+/* Two bodies that do not fit into one datagram together: their frames are sent first. */
+static void test_bodies_of_many_frames(void **state)
+{
+    (void) state;
+    enum { FRAMES = 500, BODIES = 5 };
+    struct relay *relay = relay_new();
+    relay_open(relay, 20000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement *placement = frames_of(BODIES * FRAMES, 3, 1, 1);
+    struct fmb_client_frame *frame = malloc((size_t) BODIES * FRAMES * sizeof *frame);
+    for (int i = 0; i < BODIES * FRAMES; i++)
+        frame[i] = (struct fmb_client_frame){.shape = FMB_CUBOID,
+                                             .origin = {3 * (i % 7), 3 * (i % 11), 3 * (i % 13)},
+                                             .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    for (int i = 0; i < BODIES; i++) {
+        placement[i].frames = frame + i * FRAMES;
+        placement[i].frame_count = FRAMES;
+    }
+    const struct fmb_client_scene scene = scene_of(placement, BODIES, FMB_CLIENT_ALL, ALL_WANTS);
+    relay_query(client, &scene);
+    const struct fmb_client_counts first = fmb_client_counts(client);
+    assert_in_range(first.whole, BODIES, 3 * BODIES); /* queries that are under way at once */
+    relay_query(client, &scene);
+    assert_int_equal(fmb_client_counts(client).whole, first.whole);
+    assert_int_equal(fmb_client_counts(client).queries, first.queries + 1);
+    relay_restart(relay, 20000);
+    relay_query(client, &scene);
+    /* Without ids there is no other way than both in one datagram. */
+    placement[0].body_id = placement[1].body_id = 0;
+    struct fmb_client_answer answer;
+    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
+    placement[0].frame_count = 700;
+    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
+    assert_string_equal(fmb_client_why(client), "placements[0].frame_count: over the limit");
+    assert_int_equal(fmb_client_counts(client).malformed, 0);
+    fmb_client_close(client);
+    free(placement);
+    free(frame);
+    relay_close(relay);
 }
 
 /* ---- Several clients ---- */
@@ -605,6 +691,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_a_cache_of_one_body_is_enough),
         cmocka_unit_test(test_bodies_that_are_never_held_end),
         cmocka_unit_test(test_an_id_may_stand_twice),
+        cmocka_unit_test(test_ignored_pairs_are_left_out),
+        cmocka_unit_test(test_bodies_of_many_frames),
         cmocka_unit_test(test_two_clients_in_a_process),
         cmocka_unit_test(test_clients_in_threads),
     };

@@ -329,6 +329,61 @@ static void test_no_call_within_a_callback(void **state)
     relay_close(relay);
 }
 
+/* ---- A listener ---- */
+
+struct tapped {
+    const struct pair *pair;
+    int64_t client_id;
+    int others, queries, results;
+};
+
+static void tap(void *user, const struct bus_message *message)
+{
+    static struct pair_query query;
+    static struct pair_result result;
+    struct tapped *tapped = user;
+    const uint32_t size = (uint32_t) message->size;
+    assert_int_equal(tapped->pair->called, 0); /* the engine reads it later */
+    if (!wire_read_pair_query(message->bytes, size, &query)) {
+        assert_string_equal(message->channel, WIRE_PAIR_QUERY);
+        assert_int_equal(query.client_id, tapped->client_id);
+        tapped->queries++;
+    } else if (!wire_read_pair_result(message->bytes, size, &result)) {
+        assert_string_equal(message->channel, WIRE_PAIR_RESULT);
+        assert_int_equal(result.client_id, tapped->client_id);
+        tapped->results++;
+    } else {
+        assert_string_equal(message->channel, "OTHER");
+        tapped->others++;
+    }
+}
+
+static void test_a_tap_gets_all_messages_first(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    relay_open(relay, 1000);
+    for (int every = 0; every < 2; every++) {
+        struct pair pair = {.called = 0};
+        struct fmb_client *client = relay_client(relay, 10, 1);
+        struct tapped tapped = {.pair = &pair, .client_id = fmb_client_raw_id(client)};
+        assert_true(fmb_client_raw_listen(client, every, tap, &tapped));
+        for (int i = 0; i < 3; i++)
+            relay_publish(relay, "OTHER", "other", 5);
+        send_pair(client, 1, 2, &pair); /* which reads what is pending */
+        assert_int_equal(tapped.others, every ? 3 : 0);
+        finish(client);
+        assert_int_equal(pair.called, 1);
+        assert_int_equal(pair.status, FMB_OK);
+        assert_int_equal(tapped.queries, 1);
+        assert_int_equal(tapped.results, 1);
+        assert_int_equal(fmb_client_counts(client).malformed, 0);
+        assert_int_equal(fmb_client_raw_bus_counts(client).received, every ? 5 : 2);
+        fmb_client_close(client);
+    }
+    relay_close(relay);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -340,6 +395,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_scenes_and_definitions),
         cmocka_unit_test(test_a_step_ends_with_another_descriptor),
         cmocka_unit_test(test_no_call_within_a_callback),
+        cmocka_unit_test(test_a_tap_gets_all_messages_first),
     };
     (void) argc;
     relay_enter(argv);

@@ -61,6 +61,7 @@ static bool same_numbers(const double *one, const double *other, int count)
 
 struct world {
     struct solid solid[FRAMES];
+    struct ready ready[FRAMES]; /* what the frames refer to */
     struct fmb_prepared frame[FRAMES];
     double duration;
     unsigned pair[PAIRS_MAX][2];
@@ -79,14 +80,11 @@ static struct question question_of(const struct world *world, const unsigned pai
     return (struct question){*solid_at(world, pair[0]), *solid_at(world, pair[1]), world->duration};
 }
 
-/* The body is gone when this returns, as it may. */
-static void prepare(const struct solid *solid, struct fmb_prepared *out)
+static void prepare(struct world *world, unsigned i)
 {
-    const struct question question = {*solid, *solid, 1};
-    struct ready ready;
-    referee_ready(&question, &ready);
-    assert_int_equal(fmb_prepare(&ready.pair.a, out), FMB_OK);
-    memset(&ready, GUARD, sizeof ready);
+    const struct question question = {world->solid[i], world->solid[i], 1};
+    referee_ready(&question, &world->ready[i]);
+    assert_int_equal(fmb_prepare(&world->ready[i].pair.a, 0, 1, &world->frame[i]), FMB_OK);
 }
 
 /* Windows of a length that the pairs of a campaign have, and others. */
@@ -109,8 +107,8 @@ static void draw_frames(struct draw *draw, const struct cell *cell, double durat
             pair_set_duration(&question, duration);
         world->solid[i] = question.a;
         world->solid[i + 1] = question.b;
-        prepare(&question.a, &world->frame[i]);
-        prepare(&question.b, &world->frame[i + 1]);
+        prepare(world, (unsigned) i);
+        prepare(world, (unsigned) i + 1);
     }
 }
 
@@ -152,12 +150,12 @@ static void draw_pairs(struct draw *draw, size_t count, struct world *world)
 
 /* ---- What is expected ---- */
 
-static void expect_right(const struct question *question, const struct fmb_pair *pair,
+static void expect_right(const struct question *question, const struct pair *pair,
                          const struct fmb_answer *answer, bool ask_oracle)
 {
     struct fmb_answer exact;
     char why[200];
-    assert_int_equal(fmb_decide(fmb_method_by_name("exact"), pair, 0, &exact), FMB_OK);
+    assert_int_equal(pair_decide(fmb_method_by_name("exact"), pair, 0, &exact), FMB_OK);
     if (answer->verdict != exact.verdict)
         referee_fail(question, "the exact method has another verdict");
     if (ask_oracle && !oracle_check(pair, FMB_WANT_BOX, answer, why, sizeof why))
@@ -174,7 +172,7 @@ static void set_expected(const struct world *world, const unsigned pair[2], bool
     say_nothing(out);
     referee_ready(&question, &ready);
     assert_int_equal(
-        fmb_decide(fmb_method_by_name("certified"), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
+        pair_decide(fmb_method_by_name("certified"), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
     expect_right(&question, &ready.pair, &answer, ask_oracle);
     out->verdict = (unsigned char) answer.verdict;
     if (answer.has_contact)
@@ -351,7 +349,7 @@ static size_t decide_open(const struct world *world, const struct fmb_batch *who
     for (size_t n = 0; n < count; n++) {
         const size_t i = whole->open[n];
         assert_true(i < world->count && (n == 0 || i > whole->open[n - 1]));
-        assert_int_equal(whole->verdicts[i], 0);
+        assert_int_equal(whole->verdicts[i], FMB_LEFT_OPEN);
         assert_true(!whole->contacts ||
                     (isnan(whole->contacts[i][0]) && isnan(whole->contacts[i][1])));
         for (int end = 0; end < 2 && whole->boxes; end++)
@@ -411,8 +409,10 @@ static void expect_meet(const struct world *world)
         const struct fmb_prepared *b = &world->frame[world->pair[i][1]];
         const enum fmb_verdict expected = (enum fmb_verdict) world->expected[i].verdict;
         const struct way way = {0};
-        if (fmb_meet(a, b, world->duration) != expected ||
-            fmb_meet(b, a, world->duration) != expected)
+        enum fmb_verdict there, back;
+        assert_int_equal(fmb_meet(a, b, world->duration, &there), FMB_OK);
+        assert_int_equal(fmb_meet(b, a, world->duration, &back), FMB_OK);
+        if (there != expected || back != expected)
             fail_at(world, &way, i, "fmb_meet() has another verdict");
     }
 }
@@ -499,8 +499,8 @@ static void set_random_frames(struct draw *draw, const struct cell *cell, struct
         family_draw_random(draw, cell, &question);
         world->solid[i] = question.a;
         world->solid[i + 1] = question.b;
-        prepare(&question.a, &world->frame[i]);
-        prepare(&question.b, &world->frame[i + 1]);
+        prepare(world, (unsigned) i);
+        prepare(world, (unsigned) i + 1);
         memcpy(world->pair[i / 2], ((unsigned[2]){(unsigned) i, (unsigned) i + 1}),
                sizeof world->pair[0]);
     }
@@ -545,7 +545,7 @@ static void touching_pairs_are_left_open(void **state)
                                          .origin = {3.0 * i, 0},
                                          .velocity = {0, i % 2},
                                          .component = {{3, 0}, {0, 1}}};
-        prepare(&world->solid[i], &world->frame[i]);
+        prepare(world, i);
     }
     for (world->count = 0; world->count < 3 * 128 - 1; world->count++)
         world->pair[world->count][1] = 1;
@@ -690,8 +690,8 @@ static void spoil_frames(struct world *world)
     memset(&world->frame[ALL_ZERO], 0, sizeof world->frame[ALL_ZERO]);
     memset(&world->frame[NOT_PREPARED], GUARD, sizeof world->frame[NOT_PREPARED]);
     referee_ready(&question, &ready);
-    ready.pair.a.origin[1] = NAN;
-    assert_int_equal(fmb_prepare(&ready.pair.a, &world->frame[NOT_PREPARED]), FMB_NOT_FINITE);
+    ready.pair.a.position[1] = NAN;
+    assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &world->frame[NOT_PREPARED]), FMB_NOT_FINITE);
     assert_memory_equal(&world->frame[NOT_PREPARED], &zero, sizeof zero);
 }
 
@@ -746,6 +746,23 @@ static void refuse_some(struct draw *draw, int one_in, struct world *world)
     }
 }
 
+/* fmb_meet() of the same pairs, which leaves the verdict as it was where it refuses. */
+static void expect_meet_refuses(const struct world *world)
+{
+    for (size_t i = 0; i < world->count; i++) {
+        const unsigned *pair = world->pair[i];
+        if (pair[0] >= FRAMES || pair[1] >= FRAMES)
+            continue;
+        const struct fmb_prepared *a = &world->frame[pair[0]], *b = &world->frame[pair[1]];
+        enum fmb_verdict verdict = (enum fmb_verdict) FMB_REFUSED;
+        const enum fmb_status status = fmb_meet(a, b, world->duration, &verdict);
+        assert_int_equal(verdict, world->expected[i].verdict);
+        assert_int_equal(status, verdict != (enum fmb_verdict) FMB_REFUSED ? FMB_OK
+                                 : has_bad_frame(pair)                     ? FMB_NOT_FINITE
+                                                                           : FMB_DIMENSIONS_DIFFER);
+    }
+}
+
 static void refused_pairs_stop_no_other(void **state)
 {
     (void) state;
@@ -759,11 +776,7 @@ static void refused_pairs_stop_no_other(void **state)
         refuse_some(&draw, 1 << draw_int(&draw, 0, 8), world);
         seen[world->status]++;
         expect_all_ways(world);
-        for (size_t i = 0; i < world->count; i++)
-            if (world->pair[i][0] < FRAMES && world->pair[i][1] < FRAMES)
-                assert_int_equal(fmb_meet(&world->frame[world->pair[i][0]],
-                                          &world->frame[world->pair[i][1]], world->duration),
-                                 world->expected[i].verdict);
+        expect_meet_refuses(world);
     }
     free(world);
     printf("# first refused: %ld not finite, %ld over the limit, %ld of other dimensions; %ld ok\n",
@@ -787,12 +800,12 @@ static void what_is_not_finite_is_not_prepared(void **state)
         struct fmb_prepared good, found;
         pair_draw(&draw, &cell, &question);
         referee_ready(&question, &ready);
-        assert_int_equal(fmb_prepare(&ready.pair.a, &good), FMB_OK);
+        assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &good), FMB_OK);
         const bool velocity = draw_coin(&draw);
-        struct fmb_frame *frame = &ready.pair.a;
-        (velocity ? frame->velocity : frame->origin)[axis] = bad[draw_int(&draw, 0, 2)];
-        const bool read = axis < cell.dim && (!velocity || frame->moving);
-        assert_int_equal(fmb_prepare(frame, &found), read ? FMB_NOT_FINITE : FMB_OK);
+        struct fmb_placement *frame = &ready.pair.a;
+        (velocity ? frame->velocity : frame->position)[axis] = bad[draw_int(&draw, 0, 2)];
+        const bool read = axis < cell.dim;
+        assert_int_equal(fmb_prepare(frame, 0, 1, &found), read ? FMB_NOT_FINITE : FMB_OK);
         assert_memory_equal(&found, read ? &zero : &good, sizeof found);
     }
 }
@@ -816,6 +829,7 @@ static void durations_that_are_none_are_refused(void **state)
     (void) state;
     static const double bad[] = {NAN, -NAN, INFINITY, -INFINITY, -1, -0x1p-1074, -DBL_MAX};
     const struct way way = {0, 0, true, true};
+    enum fmb_verdict verdict;
     struct draw draw;
     struct world *world = world_new();
     draw_begin(&draw, "durations_that_are_none_are_refused");
@@ -826,8 +840,8 @@ static void durations_that_are_none_are_refused(void **state)
         expect_whole_refused(world, &way, FMB_BAD_DURATION);
         for (size_t k = 0; k < world->count; k++)
             assert_int_equal(fmb_meet(&world->frame[world->pair[k][0]],
-                                      &world->frame[world->pair[k][1]], bad[i]),
-                             0);
+                                      &world->frame[world->pair[k][1]], bad[i], &verdict),
+                             FMB_BAD_DURATION);
     }
     free(world);
 }

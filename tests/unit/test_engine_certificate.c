@@ -238,24 +238,24 @@ static const struct family families[] = {
 
 /* ---- What must be so of each pair ---- */
 
-static enum fmb_verdict verdict_of(const struct fmb_pair *pair)
+static enum fmb_verdict verdict_of(const struct pair *pair)
 {
     struct fmb_answer answer;
-    assert_int_equal(FMB_OK, fmb_decide(fmb_method_by_name("exact"), pair, 0, &answer));
+    assert_int_equal(FMB_OK, pair_decide(fmb_method_by_name("exact"), pair, 0, &answer));
     return answer.verdict;
 }
 
-static bool holds(const struct fmb_pair *pair, enum fmb_verdict verdict, const char *text)
+static bool holds(const struct pair *pair, enum fmb_verdict verdict, const char *text)
 {
     char why[WHY_SIZE] = "?";
-    bool does = fmb_certificate_holds(pair, verdict, text, why, sizeof why);
+    bool does = pair_certificate_holds(pair, verdict, text, why, sizeof why);
     assert_true(does == (why[0] == '\0'));
     assert_null(strchr(why, '\n'));
     return does;
 }
 
 /* The text says what is not so, if it names another verdict. */
-static void refute_other_verdicts(const struct question *question, const struct fmb_pair *pair,
+static void refute_other_verdicts(const struct question *question, const struct pair *pair,
                                   enum fmb_verdict verdict, const char *text)
 {
     for (size_t i = 0; i < COUNT(verdicts); i++)
@@ -264,22 +264,22 @@ static void refute_other_verdicts(const struct question *question, const struct 
 }
 
 /* On output: a certificate, in a buffer of TEXT_SIZE. Returns the verdict. */
-static enum fmb_verdict make(const struct question *question, const struct fmb_pair *pair,
-                             char *text, size_t *length)
+static enum fmb_verdict make(const struct question *question, const struct pair *pair, char *text,
+                             size_t *length)
 {
     memset(text, 'x', 200);
-    if (fmb_certificate(pair, text, TEXT_SIZE, length) != FMB_OK)
+    if (pair_certificate(pair, text, TEXT_SIZE, length) != FMB_OK)
         referee_fail(question, "no certificate");
     if (strlen(text) != *length)
         referee_fail(question, "another length than it has");
     return verdict_of(pair);
 }
 
-static void assert_certificate_holds(const struct question *question, const struct fmb_pair *pair,
+static void assert_certificate_holds(const struct question *question, const struct pair *pair,
                                      enum fmb_verdict verdict, const char *text)
 {
     char why[WHY_SIZE];
-    if (fmb_certificate_holds(pair, verdict, text, why, sizeof why))
+    if (pair_certificate_holds(pair, verdict, text, why, sizeof why))
         return;
     printf("# %.1000s\n# %s\n", text, why);
     referee_fail(question, "the certificate does not hold");
@@ -299,8 +299,8 @@ static void certificates_of_family_hold(void **state)
         struct ready ready;
         family->draw_question(&draw, &question);
         referee_ready(&question, &ready);
-        const struct fmb_pair orders[] = {ready.pair,
-                                          {ready.pair.b, ready.pair.a, ready.pair.duration}};
+        const struct pair orders[] = {ready.pair,
+                                      {ready.pair.b, ready.pair.a, ready.pair.duration}};
         for (size_t i = 0; i < COUNT(orders); i++) {
             enum fmb_verdict verdict = make(&question, &orders[i], text, &length);
             assert_certificate_holds(&question, &orders[i], verdict, text);
@@ -328,7 +328,7 @@ static void put_verdict(const char *text, enum fmb_verdict verdict, char *out, s
 }
 
 /* What is left of a text ends nowhere but where a normal might: never after " at ". */
-static void cut_everywhere(const struct question *question, const struct fmb_pair *pair,
+static void cut_everywhere(const struct question *question, const struct pair *pair,
                            enum fmb_verdict verdict, const char *text)
 {
     char cut[1000];
@@ -422,7 +422,7 @@ static void assert_made(const struct question *question, const char *expected)
     char text[200];
     size_t length;
     referee_ready(question, &ready);
-    assert_int_equal(FMB_OK, fmb_certificate(&ready.pair, text, sizeof text, &length));
+    assert_int_equal(FMB_OK, pair_certificate(&ready.pair, text, sizeof text, &length));
     assert_string_equal(expected, text);
     assert_int_equal(strlen(expected), length);
 }
@@ -501,10 +501,10 @@ static void too_small_a_size_is_told(void **state)
     char text[64];
     size_t length, needed;
     referee_ready(&question, &ready);
-    assert_int_equal(FMB_OVER_LIMIT, fmb_certificate(&ready.pair, NULL, 0, &needed));
+    assert_int_equal(FMB_OVER_LIMIT, pair_certificate(&ready.pair, NULL, 0, &needed));
     for (size_t size = 0; size < sizeof text; size++) {
         memset(text, '#', sizeof text);
-        enum fmb_status status = fmb_certificate(&ready.pair, text, size, &length);
+        enum fmb_status status = pair_certificate(&ready.pair, text, size, &length);
         assert_int_equal(needed, length);
         assert_int_equal(size > needed ? FMB_OK : FMB_OVER_LIMIT, status);
         if (size > 0)
@@ -514,14 +514,14 @@ static void too_small_a_size_is_told(void **state)
     }
 }
 
-static void assert_refused(const struct fmb_pair *pair, enum fmb_status status)
+static void assert_refused(const struct pair *pair, enum fmb_status status)
 {
     char text[64] = "#", why[WHY_SIZE];
     size_t length = 1;
-    assert_int_equal(status, fmb_certificate(pair, text, sizeof text, &length));
+    assert_int_equal(status, pair_certificate(pair, text, sizeof text, &length));
     assert_int_equal(0, length);
     assert_string_equal("", text);
-    assert_false(fmb_certificate_holds(pair, FMB_SEPARATED, "separated + d", why, sizeof why));
+    assert_false(pair_certificate_holds(pair, FMB_SEPARATED, "separated + d", why, sizeof why));
     assert_string_equal(fmb_status_text(status), why);
 }
 
@@ -535,7 +535,7 @@ static void bad_pairs_are_refused(void **state)
     flat_one.a.dim = flat_one.b.dim = 2;
     referee_ready(&flat_one, &plane);
 
-    struct fmb_pair pair = ready.pair;
+    struct pair pair = ready.pair;
     pair.a = plane.pair.a;
     assert_refused(&pair, FMB_DIMENSIONS_DIFFER);
     pair = ready.pair;

@@ -61,22 +61,22 @@ static struct question draw_question(struct draw *draw)
 
 /* ---- What must be so of each text ---- */
 
-static bool holds(const struct fmb_pair *pair, enum fmb_verdict verdict, const char *text)
+static bool holds(const struct pair *pair, enum fmb_verdict verdict, const char *text)
 {
     char why[WHY_SIZE] = "?";
-    bool does = fmb_certificate_holds(pair, verdict, text, why, sizeof why);
+    bool does = pair_certificate_holds(pair, verdict, text, why, sizeof why);
     assert_true(does == (why[0] == '\0'));
     assert_null(strchr(why, '\n'));
     return does;
 }
 
 /* On output: a certificate in a buffer of TEXT_SIZE. Returns the verdict. */
-static enum fmb_verdict make(const struct fmb_pair *pair, char *text)
+static enum fmb_verdict make(const struct pair *pair, char *text)
 {
     struct fmb_answer answer;
     size_t length;
-    assert_int_equal(FMB_OK, fmb_certificate(pair, text, TEXT_SIZE, &length));
-    assert_int_equal(FMB_OK, fmb_decide(fmb_method_by_name("exact"), pair, 0, &answer));
+    assert_int_equal(FMB_OK, pair_certificate(pair, text, TEXT_SIZE, &length));
+    assert_int_equal(FMB_OK, pair_decide(fmb_method_by_name("exact"), pair, 0, &answer));
     return answer.verdict;
 }
 
@@ -273,9 +273,9 @@ static void no_reason_need_be_told(void **state)
     struct ready ready;
     char why[4] = "###";
     referee_ready(&question, &ready);
-    assert_true(fmb_certificate_holds(&ready.pair, FMB_SEPARATED, "separated + a0", NULL, 0));
-    assert_false(fmb_certificate_holds(&ready.pair, FMB_SEPARATED, "separated - a0", NULL, 0));
-    assert_false(fmb_certificate_holds(&ready.pair, FMB_SEPARATED, "separated - a0", why, 2));
+    assert_true(pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated + a0", NULL, 0));
+    assert_false(pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated - a0", NULL, 0));
+    assert_false(pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated - a0", why, 2));
     assert_int_equal('\0', why[1]);
     assert_int_equal('#', why[2]);
 }
@@ -287,7 +287,7 @@ static enum fmb_verdict oracle_of_point(const struct solid *solid, double t, con
 {
     struct question question = {.a = *solid, .duration = 1};
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     struct oracle_answer truth;
     for (int axis = 0; axis < solid->dim; axis++)
         question.a.origin[axis] += solid->moving ? t * solid->velocity[axis] : 0;
@@ -327,11 +327,19 @@ static void draw_point(struct draw *draw, const struct solid *solid, double t,
         p[draw_int(draw, 0, solid->dim - 1)] += draw_int(draw, -1, 1) / 4.0;
 }
 
+static bool has_velocity(const struct solid *solid)
+{
+    for (int axis = 0; axis < solid->dim && solid->moving; axis++)
+        if (solid->velocity[axis] != 0)
+            return true;
+    return false;
+}
+
 /* On output: " at TIME (POINT)" in text, the numbers in *t and p, all of them quarters. */
 static void draw_event(struct draw *draw, const struct question *question, char *text, size_t size,
                        double *t, double p[FMB_DIM_MAX])
 {
-    const bool moving = question->a.moving || question->b.moving;
+    const bool moving = has_velocity(&question->a) || has_velocity(&question->b);
     const int quarters = moving ? draw_int(draw, 0, (int) (4 * question->duration)) : 0;
     int used = print_quarters(text, size, " at ", quarters);
     *t = quarters / 4.0;

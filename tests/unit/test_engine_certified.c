@@ -23,7 +23,7 @@ static void decide(const char *method, const struct question *question, const st
                    struct fmb_answer *answer)
 {
     enum fmb_status status =
-        fmb_decide(fmb_method_by_name(method), &ready->pair, FMB_WANT_BOX, answer);
+        pair_decide(fmb_method_by_name(method), &ready->pair, FMB_WANT_BOX, answer);
     if (status != FMB_OK)
         referee_fail(question, fmb_status_text(status));
 }
@@ -525,12 +525,12 @@ static void windows_of_subnormals(void **state)
 
 /* ---- What is refused ---- */
 
-static void expect_refused(const struct fmb_pair *pair, enum fmb_status expected)
+static void expect_refused(const struct pair *pair, enum fmb_status expected)
 {
     static const struct fmb_answer nothing;
     struct fmb_answer answer;
     memset(&answer, 0xa5, sizeof answer);
-    assert_int_equal(fmb_decide(fmb_method_by_name("certified"), pair, FMB_WANT_BOX, &answer),
+    assert_int_equal(pair_decide(fmb_method_by_name("certified"), pair, FMB_WANT_BOX, &answer),
                      expected);
     assert_int_equal(answer.verdict, nothing.verdict);
     assert_false(answer.has_contact || answer.has_box);
@@ -545,7 +545,7 @@ static void what_is_not_finite_is_refused(void **state)
     for (size_t i = 0; i < COUNT(bad); i++) {
         for (int axis = 0; axis < 3; axis++) {
             referee_ready(&question, &ready);
-            ready.pair.a.origin[axis] = bad[i];
+            ready.pair.a.position[axis] = bad[i];
             expect_refused(&ready.pair, FMB_NOT_FINITE);
             referee_ready(&question, &ready);
             ready.pair.b.velocity[axis] = bad[i];

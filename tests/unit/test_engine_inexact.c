@@ -20,11 +20,10 @@
 
 static const char *const inexact[] = {"fmb", "sat"};
 
-static enum fmb_status ask(const char *method, const struct fmb_pair *pair,
-                           struct fmb_answer *answer)
+static enum fmb_status ask(const char *method, const struct pair *pair, struct fmb_answer *answer)
 {
     memset(answer, 0xa5, sizeof *answer);
-    return fmb_decide(fmb_method_by_name(method), pair, FMB_WANT_BOX, answer);
+    return pair_decide(fmb_method_by_name(method), pair, FMB_WANT_BOX, answer);
 }
 
 /* ---- Ordinary pairs ---- */

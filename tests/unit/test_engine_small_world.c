@@ -78,7 +78,7 @@ static void assert_bodies_everywhere(int number_a, int number_b, long count[4])
     oracle_init(&truth);
     for (int place = 0; place < 16; place++) {
         struct fmb_body body[2];
-        struct fmb_pair pair;
+        struct pair pair;
         question.b.origin[0] = place % 4 - 1;
         question.b.origin[1] = place / 4 - 1;
         question_pair(&question, body, &pair);

@@ -35,16 +35,21 @@ struct scene {
     size_t count;
     double duration;
     struct solid *solid;        /* [count] */
+    struct ready *ready;        /* [count]: what the frames refer to */
     struct fmb_prepared *frame; /* [count] */
 };
 
-/* The body is gone when this returns, as it may. */
-static void prepare(const struct solid *solid, struct fmb_prepared *out)
+/* On output: *out, which refers to *ready. */
+static void prepare(const struct solid *solid, struct ready *ready, struct fmb_prepared *out)
 {
     const struct question question = {*solid, *solid, 1};
-    struct ready ready;
-    referee_ready(&question, &ready);
-    assert_int_equal(fmb_prepare(&ready.pair.a, out), FMB_OK);
+    referee_ready(&question, ready);
+    assert_int_equal(fmb_prepare(&ready->pair.a, 0, 1, out), FMB_OK);
+}
+
+static void scene_prepare(struct scene *scene, size_t i)
+{
+    prepare(&scene->solid[i], &scene->ready[i], &scene->frame[i]);
 }
 
 static void scene_open(size_t count, double duration, struct scene *out)
@@ -52,13 +57,15 @@ static void scene_open(size_t count, double duration, struct scene *out)
     out->count = count;
     out->duration = duration;
     out->solid = calloc(count + 1, sizeof *out->solid);
+    out->ready = calloc(count + 1, sizeof *out->ready);
     out->frame = calloc(count + 1, sizeof *out->frame);
-    assert_true(out->solid && out->frame);
+    assert_true(out->solid && out->ready && out->frame);
 }
 
 static void scene_close(struct scene *scene)
 {
     free(scene->solid);
+    free(scene->ready);
     free(scene->frame);
 }
 
@@ -70,7 +77,7 @@ static void scene_draw(struct draw *draw, drawing *how, int dim, bool moving, st
                                 .shape = question_draw_shape(draw, dim),
                                 .moving = moving && draw_coin(draw)};
         how(draw, i, scene->count, solid);
-        prepare(solid, &scene->frame[i]);
+        scene_prepare(scene, i);
     }
 }
 
@@ -291,8 +298,9 @@ static void boxes_hold_their_frames_and_are_tight(void **state)
         const bool whole = drawings[kind] == whole_numbers || drawings[kind] == nested;
         const double duration = whole ? draw_int(&draw, 0, 3)
                                       : durations[draw_int(&draw, 0, (int) COUNT(durations) - 1)];
+        struct ready ready;
         struct fmb_prepared frame;
-        prepare(&solid, &frame);
+        prepare(&solid, &ready, &frame);
         const struct swept box = swept_of(&frame, duration);
         for (int axis = 0; axis < solid.dim; axis++)
             for (int end = 0; end < 2; end++) {
@@ -567,13 +575,13 @@ static void cubes_in_a_grid_have_their_neighbours(void **state)
     draw_begin(&draw, "cubes_in_a_grid_have_their_neighbours");
     scene_open(CUBES, 1, &scene);
     for (int i = 0; i < CUBES; i++) {
-        struct solid cube = {.dim = 3, .shape = FMB_CUBOID};
         const int place[3] = {i / SIDE / SIDE, i / SIDE % SIDE, i % SIDE};
+        scene.solid[i] = (struct solid){.dim = 3, .shape = FMB_CUBOID};
         for (int axis = 0; axis < 3; axis++) {
-            cube.origin[axis] = place[axis];
-            cube.component[axis][axis] = 1;
+            scene.solid[i].origin[axis] = place[axis];
+            scene.solid[i].component[axis][axis] = 1;
         }
-        prepare(&cube, &scene.frame[i]);
+        scene_prepare(&scene, (size_t) i);
     }
     plant(&draw, &scene, &planted);
     for (int i = 0; i < CUBES; i++) {
@@ -602,8 +610,10 @@ static void draw_hard(struct draw *draw, int dim, struct scene *scene)
         (draw_int(draw, 0, 7) ? pair_draw : pair_draw_stretched)(draw, &cell, &question);
         if (scene->duration > 0)
             pair_set_duration(&question, scene->duration);
-        prepare(&question.a, &scene->frame[i]);
-        prepare(&question.b, &scene->frame[i + 1]);
+        scene->solid[i] = question.a;
+        scene->solid[i + 1] = question.b;
+        scene_prepare(scene, i);
+        scene_prepare(scene, i + 1);
     }
 }
 
@@ -634,8 +644,9 @@ static void pairs_that_meet_are_found(void **state)
             assert_int_equal(
                 fmb_tree_ask(&planted.tree, &scene.frame[i], i + 1, planted.found, &count), FMB_OK);
             for (unsigned j = i + 1; j < (i % 2 ? i + 4 : i + 3) && j < FRAMES; j++) {
-                const enum fmb_verdict verdict =
-                    fmb_meet(&scene.frame[i], &scene.frame[j], scene.duration);
+                enum fmb_verdict verdict;
+                assert_int_equal(
+                    fmb_meet(&scene.frame[i], &scene.frame[j], scene.duration, &verdict), FMB_OK);
                 assert_true(verdict == FMB_SEPARATED || is_found(planted.found, count, j));
                 meeting += verdict != FMB_SEPARATED;
                 apart += !is_found(planted.found, count, j);
@@ -650,54 +661,52 @@ static void pairs_that_meet_are_found(void **state)
 
 /* ---- What a tree costs ---- */
 
-static void cube_at(const double origin[3], const double size[3], struct fmb_prepared *out)
+static void cube_at(const double origin[3], const double size[3], struct solid *out)
 {
-    struct solid cube = {.dim = 3, .shape = FMB_CUBOID};
+    *out = (struct solid){.dim = 3, .shape = FMB_CUBOID};
     for (int axis = 0; axis < 3; axis++) {
-        cube.origin[axis] = origin[axis];
-        cube.component[axis][axis] = size[axis];
+        out->origin[axis] = origin[axis];
+        out->component[axis][axis] = size[axis];
     }
-    prepare(&cube, out);
 }
 
-/* Scenes whose frames have few neighbours each, but whose boxes are of no help in one way or
- * another. */
-typedef void growing(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out);
+/* Scenes in space, whose frames have few neighbours each, but whose boxes are of no help in one way
+ * or another. */
 
-static void line(int axis, double at, struct fmb_prepared *out)
+static void line(int axis, double at, struct solid *out)
 {
     double origin[3] = {0}, size[3] = {0.5, 0.5, 0.5};
     origin[axis] = at;
     cube_at(origin, size, out);
 }
 
-static void line_x(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void line_x(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     (void) draw, (void) count;
     line(0, (double) i, out);
 }
 
-static void line_y_backwards(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void line_y_backwards(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     (void) draw;
     line(1, (double) (count - i), out);
 }
 
-static void line_z_mixed(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void line_z_mixed(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     (void) draw;
     line(2, (double) ((i * 7919) % count), out);
 }
 
 /* As long as all of them reach, and more, along x. */
-static void planks(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void planks(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     const double size[3] = {1e9, 0.5, 0.5};
     (void) count;
     cube_at((double[3]){draw_uniform(draw, 0, 1e8), (double) i, 0}, size, out);
 }
 
-static void grid(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void grid(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     const size_t side = (size_t) ceil(cbrt((double) count));
     const double size[3] = {1, 1, 1};
@@ -707,7 +716,7 @@ static void grid(struct draw *draw, size_t i, size_t count, struct fmb_prepared 
         size, out);
 }
 
-static void cloud(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void cloud(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     const double wide = cbrt((double) count), size[3] = {0.5, 0.5, 0.5};
     (void) i;
@@ -717,7 +726,7 @@ static void cloud(struct draw *draw, size_t i, size_t count, struct fmb_prepared
 }
 
 /* With some as far out as numbers go, and one that holds everything. */
-static void cloud_and_outliers(struct draw *draw, size_t i, size_t count, struct fmb_prepared *out)
+static void cloud_and_outliers(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     const double all[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, size[3] = {0.5, 0.5, 0.5};
     if (i == count / 3)
@@ -729,8 +738,7 @@ static void cloud_and_outliers(struct draw *draw, size_t i, size_t count, struct
 }
 
 /* Clouds within clouds, each by far smaller than the one before. */
-static void clouds_of_every_size(struct draw *draw, size_t i, size_t count,
-                                 struct fmb_prepared *out)
+static void clouds_of_every_size(struct draw *draw, size_t i, size_t count, struct solid *out)
 {
     const double scale = ldexp(1, -900 + 30 * (int) (i % 60)), wide = cbrt((double) count / 60);
     const double size[3] = {scale / 2, scale / 2, scale / 2};
@@ -744,14 +752,16 @@ struct cost {
     double visits, found; /* of a frame that is asked about */
 };
 
-static struct cost cost_of(struct draw *draw, growing *how, size_t count)
+static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
 {
     struct scene scene;
     struct planted planted;
     size_t visits = 0, found = 0;
     scene_open(count, 1, &scene);
-    for (size_t i = 0; i < count; i++)
-        how(draw, i, count, &scene.frame[i]);
+    for (size_t i = 0; i < count; i++) {
+        how(draw, i, count, &scene.solid[i]);
+        scene_prepare(&scene, i);
+    }
     plant(draw, &scene, &planted);
     for (unsigned i = 0; i < count; i++) {
         const struct swept box = swept_of(&scene.frame[i], 1);
@@ -767,7 +777,7 @@ static void asking_costs_no_more_than_a_few_nodes_a_level(void **state)
     (void) state;
     static const struct {
         const char *name;
-        growing *how;
+        drawing *how;
     } scenes[] = {{"line along x", line_x},
                   {"line along y, backwards", line_y_backwards},
                   {"line along z, mixed", line_z_mixed},

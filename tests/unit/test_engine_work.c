@@ -25,7 +25,7 @@ static double work_of_box(const struct question *question)
     struct fmb_answer answer;
     referee_ready(question, &ready);
     const double before = gmp_work;
-    assert_int_equal(fmb_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
+    assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
     return gmp_work - before;
 }
 
@@ -44,7 +44,7 @@ static double work_of_certificate(const struct question *question)
     size_t length;
     referee_ready(question, &ready);
     const double before = gmp_work;
-    assert_int_equal(fmb_certificate(&ready.pair, text, sizeof text, &length), FMB_OK);
+    assert_int_equal(pair_certificate(&ready.pair, text, sizeof text, &length), FMB_OK);
     return gmp_work - before;
 }
 

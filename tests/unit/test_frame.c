@@ -1,4 +1,4 @@
-/* What goes into the engine (bodies, frames, pairs) and its tables. */
+/* What goes into the engine (frames from components, pairs) and its tables. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,28 +14,30 @@
 
 #include "draw.h"
 #include "fmb.h"
+#include "placed_pair.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const double unit2[4] = {1, 0, 0, 1};
-static const double unit3[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+/* More numbers than any frame takes follow its nine. */
+static const double unit3[16] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-static struct fmb_body make(int dim, int shape, const double *number)
+static struct fmb_frame make(int dim, int shape, const double *number)
 {
-    struct fmb_body body;
-    memset(&body, 0xa5, sizeof body); /* what is not written shows */
+    struct fmb_frame frame;
+    memset(&frame, 0xa5, sizeof frame); /* what is not written shows */
     size_t count = (size_t) (fmb_component_count(dim, shape) * dim);
-    assert_int_equal(fmb_body_make(dim, shape, number, count, &body), FMB_OK);
-    return body;
+    assert_int_equal(fmb_frame_make(dim, shape, number, count, &frame), FMB_OK);
+    return frame;
 }
 
-/* ---- Bodies ---- */
+/* ---- Frames ---- */
 
-static void body_holds_what_it_was_given(void **state)
+static void frame_holds_what_it_was_given(void **state)
 {
     (void) state;
     static const double number[6] = {1, 2, 3, 4, 5, 7};
-    struct fmb_body plane = make(2, FMB_TETRAHEDRON, number), face = make(3, FMB_FACE, number);
+    struct fmb_frame plane = make(2, FMB_TETRAHEDRON, number), face = make(3, FMB_FACE, number);
     assert_int_equal(plane.dim, 2);
     assert_int_equal(plane.shape, FMB_TETRAHEDRON);
     assert_int_equal(plane.count, 2);
@@ -49,7 +51,7 @@ static void body_holds_what_it_was_given(void **state)
     assert_memory_equal(face.component, in_space, sizeof in_space);
 }
 
-static void body_refuses(void **state)
+static void frame_refuses(void **state)
 {
     (void) state;
     static const struct {
@@ -58,7 +60,7 @@ static void body_refuses(void **state)
         enum fmb_status status;
     } cases[] = {
         {3, 0, 9, FMB_UNKNOWN_SHAPE},
-        {3, 4, 9, FMB_UNKNOWN_SHAPE},
+        {3, 5, 9, FMB_UNKNOWN_SHAPE},
         {2, -1, 4, FMB_UNKNOWN_SHAPE},
         {1, FMB_CUBOID, 1, FMB_WRONG_DIMENSION},
         {4, FMB_CUBOID, 9, FMB_WRONG_DIMENSION},
@@ -69,31 +71,46 @@ static void body_refuses(void **state)
         {3, FMB_CUBOID, 6, FMB_WRONG_COUNT},
         {3, FMB_TETRAHEDRON, 10, FMB_WRONG_COUNT},
         {2, FMB_CUBOID, 9, FMB_WRONG_COUNT},
-        {3, FMB_FACE, 9, FMB_WRONG_COUNT},
+        {3, FMB_FACE, 8, FMB_WRONG_COUNT},
+        {3, FMB_FACE, 12, FMB_WRONG_COUNT},
+        {3, FMB_CUBOID, 15, FMB_WRONG_COUNT},
+        {1, FMB_BOX, 2, FMB_WRONG_DIMENSION},
+        {3, FMB_BOX, 0, FMB_WRONG_COUNT},
+        {3, FMB_BOX, 2, FMB_WRONG_COUNT},
+        {3, FMB_BOX, 4, FMB_WRONG_COUNT},
+        {3, FMB_BOX, 9, FMB_WRONG_COUNT},
+        {2, FMB_BOX, 3, FMB_WRONG_COUNT},
         {2, FMB_CUBOID, SIZE_MAX, FMB_WRONG_COUNT},
     };
-    struct fmb_body body;
+    struct fmb_frame frame;
     for (size_t i = 0; i < COUNT(cases); i++)
-        assert_int_equal(fmb_body_make(cases[i].dim, cases[i].shape, unit3, cases[i].count, &body),
-                         cases[i].status);
-    assert_int_equal(fmb_body_make(3, FMB_CUBOID, NULL, 0, &body), FMB_WRONG_COUNT);
+        assert_int_equal(
+            fmb_frame_make(cases[i].dim, cases[i].shape, unit3, cases[i].count, &frame),
+            cases[i].status);
+    assert_int_equal(fmb_frame_make(3, FMB_CUBOID, NULL, 0, &frame), FMB_WRONG_COUNT);
 }
 
-static void body_refuses_each_number_that_is_not_finite(void **state)
+static void frame_refuses_each_number_that_is_not_finite(void **state)
 {
     (void) state;
     static const double bad[] = {NAN, INFINITY, -INFINITY};
-    struct fmb_body body;
+    static const struct {
+        int dim, shape;
+        size_t count;
+    } forms[] = {{3, FMB_CUBOID, 9}, {3, FMB_CUBOID, 12}, {3, FMB_FACE, 6}, {3, FMB_FACE, 9},
+                 {2, FMB_CUBOID, 4}, {2, FMB_CUBOID, 6},  {3, FMB_BOX, 3},  {3, FMB_BOX, 6},
+                 {2, FMB_BOX, 2},    {2, FMB_BOX, 4}};
+    struct fmb_frame frame;
     for (size_t i = 0; i < COUNT(bad); i++)
-        for (int at = 0; at < 9; at++) {
-            double number[9];
+        for (int at = 0; at < 12; at++) {
+            double number[12];
             memcpy(number, unit3, sizeof number);
             number[at] = bad[i];
-            assert_int_equal(fmb_body_make(3, FMB_CUBOID, number, 9, &body), FMB_NOT_FINITE);
-            if (at < 6)
-                assert_int_equal(fmb_body_make(3, FMB_FACE, number, 6, &body), FMB_NOT_FINITE);
-            if (at < 4)
-                assert_int_equal(fmb_body_make(2, FMB_CUBOID, number, 4, &body), FMB_NOT_FINITE);
+            for (size_t k = 0; k < COUNT(forms); k++)
+                if ((size_t) at < forms[k].count)
+                    assert_int_equal(fmb_frame_make(forms[k].dim, forms[k].shape, number,
+                                                    forms[k].count, &frame),
+                                     FMB_NOT_FINITE);
         }
 }
 
@@ -203,7 +220,7 @@ static void flatness_by_hand(void **state)
 static void faces_are_flat(void **state)
 {
     (void) state;
-    struct fmb_body face = make(3, FMB_FACE, unit3);
+    struct fmb_frame face = make(3, FMB_FACE, unit3);
     assert_true(face.flat);
     assert_false(face.inverted);
 }
@@ -255,14 +272,14 @@ static void flatness_is_exact(void **state)
 /* ---- The inverse ---- */
 
 /* The largest difference of inverse * components from the unit matrix. */
-static double residue(const struct fmb_body *body)
+static double residue(const struct fmb_frame *frame)
 {
     double worst = 0;
-    for (int i = 0; i < body->dim; i++)
-        for (int j = 0; j < body->dim; j++) {
+    for (int i = 0; i < frame->dim; i++)
+        for (int j = 0; j < frame->dim; j++) {
             double x = 0; /* parameter j of the point at component i */
-            for (int axis = 0; axis < body->dim; axis++)
-                x += body->inverse[axis][j] * body->component[i][axis];
+            for (int axis = 0; axis < frame->dim; axis++)
+                x += frame->inverse[axis][j] * frame->component[i][axis];
             worst = fmax(worst, fabs(x - (i == j)));
         }
     return worst;
@@ -279,13 +296,13 @@ static void inverse_is_accurate(void **state)
         const int dim = draw_int(&draw, 2, 3), exponent = draw_int(&draw, -900, 900);
         for (int i = 0; i < dim * dim; i++)
             number[i] = ldexp((i % (dim + 1) == 0) + draw_uniform(&draw, -0.3, 0.3), exponent);
-        struct fmb_body body = make(dim, FMB_CUBOID, number);
-        assert_true(body.inverted);
-        assert_true(residue(&body) < 1e-14);
+        struct fmb_frame frame = make(dim, FMB_CUBOID, number);
+        assert_true(frame.inverted);
+        assert_true(residue(&frame) < 1e-14);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 if (i >= dim || j >= dim)
-                    assert_true(body.inverse[i][j] == 0);
+                    assert_true(frame.inverse[i][j] == 0);
     }
 }
 
@@ -311,12 +328,12 @@ static double exact_entry(int dim, const double *number, int component, int axis
 }
 
 /* Whatever the rounding of the determinant does: the inverse keeps its sign and its size. */
-static void inverse_of_nearly_flat_bodies(void **state)
+static void inverse_of_nearly_flat_frames(void **state)
 {
     (void) state;
     struct draw draw;
     long checked = 0;
-    draw_begin(&draw, "inverse_of_nearly_flat_bodies");
+    draw_begin(&draw, "inverse_of_nearly_flat_frames");
     for (long n = draw_sample(40000); n > 0; n--) {
         double number[9], largest = 0, worst = 0;
         const int dim = draw_int(&draw, 2, 3);
@@ -326,14 +343,14 @@ static void inverse_of_nearly_flat_bodies(void **state)
         for (int axis = 0; axis < dim; axis++)
             number[(dim - 1) * dim + axis] =
                 p * number[axis] + (dim == 3 ? q * number[3 + axis] : 0);
-        struct fmb_body body = make(dim, FMB_CUBOID, number);
-        if (!body.inverted)
+        struct fmb_frame frame = make(dim, FMB_CUBOID, number);
+        if (!frame.inverted)
             continue;
         for (int i = 0; i < dim; i++)
             for (int axis = 0; axis < dim; axis++) {
                 double exact = exact_entry(dim, number, i, axis);
                 largest = fmax(largest, fabs(exact));
-                worst = fmax(worst, fabs(body.inverse[axis][i] - exact));
+                worst = fmax(worst, fabs(frame.inverse[axis][i] - exact));
             }
         assert_true(worst < 0.25 * largest);
         checked++;
@@ -344,7 +361,7 @@ static void inverse_of_nearly_flat_bodies(void **state)
 static void inverse_of_the_unit_is_exact(void **state)
 {
     (void) state;
-    struct fmb_body plane = make(2, FMB_CUBOID, unit2), space = make(3, FMB_TETRAHEDRON, unit3);
+    struct fmb_frame plane = make(2, FMB_CUBOID, unit2), space = make(3, FMB_TETRAHEDRON, unit3);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             assert_true(space.inverse[i][j] == (i == j));
@@ -353,58 +370,76 @@ static void inverse_of_the_unit_is_exact(void **state)
 }
 
 /* No inverse: flat, or its numbers are beyond the doubles. Then it is all zero. */
-static void bodies_without_inverse(void **state)
+static void frames_without_inverse(void **state)
 {
     (void) state;
     static const double flat[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     static const double tiny[9] = {S, 0, 0, 0, S, 0, 0, 0, S};
     static const double one_tiny[9] = {1, 0, 0, 0, 1, 0, 0, 0, S};
     static const double zero[3][3];
-    const struct fmb_body bodies[] = {make(3, FMB_CUBOID, flat), make(3, FMB_CUBOID, tiny),
-                                      make(3, FMB_TETRAHEDRON, one_tiny), make(3, FMB_FACE, unit3)};
-    for (size_t i = 0; i < COUNT(bodies); i++) {
-        assert_false(bodies[i].inverted);
-        assert_memory_equal(bodies[i].inverse, zero, sizeof zero);
+    const struct fmb_frame frames[] = {make(3, FMB_CUBOID, flat), make(3, FMB_CUBOID, tiny),
+                                       make(3, FMB_TETRAHEDRON, one_tiny),
+                                       make(3, FMB_FACE, unit3)};
+    for (size_t i = 0; i < COUNT(frames); i++) {
+        assert_false(frames[i].inverted);
+        assert_memory_equal(frames[i].inverse, zero, sizeof zero);
     }
-    assert_true(bodies[0].flat);
-    assert_false(bodies[1].flat);
-    assert_false(bodies[2].flat);
+    assert_true(frames[0].flat);
+    assert_false(frames[1].flat);
+    assert_false(frames[2].flat);
 }
 
 /* ---- Pairs ---- */
 
 static struct fmb_body plane_body, space_body;
 
-static struct fmb_pair plane_pair(void)
+static struct fmb_body make_body(int dim, const double *number)
 {
-    plane_body = make(2, FMB_CUBOID, unit2);
-    return (struct fmb_pair){{&plane_body, {0}, {0}, false}, {&plane_body, {0}, {0}, false}, 1};
+    struct fmb_body body;
+    memset(&body, 0xa5, sizeof body); /* what is not written shows */
+    assert_int_equal(fmb_body_make(dim, FMB_CUBOID, number, (size_t) (dim * dim), &body), FMB_OK);
+    return body;
+}
+
+static struct pair plane_pair(void)
+{
+    plane_body = make_body(2, unit2);
+    return (struct pair){{.body = &plane_body}, {.body = &plane_body}, 1};
+}
+
+/* With which all methods decide a pair, or refuse it. */
+static enum fmb_status status_of(const struct pair *pair)
+{
+    struct fmb_answer answer;
+    const enum fmb_status status = pair_decide(fmb_method_default(), pair, 0, &answer);
+    for (size_t i = 0; fmb_method_at(i); i++)
+        assert_int_equal(pair_decide(fmb_method_at(i), pair, 0, &answer), status);
+    assert_int_equal(pair_check(pair), status);
+    return status;
 }
 
 static void pairs_that_are_refused(void **state)
 {
     (void) state;
-    struct fmb_pair pair = plane_pair();
-    assert_int_equal(fmb_pair_check(&pair), FMB_OK);
+    struct pair pair = plane_pair();
+    assert_int_equal(status_of(&pair), FMB_OK);
 
-    space_body = make(3, FMB_CUBOID, unit3);
+    space_body = make_body(3, unit3);
     pair.b.body = &space_body;
-    assert_int_equal(fmb_pair_check(&pair), FMB_DIMENSIONS_DIFFER);
+    assert_int_equal(status_of(&pair), FMB_DIMENSIONS_DIFFER);
 
     static const double bad[] = {NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < COUNT(bad); i++)
         for (int axis = 0; axis < 2; axis++) {
             pair = plane_pair();
-            pair.a.origin[axis] = bad[i];
-            assert_int_equal(fmb_pair_check(&pair), FMB_NOT_FINITE);
+            pair.a.position[axis] = bad[i];
+            assert_int_equal(status_of(&pair), FMB_NOT_FINITE);
             pair = plane_pair();
-            pair.b.origin[axis] = bad[i];
-            assert_int_equal(fmb_pair_check(&pair), FMB_NOT_FINITE);
+            pair.b.position[axis] = bad[i];
+            assert_int_equal(status_of(&pair), FMB_NOT_FINITE);
             pair = plane_pair();
             pair.b.velocity[axis] = bad[i];
-            assert_int_equal(fmb_pair_check(&pair), FMB_OK); /* not read: it does not move */
-            pair.b.moving = true;
-            assert_int_equal(fmb_pair_check(&pair), FMB_NOT_FINITE);
+            assert_int_equal(status_of(&pair), FMB_NOT_FINITE);
         }
 }
 
@@ -413,14 +448,14 @@ static void durations(void **state)
     (void) state;
     static const double good[] = {0, -0.0, S, 1, M};
     static const double bad[] = {-S, -1, NAN, INFINITY, -INFINITY};
-    struct fmb_pair pair = plane_pair();
+    struct pair pair = plane_pair();
     for (size_t i = 0; i < COUNT(good); i++) {
         pair.duration = good[i];
-        assert_int_equal(fmb_pair_check(&pair), FMB_OK);
+        assert_int_equal(status_of(&pair), FMB_OK);
     }
     for (size_t i = 0; i < COUNT(bad); i++) {
         pair.duration = bad[i];
-        assert_int_equal(fmb_pair_check(&pair), FMB_BAD_DURATION);
+        assert_int_equal(status_of(&pair), FMB_BAD_DURATION);
     }
 }
 
@@ -428,13 +463,12 @@ static void durations(void **state)
 static void axes_beyond_dim_are_not_read(void **state)
 {
     (void) state;
-    struct fmb_pair pair = plane_pair();
+    struct pair pair = plane_pair();
     struct fmb_answer answer;
-    pair.a.origin[2] = pair.b.velocity[2] = NAN;
-    pair.b.moving = true;
-    assert_int_equal(fmb_pair_check(&pair), FMB_OK);
+    pair.a.position[2] = pair.b.velocity[2] = NAN;
+    assert_int_equal(status_of(&pair), FMB_OK);
     for (size_t i = 0; fmb_method_at(i); i++) {
-        assert_int_equal(fmb_decide(fmb_method_at(i), &pair, FMB_WANT_BOX, &answer), FMB_OK);
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, FMB_WANT_BOX, &answer), FMB_OK);
         assert_int_equal(answer.verdict, FMB_OVERLAPPING);
         assert_true(answer.box[0][2] == 0 && answer.box[1][2] == 0);
     }
@@ -445,15 +479,15 @@ static void decide_checks_first(void **state)
     (void) state;
     struct fmb_answer answer;
     for (size_t i = 0; fmb_method_at(i); i++) {
-        struct fmb_pair pair = plane_pair();
-        assert_int_equal(fmb_decide(fmb_method_at(i), &pair, 2, &answer), FMB_UNKNOWN_WANT);
-        assert_int_equal(fmb_decide(fmb_method_at(i), &pair, 0x80000001U, &answer),
+        struct pair pair = plane_pair();
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 2, &answer), FMB_UNKNOWN_WANT);
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0x80000001U, &answer),
                          FMB_UNKNOWN_WANT);
         pair.duration = -1;
-        assert_int_equal(fmb_decide(fmb_method_at(i), &pair, 0, &answer), FMB_BAD_DURATION);
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0, &answer), FMB_BAD_DURATION);
         pair = plane_pair();
-        pair.a.origin[0] = NAN;
-        assert_int_equal(fmb_decide(fmb_method_at(i), &pair, 0, &answer), FMB_NOT_FINITE);
+        pair.a.position[0] = NAN;
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0, &answer), FMB_NOT_FINITE);
     }
 }
 
@@ -465,10 +499,11 @@ static void names_of_shapes_and_verdicts(void **state)
     assert_string_equal(fmb_shape_name(FMB_CUBOID), "cuboid");
     assert_string_equal(fmb_shape_name(FMB_TETRAHEDRON), "tetrahedron");
     assert_string_equal(fmb_shape_name(FMB_FACE), "face");
+    assert_string_equal(fmb_shape_name(FMB_BOX), "box");
     assert_string_equal(fmb_verdict_name(FMB_SEPARATED), "separated");
     assert_string_equal(fmb_verdict_name(FMB_TOUCHING), "touching");
     assert_string_equal(fmb_verdict_name(FMB_OVERLAPPING), "overlapping");
-    static const int unknown[] = {-1, 0, 4, 1000, -2147483647 - 1};
+    static const int unknown[] = {-1, 0, 5, 1000, -2147483647 - 1};
     for (size_t i = 0; i < COUNT(unknown); i++) {
         assert_null(fmb_shape_name(unknown[i]));
         assert_null(fmb_verdict_name(unknown[i]));
@@ -481,7 +516,8 @@ static void counts_of_components(void **state)
     for (int dim = -1; dim <= 5; dim++)
         for (int shape = -1; shape <= 5; shape++) {
             int expected = 0;
-            if ((dim == 2 || dim == 3) && (shape == FMB_CUBOID || shape == FMB_TETRAHEDRON))
+            if ((dim == 2 || dim == 3) &&
+                (shape == FMB_CUBOID || shape == FMB_TETRAHEDRON || shape == FMB_BOX))
                 expected = dim;
             if (dim == 3 && shape == FMB_FACE)
                 expected = 2;
@@ -544,16 +580,16 @@ static void version_has_three_numbers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(body_holds_what_it_was_given),
-        cmocka_unit_test(body_refuses),
-        cmocka_unit_test(body_refuses_each_number_that_is_not_finite),
+        cmocka_unit_test(frame_holds_what_it_was_given),
+        cmocka_unit_test(frame_refuses),
+        cmocka_unit_test(frame_refuses_each_number_that_is_not_finite),
         cmocka_unit_test(flatness_by_hand),
         cmocka_unit_test(faces_are_flat),
         cmocka_unit_test(flatness_is_exact),
         cmocka_unit_test(inverse_is_accurate),
-        cmocka_unit_test(inverse_of_nearly_flat_bodies),
+        cmocka_unit_test(inverse_of_nearly_flat_frames),
         cmocka_unit_test(inverse_of_the_unit_is_exact),
-        cmocka_unit_test(bodies_without_inverse),
+        cmocka_unit_test(frames_without_inverse),
         cmocka_unit_test(pairs_that_are_refused),
         cmocka_unit_test(durations),
         cmocka_unit_test(axes_beyond_dim_are_not_read),

@@ -8,6 +8,7 @@
 #include "json.h"
 #include "number.h"
 #include "text.h"
+#include "turned_box.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -69,6 +70,15 @@ static struct scene read_one(const char *text)
     return scene;
 }
 
+/* splitmix64 */
+static uint64_t next_random(uint64_t *state)
+{
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
 /* ---- What is understood ---------------------------------------------------------------------- */
 
 #define CUBE "\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],[0,0,1]]"
@@ -89,18 +99,88 @@ static void reads_every_field(void **state)
     assert_true(scene.duration == 2.5);
     assert_int_equal(scene.body_count, 2);
     assert_int_equal(scene.body[0].id, 1);
-    assert_int_equal(scene.body[0].body.shape, FMB_TETRAHEDRON);
-    assert_true(scene.body[0].moving);
+    const struct fmb_frame *frame = fmb_body_frame(&scene.body[0].body, 0);
+    assert_int_equal(frame->shape, FMB_TETRAHEDRON);
     assert_true(scene.body[0].velocity[2] == 3);
-    assert_true(scene.body[0].origin[0] == 0.1 && signbit(scene.body[0].origin[1]));
-    assert_true(scene.body[0].body.component[2][2] == -0.95);
-    assert_int_equal(scene.body[1].body.shape, FMB_FACE);
-    assert_false(scene.body[1].moving);
+    assert_true(scene.body[0].position[0] == 0.1 && signbit(scene.body[0].position[1]));
+    assert_true(frame->component[2][2] == -0.95 && frame->origin[0] == 0);
+    assert_int_equal(fmb_body_frame(&scene.body[1].body, 0)->shape, FMB_FACE);
+    assert_true(scene.body[1].velocity[0] == 0);
+    assert_int_equal(scene.body[1].orientation_count, 0);
     assert_false(scene.all_pairs);
     assert_int_equal(scene.pair_count, 3);
     assert_int_equal(scene.pair[0].a, 1);
     assert_int_equal(scene.pair[1].a, 0);
     scene_clear(&scene);
+}
+
+static void reads_poses_frames_names_and_ignored_pairs(void **state)
+{
+    struct scene scene = read_one(
+        "{\"dim\": 3, \"bodies\": ["
+        "{\"id\": 1, \"name\": \"\\u00e4<\", \"shape\": \"box\", \"size\": [2,0,0.5], "
+        "\"position\": [1,2,3]},"
+        "{\"id\": 2, \"orientation\": [1,0,0,-2], \"velocity\": [0,0,-1], \"frames\": ["
+        "{\"shape\": \"box\", \"size\": [1,2,3], \"position\": [4,5,6]},"
+        "{\"shape\": \"box\", \"size\": [1,2,3], \"position\": [4,5,6], \"orientation\": "
+        "[1,0,0,1]},"
+        "{\"shape\": \"face\", \"origin\": [7,8,9], \"components\": [[1,0,0],[0,1,0]]}]},"
+        "{\"id\": 3, \"shape\": \"face\", \"origin\": [7,8,9], \"position\": [1,1,1], "
+        "\"components\": [[1,0,0],[0,1,0]]}],"
+        "\"ignore\": [[3,2],[1,2],[2,3]]}");
+    (void) state;
+    const struct fmb_frame *box = fmb_body_frame(&scene.body[0].body, 0);
+    assert_string_equal(scene.body[0].name, "\xc3\xa4<");
+    assert_int_equal(box->shape, FMB_BOX);
+    assert_true(box->component[2][2] == 0.5 && box->centre[0] == 0);
+    assert_true(scene.body[0].position[2] == 3);
+    assert_int_equal(scene.body[1].body.frame_count, 3);
+    assert_int_equal(scene.body[1].orientation_count, 4);
+    assert_true(scene.body[1].orientation[3] == -2 && scene.body[1].velocity[2] == -1);
+    assert_true(fmb_body_frame(&scene.body[1].body, 0)->centre[1] == 5);
+    /* Turned by 90 degrees about z. */
+    const struct fmb_frame *turned = fmb_body_frame(&scene.body[1].body, 1);
+    const double origin[3] = {5, 4.5, 4.5}, component[3][3] = {{0, 1, 0}, {-2, 0, 0}, {0, 0, 3}};
+    assert_int_equal(turned->shape, FMB_CUBOID);
+    for (int axis = 0; axis < 3; axis++) {
+        assert_true(turned->origin[axis] == origin[axis]);
+        for (int i = 0; i < 3; i++)
+            assert_true(turned->component[i][axis] == component[i][axis]);
+    }
+    assert_true(fmb_body_frame(&scene.body[1].body, 2)->origin[0] == 7);
+    assert_true(fmb_body_frame(&scene.body[2].body, 0)->origin[0] == 7);
+    assert_true(scene.body[2].position[0] == 1);
+    assert_int_equal(scene.ignored_count, 2);
+    assert_int_equal(scene_count_pairs(&scene), 1);
+    struct scene_cursor cursor = {0};
+    struct scene_pair pair;
+    assert_true(scene_next_pair(&scene, &cursor, &pair));
+    assert_true(pair.a == 0 && pair.b == 2);
+    assert_false(scene_next_pair(&scene, &cursor, &pair));
+    scene_clear(&scene);
+}
+
+/* Against the same sums in long double, which are off by less than half a unit of a double. */
+static void turned_boxes_are_rounded_once(void **state)
+{
+    uint64_t seed = 5;
+    (void) state;
+    for (int i = 0; i < 2000; i++) {
+        double q[4], size[3], centre[3] = {0}, number[12];
+        for (int k = 0; k < 4; k++)
+            q[k] = (double) (next_random(&seed) % 2000) - 999.5;
+        for (int k = 0; k < 3; k++)
+            size[k] = (double) (next_random(&seed) % 1000);
+        turned_box(3, centre, size, q, number);
+        const long double norm = (long double) q[0] * q[0] + (long double) q[1] * q[1] +
+                                 (long double) q[2] * q[2] + (long double) q[3] * q[3];
+        const long double xy = 2 * ((long double) q[1] * q[2] - (long double) q[0] * q[3]);
+        const double should = (double) (xy * size[1] / norm);
+        assert_true(fabs(number[3 + 3] - should) <= fabs(should) * 0x1p-52);
+        if (should != number[6])
+            assert_true(number[6] == nextafter(should, INFINITY) ||
+                        number[6] == nextafter(should, -INFINITY));
+    }
 }
 
 static void missing_fields_have_defaults(void **state)
@@ -183,18 +263,9 @@ static double read_number_back(const char *number)
              "\"components\":[[1,0],[0,1]]}]}",
              number);
     struct scene scene = read_one(text);
-    double value = scene.body[0].origin[0];
+    double value = scene.body[0].position[0];
     scene_clear(&scene);
     return value;
-}
-
-/* splitmix64 */
-static uint64_t next_random(uint64_t *state)
-{
-    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
 }
 
 static void doubles_come_back_bit_for_bit(void **state)
@@ -323,9 +394,9 @@ static const struct {
     {SCENE(BODY("1")), "bodies[0].id: " ID_EXPECTED "a string"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id: 1 is the id of bodies[0] already"},
     {SCENE("{\"id\":1,\"shape\":\"sphere\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: unknown shape \"sphere\" (there are cuboid, tetrahedron, face)"},
+     "bodies[0].shape: unknown shape \"sphere\" (there are cuboid, tetrahedron, face, box)"},
     {SCENE("{\"id\":1,\"shape\":\"Cuboid\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: unknown shape \"Cuboid\" (there are cuboid, tetrahedron, face)"},
+     "bodies[0].shape: unknown shape \"Cuboid\" (there are cuboid, tetrahedron, face, box)"},
     {SCENE("{\"id\":1,\"shape\":1,\"origin\":[0,0,0],\"components\":[]}"),
      "bodies[0].shape: expected a string, found a number"},
     {"{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"face\",\"origin\":[0,0],"
@@ -507,6 +578,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_every_field),
+        cmocka_unit_test(reads_poses_frames_names_and_ignored_pairs),
+        cmocka_unit_test(turned_boxes_are_rounded_once),
         cmocka_unit_test(missing_fields_have_defaults),
         cmocka_unit_test(empty_lists_are_scenes),
         cmocka_unit_test(scenes_follow_each_other),

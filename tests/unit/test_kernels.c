@@ -95,14 +95,14 @@ static void set_square(mpq_t out, const double *vector, int dim)
     mpq_clear(number);
 }
 
-/* What the head of a frame says of a component of a body that doubles can say something of: no less
+/* What the head of a frame in range says of a component: no less
  * than its length, and at most a fifteenth more. */
-static void expect_size(const struct fmb_body *body, int i)
+static void expect_size(const struct fmb_frame *frame, int i)
 {
-    const double size = prepared_size(body->head, i), least = size * 15 / 16;
+    const double size = prepared_size(frame->head, i), least = size * 15 / 16;
     mpq_t length, said;
     mpq_inits(length, said, NULL);
-    set_square(length, body->component[i], body->dim);
+    set_square(length, frame->component[i], frame->dim);
     set_square(said, &size, 1);
     assert_true(mpq_cmp(said, length) >= 0);
     set_square(said, &least, 1);
@@ -128,11 +128,11 @@ static void sizes_are_lengths_or_a_little_more(void **state)
         if (draw_coin(&draw))
             question.a.component[0][1] = question.a.component[0][2] = 0;
         referee_ready(&question, &ready);
-        const struct fmb_body *body = &ready.body[0];
-        for (int i = 0; i < body->count && body->in_range; i++, sizes++)
-            expect_size(body, i);
-        for (int i = body->in_range ? body->count : 0; i < FMB_DIM_MAX; i++)
-            assert_true(prepared_size(body->head, i) == 0);
+        const struct fmb_frame *frame = &ready.body[0].one;
+        for (int i = 0; i < frame->count && frame->in_range; i++, sizes++)
+            expect_size(frame, i);
+        for (int i = frame->in_range ? frame->count : 0; i < FMB_DIM_MAX; i++)
+            assert_true(prepared_size(frame->head, i) == 0);
     }
     printf("# %ld sizes\n", sizes);
     assert_true(sizes > 0);
@@ -183,11 +183,14 @@ struct pool {
     bool boxes; /* they are of interest: nothing moves */
     double duration;
     struct question question[POOL];
-    struct fmb_prepared frame[POOL][2]; /* in their places */
+    struct ready ready[POOL];
+    struct fmb_prepared frame[POOL][2]; /* in their places; they refer to ready */
     struct fmb_answer exact[POOL];
 };
 
-static const struct fmb_prepared nobody;
+/* What lanes beyond the pairs read. */
+static const struct fmb_placement at_rest;
+static const struct fmb_prepared idle = {.placement = &at_rest};
 
 static double draw_duration(struct draw *draw)
 {
@@ -220,23 +223,23 @@ static bool draw_pair(struct draw *draw, pair_function *pair, struct pool *pool,
 {
     const struct cell cell = draw_cell(draw, pool->kind, !pool->boxes);
     struct question *question = &pool->question[i];
-    struct ready ready;
+    struct ready *ready = &pool->ready[i];
     struct fmb_prepared a, b;
     bool swapped;
     pair(draw, &cell, question);
     pair_set_duration(question, pool->duration);
     if (pool->kind & RUN_ALONG && draw_int(draw, 0, 3) == 0)
         align(draw, question);
-    referee_ready(question, &ready);
-    prepared_set(&ready.pair.a, &a);
-    prepared_set(&ready.pair.b, &b);
+    referee_ready(question, ready);
+    assert_int_equal(fmb_prepare(&ready->pair.a, 0, 1, &a), FMB_OK);
+    assert_int_equal(fmb_prepare(&ready->pair.b, 0, 1, &b), FMB_OK);
     if (!is_of_kind((int) run_kind_of(&a, &b, pool->duration, &swapped), pool->kind))
         return false;
     pool->frame[i][0] = swapped ? b : a;
     pool->frame[i][1] = swapped ? a : b;
     memset(&pool->exact[i], 0, sizeof pool->exact[i]);
-    assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &ready.pair,
-                                pool->boxes ? FMB_WANT_BOX : 0, &pool->exact[i]),
+    assert_int_equal(pair_decide(fmb_method_by_name("exact"), &ready->pair,
+                                 pool->boxes ? FMB_WANT_BOX : 0, &pool->exact[i]),
                      FMB_OK);
     return true;
 }
@@ -285,7 +288,7 @@ static bool is_untouched(const void *from, size_t size)
 }
 
 /* Runs pairs first to first + count of the pool; what follows them are other pairs of it, or
- * nobody. */
+ * idle. */
 static void run_part(run_function *function, const struct pool *pool, int first, int count,
                      struct left *out)
 {
@@ -294,8 +297,8 @@ static void run_part(run_function *function, const struct pool *pool, int first,
                             out->outcome, out->contact,   out->box};
     for (int i = 0; i < count + RUN_LANES - 1; i++) {
         const bool here = first + i < pool->count && (i < count || first % 2 == 0);
-        pairs[i][0] = here ? &pool->frame[first + i][0] : &nobody;
-        pairs[i][1] = here ? &pool->frame[first + i][1] : &nobody;
+        pairs[i][0] = here ? &pool->frame[first + i][0] : &idle;
+        pairs[i][1] = here ? &pool->frame[first + i][1] : &idle;
     }
     memset(out, GUARD, sizeof *out);
     function(&run);
@@ -804,9 +807,9 @@ static void release(void *memory, size_t size)
 }
 
 /* The path of two faces may be that of their shadows, which are found after their slabs. */
-static bool needs_wide_limbs(const struct fmb_pair *pair)
+static bool needs_wide_limbs(const struct frame_pair *pair)
 {
-    const bool faces = pair->a.body->shape == FMB_FACE && pair->b.body->shape == FMB_FACE;
+    const bool faces = pair->a.frame->shape == FMB_FACE && pair->b.frame->shape == FMB_FACE;
     enum certified_path path;
     struct limbs_pair limbs;
     certified_verdict(pair, &path);
@@ -820,14 +823,19 @@ static bool expect_quick(const struct question *question, unsigned want)
     struct ready ready;
     struct fmb_answer quick = {0}, answer = {0};
     referee_ready(question, &ready);
+    const struct frame_pair frames = pair_frames(&ready.pair);
+    struct fmb_prepared a, b;
+    prepared_set(&frames.a, &a);
+    prepared_set(&frames.b, &b);
     const long before = allocations;
-    const enum fmb_status status = certified_decide_quick(&ready.pair, want, &quick);
+    const enum fmb_status status =
+        certified_decide_prepared(&a, &b, question->duration, want, true, &quick);
     if (allocations != before)
         referee_fail(question, "a quick decision allocates");
-    assert_int_equal(certified_decide(&ready.pair, want, &answer), FMB_OK);
+    assert_int_equal(certified_decide(&frames, want, &answer), FMB_OK);
     if (status == FMB_OK && !referee_same(&quick, &answer))
         referee_fail(question, "a quick decision differs");
-    if (status != FMB_OK && allocations == before && !needs_wide_limbs(&ready.pair))
+    if (status != FMB_OK && allocations == before && !needs_wide_limbs(&frames))
         referee_fail(question, "a quick decision leaves open what needs no wide integers");
     return status != FMB_OK;
 }

@@ -55,12 +55,30 @@ static void secrets_differ(void **state)
     assert_memory_not_equal(a.secret, b.secret, sizeof a.secret);
 }
 
+/* All tables have the same secret, which is not 0. */
+static void tables_have_a_secret(void **state)
+{
+    const struct keyed_hash none = {{0, 0}};
+    struct entry {
+        uint64_t key[2];
+        UT_hash_handle hh;
+    } entry = {.key = {1, 2}}, *table = NULL, *found;
+    (void) state;
+    HASH_ADD(hh, table, key, sizeof entry.key, &entry);
+    HASH_FIND(hh, table, entry.key, sizeof entry.key, found);
+    assert_ptr_equal(found, &entry);
+    assert_int_equal(entry.hh.hashv, keyed_hash_value(entry.key, sizeof entry.key));
+    assert_int_not_equal(entry.hh.hashv, keyed_hash_of(&none, entry.key, sizeof entry.key));
+    HASH_CLEAR(hh, table);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_siphash),
         cmocka_unit_test(upper_bits_reach_the_buckets),
         cmocka_unit_test(secrets_differ),
+        cmocka_unit_test(tables_have_a_secret),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -142,9 +142,10 @@ static void compare_pair(struct draw *draw, const struct question *question,
     struct ready ready;
     struct limbs_pair limbs;
     referee_ready(question, &ready);
-    const struct dyadic_span span = limbs_span_of(&ready.pair);
+    const struct frame_pair frames = pair_frames(&ready.pair);
+    const struct dyadic_span span = limbs_span_of(&frames);
     const long bits = span.top - span.unit;
-    const bool fits = limbs_prepare(&ready.pair, span, &limbs);
+    const bool fits = limbs_prepare(&frames, span, &limbs);
     if (fits != (bits <= 64 * LIMBS_MAX - 3))
         referee_fail(question, "fits, or does not");
     if (!fits || bits < 0)
@@ -217,9 +218,10 @@ static void what_does_not_fit_is_refused(void **state)
         struct limbs_pair limbs;
         question.b.origin[1] = ldexp(1, bits - 1);
         referee_ready(&question, &ready);
-        const struct dyadic_span span = limbs_span_of(&ready.pair);
+        const struct frame_pair frames = pair_frames(&ready.pair);
+        const struct dyadic_span span = limbs_span_of(&frames);
         assert_int_equal(span.top - span.unit, bits);
-        assert_int_equal(limbs_prepare(&ready.pair, span, &limbs), bits <= most);
+        assert_int_equal(limbs_prepare(&frames, span, &limbs), bits <= most);
     }
 }
 
@@ -238,7 +240,7 @@ static void expect_exact_motion(const struct question *question, const struct sl
 }
 
 /* On input: a pair that is said not to round. */
-static void expect_exact_slabs(const struct question *question, const struct fmb_pair *pair,
+static void expect_exact_slabs(const struct question *question, const struct pair *pair,
                                const struct slabs_pair *slabs, struct slab_truth *truth)
 {
     struct slab_value slab[SLABS_MAX];
@@ -256,9 +258,10 @@ static bool never_rounds(const struct question *question, struct slab_truth *tru
     struct ready ready;
     struct slabs_pair slabs;
     referee_ready(question, &ready);
-    if (!slabs_prepare(&ready.pair, &slabs))
+    if (!slab_truth_prepare(&ready.pair, &slabs))
         return false;
-    const struct dyadic_span span = limbs_span_of(&ready.pair);
+    const struct frame_pair frames = pair_frames(&ready.pair);
+    const struct dyadic_span span = limbs_span_of(&frames);
     if (!limbs_never_round(&slabs, span))
         return false;
     expect_exact_slabs(question, &ready.pair, &slabs, truth);

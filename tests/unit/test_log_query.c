@@ -413,9 +413,9 @@ static void numbers_read_back_as_the_same_bits(void **state)
     found.query.scene.duration = 5e-324;
     struct scene scene = scene_of_found();
     const struct scene_body *body = &scene.body[0];
-    assert_true(same_bits(&body->body.component[0][0], numbers, 9));
-    assert_true(same_bits(body->origin, numbers, 3));
-    assert_true(body->moving && same_bits(body->velocity, numbers + 3, 3));
+    assert_true(same_bits(&fmb_body_frame(&body->body, 0)->component[0][0], numbers, 9));
+    assert_true(same_bits(body->position, numbers, 3));
+    assert_true(same_bits(body->velocity, numbers + 3, 3));
     assert_true(scene.duration == 5e-324);
     scene_clear(&scene);
 }

@@ -505,8 +505,9 @@ static void cases_of_two_faces(void **state)
 /* The article's: from the first vertex, and its unit normal, in this order of operations. */
 static enum fmb_status article_body(const struct triangle *t, struct fmb_body *out)
 {
-    double c[9];
+    double number[12], *c = number + 3;
     for (int axis = 0; axis < 3; axis++) {
+        number[axis] = t->vertex[0][axis];
         c[axis] = t->vertex[1][axis] - t->vertex[0][axis];
         c[3 + axis] = t->vertex[2][axis] - t->vertex[0][axis];
     }
@@ -516,17 +517,16 @@ static enum fmb_status article_body(const struct triangle *t, struct fmb_body *o
     const double length = sqrt(c[6] * c[6] + c[7] * c[7] + c[8] * c[8]);
     for (int axis = 0; axis < 3; axis++)
         c[6 + axis] = length == 0 ? 0 : c[6 + axis] / length;
-    return fmb_body_make(3, FMB_TETRAHEDRON, c, 9, out);
+    return fmb_body_make(3, FMB_TETRAHEDRON, number, 12, out);
 }
 
-static void set_article_frame(const struct mesh *mesh, size_t face, const double *velocity,
-                              struct fmb_body *body, struct fmb_frame *out)
+static void place_article_body(const struct mesh *mesh, size_t face, const double *velocity,
+                               struct fmb_body *body, struct fmb_placement *out)
 {
     struct triangle t;
     set_triangle(mesh, face, velocity, &t);
     assert_int_equal(article_body(&t, body), FMB_OK);
-    *out = (struct fmb_frame){.body = body, .moving = t.moving};
-    memcpy(out->origin, t.vertex[0], sizeof out->origin);
+    *out = (struct fmb_placement){.body = body};
     memcpy(out->velocity, t.velocity, sizeof out->velocity);
 }
 
@@ -538,11 +538,13 @@ static void assert_tetrahedra(const struct mesh_question *question)
     for (size_t i = 0; i < question->a->face_count; i++)
         for (size_t j = 0; j < question->b->face_count; j++) {
             struct fmb_body body[2];
-            struct fmb_pair pair = {.duration = question->duration};
+            struct fmb_placement a, b;
             struct fmb_answer answer;
-            set_article_frame(question->a, i, question->velocity[0], &body[0], &pair.a);
-            set_article_frame(question->b, j, question->velocity[1], &body[1], &pair.b);
-            assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &pair, 0, &answer), FMB_OK);
+            place_article_body(question->a, i, question->velocity[0], &body[0], &a);
+            place_article_body(question->b, j, question->velocity[1], &body[1], &b);
+            assert_int_equal(
+                fmb_decide(fmb_method_by_name("exact"), &a, &b, question->duration, 0, &answer),
+                FMB_OK);
             const struct mesh_pair *found = take_pair(&meeting, &at, i, j);
             if ((found ? found->verdict : FMB_SEPARATED) != answer.verdict)
                 fail_of(question->a, i, question->b, j, "another verdict");

@@ -363,10 +363,130 @@ static void assert_equal(const char *what, const mpq_t found, double expected)
     mpq_clear(exact);
 }
 
+/* ---- Placed ---- */
+
+/* A square of edge 5 turned by the angle whose cosine is 3/5: w = 2, z = 1. Its corners: 0, (3, 4),
+ * (-1, 7), (-4, 3). */
+#define TURNED_SQUARE                                                                   \
+    {                                                                                   \
+        2, FMB_CUBOID, {{5, 0}, {0, 5}}, {0}, {0}, false, {0}, {0x1p500, 0x1p499}, 2, 0 \
+    }
+#define HALF_CUBE(x, y, z) 3, FMB_BOX, UNIT3, {x, y, z}, {0}, false
+static const struct known placed[] = {
+    {"a turned square and one at its corner",
+     {TURNED_SQUARE, {2, FMB_CUBOID, UNIT2, {3, 4}, {0}, false}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{3, 4}, {3, 4}}},
+    {"a turned square and a box that its corner is in",
+     {TURNED_SQUARE, {2, FMB_BOX, UNIT2, {3, 4}, {0}, false, {0.5, 0.5}, {0}, 0, 0}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{3, 4}, {3, 4}}},
+    {"a turned square and a box on its way past the corner",
+     {TURNED_SQUARE, {2, FMB_BOX, UNIT2, {2.75, 0}, {0, 2}, true}, 4},
+     FMB_OVERLAPPING,
+     {1.25, 2.53125},
+     {{2.25, 3}, {3, 4.5625}}},
+    {"a cuboid whose origin is turned with it",
+     {{3, FMB_CUBOID, UNIT3, {10, 0, 0}, {0}, false, {1, 0, 0}, {1, 0, 0, 1}, 4, 0},
+      {3, FMB_CUBOID, UNIT3, {10, 2, 0}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{10, 2, 0}, {10, 2, 1}}},
+    {"boxes, one turned by a third of the diagonal, share a face",
+     {{HALF_CUBE(0, 0, 0), {0}, {-3, 3, 3, 3}, 4, 0}, {HALF_CUBE(0, 0, 1)}, 1},
+     FMB_TOUCHING,
+     {0},
+     {{-0.5, -0.5, 0.5}, {0.5, 0.5, 0.5}}},
+    {"a face turned by half about x, and the corner of a box",
+     {{3, FMB_FACE, {{2, 0, 0}, {0, 2, 0}}, {0}, {0}, false, {0}, {0, 1e-150, 0, 0}, 4, 0},
+      {HALF_CUBE(-0.5, 0.5, 0), {0, -1, 0}},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{0, -1, 0}, {0, 0, 0}}},
+    {"tetrahedra turned about each axis by the half angle whose tangent is 1/2",
+     {{3,
+       FMB_TETRAHEDRON,
+       {{5, 0, 0}, {0, 5, 0}, {0, 0, 1}},
+       {0},
+       {0},
+       false,
+       {0},
+       {2, 0, 0, 1},
+       4,
+       0},
+      {3, FMB_TETRAHEDRON, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {3, 4, 0}, {0}, false},
+      1},
+     FMB_TOUCHING,
+     {0},
+     {{3, 4, 0}, {3, 4, 0}}},
+};
+
+/* Equal and opposite orientations are the same: nothing else is said of the length. */
+static void an_orientation_has_no_length(void **state)
+{
+    (void) state;
+    static const double lengths[] = {1, -1, 3, 1e-150, 1e150, -0x1p-1000};
+    struct question question = placed[0].question;
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        struct fmb_body body[2];
+        struct pair pair;
+        struct oracle_answer truth;
+        question.a.orientation[0] = 2 * lengths[i];
+        question.a.orientation[1] = lengths[i];
+        question_pair(&question, body, &pair);
+        oracle_init(&truth);
+        oracle_decide(&pair, 0, &truth);
+        assert_int_equal(truth.verdict, FMB_TOUCHING);
+        oracle_clear(&truth);
+    }
+}
+
+/* Two unit squares beside each other, and two above: a body of both pairs is one of 2 x 1. */
+static void bodies_of_frames(void **state)
+{
+    (void) state;
+    static const double square[2][6] = {{0, 0, 1, 0, 0, 1}, {1, 0, 1, 0, 0, 1}};
+    struct fmb_frame frames[2] = {{.dim = 2}, {.dim = 2}};
+    for (int i = 0; i < 2; i++) {
+        frames[i].shape = FMB_CUBOID;
+        frames[i].count = 2;
+        frames[i].origin[0] = square[i][0];
+        frames[i].component[0][0] = frames[i].component[1][1] = 1;
+    }
+    const struct fmb_body body = {.dim = 2, .frame_count = 2, .frames = frames};
+    struct pair pair = {{.body = &body}, {.body = &body, .position = {2, 0.5}}, 3};
+    struct oracle_answer truth;
+    oracle_init(&truth);
+    oracle_decide(&pair, FMB_WANT_BOX, &truth);
+    assert_int_equal(truth.verdict, FMB_TOUCHING);
+    assert_equal("first", truth.contact[0], 0);
+    assert_equal("last", truth.contact[1], 3);
+    assert_equal("x", truth.box[0][0], 2);
+    assert_equal("y", truth.box[1][1], 1);
+
+    pair.b.position[0] = 0.5; /* at rest: x from 0.5 to 2; all the way: one frame after another */
+    oracle_decide(&pair, FMB_WANT_BOX, &truth);
+    assert_int_equal(truth.verdict, FMB_OVERLAPPING);
+    assert_equal("x", truth.box[0][0], 0.5);
+    assert_equal("x", truth.box[1][0], 2);
+
+    pair.b.position[0] = -3;
+    pair.b.velocity[0] = 2;
+    oracle_decide(&pair, FMB_WANT_BOX, &truth);
+    assert_int_equal(truth.verdict, FMB_OVERLAPPING);
+    assert_equal("first", truth.contact[0], 0.5);
+    assert_equal("last", truth.contact[1], 2.5);
+    oracle_clear(&truth);
+}
+
 static void assert_known(const struct known *known, const struct question *question)
 {
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     struct oracle_answer truth;
     question_pair(question, body, &pair);
     oracle_init(&truth);
@@ -374,14 +494,15 @@ static void assert_known(const struct known *known, const struct question *quest
 
     const bool moving = question->a.moving || question->b.moving;
     const bool in_contact = known->verdict != FMB_SEPARATED;
+    const double always[2] = {0, question->duration};
+    const double *contact = moving ? known->contact : always;
     if (truth.verdict != known->verdict)
         fail_msg("%s: verdict %d, expected %d", known->what, truth.verdict, known->verdict);
     assert_int_equal(truth.has_box, in_contact);
-    assert_int_equal(truth.has_contact, in_contact && moving);
-    for (int end = 0; end < 2; end++) {
-        if (truth.has_contact)
-            assert_equal(known->what, truth.contact[end], known->contact[end]);
-        for (int axis = 0; truth.has_box && axis < question->a.dim; axis++)
+    assert_int_equal(truth.has_contact, in_contact);
+    for (int end = 0; in_contact && end < 2; end++) {
+        assert_equal(known->what, truth.contact[end], contact[end]);
+        for (int axis = 0; axis < question->a.dim; axis++)
             assert_equal(known->what, truth.box[end][axis], known->box[end][axis]);
     }
     oracle_clear(&truth);
@@ -427,7 +548,7 @@ static void flat_space_by_hand(void **state)
 static const struct question thirds = {
     {2, FMB_CUBOID, UNIT2, {0}, {0}, false}, {2, FMB_CUBOID, {{0}}, {0, 2}, {1, -3}, true}, 4};
 
-static void decide(const struct question *question, struct fmb_body body[2], struct fmb_pair *pair,
+static void decide(const struct question *question, struct fmb_body body[2], struct pair *pair,
                    struct oracle_answer *truth)
 {
     question_pair(question, body, pair);
@@ -435,11 +556,17 @@ static void decide(const struct question *question, struct fmb_body body[2], str
     oracle_decide(pair, FMB_WANT_BOX, truth);
 }
 
+static void placed_by_hand(void **state)
+{
+    (void) state;
+    assert_all_known(placed, COUNT(placed));
+}
+
 static void numbers_that_are_no_doubles(void **state)
 {
     (void) state;
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     struct oracle_answer truth;
     decide(&thirds, body, &pair, &truth);
     assert_int_equal(truth.verdict, FMB_OVERLAPPING);
@@ -466,7 +593,7 @@ static bool design(const struct fmb_answer *answer)
 {
     char why[200];
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     question_pair(&thirds, body, &pair);
     return oracle_check(&pair, FMB_WANT_BOX, answer, why, sizeof why);
 }
@@ -475,7 +602,7 @@ static bool tightest(const struct fmb_answer *answer)
 {
     char why[200];
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     question_pair(&thirds, body, &pair);
     return oracle_check_tightest(&pair, FMB_WANT_BOX, answer, why, sizeof why);
 }
@@ -535,10 +662,10 @@ static void an_end_beyond_the_doubles_is_infinite(void **state)
     const struct solid solid = {2, FMB_CUBOID, {{DBL_MAX, 0}, {0, 1}}, {DBL_MAX, 0}, {0}, false};
     const struct question question = {solid, solid, 1};
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     question_pair(&question, body, &pair);
     struct fmb_answer answer = {
-        FMB_OVERLAPPING, false, true, {0}, {{DBL_MAX, 0, 0}, {HUGE_VAL, 1, 0}}};
+        FMB_OVERLAPPING, true, true, {0, 1}, {{DBL_MAX, 0, 0}, {HUGE_VAL, 1, 0}}};
     assert_true(oracle_check_tightest(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
     answer.box[1][0] = DBL_MAX;
     assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
@@ -558,7 +685,7 @@ static void doubles_too_coarse_for_the_limit(void **state)
     question.duration = 0x1p-1072; /* four steps of 2^-1074; x = 0 at 4/3, x = 2 steps at 4 */
     question.b = (struct solid){2, FMB_CUBOID, {{0}}, {-0x1p-1074, 0.5}, {0.75, 0}, true};
     struct fmb_body body[2];
-    struct fmb_pair pair;
+    struct pair pair;
     question_pair(&question, body, &pair);
     struct fmb_answer answer = {
         FMB_OVERLAPPING, true, true, {0x1p-1074, 0x1p-1072}, {{0, 0.5, 0}, {0x1p-1073, 0.5, 0}}};
@@ -574,6 +701,9 @@ int main(void)
         cmocka_unit_test(flat_plane_by_hand),
         cmocka_unit_test(space_by_hand),
         cmocka_unit_test(flat_space_by_hand),
+        cmocka_unit_test(placed_by_hand),
+        cmocka_unit_test(an_orientation_has_no_length),
+        cmocka_unit_test(bodies_of_frames),
         cmocka_unit_test(numbers_that_are_no_doubles),
         cmocka_unit_test(checks_accept_what_is_right),
         cmocka_unit_test(checks_refuse_what_is_wrong),

@@ -18,6 +18,7 @@
 #include "question.h"
 #include "range.h"
 #include "referee.h"
+#include "slab_truth.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -421,10 +422,11 @@ struct tally {
 static void ask_doubles(const struct ready *ready, const struct slabs_pair *slabs, bool rounds,
                         struct dyadic_span span, struct fmb_answer *answer, bool good[2])
 {
+    const struct frame_pair frames = pair_frames(&ready->pair);
     struct fmb_answer doubles = *answer;
-    good[0] = slabs->motion.drifts &&
-              contact_of(&ready->pair, slabs, rounds, span, true, doubles.contact);
-    good[1] = box_of(&ready->pair, slabs, rounds, doubles.box);
+    good[0] =
+        slabs->motion.drifts && contact_of(&frames, slabs, rounds, span, true, doubles.contact);
+    good[1] = box_of(slabs, rounds, doubles.box);
     if (good[0])
         memcpy(answer->contact, doubles.contact, sizeof answer->contact);
     if (good[1])
@@ -440,9 +442,10 @@ static void compare(const struct question *question, const struct ready *ready, 
     struct oracle_excess contact, box;
     char why[200];
     bool good[2];
-    if (!slabs_prepare(&ready->pair, &slabs))
+    if (!slab_truth_prepare(&ready->pair, &slabs))
         return;
-    const struct dyadic_span span = limbs_span_of(&ready->pair);
+    const struct frame_pair frames = pair_frames(&ready->pair);
+    const struct dyadic_span span = limbs_span_of(&frames);
     const bool rounds = may_round || !limbs_never_round(&slabs, span);
     referee_ask(question, &answer);
     ask_doubles(ready, &slabs, rounds, span, &answer, good);

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-enum { SERVER = 5, CLIENT = 7, SECOND = 1000000000 };
+enum { SERVER = 5, CLIENT = 7, RECORDER = 9, SECOND = 1000000000 };
 
 struct body {
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
@@ -26,19 +26,12 @@ struct world {
     struct record_bodies *bodies;
     struct hasher *hasher;
     int64_t now_ns, sequence_number;
-    int requests;                    /* that were published */
+    int requests;
     struct definition_query request; /* the last one */
     int definitions, defined;        /* messages and bodies that were written */
     struct definitions *file;        /* what they define */
     unsigned char bytes[QUERY_BYTES_MAX];
 };
-
-static void on_publish(void *user, const void *bytes, size_t size)
-{
-    struct world *world = user;
-    assert_null(wire_read_definition_query(bytes, (uint32_t) size, &world->request));
-    world->requests++;
-}
 
 static bool on_write(void *user, const void *bytes, size_t size)
 {
@@ -56,7 +49,7 @@ static bool on_write(void *user, const void *bytes, size_t size)
 static int setup(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
-    world->bodies = record_bodies_open(on_publish, world);
+    world->bodies = record_bodies_open(RECORDER);
     world->hasher = hasher_create();
     world->file = definitions_open();
     world->now_ns = SECOND;
@@ -151,13 +144,32 @@ static void receive_definition(struct world *world, const struct definition_quer
     for (int i = 0; i < count; i++)
         definition.body[i] =
             (struct query_body){body[i].handle, {body[i].bytes, body[i].geometry.size}};
-    receive(world, LOG_DEFINITION, wire_write_definition(&definition, world->bytes));
+    const size_t size = wire_write_definition(&definition, world->bytes);
+    receive(world, LOG_DEFINITION, size);
+    if (query->client_id == RECORDER)
+        record_bodies_take_result(
+            world->bodies,
+            &(struct fmb_client_raw_result){.status = FMB_OK, .bytes = world->bytes, .size = size});
+}
+
+static void lose_request(struct world *world)
+{
+    record_bodies_take_result(world->bodies,
+                              &(struct fmb_client_raw_result){.status = FMB_CLIENT_NO_SERVICE});
 }
 
 static void pass(struct world *world, int64_t ns)
 {
+    unsigned char bytes[QUERY_BYTES_MAX];
     world->now_ns += ns;
-    record_bodies_request(world->bodies, world->now_ns);
+    const bool due = record_bodies_due(world->bodies) <= world->now_ns;
+    const size_t size = record_bodies_request(world->bodies, world->now_ns, bytes);
+    assert_int_equal(size > 0, due);
+    if (size == 0)
+        return;
+    assert_null(wire_read_definition_query(bytes, (uint32_t) size, &world->request));
+    world->request.client_id = RECORDER;
+    world->requests++;
 }
 
 static void assert_file_defines(struct world *world, const struct body *body)
@@ -193,11 +205,15 @@ static void test_all_are_requested_in_pages(void **state)
     pass(world, 0);
     assert_int_equal(world->requests, 1);
     receive_definition(world, &world->request, &body[0], 1, 17);
-    pass(world, SECOND / 100);
+    pass(world, SECOND / 200);
+    assert_int_equal(world->requests, 1); /* not at full speed */
+    pass(world, SECOND / 200);
     assert_int_equal(world->requests, 2);
     assert_int_equal(world->request.first, 17);
+    pass(world, SECOND); /* one at a time */
+    assert_int_equal(world->requests, 2);
     receive_definition(world, &world->request, &body[1], 1, 0);
-    pass(world, 20 * (int64_t) SECOND);
+    pass(world, SECOND);
     assert_int_equal(world->requests, 2);
     /* They are written when a query names them. */
     assert_int_equal(world->definitions, 0);
@@ -244,11 +260,11 @@ static void test_bodies_of_answered_queries_are_requested(void **state)
     assert_true(record_bodies_is_own(world->bodies));
     assert_file_defines(world, &a);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 1);
-    /* The other one is requested twice more. */
-    for (int i = 0; i < 10; i++)
-        pass(world, 11 * (int64_t) SECOND);
-    assert_int_equal(world->requests, 4);
-    assert_int_equal(world->request.handle_count, 1);
+    /* The service does not hold the other one: it is not requested again. */
+    receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    receive_result(world, FMB_OK);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 2);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 1);
     /* A definition for another client resolves it too, and is in the file as it is. */
     const struct definition_query foreign = {.client_id = CLIENT};
@@ -258,6 +274,49 @@ static void test_bodies_of_answered_queries_are_requested(void **state)
     const int before = world->definitions;
     receive_query(world, place_by_handle(&a), place_by_handle(&b));
     assert_int_equal(world->definitions, before);
+}
+
+/* A definition of all handles takes several pages. */
+static void test_handles_are_requested_in_pages(void **state)
+{
+    struct world *world = *state;
+    const struct body body[] = {make_body(world, 1), make_body(world, 2)};
+    begin(world);
+    receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
+    receive_result(world, FMB_OK);
+    pass(world, SECOND);
+    receive_definition(world, &world->request, &body[0], 1, 1);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 3);
+    assert_int_equal(world->request.first, 1);
+    assert_int_equal(world->request.handle_count, 2);
+    receive_definition(world, &world->request, &body[1], 1, 0);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 3);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
+}
+
+/* Nothing is requested of a service that does not answer until it has answered a query. */
+static void test_requests_without_a_result(void **state)
+{
+    struct world *world = *state;
+    const struct body a = make_body(world, 1), b = make_body(world, 2);
+    pass(world, 0);
+    lose_request(world);
+    receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    receive_result(world, FMB_OK);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 2);
+    assert_int_equal(world->request.handle_count, 2);
+    lose_request(world);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 2);
+    receive_query(world, place_by_handle(&a), place_whole(&b));
+    receive_result(world, FMB_OK);
+    pass(world, SECOND);
+    assert_int_equal(world->requests, 3);
+    receive_definition(world, &world->request, &a, 1, 0);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
 static void test_refused_queries_need_no_bodies(void **state)
@@ -307,6 +366,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_each_file_defines_what_it_names, setup, teardown),
         cmocka_unit_test_setup_teardown(test_bodies_of_answered_queries_are_requested, setup,
                                         teardown),
+        cmocka_unit_test_setup_teardown(test_handles_are_requested_in_pages, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_requests_without_a_result, setup, teardown),
         cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),

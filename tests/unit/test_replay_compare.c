@@ -309,7 +309,7 @@ static void test_with_a_tolerance_certificates_may_differ(void **state)
     then.answer.verdict = FMB_TOUCHING; /* but nothing else that is not a number */
     expect_kind(1, &query, &then, &now, DIFFERENT_VERDICT);
     then = now;
-    then.answer.has_contact = true;
+    then.answer.has_contact = false;
     expect_kind(1, &query, &then, &now, DIFFERENT_INTERVAL);
 }
 

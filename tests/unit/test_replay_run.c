@@ -184,6 +184,8 @@ static struct pair_result result_of(const struct pair_query *query)
     const double gap = fmax(query->placement[0].position[0], query->placement[1].position[0]) -
                        fmin(end[0], end[1]);
     result.answer.verdict = gap > 0 ? FMB_SEPARATED : gap < 0 ? FMB_OVERLAPPING : FMB_TOUCHING;
+    result.answer.has_contact = gap <= 0;
+    result.answer.contact[1] = gap <= 0 ? query->duration : 0;
     return result;
 }
 
@@ -244,7 +246,7 @@ static void test_differences_are_where_they_are(void **state)
         const struct pair_query query = pair(i, whole(1, 1, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
         if (i % 5 == 2)
-            result.answer.verdict = FMB_OVERLAPPING;
+            result.answer = (struct fmb_answer){.verdict = FMB_OVERLAPPING, .has_contact = true};
         log_pair(100 * i, &query);
         log_pair_result(100 * i + 1, &result);
     }
@@ -420,7 +422,7 @@ static void test_second_results(void **state)
         log_pair_result(0, &result);
         result.server_id = 98;
         if (i == 20)
-            result.answer.verdict = FMB_TOUCHING;
+            result.answer = (struct fmb_answer){.verdict = FMB_TOUCHING, .has_contact = true};
         if (i == 21)
             result = status_of(&query, FMB_BUSY);
         if (i % 2)
@@ -792,7 +794,7 @@ static void ask_scene(int ways, int64_t at, int client)
     bool complete;
     do { /* one that is stopped early has fewer pairs */
         complete = scene_job_step(world.job, world.answerer);
-        if (!complete && draw(3) == 0 && scene_job_can_stop(world.job)) {
+        if (!complete && draw(3) == 0 && scene_job_has_answers(world.job)) {
             scene_job_stop(world.job);
             complete = true;
         }

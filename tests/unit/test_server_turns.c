@@ -309,6 +309,59 @@ static void test_new_ids_without_end(void **state)
     expect_all_ok(IDS + (int) sent);
 }
 
+/* ---- Pairs of bodies of several frames ---- */
+
+static void test_a_pair_of_many_frames(void **state)
+{
+    (void) state;
+    service.tick_ns = US;
+    service_query_frames(COSTLY, 1, 900);
+    work_for(MS);
+    assert_int_equal(service.count, 0);
+    service_query_pair(COSTLY, 2); /* does not wait for it */
+    service_query_pair(CHEAP, 3);
+    service_query_frames(CHEAP, 4, 2);
+    service_settle();
+    expect_all_ok(4);
+    assert_int_equal(place_of(COSTLY, 1), 3);
+    assert_int_equal(service.result[3].kind, SERVER_PAIRS);
+    assert_int_equal(service.pair.answer.verdict, FMB_OVERLAPPING);
+    assert_true(service.pair.compute_ns > 0);
+    assert_int_equal(service_status()->pairs, 4);
+}
+
+/* All jobs are pairs of many frames, or scenes of one such pair: one of them is refused as busy
+ * once it has taken a second, so that another scene is answered. */
+static void expect_a_free_job(void (*query_frames)(int64_t, int64_t, int), enum server_kind kind)
+{
+    for (int i = 0; i < JOBS; i++)
+        query_frames(10 + i, 1, 900);
+    service.tick_ns = 10 * MS;
+    work_for(JOBS * JOBS_PATIENCE_NS / 2);
+    service_query_scene(CHEAP, 1, 3);
+    assert_int_equal(service.count, 0);
+    for (int i = 0; i < 10000 && answers_to(CHEAP) == 0; i++)
+        server_work(service.server);
+    assert_int_equal(service.count, 2);
+    assert_int_equal(service.result[0].status, FMB_BUSY);
+    assert_int_equal(service.result[0].kind, kind);
+    assert_int_equal(service.result[0].end_pair, 0);
+    assert_int_equal(service.result[1].client_id, CHEAP);
+    assert_int_equal(service.result[1].status, FMB_OK);
+}
+
+static void test_pairs_of_many_frames_do_not_keep_all_jobs(void **state)
+{
+    (void) state;
+    expect_a_free_job(service_query_frames, SERVER_PAIRS);
+}
+
+static void test_scenes_of_many_frames_do_not_keep_all_jobs(void **state)
+{
+    (void) state;
+    expect_a_free_job(service_query_frames_scene, SERVER_SCENES);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, service_open, service_close)
 
 int main(void)
@@ -328,6 +381,9 @@ int main(void)
         TEST(test_more_scenes_than_jobs),
         TEST(test_a_full_queue_refuses_the_one_that_holds_most),
         TEST(test_new_ids_without_end),
+        TEST(test_a_pair_of_many_frames),
+        TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
+        TEST(test_scenes_of_many_frames_do_not_keep_all_jobs),
     };
     return cmocka_run_group_tests_name("server turns", tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static void make_body(struct scene_body *out, int64_t id, int dim, enum fmb_shap
     out->id = id;
     assert_int_equal(fmb_body_make(dim, (int) shape, components, count, &out->body), FMB_OK);
     for (int axis = 0; axis < dim; axis++)
-        out->origin[axis] = at;
+        out->position[axis] = at;
 }
 
 /* Two bodies, one of which moves. */
@@ -37,7 +37,6 @@ static void make_scene(struct scene *out, struct scene_body body[2], int dim, do
 {
     make_body(&body[0], 31, dim, FMB_CUBOID, size, at);
     make_body(&body[1], 47, dim, FMB_TETRAHEDRON, size, at / 2);
-    body[1].moving = true;
     for (int axis = 0; axis < dim; axis++)
         body[1].velocity[axis] = velocity;
     *out =
@@ -51,8 +50,10 @@ static void take(struct svg *svg, const struct scene *scene)
     struct outcome outcome = {.error = NULL};
     report->begin(report, scene);
     while (scene_next_pair(scene, &cursor, &outcome.pair)) {
-        struct fmb_pair pair = scene_fmb_pair(scene, outcome.pair);
-        assert_int_equal(fmb_decide(fmb_method_default(), &pair, FMB_WANT_BOX, &outcome.answer),
+        const struct fmb_placement a = scene_placement(&scene->body[outcome.pair.a]);
+        const struct fmb_placement b = scene_placement(&scene->body[outcome.pair.b]);
+        assert_int_equal(fmb_decide(fmb_method_default(), &a, &b, scene->duration, FMB_WANT_BOX,
+                                    &outcome.answer),
                          FMB_OK);
         report->pair(report, scene, &outcome);
     }
@@ -188,7 +189,7 @@ static void infinite_boxes_and_sums_can_be_drawn(void **state)
                    .box = {{-INFINITY, 0, -INFINITY}, {INFINITY, INFINITY, 0}}}};
     (void) state;
     make_scene(&scene, body, 3, DBL_MAX, DBL_MAX, -DBL_MAX);
-    body[0].body.component[0][0] = body[0].body.component[1][0] = -DBL_MAX;
+    body[0].body.one.component[0][0] = body[0].body.one.component[1][0] = -DBL_MAX;
     scene.duration = 1e308;
     struct svg *svg = svg_open();
     struct report *report = svg_report(svg);
@@ -252,7 +253,7 @@ static void steps_share_a_view(void **state)
     (void) state;
     make_scene(&scene, body, 2, 1, 0, 0);
     take(svg, &scene);
-    body[1].origin[0] = 8;
+    body[1].position[0] = 8;
     take(svg, &scene);
     char *text = draw(svg);
     double x[2], y[2];

@@ -26,15 +26,18 @@ static void place_squares(double x)
         squares.body[i].id = i + 1;
         assert_int_equal(fmb_body_make(2, FMB_CUBOID, edges, 4, &squares.body[i].body), FMB_OK);
     }
-    squares.body[1].origin[0] = x;
+    squares.body[1].position[0] = x;
     squares.scene = (struct scene){
         .dim = 2, .duration = 1, .body_count = 2, .body = squares.body, .all_pairs = true};
     squares.outcome.pair = (struct scene_pair){.a = 0, .b = 1};
     squares.outcome.certificate = squares.certificate;
-    struct fmb_pair pair = scene_fmb_pair(&squares.scene, squares.outcome.pair);
-    assert_int_equal(fmb_decide(fmb_method_default(), &pair, 0, &squares.outcome.answer), FMB_OK);
+    const struct fmb_placement a = scene_placement(&squares.body[0]);
+    const struct fmb_placement b = scene_placement(&squares.body[1]);
+    assert_int_equal(fmb_decide(fmb_method_default(), &a, &b, 1, 0, &squares.outcome.answer),
+                     FMB_OK);
     assert_int_equal(
-        fmb_certificate(&pair, squares.certificate, sizeof squares.certificate, &length), FMB_OK);
+        fmb_certificate(&a, &b, 1, squares.certificate, sizeof squares.certificate, &length),
+        FMB_OK);
 }
 
 static const double apart[] = {0.5, 1, 1.5};

@@ -150,7 +150,7 @@ static void test_pair_query_round_trip(void **state)
 {
     (void) state;
     for (int i = 0; i < 60; i++) {
-        unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX], bytes[QUERY_BYTES_MAX];
+        unsigned char geometry[2][SAMPLE_BYTES_MAX], bytes[QUERY_BYTES_MAX];
         struct pair_query query = {.utime = 1700000000000000,
                                    .client_id = QUERY_ID_MAX,
                                    .sequence_number = 42,
@@ -212,22 +212,63 @@ static void test_geometry_round_trip(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++)
-        for (int shape = FMB_CUBOID; shape <= FMB_FACE; shape++) {
-            const int count = fmb_component_count(dim, shape);
-            struct geometry_frame frame = {.shape = shape, .count = count, .origin = {1, -0.0}},
-                                  read;
+        for (int shape = FMB_CUBOID; shape <= FMB_BOX; shape++) {
             unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+            struct geometry_frame read;
             int read_dim;
-            if (count == 0)
+            if (geometry_number_count(dim, shape) == 0)
                 continue;
-            for (int i = 0; i < count * dim; i++)
-                frame.components[i] = 0.1 * i - 0x1p-1074;
+            const struct geometry_frame frame = sample_frame(dim, shape);
             const struct geometry geometry = {bytes, geometry_write(dim, &frame, bytes)};
+            assert_int_equal(geometry.size, geometry_size(dim, &frame, 1));
             assert_int_equal(geometry_shape(&geometry), shape);
             assert_true(geometry_read(&geometry, &read_dim, &read));
             assert_int_equal(read_dim, dim);
             assert_memory_equal(&frame, &read, sizeof frame);
         }
+}
+
+static void test_numbers_of_frames(void **state)
+{
+    (void) state;
+    static const int counts[2][6] = {{0, 6, 6, 0, 4, 0}, {0, 12, 12, 9, 6, 0}};
+    for (int shape = 0; shape < 6; shape++) {
+        for (int dim = 2; dim <= 3; dim++)
+            assert_int_equal(geometry_number_count(dim, shape), counts[dim - 2][shape]);
+        assert_int_equal(geometry_number_count(1, shape), 0);
+        assert_int_equal(geometry_number_count(4, shape), 0);
+    }
+}
+
+/* As many frames as a message has space for, of all shapes. */
+static void test_geometry_of_many_frames(void **state)
+{
+    (void) state;
+    static struct geometry_frame frames[QUERY_FRAMES_MAX];
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    for (int dim = 2; dim <= 3; dim++) {
+        int count = 0;
+        for (size_t size = GEOMETRY_NONE_BYTES; size <= QUERY_BYTES_MAX; count++) {
+            static const int shapes[] = {FMB_CUBOID, FMB_BOX, FMB_TETRAHEDRON, FMB_BOX, FMB_BOX};
+            frames[count] = sample_frame(dim, shapes[count % 5]);
+            frames[count].origin[0] = count;
+            size += 1 + 8 * (size_t) geometry_number_count(dim, frames[count].shape);
+        }
+        count--;
+        const struct geometry geometry = {bytes, geometry_write_frames(dim, frames, count, bytes)};
+        assert_int_equal(geometry.size, geometry_size(dim, frames, count));
+        assert_true(geometry.size <= QUERY_BYTES_MAX);
+        struct geometry_reader reader = geometry_begin(&geometry);
+        struct geometry_frame read;
+        assert_int_equal(reader.dim, dim);
+        assert_int_equal(reader.frames_left, count);
+        for (int i = 0; i < count; i++) {
+            assert_true(geometry_next(&reader, &read));
+            assert_memory_equal(&frames[i], &read, sizeof read);
+        }
+        assert_false(geometry_next(&reader, &read));
+        assert_int_equal(reader.numbers_left, 0);
+    }
 }
 
 /* What no frame is made of is refused, whatever the counts are. */
@@ -242,7 +283,7 @@ static void test_geometry_that_does_not_fit(void **state)
     const struct {
         size_t at;
         unsigned char byte;
-    } changes[] = {{3, 1}, {3, 4}, {0, 0x80}, {8, 0}, {8, 4}, {8, 255}, {12, 11}, {7, 0}};
+    } changes[] = {{3, 1}, {3, 4}, {0, 0x80}, {8, 0}, {8, 5}, {8, 255}, {12, 11}, {7, 0}};
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         memcpy(other, bytes, size);
         other[changes[i].at] = changes[i].byte;
@@ -251,6 +292,20 @@ static void test_geometry_that_does_not_fit(void **state)
         assert_false(geometry_read(&geometry, &dim, &frame));
     }
     assert_int_equal(geometry_shape(&geometry), 0);
+}
+
+/* The second frame has one number less than it needs. */
+static void test_a_later_frame_that_does_not_fit(void **state)
+{
+    (void) state;
+    const struct geometry_frame frames[2] = {sample_frame(3, FMB_BOX), sample_frame(3, FMB_FACE)};
+    unsigned char bytes[SAMPLE_BYTES_MAX];
+    struct geometry geometry = {bytes, geometry_write_frames(3, frames, 2, bytes)};
+    struct geometry_frame read;
+    bytes[4 + 4 + 2 + 3]--;
+    struct geometry_reader reader = geometry_begin(&geometry);
+    assert_true(geometry_next(&reader, &read));
+    assert_false(geometry_next(&reader, &read));
 }
 
 /* The handle is what any SHA-256 makes of the bytes between handle and position, as lcm-gen's own
@@ -314,7 +369,7 @@ static void test_definition_round_trip(void **state)
 {
     (void) state;
     static struct definition definition, read;
-    static unsigned char bytes[QUERY_BYTES_MAX], geometry[300][GEOMETRY_FRAME_BYTES_MAX];
+    static unsigned char bytes[QUERY_BYTES_MAX], geometry[300][SAMPLE_BYTES_MAX];
     definition = (struct definition){.client_id = 2, .server_id = 4, .next = 17};
     for (int i = 0; i < 300; i++) {
         const struct placement placement = sample_placement(3 * i, geometry[i]); /* whole */
@@ -440,7 +495,7 @@ static void test_certificates_are_printable(void **state)
         char text[] = {'a', (char) byte, 'b', '\0'};
         unsigned char bytes[WIRE_STATUS_BYTES_MAX];
         struct pair_result result;
-        size_t size = write_certificate(text, FMB_OK, FMB_TOUCHING, bytes, sizeof bytes);
+        size_t size = write_certificate(text, FMB_OK, FMB_SEPARATED, bytes, sizeof bytes);
         const char *error = wire_read_pair_result(bytes, (uint32_t) size, &result);
         assert_int_equal(error == NULL, byte >= ' ' && byte <= '~');
     }
@@ -471,8 +526,8 @@ static void test_refusal_round_trip(void **state)
     ASSERT_AS_LCM_WRITES(fmb_msgs_pair_result_t, bytes, size);
 }
 
-/* Only bodies that meet have a contact interval and a box, and only pairs that were decided a
- * verdict. */
+/* Bodies that meet have a contact interval, and they alone may have a box; only pairs that were
+ * decided have a verdict. */
 static void test_answers_are_consistent(void **state)
 {
     (void) state;
@@ -481,6 +536,9 @@ static void test_answers_are_consistent(void **state)
         bool contact, box, accepted;
     } cases[] = {
         {FMB_OK, FMB_TOUCHING, true, true, true},
+        {FMB_OK, FMB_TOUCHING, true, false, true},
+        {FMB_OK, FMB_TOUCHING, false, true, false},
+        {FMB_OK, FMB_OVERLAPPING, false, false, false},
         {FMB_OK, FMB_SEPARATED, false, false, true},
         {FMB_OK, FMB_SEPARATED, true, false, false},
         {FMB_OK, FMB_SEPARATED, false, true, false},
@@ -563,6 +621,9 @@ int main(void)
         cmocka_unit_test(test_pair_query_round_trip),
         cmocka_unit_test(test_long_lists_are_read),
         cmocka_unit_test(test_geometry_round_trip),
+        cmocka_unit_test(test_numbers_of_frames),
+        cmocka_unit_test(test_geometry_of_many_frames),
+        cmocka_unit_test(test_a_later_frame_that_does_not_fit),
         cmocka_unit_test(test_geometry_that_does_not_fit),
         cmocka_unit_test(test_handles_are_hashes_of_the_encoding),
         cmocka_unit_test(test_handles_tell_zeros_apart),

@@ -1,5 +1,6 @@
-/* The first placement that each placement of a scene may meet is left out. */
+/* The last pair to ignore is not ignored. */
 #include "fmb.h"
-#define fmb_tree_ask(tree, frame, from, out, count) \
-    fmb_tree_ask(tree, frame, (from) + 1, out, count)
-#include "scene_pairs.c"
+#define fmb_scene_begin(scene, limits, memory, out)        \
+    ((scene)->ignored_count -= (scene)->ignored_count > 0, \
+     fmb_scene_begin(scene, limits, memory, out))
+#include "answer_scene.c"

@@ -1,0 +1,167 @@
+#include "states.h"
+
+#include "draw.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Metres. A link reaches from joint to joint along z. */
+static const double length = 0.25, width = 0.08, hall = 3.5;
+
+static void or_end(enum fmb_status status)
+{
+    if (status == FMB_OK)
+        return;
+    fprintf(stderr, "robot: %s\n", fmb_status_text(status));
+    exit(EXIT_FAILURE);
+}
+
+/* ---- Bodies ---- */
+
+/* Twelve boxes and four tetrahedra around the axis of the link. */
+static void draw_link(struct draw *draw, struct fmb_frame frame[ROBOT_FRAMES])
+{
+    for (int i = 0; i < ROBOT_FRAMES; i++) {
+        const double at = (i + 0.5) / ROBOT_FRAMES * length, angle = draw_uniform(draw, 0, 6.28);
+        const double x = 0.4 * width * cos(angle), y = 0.4 * width * sin(angle);
+        double number[12] = {x, y, at};
+        if (i % 4 < 3) {
+            for (int axis = 0; axis < 3; axis++)
+                number[3 + axis] = draw_uniform(draw, 0.3, 0.7) * width;
+            or_end(fmb_frame_make(3, FMB_BOX, number, 6, &frame[i]));
+        } else {
+            for (int axis = 0; axis < 9; axis++)
+                number[3 + axis] = draw_uniform(draw, -0.7, 0.7) * width;
+            or_end(fmb_frame_make(3, FMB_TETRAHEDRON, number, 12, &frame[i]));
+        }
+    }
+}
+
+static void draw_bodies(struct draw *draw, struct robot *out)
+{
+    for (int i = 0; i < ROBOT_LINKS; i++) {
+        draw_link(draw, out->frame[i]);
+        or_end(fmb_body_make_frames(out->frame[i], ROBOT_FRAMES, &out->body[i]));
+    }
+    for (int i = ROBOT_LINKS; i < ROBOT_BODIES; i++) {
+        double size[3];
+        for (int axis = 0; axis < 3; axis++)
+            size[axis] = draw_uniform(draw, 0.1, 0.3);
+        or_end(fmb_body_make(3, FMB_BOX, size, 3, &out->body[i]));
+    }
+    for (unsigned i = 0; i < ROBOT_NEIGHBOURS; i++) {
+        out->neighbour[i][0] = i;
+        out->neighbour[i][1] = i + 1;
+    }
+}
+
+/* ---- Poses ---- */
+
+static void multiply(const double a[4], const double b[4], double out[4])
+{
+    const double product[4] = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+                               a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+                               a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+                               a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+    memcpy(out, product, sizeof product);
+}
+
+/* Turns about a random axis by at most so much. */
+static void draw_turn(struct draw *draw, double most, double out[4])
+{
+    double axis[3], sum = 0;
+    for (int i = 0; i < 3; i++) {
+        axis[i] = draw_uniform(draw, -1, 1);
+        sum += axis[i] * axis[i];
+    }
+    const double half = draw_uniform(draw, -most, most) / 2;
+    out[0] = cos(half);
+    for (int i = 0; i < 3; i++)
+        out[1 + i] = sin(half) * axis[i] / sqrt(sum);
+}
+
+static void draw_arm(struct draw *draw, struct fmb_placement *placement)
+{
+    double q[4], p[3] = {0};
+    draw_turn(draw, 6.28, q);
+    for (int i = 0; i < ROBOT_LINKS; i++) {
+        double step[4];
+        memcpy(placement[i].orientation, q, sizeof q);
+        memcpy(placement[i].position, p, sizeof p);
+        placement[i].orientation_count = 4;
+        p[0] += length * 2 * (q[1] * q[3] + q[0] * q[2]);
+        p[1] += length * 2 * (q[2] * q[3] - q[0] * q[1]);
+        p[2] += length * (q[0] * q[0] - q[1] * q[1] - q[2] * q[2] + q[3] * q[3]);
+        draw_turn(draw, 1.2, step);
+        multiply(q, step, q);
+    }
+}
+
+static void draw_obstacles(struct draw *draw, struct fmb_placement *placement)
+{
+    for (int i = ROBOT_LINKS; i < ROBOT_BODIES; i++) {
+        for (int axis = 0; axis < 3; axis++)
+            placement[i].position[axis] = draw_uniform(draw, -hall / 2, hall / 2);
+        draw_turn(draw, 6.28, placement[i].orientation);
+        placement[i].orientation_count = 4;
+    }
+}
+
+struct fmb_scene robot_scene(const struct robot *robot, int state)
+{
+    return (struct fmb_scene){.placements = robot->placement[state],
+                              .placement_count = ROBOT_BODIES,
+                              .which = FMB_PAIRS_ALL,
+                              .ignored = (const unsigned(*)[2]) robot->neighbour,
+                              .ignored_count = ROBOT_NEIGHBOURS};
+}
+
+static size_t contacts_of(const struct robot *robot, int n)
+{
+    const struct fmb_scene scene = robot_scene(robot, n);
+    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_state *state;
+    struct fmb_scene_answers answers;
+    size_t contacts = 0;
+    void *memory = malloc(fmb_scene_bytes(&limits));
+    or_end(memory ? fmb_scene_begin(&scene, &limits, memory, &state) : FMB_OVER_LIMIT);
+    for (bool done = false; !done; contacts += answers.count)
+        done = fmb_scene_step(state, &answers);
+    free(memory);
+    return contacts;
+}
+
+/* The obstacles stand where they are in all states, and do not meet each other. */
+static void place_obstacles(struct draw *draw, struct robot *out)
+{
+    struct fmb_placement *first = out->placement[0];
+    draw_obstacles(draw, first);
+    for (int i = ROBOT_LINKS; i < ROBOT_BODIES; i++)
+        for (int k = ROBOT_LINKS; k < i; k++) {
+            struct fmb_answer answer;
+            or_end(fmb_decide(fmb_method_default(), &first[i], &first[k], 0, 0, &answer));
+            if (answer.verdict == FMB_SEPARATED)
+                continue;
+            for (int axis = 0; axis < 3; axis++)
+                first[i].position[axis] = draw_uniform(draw, -hall / 2, hall / 2);
+            k = ROBOT_LINKS - 1; /* all again */
+        }
+    for (int n = 1; n < ROBOT_STATES; n++)
+        memcpy(out->placement[n], first, sizeof out->placement[n]);
+}
+
+void robot_draw(struct robot *out)
+{
+    struct draw draw = {20260};
+    memset(out, 0, sizeof *out);
+    draw_bodies(&draw, out);
+    for (int i = 0; i < ROBOT_BODIES; i++)
+        out->placement[0][i].body = &out->body[i];
+    place_obstacles(&draw, out);
+    for (int n = 0; n < ROBOT_STATES; n++)
+        for (size_t contacts = 0; contacts < 1 || contacts > ROBOT_CONTACTS_MAX;
+             contacts = contacts_of(out, n))
+            draw_arm(&draw, out->placement[n]);
+}

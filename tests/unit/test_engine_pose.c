@@ -1,0 +1,748 @@
+/* Placed bodies: pairs with orientations against the oracle, and the same by every way to ask; what
+ * must not change where the whole scene turns, or a quaternion gets longer; bodies of many frames.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+
+#include "draw.h"
+#include "question.h"
+#include "referee.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* ---- Orientations ---- */
+
+static int orientation_numbers(int dim)
+{
+    return dim == 3 ? 4 : 2;
+}
+
+static bool is_zero(const double *q)
+{
+    return q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0;
+}
+
+static void whole(struct draw *draw, int count, double *q)
+{
+    draw_integers(draw, count, -3, 3, q);
+}
+
+static void whole_of_8_bits(struct draw *draw, int count, double *q)
+{
+    draw_integers(draw, count, -255, 255, q);
+}
+
+static void random_turn(struct draw *draw, int count, double *q)
+{
+    for (int i = 0; i < count; i++)
+        q[i] = draw_uniform(draw, -1, 1);
+}
+
+/* Of the 24 of a cube; a quarter turn from libm is only nearly one. */
+static void quarter(struct draw *draw, int count, double *q)
+{
+    const double angle = acos(-1) / 4;
+    if (draw_coin(draw)) {
+        draw_integers(draw, count, -1, 1, q);
+    } else {
+        q[0] = cos(angle);
+        q[draw_int(draw, 1, count - 1)] = draw_coin(draw) ? sin(angle) : -sin(angle);
+    }
+}
+
+static void yaw(struct draw *draw, int count, double *q)
+{
+    const double angle = draw_uniform(draw, 0, 4);
+    q[0] = cos(angle);
+    q[count - 1] = sin(angle);
+    if (count == 4 && draw_coin(draw)) { /* after a quarter turn about x */
+        q[1] = q[0];
+        q[2] = q[3];
+    }
+}
+
+static void far_apart(struct draw *draw, int count, double *q)
+{
+    for (int i = 0; i < count; i++)
+        q[i] = draw_coin(draw) ? draw_log(draw, -198, 0) : 0;
+    q[draw_int(draw, 0, count - 1)] = draw_log(draw, 0, 0);
+}
+
+typedef void turn_function(struct draw *draw, int count, double *q);
+
+static turn_function *const turns[] = {whole, whole_of_8_bits, random_turn, quarter,
+                                       yaw,   far_apart};
+
+/* Any of the turns, of any length that keeps it one. */
+static void draw_turn(struct draw *draw, turn_function *turn, struct solid *solid)
+{
+    const int count = solid->orientation_count = orientation_numbers(solid->dim);
+    do {
+        memset(solid->orientation, 0, sizeof solid->orientation);
+        (turn ? turn : turns[draw_int(draw, 0, (int) COUNT(turns) - 1)])(draw, count,
+                                                                         solid->orientation);
+    } while (is_zero(solid->orientation));
+    const double length = draw_int(draw, 0, 2) ? 1 : ldexp(1, draw_int(draw, -500, 500));
+    for (int i = 0; i < count; i++)
+        solid->orientation[i] *= length;
+}
+
+/* ---- Solids ---- */
+
+typedef double number_function(struct draw *draw);
+
+static double small(struct draw *draw)
+{
+    return draw_int(draw, -2, 2);
+}
+
+static double tenth(struct draw *draw)
+{
+    return 0.1 * draw_int(draw, -12, 12);
+}
+
+static double any(struct draw *draw)
+{
+    return draw_uniform(draw, -1, 1);
+}
+
+static number_function *const kinds[] = {small, small, tenth, any};
+
+static void draw_vector(struct draw *draw, number_function *number, int dim, double *out)
+{
+    for (int axis = 0; axis < dim; axis++)
+        out[axis] = number(draw);
+}
+
+static enum fmb_shape draw_shape(struct draw *draw, int dim)
+{
+    int shape;
+    do
+        shape = draw_int(draw, FMB_CUBOID, FMB_BOX);
+    while (dim == 2 && shape == FMB_FACE);
+    return (enum fmb_shape) shape;
+}
+
+/* In body coordinates; one in eight of the components may come out flat. */
+static void draw_body(struct draw *draw, number_function *number, struct solid *solid)
+{
+    solid->shape = draw_shape(draw, solid->dim);
+    for (int i = 0; i < solid_count(solid); i++) {
+        draw_vector(draw, number, solid->dim, solid->component[i]);
+        for (int axis = 0; axis < solid->dim && solid->shape == FMB_BOX; axis++)
+            solid->component[i][axis] = i == axis ? fabs(solid->component[i][axis]) : 0;
+        if (draw_int(draw, 0, 7))
+            solid->component[i][i] += solid->component[i][i] < 0 ? -1 : 1;
+    }
+    if (draw_coin(draw))
+        draw_vector(draw, number, solid->dim, solid->local);
+}
+
+static struct question draw_pair(struct draw *draw)
+{
+    const int dim = draw_int(draw, 0, 3) ? 3 : 2;
+    number_function *number = kinds[draw_int(draw, 0, (int) COUNT(kinds) - 1)];
+    struct question question = {{.dim = dim}, {.dim = dim}, draw_int(draw, 0, 2)};
+    struct solid *solids[2] = {&question.a, &question.b};
+    for (int f = 0; f < 2; f++) {
+        draw_body(draw, number, solids[f]);
+        draw_vector(draw, number, dim, solids[f]->origin);
+        draw_vector(draw, number, dim, solids[f]->velocity);
+        if (draw_int(draw, 0, 4))
+            draw_turn(draw, NULL, solids[f]);
+    }
+    question_draw_movers(draw, &question);
+    return question;
+}
+
+/* ---- Families ---- */
+
+static void as_it_comes(struct draw *draw, struct question *question)
+{
+    (void) draw, (void) question;
+}
+
+static void take_placement(const struct solid *from, struct solid *to)
+{
+    memcpy(to->origin, from->origin, sizeof to->origin);
+    memcpy(to->orientation, from->orientation, sizeof to->orientation);
+    to->orientation_count = from->orientation_count;
+}
+
+/* Both in one placement: whatever turns them, they meet as their numbers in the body say. */
+static void equal_placements(struct draw *draw, struct question *question)
+{
+    (void) draw;
+    take_placement(&question->a, &question->b);
+}
+
+/* A vertex of each, a long way from its origin, at the same place, as near as doubles have it. */
+static void vertex_to_vertex(struct draw *draw, struct question *question)
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    double at[2][FMB_DIM_MAX];
+    for (int f = 0; f < 2; f++) {
+        struct ready ready;
+        struct fmb_prepared prepared;
+        referee_ready(question, &ready);
+        assert_int_equal(fmb_prepare(f ? &ready.pair.b : &ready.pair.a, 0, 1, &prepared), FMB_OK);
+        const int i = draw_int(draw, 0, solid_count(solids[f]) - 1), dim = question->a.dim;
+        for (int axis = 0; axis < dim; axis++)
+            at[f][axis] = prepared.number[axis] + prepared.number[dim * (1 + i) + axis];
+    }
+    for (int axis = 0; axis < question->a.dim; axis++)
+        question->b.origin[axis] += at[0][axis] - at[1][axis];
+}
+
+/* Quaternions whose squares have a sum of 2^k s, and components of multiples of that: all vertices
+ * are whole numbers, at which frames meet exactly. */
+static void whole_vertices(struct draw *draw, struct question *question)
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    for (int f = 0; f < 2; f++) {
+        struct solid *solid = solids[f];
+        draw_turn(draw, whole, solid);
+        double *q = solid->orientation, square = 0;
+        const int exponent =
+            ilogb(fmax(fmax(fabs(q[0]), fabs(q[1])), fmax(fabs(q[2]), fabs(q[3]))));
+        for (int i = 0; i < 4; i++) {
+            q[i] = ldexp(q[i], 2 - exponent); /* whole again */
+            square += q[i] * q[i];
+        }
+        for (int i = 0; i < solid_count(solid); i++)
+            for (int axis = 0; axis < solid->dim; axis++)
+                solid->component[i][axis] = rint(solid->component[i][axis]) * square;
+        for (int axis = 0; axis < solid->dim; axis++)
+            solid->local[axis] = solid->velocity[axis] = solid->origin[axis] = 0;
+    }
+    vertex_to_vertex(draw, question);
+}
+
+/* Nearly the same orientation, from an ulp to a thousandth off. */
+static void nearly_equal_orientations(struct draw *draw, struct question *question)
+{
+    take_placement(&question->a, &question->b);
+    double *q = &question->b.orientation[draw_int(draw, 0, 1)];
+    *q *= 1 + draw_int(draw, -3, 3) * ldexp(1, -draw_int(draw, 10, 52));
+    vertex_to_vertex(draw, question);
+}
+
+static void far_from_the_origin(struct draw *draw, struct question *question)
+{
+    const double far = draw_log(draw, 20, 60);
+    const int axis = draw_int(draw, 0, question->a.dim - 1);
+    vertex_to_vertex(draw, question);
+    question->a.origin[axis] += far;
+    question->b.origin[axis] += far;
+}
+
+/* Lengths from one end of the doubles to the other; in one placement where they are alike. */
+static void extreme(struct draw *draw, struct question *question)
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    const int both = draw_int(draw, -1070, 1000);
+    const bool alike = draw_coin(draw);
+    if (alike)
+        take_placement(&question->a, &question->b);
+    for (int f = 0; f < 2; f++) {
+        const int e = alike             ? both
+                      : draw_coin(draw) ? draw_int(draw, -1070, 1000)
+                                        : draw_int(draw, -210, 210);
+        for (int axis = 0; axis < question->a.dim; axis++) {
+            for (int i = 0; i < solid_count(solids[f]); i++)
+                solids[f]->component[i][axis] = ldexp(solids[f]->component[i][axis], e);
+            if (draw_coin(draw))
+                solids[f]->origin[axis] = ldexp(solids[f]->origin[axis], e);
+            if (draw_coin(draw))
+                solids[f]->local[axis] = ldexp(solids[f]->local[axis], e);
+        }
+    }
+}
+
+/* Components that are hardly off an axis that stays where it is. */
+static void hardly_tilted(struct draw *draw, struct question *question)
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    const int last = question->a.dim - 1;
+    for (int f = 0; f < 2; f++) {
+        draw_turn(draw, last == 2 ? yaw : random_turn, solids[f]);
+        if (solids[f]->shape != FMB_BOX)
+            solids[f]->component[0][last] = draw_coin(draw) ? draw_log(draw, -80, -50) : 0;
+        solids[f]->velocity[last] = 0;
+    }
+    vertex_to_vertex(draw, question);
+    question->b.origin[last] += draw_coin(draw) ? draw_log(draw, -80, -50) : 0;
+}
+
+struct family {
+    const char *name;
+    void (*change)(struct draw *draw, struct question *question);
+    long sample;
+};
+
+static const struct family families[] = {
+    {"as_it_comes", as_it_comes, 12000},
+    {"equal_placements", equal_placements, 8000},
+    {"vertex_to_vertex", vertex_to_vertex, 8000},
+    {"whole_vertices", whole_vertices, 8000},
+    {"nearly_equal_orientations", nearly_equal_orientations, 6000},
+    {"far_from_the_origin", far_from_the_origin, 6000},
+    {"extreme", extreme, 3000},
+    {"hardly_tilted", hardly_tilted, 6000},
+};
+
+static struct question draw_of(struct draw *draw, const struct family *family)
+{
+    struct question question = draw_pair(draw);
+    family->change(draw, &question);
+    return question;
+}
+
+/* ---- Against the oracle ---- */
+
+static void answers_are_what_the_oracle_says(void **state)
+{
+    const struct family *family = *state;
+    struct draw draw;
+    long of_verdict[FMB_OVERLAPPING + 1] = {0};
+    draw_begin(&draw, family->name);
+    for (long n = draw_sample(family->sample); n > 0; n--) {
+        const struct question question = draw_of(&draw, family);
+        of_verdict[referee_assert(&question)]++;
+    }
+    printf("# %ld separated, %ld touching, %ld overlapping\n", of_verdict[FMB_SEPARATED],
+           of_verdict[FMB_TOUCHING], of_verdict[FMB_OVERLAPPING]);
+    for (int v = FMB_SEPARATED; v <= FMB_OVERLAPPING; v++)
+        assert_true(of_verdict[v] > 0);
+}
+
+/* ---- By every way to ask ---- */
+
+enum { PAIRS = 150 };
+
+struct crowd {
+    struct question question[PAIRS];
+    struct ready ready[PAIRS];
+    struct fmb_answer answer[PAIRS];
+    struct fmb_prepared frame[2 * PAIRS];
+    unsigned pair[PAIRS][2];
+};
+
+static void draw_crowd(struct draw *draw, int dim, struct crowd *out)
+{
+    for (unsigned i = 0; i < PAIRS; i++) {
+        struct question *question = &out->question[i];
+        do
+            *question = draw_of(draw, &families[draw_int(draw, 0, (int) COUNT(families) - 1)]);
+        while (question->a.dim != dim);
+        question->duration = 1;
+        struct ready *ready = &out->ready[i];
+        referee_ready(question, ready);
+        assert_int_equal(
+            pair_decide(fmb_method_default(), &ready->pair, FMB_WANT_BOX, &out->answer[i]), FMB_OK);
+        out->pair[i][0] = 2 * i + draw_coin(draw);
+        out->pair[i][1] = out->pair[i][0] ^ 1;
+        assert_int_equal(fmb_prepare(&ready->pair.a, 0, 1, &out->frame[2 * i]), FMB_OK);
+        assert_int_equal(fmb_prepare(&ready->pair.b, 0, 1, &out->frame[2 * i + 1]), FMB_OK);
+    }
+}
+
+static bool same_or_none(const double *found, const double *expected, bool has, size_t count)
+{
+    for (size_t k = 0; k < count && !has; k++)
+        if (!isnan(found[k]))
+            return false;
+    return !has || memcmp(found, expected, count * sizeof *found) == 0;
+}
+
+static void expect_batch(const struct crowd *crowd, enum fmb_instructions instructions, bool times,
+                         bool boxes)
+{
+    unsigned char verdict[PAIRS];
+    double contact[PAIRS][2], box[PAIRS][2][FMB_DIM_MAX];
+    const struct fmb_batch batch = {.frames = crowd->frame,
+                                    .frame_count = 2 * PAIRS,
+                                    .pairs = crowd->pair,
+                                    .pair_count = PAIRS,
+                                    .duration = 1,
+                                    .verdicts = verdict,
+                                    .contacts = times ? contact : NULL,
+                                    .boxes = boxes ? box : NULL,
+                                    .instructions = instructions};
+    assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
+    for (int i = 0; i < PAIRS; i++) {
+        const struct fmb_answer *answer = &crowd->answer[i];
+        if (verdict[i] != answer->verdict)
+            referee_fail(&crowd->question[i], "another verdict in a batch");
+        if (times && !same_or_none(contact[i], answer->contact, answer->has_contact, 2))
+            referee_fail(&crowd->question[i], "another contact in a batch");
+        if (boxes && !same_or_none(box[i][0], answer->box[0], answer->has_box, 2 * FMB_DIM_MAX))
+            referee_fail(&crowd->question[i], "another box in a batch");
+    }
+}
+
+static void expect_meet(const struct crowd *crowd)
+{
+    for (int i = 0; i < PAIRS; i++) {
+        enum fmb_verdict verdict;
+        assert_int_equal(fmb_meet(&crowd->frame[2 * i], &crowd->frame[2 * i + 1], 1, &verdict),
+                         FMB_OK);
+        if (verdict != crowd->answer[i].verdict)
+            referee_fail(&crowd->question[i], "fmb_meet() has another verdict");
+    }
+}
+
+static void expect_certificates(const struct crowd *crowd)
+{
+    enum { SIZE = 1 << 17 };
+    static char text[SIZE];
+    char why[200] = "";
+    for (int i = 0; i < PAIRS; i++) {
+        const struct pair *pair = &crowd->ready[i].pair;
+        size_t length;
+        assert_int_equal(pair_certificate(pair, text, SIZE, &length), FMB_OK);
+        for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++)
+            if (pair_certificate_holds(pair, (enum fmb_verdict) verdict, text, why, sizeof why) !=
+                (verdict == (int) crowd->answer[i].verdict)) {
+                printf("# %s: %s\n", text, why);
+                referee_fail(&crowd->question[i], "a certificate that does not hold, or does");
+            }
+    }
+}
+
+static void every_way_to_ask_gives_the_same(void **state)
+{
+    (void) state;
+    static struct crowd crowd;
+    struct draw draw;
+    draw_begin(&draw, "every_way_to_ask_gives_the_same");
+    for (long n = draw_sample(40); n > 0; n--) {
+        draw_crowd(&draw, n % 4 ? 3 : 2, &crowd);
+        for (int set = FMB_BEST; set <= FMB_AVX512; set++)
+            for (int wants = 0; wants < 4 && fmb_instructions_supported(set); wants++)
+                expect_batch(&crowd, (enum fmb_instructions) set, wants & 1, wants & 2);
+        expect_meet(&crowd);
+        expect_certificates(&crowd);
+    }
+}
+
+/* ---- What must not change ---- */
+
+/* out := p q, exact where the products of their numbers are. */
+static void multiply(const double p[4], const double q[4], double out[4])
+{
+    out[0] = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3];
+    out[1] = p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2];
+    out[2] = p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1];
+    out[3] = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
+}
+
+/* One of the 24 turns of a cube: axis i goes to sign[i] times axis to[i]. */
+struct cube_turn {
+    double q[4];
+    int to[3];
+    double sign[3];
+};
+
+static struct cube_turn draw_cube_turn(struct draw *draw)
+{
+    struct cube_turn turn;
+    double square;
+    do {
+        draw_integers(draw, 4, -1, 1, turn.q);
+        square = turn.q[0] * turn.q[0] + turn.q[1] * turn.q[1] + turn.q[2] * turn.q[2] +
+                 turn.q[3] * turn.q[3];
+    } while (square != 1 && square != 2 && square != 4);
+    for (int i = 0; i < 3; i++) { /* e_i to q e_i q*, the length of which is square */
+        const double unit[4] = {0, i == 0, i == 1, i == 2};
+        const double conjugate[4] = {turn.q[0], -turn.q[1], -turn.q[2], -turn.q[3]};
+        double half[4], image[4];
+        multiply(turn.q, unit, half);
+        multiply(half, conjugate, image);
+        for (int axis = 0; axis < 3; axis++)
+            if (image[1 + axis] != 0) {
+                turn.to[i] = axis;
+                turn.sign[i] = image[1 + axis] / square;
+            }
+    }
+    return turn;
+}
+
+static void turn_vector(const struct cube_turn *turn, double vector[FMB_DIM_MAX])
+{
+    double out[FMB_DIM_MAX];
+    for (int i = 0; i < 3; i++)
+        out[turn->to[i]] = turn->sign[i] * vector[i];
+    memcpy(vector, out, sizeof out);
+}
+
+static void turn_solid(const struct cube_turn *turn, struct solid *solid)
+{
+    static const double identity[4] = {1, 0, 0, 0};
+    double q[4];
+    multiply(turn->q, solid->orientation_count ? solid->orientation : identity, q);
+    memcpy(solid->orientation, q, sizeof q);
+    solid->orientation_count = 4;
+    turn_vector(turn, solid->origin);
+    turn_vector(turn, solid->velocity);
+}
+
+/* On output: the box with its axes exchanged. */
+static void turn_box(const struct cube_turn *turn, double box[2][FMB_DIM_MAX])
+{
+    turn_vector(turn, box[0]);
+    turn_vector(turn, box[1]);
+    for (int axis = 0; axis < 3; axis++)
+        for (int end = 0; end < 2; end++)
+            box[end][axis] += 0.0; /* never -0 */
+    for (int axis = 0; axis < 3; axis++)
+        if (box[0][axis] > box[1][axis]) {
+            const double low = box[1][axis];
+            box[1][axis] = box[0][axis];
+            box[0][axis] = low;
+        }
+}
+
+static void ask_both(const struct question *question, struct fmb_answer *exact,
+                     enum fmb_verdict *certified)
+{
+    struct ready ready;
+    struct fmb_answer answer;
+    referee_ready(question, &ready);
+    referee_ask(question, exact);
+    assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
+    *certified = answer.verdict;
+}
+
+/* The orientations of a pair as whole numbers, so that products with few others are exact. */
+static struct question draw_whole_turns(struct draw *draw, int dim)
+{
+    struct question question;
+    do
+        question = draw_pair(draw);
+    while (question.a.dim != dim);
+    draw_turn(draw, draw_coin(draw) ? whole : whole_of_8_bits, &question.a);
+    draw_turn(draw, draw_coin(draw) ? whole : whole_of_8_bits, &question.b);
+    if (draw_coin(draw))
+        vertex_to_vertex(draw, &question);
+    return question;
+}
+
+static void expect_unchanged(const struct question *question, const struct question *changed,
+                             const struct cube_turn *turn)
+{
+    struct fmb_answer before, after;
+    enum fmb_verdict certified;
+    ask_both(question, &before, &certified);
+    assert_int_equal(certified, before.verdict);
+    if (turn && before.has_box)
+        turn_box(turn, before.box);
+    ask_both(changed, &after, &certified);
+    if (certified != before.verdict)
+        referee_fail(changed, "certified has another verdict than before");
+    if (!referee_same(&before, &after)) {
+        question_print(question);
+        referee_fail(changed, "another answer than before");
+    }
+}
+
+static void scenes_may_turn_by_quarters(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "scenes_may_turn_by_quarters");
+    for (long n = draw_sample(12000); n > 0; n--) {
+        const struct question question = draw_whole_turns(&draw, 3);
+        const struct cube_turn turn = draw_cube_turn(&draw);
+        struct question turned = question;
+        turn_solid(&turn, &turned.a);
+        turn_solid(&turn, &turned.b);
+        expect_unchanged(&question, &turned, &turn);
+    }
+}
+
+static double draw_factor(struct draw *draw)
+{
+    const double factor =
+        draw_coin(draw) ? draw_int(draw, 1, 9) : ldexp(1, draw_int(draw, -400, 400));
+    return draw_coin(draw) ? factor : -factor;
+}
+
+static void quaternions_may_have_any_length(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "quaternions_may_have_any_length");
+    for (long n = draw_sample(12000); n > 0; n--) {
+        const struct question question = draw_whole_turns(&draw, draw_int(&draw, 2, 3));
+        struct question longer = question;
+        const double of_a = draw_factor(&draw), of_b = draw_factor(&draw);
+        for (int i = 0; i < 4; i++) {
+            longer.a.orientation[i] *= of_a;
+            longer.b.orientation[i] *= of_b;
+        }
+        expect_unchanged(&question, &longer, NULL);
+    }
+}
+
+/* ---- Bodies of many frames ---- */
+
+enum { FRAMES = 5 };
+
+struct many {
+    struct solid solid[FRAMES]; /* one frame each, in one placement */
+    struct fmb_frame frame[FRAMES];
+    struct fmb_body body; /* of all of them */
+    struct fmb_placement placement;
+};
+
+/* By a power of two: all that is a length in the body. */
+static void scale_body(struct solid *solid, int exponent)
+{
+    for (int axis = 0; axis < solid->dim; axis++) {
+        solid->local[axis] = ldexp(solid->local[axis], exponent);
+        for (int i = 0; i < solid_count(solid); i++)
+            solid->component[i][axis] = ldexp(solid->component[i][axis], exponent);
+    }
+}
+
+/* Frames of about one size, or each of a size of its own. */
+static void draw_many(struct draw *draw, number_function *number, int dim, struct many *out)
+{
+    const bool any_size = draw_int(draw, 0, 3) == 0;
+    struct solid first = {.dim = dim, .moving = draw_coin(draw)};
+    draw_vector(draw, number, dim, first.origin);
+    draw_vector(draw, number, dim, first.velocity);
+    if (draw_coin(draw))
+        draw_turn(draw, NULL, &first);
+    const size_t count = (size_t) draw_int(draw, 1, FRAMES);
+    for (size_t i = 0; i < count; i++) {
+        double numbers[SOLID_NUMBERS_MAX];
+        struct solid *solid = &out->solid[i];
+        *solid = first;
+        draw_body(draw, number, solid);
+        draw_vector(draw, number, dim, solid->local);
+        scale_body(solid, any_size ? draw_int(draw, -1070, 1000) : 0);
+        assert_int_equal(fmb_frame_make(dim, (int) solid->shape, numbers,
+                                        (size_t) solid_numbers(solid, numbers), &out->frame[i]),
+                         FMB_OK);
+    }
+    assert_int_equal(fmb_body_make_frames(out->frame, count, &out->body), FMB_OK);
+    assert_int_equal(out->body.frame_count, count);
+    out->placement = solid_placement(&first, &out->body);
+}
+
+/* Lets frames meet as their numbers in the bodies say. */
+static void share_placement(const struct many *from, struct many *to)
+{
+    to->placement = from->placement;
+    to->placement.body = &to->body;
+    for (unsigned i = 0; i < to->body.frame_count; i++) {
+        take_placement(&from->solid[0], &to->solid[i]);
+        to->solid[i].moving = from->solid[0].moving;
+        memcpy(to->solid[i].velocity, from->solid[0].velocity, sizeof to->solid[i].velocity);
+    }
+}
+
+static void include(const struct fmb_answer *one, int dim, struct fmb_answer *all)
+{
+    if (one->verdict == FMB_SEPARATED)
+        return;
+    const bool first = all->verdict == FMB_SEPARATED;
+    all->verdict = one->verdict > all->verdict ? one->verdict : all->verdict;
+    all->has_contact = all->has_box = true;
+    all->contact[0] = first ? one->contact[0] : fmin(all->contact[0], one->contact[0]);
+    all->contact[1] = first ? one->contact[1] : fmax(all->contact[1], one->contact[1]);
+    for (int axis = 0; axis < dim; axis++) {
+        all->box[0][axis] = first ? one->box[0][axis] : fmin(all->box[0][axis], one->box[0][axis]);
+        all->box[1][axis] = first ? one->box[1][axis] : fmax(all->box[1][axis], one->box[1][axis]);
+    }
+}
+
+/* The hull of the answers of all pairs of frames, each a body of its own. */
+static void decide_each(const struct fmb_method *method, const struct many *a, const struct many *b,
+                        double duration, struct fmb_answer *all)
+{
+    memset(all, 0, sizeof *all);
+    all->verdict = FMB_SEPARATED;
+    for (unsigned i = 0; i < a->body.frame_count; i++)
+        for (unsigned j = 0; j < b->body.frame_count; j++) {
+            const struct question question = {a->solid[i], b->solid[j], duration};
+            struct ready ready;
+            struct fmb_answer one;
+            referee_ready(&question, &ready);
+            assert_int_equal(pair_decide(method, &ready.pair, FMB_WANT_BOX, &one), FMB_OK);
+            include(&one, a->body.dim, all);
+        }
+}
+
+static void bodies_are_the_hulls_of_their_frames(void **state)
+{
+    (void) state;
+    static const char *const names[] = {"exact", "certified"};
+    struct draw draw;
+    long of_verdict[FMB_OVERLAPPING + 1] = {0};
+    draw_begin(&draw, "bodies_are_the_hulls_of_their_frames");
+    for (long n = draw_sample(4000); n > 0; n--) {
+        const int dim = draw_int(&draw, 2, 3);
+        const double duration = draw_int(&draw, 0, 2);
+        number_function *number = kinds[draw_int(&draw, 0, (int) COUNT(kinds) - 1)];
+        struct many a, b;
+        draw_many(&draw, number, dim, &a);
+        draw_many(&draw, number, dim, &b);
+        if (draw_coin(&draw))
+            share_placement(&a, &b);
+        for (size_t m = 0; m < COUNT(names); m++) {
+            const struct fmb_method *method = fmb_method_by_name(names[m]);
+            struct fmb_answer expected, found;
+            decide_each(method, &a, &b, duration, &expected);
+            assert_int_equal(
+                fmb_decide(method, &a.placement, &b.placement, duration, FMB_WANT_BOX, &found),
+                FMB_OK);
+            if (!referee_same(&found, &expected))
+                fail_msg("%s: %s, of frames %s", names[m], fmb_verdict_name((int) found.verdict),
+                         fmb_verdict_name((int) expected.verdict));
+            of_verdict[found.verdict]++;
+        }
+        char text[4];
+        size_t length = 1;
+        if (a.body.frame_count + b.body.frame_count == 2)
+            continue;
+        assert_int_equal(
+            fmb_certificate(&a.placement, &b.placement, duration, text, sizeof text, &length),
+            FMB_CANNOT_DECIDE);
+        assert_true(length == 0 && text[0] == 0);
+        assert_false(fmb_certificate_holds(&a.placement, &b.placement, duration, FMB_SEPARATED,
+                                           "separated + a0", NULL, 0));
+    }
+    printf("# %ld separated, %ld touching, %ld overlapping\n", of_verdict[FMB_SEPARATED],
+           of_verdict[FMB_TOUCHING], of_verdict[FMB_OVERLAPPING]);
+    for (int v = FMB_SEPARATED; v <= FMB_OVERLAPPING; v++)
+        assert_true(of_verdict[v] > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest others[] = {
+        cmocka_unit_test(every_way_to_ask_gives_the_same),
+        cmocka_unit_test(scenes_may_turn_by_quarters),
+        cmocka_unit_test(quaternions_may_have_any_length),
+        cmocka_unit_test(bodies_are_the_hulls_of_their_frames),
+    };
+    struct CMUnitTest tests[COUNT(families) + COUNT(others)];
+    for (size_t i = 0; i < COUNT(families); i++)
+        tests[i] = (struct CMUnitTest){.name = families[i].name,
+                                       .test_func = answers_are_what_the_oracle_says,
+                                       .initial_state = (void *) (uintptr_t) &families[i]};
+    memcpy(tests + COUNT(families), others, sizeof others);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

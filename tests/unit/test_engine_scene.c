@@ -1,0 +1,419 @@
+/* Scenes against fmb_decide() of each pair: the same pairs, numbers and bits, whatever the kind of
+ * pairs, the slots, the wants and the first pair. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "draw.h"
+#include "fmb.h"
+
+enum { PLACEMENTS_MAX = 48, FRAMES_MAX = 90, LISTED_MAX = 400, IGNORED_MAX = 60, GUARDS = 64 };
+
+/* A scene with everything it refers to. */
+struct world {
+    int dim;
+    size_t count;
+    struct fmb_frame frame[PLACEMENTS_MAX][FRAMES_MAX];
+    struct fmb_body body[PLACEMENTS_MAX];
+    struct fmb_placement placement[PLACEMENTS_MAX];
+    unsigned pair[LISTED_MAX][2], ignored[IGNORED_MAX][2];
+    struct fmb_scene scene;
+};
+
+static int below(struct draw *draw, int end)
+{
+    return (int) (draw_bits(draw) % (uint64_t) end);
+}
+
+/* ---- Drawing ---- */
+
+/* Small whole numbers, so that contacts of every kind are common. */
+static void draw_frame(struct draw *draw, int dim, int spread, struct fmb_frame *out)
+{
+    const int shape = 1 + below(draw, 4);
+    double number[12];
+    size_t count;
+    if (shape == FMB_FACE && dim == 2) {
+        draw_frame(draw, dim, spread, out);
+        return;
+    }
+    count = shape == FMB_BOX ? 2 * (size_t) dim
+                             : (size_t) (dim * (1 + fmb_component_count(dim, shape)));
+    for (size_t i = 0; i < count; i++)
+        number[i] = i < (size_t) dim   ? below(draw, 2 * spread + 1) - spread
+                    : shape == FMB_BOX ? below(draw, 4)
+                                       : below(draw, 7) - 3;
+    if (below(draw, 8) == 0)
+        for (size_t i = 0; i < count; i++)
+            number[i] = number[i] * 0.1;
+    assert_int_equal(fmb_frame_make(dim, shape, number, count, out), FMB_OK);
+}
+
+static void draw_orientation(struct draw *draw, int dim, struct fmb_placement *out)
+{
+    const int numbers = dim == 2 ? 2 : 4, kind = below(draw, 4);
+    if (kind == 0)
+        return;
+    out->orientation_count = numbers;
+    do {
+        for (int i = 0; i < numbers; i++)
+            out->orientation[i] = kind == 1 ? draw_uniform(draw, -1, 1) : below(draw, 3) - 1;
+    } while (out->orientation[0] == 0 && out->orientation[1] == 0 && out->orientation[2] == 0 &&
+             out->orientation[3] == 0);
+}
+
+static void draw_placements(struct draw *draw, size_t most_frames, struct world *out)
+{
+    const int wide = 2 + below(draw, 12);
+    const bool moving = below(draw, 2);
+    for (size_t i = 0; i < out->count; i++) {
+        const size_t frames = 1 + (size_t) below(draw, (int) most_frames);
+        for (size_t k = 0; k < frames; k++)
+            draw_frame(draw, out->dim, frames > 1 ? 1 + (int) frames / 10 : 1, &out->frame[i][k]);
+        assert_int_equal(fmb_body_make_frames(out->frame[i], frames, &out->body[i]), FMB_OK);
+        struct fmb_placement *placement = &out->placement[i];
+        *placement = (struct fmb_placement){.body = &out->body[below(draw, (int) i + 1)]};
+        draw_orientation(draw, out->dim, placement);
+        for (int axis = 0; axis < out->dim; axis++) {
+            placement->position[axis] = below(draw, 2 * wide + 1) - wide;
+            placement->velocity[axis] = moving && below(draw, 2) ? below(draw, 5) - 2 : 0;
+        }
+    }
+}
+
+static void draw_two(struct draw *draw, size_t count, unsigned out[2])
+{
+    out[0] = (unsigned) below(draw, (int) count);
+    do
+        out[1] = (unsigned) below(draw, (int) count);
+    while (out[1] == out[0]);
+}
+
+static void draw_world(struct draw *draw, size_t count, size_t most_frames, struct world *out)
+{
+    memset(out, 0, sizeof *out);
+    out->dim = 2 + below(draw, 2);
+    out->count = count;
+    draw_placements(draw, most_frames, out);
+    struct fmb_scene *scene = &out->scene;
+    *scene = (struct fmb_scene){.placements = out->placement,
+                                .placement_count = count,
+                                .duration = below(draw, 3),
+                                .contacts = below(draw, 2),
+                                .boxes = below(draw, 2),
+                                .which = (enum fmb_pairs) below(draw, 3)};
+    if (scene->which == FMB_PAIRS_ACROSS)
+        scene->split = (size_t) below(draw, (int) count + 1);
+    if (scene->which == FMB_PAIRS_LISTED && count > 1) {
+        scene->pairs = (const unsigned(*)[2]) out->pair;
+        scene->pair_count = (size_t) below(draw, most_frames > 1 ? 60 : LISTED_MAX);
+        for (size_t i = 0; i < scene->pair_count; i++)
+            draw_two(draw, count, out->pair[i]);
+    } else if (count > 1 && below(draw, 2)) {
+        scene->ignored = (const unsigned(*)[2]) out->ignored;
+        scene->ignored_count = (size_t) below(draw, IGNORED_MAX);
+        for (size_t i = 0; i < scene->ignored_count; i++)
+            draw_two(draw, count, out->ignored[i]);
+    }
+    if (below(draw, 2))
+        scene->first_pair = draw_bits(draw) % (fmb_scene_pair_count(scene) + 1);
+}
+
+/* ---- Truth ---- */
+
+static bool is_ignored(const struct fmb_scene *scene, unsigned a, unsigned b)
+{
+    for (size_t i = 0; i < scene->ignored_count; i++)
+        if ((scene->ignored[i][0] == a && scene->ignored[i][1] == b) ||
+            (scene->ignored[i][0] == b && scene->ignored[i][1] == a))
+            return true;
+    return false;
+}
+
+/* Goes on to the next pair, in the order of the numbers. False: there is none. */
+static bool next_pair(const struct fmb_scene *scene, unsigned long long number, unsigned pair[2])
+{
+    const unsigned n = (unsigned) scene->placement_count;
+    if (scene->which == FMB_PAIRS_LISTED) {
+        if (number == scene->pair_count)
+            return false;
+        memcpy(pair, scene->pairs[number], 2 * sizeof *pair);
+        return true;
+    }
+    const bool across = scene->which == FMB_PAIRS_ACROSS;
+    const unsigned rows = across ? (unsigned) scene->split : n;
+    unsigned b = number == 0 ? (across ? rows : 1) : pair[1] + 1, a = number == 0 ? 0 : pair[0];
+    for (; a < rows; a++, b = across ? rows : a + 1)
+        if (b < n) {
+            pair[0] = a;
+            pair[1] = b;
+            return true;
+        }
+    return false;
+}
+
+struct truth {
+    unsigned pair[2];
+    unsigned long long number;
+    struct fmb_answer answer;
+};
+
+static size_t find_truth(const struct fmb_scene *scene, struct truth *out)
+{
+    const struct fmb_method *method = scene->method ? scene->method : fmb_method_default();
+    unsigned pair[2] = {0, 0};
+    unsigned long long number = 0;
+    size_t count = 0;
+    for (; next_pair(scene, number, pair); number++) {
+        struct truth *truth = &out[count];
+        if (number < scene->first_pair || is_ignored(scene, pair[0], pair[1]))
+            continue;
+        truth->number = number;
+        memcpy(truth->pair, pair, sizeof pair);
+        fmb_decide(method, &scene->placements[pair[0]], &scene->placements[pair[1]],
+                   scene->duration, scene->boxes ? FMB_WANT_BOX : 0, &truth->answer);
+        count += scene->which == FMB_PAIRS_LISTED || truth->answer.verdict != FMB_SEPARATED;
+    }
+    assert_int_equal(number, fmb_scene_pair_count(scene));
+    return count;
+}
+
+/* ---- Comparing ---- */
+
+static void check_numbers(const double *got, const double *truth, size_t count, bool is_there)
+{
+    for (size_t i = 0; i < count; i++)
+        if (is_there)
+            assert_memory_equal(&got[i], &truth[i], sizeof *got);
+        else
+            assert_true(isnan(got[i]));
+}
+
+static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_answers *answers,
+                         size_t k, const struct truth *truth)
+{
+    assert_memory_equal(answers->pairs[k], truth->pair, sizeof truth->pair);
+    assert_int_equal(answers->verdicts[k], truth->answer.verdict);
+    assert_true(scene->contacts == !!answers->contacts);
+    assert_true(scene->boxes == !!answers->boxes);
+    if (answers->contacts)
+        check_numbers(answers->contacts[k], truth->answer.contact, 2, truth->answer.has_contact);
+    if (answers->boxes)
+        for (int end = 0; end < 2; end++)
+            check_numbers(answers->boxes[k][end], truth->answer.box[end],
+                          (size_t) scene->placements->body->dim, truth->answer.has_box);
+}
+
+/* Returns how many of the pairs meet. */
+static size_t check_scene(const struct fmb_scene *scene, size_t slots)
+{
+    static struct truth truth[LISTED_MAX + PLACEMENTS_MAX * PLACEMENTS_MAX];
+    struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    limits.slots = slots ? slots : limits.slots;
+    const size_t bytes = fmb_scene_bytes(&limits), count = find_truth(scene, truth);
+    unsigned char *memory = malloc(bytes + GUARDS);
+    struct fmb_scene_state *state;
+    struct fmb_scene_answers answers;
+    size_t at = 0, meeting = 0;
+    assert_non_null(memory);
+    memset(memory, 0xa5, bytes + GUARDS);
+    assert_int_equal(fmb_scene_begin(scene, &limits, memory, &state), FMB_OK);
+    for (bool done = false; !done;) {
+        done = fmb_scene_step(state, &answers);
+        for (size_t k = 0; k < answers.count; k++, at++) {
+            assert_true(at < count);
+            check_answer(scene, &answers, k, &truth[at]);
+            assert_int_equal(fmb_scene_number(state, k), truth[at].number);
+            meeting += truth[at].answer.verdict > FMB_SEPARATED;
+        }
+        const unsigned long long next = fmb_scene_next_pair(state);
+        assert_true(at == 0 || truth[at - 1].number < next);
+        assert_true(at == count || truth[at].number >= next);
+        assert_true(done == (next == fmb_scene_pair_count(scene)));
+    }
+    assert_int_equal(at, count);
+    for (size_t i = bytes; i < bytes + GUARDS; i++)
+        assert_int_equal(memory[i], 0xa5);
+    free(memory);
+    return meeting;
+}
+
+static struct world world;
+
+static void random_scenes(void **state)
+{
+    struct draw draw = {0x5ce9e5};
+    size_t meeting = 0;
+    (void) state;
+    for (int n = 0; n < 400; n++) {
+        const size_t frames = n % 4 == 0 ? 1 : n % 4 == 1 ? 4 : n % 4 == 2 ? 20 : FRAMES_MAX;
+        const size_t count = (size_t) below(&draw, frames < 20 ? PLACEMENTS_MAX + 1 : 9);
+        draw_world(&draw, count, frames, &world);
+        meeting += check_scene(&world.scene, 0);
+        meeting += check_scene(&world.scene, FMB_SCENE_SLOTS_MIN + (size_t) below(&draw, 30));
+    }
+    assert_true(meeting > 3000);
+}
+
+/* The answers to two halves are those to the whole. */
+static void any_first_pair(void **state)
+{
+    struct draw draw = {77};
+    (void) state;
+    for (int n = 0; n < 12; n++) {
+        draw_world(&draw, 9, n % 2 ? 1 : 20, &world);
+        const unsigned long long total = fmb_scene_pair_count(&world.scene);
+        for (world.scene.first_pair = 0; world.scene.first_pair <= total; world.scene.first_pair++)
+            check_scene(&world.scene, FMB_SCENE_SLOTS_MIN);
+    }
+}
+
+static void every_method(void **state)
+{
+    struct draw draw = {4};
+    size_t refused = 0;
+    (void) state;
+    for (int n = 0; n < 60; n++) {
+        draw_world(&draw, 8, n % 2 ? 1 : 5, &world);
+        world.scene.method = fmb_method_at((size_t) n / 2 % 4);
+        if (!world.scene.method->boxes)
+            world.scene.boxes = false;
+        if (!world.scene.method->certain && world.scene.which != FMB_PAIRS_LISTED)
+            continue;
+        check_scene(&world.scene, 0);
+        for (size_t i = 0; i < world.scene.pair_count; i++) {
+            struct fmb_answer answer;
+            refused +=
+                fmb_decide(world.scene.method, &world.placement[world.pair[i][0]],
+                           &world.placement[world.pair[i][1]], 1, 0, &answer) == FMB_CANNOT_DECIDE;
+        }
+    }
+    assert_true(refused > 10);
+}
+
+/* Numbers at the end of the doubles: boxes of bodies without ends, and positions that swallow the
+ * body. */
+static void extremes(void **state)
+{
+    static const double scale[] = {1e308, 1e300, 1e150, 1e16, 1e-160, 1e-310};
+    struct draw draw = {9};
+    size_t meeting = 0;
+    (void) state;
+    for (int n = 0; n < 60; n++) {
+        draw_world(&draw, 6, 3, &world);
+        for (size_t i = 0; i < world.count; i++) {
+            for (size_t k = 0; k < 3 && k < world.body[i].frame_count; k++) {
+                const double s = scale[below(&draw, 6)];
+                const double number[6] = {0, 0, 0, s, s / 3, s / 7};
+                assert_int_equal(fmb_frame_make(world.dim, FMB_BOX, number + (world.dim == 2),
+                                                2 * (size_t) world.dim, &world.frame[i][k]),
+                                 FMB_OK);
+            }
+            assert_int_equal(
+                fmb_body_make_frames(world.frame[i], world.body[i].frame_count, &world.body[i]),
+                FMB_OK);
+            for (int axis = 0; axis < world.dim; axis++)
+                world.placement[i].position[axis] *= scale[below(&draw, 6)] * 0.01;
+        }
+        meeting += check_scene(&world.scene, 0);
+    }
+    assert_true(meeting > 100);
+}
+
+static enum fmb_status begin(const struct fmb_scene *scene)
+{
+    struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    struct fmb_scene_state *state;
+    void *memory = malloc(fmb_scene_bytes(&limits));
+    const enum fmb_status status = fmb_scene_begin(scene, &limits, memory, &state);
+    free(memory);
+    return status;
+}
+
+static void draw_good(enum fmb_pairs which)
+{
+    struct draw draw = {1};
+    do
+        draw_world(&draw, 5, 3, &world);
+    while (world.scene.which != which ||
+           (which == FMB_PAIRS_LISTED && world.scene.pair_count < 5) ||
+           (which == FMB_PAIRS_ALL && world.scene.ignored_count == 0));
+    assert_int_equal(begin(&world.scene), FMB_OK);
+}
+
+static void bad_scenes(void **state)
+{
+    struct fmb_scene *scene = &world.scene;
+    (void) state;
+    draw_good(FMB_PAIRS_LISTED);
+    world.pair[3][1] = 5;
+    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    world.pair[3][1] = world.pair[3][0];
+    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    draw_good(FMB_PAIRS_LISTED);
+    scene->first_pair = scene->pair_count + 1;
+    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    draw_good(FMB_PAIRS_LISTED);
+    scene->split = 1;
+    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    draw_good(FMB_PAIRS_LISTED);
+    scene->ignored = scene->pairs;
+    scene->ignored_count = 1;
+    assert_int_equal(begin(scene), FMB_WRONG_COUNT);
+    draw_good(FMB_PAIRS_ALL);
+    scene->pairs = scene->ignored;
+    scene->pair_count = 1;
+    assert_int_equal(begin(scene), FMB_WRONG_COUNT);
+    draw_good(FMB_PAIRS_ALL);
+    world.ignored[0][0] = 7;
+    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    draw_good(FMB_PAIRS_ALL);
+    scene->method = fmb_method_by_name("fmb");
+    assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
+    draw_good(FMB_PAIRS_ALL);
+    scene->duration = -1;
+    assert_int_equal(begin(scene), FMB_BAD_DURATION);
+    draw_good(FMB_PAIRS_ALL);
+    world.placement[2].position[1] = NAN;
+    assert_int_equal(begin(scene), FMB_NOT_FINITE);
+    draw_good(FMB_PAIRS_ALL);
+    world.placement[2].body = NULL;
+    assert_int_equal(begin(scene), FMB_NO_FRAMES);
+}
+
+static void limits_hold(void **state)
+{
+    struct fmb_scene_state *out;
+    static char memory[1 << 20];
+    (void) state;
+    draw_good(FMB_PAIRS_ALL);
+    for (int n = 0; n < 4; n++) {
+        struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
+        assert_true(fmb_scene_bytes(&limits) < sizeof memory);
+        limits.placements -= n == 0;
+        limits.frames -= n == 1;
+        limits.ignored -= n == 2;
+        limits.slots = n == 3 ? FMB_SCENE_SLOTS_MIN - 1 : limits.slots;
+        assert_int_equal(fmb_scene_begin(&world.scene, &limits, memory, &out), FMB_OVER_LIMIT);
+    }
+    const struct fmb_scene_limits huge = {SIZE_MAX, 1, 1, 64};
+    assert_true(fmb_scene_bytes(&huge) == SIZE_MAX);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_scenes), cmocka_unit_test(any_first_pair),
+        cmocka_unit_test(every_method),  cmocka_unit_test(extremes),
+        cmocka_unit_test(bad_scenes),    cmocka_unit_test(limits_hold),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
