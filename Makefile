@@ -112,7 +112,7 @@ receiver_objects := $(patsubst %.c,$(O)/%.o,$(wildcard msgs/bus/*.c))
 wire_objects := $(codec_objects) $(receiver_objects) $(addprefix $(O)/service/,clock.o random_id.o)
 bus_objects := $(wire_objects) $(addprefix $(O)/service/,say.o signals.o)
 answer_objects := $(addprefix $(O)/service/,answerer.o answer_pair.o answer_scene.o \
-	answer_definition.o scene_pairs.o check.o cache.o histogram.o)
+	answer_definition.o check.o cache.o body.o runs.o histogram.o)
 server_objects := $(answer_objects) $(addprefix $(O)/service/,server.o queue.o turns.o expect.o \
 	jobs.o meter.o malformed.o)
 page_names := replay mesh
@@ -297,8 +297,8 @@ $(E)/lua/fmb_msgs/init.lua: $(message_files) Makefile
 	@mkdir -p $(E)/lua
 	lcm-gen -l --lpath $(E)/lua $(message_files)
 
-$(E)/java/AskPair.class: clients/examples/AskPair.java tests/system/Largest.java $(message_files) \
-		Makefile
+$(E)/java/AskPair.class: clients/examples/AskPair.java clients/examples/PosedPair.java \
+		tests/system/Largest.java $(message_files) Makefile
 	@rm -rf $(E)/java
 	@mkdir -p $(E)/java
 	lcm-gen -j --jpath $(E)/java $(message_files)
@@ -312,11 +312,11 @@ hostile_objects := $(O)/tests/hostile/hostile.o
 oracle_objects := $(patsubst %.c,$(O)/%.o,$(wildcard tests/oracle/*.c))
 engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(unit_names))
 # Those that see inside of it.
-internal_tests := test_bounds test_limbs test_outward test_kernels
+internal_tests := test_bounds test_limbs test_outward test_kernels test_placing
 # Those that draw from the hard families of the campaigns.
 family_tests := test_kernels test_engine_batch test_engine_tree
 # Those of what answers queries; they link no bus and no clients.
-answer_tests := test_cache $(filter test_answer%,$(unit_names))
+answer_tests := $(filter test_answer_%,$(unit_names))
 comma := ,
 family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
@@ -405,7 +405,7 @@ $(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(slab_objec
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
-slabs_names := slabs_prepare slabs_filter slabs_list slabs_refine slab_inequalities
+slabs_names := slabs_prepare slabs_filter_exactly slabs_list slabs_refine slab_inequalities
 slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
 slabs_planted := -DSLABS_ROUNDING=0x1p-54
 # Optimised, and without sanitizers, whatever the mode: they would take long for what another object
@@ -452,6 +452,12 @@ $(answer_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/uni
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
 
+cache_tests := test_cache test_runs test_answer
+$(cache_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o \
+		$(answer_objects) $(codec_objects) $(message_objects) $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
+
 wire_tests := $(filter test_wire% test_handle,$(unit_names))
 $(wire_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(codec_objects) \
 		$(message_objects) $(B)/libfmb.a
@@ -465,7 +471,7 @@ $(service_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/un
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
 
 $(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(answer_tests) \
-		$(wire_tests) $(client_tests) $(service_tests) test_bus),$(unit_tests)): \
+		$(cache_tests) $(wire_tests) $(client_tests) $(service_tests) test_bus),$(unit_tests)): \
 		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
 		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
@@ -482,7 +488,7 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 # Tests of the engine see it and the oracle, those of scenes the service too; of all others that
 # of meshes alone an oracle.
 engine_views := $(engine_tests) $(internal_tests) slab_truth pair_draw
-scene_views := $(answer_tests) scene_truth
+scene_views := $(answer_tests) $(cache_tests) scene_truth
 family_views := $(family_tests) $(scene_views) pair_draw test_engine_work
 unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views) test_mesh_meet),-Itests/oracle) \
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
@@ -617,7 +623,7 @@ $(O)/tests/campaign/%.o: tests/campaign/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -pthread -Iservice/fmb -Itests/oracle
 
-# validate: minutes; accuracy: most of an hour, on two cores.
+# validate: some twenty minutes; accuracy: some hours, on two cores.
 .PHONY: validate accuracy
 validate: $(B)/validate
 	$<
@@ -727,7 +733,7 @@ $(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings | $(message_headers)
 
 # The smaller and the larger of two numbers are one instruction each where there is no NaN to think
 # of: sat.c says why none is met. Nothing else changes.
-$(O)/service/fmb/sat.o: flags += -ffinite-math-only -fno-signed-zeros
+$(O)/service/fmb/sat.o $(O)/tests/bench/lean_sat.o: flags += -ffinite-math-only -fno-signed-zeros
 
 # libccd is raced too where it is installed: make deps-bench, then make bench.
 ccd := $(shell pkg-config --exists ccd 2> /dev/null && echo ccd)
@@ -756,18 +762,47 @@ $(O)/ordered/eliminate.o: service/fmb/eliminate.c $(O)/settings
 
 # Minutes; what it measured is in bench/report.json then.
 .PHONY: bench deps-bench
-bench: $(B)/bench/bench
+bench: $(B)/bench/bench $(B)/robot/robot
 	$< --json $(B)/bench/report.json
+	$(B)/robot/robot
 
 deps-bench:
-	$(call install_packages,libccd-dev pkg-config)
+	$(call install_packages,libccd-dev libfcl-dev pkg-config)
+
+# States of a robot, beside FCL where it is installed.
+fcl := $(shell pkg-config --exists fcl 2> /dev/null && echo fcl)
+robot_objects := $(addprefix $(O)/,tests/robot/states.o tests/oracle/draw.o)
+$(B)/robot/robot: $(O)/tests/robot/robot.o $(O)/robot/$(or $(fcl),no_fcl).o $(robot_objects) \
+		$(O)/tests/bench/stopwatch.o $(B)/libfmb.a
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -o $@ $^ $(if $(fcl),$$(pkg-config --libs fcl) -lstdc++) -lgmp -lm
+
+$(O)/tests/robot/%.o: tests/robot/%.c $(O)/settings | $(message_headers)
+	@mkdir -p $(@D)
+	$(compile) $(codec_see) -Iservice -Imsgs/bus -Itests/oracle -Itests/bench -Itests/bus
+
+$(O)/robot/no_fcl.o: tests/robot/no_fcl.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Iservice/fmb
+
+$(O)/robot/fcl.o: tests/robot/fcl.cc $(O)/settings
+	@mkdir -p $(@D)
+	$(CXX) $$(pkg-config --cflags fcl) -std=c++17 -O2 -MMD -MP -Iservice/fmb -c $< -o $@
 
 # The bus: fmbd against an echo that does nothing, in a network of their own.
 bus_bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/echo.c,$(wildcard tests/bus/*.c))) \
-	$(addprefix $(O)/tests/bench/,json.o machine.o scene.o stopwatch.o)
+	$(addprefix $(O)/tests/bench/,json.o lean_sat.o machine.o scene.o stopwatch.o)
 
 $(B)/bus/bench-bus: $(bus_bench_objects) $(campaign_objects) $(server_objects) $(bus_objects) \
 		$(message_objects) $(lib_objects) | $(B)/bus/echo $(B)/fmbd
+	@mkdir -p $(@D)
+	$(CC) $(link_flags) -pthread -o $@ $(filter %.o,$^) -llcm -lglib-2.0 -lgmp -lm
+
+# A robot's states, likewise.
+$(B)/bus/robot-bus: $(O)/tests/robot/bus.o $(robot_objects) \
+		$(addprefix $(O)/tests/bus/,line.o datagram.o guard.o parties.o) \
+		$(O)/tests/bench/stopwatch.o $(server_objects) $(bus_objects) $(message_objects) \
+		$(lib_objects) | $(B)/bus/echo $(B)/fmbd
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $(filter %.o,$^) -llcm -lglib-2.0 -lgmp -lm
 
@@ -781,8 +816,9 @@ $(O)/tests/bus/%.o: tests/bus/%.c $(O)/settings | $(message_headers)
 
 # Minutes; what it measured is in bus/report.json then.
 .PHONY: bench-bus
-bench-bus: $(B)/bus/bench-bus $(B)/netns
+bench-bus: $(B)/bus/bench-bus $(B)/bus/robot-bus $(B)/netns
 	$(B)/netns $< --json $(B)/bus/report.json
+	$(B)/netns $(B)/bus/robot-bus
 
 # Logs: replayed, and described, beside the batch alone and beside cat. Some minutes, and some
 # hundred megabytes in build/replay/.
