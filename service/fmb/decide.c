@@ -66,47 +66,73 @@ static void include(struct fmb_answer *all, const struct fmb_answer *one, int di
     all->has_box = one->has_box;
 }
 
-/* The box of a frame over the window. */
-static struct swept box_at(const struct fmb_placement *placement, unsigned i, double duration)
+/* Frames of a body that are placed together. */
+enum { CHUNK = 16 };
+
+struct chunk {
+    const struct fmb_placement *placement;
+    unsigned first, count;
+    struct swept box[CHUNK], all; /* over the window */
+};
+
+static void set_chunk(const struct fmb_placement *placement, unsigned first, double duration,
+                      struct chunk *out)
 {
-    const struct placed_frame placed = {fmb_body_frame(placement->body, i), placement};
-    struct fmb_prepared prepared;
-    prepared_set(&placed, &prepared);
-    return swept_of(&prepared, duration);
+    const unsigned left = placement->body->frame_count - first;
+    struct fmb_prepared prepared[CHUNK];
+    out->placement = placement;
+    out->first = first;
+    out->count = left < CHUNK ? left : CHUNK;
+    prepared_place(placement, first, out->count, prepared);
+    for (unsigned i = 0; i < out->count; i++) {
+        out->box[i] = swept_of(&prepared[i], duration);
+        out->all = i == 0 ? out->box[0] : swept_hull(out->all, out->box[i]);
+    }
 }
 
-static struct swept box_of_all(const struct fmb_placement *placement, double duration)
+static struct placed_frame frame_at(const struct chunk *chunk, unsigned i)
 {
-    struct swept box = box_at(placement, 0, duration);
-    for (unsigned i = 1; i < placement->body->frame_count; i++)
-        box = swept_hull(box, box_at(placement, i, duration));
-    return box;
+    return (struct placed_frame){fmb_body_frame(chunk->placement->body, chunk->first + i),
+                                 chunk->placement};
 }
 
-static enum fmb_status decide_frames(const struct fmb_method *method, struct frame_pair *pair,
-                                     unsigned want, struct fmb_answer *answer)
+/* Includes the pairs of frames of two chunks whose boxes meet. */
+static enum fmb_status decide_chunks(const struct fmb_method *method, const struct chunk *a,
+                                     const struct chunk *b, double duration, unsigned want,
+                                     struct fmb_answer *answer)
 {
-    const struct fmb_body *a = pair->a.placement->body, *b = pair->b.placement->body;
-    const struct swept of_b = box_of_all(pair->b.placement, pair->duration);
-    const struct swept against_b = swept_against(&of_b);
-    answer->verdict = FMB_SEPARATED;
-    for (unsigned i = 0; i < a->frame_count; i++) {
-        const struct swept of_a = box_at(pair->a.placement, i, pair->duration);
-        const struct swept against_a = swept_against(&of_a);
-        pair->a.frame = fmb_body_frame(a, i);
-        for (unsigned j = 0; swept_meet(&of_a, &against_b) && j < b->frame_count; j++) {
-            const struct swept one = box_at(pair->b.placement, j, pair->duration);
-            struct fmb_answer of_frames = {0};
-            if (!swept_meet(&one, &against_a))
+    const struct swept against_all = swept_against(&b->all);
+    for (unsigned i = 0; i < a->count; i++) {
+        const struct swept against = swept_against(&a->box[i]);
+        for (unsigned j = 0; swept_meet(&a->box[i], &against_all) && j < b->count; j++) {
+            const struct frame_pair pair = {frame_at(a, i), frame_at(b, j), duration};
+            struct fmb_answer one = {0};
+            if (!swept_meet(&b->box[j], &against))
                 continue;
-            pair->b.frame = fmb_body_frame(b, j);
-            const enum fmb_status status = method->decide(pair, want, &of_frames);
+            const enum fmb_status status = method->decide(&pair, want, &one);
             if (status != FMB_OK)
                 return status;
-            include(answer, &of_frames, a->dim);
+            include(answer, &one, pair.a.frame->dim);
         }
     }
     return FMB_OK;
+}
+
+static enum fmb_status decide_frames(const struct fmb_method *method, const struct fmb_placement *a,
+                                     const struct fmb_placement *b, double duration, unsigned want,
+                                     struct fmb_answer *answer)
+{
+    enum fmb_status status = FMB_OK;
+    answer->verdict = FMB_SEPARATED;
+    for (unsigned i = 0; i < a->body->frame_count; i += CHUNK) {
+        struct chunk of_a, of_b;
+        set_chunk(a, i, duration, &of_a);
+        for (unsigned j = 0; j < b->body->frame_count && status == FMB_OK; j += CHUNK) {
+            set_chunk(b, j, duration, &of_b);
+            status = decide_chunks(method, &of_a, &of_b, duration, want, answer);
+        }
+    }
+    return status;
 }
 
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_placement *a,
@@ -119,11 +145,11 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
         return status;
     if (want & ~(unsigned) FMB_WANT_BOX)
         return FMB_UNKNOWN_WANT;
-    struct frame_pair pair = {
+    const struct frame_pair pair = {
         {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
     const bool single = a->body->frame_count == 1 && b->body->frame_count == 1;
-    status =
-        single ? method->decide(&pair, want, answer) : decide_frames(method, &pair, want, answer);
+    status = single ? method->decide(&pair, want, answer)
+                    : decide_frames(method, a, b, duration, want, answer);
     if (status != FMB_OK) /* a method may have gone some way before it knew */
         memset(answer, 0, sizeof *answer);
     return status;
