@@ -12,12 +12,12 @@
 #include <cmocka.h>
 
 #include <float.h>
-#include <gmp.h>
 #include <limits.h>
 #include <math.h>
 
 #include "draw.h"
 #include "family.h"
+#include "gmp_allocations.h"
 #include "oracle.h"
 #include "pair_draw.h"
 #include "question.h"
@@ -272,31 +272,10 @@ static void ask(const struct world *world, const struct fmb_prepared *frames, co
 
 /* ---- Allocations of GMP ---- */
 
-static long allocations;
-
-static void *count_allocate(size_t size)
-{
-    allocations++;
-    return malloc(size);
-}
-
-static void *count_reallocate(void *memory, size_t old, size_t size)
-{
-    (void) old;
-    allocations++;
-    return realloc(memory, size);
-}
-
-static void release(void *memory, size_t size)
-{
-    (void) size;
-    free(memory);
-}
-
 static int count_allocations(void **state)
 {
     (void) state;
-    mp_set_memory_functions(count_allocate, count_reallocate, release);
+    gmp_count_allocations();
     return 0;
 }
 
@@ -379,9 +358,9 @@ static size_t expect_two_steps(const struct world *world, const struct way *way)
     memset(answers.verdicts.all + GUARDS, GUARD, answers.verdicts.size);
     memset(answers.contacts.all + GUARDS, GUARD, answers.contacts.size);
     memset(answers.boxes.all + GUARDS, GUARD, answers.boxes.size);
-    const long before = allocations;
+    const long before = gmp_allocations;
     answers.status = fmb_decide_batch(&answers.batch);
-    assert_int_equal(allocations, before);
+    assert_int_equal(gmp_allocations, before);
     expect_guards(&open);
     assert_int_equal(decide_open(world, &answers.batch), count);
     expect_guards(&answers.verdicts);

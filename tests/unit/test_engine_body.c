@@ -15,21 +15,7 @@
 
 #include "draw.h"
 #include "fmb.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
-static const double unit2[4] = {1, 0, 0, 1};
-/* More numbers than any frame takes follow its nine. */
-static const double unit3[16] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-
-static struct fmb_frame make(int dim, int shape, const double *number)
-{
-    struct fmb_frame frame;
-    memset(&frame, 0xa5, sizeof frame); /* what is not written shows */
-    size_t count = (size_t) (fmb_component_count(dim, shape) * dim);
-    assert_int_equal(fmb_frame_make(dim, shape, number, count, &frame), FMB_OK);
-    return frame;
-}
+#include "frame_make.h"
 
 #define M DBL_MAX
 #define S 0x1p-1074                       /* the least subnormal */

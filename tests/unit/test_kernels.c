@@ -11,12 +11,12 @@
 
 #include <cmocka.h>
 
-#include <gmp.h>
 #include <math.h>
 
 #include "certified.h"
 #include "draw.h"
 #include "family.h"
+#include "gmp_allocations.h"
 #include "limbs.h"
 #include "pair_draw.h"
 #include "prepared.h"
@@ -785,27 +785,6 @@ static void ends_of_the_range(void **state)
 
 /* ---- Quick decisions ---- */
 
-static long allocations;
-
-static void *count_allocate(size_t size)
-{
-    allocations++;
-    return malloc(size);
-}
-
-static void *count_reallocate(void *memory, size_t old, size_t size)
-{
-    (void) old;
-    allocations++;
-    return realloc(memory, size);
-}
-
-static void release(void *memory, size_t size)
-{
-    (void) size;
-    free(memory);
-}
-
 /* The path of two faces may be that of their shadows, which are found after their slabs. */
 static bool needs_wide_limbs(const struct frame_pair *pair)
 {
@@ -827,15 +806,15 @@ static bool expect_quick(const struct question *question, unsigned want)
     struct fmb_prepared a, b;
     prepared_set(&frames.a, &a);
     prepared_set(&frames.b, &b);
-    const long before = allocations;
+    const long before = gmp_allocations;
     const enum fmb_status status =
         certified_decide_prepared(&a, &b, question->duration, want, true, &quick);
-    if (allocations != before)
+    if (gmp_allocations != before)
         referee_fail(question, "a quick decision allocates");
     assert_int_equal(certified_decide(&frames, want, &answer), FMB_OK);
     if (status == FMB_OK && !referee_same(&quick, &answer))
         referee_fail(question, "a quick decision differs");
-    if (status != FMB_OK && allocations == before && !needs_wide_limbs(&frames))
+    if (status != FMB_OK && gmp_allocations == before && !needs_wide_limbs(&frames))
         referee_fail(question, "a quick decision leaves open what needs no wide integers");
     return status != FMB_OK;
 }
@@ -845,7 +824,7 @@ static void quick_decisions_need_no_wide_integers(void **state)
     (void) state;
     struct draw draw;
     long pairs = 0, open = 0, open_boxes = 0;
-    mp_set_memory_functions(count_allocate, count_reallocate, release);
+    gmp_count_allocations();
     draw_begin(&draw, "quick_decisions_need_no_wide_integers");
     for (long n = draw_sample(20000); n > 0; n--, pairs++) {
         const struct cell cell = pair_draw_cell(&draw);
