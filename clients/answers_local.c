@@ -11,7 +11,7 @@ struct text {
     size_t room;
 };
 
-/* Of a pair that was decided. Most need a few dozen characters. NULL: *status tells why. */
+/* The certificate of a decided pair. Most need a few dozen characters. NULL: *status tells why. */
 static const char *certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                double duration, struct text *text, enum fmb_status *status)
 {

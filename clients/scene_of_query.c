@@ -8,7 +8,7 @@
 
 /* ---- Bodies ---- */
 
-/* On output: what *out owns is to be freed even if it returns false. */
+/* On output: the caller frees what *out owns, even if it returns false. */
 static bool read_body(const struct geometry *geometry, struct scene_body *out)
 {
     struct geometry_reader reader = geometry_begin(geometry);

@@ -52,7 +52,7 @@ void answer_definition_refused(const struct answerer *answerer, const struct que
 /* A pair query of any bodies in progress. One answerer may have several. */
 struct pair_job;
 
-/* Takes 1.5 MB of memory, most of which only bodies of many frames touch. NULL: out of memory. */
+/* Takes 1.5 MB of memory. Only bodies of many frames touch most of it. NULL: out of memory. */
 struct pair_job *pair_job_create(void);
 void pair_job_destroy(struct pair_job *job); /* may be NULL, or in progress */
 
@@ -75,7 +75,7 @@ struct pair_result *pair_job_end(struct pair_job *job, struct answerer *answerer
 /* A scene in progress. One answerer may have several. */
 struct scene_job;
 
-/* Takes 4 MB of memory, most of which only large scenes touch. NULL: out of memory. */
+/* Takes 4 MB of memory. Only large scenes touch most of it. NULL: out of memory. */
 struct scene_job *scene_job_create(void);
 void scene_job_destroy(struct scene_job *job); /* may be NULL, or in progress */
 

@@ -447,7 +447,7 @@ static bool append(struct scene_job *job, const struct fmb_scene_answers *answer
     return true;
 }
 
-/* Answers each of which takes one byte: most scenes want verdicts alone. */
+/* Appends answers of one byte each: most scenes want verdicts alone. */
 static size_t append_verdicts(struct scene_job *job, const struct fmb_scene_answers *answers)
 {
     struct scene_result *result = &job->result;

@@ -90,7 +90,7 @@ static size_t set_count(const struct cache *cache)
     return (size_t) 1 << (64 - cache->set_shift);
 }
 
-/* Zeros, not touched, from a cache line on. *memory: what is to be freed. */
+/* Untouched zeros at a multiple of a cache line. *memory: the address to free. */
 static void *allocate_zero_lines(size_t count, size_t size, void **memory)
 {
     *memory = calloc(count * size + LINE, 1);

@@ -1,4 +1,4 @@
-/* Two boxes, one of which is turned by 45 degrees about z: do they meet? Over plain LCM, once, without
+/* Two boxes, one turned by 45 degrees about z: do they meet? Over plain LCM, once, without
  * repeating what the bus loses (AskPair.java does). Types, classes and fmbd as for AskPair.java. Prints
  * "overlapping". */
 import fmb_msgs.pair_query_t;

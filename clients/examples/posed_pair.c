@@ -1,4 +1,4 @@
-/* Two boxes, one of which is turned by 45 degrees about z: do they meet? Needs a running fmbd:
+/* Two boxes, one turned by 45 degrees about z: do they meet? Needs a running fmbd:
  *
  *     cc posed_pair.c $(pkg-config --cflags --libs fmb-client) -o posed_pair && ./posed_pair
  *

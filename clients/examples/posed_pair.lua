@@ -1,4 +1,4 @@
--- Two boxes, one of which is turned by 45 degrees about z: do they meet? Over plain LCM, once, without
+-- Two boxes, one turned by 45 degrees about z: do they meet? Over plain LCM, once, without
 -- repeating what the bus loses (ask_pair.lua does). On Debian, with the message types of
 -- share/fmb/lcmtypes and a running fmbd:
 --

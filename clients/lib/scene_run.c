@@ -227,7 +227,8 @@ static enum request_taken refuse(struct part_run *part, int status, const char *
     return REQUEST_COMPLETE;
 }
 
-/* All that is under way is to be decided within half a timeout; pairs of this kind take so long. */
+/* Adapts the pairs of a query to how long pairs take, so that all queries under way are decided
+ * within half a timeout. */
 static void adapt_pairs(struct scene_run *run, int32_t pairs, int64_t compute_ns)
 {
     const double share = (double) run->client->timeout_ns / (2 * FMB_CLIENT_RAW_WINDOW);

@@ -27,7 +27,7 @@ static bool is_orientation(const double *orientation, int count)
     return count == 0 || (largest > 0 && are_finite(orientation, count));
 }
 
-/* Whether there are frames, all of which are valid: logs hold refused queries too. */
+/* Whether there are frames and all are valid: logs hold refused queries too. */
 static bool has_frames(const struct geometry *geometry, int dim)
 {
     struct geometry_reader reader = geometry_begin(geometry);

@@ -77,7 +77,7 @@ struct record_bodies {
     struct definition_query query; /* the last request */
     int64_t requested_ns;          /* its time */
     bool under_way;                /* its result has not come */
-    bool more;                     /* it is to be continued with another page */
+    bool more;                     /* another page follows */
     bool wants;                    /* there may be wanted handles that were not requested */
     /* Handles that the message that was taken last names: of known bodies, and of others. */
     struct handle *named, *unknown;

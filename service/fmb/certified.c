@@ -169,7 +169,7 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     if (!faces)
         return verdict;
     if (certified->path == CERTIFIED_EXACT) {
-        certified->planes = FACES_ELSE; /* they may be parallel: nobody looked */
+        certified->planes = FACES_ELSE; /* they may be parallel: that was not tested */
         return verdict;
     }
     return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;

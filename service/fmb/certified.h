@@ -1,9 +1,10 @@
 /* The certified method: doubles with bounds on their errors; exact arithmetic where these leave
  * something open.
  *
- *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c); where unsure, the open
- *               slabs in integers (limbs.c), or the whole question by the exact method; of two
- *               faces in one plane, that of two triangles in 2D (faces.c)
+ *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c); where unsure, the axis
+ * along which the frames touch (axis.c), the open slabs in integers (limbs.c), or the whole
+ *               question by the exact method; of two faces in one plane, that of two triangles in
+ *               2D (faces.c)
  *     contact   the filter bounds the time in the same walk (walk_slab.h); where that is not near
  *               enough, or nothing rounds, the slabs one by one (contact.c)
  *     box       edges of each frame cut by the other: of solid frames at rest by the filter

@@ -330,7 +330,7 @@ struct fmb_batch {
     /* [pair_count][first, last], or NULL; as fmb_answer.contact. NAN for pairs that are separated,
      * refused or left open. */
     double (*contacts)[2];
-    /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN likewise. */
+    /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box; NAN for the same pairs. */
     double (*boxes)[2][FMB_DIM_MAX];
     /* Both NULL, or a bound on the time of a call: [pair_count], and the count. Pairs
      * whose verdict, contact or box (as far as these are wanted) needs integers of more than 128

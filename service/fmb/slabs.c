@@ -85,7 +85,7 @@ static double largest_of(double largest, const double v[3])
     return fmax(largest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
 }
 
-/* As components, of which fmb_body.in_range says it: no product of two underflows, half a number
+/* As fmb_frame.in_range says of components: no product of two underflows, half a number
  * included. */
 static bool are_not_tiny(const double v[3])
 {

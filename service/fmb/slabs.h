@@ -22,7 +22,7 @@
  * that of D swept over the open window. But the rest may be anything, and is decided elsewhere
  * (faces.h).
  *
- * Placed frames. The filter works on rounded frames, of which each is within an error e of the true
+ * Placed frames. The filter works on rounded frames. Each is within an error e of the true
  * one (prepared.h), so that the true D and S are within e = e_a + e_b of the rounded ones: along
  * every unit vector, their bounds differ by at most e. An offset that is farther than e beyond a
  * bound of a slab of the rounded S is not in the true one. One that is farther than e inside the

@@ -15,8 +15,8 @@
 
 enum { TEXT_SIZE = 1 << 18 };
 
-/* Products of limbs, half a nanosecond each: 2 ms, and 10 ms with a certificate, of which the
- * answer beside it takes 2. */
+/* Products of limbs, half a nanosecond each: 2 ms for an answer, and 10 ms with a certificate, 2 of
+ * them for the answer beside it. */
 static const double most_work = 4e6, most_work_certified = 16e6;
 
 static double work_of_box(const struct question *question)
