@@ -384,33 +384,6 @@ enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t coun
 
 /* ---- Placements ---- */
 
-/* 0 times a number that is not finite is not 0. */
-static bool is_finite(const double v[FMB_DIM_MAX], int dim)
-{
-    const double none = 0 * v[0] + 0 * v[1];
-    return (dim == 2 ? none : none + 0 * v[2]) == 0;
-}
-
-static enum fmb_status check_orientation(const struct fmb_placement *placement, int dim)
-{
-    const double *q = placement->orientation;
-    if (placement->orientation_count == 0)
-        return q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? FMB_OK : FMB_WRONG_COUNT;
-    if (placement->orientation_count != (dim == 2 ? 2 : 4))
-        return FMB_WRONG_COUNT;
-    return rotation_is_orientation(q, placement->orientation_count) ? FMB_OK : FMB_BAD_ORIENTATION;
-}
-
-enum fmb_status fmb_placement_check(const struct fmb_placement *placement)
-{
-    const struct fmb_body *body = placement->body;
-    if (!body || body->frame_count == 0)
-        return FMB_NO_FRAMES;
-    if (!is_finite(placement->position, body->dim) || !is_finite(placement->velocity, body->dim))
-        return FMB_NOT_FINITE;
-    return check_orientation(placement, body->dim);
-}
-
 bool prepared_is_duration(double duration)
 {
     return duration >= 0 && duration <= DBL_MAX;

@@ -30,7 +30,7 @@ INLINE unsigned is_along(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX
     return (x[0] == y[0]) + (x[1] == y[1]) + (x[2] == y[2]) >= 2;
 }
 
-/* Whether an edge is; in 2D some coordinate always is 0. */
+/* Whether an edge is. */
 INLINE bool has_edge_along(bool simplex, int count, const double c[FMB_DIM_MAX][FMB_DIM_MAX])
 {
     static const double zero[FMB_DIM_MAX];
@@ -86,7 +86,7 @@ static void set_origin(const struct fmb_frame *frame, const struct rotation *rot
 {
     double way[FMB_DIM_MAX];
     bool rounds = !rotation->exact;
-    rotation_turn(rotation, frame->origin, 0, way);
+    rotation_turn(rotation, frame->origin, way);
     for (int axis = 0; axis < frame->dim; axis++)
         out->origin[axis] = position[axis] + way[axis];
     for (int axis = 0; axis < frame->dim && (!rounds || *exact); axis++)
@@ -104,6 +104,42 @@ static bool is_zero(const double v[FMB_DIM_MAX])
     return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
+/* Whether no coordinate of a turned component is too small for the filter (frame.c, least_number).
+ * The entries of the rotation are 0, or at least 2^-60 and so multiples of 2^-112; components are
+ * multiples of 2^bits[0]. Then products are multiples of 2^(bits[0] - 112), rounded or not, and so
+ * are their sums: what is not 0 is at least 2^-400. */
+INLINE bool turns_in_range(const struct fmb_frame *frame, const struct rotation *rotation)
+{
+    return !rotation->small && frame->sturdy && frame->bits[0] >= -288;
+}
+
+/* The components of a box are multiples of the columns of the rotation. */
+INLINE void turn_components(const struct fmb_frame *frame, const struct rotation *rotation,
+                            double out[FMB_DIM_MAX][FMB_DIM_MAX])
+{
+    UNROLL(3)
+    for (int i = 0; i < FMB_DIM_MAX; i++) {
+        const double *c = frame->component[i];
+        if (frame->shape == FMB_BOX) {
+            const rotation_two xy = rotation->xy[i] * c[i];
+            memcpy(out[i], &xy, sizeof xy);
+            out[i][2] = rotation->z[i] * c[i];
+        } else {
+            rotation_turn(rotation, c, out[i]);
+        }
+    }
+}
+
+/* out := R v. Coordinates that are smaller than tiny become 0, but for those of exact rows. */
+static void turn_and_trim(const struct rotation *rotation, const double v[FMB_DIM_MAX], double tiny,
+                          double out[FMB_DIM_MAX])
+{
+    rotation_turn(rotation, v, out);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        if (fabs(out[axis]) < tiny && !rotation->axis_exact[axis])
+            out[axis] = 0;
+}
+
 /* Returns which coordinates are exact: PREPARED_EXACT_X and so on. */
 INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation *rotation,
                           const double *position, struct place *out)
@@ -112,13 +148,15 @@ INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation *
     for (int axis = 0; axis < FMB_DIM_MAX && frame->slack == 0; axis++)
         exact |= rotation->axis_exact[axis] ? (unsigned) PREPARED_EXACT_X << axis : 0;
     out->error = frame->slack + (rotation->exact ? 0 : frame->turn_error);
-    if (rotation->turned) {
+    if (!rotation->turned) {
+        memcpy(out->component, frame->component, sizeof out->component);
+    } else if (turns_in_range(frame, rotation)) {
+        turn_components(frame, rotation, out->component);
+    } else {
         UNROLL(3)
         for (int i = 0; i < FMB_DIM_MAX; i++)
-            rotation_turn(rotation, frame->component[i], 0x1p-60 * prepared_size(frame->head, i),
+            turn_and_trim(rotation, frame->component[i], 0x1p-60 * prepared_size(frame->head, i),
                           out->component[i]);
-    } else {
-        memcpy(out->component, frame->component, sizeof out->component);
     }
     out->origin[0] = position[0];
     out->origin[1] = position[1];
@@ -142,15 +180,47 @@ static uint64_t head_of(const struct fmb_frame *frame, const struct rotation *ro
     if (rotation->exact)
         return head;
     head &= ~in_head(PREPARED_ALONG | (frame->sturdy ? 0 : PREPARED_USABLE));
-    if (has_edge_along(frame_is_simplex(frame), frame->count,
-                       (const double(*)[FMB_DIM_MAX]) place->component))
+    if (frame->dim == 3 && has_edge_along(frame_is_simplex(frame), frame->count,
+                                          (const double(*)[FMB_DIM_MAX]) place->component))
         head |= in_head(PREPARED_ALONG);
     return head;
 }
 
+/* ---- Frames in general orientation ---- */
+
+/* set() of a frame whose orientation and coordinates are general: nothing is exact or plain. An
+ * edge that comes to lie parallel to an axis is not noticed: the filter is unsure of it. */
+INLINE void set_general(const struct fmb_frame *frame, const struct rotation *rotation,
+                        const struct fmb_placement *placement, struct fmb_prepared *out)
+{
+    struct place *place = (struct place *) out->number;
+    double *o = place->origin;
+    memcpy(o, placement->position, sizeof place->origin);
+    if (!is_zero(frame->origin)) {
+        double way[FMB_DIM_MAX];
+        rotation_turn(rotation, frame->origin, way);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            o[axis] += way[axis];
+    }
+    turn_components(frame, rotation, place->component);
+    place->error = frame->slack + frame->turn_error;
+    place->error += 0x1p-52 * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
+    place->error *= 1 + 0x1p-40; /* for its own rounding */
+    out->head = (frame->head & ~in_head(PREPARED_ALONG | PREPARED_PLAIN)) |
+                (placement_moves(placement, FMB_DIM_MAX) ? in_head(PREPARED_MOVING) : 0);
+    out->frame = frame;
+    out->placement = placement;
+}
+
+/* ---- Any frames ---- */
+
 INLINE void set(const struct fmb_frame *frame, const struct rotation *rotation,
                 const struct fmb_placement *placement, struct fmb_prepared *out)
 {
+    if (rotation->general && turns_in_range(frame, rotation)) {
+        set_general(frame, rotation, placement, out);
+        return;
+    }
     struct place plane, *place = frame->dim == 3 ? (struct place *) out->number : &plane;
     const unsigned exact = set_place(frame, rotation, placement->position, place);
     out->head = head_of(frame, rotation, placement, place, exact);
@@ -173,8 +243,8 @@ void prepared_set(const struct placed_frame *placed, struct fmb_prepared *out)
     set(placed->frame, &rotation, placed->placement, out);
 }
 
-void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,
-                    struct fmb_prepared *out)
+INLINE void place(const struct fmb_placement *placement, unsigned first, unsigned count,
+                  struct fmb_prepared *out)
 {
     struct rotation rotation;
     rotation_of(placement, placement->body->dim, &rotation);
@@ -182,19 +252,59 @@ void prepared_place(const struct fmb_placement *placement, unsigned first, unsig
         set(fmb_body_frame(placement->body, first + i), &rotation, placement, &out[i]);
 }
 
+void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,
+                    struct fmb_prepared *out)
+{
+    place(placement, first, count, out);
+}
+
+/* ---- Placements ---- */
+
+/* 0 times a number that is not finite is not 0. */
+INLINE bool is_finite(const double v[FMB_DIM_MAX], int dim)
+{
+    const double none = 0 * v[0] + 0 * v[1];
+    return (dim == 2 ? none : none + 0 * v[2]) == 0;
+}
+
+INLINE enum fmb_status check_orientation(const struct fmb_placement *placement, int dim)
+{
+    const double *q = placement->orientation;
+    if (placement->orientation_count == 0)
+        return q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? FMB_OK : FMB_WRONG_COUNT;
+    if (placement->orientation_count != (dim == 2 ? 2 : 4))
+        return FMB_WRONG_COUNT;
+    return rotation_is_orientation(q, placement->orientation_count) ? FMB_OK : FMB_BAD_ORIENTATION;
+}
+
+INLINE enum fmb_status check(const struct fmb_placement *placement)
+{
+    const struct fmb_body *body = placement->body;
+    if (!body || body->frame_count == 0)
+        return FMB_NO_FRAMES;
+    if (!is_finite(placement->position, body->dim) || !is_finite(placement->velocity, body->dim))
+        return FMB_NOT_FINITE;
+    return check_orientation(placement, body->dim);
+}
+
+enum fmb_status fmb_placement_check(const struct fmb_placement *placement)
+{
+    return check(placement);
+}
+
+/* The check and the rotation share what they compute. */
 enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned first, unsigned count,
                             struct fmb_prepared *out)
 {
-    enum fmb_status status = fmb_placement_check(placement);
+    enum fmb_status status = check(placement);
     if (status == FMB_OK &&
         (first > placement->body->frame_count || count > placement->body->frame_count - first))
         status = FMB_BAD_PAIR;
-    if (status != FMB_OK) {
+    if (status == FMB_OK)
+        place(placement, first, count, out);
+    else
         memset(out, 0, count * sizeof *out);
-        return status;
-    }
-    prepared_place(placement, first, count, out);
-    return FMB_OK;
+    return status;
 }
 
 /* ---- One pair ---- */
