@@ -3,6 +3,7 @@
 #include "axis.h"
 #include "exact.h"
 #include "faces.h"
+#include "gap.h"
 #include "limbs.h"
 #include "run.h"
 
@@ -12,8 +13,8 @@
 /* What is known of a pair, found when it is needed. */
 struct certified {
     const struct frame_pair *pair;
-    bool quick;                          /* integers wider than QUICK_LIMBS are not used */
-    bool open;                           /* only with quick: the verdict needs such integers */
+    bool quick; /* integers wider than CERTIFIED_QUICK_LIMBS are not used */
+    bool open;  /* only with quick: the verdict needs such integers */
     const struct fmb_prepared *frame[2]; /* of a and b */
     bool swapped;                        /* kernels of this kind take b first */
     enum run_kind kind;
@@ -25,10 +26,6 @@ struct certified {
     enum faces_planes planes;   /* other than CROSSING only of two faces that are close */
     struct faces_shadow shadow; /* where they are SHARED */
 };
-
-/* The widest lengths of a quick decision, in limbs: 128 bits. A slab then takes about 200 products
- * of limbs, and a pair has at most SLABS_MAX of them: tens of microseconds. */
-enum { QUICK_LIMBS = 2 };
 
 static void begin(struct certified *certified, const struct frame_pair *pair, bool quick)
 {
@@ -90,8 +87,8 @@ static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_no
     return open;
 }
 
-static enum fmb_verdict verdict_in_limbs(const struct limbs_pair *limbs,
-                                         const struct slab_normal *open, int count)
+static enum fmb_verdict verdict_in_limbs(struct limbs_pair *limbs, const struct slab_normal *open,
+                                         int count)
 {
     int sign = -1;
     for (int i = 0; i < count && sign <= 0; i++) {
@@ -118,8 +115,8 @@ static enum fmb_verdict verdict_in_full(struct certified *certified)
     return answer.verdict;
 }
 
-/* On input: good slabs. A slab in one limb costs no more than in doubles with a bound of its own.
- */
+/* On input: good slabs. A slab in a few limbs costs little more than in doubles with a bound of its
+ * own. */
 static enum fmb_verdict verdict_of_slabs(struct certified *certified)
 {
     find_span(certified);
@@ -131,11 +128,12 @@ static enum fmb_verdict verdict_of_slabs(struct certified *certified)
     struct limbs_pair limbs;
     bool separated;
     const bool fits = limbs_prepare(certified->pair, certified->span, &limbs);
-    const int count = open_slabs(&certified->slabs, !fits || limbs.limbs > 1, open, &separated);
+    const int count = open_slabs(&certified->slabs, !fits || limbs.limbs > CERTIFIED_QUICK_LIMBS,
+                                 open, &separated);
     certified->path = CERTIFIED_REFINED;
     if (separated || count == 0)
         return separated ? FMB_SEPARATED : FMB_OVERLAPPING;
-    if (fits && (!certified->quick || limbs.limbs <= QUICK_LIMBS)) {
+    if (fits && (!certified->quick || limbs.limbs <= CERTIFIED_QUICK_LIMBS)) {
         certified->path = CERTIFIED_LIMBS;
         return verdict_in_limbs(&limbs, open, count);
     }
@@ -293,13 +291,16 @@ static bool answer_box(struct certified *certified, struct fmb_answer *answer)
 
 /* The exact method gives what the doubles did not, and that alone: which of them gives what is
  * decided by the numbers of the pair, so that the answer is the same wherever it is asked. */
-static void complete(const struct frame_pair *pair, unsigned want, bool good_contact, bool good_box,
+static void complete(const struct frame_pair *pair, bool good_contact, bool good_box,
                      struct fmb_answer *answer)
 {
     struct fmb_answer exact = {0};
-    exact_decide(pair, good_box ? 0 : want, &exact);
-    if (!good_contact)
-        memcpy(answer->contact, exact.contact, sizeof exact.contact);
+    if (good_contact) {
+        exact_box(pair, answer->box);
+        return;
+    }
+    exact_decide(pair, good_box ? 0 : FMB_WANT_BOX, &exact);
+    memcpy(answer->contact, exact.contact, sizeof exact.contact);
     if (!good_box)
         memcpy(answer->box, exact.box, sizeof exact.box);
 }
@@ -311,7 +312,7 @@ static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_pr
     struct certified certified;
     begin(&certified, pair, quick);
     if (!set_kind(&certified, a, b))
-        return quick ? FMB_CANNOT_DECIDE : exact_decide(pair, want, answer);
+        return quick ? FMB_CANNOT_DECIDE : exact_decide(pair, want & FMB_WANT_BOX, answer);
     answer->verdict = verdict_of(&certified, certified.kind & RUN_DRIFTS ? answer->contact : NULL);
     if (certified.open)
         return FMB_CANNOT_DECIDE;
@@ -325,8 +326,21 @@ static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_pr
         return FMB_OK;
     if (quick)
         return FMB_CANNOT_DECIDE;
-    complete(pair, want, good_contact, good_box, answer);
+    complete(pair, good_contact, good_box, answer);
     return FMB_OK;
+}
+
+/* Adds the gap where it is wanted. */
+static enum fmb_status decide_all(const struct frame_pair *pair, const struct fmb_prepared *a,
+                                  const struct fmb_prepared *b, unsigned want, bool quick,
+                                  struct fmb_answer *answer)
+{
+    const enum fmb_status status = decide(pair, a, b, want, quick, answer);
+    answer->has_gap = want & FMB_WANT_GAP;
+    if (status == FMB_OK && answer->has_gap &&
+        gap_of(a, b, pair->duration, answer->verdict, INFINITY, quick, &answer->gap) == GAP_UNSURE)
+        return FMB_CANNOT_DECIDE;
+    return status;
 }
 
 static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want, bool quick,
@@ -335,7 +349,7 @@ static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want,
     struct fmb_prepared a, b;
     prepared_set(&pair->a, &a);
     prepared_set(&pair->b, &b);
-    return decide(pair, &a, &b, want, quick, answer);
+    return decide_all(pair, &a, &b, want, quick, answer);
 }
 
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
@@ -349,7 +363,7 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           unsigned want, bool quick, struct fmb_answer *answer)
 {
     const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
-    return decide(&pair, a, b, want, quick, answer);
+    return decide_all(&pair, a, b, want, quick, answer);
 }
 
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)

@@ -9,6 +9,7 @@
  *               enough, or nothing rounds, the slabs one by one (contact.c)
  *     box       edges of each frame cut by the other: of solid frames at rest by the filter
  *               (walk_box.h), of others, and where nothing rounds, by box.c
+ *     gap       from the verdict on, by steps of its own (gap.h)
  *
  * Contact and box are two-sided: the outer value surely contains the true one, the inner one is
  * surely contained in it. The answer is the outer one, given only where both are so close that it
@@ -23,9 +24,13 @@
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
+/* The widest integers of a quick decision, in limbs: 512 bits. A slab then takes at most 1,000
+ * products of limbs, most 100 to 300, and a pair has at most SLABS_MAX slabs. */
+enum { CERTIFIED_QUICK_LIMBS = 8 };
+
 /* The same answer from prepared frames. quick: or CANNOT_DECIDE, and *answer is unspecified, where
- * it needs GMP or lengths of more than 128 bits; takes tens of microseconds at most then, and
- * allocates nothing. */
+ * it needs GMP or wider integers; takes tens of microseconds at most then, and allocates
+ * nothing. */
 enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);
@@ -45,7 +50,7 @@ enum certified_path {
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
 /* The same of a prepared pair of which the filter is known to be unsure. quick: 0 where it needs
- * GMP or lengths of more than 128 bits. */
+ * GMP or wider integers. */
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                   double duration, bool quick);
 

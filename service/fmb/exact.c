@@ -1,4 +1,6 @@
 #include "exact.h"
+
+#include "gap.h"
 #include "integer.h"
 
 #include <string.h>
@@ -283,8 +285,10 @@ static int triple_at(int i, int j, int k)
     return k * (k - 1) * (k - 2) / 6 + j * (j - 1) / 2 + i;
 }
 
-/* On input: all triples are 0, and those of vectors that are 0 stay so. */
-static void set_triples(struct exact_pair *pair)
+/* On input: all triples are 0, and those of vectors that are 0 stay so. Vector products of two
+ * components of one frame give all triples but those of two frames with the offset or the drift,
+ * which only slabs of two frames need: mixed. */
+static void set_triples(struct exact_pair *pair, bool mixed)
 {
     bool zero[EXACT_VECTORS];
     mpz_t normal[3];
@@ -293,12 +297,16 @@ static void set_triples(struct exact_pair *pair)
         zero[k] = integer_is_zero(exact_vector(pair, k));
     for (int j = 1; j < EXACT_OFFSET; j++)
         for (int i = 0; i < j; i++) {
-            if (zero[i] || zero[j])
+            const bool same = i >= EXACT_OF_B || j < EXACT_OF_B;
+            if (zero[i] || zero[j] || !(same || mixed))
                 continue;
             integer_cross(normal, exact_vector(pair, i), exact_vector(pair, j), pair->scratch[0]);
-            for (int k = j + 1; k < EXACT_VECTORS; k++)
-                if (!zero[k])
-                    exact_dot(pair, pair->triple[triple_at(i, j, k)], normal, k);
+            for (int k = i < EXACT_OF_B ? j + 1 : 0; k < EXACT_VECTORS; k++) {
+                if (zero[k] || (k >= EXACT_OF_B && k <= j) || (!same && k < EXACT_OFFSET))
+                    continue;
+                const int at = k < i ? triple_at(k, i, j) : triple_at(i, j, k);
+                exact_dot(pair, pair->triple[at], normal, k);
+            }
         }
     if (zero[EXACT_OFFSET] || zero[EXACT_DRIFT]) {
         mpz_clears(normal[0], normal[1], normal[2], NULL);
@@ -348,7 +356,9 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
         add_triples(pair, 1, u->minus, v->minus, value);
 }
 
-void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
+/* difference: slabs of the difference will be walked. Those of the box are of one frame alone, and
+ * with crossings where the pair moves. */
+static void begin(struct exact_pair *out, const struct frame_pair *pair, bool difference)
 {
     pair_each(out, mpz_init);
     out->unit = pair_unit(pair);
@@ -360,7 +370,12 @@ void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
                 out->frame[0].displacement[axis]);
     }
     if (pair->a.frame->dim == 3) /* in 2D all vectors lie in one plane */
-        set_triples(out);
+        set_triples(out, difference || out->moving);
+}
+
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
+{
+    begin(out, pair, true);
 }
 
 void exact_pair_clear(struct exact_pair *pair)
@@ -511,8 +526,19 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
         memcpy(answer->contact, contact, sizeof contact);
         answer->has_box = want & FMB_WANT_BOX;
         if (answer->has_box)
-            exact_box(&exact, answer->box);
+            exact_pair_box(&exact, answer->box);
     }
     exact_pair_clear(&exact);
+    answer->has_gap = want & FMB_WANT_GAP;
+    if (answer->has_gap)
+        gap_exactly(pair, answer->verdict, &answer->gap);
     return FMB_OK;
+}
+
+void exact_box(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
+{
+    struct exact_pair exact;
+    begin(&exact, pair, false);
+    exact_pair_box(&exact, box);
+    exact_pair_clear(&exact);
 }

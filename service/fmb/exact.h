@@ -175,7 +175,8 @@ typedef void (*point_visit)(void *context, const struct exact_point *point);
 void points_walk(struct exact_pair *pair, point_visit visit, void *context);
 
 /* The box of the intersection of a pair in contact, over the window, ends rounded outward. */
-void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX]);
+void exact_pair_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX]);
+void exact_box(const struct frame_pair *pair, double box[2][FMB_DIM_MAX]);
 
 /* The verdict; of a pair in contact that moves also the times, where contact is not NULL: [first,
  * last], in seconds, rounded outward. */

@@ -206,10 +206,10 @@ static void cut(struct walk *walk, int end, const mpz_t f0, const mpz_t f1, cons
         ratio_copy(&walk->part[end], at);
 }
 
-/* Sets walk->part of the segment on which normal . w goes from f0 to f1 for each slab; false if
- * nothing is left of it. */
-static bool clip(struct walk *walk, const struct clipper *clipper, int v, int end_v, int w,
-                 int end_w)
+/* Sets walk->part of the segment on which normal . w goes from f0 to f1 for each slab; returns how
+ * many ends it has: 0 if nothing is left of it, 1 if that is a point. */
+static int clip(struct walk *walk, const struct clipper *clipper, int v, int end_v, int w,
+                int end_w)
 {
     for (int end = 0; end < 2; end++) {
         mpz_set_ui(walk->part[end].num, (unsigned long) end);
@@ -222,22 +222,21 @@ static bool clip(struct walk *walk, const struct clipper *clipper, int v, int en
             const bool below0 = mpz_cmp(*f0, slab->low) < 0, below1 = mpz_cmp(*f1, slab->low) < 0;
             const bool above0 = mpz_cmp(*f0, slab->high) > 0, above1 = mpz_cmp(*f1, slab->high) > 0;
             if ((below0 && below1) || (above0 && above1))
-                return false;
+                return 0;
             if (pass == 1 && (below0 || above0))
                 cut(walk, 0, *f0, *f1, below0 ? slab->low : slab->high);
             if (pass == 1 && (below1 || above1))
                 cut(walk, 1, *f0, *f1, below1 ? slab->low : slab->high);
         }
-    return ratio_compare(&walk->part[0], &walk->part[1], walk->scratch) <= 0;
+    return 1 - ratio_compare(&walk->part[0], &walk->part[1], walk->scratch);
 }
 
 /* Clips the segment of frame f that goes from vertex v at one end of the window to vertex w at the
  * same or the other end to the other frame, and visits the ends of what is left. */
 static void visit_segment(struct walk *walk, int f, int v, int end_v, int w, int end_w)
 {
-    if (!clip(walk, &walk->clipper[1 - f], v, end_v, w, end_w))
-        return;
-    for (int end = 0; end < 2; end++) {
+    const int ends = clip(walk, &walk->clipper[1 - f], v, end_v, w, end_w);
+    for (int end = 0; end < ends; end++) {
         const struct ratio *s = &walk->part[end];
         mpz_t *tau = &walk->scratch[1];
         if (end_v != end_w) /* 0 and 1 */
@@ -435,7 +434,7 @@ static void include_point(void *context, const struct exact_point *point)
     }
 }
 
-void exact_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX])
+void exact_pair_box(struct exact_pair *pair, double box[2][FMB_DIM_MAX])
 {
     struct boxing boxing = {.unit = pair->unit};
     for (int axis = 0; axis < 3; axis++) {

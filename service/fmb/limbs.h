@@ -1,28 +1,32 @@
 /* Slabs in integers of fixed width: the step between doubles and GMP.
  *
- * A slab that the filter leaves open is asked again here, alone, in two's complement integers of
- * 1, 2, 4 or 8 limbs of 64 bits for lengths, without an allocation. Nothing rounds. A pair whose
- * numbers need more bits than that is left to the exact method. */
+ * A slab that the filter leaves open is computed here, alone, in two's complement integers of 2 to
+ * LIMBS_MAX limbs of 64 bits, without an allocation. Nothing rounds. A pair whose numbers need more
+ * bits than that is left to the exact method. */
 #ifndef FMB_LIMBS_H
 #define FMB_LIMBS_H
 
-#include "integer.h"
+#include "limbs_turn.h"
 #include "slabs.h"
 
-#include <stdint.h>
+/* An edge in the coordinates of its frame, in those of the other one, and in the world. */
+enum limbs_view { LIMBS_OWN, LIMBS_ACROSS, LIMBS_WORLD, LIMBS_VIEWS };
 
-enum { LIMBS_MAX = 8 };
-
-/* A length: an integer times 2^unit / scale of the pair, least significant limb first. Only the
- * first limbs of the pair are used. */
-typedef uint64_t limbs_length[LIMBS_MAX];
-
+/* Lengths are integers times 2^unit of the span. It contains pointers into itself: do not copy. */
 struct limbs_pair {
     const struct fmb_frame *frame[2];
-    bool drifts;
-    int limbs;                                           /* of a length: 1, 2, 4 or 8 */
-    limbs_length component[2][FMB_DIM_MAX][FMB_DIM_MAX]; /* [frame][component][axis] */
-    limbs_length offset[FMB_DIM_MAX], drift[FMB_DIM_MAX];
+    int limbs; /* of a number */
+    /* Of a box the halves of its components, and its centre as the origin. */
+    struct limbs_vector component[2][FMB_DIM_MAX], origin[2];
+    struct limbs_vector offset, drift; /* of the positions */
+    /* By rows; NULL: the identity. From a frame to the world and back, and to the other frame. */
+    const struct limbs_vector *to_world[2], *from_world[2], *across[2];
+    const struct limbs_factor *norm[2], *all; /* of these matrices; NULL: 1 */
+    const struct limbs_factor *common;        /* of equal orientations; else NULL */
+    struct limbs_rotation rotation[2], relative;
+    /* Edges, set when they are needed. */
+    const struct limbs_vector *view[2][SLABS_EDGES][LIMBS_VIEWS];
+    struct limbs_vector room[2][SLABS_EDGES][LIMBS_VIEWS];
 };
 
 /* Of all lengths that a pair is given by: components, origins, positions, and displacements v T. */
@@ -34,8 +38,9 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span);
 /* False if the numbers of the pair, times those of the orientations, span too many bits. */
 bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struct limbs_pair *out);
 
-/* The sign of the gap of a slab; -1 where its normal is zero: it says nothing. */
-int limbs_gap_sign(const struct limbs_pair *pair, struct slab_normal normal);
+/* The sign of the gap of a slab; -1 where its normal is zero: it says nothing. Edges are in the
+ * order of slabs_list(): of a, of b, the drift. */
+int limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
 
 /* Of two faces. */
 struct limbs_planes {
@@ -43,10 +48,10 @@ struct limbs_planes {
     bool shared;   /* and they are one plane at all times of the window */
 };
 
-struct limbs_planes limbs_planes_of(const struct limbs_pair *pair);
+struct limbs_planes limbs_planes_of(struct limbs_pair *pair);
 
-/* The numbers of a slab_value, exactly, times a common power of two. */
-void limbs_slab(const struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
+/* The numbers of a slab_value, exactly, times a common positive factor. */
+void limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
                 mpz_t start, mpz_t slope);
 
 #endif

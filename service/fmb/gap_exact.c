@@ -1,0 +1,570 @@
+/* Gaps in integers: for pairs whose enclosure in doubles is too wide, and for those that doubles
+ * cannot represent.
+ *
+ * Method. All lengths of the pair are rounded to multiples of one unit, such that the largest has
+ * LENGTH_BITS bits. Everything after that is exact for the rounded pair, whose gap is within
+ * UNITS_ERROR of the true one: so the numbers stay short whatever the exponents of the pair are.
+ *
+ * Separated: the algorithm of Gilbert, Johnson and Keerthi, on the vertices of P. It holds a
+ * simplex of at most 4 of them, the point of P next to the origin being that of the simplex so far,
+ * and adds the vertex that lies farthest in the direction of the origin. The distance decreases
+ * strictly with each, so that it ends. The next simplex is found by Johnson's conditions: of all
+ * subsets of the vertices at hand the one, affinely independent, whose affine hull has its point
+ * next to the origin strictly inside of the subset, with no other vertex nearer along that
+ * direction.
+ *
+ * In contact: the slabs of all pairs of edges, the drift being one. Each facet of P, where P has a
+ * volume, is spanned by two of its edges; where P is flat, its plane is, and f is 0 there. Where
+ * all edges are parallel, f is 0 for any direction across.
+ *
+ * Accuracy. A coordinate of an origin, a component or a displacement v T is off by less than one
+ * unit; one of a point of P by less than 2 + 6 + 2 = 10, and the point by less than 18. A point of
+ * a frame is off by less than 5 units on an axis, 9 in all. Integers of at most 620 bits are taken
+ * as doubles, cut off: a relative error below 2^-52; quotients and roots of them are within 2^-49.
+ */
+#include "gap.h"
+
+#include "exact.h"
+#include "integer.h"
+
+#include <assert.h>
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+enum { LENGTH_BITS = 100, DIRECTION_BITS = 160, UNITS_ERROR = 20, CORNERS = 4, SCRATCH = 6 };
+
+/* A vertex of P. */
+struct corner {
+    unsigned bits[2]; /* of each frame: its components that are added to its origin */
+    bool late;        /* at the end of the window */
+    mpz_t at[3];
+};
+
+struct solver {
+    struct exact_pair pair; /* rounded */
+    int dim;
+    int count;
+    struct corner pool[CORNERS + 1], *corner[CORNERS + 1]; /* the first are those of the simplex */
+    mpz_t weight[CORNERS], total; /* of the point next to the origin, over total */
+    mpz_t normal[3];              /* a multiple of that point */
+    bool zero;                    /* it is the origin */
+    mpz_t edge[3][3], other[3];
+    mpz_t best[3]; /* the normal of the slab with the greatest f */
+    mpz_t low, high, t[SCRATCH];
+};
+
+static void solver_each(struct solver *solver, void (*call)(mpz_ptr))
+{
+    for (int i = 0; i < CORNERS; i++)
+        call(solver->weight[i]);
+    for (int axis = 0; axis < 3; axis++) {
+        for (int i = 0; i <= CORNERS; i++)
+            call(solver->pool[i].at[axis]);
+        for (int i = 0; i < 3; i++)
+            call(solver->edge[i][axis]);
+        call(solver->other[axis]);
+        call(solver->normal[axis]);
+        call(solver->best[axis]);
+    }
+    for (int i = 0; i < SCRATCH; i++)
+        call(solver->t[i]);
+    call(solver->total);
+    call(solver->low);
+    call(solver->high);
+}
+
+/* ---- Rounding ---- */
+
+typedef void length_function(mpz_ptr x, mpz_t largest, mpz_t scale, long shift);
+
+static void keep_largest(mpz_ptr x, mpz_t largest, mpz_t scale, long shift)
+{
+    (void) scale;
+    (void) shift;
+    if (mpz_cmpabs(x, largest) > 0)
+        mpz_abs(largest, x);
+}
+
+static void round_length(mpz_ptr x, mpz_t largest, mpz_t scale, long shift)
+{
+    (void) largest;
+    if (shift >= 0)
+        mpz_mul_2exp(x, x, (mp_bitcnt_t) shift);
+    else
+        mpz_tdiv_q_2exp(x, x, (mp_bitcnt_t) -shift);
+    mpz_tdiv_q(x, x, scale);
+}
+
+static void each_length(struct exact_pair *pair, length_function *call, mpz_t largest, long shift)
+{
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < 3; axis++) {
+            struct exact_frame *frame = &pair->frame[f];
+            call(frame->origin[axis], largest, pair->scale, shift);
+            call(frame->displacement[axis], largest, pair->scale, shift);
+            for (int i = 0; i < frame->count; i++)
+                call(frame->component[i][axis], largest, pair->scale, shift);
+        }
+}
+
+/* All that follows from origins, components and displacements is set again. */
+static void round_pair(struct exact_pair *pair, mpz_t largest)
+{
+    mpz_set_ui(largest, 0);
+    each_length(pair, keep_largest, largest, 0);
+    const long shift =
+        LENGTH_BITS - (long) mpz_sizeinbase(largest, 2) + (long) mpz_sizeinbase(pair->scale, 2);
+    each_length(pair, round_length, largest, shift);
+    pair->unit -= shift;
+    if (mpz_sgn(largest) == 0)
+        pair->unit =
+            -1200; /* nothing is anywhere but at 0: errors in units are less than any double */
+    mpz_set_ui(pair->scale, 1);
+    struct exact_frame *a = &pair->frame[0], *b = &pair->frame[1];
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_sub(pair->offset[axis], b->origin[axis], a->origin[axis]);
+        mpz_sub(pair->drift[axis], b->displacement[axis], a->displacement[axis]);
+        for (int f = 0; f < 2; f++) {
+            struct exact_frame *frame = &pair->frame[f];
+            for (int e = frame->count; e < frame->edges; e++)
+                mpz_sub(frame->edge[e].vector[axis], exact_vector(pair, frame->edge[e].plus)[axis],
+                        exact_vector(pair, frame->edge[e].minus)[axis]);
+        }
+    }
+}
+
+/* ---- P along a direction ---- */
+
+/* Sets the corner of P where n . p is least. */
+static void set_support(struct solver *solver, mpz_t n[3], struct corner *out)
+{
+    struct exact_pair *pair = &solver->pair;
+    mpz_t *at = &solver->t[0], *most = &solver->t[1], *scratch = &solver->t[2];
+    for (int f = 0; f < 2; f++) {
+        struct exact_frame *frame = &pair->frame[f];
+        out->bits[f] = 0;
+        mpz_set_ui(*most, 0);
+        for (int i = 0; i < frame->count; i++) {
+            integer_dot(*at, n, frame->component[i], *scratch);
+            if (f == 0)
+                mpz_neg(*at, *at);
+            if (mpz_cmp(*at, *most) >= 0)
+                continue;
+            if (frame->simplex)
+                mpz_set(*most, *at);
+            out->bits[f] = (frame->simplex ? 0 : out->bits[f]) | 1U << i;
+        }
+    }
+    integer_dot(*at, n, pair->drift, *scratch);
+    out->late = mpz_sgn(*at) < 0;
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_set(out->at[axis], pair->offset[axis]);
+        if (out->late)
+            mpz_add(out->at[axis], out->at[axis], pair->drift[axis]);
+        for (int i = 0; i < 3; i++) {
+            if (out->bits[0] >> i & 1)
+                mpz_sub(out->at[axis], out->at[axis], pair->frame[0].component[i][axis]);
+            if (out->bits[1] >> i & 1)
+                mpz_add(out->at[axis], out->at[axis], pair->frame[1].component[i][axis]);
+        }
+    }
+}
+
+/* [low, high] += the ends of x t, t in [0, 1]. */
+static void widen(mpz_t low, mpz_t high, const mpz_t x)
+{
+    mpz_ptr end = mpz_sgn(x) < 0 ? low : high;
+    mpz_add(end, end, x);
+}
+
+/* solver->low and high := the ends of n . p over P. */
+static void set_extent(struct solver *solver, mpz_t n[3])
+{
+    struct exact_pair *pair = &solver->pair;
+    mpz_t *at = &solver->t[0], *least = &solver->t[1], *most = &solver->t[2];
+    mpz_t *scratch = &solver->t[3];
+    integer_dot(solver->low, n, pair->offset, *scratch);
+    mpz_set(solver->high, solver->low);
+    integer_dot(*at, n, pair->drift, *scratch);
+    widen(solver->low, solver->high, *at);
+    for (int f = 0; f < 2; f++) {
+        struct exact_frame *frame = &pair->frame[f];
+        mpz_set_ui(*least, 0);
+        mpz_set_ui(*most, 0);
+        for (int i = 0; i < frame->count; i++) {
+            integer_dot(*at, n, frame->component[i], *scratch);
+            if (f == 0)
+                mpz_neg(*at, *at);
+            if (!frame->simplex)
+                widen(*least, *most, *at);
+            else if (mpz_cmp(*at, *least) < 0)
+                mpz_set(*least, *at);
+            else if (mpz_cmp(*at, *most) > 0)
+                mpz_set(*most, *at);
+        }
+        mpz_add(solver->low, solver->low, *least);
+        mpz_add(solver->high, solver->high, *most);
+    }
+}
+
+/* ---- The point of a simplex next to the origin ---- */
+
+static void subtract(mpz_t out[3], mpz_t x[3], mpz_t y[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        mpz_sub(out[axis], x[axis], y[axis]);
+}
+
+/* weight[0] := total - all others. False if one of them is not positive. */
+static bool complete_weights(struct solver *solver, int count)
+{
+    mpz_set(solver->weight[0], solver->total);
+    for (int i = 1; i < count; i++)
+        mpz_sub(solver->weight[0], solver->weight[0], solver->weight[i]);
+    for (int i = 0; i < count; i++)
+        if (mpz_sgn(solver->weight[i]) <= 0)
+            return false;
+    return true;
+}
+
+/* w - (w . e / e . e) e, times e . e; the weight of w + e is -w . e. */
+static bool set_of_two(struct solver *solver, mpz_t w[3])
+{
+    mpz_t *e = solver->edge[0];
+    integer_dot(solver->total, e, e, solver->t[0]);
+    integer_dot(solver->weight[1], w, e, solver->t[0]);
+    mpz_neg(solver->weight[1], solver->weight[1]);
+    if (!complete_weights(solver, 2))
+        return false;
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_mul(solver->normal[axis], w[axis], solver->total);
+        mpz_addmul(solver->normal[axis], solver->weight[1], e[axis]);
+    }
+    return true;
+}
+
+/* With n = d x e: the weights of w + d and w + e are (-w x e) . n and (d x -w) . n over n . n. */
+static bool set_of_three(struct solver *solver, mpz_t w[3])
+{
+    mpz_t *d = solver->edge[0], *e = solver->edge[1], *n = solver->normal;
+    integer_cross(n, d, e, solver->t[0]);
+    integer_dot(solver->total, n, n, solver->t[0]);
+    integer_cross(solver->other, e, w, solver->t[0]);
+    integer_dot(solver->weight[1], solver->other, n, solver->t[0]);
+    integer_cross(solver->other, w, d, solver->t[0]);
+    integer_dot(solver->weight[2], solver->other, n, solver->t[0]);
+    if (mpz_sgn(solver->total) == 0 || !complete_weights(solver, 3))
+        return false;
+    integer_dot(solver->t[1], n, w, solver->t[0]);
+    for (int axis = 0; axis < 3 && mpz_sgn(solver->t[1]) <= 0; axis++)
+        if (mpz_sgn(solver->t[1]) == 0)
+            mpz_set_ui(n[axis], 0);
+        else
+            mpz_neg(n[axis], n[axis]);
+    return true;
+}
+
+/* The origin in a tetrahedron: Cramer's rule. */
+static bool set_of_four(struct solver *solver, mpz_t w[3])
+{
+    for (int i = 0; i < 3; i++) {
+        mpz_t *e = solver->edge[(i + 1) % 3], *f = solver->edge[(i + 2) % 3];
+        integer_cross(solver->other, e, f, solver->t[0]);
+        integer_dot(solver->weight[1 + i], solver->other, w, solver->t[0]);
+        integer_dot(solver->total, solver->other, solver->edge[i], solver->t[0]);
+    }
+    for (int i = 1; i < 4; i++)
+        if (mpz_sgn(solver->total) >= 0)
+            mpz_neg(solver->weight[i], solver->weight[i]);
+    mpz_abs(solver->total, solver->total);
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_ui(solver->normal[axis], 0);
+    return mpz_sgn(solver->total) != 0 && complete_weights(solver, 4);
+}
+
+/* Whether the point next to the origin is that of the corners [member[0], ...]. */
+static bool try_subset(struct solver *solver, const int member[], int count)
+{
+    mpz_t *w = solver->corner[member[0]]->at;
+    for (int i = 1; i < count; i++)
+        subtract(solver->edge[i - 1], solver->corner[member[i]]->at, w);
+    if (count == 1) {
+        mpz_set_ui(solver->total, 1);
+        mpz_set_ui(solver->weight[0], 1);
+        for (int axis = 0; axis < 3; axis++)
+            mpz_set(solver->normal[axis], w[axis]);
+    } else if (!(count == 2   ? set_of_two(solver, w)
+                 : count == 3 ? set_of_three(solver, w)
+                              : set_of_four(solver, w))) {
+        return false;
+    }
+    for (int i = 0; i < solver->count; i++) {
+        subtract(solver->other, solver->corner[i]->at, w);
+        integer_dot(solver->t[1], solver->normal, solver->other, solver->t[0]);
+        if (mpz_sgn(solver->t[1]) < 0)
+            return false;
+    }
+    return true;
+}
+
+/* Reduces the simplex to the corners that the point next to the origin needs; the last one is
+ * always among them. */
+static void reduce(struct solver *solver)
+{
+    const int last = solver->count - 1;
+    for (unsigned mask = 0; mask < 1U << last; mask++) {
+        struct corner *corner[CORNERS + 1];
+        int member[CORNERS] = {last}, count = 1;
+        for (int i = 0; i < last; i++)
+            if (mask >> i & 1)
+                member[count++] = i;
+        if (!try_subset(solver, member, count))
+            continue;
+        memcpy(corner, solver->corner, sizeof corner);
+        solver->count = count;
+        for (int i = 0; i < count; i++)
+            solver->corner[i] = corner[member[i]];
+        for (int i = 0; i <= CORNERS; i++)
+            if (i != last && !(i < last && mask >> i & 1))
+                solver->corner[count++] = corner[i];
+        return;
+    }
+    assert(!"one subset holds the point");
+}
+
+/* Finds the point of P next to the origin. */
+static void solve(struct solver *solver)
+{
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set(solver->normal[axis], solver->pair.offset[axis]);
+    for (int i = 0; i <= CORNERS; i++)
+        solver->corner[i] = &solver->pool[i];
+    set_support(solver, solver->normal, solver->corner[0]);
+    for (solver->count = 1;; solver->count++) {
+        reduce(solver);
+        solver->zero = integer_is_zero(solver->normal);
+        if (solver->zero)
+            return;
+        struct corner *next = solver->corner[solver->count];
+        set_support(solver, solver->normal, next);
+        subtract(solver->other, next->at, solver->corner[0]->at);
+        integer_dot(solver->t[1], solver->normal, solver->other, solver->t[0]);
+        if (mpz_sgn(solver->t[1]) >= 0)
+            return;
+    }
+}
+
+/* ---- Slabs ---- */
+
+/* x / |n| */
+static double over_length(struct solver *solver, const mpz_t x, mpz_t n[3])
+{
+    integer_dot(solver->t[1], n, n, solver->t[0]);
+    return mpz_get_d(x) / sqrt(mpz_get_d(solver->t[1]));
+}
+
+/* Keeps the slab of a normal where it is the best so far. */
+static void add_normal(struct solver *solver, mpz_t n[3], double *greatest)
+{
+    if (integer_is_zero(n))
+        return;
+    set_extent(solver, n);
+    mpz_neg(solver->high, solver->high);
+    const bool above = mpz_cmp(solver->low, solver->high) >= 0;
+    const double f = over_length(solver, above ? solver->low : solver->high, n);
+    if (f <= *greatest)
+        return;
+    *greatest = f;
+    for (int axis = 0; axis < 3; axis++)
+        if (above)
+            mpz_set(solver->best[axis], n[axis]);
+        else
+            mpz_neg(solver->best[axis], n[axis]);
+}
+
+static int list_edges(struct exact_pair *pair, mpz_t *edge[2 * EXACT_EDGES_MAX + 1])
+{
+    int count = 0;
+    for (int f = 0; f < 2; f++)
+        for (int e = 0; e < pair->frame[f].edges; e++)
+            edge[count++] = pair->frame[f].edge[e].vector;
+    edge[count++] = pair->drift;
+    return count;
+}
+
+/* Across one edge, or any direction: all edges are parallel, f is 0 or less by rounding alone. */
+static void add_across(struct solver *solver, mpz_t *edge[], int count, double *greatest)
+{
+    mpz_t *n = solver->normal;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_ui(n[axis], axis == 0);
+    for (int e = 0; e < count; e++) {
+        if (integer_is_zero(edge[e]))
+            continue;
+        const int i = mpz_sgn(edge[e][0]) != 0 ? 0 : 1, j = i + 1;
+        mpz_set_ui(n[0], 0);
+        mpz_neg(n[i], edge[e][j]);
+        mpz_set(n[j], edge[e][i]);
+    }
+    add_normal(solver, n, greatest);
+}
+
+/* Sets solver->best; returns its f, in units: the greatest of all slabs. */
+static double best_slab(struct solver *solver)
+{
+    mpz_t *edge[2 * EXACT_EDGES_MAX + 1], *n = solver->normal;
+    const int count = list_edges(&solver->pair, edge);
+    double greatest = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        if (solver->dim == 2) {
+            mpz_neg(n[0], edge[i][1]);
+            mpz_set(n[1], edge[i][0]);
+            mpz_set_ui(n[2], 0);
+            add_normal(solver, n, &greatest);
+        }
+        for (int j = 0; j < i && solver->dim == 3; j++) {
+            integer_cross(n, edge[i], edge[j], solver->t[0]);
+            add_normal(solver, n, &greatest);
+        }
+    }
+    if (greatest == -INFINITY)
+        add_across(solver, edge, count, &greatest);
+    return greatest;
+}
+
+/* ---- Answers ---- */
+
+/* A bound of so many units as a number; ldexp() rounds where it underflows. */
+static double below(const struct solver *solver, double units)
+{
+    const double x = units - (fabs(units) * 0x1p-48 + UNITS_ERROR);
+    return ldexp(x, (int) solver->pair.unit) - 0x1p-1074;
+}
+
+static double above(const struct solver *solver, double units)
+{
+    return -below(solver, -units);
+}
+
+/* n / |n|; numbers 2^100 times smaller than the largest become 0. */
+static void set_direction(mpz_t n[3], double out[FMB_DIM_MAX])
+{
+    long exponent[3], top = LONG_MIN;
+    for (int axis = 0; axis < 3; axis++) {
+        out[axis] = mpz_get_d_2exp(&exponent[axis], n[axis]);
+        if (out[axis] != 0 && exponent[axis] > top)
+            top = exponent[axis];
+    }
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = out[axis] == 0 || exponent[axis] < top - 100
+                        ? 0
+                        : ldexp(out[axis], (int) (exponent[axis] - top));
+    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] /= length;
+}
+
+/* f of a direction of unit length but for rounding, in units. */
+static double value_of(struct solver *solver, const double direction[FMB_DIM_MAX])
+{
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_d(solver->normal[axis], ldexp(direction[axis], DIRECTION_BITS));
+    set_extent(solver, solver->normal);
+    return ldexp(mpz_get_d(solver->low), -DIRECTION_BITS);
+}
+
+/* Coordinates, rounded, of a point of frame f: that of the simplex next to the origin. Returns a
+ * bound on how far they are off. */
+static double set_witness(struct solver *solver, int f, double out[FMB_DIM_MAX])
+{
+    const struct exact_frame *frame = &solver->pair.frame[f];
+    mpz_t *at = &solver->t[0], *weight = &solver->t[1];
+    double error = 0;
+    for (int axis = 0; axis < solver->dim; axis++) {
+        mpz_mul(*at, solver->total, frame->origin[axis]);
+        for (int c = 0; c < solver->count; c++) {
+            const struct corner *corner = solver->corner[c];
+            mpz_set_ui(*weight, 0);
+            if (corner->late)
+                mpz_set(*weight, frame->displacement[axis]);
+            for (int i = 0; i < frame->count; i++)
+                if (corner->bits[f] >> i & 1)
+                    mpz_add(*weight, *weight, frame->component[i][axis]);
+            mpz_addmul(*at, solver->weight[c], *weight);
+        }
+        out[axis] =
+            integer_ratio_round(*at, solver->total, solver->pair.unit, ROUND_DOWN, solver->t + 2);
+        error += fmin(fabs(out[axis]), DBL_MAX) * 0x1p-51 + 0x1p-1073;
+    }
+    return error;
+}
+
+/* Sets the time; returns a bound on the distance that the frames move in as long as it is off. */
+static double set_time(struct solver *solver, double duration, struct fmb_gap *out)
+{
+    const struct dyadic window = dyadic_of(duration);
+    double way = 0;
+    mpz_set_ui(solver->t[0], 0);
+    for (int c = 0; c < solver->count; c++)
+        if (solver->corner[c]->late)
+            mpz_add(solver->t[0], solver->t[0], solver->weight[c]);
+    out->time = 0;
+    if (mpz_sgn(solver->t[0]) == 0)
+        return 0;
+    mpz_mul_si(solver->t[0], solver->t[0], window.mantissa);
+    out->time = integer_ratio_round(solver->t[0], solver->total, window.exponent, ROUND_DOWN,
+                                    solver->t + 1);
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < 3; axis++)
+            way += fabs(mpz_get_d(solver->pair.frame[f].displacement[axis]));
+    const double share = 0x1p-51 + (duration < 0x1p-1000 ? 0x1p-1073 / duration : 0);
+    return above(solver, way * fmin(share, 1));
+}
+
+/* The distance from the witness points is at most that of the true points of P, twice the rounding
+ * of the witness points, and how far the frames are from where they are at the time given. */
+static void set_upper(struct solver *solver, double distance, double duration, struct fmb_gap *out)
+{
+    double error = set_time(solver, duration, out);
+    for (int f = 0; f < 2; f++)
+        error += 2 * set_witness(solver, f, out->witness[f]);
+    out->has_witness = true;
+    out->bounds[1] = (above(solver, distance) + error) * (1 + 0x1p-51);
+}
+
+static void answer(struct solver *solver, enum fmb_verdict verdict, double duration,
+                   struct fmb_gap *out)
+{
+    double greatest = 0;
+    if (verdict == FMB_SEPARATED) {
+        solve(solver);
+        integer_dot(solver->low, solver->normal, solver->corner[0]->at, solver->t[0]);
+        set_upper(solver, solver->zero ? 0 : over_length(solver, solver->low, solver->normal),
+                  duration, out);
+        for (int axis = 0; axis < 3; axis++)
+            mpz_set(solver->best[axis], solver->normal[axis]);
+    }
+    if (verdict != FMB_SEPARATED || solver->zero)
+        greatest = best_slab(solver);
+    set_direction(solver->best, out->direction);
+    if (verdict == FMB_TOUCHING)
+        return;
+    out->bounds[0] = below(solver, value_of(solver, out->direction));
+    const double upper = above(solver, greatest);
+    if (verdict == FMB_OVERLAPPING)
+        out->bounds[1] = upper < 0 ? upper : 0; /* never -0 */
+}
+
+void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct fmb_gap *out)
+{
+    struct solver solver = {.dim = pair->a.frame->dim};
+    memset(out, 0, sizeof *out);
+    exact_pair_init(&solver.pair, pair);
+    solver_each(&solver, mpz_init);
+    round_pair(&solver.pair, solver.t[0]);
+    answer(&solver, verdict, pair->duration, out);
+    solver_each(&solver, mpz_clear);
+    exact_pair_clear(&solver.pair);
+}

@@ -1,0 +1,295 @@
+#include "limbs.h"
+
+/* ---- Normals ---- */
+
+/* Edges as slabs.h numbers them: with p, q, r cyclic, number 3 + r is c_q - c_p. */
+static const struct limbs_vector *edge_of(struct limbs_pair *pair, int edge, enum limbs_view view)
+{
+    const int f = edge >= SLABS_EDGE_OF_B, e = edge % SLABS_EDGES, dim = pair->frame[f]->dim;
+    const struct limbs_vector **at = pair->view[f][e];
+    struct limbs_vector *own = &pair->room[f][e][LIMBS_OWN];
+    if (!at[LIMBS_OWN] && pair->frame[f]->shape == FMB_BOX) {
+        memset(own, 0, sizeof *own);
+        own->limbs = pair->component[f][e].limbs > 0;
+        own->at[e][0] = (uint64_t) own->limbs;
+        own->other_than_0 = (unsigned) own->limbs << e;
+        at[LIMBS_OWN] = own;
+    }
+    if (!at[LIMBS_OWN] && e < dim)
+        at[LIMBS_OWN] = &pair->component[f][e];
+    if (!at[LIMBS_OWN]) {
+        const int p = dim == 2 ? 0 : (e + 1) % 3, q = dim == 2 ? 1 : (e + 2) % 3;
+        *own = pair->component[f][q];
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            subtract(pair->limbs, own->at[axis], pair->component[f][p].at[axis]);
+        limbs_trim(pair->limbs, own);
+        at[LIMBS_OWN] = own;
+    }
+    if (at[view])
+        return at[view];
+    at[view] =
+        limbs_transform(pair->limbs, view == LIMBS_ACROSS ? pair->across[f] : pair->to_world[f],
+                        at[LIMBS_OWN], &pair->room[f][e][view]);
+    if (view == LIMBS_WORLD && at[view] != at[LIMBS_OWN])
+        limbs_trim(pair->limbs, &pair->room[f][e][view]);
+    return at[view];
+}
+
+enum { WORLD = 2 }; /* after frames 0 and 1 */
+
+/* The normal of a slab in the coordinates of the two frames and of the world, and what is to be
+ * multiplied by another factor each time; NULL: nothing. */
+struct normal {
+    const struct limbs_vector *at[3];
+    const struct limbs_factor *factor[3];
+    struct limbs_vector room[3];
+};
+
+static void set_normal_of_edges(struct limbs_pair *pair, int u, int v, struct normal *out)
+{
+    const int n = pair->limbs;
+    limbs_cross(n, edge_of(pair, v, LIMBS_ACROSS), edge_of(pair, u, LIMBS_OWN), true,
+                &out->room[0]);
+    out->at[0] = out->at[1] = out->at[WORLD] = &out->room[0];
+    if (!pair->all)
+        return;
+    limbs_cross(n, edge_of(pair, u, LIMBS_ACROSS), edge_of(pair, v, LIMBS_OWN), false,
+                &out->room[1]);
+    out->at[1] = &out->room[1];
+    if (!pair->to_world[0] || !pair->to_world[1]) {
+        out->at[WORLD] = out->at[pair->to_world[0] != NULL];
+        return;
+    }
+    limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), edge_of(pair, v, LIMBS_WORLD), false,
+                &out->room[WORLD]);
+    out->at[WORLD] = &out->room[WORLD];
+}
+
+/* v turned by a right angle. */
+static void set_plane_normal(int n, const struct limbs_vector *v, struct limbs_vector *out)
+{
+    memset(out, 0, sizeof *out);
+    subtract(n, out->at[0], v->at[1]);
+    memcpy(out->at[1], v->at[0], (size_t) n * sizeof *out->at[1]);
+}
+
+static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_normal edges,
+                               struct normal *out)
+{
+    const int n = pair->limbs, other = !f;
+    const struct limbs_vector *u = edge_of(pair, edges.u, LIMBS_OWN);
+
+    if (pair->frame[0]->dim == 2)
+        set_plane_normal(n, u, &out->room[f]);
+    else
+        limbs_cross(n, u, edge_of(pair, edges.v, LIMBS_OWN), false, &out->room[f]);
+    limbs_trim(n, &out->room[f]);
+    out->at[f] = &out->room[f];
+    out->at[other] = limbs_transform(n, pair->across[f], out->at[f], &out->room[other]);
+    out->at[WORLD] = pair->to_world[other]
+                         ? limbs_transform(n, pair->to_world[f], out->at[f], &out->room[WORLD])
+                         : out->at[other];
+    out->factor[f] = pair->all;
+    out->factor[WORLD] = pair->norm[other];
+}
+
+static void set_normal_of_drift(struct limbs_pair *pair, int u, struct normal *out)
+{
+    const int n = pair->limbs, f = u >= SLABS_EDGE_OF_B, other = !f;
+    struct limbs_vector drift;
+    limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), &pair->drift, false, &out->room[WORLD]);
+    limbs_trim(n, &out->room[WORLD]);
+    out->at[0] = out->at[1] = out->at[WORLD] = &out->room[WORLD];
+    if (pair->from_world[f]) {
+        limbs_cross(n, limbs_transform(n, pair->from_world[f], &pair->drift, &drift),
+                    edge_of(pair, u, LIMBS_OWN), true, &out->room[f]);
+        out->at[f] = &out->room[f];
+    }
+    out->at[other] = limbs_transform(n, pair->from_world[other], out->at[WORLD], &out->room[other]);
+    out->factor[f] = out->factor[WORLD] = pair->norm[other];
+}
+
+static void set_normal_of_plane_drift(struct limbs_pair *pair, struct normal *out)
+{
+    set_plane_normal(pair->limbs, &pair->drift, &out->room[WORLD]);
+    limbs_trim(pair->limbs, &out->room[WORLD]);
+    out->at[WORLD] = &out->room[WORLD];
+    out->factor[WORLD] = pair->all;
+    for (int f = 0; f < 2; f++) {
+        out->at[f] =
+            limbs_transform(pair->limbs, pair->from_world[f], out->at[WORLD], &out->room[f]);
+        out->factor[f] = pair->norm[!f];
+    }
+}
+
+static bool is_zero_vector(int n, const struct limbs_vector *v)
+{
+    return is_zero(n, v->at[0]) && is_zero(n, v->at[1]) && is_zero(n, v->at[2]);
+}
+
+/* False where it is zero. */
+static bool set_normal(struct limbs_pair *pair, struct slab_normal edges, struct normal *out)
+{
+    const bool plane = pair->frame[0]->dim == 2;
+    const int f = edges.u >= SLABS_EDGE_OF_B;
+    out->factor[0] = out->factor[1] = out->factor[WORLD] = NULL;
+    if (plane && edges.u == SLABS_DRIFT)
+        set_normal_of_plane_drift(pair, out);
+    else if (!plane && edges.v == SLABS_DRIFT)
+        set_normal_of_drift(pair, edges.u, out);
+    else if (plane || f == (edges.v >= SLABS_EDGE_OF_B))
+        set_normal_of_face(pair, f, edges, out);
+    else
+        set_normal_of_edges(pair, edges.u, edges.v, out);
+    if (pair->common)
+        out->factor[0] = out->factor[1] = pair->common;
+    return !is_zero_vector(pair->limbs, out->at[0]);
+}
+
+/* ---- Slabs ---- */
+
+struct value_range {
+    limbs_number low, high;
+};
+
+struct slab_limbs {
+    struct value_range between; /* low and high */
+    limbs_number start, slope;
+};
+
+INLINE bool less(const int n, const uint64_t *x, const uint64_t *y)
+{
+    limbs_number difference;
+    memcpy(difference, x, (size_t) n * sizeof *x);
+    subtract(n, difference, y);
+    return is_negative(n, difference);
+}
+
+INLINE void scale_by(const int n, const struct limbs_factor *factor, uint64_t *x)
+{
+    limbs_number product;
+    if (!factor || is_zero(n, x))
+        return;
+    memset(product, 0, (size_t) n * sizeof *x);
+    limbs_add_product(n, product, false, x, factor->limbs, factor->at);
+    memcpy(x, product, (size_t) n * sizeof *x);
+}
+
+/* A box reaches as far to either side of its centre: the sum of the magnitudes of the products. */
+INLINE void set_extent(const int n, const struct limbs_pair *pair, int f,
+                       const struct normal *normal, struct value_range *range)
+{
+    const size_t size = (size_t) n * sizeof *range->low;
+    const struct fmb_frame *frame = pair->frame[f];
+    const bool simplex = frame_is_simplex(frame);
+    limbs_number at;
+    memset(range->low, 0, size);
+    memset(range->high, 0, size);
+    for (int i = 0; i < frame->count; i++) {
+        dot(n, normal->at[f], &pair->component[f][i], at);
+        if (!simplex)
+            add(n, is_negative(n, at) ? range->low : range->high, at);
+        else if (less(n, at, range->low))
+            memcpy(range->low, at, size);
+        else if (less(n, range->high, at))
+            memcpy(range->high, at, size);
+    }
+    if (frame->shape == FMB_BOX) {
+        subtract(n, range->high, range->low);
+        memset(range->low, 0, size);
+        subtract(n, range->low, range->high);
+    }
+    if (pair->origin[f].limbs > 0) {
+        dot(n, normal->at[f], &pair->origin[f], at);
+        add(n, range->low, at);
+        add(n, range->high, at);
+    }
+    scale_by(n, normal->factor[f], range->low);
+    scale_by(n, normal->factor[f], range->high);
+}
+
+INLINE void set_values(const int n, const struct limbs_pair *pair, const struct normal *normal,
+                       struct slab_limbs *out)
+{
+    struct value_range b;
+    set_extent(n, pair, 0, normal, &out->between);
+    set_extent(n, pair, 1, normal, &b);
+    subtract(n, out->between.low, b.high);
+    subtract(n, out->between.high, b.low);
+    dot(n, normal->at[WORLD], &pair->offset, out->start);
+    scale_by(n, normal->factor[WORLD], out->start);
+    dot(n, normal->at[WORLD], &pair->drift, out->slope);
+    scale_by(n, normal->factor[WORLD], out->slope);
+}
+
+/* False, and all 0, where the normal is zero. */
+static bool set_slab(struct limbs_pair *pair, struct slab_normal edges, struct slab_limbs *out)
+{
+    struct normal normal;
+    if (!set_normal(pair, edges, &normal)) {
+        memset(out, 0, sizeof *out);
+        return false;
+    }
+    WITH_LIMBS(pair->limbs, set_values, pair, &normal, out);
+    return true;
+}
+
+static int sign(const int n, const uint64_t *x)
+{
+    return is_negative(n, x) ? -1 : !is_zero(n, x);
+}
+
+/* The gap is the larger of start + min(0, slope) - high and low - start - max(0, slope). */
+int limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal)
+{
+    struct slab_limbs slab;
+    const int n = pair->limbs;
+    if (!set_slab(pair, normal, &slab))
+        return -1;
+    uint64_t *above = slab.between.high, *below = slab.between.low;
+    limbs_number last;
+    memcpy(last, slab.start, (size_t) n * sizeof *last);
+    add(n, is_negative(n, slab.slope) ? last : slab.start, slab.slope);
+    subtract(n, above, last); /* last is the lower end of the way, start the upper one */
+    subtract(n, below, slab.start);
+    const int sign_above = -sign(n, above), sign_below = sign(n, below);
+    return sign_above > sign_below ? sign_above : sign_below;
+}
+
+/* The normal of a has no extent along a: its slab has one along b unless planes are parallel. */
+struct limbs_planes limbs_planes_of(struct limbs_pair *pair)
+{
+    struct slab_limbs slab;
+    const int n = pair->limbs;
+    set_slab(pair, (struct slab_normal){0, 1}, &slab);
+    subtract(n, slab.between.high, slab.between.low);
+    subtract(n, slab.start, slab.between.low);
+    const bool parallel = is_zero(n, slab.between.high);
+    return (struct limbs_planes){
+        .parallel = parallel,
+        .shared = parallel && is_zero(n, slab.start) && is_zero(n, slab.slope)};
+}
+
+static void to_mpz(int n, uint64_t *x, mpz_t out)
+{
+    const bool negative = is_negative(n, x);
+    limbs_number magnitude = {0};
+    if (negative)
+        subtract(n, magnitude, x);
+    else
+        memcpy(magnitude, x, (size_t) n * sizeof *x);
+    mpz_import(out, (size_t) n, -1, sizeof *x, 0, 0, magnitude);
+    if (negative)
+        mpz_neg(out, out);
+}
+
+void limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
+                mpz_t start, mpz_t slope)
+{
+    struct slab_limbs slab;
+    set_slab(pair, normal, &slab);
+    to_mpz(pair->limbs, slab.between.low, low);
+    to_mpz(pair->limbs, slab.between.high, high);
+    to_mpz(pair->limbs, slab.start, start);
+    to_mpz(pair->limbs, slab.slope, slope);
+}
