@@ -1,6 +1,9 @@
 /* Many pairs: sorted by kind within blocks, run through the filter side by side, and only those
  * that it leaves open, and what else is wanted of contacts, one by one. */
+#include "batch.h"
+
 #include "certified.h"
+#include "gap.h"
 #include "run.h"
 
 #include <math.h>
@@ -9,13 +12,14 @@
 /* Pairs sorted at a time: their frames should stay in the first cache. */
 enum { BLOCK = 128 };
 
-/* Pairs of a block that are decided alone at most where the time of a call is bounded. Integers of
- * 128 bits take some 12 us a pair. */
+/* Pairs of a block that are decided alone at most where the time of a call is bounded. A pair that
+ * needs integers takes 1 to 10 us. */
 enum { ALONE_MAX = 32 };
 
 /* What blocks have in common. */
 struct job {
     const struct fmb_batch *batch;
+    double farthest;               /* of gaps */
     struct run_set run;            /* of the instruction set */
     unsigned char in_order[BLOCK]; /* 0, 1, 2, ... */
 };
@@ -356,6 +360,30 @@ static void answer_odd(struct block *block)
     }
 }
 
+/* ---- Gaps ----
+ *
+ * Of frames in the order of the query: the block may have exchanged them. */
+
+static void put_gap(const struct job *job, size_t i)
+{
+    const struct fmb_batch *batch = job->batch;
+    const struct fmb_gap none = {.bounds = {NAN, NAN}};
+    struct fmb_gap *gap = &batch->gaps[i];
+    unsigned char *verdict = &batch->verdicts[i];
+    enum gap_outcome outcome = GAP_FAR;
+    if (*verdict != FMB_REFUSED && *verdict != FMB_LEFT_OPEN)
+        outcome = gap_of(&batch->frames[batch->pairs[i][0]], &batch->frames[batch->pairs[i][1]],
+                         batch->duration, (enum fmb_verdict) * verdict, job->farthest,
+                         batch->open != NULL, gap);
+    if (outcome == GAP_KNOWN)
+        return;
+    *gap = none;
+    if (outcome == GAP_FAR)
+        return;
+    put_nothing(batch, i);
+    *verdict = FMB_LEFT_OPEN;
+}
+
 static enum fmb_status decide_block(const struct job *job, size_t first)
 {
     struct block block;
@@ -364,6 +392,8 @@ static enum fmb_status decide_block(const struct job *job, size_t first)
         if (block.start[kind] < block.start[kind + 1])
             run_kind(&block, job, (enum run_kind) kind);
     answer_odd(&block);
+    for (size_t i = 0; job->batch->gaps && i < block.count; i++)
+        put_gap(job, first + i);
     return block.status;
 }
 
@@ -389,9 +419,14 @@ static void list_open(const struct fmb_batch *batch)
 
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
 {
+    return batch_decide(batch, INFINITY);
+}
+
+enum fmb_status batch_decide(const struct fmb_batch *batch, double farthest)
+{
     if (!prepared_is_duration(batch->duration))
         return FMB_BAD_DURATION;
-    struct job job = {.batch = batch};
+    struct job job = {.batch = batch, .farthest = farthest};
     if (!run_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
         return FMB_NOT_SUPPORTED;
     for (int i = 0; i < BLOCK; i++)

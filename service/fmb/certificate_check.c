@@ -173,10 +173,12 @@ static void set_frame(struct side *side, const struct fmb_frame *frame)
             mpq_set_d(number, frame->rest[i][axis]);
             mpq_add(side->edge[i][axis], side->edge[i][axis], number);
         }
-        mpq_set_d(side->origin[axis], frame->origin[axis]);
-        if (frame->shape != FMB_BOX)
+        if (frame->shape != FMB_BOX) {
+            mpq_set_d(side->origin[axis], frame->origin[axis]);
             continue;
-        mpq_div_2exp(number, side->edge[axis][axis], 1);
+        }
+        mpq_div_2exp(number, side->edge[axis][axis],
+                     1); /* the origin may be infinite as a double */
         mpq_set_d(side->origin[axis], frame->centre[axis]);
         mpq_sub(side->origin[axis], side->origin[axis], number);
     }

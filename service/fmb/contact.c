@@ -140,8 +140,8 @@ static void refine(const struct slabs_pair *pair, const struct times *times, str
 }
 
 /* Moves an end to the exact time of each slab that might be beyond it. */
-static void settle(const struct slabs *slabs, const struct limbs_pair *limbs,
-                   const struct times *times, int end, double duration, double *time)
+static void settle(const struct slabs *slabs, struct limbs_pair *limbs, const struct times *times,
+                   int end, double duration, double *time)
 {
     struct exact_end exact;
     exact_end_each(&exact, mpz_init);

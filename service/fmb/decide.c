@@ -2,6 +2,7 @@
 
 #include "certified.h"
 #include "exact.h"
+#include "gap.h"
 #include "inexact.h"
 #include "swept.h"
 
@@ -96,42 +97,67 @@ static struct placed_frame frame_at(const struct chunk *chunk, unsigned i)
                                  chunk->placement};
 }
 
-/* Includes the pairs of frames of two chunks whose boxes meet. */
-static enum fmb_status decide_chunks(const struct fmb_method *method, const struct chunk *a,
-                                     const struct chunk *b, double duration, unsigned want,
-                                     struct fmb_answer *answer)
+/* Pairs of frames of two bodies. */
+struct frames {
+    const struct fmb_method *method;
+    const struct fmb_placement *a, *b;
+    double duration;
+    unsigned want;
+    bool swaps;            /* gap_swaps() */
+    struct fmb_answer all; /* of those so far */
+};
+
+/* Frames whose boxes are farther apart than that neither meet nor have the least gap. */
+static double reach_of(const struct frames *frames, const struct chunk *a, const struct chunk *b)
 {
-    const struct swept against_all = swept_against(&b->all);
+    if (!(frames->want & FMB_WANT_GAP))
+        return 0;
+    return gap_reach(frames->all.gap.bounds[1], &a->all, &b->all);
+}
+
+/* Includes the pairs of frames of two chunks whose boxes are near enough. */
+static enum fmb_status decide_chunks(struct frames *frames, const struct chunk *a,
+                                     const struct chunk *b)
+{
     for (unsigned i = 0; i < a->count; i++) {
-        const struct swept against = swept_against(&a->box[i]);
+        const double reach = reach_of(frames, a, b);
+        const struct swept against = swept_within(&a->box[i], reach);
+        const struct swept against_all = swept_within(&b->all, reach);
         for (unsigned j = 0; swept_meet(&a->box[i], &against_all) && j < b->count; j++) {
-            const struct frame_pair pair = {frame_at(a, i), frame_at(b, j), duration};
+            const struct frame_pair pair = {frame_at(a, i), frame_at(b, j), frames->duration};
             struct fmb_answer one = {0};
             if (!swept_meet(&b->box[j], &against))
                 continue;
-            const enum fmb_status status = method->decide(&pair, want, &one);
+            const enum fmb_status status = frames->method->decide(&pair, frames->want, &one);
             if (status != FMB_OK)
                 return status;
-            include(answer, &one, pair.a.frame->dim);
+            include(&frames->all, &one, pair.a.frame->dim);
+            if (one.has_gap)
+                gap_include(&frames->all.gap, &one.gap, &a->box[i], &b->box[j], frames->swaps);
         }
     }
     return FMB_OK;
 }
 
-static enum fmb_status decide_frames(const struct fmb_method *method, const struct fmb_placement *a,
-                                     const struct fmb_placement *b, double duration, unsigned want,
-                                     struct fmb_answer *answer)
+static enum fmb_status decide_frames(struct frames *frames)
 {
     enum fmb_status status = FMB_OK;
-    answer->verdict = FMB_SEPARATED;
-    for (unsigned i = 0; i < a->body->frame_count; i += CHUNK) {
+    const unsigned count_a = frames->a->body->frame_count, count_b = frames->b->body->frame_count;
+    frames->all.verdict = FMB_SEPARATED;
+    if (frames->want & FMB_WANT_GAP) {
+        frames->all.has_gap = true;
+        frames->all.gap = gap_none();
+        frames->swaps = gap_swaps(frames->a, frames->b);
+    }
+    for (unsigned i = 0; i < count_a; i += CHUNK) {
         struct chunk of_a, of_b;
-        set_chunk(a, i, duration, &of_a);
-        for (unsigned j = 0; j < b->body->frame_count && status == FMB_OK; j += CHUNK) {
-            set_chunk(b, j, duration, &of_b);
-            status = decide_chunks(method, &of_a, &of_b, duration, want, answer);
+        set_chunk(frames->a, i, frames->duration, &of_a);
+        for (unsigned j = 0; j < count_b && status == FMB_OK; j += CHUNK) {
+            set_chunk(frames->b, j, frames->duration, &of_b);
+            status = decide_chunks(frames, &of_a, &of_b);
         }
     }
+    gap_end(frames->all.verdict, &frames->all.gap);
     return status;
 }
 
@@ -143,13 +169,19 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
     enum fmb_status status = placements_check(a, b, duration);
     if (status != FMB_OK)
         return status;
-    if (want & ~(unsigned) FMB_WANT_BOX)
+    if (want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_GAP))
         return FMB_UNKNOWN_WANT;
-    const struct frame_pair pair = {
-        {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
-    const bool single = a->body->frame_count == 1 && b->body->frame_count == 1;
-    status = single ? method->decide(&pair, want, answer)
-                    : decide_frames(method, a, b, duration, want, answer);
+    if (want & FMB_WANT_GAP && !method->certain)
+        return FMB_CANNOT_DECIDE;
+    if (a->body->frame_count == 1 && b->body->frame_count == 1) {
+        const struct frame_pair pair = {
+            {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
+        status = method->decide(&pair, want, answer);
+    } else {
+        struct frames frames = {method, a, b, duration, want, false, {0}};
+        status = decide_frames(&frames);
+        *answer = frames.all;
+    }
     if (status != FMB_OK) /* a method may have gone some way before it knew */
         memset(answer, 0, sizeof *answer);
     return status;

@@ -82,7 +82,8 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(BAD_PAIR, 15, "indices that name no two frames")                                    \
     X(BAD_ORIENTATION, 16, "an orientation that is no rotation")                          \
     X(BAD_SIZE, 17, "a box of negative size")                                             \
-    X(NO_FRAMES, 18, "a body without frames")
+    X(NO_FRAMES, 18, "a body without frames")                                             \
+    X(BAD_MARGIN, 19, "the margin is negative or not finite")
 
 enum fmb_status {
 #define X(name, number, text) FMB_##name = number,
@@ -123,6 +124,9 @@ struct fmb_frame {
     bool rounded;            /* not all of rest is 0 */
     int bits[2];             /* all components are multiples of 2^bits[0] below 2^bits[1] */
     unsigned long long head; /* of its prepared frames, without orientation and at rest */
+    double radius;           /* no vertex is farther from the origin of the body; may be infinite */
+    double slack;      /* nor farther from where origin and component have it; 0: those are exact */
+    double turn_error; /* what an orientation that rounds adds to that */
     /* Rounded for a box, whose origin is exactly centre - size / 2. */
     double origin[FMB_DIM_MAX];
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
@@ -133,9 +137,6 @@ struct fmb_frame {
     /* Of a frame given by its vertices: its components are component + rest, exactly. */
     double rest[FMB_DIM_MAX][FMB_DIM_MAX];
     double centre[FMB_DIM_MAX]; /* of a box */
-    double radius;     /* no vertex is farther from the origin of the body; may be infinite */
-    double slack;      /* nor farther from where origin and component have it; 0: those are exact */
-    double turn_error; /* what an orientation that rounds adds to that */
 };
 
 /* In: dim; shape; count numbers: the origin, then the components one after the other; of a box its
@@ -158,10 +159,10 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
 /* A rigid body: what does not change while it moves and turns. Fill it with one of the functions
  * below; it may be copied. A body of one frame holds it; the frames of others are the caller's. */
 struct fmb_body {
+    double radius; /* no vertex is farther from the origin of the body; may be infinite */
+    double box[2][FMB_DIM_MAX]; /* [0] lower, [1] upper: holds all frames, body coordinates */
     int dim;
     unsigned frame_count;
-    double radius; /* no vertex is farther from the origin of the body; may be infinite */
-    double box[2][FMB_DIM_MAX];     /* [0] lower, [1] upper: holds all frames, body coordinates */
     const struct fmb_frame *frames; /* [frame_count]; NULL: the frame is one */
     struct fmb_frame one;
 };
@@ -204,7 +205,33 @@ enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
 
 /* ---- Two bodies ---- */
 
-enum fmb_want { FMB_WANT_BOX = 1 };
+enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
+
+/* An enclosure of the gap, the signed distance of two bodies over the window: separated, their
+ * least distance; touching, 0; overlapping, minus the depth: the length of the shortest translation
+ * after which the bodies do not overlap at any time of the window. Of bodies of several frames: the
+ * least of their frames' gaps, with its direction and points.
+ *
+ * The direction n proves the lower bound: for all points a of the first frame and b of the second
+ * at the same time of the window, n . (b - a) >= bounds[0] |n|. The witness points prove the upper
+ * bound of a separated pair: |b - a| plus the distances of the two from their frames at that time
+ * is at most bounds[1]. bounds[1] of an overlapping pair is minus the smallest depth over all
+ * facets of the swept difference of the two.
+ *
+ * bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any vertex of
+ * either body over the window, or a few of the least doubles. (In a window shorter than 2^-1000 s
+ * the time of the least distance may be no double: bounds[1] then has the way of the frames in as
+ * long as time is off.) Touching: both are 0, and the direction proves 0 but for as much. A bound
+ * beyond the largest double is infinite, with its sign. The pair the other way round has the same
+ * bounds, the negated direction and the points exchanged; two placements that are equal in all
+ * numbers are the same pair both ways. */
+struct fmb_gap {
+    double bounds[2];               /* lower and upper */
+    double direction[FMB_DIM_MAX];  /* from a to b, of unit length but for rounding */
+    bool has_witness;               /* separated */
+    double time;                    /* of the least distance, seconds, within [0, T] */
+    double witness[2][FMB_DIM_MAX]; /* [0] of a, [1] of b, world coordinates */
+};
 
 /* The answer. The contact is the interval from the first to the last time at which the closed sets
  * meet; of a pair with equal velocities the whole window. The box is that of the intersection, in
@@ -223,9 +250,11 @@ struct fmb_answer {
     enum fmb_verdict verdict;
     bool has_contact;           /* touching or overlapping */
     bool has_box;               /* wanted, touching or overlapping, and the method gives boxes */
+    bool has_gap;               /* wanted, and the method is certain */
     double contact[2];          /* first and last time of contact, seconds, within [0, T] */
     double box[2][FMB_DIM_MAX]; /* [0] lower and [1] upper ends, world coordinates; axes beyond
                                    dim hold 0 */
+    struct fmb_gap gap;         /* all 0 without has_gap */
 };
 
 /* A way to decide. One table holds them all, in the order of fmb_method_at(). */
@@ -251,7 +280,8 @@ struct fmb_method {
  *
  * exact takes tens of microseconds for numbers of like size, and a bounded time for any (exact.c
  * derives the bound): about 0.2 ms for a verdict and 1.5 ms with interval and box where the
- * exponents go from one end of the doubles to the other. That bounds the time of certified too. */
+ * exponents go from one end of the doubles to the other; a gap takes 0.1 ms more. That bounds the
+ * time of certified too. */
 const struct fmb_method *fmb_method_default(void);
 const struct fmb_method *fmb_method_at(size_t index);          /* NULL past the last */
 const struct fmb_method *fmb_method_by_name(const char *name); /* NULL: none of that name */
@@ -260,7 +290,8 @@ const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default
 /* Decides one pair of bodies over the window [0, duration], in seconds; 0 is a window too.
  * In: method is not NULL; want is a sum of FMB_WANT_ values.
  * Returns FMB_OK and *answer; or a status and *answer all 0: those of fmb_placement_check(),
- * DIMENSIONS_DIFFER, BAD_DURATION (negative or not finite), UNKNOWN_WANT, CANNOT_DECIDE. */
+ * DIMENSIONS_DIFFER, BAD_DURATION (negative or not finite), UNKNOWN_WANT, CANNOT_DECIDE (also a gap
+ * by a method that is not certain). */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_placement *a,
                            const struct fmb_placement *b, double duration, unsigned want,
                            struct fmb_answer *answer);
@@ -332,6 +363,8 @@ struct fmb_batch {
     double (*contacts)[2];
     /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box; NAN for the same pairs. */
     double (*boxes)[2][FMB_DIM_MAX];
+    /* [pair_count], or NULL; as fmb_answer.gap; bounds of NAN for pairs refused or left open. */
+    struct fmb_gap *gaps;
     /* Both NULL, or a bound on the time of a call: [pair_count], and the count. Pairs
      * whose verdict, contact or box (as far as these are wanted) needs integers of more than 128
      * bits are then not decided but left open and listed: open[0] to open[*open_count - 1] are
@@ -494,6 +527,10 @@ struct fmb_scene {
     double duration;                 /* T, seconds */
     const struct fmb_method *method; /* NULL: the default; not certain: only FMB_PAIRS_LISTED */
     bool contacts, boxes;            /* wanted, of pairs that meet */
+    bool gaps;                       /* wanted, of all pairs in the answers */
+    /* Separated pairs whose lower bound is at most the margin are among the answers, with their
+     * gaps: they are near. Not negative, finite; 0: none are near. */
+    double margin;
     enum fmb_pairs which;
     size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; else 0 */
     const unsigned (
@@ -533,23 +570,27 @@ struct fmb_scene_answers {
     const unsigned char *verdicts; /* [count], enum fmb_verdict; FMB_REFUSED: CANNOT_DECIDE */
     const double (*contacts)[2];   /* [count], where wanted; NAN: separated or refused */
     const double (*boxes)[2][FMB_DIM_MAX]; /* [count], where wanted, likewise */
+    /* [count], where gaps are wanted or the margin is not 0; bounds of NAN: refused, or, with
+     * FMB_PAIRS_LISTED and gaps not wanted, separated and farther apart than the margin. */
+    const struct fmb_gap *gaps;
 };
 
 struct fmb_scene_state;
 
 /* In: memory of fmb_scene_bytes(limits) bytes, at any address.
  * Returns FMB_OK and *out, in memory; or OVER_LIMIT (the scene is not within limits, or slots below
- * the minimum), a status of fmb_placement_check(), DIMENSIONS_DIFFER, BAD_DURATION, BAD_PAIR (an
- * index that is no placement, a placement with itself, split, first_pair), WRONG_COUNT (pairs that
- * are listed where none are, or ignored where they are listed), CANNOT_DECIDE (a method that is not
- * certain without FMB_PAIRS_LISTED). */
+ * the minimum), a status of fmb_placement_check(), DIMENSIONS_DIFFER, BAD_DURATION, BAD_MARGIN,
+ * BAD_PAIR (an index that is no placement, a placement with itself, split, first_pair), WRONG_COUNT
+ * (pairs that are listed where none are, or ignored where they are listed), CANNOT_DECIDE (a method
+ * that is not certain, with gaps, with a margin or without FMB_PAIRS_LISTED). */
 enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 const struct fmb_scene_limits *limits, void *memory,
                                 struct fmb_scene_state **out);
 
 /* Does the next part of the work: tens of microseconds, except a step that decides one pair of
  * frames in exact arithmetic, and the one that builds the tree of all placements. The answers come
- * in the order of the pairs; of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS those that meet alone.
+ * in the order of the pairs; of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS those that meet, and
+ * near ones.
  * Returns whether the scene is complete. */
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers);
 

@@ -4,11 +4,12 @@
 
 /* The best that is ever used, of enum fmb_instructions, which the preprocessor does not know. Tests
  * build programs that know less than their machine has; one that knows plain C alone is what other
- * machines have. */
+ * machines have. Kernels of AVX2 and AVX-512 are linked only if this is larger than 2. */
 #ifndef INSTRUCTIONS_MOST
 #define INSTRUCTIONS_MOST 4
 #endif
-_Static_assert(FMB_PLAIN == 1 && FMB_AVX512 == 4, "INSTRUCTIONS_MOST is a number of the enum");
+_Static_assert(FMB_PLAIN == 1 && FMB_SSE2 == 2 && FMB_AVX512 == 4,
+               "INSTRUCTIONS_MOST is a number of the enum");
 
 #define RUN_DECLARE(name)                                                                 \
     extern run_function *const run_##name[RUN_KINDS], *const run_times_##name[RUN_KINDS], \
@@ -24,75 +25,63 @@ _Static_assert(FMB_PLAIN == 1 && FMB_AVX512 == 4, "INSTRUCTIONS_MOST is a number
 RUN_DECLARE(plain)
 
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-
 RUN_DECLARE(sse2)
+RUN_DECLARE_ALONE(sse2)
+#if INSTRUCTIONS_MOST > 2
 RUN_DECLARE(avx2)
 RUN_DECLARE(avx512)
-RUN_DECLARE_ALONE(sse2)
 RUN_DECLARE_ALONE(avx2)
+#define RUN_ALONE_BEST(kind) (has(FMB_AVX2) ? kind##_alone_avx2 : kind##_alone_sse2)
+#else
+#define RUN_ALONE_BEST(kind) kind##_alone_sse2
+#endif
+#else
+RUN_DECLARE_ALONE(plain)
+#define RUN_ALONE_BEST(kind) kind##_alone_plain
+#endif
 
-static const struct run_set sets[] = {[FMB_PLAIN] = RUN_SET(plain),
-                                      [FMB_SSE2] = RUN_SET(sse2),
-                                      [FMB_AVX2] = RUN_SET(avx2),
-                                      [FMB_AVX512] = RUN_SET(avx512)};
+static const struct run_set sets[] = {
+    [FMB_PLAIN] = RUN_SET(plain),
+#if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
+    [FMB_SSE2] = RUN_SET(sse2),
+#if INSTRUCTIONS_MOST > 2
+    [FMB_AVX2] = RUN_SET(avx2),
+    [FMB_AVX512] = RUN_SET(avx512),
+#endif
+#endif
+};
 
 static bool has(int instructions)
 {
     if (instructions > INSTRUCTIONS_MOST)
         return false;
     switch (instructions) {
-    case FMB_PLAIN:
+    case FMB_PLAIN: return true;
+#ifdef __x86_64__
     case FMB_SSE2: return true;
     case FMB_AVX2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case FMB_AVX512:
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512vl");
+#endif
     }
     return false;
 }
 
 run_alone_function *const *run_verdicts_alone(void)
 {
-    return has(FMB_AVX2) ? run_alone_avx2 : run_alone_sse2;
+    return RUN_ALONE_BEST(run);
 }
 
 run_alone_function *const *run_times_alone(void)
 {
-    return has(FMB_AVX2) ? run_times_alone_avx2 : run_times_alone_sse2;
+    return RUN_ALONE_BEST(run_times);
 }
 
 run_alone_function *const *run_boxes_alone(void)
 {
-    return has(FMB_AVX2) ? run_boxes_alone_avx2 : run_boxes_alone_sse2;
+    return RUN_ALONE_BEST(run_boxes);
 }
-
-#else
-
-RUN_DECLARE_ALONE(plain)
-
-static const struct run_set sets[] = {[FMB_PLAIN] = RUN_SET(plain)};
-
-static bool has(int instructions)
-{
-    return instructions == FMB_PLAIN;
-}
-
-run_alone_function *const *run_verdicts_alone(void)
-{
-    return run_alone_plain;
-}
-
-run_alone_function *const *run_times_alone(void)
-{
-    return run_times_alone_plain;
-}
-
-run_alone_function *const *run_boxes_alone(void)
-{
-    return run_boxes_alone_plain;
-}
-
-#endif
 
 static int best(void)
 {

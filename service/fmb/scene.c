@@ -6,10 +6,13 @@
  * of the batch are those of the bodies as they are. */
 #include "scene_pairs.h"
 
+#include "batch.h"
 #include "certified.h"
+#include "gap.h"
 
 #include <assert.h>
 #include <limits.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -32,6 +35,7 @@ struct outcomes {
     unsigned char verdict[BLOCK];
     double contact[BLOCK][2];
     double box[BLOCK][2][FMB_DIM_MAX];
+    struct fmb_gap gap[BLOCK];
 };
 
 struct block {
@@ -163,6 +167,12 @@ static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t p
     return !bad;
 }
 
+/* Gaps are found, if only to know which pairs are near. */
+static bool wants_gaps(const struct fmb_scene *scene)
+{
+    return scene->gaps || scene->margin > 0;
+}
+
 static enum fmb_status check_pairs(const struct fmb_scene *scene)
 {
     const bool listed = scene->which == FMB_PAIRS_LISTED;
@@ -175,7 +185,8 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene)
         !are_pairs(scene->ignored, scene->ignored_count, scene->placement_count) ||
         scene->first_pair > scene_pairs_total(scene))
         return FMB_BAD_PAIR;
-    return listed || !scene->method || scene->method->certain ? FMB_OK : FMB_CANNOT_DECIDE;
+    const bool certain = !scene->method || scene->method->certain;
+    return certain || (listed && !wants_gaps(scene)) ? FMB_OK : FMB_CANNOT_DECIDE;
 }
 
 static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_scene_limits *limits)
@@ -185,6 +196,8 @@ static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_sce
         return FMB_OVER_LIMIT;
     if (!prepared_is_duration(scene->duration))
         return FMB_BAD_DURATION;
+    if (!(scene->margin >= 0) || !isfinite(scene->margin))
+        return FMB_BAD_MARGIN;
     const enum fmb_status status = check_placements(scene);
     if (status != FMB_OK)
         return status;
@@ -200,6 +213,7 @@ static void begin_frames(struct fmb_scene_state *state, const struct fmb_scene_l
     size_t chunks = 0, total = 0;
     frames->placement = scene->placements;
     frames->duration = scene->duration;
+    frames->margin = scene->margin;
     frames->slots = limits->slots;
     frames->generation = 1;
     for (size_t i = 0; i < scene->placement_count; i++) {
@@ -230,7 +244,7 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
         state->scene.method = fmb_method_default();
     state->stage = PLACING;
     state->batched = state->scene.method == fmb_method_default();
-    state->slow = scene->boxes;
+    state->slow = scene->boxes || scene->gaps;
     lay_out(limits, base, state);
     begin_frames(state, limits);
     struct block *block = &state->block;
@@ -276,10 +290,39 @@ static void fill_direct(struct fmb_scene_state *state)
     block->count = block->body_count;
 }
 
+/* Gaps of pairs of frames that are surely greater need not be known. */
+static double farthest(const struct fmb_scene_state *state)
+{
+    return is_listed(state) && state->scene.gaps ? INFINITY : state->scene.margin;
+}
+
+/* That of frames of the block. The bounds of a gap are apart by a share of the coordinates of both
+ * bodies, which may be larger than those of two of their frames. */
+static double farthest_of_frames(const struct fmb_scene_state *state)
+{
+    const struct block *block = &state->block;
+    const struct swept *box = state->frames.body_box;
+    double largest = 0;
+    for (size_t k = 0; !state->frames.direct && k < block->body_count; k++)
+        for (int f = 0; f < 2; f++)
+            largest = fmax(largest, swept_largest(&box[block->out[k][f]]));
+    return farthest(state) + 0x1p-37 * largest;
+}
+
+/* How far apart boxes of frames of two bodies may be, with bounds[1] of their gap so far. */
+static double reach_of(const struct fmb_scene_state *state, unsigned a, unsigned b, double upper)
+{
+    const struct swept *box = state->frames.body_box;
+    if (!wants_gaps(&state->scene))
+        return 0;
+    return gap_reach(fmin(upper, farthest(state)), &box[a], &box[b]);
+}
+
 static void begin_answer(struct fmb_scene_state *state, size_t n)
 {
     struct outcomes *answers = &state->block.answers;
     answers->verdict[n] = FMB_SEPARATED;
+    answers->gap[n] = gap_none();
     for (int end = 0; end < 2; end++) {
         answers->contact[n][end] = NAN;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -292,6 +335,7 @@ static void copy_answer(struct outcomes *answers, size_t to, const struct outcom
     answers->verdict[to] = of->verdict[from];
     memcpy(answers->contact[to], of->contact[from], sizeof of->contact[from]);
     memcpy(answers->box[to], of->box[from], sizeof of->box[from]);
+    answers->gap[to] = of->gap[from];
 }
 
 /* The pair of bodies that the last block left halfway, if it still needs pairs of frames. */
@@ -300,11 +344,15 @@ static void keep_halfway(struct fmb_scene_state *state)
     struct block *block = &state->block;
     const size_t last = block->body_count - 1;
     const unsigned char verdict = block->answers.verdict[last];
-    const bool verdict_alone = !state->scene.contacts && !state->scene.boxes;
+    const bool verdict_alone =
+        !state->scene.contacts && !state->scene.boxes && !wants_gaps(&state->scene) &&
+        state->scene.method->certain; /* others may refuse a pair of frames yet to come */
     memmove(block->out[0], block->out[last], sizeof block->out[0]);
     copy_answer(&block->answers, 0, &block->answers, last);
     block->body_count = 1;
     block->first += last;
+    state->cursor.reach =
+        reach_of(state, block->out[0][0], block->out[0][1], block->answers.gap[0].bounds[1]);
     if (verdict == FMB_REFUSED || (verdict == FMB_OVERLAPPING && verdict_alone))
         state->halfway = false;
 }
@@ -316,7 +364,8 @@ static bool next_bodies(struct fmb_scene_state *state)
     if (n == BLOCK || scene_pairs_next(&state->pairs, &block->out[n], 1) == 0)
         return false;
     begin_answer(state, n);
-    scene_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1]);
+    scene_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1],
+                       reach_of(state, block->out[n][0], block->out[n][1], INFINITY));
     block->body_count++;
     state->halfway = true;
     return true;
@@ -366,9 +415,10 @@ static void decide_batch(struct fmb_scene_state *state, size_t first, size_t cou
         .verdicts = block->outcomes.verdict + first,
         .contacts = scene->contacts ? block->outcomes.contact + first : NULL,
         .boxes = scene->boxes ? block->outcomes.box + first : NULL,
+        .gaps = wants_gaps(scene) ? block->outcomes.gap + first : NULL,
         .open = open,
         .open_count = open_count};
-    const enum fmb_status status = fmb_decide_batch(&batch);
+    const enum fmb_status status = batch_decide(&batch, farthest_of_frames(state));
     assert(status == FMB_OK);
     (void) status;
 }
@@ -382,12 +432,14 @@ static void decide_single(struct fmb_scene_state *state)
     const struct frame_pair pair = {
         {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
     struct fmb_answer answer = {0};
-    if (state->scene.method->decide(&pair, state->scene.boxes ? FMB_WANT_BOX : 0, &answer) !=
-        FMB_OK)
-        answer = (struct fmb_answer){0};
+    const unsigned want =
+        (state->scene.boxes ? FMB_WANT_BOX : 0) | (wants_gaps(&state->scene) ? FMB_WANT_GAP : 0);
+    if (state->scene.method->decide(&pair, want, &answer) != FMB_OK)
+        answer = (struct fmb_answer){.gap.bounds = {NAN, NAN}};
     block->outcomes.verdict[0] = (unsigned char) answer.verdict;
     memcpy(block->outcomes.contact[0], answer.contact, sizeof answer.contact);
     memcpy(block->outcomes.box[0], answer.box, sizeof answer.box);
+    block->outcomes.gap[0] = answer.gap;
 }
 
 static void begin_block(struct fmb_scene_state *state)
@@ -415,6 +467,23 @@ static bool is_contact(unsigned char verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
+/* The gap of pair of frames k, if it is known: of bodies of one frame it is theirs. */
+static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
+{
+    struct block *block = &state->block;
+    const struct fmb_gap *one = &block->outcomes.gap[k];
+    const struct fmb_placement *a = &state->scene.placements[block->bodies[n][0]];
+    const struct fmb_placement *b = &state->scene.placements[block->bodies[n][1]];
+    const struct swept *box = state->frames.frame_box;
+    if (isnan(one->bounds[0]))
+        return;
+    if (a->body->frame_count == 1 && b->body->frame_count == 1)
+        block->answers.gap[n] = *one;
+    else
+        gap_include(&block->answers.gap[n], one, &box[block->frames[k][0]],
+                    &box[block->frames[k][1]], gap_swaps(a, b));
+}
+
 /* Puts the answer of pair of frames k to that of its bodies. */
 static void include(struct fmb_scene_state *state, size_t k)
 {
@@ -423,6 +492,8 @@ static void include(struct fmb_scene_state *state, size_t k)
     const struct outcomes *one = &block->outcomes;
     const size_t n = block->owner[k];
     const unsigned char verdict = one->verdict[k];
+    if (wants_gaps(&state->scene))
+        include_gap(state, k, n);
     if (verdict == FMB_SEPARATED || answers->verdict[n] == FMB_REFUSED)
         return;
     if (verdict == FMB_REFUSED) {
@@ -458,14 +529,29 @@ static size_t include_decided(struct fmb_scene_state *state)
     return block->body_count - state->halfway;
 }
 
-/* Moves those that meet to the front of pairs first to end - 1; returns how many. */
+/* Clears the gap of a pair that has none, or is farther apart than the margin. */
+static void end_gap(const struct fmb_scene_state *state, unsigned char verdict, struct fmb_gap *gap)
+{
+    const bool known = gap->bounds[0] < INFINITY || gap->direction[0] < INFINITY;
+    if (!known || verdict == FMB_REFUSED ||
+        (verdict == FMB_SEPARATED && gap->bounds[0] > farthest(state)))
+        *gap = (struct fmb_gap){.bounds = {NAN, NAN}};
+    gap_end((enum fmb_verdict) verdict, gap);
+}
+
+static bool is_near(const struct fmb_scene_state *state, const struct fmb_gap *gap)
+{
+    return state->scene.margin > 0 && gap->bounds[0] <= state->scene.margin;
+}
+
+/* Moves those that meet or are near to the front of pairs first to end - 1; returns how many. */
 static size_t drop_separated(struct fmb_scene_state *state, struct outcomes *answers, size_t first,
                              size_t end)
 {
     unsigned(*pair)[2] = state->block.out;
     size_t to = first;
     for (size_t n = first; n < end; n++) {
-        if (!is_contact(answers->verdict[n]))
+        if (!is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
             continue;
         if (to < n) {
             memcpy(pair[to], pair[n], sizeof pair[to]);
@@ -482,12 +568,15 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     struct outcomes *answers = state->frames.direct ? &block->outcomes : &block->answers;
     const size_t first = block->given, end = include_decided(state);
     block->given = end;
+    for (size_t n = first; wants_gaps(&state->scene) && n < end; n++)
+        end_gap(state, answers->verdict[n], &answers->gap[n]);
     state->first_answer = first;
     state->answered = is_listed(state) ? end - first : drop_separated(state, answers, first, end);
     out->count = state->answered;
     out->pairs = block->bodies + first;
     out->verdicts = answers->verdict + first;
     out->contacts = state->scene.contacts ? (const double(*)[2]) answers->contact + first : NULL;
+    out->gaps = wants_gaps(&state->scene) ? answers->gap + first : NULL;
     out->boxes = state->scene.boxes ? (const double(*)[2][FMB_DIM_MAX]) answers->box + first : NULL;
 }
 

@@ -146,6 +146,15 @@ static bool set_box(struct scene_frames *frames, unsigned body, size_t k, bool m
     return true;
 }
 
+/* Boxes that are widened so, and do not meet, are farther apart on an axis than the margin, and
+ * than 1e-12 of their largest coordinate more: a bound of the gap is too (gap.h). */
+static void widen(struct swept *box, double margin)
+{
+    const double by = 0.5 * margin + (0x1p-39 * swept_largest(box) + 0x1p-1070);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        box->end[axis] = swept_sum(box->end[axis], lanes_of(-by));
+}
+
 void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
 {
     const struct fmb_placement *placement = &frames->placement[i];
@@ -156,21 +165,23 @@ void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
         frames->body_box[i] =
             bounded ? turned_box(placement, frames->duration) : unbounded_box(placement->body->dim);
     }
+    if (frames->margin > 0)
+        widen(&frames->body_box[i], frames->margin);
 }
 
 /* ---- Pairs of frames ---- */
 
-static bool meet(const struct swept *a, const struct swept *b)
+static bool near(const struct swept *a, const struct swept *b, double reach)
 {
-    const struct swept against = swept_against(b);
+    const struct swept against = swept_within(b, reach);
     return swept_meet(a, &against);
 }
 
-/* Slots of the frames of a chunk whose boxes meet a box; returns how many. */
+/* Slots of the frames of a chunk whose boxes are near a box; returns how many. */
 static unsigned select_frames(const struct scene_frames *frames, unsigned body, size_t k,
-                              const struct swept *box, unsigned out[SCENE_CHUNK])
+                              const struct swept *box, double reach, unsigned out[SCENE_CHUNK])
 {
-    const struct swept against = swept_against(box);
+    const struct swept against = swept_within(box, reach);
     const unsigned first = chunk_of(frames, body, k)->slot, size = chunk_size(frames, body, k);
     unsigned count = 0;
     for (unsigned slot = first; slot < first + size; slot++) {
@@ -184,8 +195,10 @@ static void enter(struct scene_frames *frames, struct scene_cursor *cursor)
 {
     const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
     const struct swept *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
-    cursor->count_a = select_frames(frames, cursor->a, cursor->chunk_a, b, cursor->of_a);
-    cursor->count_b = select_frames(frames, cursor->b, cursor->chunk_b, a, cursor->of_b);
+    cursor->count_a =
+        select_frames(frames, cursor->a, cursor->chunk_a, b, cursor->reach, cursor->of_a);
+    cursor->count_b =
+        select_frames(frames, cursor->b, cursor->chunk_b, a, cursor->reach, cursor->of_b);
     cursor->i = cursor->j = 0;
     cursor->inside = true;
     frames->work += WORK_TILE;
@@ -197,7 +210,8 @@ static size_t pairs_inside(const struct scene_frames *frames, struct scene_curso
     unsigned i = cursor->i, j = cursor->j;
     size_t count = 0;
     for (; i < cursor->count_a; i++, j = 0) {
-        const struct swept against = swept_against(&frames->frame_box[cursor->of_a[i]]);
+        const struct swept against =
+            swept_within(&frames->frame_box[cursor->of_a[i]], cursor->reach);
         for (; j < cursor->count_b && count < max; j++) {
             out[count][0] = cursor->of_a[i];
             out[count][1] = cursor->of_b[j];
@@ -212,8 +226,8 @@ static size_t pairs_inside(const struct scene_frames *frames, struct scene_curso
     return count;
 }
 
-/* Goes on to two chunks whose boxes meet, and places them. False: there are none, *done is set; or
- * the search has to pause. */
+/* Goes on to two chunks whose boxes are near, and places them. False: there are none, *done is set;
+ * or the search has to pause. */
 static bool find_chunks(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
                         bool *done)
 {
@@ -225,11 +239,12 @@ static bool find_chunks(struct scene_frames *frames, struct scene_cursor *cursor
             return false;
         const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
         frames->work += WORK_TEST;
-        for (bool skip = !meet(a, body_b); !skip && cursor->chunk_b < count_b; cursor->chunk_b++) {
+        for (bool skip = !near(a, body_b, cursor->reach); !skip && cursor->chunk_b < count_b;
+             cursor->chunk_b++) {
             if (frames->work > WORK_MAX || !set_box(frames, cursor->b, cursor->chunk_b, may_reuse))
                 return false;
             frames->work += WORK_TEST;
-            if (meet(a, &chunk_of(frames, cursor->b, cursor->chunk_b)->box))
+            if (near(a, &chunk_of(frames, cursor->b, cursor->chunk_b)->box, cursor->reach))
                 return place_both(frames, cursor, may_reuse);
         }
         if (frames->work > WORK_MAX)

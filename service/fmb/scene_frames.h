@@ -19,6 +19,7 @@ struct scene_chunk {
 struct scene_frames {
     const struct fmb_placement *placement;
     double duration;
+    double margin;             /* between bodies, half of it is added to the box of each */
     bool boxed;                /* boxes are needed */
     bool direct;               /* every body has one frame, slot i that of placement i */
     unsigned *first_chunk;     /* [placement] */
@@ -37,13 +38,15 @@ static inline size_t scene_chunks(size_t frames)
     return (frames + SCENE_CHUNK - 1) / SCENE_CHUNK;
 }
 
-/* Adds the next placement: sets its box and, where direct, places its frame. bounded: its box may
- * be smaller than those of its frames as inexact methods see them; otherwise it is unbounded. */
+/* Adds the next placement: sets its box, widened by the margin, and, where direct, places its
+ * frame. bounded: its box may be smaller than those of its frames as inexact methods see them;
+ * otherwise it is unbounded. */
 void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded);
 
 /* Where the enumeration of the frame pairs of a pair of bodies stands. */
 struct scene_cursor {
     unsigned a, b;           /* placements */
+    double reach;            /* boxes of frames may be so far apart on an axis */
     size_t chunk_a, chunk_b; /* of the bodies, from 0 */
     /* The frames of two chunks that may meet: slots [of_a[i], of_b[j]] is the next pair. */
     bool inside;
@@ -51,18 +54,20 @@ struct scene_cursor {
     unsigned of_a[SCENE_CHUNK], of_b[SCENE_CHUNK];
 };
 
-static inline void scene_cursor_begin(struct scene_cursor *cursor, unsigned a, unsigned b)
+static inline void scene_cursor_begin(struct scene_cursor *cursor, unsigned a, unsigned b,
+                                      double reach)
 {
+    cursor->reach = reach;
     cursor->a = a;
     cursor->b = b;
     cursor->chunk_a = cursor->chunk_b = 0;
     cursor->inside = false;
 }
 
-/* Puts the next pairs of frames whose boxes meet into out, as slots; of two bodies of one frame
- * that pair, whatever the boxes. Returns how many, at most max. *done: there are no more of these
- * bodies. Otherwise out is full, the work is at its limit, or the slots ran out. may_reuse: no slot
- * is in use, so that they may be given up. */
+/* Puts the next pairs of frames whose boxes are near enough into out, as slots; of two bodies of
+ * one frame that pair, whatever the boxes. Returns how many, at most max. *done: there are no more
+ * of these bodies. Otherwise out is full, the work is at its limit, or the slots ran out.
+ * may_reuse: no slot is in use, so that they may be given up. */
 size_t scene_frames_pairs(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
                           unsigned (*out)[2], size_t max, bool *done);
 

@@ -169,6 +169,27 @@ INLINE struct swept swept_against(const struct swept *box)
     return out;
 }
 
+/* The same for boxes that may be no farther away than reach on each axis, >= 0. Sums round: reach
+ * has to be larger by that where it is not 0. */
+INLINE struct swept swept_within(const struct swept *box, double reach)
+{
+    struct swept out = swept_against(box);
+    UNROLL(3)
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out.end[axis] += lanes_of(reach);
+    return out;
+}
+
+/* The largest magnitude of a coordinate. */
+INLINE double swept_largest(const struct swept *box)
+{
+    lanes largest = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        largest = lanes_greatest(largest, lanes_magnitude(box->end[axis]));
+    return largest[0] > largest[1] ? largest[0] : largest[1];
+}
+
 /* Whether the boxes, one of them turned round by swept_against(), have a point in common. */
 INLINE bool swept_meet(const struct swept *box, const struct swept *against)
 {

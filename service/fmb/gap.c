@@ -1,0 +1,287 @@
+#include "gap.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
+static const double limit = 0.9e-12;
+
+/* ---- Order ---- */
+
+static int compare(const double *x, const double *y, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (x[i] != y[i])
+            return x[i] < y[i] ? -1 : 1;
+    return 0;
+}
+
+static int compare_placements(const struct fmb_placement *x, const struct fmb_placement *y)
+{
+    const int dim = x->body->dim;
+    int order = compare(x->position, y->position, dim);
+    if (order == 0)
+        order = compare(x->velocity, y->velocity, dim);
+    if (order == 0)
+        order = x->orientation_count - y->orientation_count;
+    return order ? order : compare(x->orientation, y->orientation, x->orientation_count);
+}
+
+static int compare_frames(const struct fmb_frame *x, const struct fmb_frame *y)
+{
+    int order = (int) x->shape - (int) y->shape;
+    if (order == 0)
+        order = compare(x->origin, y->origin, FMB_DIM_MAX);
+    if (order == 0)
+        order = compare(x->centre, y->centre, FMB_DIM_MAX);
+    if (order == 0)
+        order = compare(x->component[0], y->component[0], FMB_COMPONENTS_MAX);
+    return order ? order : compare(x->rest[0], y->rest[0], FMB_COMPONENTS_MAX);
+}
+
+bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
+{
+    int order = compare_placements(a, b);
+    if (order == 0 && a->body->frame_count != b->body->frame_count)
+        order = a->body->frame_count < b->body->frame_count ? -1 : 1;
+    for (unsigned i = 0; order == 0 && i < a->body->frame_count; i++)
+        order = compare_frames(fmb_body_frame(a->body, i), fmb_body_frame(b->body, i));
+    return order > 0;
+}
+
+/* Equal frames at the same place are told apart by the bodies that they belong to. */
+static bool frames_swap(const struct placed_frame *a, const struct placed_frame *b)
+{
+    int order = compare_placements(a->placement, b->placement);
+    if (order == 0)
+        order = compare_frames(a->frame, b->frame);
+    return order == 0 ? gap_swaps(a->placement, b->placement) : order > 0;
+}
+
+/* The gap of the pair the other way round. No number is -0. */
+static void turn_round(struct fmb_gap *gap)
+{
+    double first[FMB_DIM_MAX];
+    memcpy(first, gap->witness[0], sizeof first);
+    memcpy(gap->witness[0], gap->witness[1], sizeof first);
+    memcpy(gap->witness[1], first, sizeof first);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        gap->direction[axis] = 0 - gap->direction[axis];
+}
+
+/* ---- Numbers ---- */
+
+static double sum_of(const double v[FMB_DIM_MAX])
+{
+    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
+}
+
+static double greatest(double x, double y)
+{
+    return x > y ? x : y;
+}
+
+static double largest_of(const double v[FMB_DIM_MAX])
+{
+    return greatest(fabs(v[0]), greatest(fabs(v[1]), fabs(v[2])));
+}
+
+/* Lengths are sizes (2-norms, at most a fifteenth too large) and sums of magnitudes; of a component
+ * these are less than twice the size, and the largest magnitude is more than half of it.
+ *
+ * The largest coordinate of a vertex: the origin is one, and of two vertices that differ by a
+ * component, or by the way over the window, one has at least half of that. */
+INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
+{
+    const struct fmb_prepared *frame = pair->frame[f];
+    const unsigned kind = prepared_kind(frame);
+    const double *number = frame->number, *velocity = prepared_velocity(frame);
+    const double x = prepared_size(frame->head, 0), y = prepared_size(frame->head, 1);
+    const double z = prepared_size(frame->head, 2), sizes = (x + y) + z;
+    const double origin[FMB_DIM_MAX] = {number[0], number[1], dim == 3 ? number[2] : 0};
+    pair->simplex[f] = kind & (PREPARED_TETRAHEDRON | PREPARED_FACE);
+    pair->count[f] = kind & PREPARED_FACE ? 2 : dim;
+    pair->error += number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
+    pair->reach += sizes;
+    pair->far[f] = sum_of(origin) + 2 * sizes;
+    pair->least = greatest(pair->least, largest_of(origin));
+    pair->least = greatest(pair->least, 0.25 * greatest(x, greatest(y, z)));
+    if (!(kind & PREPARED_MOVING))
+        return;
+    const double way[FMB_DIM_MAX] = {velocity[0] * pair->duration, velocity[1] * pair->duration,
+                                     dim == 3 ? velocity[2] * pair->duration : 0};
+    pair->far[f] += sum_of(way);
+    pair->least = greatest(pair->least, 0.5 * largest_of(way));
+}
+
+/* As slabs_prepare(): drifts that are tiny are left to integers. */
+INLINE bool set_drift(const int dim, struct gap_pair *pair, double drift[FMB_DIM_MAX])
+{
+    const unsigned kinds = prepared_kind(pair->frame[0]) | prepared_kind(pair->frame[1]);
+    const double *v = prepared_velocity(pair->frame[0]), *w = prepared_velocity(pair->frame[1]);
+    bool good = true;
+    pair->drifts = false;
+    if (!(kinds & PREPARED_MOVING) || pair->duration == 0)
+        return true;
+    for (int axis = 0; axis < dim; axis++) {
+        const double speed = w[axis] - v[axis];
+        drift[axis] = speed * pair->duration;
+        pair->drifts = pair->drifts || speed != 0;
+        good = good && (speed == 0 || fabs(drift[axis]) >= 0x1p-399);
+    }
+    const double largest = largest_of(drift);
+    pair->reach += sum_of(drift);
+    return !pair->drifts || (good && largest >= 0x1p-200 && largest <= 0x1p200);
+}
+
+/* Components that a face does not have are 0. */
+INLINE bool set_numbers(const int dim, struct gap_pair *pair)
+{
+    double drift[FMB_DIM_MAX] = {0};
+    set_frame(dim, 0, pair);
+    set_frame(dim, 1, pair);
+    const bool good = set_drift(dim, pair, drift);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double *a = pair->frame[0]->number + axis, *b = pair->frame[1]->number + axis;
+        const bool has = axis < dim;
+        pair->offset[axis] = has ? b[0] - a[0] : 0;
+        pair->vector[axis][0] = has ? -(lanes){a[dim], a[2 * dim]} : lanes_of(0);
+        pair->vector[axis][1] = has ? (lanes){dim == 3 ? -a[9] : 0, b[dim]} : lanes_of(0);
+        pair->vector[axis][2] = has ? (lanes){b[2 * dim], dim == 3 ? b[9] : 0} : lanes_of(0);
+        pair->vector[axis][3] = (lanes){drift[axis], 0};
+    }
+    pair->reach += sum_of(pair->offset);
+    pair->least = pair->least * (1 - 0x1p-40) - pair->error;
+    /* Bodies may move together, so that their way alone is large, or infinite. */
+    return good && largest_of(pair->offset) <= 0x1p200 && pair->least <= 0x1p1000;
+}
+
+bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                  struct gap_pair *out)
+{
+    const unsigned both = prepared_kind(a) & prepared_kind(b);
+    if (!(both & PREPARED_USABLE))
+        return false;
+    out->frame[0] = a;
+    out->frame[1] = b;
+    out->duration = duration;
+    out->error = out->reach = out->least = 0;
+    out->dim = both & PREPARED_SPACE ? 3 : 2;
+    return out->dim == 3 ? set_numbers(3, out) : set_numbers(2, out);
+}
+
+bool gap_is_tight(const struct gap_pair *pair, const double bounds[2])
+{
+    return bounds[1] - bounds[0] <= limit * pair->least;
+}
+
+/* ---- Pairs of frames ---- */
+
+/* In doubles, of a pair in its order. */
+static enum gap_outcome gap_in_doubles(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                       double duration, enum fmb_verdict verdict, double farthest,
+                                       struct fmb_gap *out)
+{
+    struct gap_pair pair;
+    memset(out, 0, sizeof *out);
+    if (!gap_pair_set(a, b, duration, &pair))
+        return GAP_UNSURE;
+    if (gap_upright(&pair, out) == GAP_KNOWN)
+        return GAP_KNOWN;
+    const enum gap_outcome outcome = verdict == FMB_SEPARATED ? gap_distance(&pair, farthest, out)
+                                                              : gap_depth(&pair, verdict, out);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out->direction[axis] += 0.0;
+    return outcome;
+}
+
+enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                        enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out)
+{
+    const struct placed_frame first = {a->frame, a->placement}, second = {b->frame, b->placement};
+    const bool swaps = frames_swap(&first, &second);
+    enum gap_outcome outcome =
+        gap_in_doubles(swaps ? b : a, swaps ? a : b, duration, verdict, farthest, out);
+    if (outcome == GAP_KNOWN && swaps)
+        turn_round(out);
+    if (outcome != GAP_UNSURE || quick)
+        return outcome;
+    const struct frame_pair pair = {first, second, duration};
+    gap_exactly(&pair, verdict, out);
+    return GAP_KNOWN;
+}
+
+void gap_exactly(const struct frame_pair *pair, enum fmb_verdict verdict, struct fmb_gap *out)
+{
+    const bool swaps = frames_swap(&pair->a, &pair->b);
+    const struct frame_pair ordered = {swaps ? pair->b : pair->a, swaps ? pair->a : pair->b,
+                                       pair->duration};
+    gap_exact(&ordered, verdict, out);
+    if (swaps)
+        turn_round(out);
+}
+
+/* ---- Bodies of several frames ---- */
+
+struct fmb_gap gap_none(void)
+{
+    return (struct fmb_gap){.bounds = {INFINITY, INFINITY}, .direction = {INFINITY}};
+}
+
+/* Raises the lower bound to the distance of the boxes on an axis, rounded down, where that is more.
+ */
+static void raise(struct fmb_gap *gap, const struct swept *a, const struct swept *b)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        for (int side = 0; side < 2; side++) {
+            const struct swept *low = side ? a : b, *high = side ? b : a;
+            const double apart = low->end[axis][0] + high->end[axis][1];
+            const double below = apart - apart * 0x1p-52;
+            if (!(apart > 0 && below > gap->bounds[0]))
+                continue;
+            gap->bounds[0] = below;
+            memset(gap->direction, 0, sizeof gap->direction);
+            gap->direction[axis] = side ? -1 : 1;
+        }
+}
+
+/* Upper bounds, then what stands with them. */
+static int compare_gaps(const struct fmb_gap *x, const struct fmb_gap *y)
+{
+    int order = compare(&x->bounds[1], &y->bounds[1], 1);
+    if (order == 0)
+        order = (int) y->has_witness - (int) x->has_witness;
+    if (order == 0)
+        order = compare(&x->time, &y->time, 1);
+    if (order == 0)
+        order = compare(x->witness[0], y->witness[0], 2 * FMB_DIM_MAX);
+    return order ? order : compare(x->direction, y->direction, FMB_DIM_MAX);
+}
+
+void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct swept *a,
+                 const struct swept *b, bool swaps)
+{
+    struct fmb_gap raised = *one, x, y = *all;
+    raise(&raised, a, b);
+    x = raised;
+    if (swaps) {
+        turn_round(&x);
+        turn_round(&y);
+    }
+    const double lower = greatest(-x.bounds[0], -y.bounds[0]);
+    if (all->direction[0] == INFINITY || compare_gaps(&x, &y) < 0)
+        *all = raised;
+    all->bounds[0] = 0 - lower;
+}
+
+void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap)
+{
+    if (verdict == FMB_TOUCHING)
+        gap->bounds[0] = 0;
+}
+
+double gap_reach(double upper, const struct swept *a, const struct swept *b)
+{
+    const double least = upper > 0 ? upper : 0;
+    return least + 0x1p-38 * (swept_largest(a) + swept_largest(b)) + 0x1p-1070;
+}

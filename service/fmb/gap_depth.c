@@ -1,0 +1,280 @@
+/* The gap of a pair in contact, in doubles.
+ *
+ * Method. f at the normals of all facets that P can have: of the faces of both frames, of each edge
+ * of A with each edge of B and, where the pair drifts, of each edge with the drift (exact_slabs.c);
+ * in 2D of each edge. The greatest f is the gap; its direction proves the lower bound, all of them
+ * the upper one.
+ *
+ * Accuracy, with u = 2^-53 and R the reach. The f of a direction at hand is within gap_error() of
+ * that of the same direction for the true P. The greatest f moves by no more than P does, so that
+ * the normals of the rounded frames do; but they are rounded too. A normal u x v is off by less
+ * than 2.4 u |u| |v| (slabs.c: 2 / sqrt(3) times two roundings), and by 2 u |u| |v| where edges are
+ * rounded differences. Directions of vectors that differ by x, one of length n, differ by at most
+ * 2 x / n; so that of the normal is off by less than 8.8 u / s, s the sine of the angle between the
+ * edges, and f by R times that ("slip").
+ *
+ * Where s is small, and edges are no rounded differences, v is replaced by w = v - k u with
+ * k = u . v / u . u: the cross product is the same. k is off by 7.01 u |v| / |u|, so that |w| is at
+ * most |v| (s + 7.01 u); each number of w is rounded once if it is found by a fused operation. So
+ * u x w is off by 3.5 u |u| |w|, which is less than 6.6 u |u| |v| s for s of 2^-50 and more, and
+ * its direction by less than 8 u.
+ *
+ * Edges whose sine is less than 2^-50, and that are not exactly parallel. Let their pairs, of
+ * components of cuboids and the drift alone, connect them to groups; and let each edge of a group
+ * be turned into the direction of its longest one, by leaving out the part across that. There are
+ * at most 7 edges, so at most 6 pairs between an edge e and the longest one, and e moves by at most
+ * 6 2^-50 |e|. So P moves by at most 6 2^-50 R. The facets of the new P have normals of pairs of
+ * its edges that are not parallel: these are normals of the old list that are not among the nearly
+ * parallel ones. Their f moves by no more than P. So the gap is at most the greatest f of the other
+ * normals and 12 2^-50 R; R is less than 42 times the largest coordinate. */
+#include "gap.h"
+
+#include <math.h>
+#include <string.h>
+
+struct edge {
+    double at[3], square; /* the square of its length, rounded */
+    bool simplex, exact;  /* of a simplex; not a difference that was rounded */
+};
+
+enum { EDGES = 6 };
+
+struct depth {
+    const struct gap_pair *pair;
+    struct edge edge[2][EDGES], drift;
+    int edges[2];
+    double greatest;  /* f */
+    double upper;     /* the greatest of f + what its direction is off by, times R */
+    bool bundled;     /* some edges are nearly parallel, and have no normal */
+    double normal[3]; /* of unit length, of the greatest f */
+};
+
+/* ---- Edges ---- */
+
+static struct edge edge_of(const double v[3], bool simplex)
+{
+    struct edge out = {{v[0], v[1], v[2]}, gap_dot(v, v), simplex, true};
+    return out;
+}
+
+/* Vector k. */
+static struct edge edge_at(const struct gap_pair *pair, int k)
+{
+    const double v[3] = {gap_vector(pair, k, 0), gap_vector(pair, k, 1), gap_vector(pair, k, 2)};
+    return edge_of(v, k < GAP_DRIFT && pair->simplex[k / GAP_OF_B]);
+}
+
+static struct edge difference_of(const struct edge *x, const struct edge *y)
+{
+    double v[3];
+    bool exact = true;
+    for (int axis = 0; axis < 3; axis++) {
+        v[axis] = x->at[axis] - y->at[axis];
+        exact = exact && prepared_exact_sum(x->at[axis], -y->at[axis], v[axis]);
+    }
+    struct edge out = edge_of(v, true);
+    out.exact = exact;
+    return out;
+}
+
+/* Of frame f: the components c (of a negated); of a simplex then c1 - c0, c2 - c0, c2 - c1. Returns
+ * how many. */
+static int set_edges(const struct gap_pair *pair, int f, struct edge out[EDGES])
+{
+    int count = pair->count[f];
+    for (int i = 0; i < count; i++)
+        out[i] = edge_at(pair, f * GAP_OF_B + i);
+    for (int i = 1; pair->simplex[f] && i < pair->count[f]; i++)
+        for (int j = 0; j < i; j++)
+            out[count++] = difference_of(&out[i], &out[j]);
+    return count;
+}
+
+/* ---- Normals ---- */
+
+/* The ends of n . p over a simplex of vectors first to first + 2. */
+static void add_simplex(int first, const lanes at[GAP_LANES], double ends[2])
+{
+    double low = 0, high = 0;
+    for (int k = first; k < first + 3; k++) {
+        const double x = at[k / 2][k % 2];
+        low = x < low ? x : low;
+        high = x > high ? x : high;
+    }
+    ends[0] += low;
+    ends[1] += high;
+}
+
+/* Clears vectors first to first + 2. */
+static void clear(int first, lanes at[GAP_LANES])
+{
+    for (int k = first; k < first + 3; k++)
+        at[k / 2][k % 2] = 0;
+}
+
+/* The ends of n . p over P less the offset. */
+static void set_ends(const struct gap_pair *pair, const double n[3], double ends[2])
+{
+    lanes at[GAP_LANES];
+    ends[0] = ends[1] = 0;
+    gap_dots(pair, n, at);
+    for (int f = 0; f < 2; f++)
+        if (pair->simplex[f]) {
+            add_simplex(f * GAP_OF_B, at, ends);
+            clear(f * GAP_OF_B, at);
+        }
+    lanes low = lanes_least(at[0], lanes_of(0)), high = lanes_greatest(at[0], lanes_of(0));
+    UNROLL(3)
+    for (int i = 1; i < GAP_LANES; i++) {
+        low += lanes_least(at[i], lanes_of(0));
+        high += lanes_greatest(at[i], lanes_of(0));
+    }
+    ends[0] += low[0] + low[1];
+    ends[1] += high[0] + high[1];
+}
+
+/* The greater f of n and -n; square: of the length of n; slip: how far its direction may be off. */
+static void add_normal(struct depth *depth, const double n[3], double square, double slip)
+{
+    double ends[2];
+    if (!(square >= 0x1p-950)) { /* it may have underflowed */
+        depth->upper = INFINITY;
+        return;
+    }
+    set_ends(depth->pair, n, ends);
+    const double offset = gap_dot(n, depth->pair->offset);
+    const double low = offset + ends[0], high = offset + ends[1];
+    const double best = low > -high ? low : -high, off = slip * depth->pair->reach;
+    const double most = (off - depth->greatest) * (1 + 0x1p-40);
+    if (best < 0 && most > 0 && best * best > most * most * square)
+        return; /* f + off is below the greatest f */
+    const double inverse = 1 / sqrt(square);
+    const double f = best * inverse;
+    const double above = f + off;
+    depth->upper = above > depth->upper ? above : depth->upper;
+    if (f <= depth->greatest)
+        return;
+    depth->greatest = f;
+    for (int axis = 0; axis < 3; axis++)
+        depth->normal[axis] = (low > -high ? inverse : -inverse) * n[axis];
+}
+
+/* Whether x y - z w is exactly 0: products and their errors are doubles (range.h). */
+static bool same_products(double x, double y, double z, double w)
+{
+    const double xy = x * y, zw = z * w;
+    return xy == zw && fma(x, y, -xy) == fma(z, w, -zw);
+}
+
+static bool are_parallel(const double u[3], const double v[3])
+{
+    return same_products(u[1], v[2], u[2], v[1]) && same_products(u[2], v[0], u[0], v[2]) &&
+           same_products(u[0], v[1], u[1], v[0]);
+}
+
+/* The normal of edges that are nearly parallel, and not rounded. */
+static void add_close(struct depth *depth, const struct edge *u, const struct edge *v)
+{
+    const double share = gap_dot(u->at, v->at) / u->square;
+    double w[3], n[3];
+    if (are_parallel(u->at, v->at))
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        w[axis] = fma(-share, u->at[axis], v->at[axis]);
+    gap_cross(u->at, w, n);
+    const double square = gap_dot(n, n);
+    if (square >= 0x1p-100 * (u->square * v->square)) {
+        add_normal(depth, n, square, 0x1p-50);
+    } else if (u->simplex || v->simplex) {
+        depth->upper = INFINITY;
+    } else {
+        depth->bundled = true;
+    }
+}
+
+/* Where the sine is above 0.28, 8.8 u / s is below 2^-48. */
+static void add_edges(struct depth *depth, const struct edge *u, const struct edge *v)
+{
+    const double most = u->square * v->square;
+    double n[3];
+    gap_cross(u->at, v->at, n);
+    const double square = gap_dot(n, n);
+    if (square > 0.08 * most)
+        add_normal(depth, n, square, 0x1p-48);
+    else if (u->exact && v->exact)
+        add_close(depth, u, v);
+    else if (square > 0)
+        add_normal(depth, n, square, 0x1p-49 * sqrt(most / square));
+    else
+        depth->upper = INFINITY;
+}
+
+/* The faces of frame f in 3D. */
+static void add_faces(struct depth *depth, int f)
+{
+    const struct edge *edge = depth->edge[f];
+    add_edges(depth, &edge[0], &edge[1]);
+    if (depth->pair->count[f] == 2)
+        return;
+    add_edges(depth, &edge[1], &edge[2]);
+    add_edges(depth, &edge[2], &edge[0]);
+    if (depth->pair->simplex[f])
+        add_edges(depth, &edge[3], &edge[4]);
+}
+
+static void add_space(struct depth *depth)
+{
+    add_faces(depth, 0);
+    add_faces(depth, 1);
+    for (int i = 0; i < depth->edges[0]; i++)
+        for (int j = 0; j < depth->edges[1]; j++)
+            add_edges(depth, &depth->edge[0][i], &depth->edge[1][j]);
+    for (int f = 0; f < 2 && depth->pair->drifts; f++)
+        for (int i = 0; i < depth->edges[f]; i++)
+            add_edges(depth, &depth->edge[f][i], &depth->drift);
+}
+
+/* In 2D: the edge turned by a right angle. */
+static void add_turned(struct depth *depth, const struct edge *edge)
+{
+    const double n[3] = {-edge->at[1], edge->at[0], 0};
+    add_normal(depth, n, edge->square, 0x1p-50);
+}
+
+static void add_plane(struct depth *depth)
+{
+    for (int f = 0; f < 2; f++)
+        for (int i = 0; i < depth->edges[f]; i++)
+            add_turned(depth, &depth->edge[f][i]);
+    if (depth->pair->drifts)
+        add_turned(depth, &depth->drift);
+}
+
+enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict,
+                           struct fmb_gap *out)
+{
+    const double error = gap_error(pair);
+    struct depth depth;
+    depth.pair = pair;
+    depth.greatest = depth.upper = -INFINITY;
+    depth.bundled = false;
+    for (int f = 0; f < 2; f++)
+        depth.edges[f] = set_edges(pair, f, depth.edge[f]);
+    depth.drift = edge_at(pair, GAP_DRIFT);
+    if (pair->dim == 3)
+        add_space(&depth);
+    else
+        add_plane(&depth);
+    if (depth.greatest == -INFINITY)
+        return GAP_UNSURE;
+    const double bundled = depth.bundled ? 13 * 0x1p-50 * pair->reach : 0;
+    const double upper = depth.upper + bundled + error;
+    out->bounds[0] = depth.greatest - error;
+    out->bounds[1] = verdict == FMB_OVERLAPPING && upper < 0 ? upper : 0;
+    memcpy(out->direction, depth.normal, sizeof depth.normal);
+    if (!gap_is_tight(pair, out->bounds))
+        return GAP_UNSURE;
+    if (verdict == FMB_TOUCHING)
+        out->bounds[0] = 0;
+    return GAP_KNOWN;
+}

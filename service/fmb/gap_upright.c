@@ -1,0 +1,71 @@
+/* The gap of two cuboids along the axes that do not drift, as far as it takes no root.
+ *
+ * Method. Frames are the boxes of their ends. Along an axis, on either side, they are apart by the
+ * difference of an end of each, a negative one where they overlap; P is a box with these distances,
+ * so that the greatest is minus the depth. Where one of them alone is positive it is the distance,
+ * and the witness points differ on this axis alone.
+ *
+ * Accuracy. Ends do not round; where one would, or a frame has an error, the pair is left to the
+ * other steps. A difference is rounded outward where it rounds. */
+#include "gap.h"
+
+#include "range.h"
+
+/* [lower, upper][axis]; false if the frame is not along the axes, or an end rounds. */
+static bool set_ends(const struct gap_pair *pair, int f, double ends[2][FMB_DIM_MAX])
+{
+    const double *number = pair->frame[f]->number;
+    const int dim = pair->dim;
+    for (int axis = 0; axis < dim; axis++)
+        ends[0][axis] = ends[1][axis] = number[axis];
+    for (int i = 1; i <= dim; i++) {
+        int axes = 0;
+        for (int axis = 0; axis < dim; axis++) {
+            const double at = number[i * dim + axis];
+            double *end = &ends[at > 0][axis];
+            const double sum = *end + at;
+            if (at == 0)
+                continue;
+            if (axes++ > 0 || !prepared_exact_sum(*end, at, sum))
+                return false;
+            *end = sum;
+        }
+    }
+    return true;
+}
+
+enum gap_outcome gap_upright(const struct gap_pair *pair, struct fmb_gap *out)
+{
+    double ends[2][2][FMB_DIM_MAX]; /* [frame] */
+    struct range best = {-INFINITY, -INFINITY};
+    int apart = 0;
+    if (pair->error != 0 || pair->drifts || pair->simplex[0] || pair->simplex[1] ||
+        !set_ends(pair, 0, ends[0]) || !set_ends(pair, 1, ends[1]))
+        return GAP_UNSURE;
+    for (int axis = 0; axis < pair->dim; axis++) {
+        out->witness[0][axis] = out->witness[1][axis] =
+            range_greatest(ends[0][0][axis], ends[1][0][axis]) + 0.0;
+        for (int side = 0; side < 2; side++) {
+            const double low = ends[!side][0][axis], high = ends[side][1][axis];
+            const struct range by = range_sum(range_of(low), range_of(-high));
+            best.high = range_greatest(best.high, by.high);
+            if (by.high > 0) {
+                apart++;
+                out->witness[side][axis] = high + 0.0;
+            }
+            if (by.low <= best.low)
+                continue;
+            best.low = by.low;
+            memset(out->direction, 0, sizeof out->direction);
+            out->direction[axis] = side ? -1 : 1;
+        }
+    }
+    if (apart > 1)
+        return GAP_UNSURE;
+    out->bounds[0] = best.low;
+    out->bounds[1] = best.high;
+    out->has_witness = apart == 1;
+    if (!out->has_witness)
+        memset(out->witness, 0, sizeof out->witness);
+    return GAP_KNOWN;
+}
