@@ -14,7 +14,6 @@
 #include <unistd.h>
 
 #include "socket.h"
-#include "trim.h"
 #include "url.h"
 
 enum {
@@ -309,7 +308,7 @@ bool bus_publish(struct bus *bus, const char *channel, const void *bytes, size_t
 
 /* The kernel's counter is read when it is needed (SO_MEMINFO): to have it with each datagram
  * (SO_RXQ_OVFL) would cost time there, and miss what was dropped after the last one. It also counts
- * what a socket filter drops. So none drops anything (trim.h), and own echoes are dropped by
+ * what a socket filter drops. So none drops anything (socket.h), and own echoes are dropped by
  * channel. */
 struct bus_counts bus_counts(struct bus *bus)
 {

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 /* The largest id and sequence number: doubles represent integers exactly up to here, and some LCM
  * languages have no other numbers. */
@@ -153,7 +154,7 @@ struct pair_result {
     int32_t status;              /* enum fmb_status */
     char detail[QUERY_TEXT_MAX]; /* "" where OK */
     int32_t method;              /* 0 where not OK */
-    int32_t dim;                 /* of the box, 2 or 3; 0 where there is none */
+    int32_t dim;                 /* of box and gap, 2 or 3; 0 where there is neither */
     struct fmb_answer answer;    /* all 0 where not OK */
     const char *certificate;     /* NULL: none. Owned by the answerer or the message */
     int64_t compute_ns;
@@ -190,7 +191,8 @@ struct scene_query {
 enum {
     QUERY_VERDICTS_MAX = QUERY_PAIRS_MAX,
     QUERY_NAMED_MAX = QUERY_BYTES_MAX / 5,
-    QUERY_NUMBERS_MAX = QUERY_BYTES_MAX / 8
+    QUERY_NUMBERS_MAX = QUERY_BYTES_MAX / 8,
+    QUERY_GAPS_MAX = QUERY_NUMBERS_MAX / 9 /* in 2D */
 };
 
 struct scene_result {
@@ -201,19 +203,45 @@ struct scene_result {
     int32_t method;              /* 0 where not OK */
     int32_t end_pair;
     int64_t compute_ns;
-    int dim;               /* of the boxes, 2 or 3; 0 where there are none */
+    int dim;               /* of boxes and gaps, 2 or 3; 0 where there are none */
     int32_t unknown_count; /* placements whose handles are not held */
     int32_t handle_count;  /* placements that came whole with an id */
     int32_t verdict_count; /* of the named pairs, or of all pairs from first_pair on */
     int32_t contact_count; /* verdicts that touch or overlap */
-    bool names_pairs, has_times, has_boxes;
+    bool names_pairs, has_times, has_boxes, has_gaps;
     unsigned unknown[QUERY_PLACEMENTS_MAX];     /* [unknown_count] indices, ascending */
     struct handle handle[QUERY_PLACEMENTS_MAX]; /* [handle_count], in the order of placements */
     unsigned char verdict[QUERY_VERDICTS_MAX];
     unsigned pair[QUERY_NAMED_MAX][2]; /* [verdict_count][a, b] where names_pairs */
     double times[QUERY_NUMBERS_MAX];   /* [contact][first, last], seconds, where has_times */
     double boxes[QUERY_NUMBERS_MAX];   /* [contact][lower, upper][dim], where has_boxes */
+    /* [verdict], where has_gaps; bounds of NAN and all else 0: none, the pair is separated. */
+    struct fmb_gap gap[QUERY_GAPS_MAX];
 };
+
+static inline bool query_has_gap(const struct fmb_gap *gap)
+{
+    return gap->bounds[0] <= gap->bounds[1];
+}
+
+/* Removes the gap of a separated pair that is farther apart than the margin. */
+static inline void query_remove_far_gap(double margin, struct fmb_answer *answer)
+{
+    if (answer->verdict != FMB_SEPARATED || answer->gap.bounds[0] <= margin)
+        return;
+    answer->has_gap = false;
+    memset(&answer->gap, 0, sizeof answer->gap);
+}
+
+/* Bit for bit. */
+static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap *b)
+{
+    return a->has_witness == b->has_witness &&
+           memcmp(a->bounds, b->bounds, sizeof a->bounds) == 0 &&
+           memcmp(a->direction, b->direction, sizeof a->direction) == 0 &&
+           memcmp(&a->time, &b->time, sizeof a->time) == 0 &&
+           memcmp(a->witness, b->witness, sizeof a->witness) == 0;
+}
 
 /* ---- Definitions ---- */
 

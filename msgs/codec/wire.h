@@ -10,9 +10,12 @@
  * - A verdict is present if and only if the status is OK; an interval, if and only if the bodies
  *   meet. Boxes are only present for bodies that meet. Both are ordered. A certificate is only
  *   present with a verdict, is printable ASCII and shorter than QUERY_CERTIFICATE_MAX.
- * - A scene has as many named pairs, times and boxes as its verdicts require. Named pairs are in
- *   order. Unknown bodies are present if and only if the status is UNKNOWN_BODY, and nothing else
- *   where it is not OK.
+ * - Bounds of a gap are ordered, and 0 for bodies that touch; its direction is finite. Witness
+ * points are present if and only if the bodies are separated. NaN, where the message types have it,
+ * is that of Java: the bits 7ff8000000000000.
+ * - A scene has as many named pairs, times, boxes and gaps as its verdicts require. Named pairs are
+ *   in order; those that are separated have a gap. Unknown bodies are present if and only if the
+ * status is UNKNOWN_BODY, and nothing else where it is not OK.
  * - The bodies of a definition have frames, and match their handle. The frames are not checked. */
 #ifndef WIRE_H
 #define WIRE_H
@@ -114,8 +117,8 @@ size_t wire_write_status(const struct wire_status *status,
 /* Sizes of messages without their lists. A pair query adds its placements; a scene query its
  * placements, and WIRE_PAIR_BYTES for each pair listed or ignored. A scene result (size with the
  * longest detail) adds 2 bytes for each unknown body, 16 for each handle, 1 for each verdict, 4 for
- * each named pair, and 8 for each number of times and boxes. A definition adds 16 bytes and the
- * geometry for each body. A pair result always fits. */
+ * each named pair, and 8 for each number of times, boxes and gaps. A definition adds 16 bytes and
+ * the geometry for each body. A pair result always fits. */
 enum {
     WIRE_PAIR_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4,
     WIRE_SCENE_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4 + 8 + 3 * 4 + 3 * 4,
@@ -124,5 +127,11 @@ enum {
     WIRE_PAIR_BYTES = 4
 };
 size_t wire_placement_bytes(const struct placement *placement);
+
+/* Bounds, direction, time and points. */
+static inline int32_t wire_gap_bytes(int dim)
+{
+    return 8 * (2 + dim + 1 + 2 * dim);
+}
 
 #endif

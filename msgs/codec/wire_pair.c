@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Fixed fields of a result, the longest of its lists, and its texts. */
-static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (2 + 2 * FMB_DIM_MAX) + QUERY_TEXT_MAX +
+static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (5 + 5 * FMB_DIM_MAX) + QUERY_TEXT_MAX +
                       QUERY_CERTIFICATE_MAX + 8 <=
                   QUERY_BYTES_MAX,
               "a result is one datagram");
@@ -33,9 +33,6 @@ static_assert((int) QUERY_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
     static_assert((int) FMB_##name == FMB_MSGS_PAIR_RESULT_T_STATUS_##name, text);
 FMB_STATUS_MAP(X)
 #undef X
-
-/* gap, direction and witness, which this version leaves empty. */
-enum { GAP_LISTS = 3 };
 
 const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out)
 {
@@ -89,6 +86,16 @@ static void read_contact(struct cursor *cursor, struct fmb_answer *out)
         cursor_fail(cursor, "a contact interval that is no interval");
 }
 
+static void read_gap(struct cursor *cursor, struct pair_result *out)
+{
+    const unsigned char verdict = (unsigned char) out->answer.verdict;
+    const int dim = wire_read_gaps(cursor, &verdict, 1, verdict == FMB_SEPARATED, &out->answer.gap);
+    out->answer.has_gap = dim > 0;
+    if (dim > 0 && ((out->dim > 0 && out->dim != dim) || !query_has_gap(&out->answer.gap)))
+        cursor_fail(cursor, "no gap, or one of another dimension than the box");
+    out->dim = dim > 0 ? dim : out->dim;
+}
+
 static void read_certificate(struct cursor *cursor, struct pair_result *out)
 {
     const unsigned char *bytes = NULL;
@@ -124,8 +131,7 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
     out->answer.verdict = (enum fmb_verdict) verdict;
     read_contact(&cursor, &out->answer);
     read_box(&cursor, out);
-    for (int list = 0; list < GAP_LISTS; list++)
-        wire_read_empty(&cursor);
+    read_gap(&cursor, out);
     read_certificate(&cursor, out);
     out->compute_ns = cursor_int64(&cursor);
     return cursor_end(&cursor);
@@ -167,8 +173,8 @@ size_t wire_write_pair_result(const struct pair_result *result, unsigned char ou
     writer_int32(&writer, (int32_t) result->answer.verdict);
     writer_doubles(&writer, result->answer.contact, result->answer.has_contact ? 2 : 0);
     write_box(&writer, result);
-    for (int list = 0; list < GAP_LISTS; list++)
-        writer_int32(&writer, 0);
+    wire_write_gaps(&writer, &result->answer.gap, 1, result->answer.gap.has_witness,
+                    result->answer.has_gap ? result->dim : 0);
     writer_string(&writer, result->certificate ? result->certificate : "");
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);

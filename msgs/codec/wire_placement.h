@@ -1,4 +1,4 @@
-/* Parts that messages share: header, placement, handles, geometry. Private to wire_*.c. */
+/* Parts that messages share: header, placement, handles, geometry, gaps. Private to wire_*.c. */
 #ifndef WIRE_PLACEMENT_H
 #define WIRE_PLACEMENT_H
 
@@ -43,11 +43,14 @@ void wire_write_handles(struct writer *writer, const struct handle *handles, int
 void wire_read_geometry(struct cursor *cursor, struct geometry *out, int32_t *dim, int32_t *frames,
                         int32_t *numbers);
 
-/* A list that this version does not use: an error unless it is empty. */
-static inline void wire_read_empty(struct cursor *cursor)
-{
-    if (cursor_int32(cursor) != 0)
-        cursor_fail(cursor, "a list that this version leaves empty");
-}
+/* The lists of gaps: bounds, directions, witnesses. There are gaps of all verdicts or of none, and
+ * witnesses of as many as the message type has, whether they are separated or not. Returns the
+ * dimension; 0: there are none. */
+int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
+                   int32_t witnesses, struct fmb_gap *out);
+
+/* dim is 0 where there are none. */
+void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
+                     int32_t witnesses, int dim);
 
 #endif

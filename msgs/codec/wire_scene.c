@@ -23,9 +23,6 @@ static_assert((int) QUERY_WANT_BOX == FMB_MSGS_SCENE_QUERY_T_WANT_BOX &&
 /* Bytes of a placement of dimension 0, the least that any takes. */
 enum { PLACEMENT_BYTES_LEAST = 44 };
 
-/* gaps, directions and witnesses, which this version leaves empty. */
-enum { GAP_LISTS = 3 };
-
 /* ---- Queries ---- */
 
 const char *wire_read_scene_header(const void *bytes, uint32_t size, struct query_header *out)
@@ -130,8 +127,8 @@ static void read_pairs(struct cursor *cursor, struct scene_result *out)
     if (count != 0 && (count != 2 * out->verdict_count || count > 2 * QUERY_NAMED_MAX))
         cursor_fail(cursor, "as many pairs as verdicts, or none");
     for (int32_t i = 0; i < count / 2 && !cursor->error; i++)
-        if (!is_next_pair((const unsigned(*)[2]) out->pair, i) || out->verdict[i] < FMB_TOUCHING)
-            cursor_fail(cursor, "a pair out of order, or that does not meet");
+        if (!is_next_pair((const unsigned(*)[2]) out->pair, i))
+            cursor_fail(cursor, "a pair out of order");
     out->names_pairs = count > 0;
 }
 
@@ -165,6 +162,19 @@ static void read_boxes(struct cursor *cursor, struct scene_result *out)
     out->has_boxes = count > 0;
 }
 
+static void read_gaps(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = out->verdict_count;
+    const int dim = wire_read_gaps(cursor, out->verdict, count, count, out->gap);
+    out->has_gaps = dim > 0;
+    if (dim > 0 && out->dim > 0 && dim != out->dim)
+        cursor_fail(cursor, "gaps of another dimension than the boxes");
+    out->dim = dim > 0 ? dim : out->dim;
+    for (int32_t i = 0; i < count && out->names_pairs && !cursor->error; i++)
+        if (out->verdict[i] < FMB_TOUCHING && !(out->has_gaps && query_has_gap(&out->gap[i])))
+            cursor_fail(cursor, "a pair that neither meets nor is near");
+}
+
 const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scene_result *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_result_t_get_hash());
@@ -186,8 +196,7 @@ const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scen
     read_pairs(&cursor, out);
     read_times(&cursor, out);
     read_boxes(&cursor, out);
-    for (int list = 0; list < GAP_LISTS; list++)
-        wire_read_empty(&cursor);
+    read_gaps(&cursor, out);
     out->compute_ns = cursor_int64(&cursor);
     return cursor_end(&cursor);
 }
@@ -209,8 +218,8 @@ size_t wire_write_scene_result(const struct scene_result *result,
     writer_indices(&writer, result->pair[0], result->names_pairs ? 2 * result->verdict_count : 0);
     writer_doubles(&writer, result->times, result->has_times ? 2 * contacts : 0);
     writer_doubles(&writer, result->boxes, result->has_boxes ? 2 * result->dim * contacts : 0);
-    for (int list = 0; list < GAP_LISTS; list++)
-        writer_int32(&writer, 0);
+    wire_write_gaps(&writer, result->gap, result->verdict_count, result->verdict_count,
+                    result->has_gaps ? result->dim : 0);
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);
 }

@@ -1,0 +1,113 @@
+#include "wire_placement.h"
+
+#include <math.h>
+
+/* ---- Reading ---- */
+
+/* Whether the numbers are NaN, with the bits that a message has for a number that is not there. */
+static bool are_none(const double *number, int count)
+{
+    const double none = NAN;
+    for (int i = 0; i < count; i++)
+        if (memcmp(&number[i], &none, sizeof none) != 0)
+            return false;
+    return true;
+}
+
+static void take_numbers(const unsigned char *bytes, double *out, int count)
+{
+    for (int i = 0; i < count; i++)
+        out[i] = cursor_double_at(bytes + 8 * i);
+}
+
+static bool is_witness(const double *witness, int count)
+{
+    bool good = witness[0] >= 0 && isfinite(witness[0]);
+    for (int i = 1; i < count; i++)
+        good = good && !isnan(witness[i]);
+    return good;
+}
+
+static void set_witness(const double *witness, int dim, struct fmb_gap *out)
+{
+    out->has_witness = true;
+    out->time = witness[0];
+    for (int side = 0; side < 2; side++)
+        memcpy(out->witness[side], witness + 1 + side * dim, (size_t) dim * sizeof *witness);
+}
+
+/* Whether they are numbers of one gap of a pair with this verdict. */
+static bool set_gap(unsigned char verdict, const double *direction, const double *witness, int dim,
+                    struct fmb_gap *out)
+{
+    const int points = 1 + 2 * dim;
+    const bool separated = verdict == FMB_SEPARATED;
+    if (are_none(out->bounds, 2))
+        return separated && are_none(direction, dim) && are_none(witness, points);
+    if (!query_has_gap(out) ||
+        (verdict == FMB_TOUCHING && (out->bounds[0] != 0 || out->bounds[1] != 0)))
+        return false;
+    for (int axis = 0; axis < dim; axis++) {
+        if (!isfinite(direction[axis]))
+            return false;
+        out->direction[axis] = direction[axis];
+    }
+    if (!separated)
+        return verdict >= FMB_TOUCHING && are_none(witness, points);
+    set_witness(witness, dim, out);
+    return is_witness(witness, points);
+}
+
+int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
+                   int32_t witnesses, struct fmb_gap *out)
+{
+    const unsigned char *bound, *direction, *witness;
+    const int64_t bounds = cursor_list(cursor, 8, &bound);
+    const int64_t directions = cursor_list(cursor, 8, &direction);
+    const int64_t numbers = cursor_list(cursor, 8, &witness);
+    const int dim = bounds == 0 ? 0 : directions == 2 * (int64_t) count ? 2 : 3;
+    const int points = dim > 0 ? 1 + 2 * dim : 0;
+    if (bounds != (dim > 0 ? 2 * (int64_t) count : 0) || count * (dim > 0) > QUERY_GAPS_MAX ||
+        directions != (int64_t) dim * count || numbers != (int64_t) points * witnesses)
+        cursor_fail(cursor, "gaps that do not go with the verdicts");
+    for (int32_t i = 0; i < count && dim > 0 && !cursor->error; i++) {
+        double way[FMB_DIM_MAX], at[1 + 2 * FMB_DIM_MAX];
+        for (int k = 0; k < points; k++)
+            at[k] = NAN;
+        memset(&out[i], 0, sizeof out[i]);
+        take_numbers(bound + 16 * i, out[i].bounds, 2);
+        take_numbers(direction + 8 * dim * i, way, dim);
+        take_numbers(witness + 8 * points * i, at, witnesses > 0 ? points : 0);
+        if (!set_gap(verdict[i], way, at, dim, &out[i]))
+            cursor_fail(cursor, "a gap that is no gap");
+    }
+    return dim;
+}
+
+/* ---- Writing ---- */
+
+/* NaN where there are none. */
+static void write_numbers(struct writer *writer, bool some, const double *number, int count)
+{
+    for (int i = 0; i < count; i++)
+        writer_double(writer, some ? number[i] : NAN);
+}
+
+void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
+                     int32_t witnesses, int dim)
+{
+    const int32_t gaps = dim > 0 ? count : 0, points = dim > 0 ? witnesses : 0;
+    writer_int32(writer, 2 * gaps);
+    for (int32_t i = 0; i < gaps; i++)
+        write_numbers(writer, query_has_gap(&gap[i]), gap[i].bounds, 2);
+    writer_int32(writer, dim * gaps);
+    for (int32_t i = 0; i < gaps; i++)
+        write_numbers(writer, query_has_gap(&gap[i]), gap[i].direction, dim);
+    writer_int32(writer, (1 + 2 * dim) * points);
+    for (int32_t i = 0; i < points; i++) {
+        const bool some = gap[i].has_witness && query_has_gap(&gap[i]);
+        write_numbers(writer, some, &gap[i].time, 1);
+        for (int side = 0; side < 2; side++)
+            write_numbers(writer, some, gap[i].witness[side], dim);
+    }
+}
