@@ -18,7 +18,7 @@ static bool check_pair(struct checking *checking, const struct pair_query *query
 {
     if (!check_ids(checking, query->client_id, query->sequence_number) ||
         !check_request(checking, query->duration, query->method, query->want,
-                       QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE))
+                       QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE | QUERY_WANT_GAP))
         return false;
     for (int f = 0; f < 2; f++) {
         set_side(checking, f);
@@ -93,13 +93,20 @@ static void refuse_method(const struct fmb_method *method, enum fmb_status statu
              fmb_status_text(result->status));
 }
 
+static void set_dim(const struct pair_query *query, struct pair_result *result)
+{
+    const bool used = result->answer.has_box || result->answer.has_gap;
+    result->dim = used ? query->placement[0].dim : 0;
+}
+
 static void decide(struct answerer *answerer, struct pair_result *result,
                    const struct pair_query *query, const struct used_body used[2])
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const struct fmb_placement placement[2] = {answerer_place(&query->placement[0], used[0].body),
                                                answerer_place(&query->placement[1], used[1].body)};
-    const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
+    const unsigned want = (query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0) |
+                          (query->want & QUERY_WANT_GAP ? FMB_WANT_GAP : 0);
     const enum fmb_status status =
         fmb_decide(method, &placement[0], &placement[1], query->duration, want, &result->answer);
     if (status != FMB_OK) {
@@ -107,7 +114,7 @@ static void decide(struct answerer *answerer, struct pair_result *result,
         return;
     }
     result->method = method->number;
-    result->dim = result->answer.has_box ? used[0].body->dim : 0;
+    set_dim(query, result);
     if (query->want & QUERY_WANT_CERTIFICATE)
         certify(answerer, placement, query->duration, result);
 }
@@ -220,6 +227,7 @@ static void begin_scene(struct pair_job *job)
                                     .method = method,
                                     .contacts = true,
                                     .boxes = query->want & QUERY_WANT_BOX && method->boxes,
+                                    .gaps = query->want & QUERY_WANT_GAP,
                                     .which = FMB_PAIRS_LISTED,
                                     .pairs = pair,
                                     .pair_count = 1};
@@ -265,7 +273,10 @@ static void take_answer(struct pair_job *job, const struct fmb_scene_answers *an
         memcpy(answer->contact, answers->contacts[0], sizeof answer->contact);
     if (answer->has_box)
         memcpy(answer->box, answers->boxes[0], sizeof answer->box);
-    result->dim = answer->has_box ? job->query.placement[0].dim : 0;
+    answer->has_gap = job->query.want & QUERY_WANT_GAP;
+    if (answer->has_gap)
+        answer->gap = answers->gaps[0];
+    set_dim(&job->query, result);
 }
 
 bool pair_job_step(struct pair_job *job)

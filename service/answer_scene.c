@@ -97,7 +97,7 @@ static void begin_result(const struct answerer *answerer, const struct query_hea
     result->dim = 0;
     result->unknown_count = result->handle_count = 0;
     result->verdict_count = result->contact_count = 0;
-    result->names_pairs = result->has_times = result->has_boxes = false;
+    result->names_pairs = result->has_times = result->has_boxes = result->has_gaps = false;
 }
 
 void answer_scene_refused(const struct answerer *answerer, const struct query_header *query,
@@ -248,28 +248,27 @@ static bool check_which(struct checking *checking, const struct scene_query *que
     return true;
 }
 
-/* A margin other than 0 is for later versions. */
 static bool check_margin(struct checking *checking, const struct scene_query *query)
 {
-    if (!(query->margin >= 0 && isfinite(query->margin)))
-        return check_refuse(checking, FMB_NOT_FINITE, "margin", "negative or not finite");
-    return query->margin == 0 ||
-           check_refuse(checking, FMB_NOT_SUPPORTED, "margin", "not in this version");
+    return (query->margin >= 0 && isfinite(query->margin)) ||
+           check_refuse(checking, FMB_BAD_MARGIN, "margin", "negative or not finite");
 }
 
 static bool check_scene(struct checking *checking, struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
+    const int32_t want = query->want | (query->margin > 0 ? QUERY_WANT_GAP : 0);
     return check_ids(checking, query->client_id, query->sequence_number) &&
-           check_request(checking, query->duration, query->method, query->want,
-                         QUERY_WANT_BOX | QUERY_WANT_TIMES) &&
+           check_margin(checking, query) &&
+           check_request(checking, query->duration, query->method, want,
+                         QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP) &&
            check_counts(checking, query) && check_which(checking, query) &&
            check_placements(checking, query) &&
            check_indices(checking, "indices", query->pair, query->index_count / 2,
                          query->placement_count) &&
            check_indices(checking, "ignored", query->ignored, query->ignored_count / 2,
                          query->placement_count) &&
-           check_ignored(checking, job) && check_margin(checking, query);
+           check_ignored(checking, job);
 }
 
 static struct checking checking_of(struct scene_job *job)
@@ -388,11 +387,15 @@ static enum stage begin_pairs(struct scene_job *job)
     scene->placements = job->placement;
     scene->contacts = query->want & QUERY_WANT_TIMES;
     scene->boxes = query->want & QUERY_WANT_BOX && scene->method->boxes;
+    scene->gaps = query->want & QUERY_WANT_GAP;
+    scene->margin = query->margin;
     result->method = scene->method->number;
     result->names_pairs = query->which != QUERY_PAIRS_LISTED;
     result->has_times = scene->contacts;
     result->has_boxes = scene->boxes;
-    result->dim = result->has_boxes && query->placement_count > 0 ? query->placement[0].dim : 0;
+    result->has_gaps = scene->gaps || scene->margin > 0;
+    const bool uses_dim = result->has_boxes || result->has_gaps;
+    result->dim = uses_dim && query->placement_count > 0 ? query->placement[0].dim : 0;
     job->capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * result->handle_count;
     const enum fmb_status status = fmb_scene_begin(scene, &limits, job->memory, &job->state);
     assert(status == FMB_OK);
@@ -415,6 +418,8 @@ static long size_of(const struct scene_result *result, unsigned char verdict)
         size += 2 * (long) sizeof(double);
     if (is_contact(verdict) && result->has_boxes)
         size += 2 * result->dim * (long) sizeof(double);
+    if (result->has_gaps)
+        size += wire_gap_bytes(result->dim);
     return size;
 }
 
@@ -442,6 +447,8 @@ static bool append(struct scene_job *job, const struct fmb_scene_answers *answer
     result->verdict[n] = verdict;
     if (result->names_pairs)
         memcpy(result->pair[n], answers->pairs[k], sizeof result->pair[n]);
+    if (result->has_gaps)
+        result->gap[n] = answers->gaps[k];
     if (is_contact(verdict))
         append_contact(result, answers, k);
     return true;
@@ -469,7 +476,7 @@ static size_t append_all(struct scene_job *job, const struct fmb_scene_answers *
 {
     const struct scene_result *result = &job->result;
     size_t k = 0;
-    if (!result->names_pairs && !result->has_times && !result->has_boxes)
+    if (!result->names_pairs && !result->has_times && !result->has_boxes && !result->has_gaps)
         return append_verdicts(job, answers);
     while (k < answers->count && append(job, answers, k))
         k++;

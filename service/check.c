@@ -197,5 +197,8 @@ bool check_request(struct checking *checking, double duration, int32_t method, i
         return check_refuse(checking, FMB_BAD_DURATION, "duration", "negative or not finite");
     if (!fmb_method_by_number(method))
         return check_refuse(checking, FMB_UNKNOWN_METHOD, "method", NULL);
-    return (want & ~wants) == 0 || check_refuse(checking, FMB_UNKNOWN_WANT, "want", NULL);
+    if ((want & ~wants) != 0)
+        return check_refuse(checking, FMB_UNKNOWN_WANT, "want", NULL);
+    return !(want & QUERY_WANT_GAP) || fmb_method_by_number(method)->certain ||
+           check_refuse(checking, FMB_CANNOT_DECIDE, "method", "gives no gaps");
 }

@@ -19,22 +19,26 @@ enum { DEFAULT_FRAMES = 65536 };
 static const char usage[] =
     "usage: fmbd [options]\n"
     "\n"
-    "Answers queries about rigid bodies on an LCM bus, in 2D and 3D, at rest and moving: whether\n"
-    "they are separated, touch or overlap, when, and in which box. 'fmb query' sends queries.\n"
-    "Receives on FMB_PAIR_QUERY, FMB_SCENE_QUERY and FMB_DEFINITION_QUERY; sends results on\n"
-    "FMB_PAIR_RESULT, FMB_SCENE_RESULT and FMB_DEFINITION, and a heartbeat on FMB_STATUS once a\n"
-    "second. Ends on SIGINT and SIGTERM.\n"
+    "Answers queries about rigid bodies on an LCM bus, in 2D and 3D, at rest and\n"
+    "moving: whether they are separated, touch or overlap, when, and in which box.\n"
+    "'fmb query' sends queries. Receives on FMB_PAIR_QUERY, FMB_SCENE_QUERY and\n"
+    "FMB_DEFINITION_QUERY; sends results on FMB_PAIR_RESULT, FMB_SCENE_RESULT and\n"
+    "FMB_DEFINITION, and a heartbeat on FMB_STATUS once a second. Ends on SIGINT and\n"
+    "SIGTERM.\n"
     "\n"
-    "  -l, --lcm-url URL   the bus, udpm://GROUP:PORT?ttl=N; else LCM_DEFAULT_URL; else this host\n"
-    "                      alone (udpm://239.255.76.67:7667?ttl=0)\n"
-    "  -p, --prefix P      put P before the channel names, for a second service on the bus\n"
-    "  -f, --frames N      capacity of the cache of bodies, in frames (default %d, 1 to %d)\n"
-    "  -u, --user NAME     become this user once the bus is open (default nobody if started as\n"
-    "                      root)\n"
+    "  -l, --lcm-url URL   the bus, udpm://GROUP:PORT?ttl=N; else LCM_DEFAULT_URL;\n"
+    "                      else this host alone (udpm://239.255.76.67:7667?ttl=0)\n"
+    "  -p, --prefix P      put P before the channel names, for a second service on\n"
+    "                      the bus\n"
+    "  -f, --frames N      capacity of the cache of bodies, in frames (default %d,\n"
+    "                      1 to %d)\n"
+    "  -u, --user NAME     become this user once the bus is open (default nobody if\n"
+    "                      started as root)\n"
     "  -h, --help          print this\n"
     "  -V, --version       print the version\n"
     "\n"
-    "Exit codes: 0 ended by a signal, 1 no bus, no memory or no such user, 2 wrong options.\n";
+    "Exit codes: 0 ended by a signal, 1 no bus, no memory or no such user, 2 wrong\n"
+    "options.\n";
 
 static int wrong_option(const char *option, const char *value, const char *expected)
 {
