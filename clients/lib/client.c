@@ -27,7 +27,8 @@ static_assert((int) FMB_CLIENT_LISTED == QUERY_PAIRS_LISTED &&
               "which pairs");
 static_assert((int) FMB_CLIENT_WANT_BOX == QUERY_WANT_BOX &&
                   (int) FMB_CLIENT_WANT_CERTIFICATE == QUERY_WANT_CERTIFICATE &&
-                  (int) FMB_CLIENT_WANT_TIMES == QUERY_WANT_TIMES,
+                  (int) FMB_CLIENT_WANT_TIMES == QUERY_WANT_TIMES &&
+                  (int) FMB_CLIENT_WANT_GAP == QUERY_WANT_GAP,
               "wants");
 
 enum {
@@ -303,7 +304,7 @@ struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client)
     return bus_counts(client->bus);
 }
 
-struct fmb_client_counts fmb_client_counts(const struct fmb_client *client)
+struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client)
 {
     return client->counts;
 }

@@ -1,4 +1,5 @@
-/* libfmb-client: queries an fmbd on an LCM bus: which bodies meet, when, and in which boxes.
+/* libfmb-client: queries an fmbd on an LCM bus: which bodies meet, when, in which boxes, and how
+ * far apart the others are.
  *
  *     const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
  *     struct fmb_client_placement placement[2] = {
@@ -14,9 +15,9 @@
  *
  * (sink is a function of yours that gets the answers; clients/examples/ask_scene.c is complete.)
  *
- * fmb.h defines frames, poses, verdicts, intervals and boxes. The answers are those of libfmb, bit
- * for bit. Link with pkg-config's fmb-client (liblcm and GLib); libfmb and GMP are not needed, but
- * may be linked too.
+ * fmb.h defines frames, poses, verdicts, intervals, boxes and gaps. The answers are those of
+ * libfmb, bit for bit. Link with pkg-config's fmb-client (liblcm and GLib); libfmb and GMP are not
+ * needed, but may be linked too.
  *
  * A scene may have any number of bodies and pairs. The library divides it into queries of one
  * datagram each, keeps several under way (no more than a default receive buffer holds), repeats
@@ -132,6 +133,7 @@ enum {
     /* A proof of each verdict (fmb.h). Each pair is then a separate query, which is slower. */
     FMB_CLIENT_WANT_CERTIFICATE = 2,
     FMB_CLIENT_WANT_TIMES = 4, /* contact intervals */
+    FMB_CLIENT_WANT_GAP = 8,   /* not with the methods fmb and sat */
 };
 
 /* A scene to query. Nothing of it is used after the call. */
@@ -147,16 +149,19 @@ struct fmb_client_scene {
     const unsigned (*ignored)[2];
     size_t ignored_count;
     double duration; /* seconds, finite, not negative */
-    unsigned want;   /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts alone */
-    int method;      /* fmb_method.number; 0: the default, never wrong and the fastest */
-    double within;   /* time limit for the whole scene, seconds; 0: none but timeout and tries */
+    /* Finite, not negative. Not 0: contacts and near pairs have their gaps, whether wanted or not.
+     * A pair is near if it is separated and its lower bound is at most the margin. */
+    double margin;
+    unsigned want; /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts alone */
+    int method;    /* fmb_method.number; 0: the default, never wrong and the fastest */
+    double within; /* time limit for the whole scene, seconds; 0: none but timeout and tries */
 };
 
 struct fmb_client_answer {
     unsigned a, b;            /* indices of placements, in the order of the pair */
     int status;               /* FMB_OK, or why there is no verdict */
     const char *text;         /* text of the status, "" if FMB_OK. Valid during the callback */
-    struct fmb_answer answer; /* all 0 unless FMB_OK; contact and box as wanted */
+    struct fmb_answer answer; /* all 0 unless FMB_OK; contact, box and gap as wanted */
     /* Where wanted; NULL if it has 60,000 characters or more. Valid during the callback. */
     const char *certificate;
 };
@@ -166,17 +171,17 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
 /* Queries the service, passes the answers to sink, and returns when all are delivered.
  *
  * Returns FMB_OK: sink was called in the order of the pairs. With LISTED and with WANT_CERTIFICATE,
- * for each pair. Otherwise, with ALL and ACROSS, in the order of (a, b), for each pair that is not
- * separated: pairs left out are separated or ignored. Pairs without an answer are passed with their
- * status.
- * Or returns a status of the whole scene, and sink was not called: NO_FRAMES, UNKNOWN_SHAPE,
- * WRONG_DIMENSION, DIMENSIONS_DIFFER, WRONG_COUNT, NOT_FINITE, BAD_SIZE, BAD_ORIENTATION, BAD_ID,
- * BAD_DURATION, UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31 placements, or a body of too many frames),
- * NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
+ * for each pair. Otherwise, with ALL and ACROSS, in the order of (a, b), for each pair that
+ * touches, overlaps or is near: pairs left out are ignored, or separated and farther apart than the
+ * margin. Pairs without an answer are passed with their status. Or returns a status of the whole
+ * scene, and sink was not called: NO_FRAMES, UNKNOWN_SHAPE, WRONG_DIMENSION, DIMENSIONS_DIFFER,
+ * WRONG_COUNT, NOT_FINITE, BAD_SIZE, BAD_ORIENTATION, BAD_ID, BAD_DURATION, BAD_MARGIN,
+ * UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31 placements, or a body of too many frames), NO_MEMORY,
+ * NO_BUS or INSIDE. fmb_client_why() then names the place.
  *
- * Memory: 40 bytes for each placement, 8 for each ignored pair; with ALL and ACROSS also 80 bytes
- * for each contact that waits for earlier ones: at most the contacts of some 500 placements with
- * all others. The client keeps a copy of the frames of up to 16,384 bodies.
+ * Memory: 40 bytes for each placement, 8 for each ignored pair; with ALL and ACROSS also 184
+ * bytes for each of these pairs that waits for earlier ones: at most those of some 500 placements
+ * with all others. The client keeps a copy of the frames of up to 16,384 bodies.
  *
  * A query without a result after timeout * tries seconds is given up (NO_ANSWER). If no result of
  * any query came in that time, all remaining pairs are given up (NO_SERVICE): start an fmbd. From
@@ -210,7 +215,7 @@ struct fmb_client_counts {
     uint64_t whole, by_handle; /* placements sent with frames, and with a handle */
 };
 
-struct fmb_client_counts fmb_client_counts(const struct fmb_client *client);
+struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client);
 
 /* ---- Listening ---- */
 
@@ -221,7 +226,7 @@ struct fmb_client_pair_result {
     int64_t body_id[2];
     int status;
     const char *text; /* as in fmb_client_answer */
-    int dim;          /* of the box; 0: there is none */
+    int dim;          /* of box and gap; 0: there is neither */
     struct fmb_answer answer;
     const char *certificate; /* NULL: none */
     int64_t compute_ns;
@@ -231,12 +236,13 @@ struct fmb_client_scene_result {
     int64_t utime, client_id, sequence_number, server_id;
     int status;
     const char *text;
-    /* A result of ALL or ACROSS names the contacts only; all other pairs are separated. A result
-     * without any verdict could be of either kind: this is then true. */
+    /* A result of ALL or ACROSS names contacts and near pairs only; all others are separated. A
+     * result without any verdict could be of either kind: this is then true. */
     bool names_pairs;
     int64_t end_pair; /* the answers end before this pair of the query */
     int64_t overlapping, touching;
-    int64_t separated, undecided; /* 0 where names_pairs */
+    int64_t separated; /* where names_pairs, the near ones */
+    int64_t undecided; /* 0 where names_pairs */
     int64_t compute_ns;
 };
 

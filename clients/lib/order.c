@@ -49,11 +49,13 @@ static const struct part_answer *find(struct part_answers *answers, int32_t numb
 
 /* ---- Lists ---- */
 
-/* Of ALL and ACROSS, those that are separated are left out here too, but for their certificates. */
+/* Of ALL and ACROSS, those that are separated and not near are left out here too, but for their
+ * certificates. */
 static void give_list(const struct order *order, const struct part *part,
                       struct part_answers *answers)
 {
-    const bool separated = order->cut->scene->which == FMB_CLIENT_LISTED || part->single;
+    const struct fmb_client_scene *scene = order->cut->scene;
+    const bool all = scene->which == FMB_CLIENT_LISTED || part->single;
     for (int32_t number = 0; number < part->total; number++) {
         const unsigned pair[2] = {part->placement[part->pair[number][0]],
                                   part->placement[part->pair[number][1]]};
@@ -62,7 +64,8 @@ static void give_list(const struct order *order, const struct part *part,
             continue;
         }
         const struct part_answer *found = find(answers, number);
-        if (separated || (found && found->answer.verdict != FMB_SEPARATED))
+        if (all || (found && (found->answer.verdict != FMB_SEPARATED ||
+                              part_is_near(scene, &found->answer.gap))))
             give(order, answers, pair, found);
     }
 }

@@ -152,10 +152,12 @@ static bool check_pairs(struct place *place, const struct fmb_client_scene *scen
 
 static bool check_rest(struct place *place, const struct fmb_client_scene *scene)
 {
-    const unsigned wants =
-        FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_CERTIFICATE | FMB_CLIENT_WANT_TIMES;
+    const unsigned wants = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_CERTIFICATE |
+                           FMB_CLIENT_WANT_TIMES | FMB_CLIENT_WANT_GAP;
     if (!(scene->duration >= 0 && isfinite(scene->duration)))
         return refuse(place, FMB_BAD_DURATION, "duration");
+    if (!(scene->margin >= 0 && isfinite(scene->margin)))
+        return refuse(place, FMB_BAD_MARGIN, "margin");
     return (scene->want & ~wants) == 0 || refuse(place, FMB_UNKNOWN_WANT, "want");
 }
 

@@ -23,12 +23,17 @@ void part_answers_refuse(struct part_answers *answers, int status, const char *t
              text && *text ? text : fmb_client_status_text(status));
 }
 
+static bool wants_gaps(const struct fmb_client_scene *scene)
+{
+    return scene->want & FMB_CLIENT_WANT_GAP || scene->margin > 0;
+}
+
 /* Eight bytes a number. */
 static size_t contact_bytes(const struct fmb_client_scene *scene)
 {
     const size_t times = scene->want & FMB_CLIENT_WANT_TIMES ? 2 : 0;
     const size_t box = scene->want & FMB_CLIENT_WANT_BOX ? 2 * FMB_DIM_MAX : 0;
-    return 8 * (times + box);
+    return 8 * (times + box) + (wants_gaps(scene) ? (size_t) wire_gap_bytes(FMB_DIM_MAX) : 0);
 }
 
 size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene)
@@ -79,17 +84,19 @@ static int32_t number_of(const struct taking *taking, int32_t k)
     return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
 }
 
-/* Each pair that is named is of the query, comes once, in order, and is a contact. */
+/* Each pair that is named is of the query, comes once, in order, and is a contact or near. */
 static bool fits_named(const struct taking *taking)
 {
     const struct scene_result *result = taking->result;
     int32_t before = taking->first - 1;
-    if (result->contact_count != result->verdict_count ||
-        result->names_pairs != (result->verdict_count > 0))
+    if (result->names_pairs != (result->verdict_count > 0))
         return false;
     for (int32_t k = 0; k < result->verdict_count; k++) {
         const int32_t number = number_of(taking, k);
         if (number <= before || number >= result->end_pair)
+            return false;
+        if (result->verdict[k] == FMB_SEPARATED &&
+            !(result->has_gaps && part_is_near(taking->scene, &result->gap[k])))
             return false;
         before = number;
     }
@@ -106,8 +113,9 @@ static bool fits(const struct taking *taking)
     const bool times = taking->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
     if (result->has_times != times)
         return false;
-    if (result->has_boxes && (!(taking->scene->want & FMB_CLIENT_WANT_BOX) ||
-                              result->dim != taking->scene->placements[0].dim))
+    if (result->has_gaps != (wants_gaps(taking->scene) && result->verdict_count > 0) ||
+        (result->has_boxes && !(taking->scene->want & FMB_CLIENT_WANT_BOX)) ||
+        (result->dim > 0 && result->dim != taking->scene->placements[0].dim))
         return false;
     if (listed &&
         (result->names_pairs || result->verdict_count != result->end_pair - taking->first))
@@ -142,6 +150,13 @@ static void fill_contact(const struct scene_result *result, int32_t contact, str
         out->box[i / dim][i % dim] = result->boxes[2 * dim * contact + i];
 }
 
+/* Whether the pair is not merely separated. */
+static bool says_more(const struct scene_result *result, int32_t k)
+{
+    return result->verdict[k] != FMB_SEPARATED ||
+           (result->has_gaps && query_has_gap(&result->gap[k]));
+}
+
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers)
 {
@@ -151,29 +166,33 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
         return PART_MALFORMED;
     size_t found = 0;
     for (int32_t k = 0; k < result->verdict_count; k++)
-        found += result->verdict[k] != FMB_SEPARATED;
+        found += says_more(result, k);
     if (!reserve(answers, found))
         return PART_NO_MEMORY;
     for (int32_t k = 0; k < result->verdict_count; k++) {
-        if (result->verdict[k] == FMB_SEPARATED)
+        if (!says_more(result, k))
             continue;
         struct part_answer *out = &answers->answer[answers->count++];
         *out = (struct part_answer){.number = number_of(&taking, k),
                                     .answer.verdict = (enum fmb_verdict) result->verdict[k]};
         if (is_contact(result->verdict[k]))
             fill_contact(result, contact++, &out->answer);
+        out->answer.has_gap = result->has_gaps;
+        if (result->has_gaps)
+            out->answer.gap = result->gap[k];
     }
     answers->answered = result->end_pair;
     return PART_TAKEN;
 }
 
-/* A box of a contact, and a certificate, only where they were wanted. */
+/* A box of a contact, and a certificate, only where they were wanted; a gap where it was. */
 static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
-    if (answer->has_box &&
-        !(is_contact((int) answer->verdict) && scene->want & FMB_CLIENT_WANT_BOX &&
-          result->dim == scene->placements[0].dim))
+    if (answer->has_gap != wants_gaps(scene) ||
+        (answer->has_box &&
+         !(is_contact((int) answer->verdict) && scene->want & FMB_CLIENT_WANT_BOX)) ||
+        (result->dim > 0 && result->dim != scene->placements[0].dim))
         return false;
     return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;
 }
@@ -187,7 +206,10 @@ enum part_taken part_take_pair(const struct fmb_client_scene *scene,
         return PART_NO_MEMORY;
     if (result->certificate && !(answers->certificate = strdup(result->certificate)))
         return PART_NO_MEMORY;
-    answers->answer[answers->count++] = (struct part_answer){.answer = result->answer};
+    struct part_answer *out = &answers->answer[answers->count++];
+    *out = (struct part_answer){.answer = result->answer};
+    if (!(scene->want & FMB_CLIENT_WANT_GAP))
+        query_remove_far_gap(scene->margin, &out->answer);
     answers->answered = 1;
     return PART_TAKEN;
 }

@@ -17,7 +17,7 @@ struct part {
     size_t row, column;                       /* for cut.h and order.h */
 };
 
-/* A pair that is not separated. */
+/* A pair that is not separated, or has a gap. */
 struct part_answer {
     int32_t number;           /* in the part, in its order */
     struct fmb_answer answer; /* with verdict 0: the method cannot decide it */
@@ -37,6 +37,12 @@ void part_answers_clear(struct part_answers *answers);
 
 /* Sets the status of all pairs not answered. text: NULL or "" for that of the status. */
 void part_answers_refuse(struct part_answers *answers, int status, const char *text);
+
+/* Whether a separated pair is near. */
+static inline bool part_is_near(const struct fmb_client_scene *scene, const struct fmb_gap *gap)
+{
+    return scene->margin > 0 && gap->bounds[0] <= scene->margin;
+}
 
 /* Most bytes of the result. */
 size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene);

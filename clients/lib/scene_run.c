@@ -79,6 +79,8 @@ static size_t write_pair(struct part_run *part, unsigned char *out)
                                .duration = scene->duration,
                                .method = scene->method,
                                .want = (int32_t) scene->want & ~QUERY_WANT_TIMES};
+    if (scene->margin > 0)
+        query.want |= QUERY_WANT_GAP;
     const size_t max = QUERY_BYTES_MAX - WIRE_PAIR_QUERY_BYTES;
     return write_placements(part, max, query.placement) <= max ? wire_write_pair_query(&query, out)
                                                                : 0;
@@ -92,6 +94,7 @@ static struct scene_query *begin_query(const struct part_run *part)
     query->duration = scene->duration;
     query->method = scene->method;
     query->want = (int32_t) scene->want;
+    query->margin = scene->margin;
     query->which = QUERY_PAIRS_LISTED;
     query->split = query->first_pair = 0;
     query->placement_count = query->index_count = query->ignored_count = 0;
