@@ -165,13 +165,26 @@ static void write_end(struct json_writer *out, double value, int end)
         json_string(out, NULL, isnan(value) ? "NaN" : value > 0 ? "inf" : "-inf");
 }
 
+static void write_gap(struct json_writer *out, int dim, const struct fmb_gap *gap)
+{
+    json_begin(out, NULL, '[');
+    for (int end = 0; end < 2; end++)
+        write_end(out, gap->bounds[end], end);
+    if (gap->has_witness) {
+        json_number(out, NULL, gap->time);
+        for (int of = 0; of < 2; of++)
+            write_numbers(out, gap->witness[of], dim);
+    }
+    json_end(out, ']');
+}
+
 static void write_side(struct json_writer *out, const struct page_side *side)
 {
     if (!side->answered) {
         json_null(out, NULL);
         return;
     }
-    if (!side->has_times && side->dim == 0) {
+    if (!side->has_times && side->dim == 0 && side->gap_dim == 0) {
         json_integer(out, NULL, side->verdict);
         return;
     }
@@ -182,6 +195,8 @@ static void write_side(struct json_writer *out, const struct page_side *side)
     for (int end = 0; end < 2; end++)
         for (int axis = 0; axis < side->dim; axis++)
             write_end(out, side->box[end][axis], end);
+    if (side->gap_dim > 0)
+        write_gap(out, side->gap_dim, side->gap);
     json_end(out, ']');
 }
 
@@ -237,6 +252,8 @@ static void write_query(const struct replayed *replayed, struct json_writer *out
     json_number(out, "T", scene ? scene->duration : replayed->pair->duration);
     json_integer(out, "want", scene ? scene->want : replayed->pair->want);
     if (scene) {
+        if (scene->margin > 0)
+            json_number(out, "margin", scene->margin);
         json_integer(out, "first", scene->first_pair);
         json_integer(out, "split", scene->split);
         json_integer(out, "total", any_query_pairs(scene));

@@ -14,6 +14,7 @@ enum { PAGE_PAIRS_MAX = 1000 };
  *                    the log, enum replay_outcome
  *     kind           0 of a pair, else 1 + QUERY_PAIRS_
  *     T want         duration in seconds, wants
+ *     margin         of a scene, if it has one
  *     first split    of a scene
  *     total          number of pairs of the query
  *     frames         [[id, shape, position, orientation, velocity], ...], the last two empty where
@@ -28,7 +29,8 @@ enum { PAGE_PAIRS_MAX = 1000 };
  *
  * Then and now of a pair: null where the result does not answer it, a verdict, or [verdict, first,
  * last] or [verdict, first, last, lower ends of the box..., upper ends...]. first and last are null
- * where there is no interval, and ends of boxes where they are infinite. */
+ * where there is no interval, and ends of boxes where they are infinite. Where there is a gap, its
+ * bounds, time and witness points come last, as an array. */
 void page_event_write(const struct replayed *replayed, size_t log, struct page_shapes *shapes,
                       struct json_writer *out);
 

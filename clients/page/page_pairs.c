@@ -18,7 +18,8 @@ static bool same(const struct page_side *a, const struct page_side *b)
 {
     return a->verdict == b->verdict && a->has_times == b->has_times && a->dim == b->dim &&
            same_numbers(a->times, b->times, 2) && same_numbers(a->box[0], b->box[0], FMB_DIM_MAX) &&
-           same_numbers(a->box[1], b->box[1], FMB_DIM_MAX);
+           same_numbers(a->box[1], b->box[1], FMB_DIM_MAX) && a->gap_dim == b->gap_dim &&
+           (a->gap_dim == 0 || query_same_gap(a->gap, b->gap));
 }
 
 static bool differs(const struct page_pair *pair)
@@ -43,6 +44,8 @@ static struct page_side side_of_pair(const struct pair_result *result)
     side.dim = answer->has_box ? result->dim : 0;
     if (answer->has_box)
         memcpy(side.box, answer->box, sizeof side.box);
+    side.gap_dim = answer->has_gap ? result->dim : 0;
+    side.gap = &answer->gap;
     return side;
 }
 
@@ -72,14 +75,19 @@ static bool has_verdict(const struct page_place *place)
     return place->result && place->verdict < place->result->verdict_count;
 }
 
-/* The next verdict of the result, with its times and its box. */
+/* The next verdict of the result, with its times, its box and its gap. */
 static struct page_side take(struct page_place *place)
 {
     const struct scene_result *result = place->result;
     struct page_side side;
     memset(&side, 0, sizeof side);
     side.answered = true;
-    side.verdict = result->verdict[place->verdict++];
+    side.verdict = result->verdict[place->verdict];
+    if (result->has_gaps) {
+        side.gap = &result->gap[place->verdict];
+        side.gap_dim = query_has_gap(side.gap) ? result->dim : 0;
+    }
+    place->verdict++;
     if (side.verdict < FMB_TOUCHING || place->contact >= result->contact_count)
         return side;
     const int32_t contact = place->contact++, dim = result->has_boxes ? result->dim : 0;

@@ -11,9 +11,10 @@ struct page_side {
     bool answered;         /* false: nothing, and the other members are 0 */
     unsigned char verdict; /* enum fmb_verdict; 0: the method could not decide */
     bool has_times;
-    int dim; /* of the box; 0: there is none */
+    int dim, gap_dim; /* of box and gap; 0: there is none */
     double times[2];
     double box[2][FMB_DIM_MAX];
+    const struct fmb_gap *gap; /* of the result; where there is one */
 };
 
 struct page_pair {

@@ -9,7 +9,7 @@ const stage = {
     event: null, frames: [], units: null, bounds: null, pairs: [],
     moment: 0,              /* of the window, 0 to 1 */
     camera: null,           /* {target, zoom, pan}; one for each group of bodies */
-    facets: [], pointed: -1,
+    solids: [], pointed: -1, /* what is drawn (raster.js) */
     theme: {},
 };
 

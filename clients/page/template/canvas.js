@@ -35,14 +35,10 @@ function readTheme() {
     stage.theme.dark = matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-function colourOf(verdict, light, alpha) {
-    const [lit, dark] = COLOURS[verdict];
+function strokeOf(verdict, alpha) {
+    const [lit, dark] = COLOURS[verdict], light = stage.theme.dark ? 0.65 : 0;
     const mixed = lit.map((value, i) => Math.round(light * value + (1 - light) * dark[i]));
     return `rgba(${mixed.join(",")},${alpha})`;
-}
-
-function strokeOf(verdict, alpha) {
-    return colourOf(verdict, stage.theme.dark ? 0.65 : 0, alpha);
 }
 
 /* ---- Lines and text ---- */
@@ -73,7 +69,7 @@ function drawEdges(context, points, faces) {
     for (const face of faces) {
         face.forEach((corner, i) => {
             const next = face[(i + 1) % face.length];
-            const name = Math.min(corner, next) * 8 + Math.max(corner, next);
+            const name = Math.min(corner, next) * points.length + Math.max(corner, next);
             if (drawn.has(name))
                 return;
             drawn.add(name);
@@ -213,4 +209,13 @@ function drawTriad(context) {
         drawLine(context, at, [at[0] + right, at[1] - up]);
         drawText(context, name, ...beyond, stage.theme.dim, "center");
     });
+}
+
+function drawGround(context, project) {
+    if (stage.units.dim === 2) {
+        drawGrid2D(context, project);
+    } else {
+        drawGrid3D(context, project);
+        drawTriad(context);
+    }
 }

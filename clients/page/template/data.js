@@ -16,7 +16,7 @@ const OUTCOME_SAID = [
 ];
 
 const CUBOID = 1, FACE = 3, BOX = 4;
-const WANT_BOX = 1, WANT_CERTIFICATE = 2, WANT_TIMES = 4;
+const WANT_BOX = 1, WANT_CERTIFICATE = 2, WANT_TIMES = 4, WANT_GAP = 8;
 const KIND_PAIR = 0, KIND_LISTED = 1, KIND_ALL = 2, KIND_ACROSS = 3;
 
 /* ---- Events ---- */
@@ -41,12 +41,19 @@ function timesOf(side) {
     return Array.isArray(side) && side[1] !== null ? [side[1], side[2]] : null;
 }
 
+/* [lower bound, upper bound, time of the least distance..., witness points...], or null. */
+function gapOf(side) {
+    const last = Array.isArray(side) ? side[side.length - 1] : null;
+    return Array.isArray(last) ? last : null;
+}
+
 /* [lower ends, upper ends], or null. */
 function boxOf(side) {
-    if (!Array.isArray(side) || side.length <= 3)
+    const end = Array.isArray(side) ? side.length - (gapOf(side) ? 1 : 0) : 0;
+    if (end <= 3)
         return null;
-    const dim = (side.length - 3) / 2;
-    return [side.slice(3, 3 + dim), side.slice(3 + dim)];
+    const dim = (end - 3) / 2;
+    return [side.slice(3, 3 + dim), side.slice(3 + dim, end)];
 }
 
 function bodyOf(event, index) {
@@ -267,6 +274,9 @@ function sideDifferences(then, now) {
     const found = [], verdicts = [verdictOf(then), verdictOf(now)];
     if (verdicts[0] !== verdicts[1])
         found.push(["verdict", verdictName(verdicts[0]), verdictName(verdicts[1])]);
+    const gaps = [gapOf(then), gapOf(now)];
+    if (JSON.stringify(gaps[0]) !== JSON.stringify(gaps[1]))
+        found.push(["gap", ...(gaps[0] && gaps[1] ? intervalTexts(...gaps) : gaps.map(gapText))]);
     if (Math.min(...verdicts) < TOUCHING) /* there is neither interval nor box to compare */
         return found;
     const times = [timesOf(then), timesOf(now)], boxes = [boxOf(then), boxOf(now)];

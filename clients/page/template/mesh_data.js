@@ -11,25 +11,22 @@ function unpack(text, Kind) {
 }
 
 /* corner: [x, y, z] of each vertex; face: three vertices of each; colour: its worst verdict, or 0;
- * number: of each in the file, or null where all are here; first: the number of its first face
- * among those of all meshes, by which pictures know them. */
+ * first: the number of its first face among those of all meshes, by which pictures know them. */
 function readMesh(mesh, index) {
     return {
         index, name: mesh.name, faces: mesh.faces, met: mesh.met, shift: mesh.shift,
         corner: unpack(mesh.corner, Float32Array), face: unpack(mesh.face, Uint32Array),
         colour: unpack(mesh.colour, Uint8Array),
-        number: mesh.number === null ? null : unpack(mesh.number, Uint32Array), first: 0,
+        first: 0,
     };
-}
-
-function shownFaces(mesh) {
-    return mesh.colour.length;
 }
 
 const meshes = data.meshes.map(readMesh);
 if (meshes.length > 1)
-    meshes[1].first = shownFaces(meshes[0]);
-const faceCount = meshes.reduce((sum, mesh) => sum + shownFaces(mesh), 0);
+    meshes[1].first = meshes[0].faces;
+for (const mesh of meshes)
+    mesh.id = Uint32Array.from(mesh.colour, (_, f) => mesh.first + f);
+const faceCount = meshes.reduce((sum, mesh) => sum + mesh.faces, 0);
 const isSelf = meshes.length === 1;
 const isMoving = data.moving && data.T > 0;
 
@@ -49,13 +46,7 @@ function meshOfFace(id) {
 
 /* As the file counts it. */
 function numberOfFace(id) {
-    const mesh = meshOfFace(id);
-    return mesh.number ? mesh.number[id - mesh.first] : id - mesh.first;
-}
-
-/* Where the face of this number is among all; it is there where it is in a pair. */
-function faceOfNumber(mesh, number) {
-    return mesh.first + (mesh.number ? lowerBound(mesh.number, number) : number);
+    return id - meshOfFace(id).first;
 }
 
 /* [[x, y, z], ...] at a moment of the window. */
@@ -70,7 +61,7 @@ function cornersOf(id, moment) {
 /* a, b: faces of the picture; numbers: of the files; times: [first, last] or null, seconds. */
 const pairs = data.pairs.map(([a, b, verdict, ...times], index) => ({
     index, numbers: [a, b], verdict, times: times.length ? times : null,
-    a: faceOfNumber(meshes[0], a), b: faceOfNumber(meshes[meshes.length - 1], b),
+    a, b: meshes[meshes.length - 1].first + b,
 }));
 
 /* Of each face that is in listed pairs, these. */

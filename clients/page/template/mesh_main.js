@@ -101,7 +101,9 @@ function start() {
     fillLegend();
     fillList();
     readUnits();
-    picture.edge = meanEdge();
+    groupFaces();
+    stage.solids = meshes;
+    stage.edge = meanEdge();
     measureStage();
     stage.camera = { bounds: boundsNow() };
     setUp(2);

@@ -18,27 +18,12 @@ function fillHeader() {
         makeCount("touching", data.touching, "touches", "touch"));
 }
 
-function leftOut(mesh) {
-    return mesh.faces - shownFaces(mesh);
-}
-
-function thinnedText(mesh) {
-    const met = mesh.colour.reduce((sum, colour) => sum + (colour ? 1 : 0), 0);
-    const ofMet = met === mesh.met ? "none that meets"
-        : `${grouped(mesh.met - met)} of ${grouped(mesh.met)} that meet`;
-    return `of ${meshLetter(mesh.index)} ${grouped(leftOut(mesh))} of ${grouped(mesh.faces)}, `
-        + ofMet;
-}
-
 /* Every note says what is not here. */
 function notesOf() {
     const notes = [];
     if (data.count > pairs.length)
         notes.push(`The list has the first ${grouped(pairs.length)} of ${grouped(data.count)} `
             + "pairs; the program tells them all.");
-    const thinned = meshes.filter((mesh) => leftOut(mesh) > 0).map(thinnedText);
-    if (thinned.length > 0)
-        notes.push(`To keep the page small some faces are not drawn: ${thinned.join("; ")}.`);
     if (data.as === "tetrahedra")
         notes.push("What was asked are tetrahedra over the faces; what is drawn are the faces.");
     return notes;

@@ -1,22 +1,8 @@
-/* The picture: the meshes at a moment of the window, the chosen pair of faces on top of them, and
- * what of it the camera sees. While it moves it is coarse; when it rests, it is drawn again, with
- * finer pixels. */
+/* The picture of the meshes at a moment of the window: where they are, and the chosen pair of faces on
+ * top of them. */
 
-const FINE = 2;               /* pixels of the raster for one of the page */
-const FINE_PIXELS = 6e6;      /* no more of them */
-const REST_AFTER = 150;       /* milliseconds */
-const SLOW = 90;              /* milliseconds that a picture may take */
-const COARSEST = 0.35;
 const NEAR_PAIR = 0.35;       /* the part of the canvas that a pair fills, of what all fills */
 const BOUND_POINTS = 3000;    /* vertices of a mesh that tell where it is */
-
-const picture = {
-    canvas: document.createElement("canvas"), image: null, /* the raster's pixels */
-    scale: 1, coarse: 1,    /* pixels for one of the page: now, and while it moves */
-    shaded: null,           /* the moment that the colours of faces are of */
-    edge: 0,                /* how long edges are */
-    resting: 0,             /* the timer */
-};
 
 function chosenPair() {
     return chosen.pair;
@@ -62,7 +48,6 @@ function setUp(axis) {
     for (const [id, of] of [["up-y", 1], ["up-z", 2]])
         find(id).setAttribute("aria-pressed", String(of === axis));
     lightFaces();
-    picture.shaded = null;
     fit(stage.camera.bounds);
     redrawStage();
 }
@@ -80,64 +65,18 @@ function meanEdge() {
 }
 
 /* Edges are drawn where there is room between them: in pixels. */
-const EDGES_FROM = 7, EDGES_FULL = 24;
+const EDGES_FROM = 7, EDGES_FULL = 24, EDGE_DARK = 0.3;
 
-function edgeStrength() {
-    const size = picture.edge * stage.camera.zoom;
-    return clamp((size - EDGES_FROM) / (EDGES_FULL - EDGES_FROM), 0, 1);
+function edgeDarkness() {
+    const size = stage.edge * stage.camera.zoom;
+    return EDGE_DARK * clamp((size - EDGES_FROM) / (EDGES_FULL - EDGES_FROM), 0, 1);
 }
 
-function sizePicture(wanted) {
-    const most = Math.sqrt(FINE_PIXELS / (stage.width * stage.height));
-    picture.scale = Math.min(wanted, most);
-    const width = Math.max(1, Math.round(stage.width * picture.scale));
-    const height = Math.max(1, Math.round(stage.height * picture.scale));
-    sizeRaster(width, height);
-    if (picture.image?.width === width && picture.image.height === height)
-        return;
-    picture.canvas.width = width;
-    picture.canvas.height = height;
-    picture.image = picture.canvas.getContext("2d").createImageData(width, height);
-}
-
-function drawMeshes(context, project, wanted) {
-    sizePicture(wanted);
-    clearRaster();
-    for (const mesh of meshes)
-        rasterise(mesh, project, picture.scale, stage.moment);
-    if (picture.shaded !== stage.moment)
-        shadeFaces(stage.moment);
-    picture.shaded = stage.moment;
-    paintPixels(picture.image.data, edgeStrength() * Math.min(1, picture.scale / FINE));
-    picture.canvas.getContext("2d").putImageData(picture.image, 0, 0);
-    context.imageSmoothingQuality = "high";
-    context.drawImage(picture.canvas, 0, 0, stage.width, stage.height);
-}
-
-function drawStage(wanted) {
-    const context = clearStage(), project = projection(), begin = performance.now();
-    drawGrid3D(context, project);
-    drawMeshes(context, project, wanted);
-    drawTriad(context);
-    context.lineJoin = "round";
+function drawScene(context, project) {
+    drawGround(context, project);
+    drawFaces(context, project, edgeDarkness());
     drawPair(context, project);
-    return performance.now() - begin;
 }
-
-/* Coarser where pictures take long, and less coarse again where they do not. */
-function drawMoving() {
-    const taken = drawStage(picture.coarse);
-    const times = taken > SLOW ? 0.75 : taken < SLOW / 3 ? 1.25 : 1;
-    picture.coarse = clamp(picture.coarse * times, COARSEST, 1);
-}
-
-const drawFine = onceAFrame(() => drawStage(Math.max(FINE, devicePixelRatio)));
-
-const redrawStage = onceAFrame(() => {
-    drawMoving();
-    clearTimeout(picture.resting);
-    picture.resting = setTimeout(drawFine, REST_AFTER);
-});
 
 /* ---- The chosen pair ---- */
 
@@ -172,10 +111,6 @@ function drawPair(context, project) {
 }
 
 /* ---- What is pointed at ---- */
-
-function faceBelow({ x, y }) {
-    return faceAt(Math.floor(x * picture.scale), Math.floor(y * picture.scale));
-}
 
 function point(at) {
     const id = at ? faceBelow(at) : NO_FACE;

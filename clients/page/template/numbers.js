@@ -56,6 +56,12 @@ function intervalExact(low, high) {
     return `${low === null ? "-∞" : exact(low)} .. ${high === null ? "∞" : exact(high)}`;
 }
 
+/* Of a gap: one number where its bounds look alike. */
+function gapText(gap) {
+    const texts = gap ? [endText(gap[0], -1, DIGITS), endText(gap[1], 1, DIGITS)] : ["–"];
+    return [...new Set(texts)].join(" .. ");
+}
+
 /* The texts of two intervals: exact where they would look alike, and are not. */
 function intervalTexts(then, now) {
     const texts = [intervalText(...then), intervalText(...now)];

@@ -60,7 +60,9 @@ function fillLegends() {
     show(find("stage-legend"), swatch("box", "intersection"),
         differing.length === 0 ? null : swatch("box-then", "intersection then, where it differs"),
         make("span", { class: "key" }, make("i", { class: "arrow-key" }, "→"), "motion"),
-        swatch("ghost", "end of the window"));
+        swatch("ghost", "end of the window"),
+        data.events.some((event) => event.want & WANT_GAP || event.margin)
+            ? swatch("gap", "least distance") : null);
 }
 
 /* ---- Differences ---- */
@@ -136,10 +138,11 @@ function kindText(event) {
     }[event.kind] ?? `a scene of ${frames}`;
 }
 
-function wantText(want) {
+function wantText({ want, margin }) {
     const names = [[WANT_BOX, "boxes"], [WANT_TIMES, "intervals"],
-        [WANT_CERTIFICATE, "a certificate"]];
-    return ["verdicts", ...names.filter(([bit]) => want & bit).map(([, name]) => name)].join(", ");
+        [WANT_CERTIFICATE, "a certificate"], [WANT_GAP, "gaps"]];
+    return ["verdicts", ...names.filter(([bit]) => want & bit).map(([, name]) => name),
+        ...(margin ? [`what is nearer than ${short(margin)}`] : [])].join(", ");
 }
 
 function verdictCounts(result) {
@@ -164,7 +167,7 @@ function fillFacts(event) {
     show(find("event-facts"), make("dl", {}, ...log,
         ...fact("at", `${timeText(event.seconds)} s, ${dateText(event.t)}, byte `
             + grouped(event.o)),
-        ...fact("query", `${kindText(event)}; ${wantText(event.want)}; window ${window}`),
+        ...fact("query", `${kindText(event)}; ${wantText(event)}; window ${window}`),
         ...fact("then", resultText(event.then, stage.pairs[0]?.then)),
         ...fact("now", resultText(event.now, stage.pairs[0]?.now))));
 }
@@ -241,6 +244,12 @@ function boxCell(pair) {
     return make("td", { class: "number" }, ...(dim ? lines : ["–"]));
 }
 
+function gapCell(pair) {
+    const gaps = [gapOf(pair.then), gapOf(pair.now)];
+    return make("td", { class: "number", title: gaps[1] ? intervalExact(...gaps[1]) : null },
+        ...twice(...gaps.map(gapText), pair.differs));
+}
+
 /* What was not answered then has nothing to be compared with. */
 function verdictsOf(pair) {
     const { then } = stage.event, now = verdictOf(pair.now);
@@ -255,7 +264,7 @@ function makePairRow(pair, has) {
     }, pair.differs ? make("i", { class: "flag-key" }, "≠") : null, name);
     return make("tr", { class: isChosen ? "chosen" : "", "data-pair": pair.index },
         make("td", {}, button), make("td", {}, ...verdictsOf(pair)),
-        has.times ? timesCell(pair) : null, has.boxes ? boxCell(pair) : null);
+        has.times ? timesCell(pair) : null, has.gaps ? gapCell(pair) : null, has.boxes ? boxCell(pair) : null);
 }
 
 function dimNote(text) {
@@ -286,9 +295,9 @@ function pairNotes(event, hidden) {
 function fillPairs(event) {
     const pairs = stage.pairs, shown = pairs.slice(0, panel.pairs);
     const sides = shown.flatMap((pair) => [pair.then, pair.now]);
-    const has = { times: sides.some(timesOf), boxes: sides.some(boxOf) };
+    const has = { times: sides.some(timesOf), gaps: sides.some(gapOf), boxes: sides.some(boxOf) };
     const names = ["pair", "verdict", ...(has.times ? ["in contact, s"] : []),
-        ...(has.boxes ? ["box"] : [])];
+        ...(has.gaps ? ["gap"] : []), ...(has.boxes ? ["box"] : [])];
     show(find("event-pairs"), shown.length === 0 ? null
         : makeTable("pairs", names, shown.map((pair) => makePairRow(pair, has))),
         ...pairNotes(event, pairs.length - shown.length));

@@ -53,8 +53,26 @@ function setScene(event) {
     measureStage();
     if (stage.drawable.length > 0)
         setCamera(event);
+    setSolids(event);
     drawBands();
     redrawStage();
+}
+
+/* The bodies for the raster: each a group of its own, its polygons cut into triangles. */
+function setSolids(event) {
+    let count = 0;
+    stage.solids = stage.drawable.map((frame) => {
+        const outline = outlineOf(stage.units, frame, event.T), first = count;
+        const fans = outline.faces.map((face) => face.slice(2).map((k, i) => [face[0], face[i + 1], k]));
+        count += fans.length;
+        return {
+            ...outline, frame, first, corner: Float64Array.from(outline.corners.flat()),
+            face: fans.flat(2), id: fans.flatMap((fan, i) => fan.map(() => first + i)),
+            light: outline.faces.map((face) => stage.units.dim === 2 ? 0.8
+                : lightOf(...face.slice(0, 3).map((k) => outline.corners[k]))),
+        };
+    });
+    allotFaces(count);
 }
 
 /* The camera of the group, if what it sees holds the event's frames; else a new one. */

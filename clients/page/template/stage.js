@@ -1,6 +1,6 @@
-/* The scene of the chosen query, drawn on a canvas: frames at a moment of the window in the colours
- * of their verdicts, dashed where they are at its end, arrows on the way, the boxes of the
- * contacts. 2D as it lies in the plane, 3D turned as the mouse turns it. */
+/* The scene of the chosen query: bodies at a moment of the window in the colours of their verdicts,
+ * dashed where they are at its end, arrows on the way, the boxes of the contacts. 2D as it lies in the
+ * plane, 3D turned as the mouse turns it. */
 
 const LABELS_MAX = 80;  /* more bodies cannot be labelled: their ids show when pointed at */
 const BOXES_MAX = 2000;
@@ -14,73 +14,29 @@ function isBack(index) {
     return pair && index !== pair.a && index !== pair.b;
 }
 
-/* A face of a solid is turned to the viewer where its normal, pointed away from the middle of the
- * frame, is. */
-function isFront(points, middle) {
-    const normal = cross(minus(points[1], points[0]), minus(points[2], points[0]));
-    const out = dot(normal, minus(middleOf(points), middle));
-    return out >= 0 ? normal[2] >= 0 : normal[2] <= 0;
-}
+const COVER_2D = 0.5, COVER_3D = 0.66;
+const EDGE_DARK = 0.7;
 
-/* Right, up, depth, for the sake of isFront: y grows downwards on the canvas. */
-function standing(point) {
-    return [point[0], -point[1], point[2] * stage.camera.zoom];
-}
-
-/* Faces, and how near they are. */
-function facetsOf(project, frame, outline) {
-    const points = outline.corners.map(project);
-    return outline.faces.map((face, i) => {
-        const middle = outline.middles[i];
-        const corners = face.map((k) => points[k]), world = face.map((k) => outline.corners[k]);
-        return {
-            index: frame.index, face, points: corners, flat: stage.units.dim === 2,
-            depth: corners.reduce((sum, p) => sum + p[2], 0) / corners.length,
-            light: stage.units.dim === 2 ? 0.8 : lightOf(world[0], world[1], world[2]),
-            front: middle === null
-                || isFront(corners.map(standing), standing(project(middle))),
-        };
-    });
-}
-
-/* How far back, 0 to 1, on the way through all that is drawn. */
-function depthCue(facets) {
-    let near = -Infinity, far = Infinity;
-    for (const { depth } of facets) {
-        near = Math.max(near, depth);
-        far = Math.min(far, depth);
+function shadeFaces() {
+    for (const { frame, first, light } of stage.solids) {
+        const cover = (stage.units.dim === 2 ? COVER_2D : COVER_3D) * (isBack(frame.index) ? 0.4 : 1);
+        light.forEach((value, i) => {
+            shadeFace(first + i, COLOURS[stage.worst[frame.index]], value);
+            faces.cover[first + i] = cover;
+            faces.group[first + i] = frame.index;
+        });
     }
-    return (depth) => near > far ? (near - depth) / (near - far) : 0;
 }
 
-function drawFacet(context, facet, behind) {
-    const verdict = stage.worst[facet.index], back = isBack(facet.index);
-    const pointed = facet.index === stage.pointed;
-    const strength = (back ? 0.45 : 1) * (1 - 0.45 * behind);
-    if (!tracePolygon(context, facet.points))
-        return;
-    if (!facet.front) {
-        context.lineWidth = 0.7;
-        context.strokeStyle = strokeOf(verdict, 0.45 * strength);
-        context.stroke();
-        return;
+/* Behind the faces, but for the body that is pointed at: through them their own hidden edges show
+ * faintly. Bodies without a face to be seen show here. */
+function drawOutlines(context, project) {
+    for (const solid of stage.solids) {
+        const { index } = solid.frame;
+        context.lineWidth = index === stage.pointed ? 3.6 : 2;
+        context.strokeStyle = strokeOf(stage.worst[index], isBack(index) ? 0.45 : 1);
+        drawEdges(context, cornersAt(solid, stage.moment).map(project), solid.faces);
     }
-    const cover = (facet.flat ? 0.5 : 0.66) * (back ? 0.4 : 1 - 0.3 * behind);
-    context.fillStyle = colourOf(verdict, facet.light, cover);
-    context.fill();
-    context.lineWidth = pointed ? 2.4 : facet.flat ? 1.5 : 1.2;
-    context.strokeStyle = strokeOf(verdict, pointed ? 1 : strength);
-    context.stroke();
-}
-
-function drawFrames(context, project, time) {
-    stage.outlines = stage.drawable.map((frame) => outlineOf(stage.units, frame, time));
-    const facets = stage.drawable.flatMap((frame, i) =>
-        facetsOf(project, frame, stage.outlines[i]));
-    facets.sort((a, b) => a.depth - b.depth);
-    const cue = depthCue(facets);
-    facets.forEach((facet) => drawFacet(context, facet, cue(facet.depth)));
-    stage.facets = facets.filter((facet) => facet.front);
 }
 
 /* ---- Motion ---- */
@@ -98,31 +54,30 @@ function drawHead(context, from, to) {
 }
 
 /* Where the window has no length there is a direction only. */
-function arrowEnd(project, frame, from, middle) {
+function arrowEnd(project, { frame, middle, shift }, from) {
     if (stage.event.T > 0)
-        return project(outlineOf(stage.units, frame, stage.event.T).middle);
+        return project(plus(middle, shift, 1));
     const largest = Math.max(...frame.velocity.map(Math.abs));
     const direction = [0, 1, 2].map((axis) => middle[axis] + (frame.velocity[axis] ?? 0) / largest);
     const to = project(direction), length = Math.hypot(to[0] - from[0], to[1] - from[1]);
     return length < 1e-9 ? to : from.map((value, i) => value + (to[i] - value) * 36 / length);
 }
 
-function drawMotion(context, project, frame, outline) {
-    const verdict = stage.worst[frame.index], alpha = isBack(frame.index) ? 0.25 : 0.85;
+function drawMotion(context, project, solid) {
+    const { index } = solid.frame;
     if (stage.event.T > 0) {
-        const end = outlineOf(stage.units, frame, stage.event.T);
         context.setLineDash([4, 4]);
         context.lineWidth = 1.1;
-        context.strokeStyle = strokeOf(verdict, alpha);
-        drawEdges(context, end.corners.map(project), facetsOf(project, frame, end)
-            .filter((facet) => facet.front).map((facet) => facet.face));
+        context.strokeStyle = strokeOf(stage.worst[index], isBack(index) ? 0.25 : 0.85);
+        drawEdges(context, cornersAt(solid, 1).map(project), solid.faces);
         context.setLineDash([]);
     }
-    const from = project(outline.middle), to = arrowEnd(project, frame, from, outline.middle);
+    const from = project(plus(solid.middle, solid.shift, stage.moment));
+    const to = arrowEnd(project, solid, from);
     const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
     if (!(length >= ARROW_MIN))
         return;
-    context.globalAlpha = isBack(frame.index) ? 0.25 : 1;
+    context.globalAlpha = isBack(index) ? 0.25 : 1;
     context.strokeStyle = context.fillStyle = stage.theme.ink;
     context.lineWidth = 1.6;
     drawLine(context, from, to);
@@ -175,6 +130,24 @@ function drawBoxes(context, project) {
     context.globalAlpha = 1;
 }
 
+/* ---- Gaps ---- */
+
+/* From the nearest point of one body to that of the other. */
+function drawGaps(context, project) {
+    const { dim } = stage.units, one = chosenPair();
+    context.strokeStyle = stage.theme.link;
+    context.lineWidth = 1.6;
+    context.setLineDash([2, 3]);
+    for (const pair of one ? [one] : stage.pairs.slice(0, BOXES_MAX)) {
+        const points = gapOf(pair.now)?.slice(3) ?? [];
+        const [from, to] = [points.slice(0, dim), points.slice(dim)].map((point) => [0, 1, 2].map(
+            (axis) => axis < dim ? clamp(boxEnd(stage.units, point[axis], axis, 1), -CUT, CUT) : 0));
+        if (points.length === 2 * dim)
+            drawLine(context, project(from), project(to));
+    }
+    context.setLineDash([]);
+}
+
 /* ---- Labels ---- */
 
 const LABEL_PLACES = [[0, 0], [0, -14], [0, 14], [16, 0], [-16, 0], [16, -14], [-16, 14], [16, 14],
@@ -206,14 +179,13 @@ function isLabelled(frame) {
 function drawLabels(context, project) {
     const labels = [];
     context.font = LABEL_FONT;
-    context.lineJoin = "round";
-    stage.drawable.forEach((frame, i) => {
+    for (const { frame, middle, shift } of stage.solids) {
         if (!isLabelled(frame))
-            return;
-        const [x, y] = project(stage.outlines[i].middle), text = bodyName(frame.id);
+            continue;
+        const [x, y] = project(plus(middle, shift, stage.moment)), text = bodyName(frame.id);
         const half = context.measureText(text).width / 2;
         labels.push(placeLabel({ x, y, half, text, index: frame.index }, labels));
-    });
+    }
     for (const { x, y, text, index } of labels) {
         context.globalAlpha = isBack(index) && index !== stage.pointed ? 0.4 : 1;
         drawLabel(context, text, x, y + 4, stage.theme.ink);
@@ -223,33 +195,21 @@ function drawLabels(context, project) {
 
 /* ---- The picture ---- */
 
-function drawStage() {
-    const context = clearStage();
-    stage.facets = [];
-    if (!stage.camera)
-        return;
-    const project = projection(), time = stage.moment * stage.event.T;
-    if (stage.units.dim === 2) {
-        drawGrid2D(context, project);
-    } else {
-        drawGrid3D(context, project);
-        drawTriad(context);
-    }
+function drawScene(context, project) {
+    drawGround(context, project);
     context.save();
     if (stage.units.dim === 2) {
         context.beginPath();
         context.rect(inner().left, 0, stage.width, stage.height - inner().bottom);
         context.clip();
     }
-    context.lineJoin = "round";
-    drawFrames(context, project, time);
+    drawOutlines(context, project);
+    drawFaces(context, project, EDGE_DARK);
     drawBoxes(context, project);
-    stage.drawable.forEach((frame, i) => {
-        if (moves(frame))
-            drawMotion(context, project, frame, stage.outlines[i]);
-    });
+    drawGaps(context, project);
+    for (const solid of stage.solids)
+        if (moves(solid.frame))
+            drawMotion(context, project, solid);
     drawLabels(context, project);
     context.restore();
 }
-
-const redrawStage = onceAFrame(drawStage);

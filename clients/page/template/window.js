@@ -39,12 +39,8 @@ function drawBands() {
 
 /* ---- What is pointed at ---- */
 
-/* The nearest face below the pointer. */
 function point(at) {
-    let index = -1;
-    for (const facet of at ? stage.facets : [])
-        if (isInside(facet.points, at.x, at.y))
-            index = facet.index;
+    const index = at ? faces.group[faceBelow(at)] ?? -1 : -1;
     const frame = stage.frames[index];
     showTip(frame ? at : null, frame && `body ${bodyName(frame.id)}, ${shapeName(frame.shape)}: `
         + verdictName(stage.worst[index]));

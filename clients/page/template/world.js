@@ -100,33 +100,39 @@ function middleOf(points) {
         / points.length);
 }
 
-/* A corner of a body in the world, z = 0 in 2D. */
-function placeCorner(units, body, corner, time) {
+/* A corner of a body in the world when the window begins, z = 0 in 2D. */
+function placeCorner(units, body, corner) {
     const out = [0, 0, 0];
     for (let axis = 0; axis < body.shape.dim; axis++) {
         let at = placed(units, body.position[axis], axis);
         at += body.rotation ? dot(body.rotation[axis], corner) : corner[axis];
-        at += body.velocity && time > 0 ? scaled(units, body.velocity[axis] * time) : 0;
         out[axis] = clamp(at, -CUT, CUT);
     }
     return out;
 }
 
-/* All frames of a body in one. faces: indices of corners; middles: [face] that of its frame. */
-function outlineOf(units, body, time) {
-    const { dim, frames } = body.shape, corners = [], faces = [], middles = [];
+/* How far a body gets in the window. */
+function shiftOf(units, body, T) {
+    return [0, 1, 2].map((axis) => body.velocity && T > 0
+        ? scaled(units, (body.velocity[axis] ?? 0) * T) : 0);
+}
+
+/* All frames of a body in one, when the window begins. faces: indices of corners; shift: how far it
+ * gets in the window. */
+function outlineOf(units, body, T) {
+    const { dim, frames } = body.shape, corners = [], faces = [];
     for (const given of frames) {
         const frame = cuboidOf(dim, given), first = corners.length;
-        const own = bodyCorners(units, dim, frame).map((corner) =>
-            placeCorner(units, body, corner, time));
-        const middle = middleOf(own), ownFaces = facesOf(dim, frame[0]);
-        corners.push(...own);
-        for (const face of ownFaces) {
-            faces.push(face.map((k) => first + k));
-            middles.push(ownFaces.length > 1 ? middle : null);
-        }
+        corners.push(...bodyCorners(units, dim, frame).map((corner) =>
+            placeCorner(units, body, corner)));
+        faces.push(...facesOf(dim, frame[0]).map((face) => face.map((k) => first + k)));
     }
-    return { corners, faces, middles, middle: middleOf(corners) };
+    return { corners, faces, middle: middleOf(corners), shift: shiftOf(units, body, T) };
+}
+
+/* The same corners at a moment of the window, 0 to 1. */
+function cornersAt({ corners, shift }, moment) {
+    return corners.map((corner) => plus(corner, shift, moment));
 }
 
 /* An end is null where it is infinite, and a word where it is no number. */
@@ -175,8 +181,8 @@ function boundsOfPoints(points) {
 
 /* Of the frames, one at least, over the window. */
 function boundsOf(units, frames, T) {
-    return boundsOfPoints(frames.flatMap((frame) => [...outlineOf(units, frame, 0).corners,
-        ...(frame.velocity && T > 0 ? outlineOf(units, frame, T).corners : [])]));
+    return boundsOfPoints(frames.map((frame) => outlineOf(units, frame, T))
+        .flatMap((outline) => [...outline.corners, ...cornersAt(outline, 1)]));
 }
 
 function extent(bounds) {
@@ -211,6 +217,10 @@ function turn(dim, azimuth, elevation) {
 
 function minus(a, b) {
     return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
+function plus(a, b, times) {
+    return [a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]];
 }
 
 function cross(a, b) {
@@ -256,14 +266,4 @@ function clipPolygon(points, width, height) {
     kept = clipSide(kept, (p) => width + CLIP_MARGIN - p[0]);
     kept = clipSide(kept, (p) => p[1] + CLIP_MARGIN);
     return clipSide(kept, (p) => height + CLIP_MARGIN - p[1]);
-}
-
-function isInside(points, x, y) {
-    let inside = false;
-    points.forEach(([ax, ay], i) => {
-        const [bx, by] = points[(i + 1) % points.length];
-        if ((ay > y) !== (by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax)
-            inside = !inside;
-    });
-    return inside;
 }
