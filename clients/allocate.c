@@ -29,15 +29,6 @@ void *allocate_unset(size_t size)
     return or_exit(malloc(size));
 }
 
-void *allocate_in_lines(size_t count, size_t size)
-{
-    const size_t line = 64;
-    if (size == 0 || count > (SIZE_MAX - line) / size)
-        allocate_failed();
-    const size_t bytes = (count * size + line - 1) / line * line;
-    return or_exit(aligned_alloc(line, bytes ? bytes : line));
-}
-
 void *allocate_room(void *memory, size_t *room, size_t needed, size_t size)
 {
     if (memory && needed <= *room)

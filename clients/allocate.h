@@ -9,10 +9,6 @@
  * frees it. */
 void *allocate(size_t count, size_t size);
 
-/* Likewise, but not cleared, and from where a cache line begins: elements whose size divides that
- * of a line lie in one. */
-void *allocate_in_lines(size_t count, size_t size);
-
 /* One of size bytes, from 1, not cleared. */
 void *allocate_unset(size_t size);
 

@@ -11,6 +11,7 @@ typedef void answers_sink(void *user, const struct scene *scene, const struct ou
 struct answers_question {
     const struct fmb_method *method; /* NULL: the default, of this process or of the service */
     bool box;
+    bool gap; /* of all pairs; with a margin, contacts and near pairs have theirs without */
     bool certificate;
 };
 

@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "bus_client.h"
-#include "complain.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -43,7 +42,7 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
 /* The first result of a query has been used. */
 static void report_contradictions(const struct fmb_client *client)
 {
-    const uint64_t count = client ? fmb_client_counts(client).contradicting : 0;
+    const uint64_t count = client ? fmb_client_get_counts(client).contradicting : 0;
     if (count > 0)
         fprintf(stderr,
                 "fmb: %" PRIu64
@@ -112,12 +111,26 @@ static struct placed placed_of(const struct scene *scene)
     return out;
 }
 
-static unsigned (*indices_of(const struct scene_pair *pairs, size_t count))[2]
+/* Of all pairs, the library answers contacts and near ones alone: where each has a gap, they are
+ * listed. */
+static unsigned (*list_pairs(const struct scene *scene))[2]
 {
-    unsigned(*pair)[2] = allocate(count, sizeof *pair);
-    for (size_t i = 0; i < count; i++) {
-        pair[i][0] = (unsigned) pairs[i].a;
-        pair[i][1] = (unsigned) pairs[i].b;
+    unsigned(*pair)[2] = allocate((size_t) scene_count_pairs(scene), sizeof *pair);
+    struct scene_cursor cursor = {0};
+    struct scene_pair next;
+    for (size_t i = 0; scene_next_pair(scene, &cursor, &next); i++) {
+        pair[i][0] = (unsigned) next.a;
+        pair[i][1] = (unsigned) next.b;
+    }
+    return pair;
+}
+
+static unsigned (*list_ignored(const struct scene *scene))[2]
+{
+    unsigned(*pair)[2] = allocate(scene->ignored_count, sizeof *pair);
+    for (size_t i = 0; i < scene->ignored_count; i++) {
+        pair[i][0] = (unsigned) scene->ignored[i].a;
+        pair[i][1] = (unsigned) scene->ignored[i].b;
     }
     return pair;
 }
@@ -125,7 +138,8 @@ static unsigned (*indices_of(const struct scene_pair *pairs, size_t count))[2]
 static unsigned want_of(const struct answers_question *question)
 {
     return FMB_CLIENT_WANT_TIMES | (question->box ? FMB_CLIENT_WANT_BOX : 0) |
-           (question->certificate ? FMB_CLIENT_WANT_CERTIFICATE : 0);
+           (question->certificate ? FMB_CLIENT_WANT_CERTIFICATE : 0) |
+           (question->gap ? FMB_CLIENT_WANT_GAP : 0);
 }
 
 /* ---- The answers ---- */
@@ -175,7 +189,7 @@ static void give_remaining(struct run *run, const char *error)
 static void advise(struct answers_bus *answers)
 {
     const char *prefix = answers->bus.prefix;
-    const struct fmb_client_counts counts = fmb_client_counts(answers->client);
+    const struct fmb_client_counts counts = fmb_client_get_counts(answers->client);
     if (answers->advised == counts.outages)
         return;
     answers->advised = counts.outages;
@@ -194,17 +208,19 @@ static void query(struct answers_bus *answers, struct run *run)
     const struct answers_question *question = &answers->question;
     const struct scene *scene = run->scene;
     const struct placed placed = placed_of(scene);
-    unsigned(*pair)[2] = indices_of(scene->pair, scene->pair_count);
-    unsigned(*ignored)[2] = indices_of(scene->ignored, scene->ignored_count);
+    const bool listed = !scene->all_pairs || question->gap;
+    unsigned(*pair)[2] = listed ? list_pairs(scene) : NULL;
+    unsigned(*ignored)[2] = list_ignored(scene);
     const struct fmb_client_scene queried = {
         .placements = placed.placement,
         .placement_count = scene->body_count,
-        .which = scene->all_pairs ? FMB_CLIENT_ALL : FMB_CLIENT_LISTED,
+        .which = listed ? FMB_CLIENT_LISTED : FMB_CLIENT_ALL,
         .pairs = (const unsigned(*)[2]) pair,
-        .pair_count = scene->pair_count,
+        .pair_count = listed ? (size_t) scene_count_pairs(scene) : 0,
         .ignored = (const unsigned(*)[2]) ignored,
-        .ignored_count = scene->ignored_count,
+        .ignored_count = listed ? 0 : scene->ignored_count,
         .duration = scene->duration,
+        .margin = scene->margin,
         .want = want_of(question),
         .method = question->method ? question->method->number : 0,
     };

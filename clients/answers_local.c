@@ -1,6 +1,7 @@
 #include "answers.h"
 
 #include "allocate.h"
+#include "query.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,22 +24,34 @@ static const char *certificate(const struct fmb_placement *a, const struct fmb_p
     return *status == FMB_OK ? text->at : NULL;
 }
 
+/* Decides one pair. Returns the error, NULL: none. */
+static const char *decide(const struct answers_question *question, const struct scene *scene,
+                          struct outcome *out, struct text *text)
+{
+    const struct fmb_method *method = question->method ? question->method : fmb_method_default();
+    const bool gap = question->gap || scene->margin > 0;
+    const unsigned want = (question->box ? FMB_WANT_BOX : 0) | (gap ? FMB_WANT_GAP : 0);
+    const struct fmb_placement a = scene_placement(&scene->body[out->pair.a]);
+    const struct fmb_placement b = scene_placement(&scene->body[out->pair.b]);
+    if (gap && !method->certain)
+        return "method: gives no gaps";
+    enum fmb_status status = fmb_decide(method, &a, &b, scene->duration, want, &out->answer);
+    if (!question->gap)
+        query_remove_far_gap(scene->margin, &out->answer);
+    if (question->certificate && status == FMB_OK)
+        out->certificate = certificate(&a, &b, scene->duration, text, &status);
+    return status == FMB_OK ? NULL : fmb_status_text(status);
+}
+
 void answers_local(const struct answers_question *question, const struct scene *scene,
                    answers_sink *sink, void *user)
 {
-    const struct fmb_method *method = question->method ? question->method : fmb_method_default();
-    unsigned want = question->box ? FMB_WANT_BOX : 0;
     struct scene_cursor cursor = {0};
     struct outcome outcome;
     struct text text = {.at = NULL};
     while (scene_next_pair(scene, &cursor, &outcome.pair)) {
-        const struct fmb_placement a = scene_placement(&scene->body[outcome.pair.a]);
-        const struct fmb_placement b = scene_placement(&scene->body[outcome.pair.b]);
-        enum fmb_status status = fmb_decide(method, &a, &b, scene->duration, want, &outcome.answer);
         outcome.certificate = NULL;
-        if (question->certificate && status == FMB_OK)
-            outcome.certificate = certificate(&a, &b, scene->duration, &text, &status);
-        outcome.error = status == FMB_OK ? NULL : fmb_status_text(status);
+        outcome.error = decide(question, scene, &outcome, &text);
         if (outcome.error)
             memset(&outcome.answer, 0, sizeof outcome.answer);
         sink(user, scene, &outcome);

@@ -19,7 +19,7 @@ bool args_error(const struct args *args, const char *format, ...)
     return false;
 }
 
-bool args_number(const struct args *args, double low, double high, double *out)
+static bool take_number(const struct args *args, double low, double high, double *out)
 {
     char *end;
     *out = strtod(optarg, &end);
@@ -42,49 +42,55 @@ bool args_integer(const struct args *args, long low, long high, long *out)
 
 /* ---- Options, one after the other ------------------------------------------------------------ */
 
-static const struct option common_options[] = {
-    {"lcm-url", required_argument, NULL, 'l'},
-    {"prefix", required_argument, NULL, 'p'},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+static bool take_prefix(const struct args *args, void *out)
+{
+    const char **prefix = out;
+    if (!fmb_client_prefix_ok(optarg))
+        return args_error(args, "--prefix: expected at most %d letters, digits, '_' or '-'",
+                          FMB_CLIENT_PREFIX_MAX);
+    *prefix = optarg;
+    return true;
+}
+
+/* As getopt_long() takes them. */
+enum { COMMON_OPTIONS = 3, ALL_MAX = ARGS_OPTIONS_MAX + COMMON_OPTIONS };
+struct getopt_options {
+    struct option option[ALL_MAX + 1];
+    char letters[2 * ALL_MAX + 3];
 };
 
-enum { COMMON_OPTIONS = sizeof common_options / sizeof *common_options };
+enum { FIRST = 256 }; /* value of the first long option */
 
-/* The command's own options, then the common ones with the zeros that end them. */
-static void join_options(const struct option *own,
-                         struct option out[ARGS_OPTIONS_MAX + COMMON_OPTIONS])
-{
-    int count = 0;
-    while (own[count].name && count < ARGS_OPTIONS_MAX)
-        count++;
-    memcpy(out, own, (size_t) count * sizeof *own);
-    memcpy(out + count, common_options, sizeof common_options);
-}
+/* A '-' before the letters makes getopt_long() return operands in order, as AN_OPERAND. */
+enum { AN_OPERAND = 1 };
 
-/* Of the options that have one, the letters, as getopt wants them; with a '-' before them it tells
- * operands where they stand. */
-enum { LETTERS_MAX = 2 * (ARGS_OPTIONS_MAX + COMMON_OPTIONS) + 3 };
-static void list_letters(const struct option *options, bool in_order, char out[LETTERS_MAX])
+static void list_options(const struct args_option *options, bool in_order,
+                         struct getopt_options *out)
 {
+    char *letter = out->letters;
+    *out = (struct getopt_options){.letters = ""};
     if (in_order)
-        *out++ = '-';
-    *out++ = ':';
-    for (; options->name; options++) {
-        if (options->val < ' ')
+        *letter++ = '-';
+    *letter++ = ':';
+    for (int i = 0; options[i].name; i++) {
+        const bool has_value = options[i].kind != ARGS_FLAG;
+        out->option[i] = (struct option){options[i].name, has_value, NULL, FIRST + i};
+        if (!options[i].letter)
             continue;
-        *out++ = (char) options->val;
-        if (options->has_arg == required_argument)
-            *out++ = ':';
+        *letter++ = options[i].letter;
+        if (has_value)
+            *letter++ = ':';
     }
-    *out = '\0';
 }
 
-static const char *name_of(const struct option *options, int value)
+/* value: of an option that is in the list, from getopt_long(). */
+static const struct args_option *find(const struct args_option *options, int value)
 {
-    while (options->name && options->val != value)
+    if (value >= FIRST)
+        return &options[value - FIRST];
+    while (options->letter != value)
         options++;
-    return options->name;
+    return options;
 }
 
 /* After an option of '?' or ':' from getopt_long(). A long option stands in argv[optind - 1]; of
@@ -101,24 +107,16 @@ static bool refuse(const struct args *args, int option, char **argv)
     return args_error(args, "unknown option '%s'", name);
 }
 
-static bool take_prefix(struct args *args)
+static bool take_option(struct args *args, const struct args_option *option)
 {
-    if (!fmb_client_prefix_ok(optarg))
-        return args_error(args, "--prefix: expected at most %d letters, digits, '_' or '-'",
-                          FMB_CLIENT_PREFIX_MAX);
-    args->bus.prefix = optarg;
-    return true;
-}
-
-static bool take_option(struct args *args, int option, char **argv, void *out, bool *help)
-{
-    switch (option) {
-    case 'l': args->bus.url = optarg; return true;
-    case 'p': return take_prefix(args);
-    case 'h': *help = true; return true;
-    case '?':
-    case ':': return refuse(args, option, argv);
-    default: return args->take(args, option, out);
+    args->option = option->name;
+    switch (option->kind) {
+    case ARGS_FLAG: *(bool *) option->out = true; return true;
+    case ARGS_TEXT: *(const char **) option->out = optarg; return true;
+    case ARGS_NUMBER: return take_number(args, option->low, option->high, option->out);
+    case ARGS_INTEGER:
+        return args_integer(args, (long) option->low, (long) option->high, option->out);
+    default: return option->take(args, option->out);
     }
 }
 
@@ -136,29 +134,31 @@ static bool take_operands(struct args *args, int count)
     return true;
 }
 
-/* What getopt calls an operand where it tells them in order. */
-enum { AN_OPERAND = 1 };
-
-int args_parse(struct args *args, int argc, char **argv, void *out)
+int args_parse(struct args *args, int argc, char **argv)
 {
-    struct option options[ARGS_OPTIONS_MAX + COMMON_OPTIONS];
-    char letters[LETTERS_MAX];
     bool help = false;
-    int option;
-    join_options(args->options, options);
-    list_letters(options, args->in_order, letters);
+    const struct args_option common[COMMON_OPTIONS] = {
+        {"lcm-url", ARGS_TEXT, &args->bus.url, .letter = 'l'},
+        {"prefix", ARGS_OTHER, &args->bus.prefix, .take = take_prefix, .letter = 'p'},
+        {"help", ARGS_FLAG, &help, .letter = 'h'},
+    };
+    struct args_option options[ALL_MAX + 1] = {{0}};
+    struct getopt_options list;
+    int own = 0, option;
+    for (; args->options[own].name && own < ARGS_OPTIONS_MAX; own++)
+        options[own] = args->options[own];
+    memcpy(options + own, common, sizeof common);
+    list_options(options, args->in_order, &list);
     args->bus = (struct args_bus){.prefix = ""};
     args->operands = argv + 1;
     args->operand_count = 0;
     optind = 1;
     opterr = 0;
-    while ((option = getopt_long(argc, argv, letters, options, NULL)) != -1) {
-        if (args->in_order && option == AN_OPERAND) {
+    while ((option = getopt_long(argc, argv, list.letters, list.option, NULL)) != -1) {
+        if (args->in_order && option == AN_OPERAND)
             args->operands[args->operand_count++] = optarg; /* over words that are done with */
-            continue;
-        }
-        args->option = name_of(options, option);
-        if (!take_option(args, option, argv, out, &help))
+        else if (option == '?' || option == ':' ? !refuse(args, option, argv)
+                                                : !take_option(args, find(options, option)))
             return ARGS_USAGE;
     }
     memmove(args->operands + args->operand_count, argv + optind,

@@ -22,24 +22,34 @@ struct args_bus {
 
 struct args;
 
-/* Processes one of the command's own options, with the value optarg. Returns false after an error.
- */
-typedef bool args_take(const struct args *args, int option, void *out);
+enum args_kind {
+    ARGS_FLAG,    /* out: bool, set to true */
+    ARGS_TEXT,    /* out: const char * */
+    ARGS_NUMBER,  /* out: double, finite, from low to high */
+    ARGS_INTEGER, /* out: long, from low to high */
+    ARGS_OTHER    /* take processes the value, which is optarg */
+};
+
+struct args_option {
+    const char *name; /* of the long option */
+    enum args_kind kind;
+    void *out;
+    double low, high;
+    bool (*take)(const struct args *args, void *out); /* returns false after an error */
+    char letter;                                      /* short option; 0: none */
+};
 
 enum { ARGS_OPTIONS_MAX = 24 };
 
 struct args {
     const char *command; /* name of the command */
     const char *usage;   /* text of --help */
-    /* The command's own options, all long, at most ARGS_OPTIONS_MAX; ends with 0s. A value that is
-     * a letter is also the short option; other values are from 1 to 31. */
-    const struct option *options;
-    args_take *take;
+    /* The command's own options, at most ARGS_OPTIONS_MAX; ends with an option without a name. */
+    const struct args_option *options;
     const char *operand; /* name of the operands in messages: "FILE"; NULL: none allowed */
     int operands_max;
-    /* Options may refer to the operand before them: operand_count is its number when take is
-     * called. No option may then have the value 1. */
-    bool in_order;
+    bool in_order; /* operand_count is the number of operands before the option when take is called
+                    */
 
     /* Filled in by args_parse(). */
     struct args_bus bus;
@@ -48,16 +58,15 @@ struct args {
     const char *option; /* for take: the name of the long option */
 };
 
-/* Returns ARGS_RUN; or the exit code, after --help or an error. out is passed to take. */
+/* Returns ARGS_RUN; or the exit code, after --help or an error. */
 enum { ARGS_RUN = -1 };
-int args_parse(struct args *args, int argc, char **argv, void *out);
+int args_parse(struct args *args, int argc, char **argv);
 
 /* Reports an error and the hint. Always returns false. */
 bool args_error(const struct args *args, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* For take: reads optarg as a finite number from low to high. Returns false after an error. */
-bool args_number(const struct args *args, double low, double high, double *out);
+/* For take: reads optarg as an integer from low to high. Returns false after an error. */
 bool args_integer(const struct args *args, long low, long high, long *out);
 
 /* The URL of a bus, for messages. */

@@ -25,9 +25,9 @@ static void print_help(FILE *out)
     fputs(
         "usage: fmb log COMMAND [OPTIONS] LOG...\n"
         "\n"
-        "Inspects LCM event logs, as lcm-logger and LCM's file provider write them, and copies\n"
-        "parts of them. Logs may be damaged: intact events are read, damage is reported with its\n"
-        "offset.\n"
+        "Inspects LCM event logs, as lcm-logger and LCM's file provider write them, and\n"
+        "copies parts of them. Logs may be damaged: intact events are read, damage is\n"
+        "reported with its offset.\n"
         "\n"
         "Commands:\n",
         out);
@@ -38,7 +38,7 @@ static void print_help(FILE *out)
 
 static bool is_help(const char *word)
 {
-    return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
+    return strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
 }
 
 int cmd_log(int argc, char **argv)
@@ -47,7 +47,12 @@ int cmd_log(int argc, char **argv)
         print_help(stderr);
         return ARGS_USAGE;
     }
-    if (is_help(argv[1])) {
+    if (argc == 3 && strcmp(argv[1], "help") == 0) {
+        char option[] = "--help";
+        char *arguments[] = {argv[0], argv[2], option, NULL};
+        return cmd_log(argc, arguments);
+    }
+    if (argc == 2 && is_help(argv[1])) {
         print_help(stdout);
         return ARGS_ANSWERED;
     }

@@ -15,79 +15,52 @@
 static const char usage[] =
     "usage: fmb log cut [OPTIONS] LOG... -o FILE\n"
     "\n"
-    "Copies chosen events of one or more LCM event logs into a new log. 'fmb replay' of the new\n"
-    "log reports the same for each of its queries. Several logs are read as one, in the order\n"
-    "given, as rotation wrote them. Damage is reported with its offset and left out: without\n"
-    "further options this repairs a log.\n"
+    "Copies chosen events of one or more LCM event logs into a new log. 'fmb replay'\n"
+    "of the new log reports the same for each of its queries. Several logs are read\n"
+    "as one, in the order given, as rotation wrote them. Damage is reported with its\n"
+    "offset and left out: without further options this repairs a log.\n"
     "\n"
     "  -o, --output FILE    the new log\n"
     "  --force              FILE may exist already\n"
-    "  --from S, --to S     events logged from S on and before S, in seconds since the first\n"
-    "                       event, as in 'fmb replay'\n"
-    "  --channel NAME       events on this channel; or NAME is a POSIX extended regular\n"
-    "                       expression that matches the whole name. May be repeated\n"
-    "  --body ID            queries that contain a body with this id, and their results; no\n"
-    "                       other events. May be repeated\n"
+    "  --from S, --to S     events logged from S on and before S, in seconds since\n"
+    "                       the first event, as in 'fmb replay'\n"
+    "  --channel NAME       events on this channel; or NAME is a POSIX extended\n"
+    "                       regular expression that matches the whole name. May be\n"
+    "                       repeated\n"
+    "  --body ID            queries that contain a body with this id, and their\n"
+    "                       results; no other events. May be repeated\n"
     "  --json               one line of JSON in place of the text\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
-    "An event is copied if it meets all conditions given. A result is copied with its query, if\n"
-    "its channel is chosen. Events are copied unchanged, with their log times, and renumbered.\n"
-    "Before them come definitions, from anywhere in the logs, of the bodies that the queries name\n"
-    "by handle and that no copied event defines earlier. Handles that the logs do not define are\n"
-    "counted.\n"
+    "An event is copied if it meets all conditions given. A result is copied with its\n"
+    "query, if its channel is chosen. Events are copied unchanged, with their log\n"
+    "times, and renumbered. Before them come definitions, from anywhere in the logs,\n"
+    "of the bodies that the queries name by handle and that no copied event defines\n"
+    "earlier. Handles that the logs do not define are counted.\n"
     "\n"
-    "Exit codes: 0 everything chosen was copied; 1 damage was left out, or nothing was chosen; 2\n"
-    "wrong usage, or a file cannot be read or written: FILE is then incomplete.\n";
+    "Exit codes: 0 everything chosen was copied; 1 damage was left out, or nothing\n"
+    "was chosen; 2 wrong usage, or a file cannot be read or written: FILE is then\n"
+    "incomplete.\n";
 
 struct options {
     struct log_cut_options cut;
     bool json;
 };
 
-enum { FORCE = 1, FROM, TO, CHANNEL, BODY, JSON };
-
-static const struct option own_options[] = {
-    {"output", required_argument, NULL, 'o'},
-    {"force", no_argument, NULL, FORCE},
-    {"from", required_argument, NULL, FROM},
-    {"to", required_argument, NULL, TO},
-    {"channel", required_argument, NULL, CHANNEL},
-    {"body", required_argument, NULL, BODY},
-    {"json", no_argument, NULL, JSON},
-    {NULL, 0, NULL, 0},
-};
-
-static bool take_channel(const struct args *args, struct log_choice *choice)
+static bool take_channel(const struct args *args, void *choice)
 {
     char why[LOG_CHOICE_WHY_MAX];
     return log_choice_add_channel(choice, optarg, why) ||
            args_error(args, "--channel: '%s' is no regular expression: %s", optarg, why);
 }
 
-static bool take_body(const struct args *args, struct log_choice *choice)
+static bool take_body(const struct args *args, void *choice)
 {
     long id;
     if (!args_integer(args, 1, QUERY_ID_MAX, &id))
         return false;
     log_choice_add_body(choice, id);
-    return true;
-}
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    struct log_choice *choice = &options->cut.choice;
-    switch (option) {
-    case 'o': options->cut.output = optarg; break;
-    case FORCE: options->cut.force = true; break;
-    case FROM: return args_number(args, 0, 1e12, &choice->from);
-    case TO: return args_number(args, 0, 1e12, &choice->to);
-    case CHANNEL: return take_channel(args, choice);
-    case BODY: return take_body(args, choice);
-    case JSON: options->json = true; break;
-    }
     return true;
 }
 
@@ -114,8 +87,7 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
     struct run *run = user;
-    run->progress.total = (uint64_t) of;
-    progress_to(&run->progress, (uint64_t) bytes);
+    progress_to_of(&run->progress, (uint64_t) bytes, (uint64_t) of);
 }
 
 static void print_count(const char *name, int64_t count, const char *what)
@@ -184,7 +156,7 @@ static int code_of(const struct run *run, const struct log_cut_counts *counts)
 
 static int run_cut(const struct options *options)
 {
-    struct run run = {.options = options, .progress = progress_begin_bytes(0)};
+    struct run run = {.options = options, .progress = progress_begin_of("bytes", 0)};
     const struct log_cut_sink sink = {on_damage, on_progress, &run};
     struct log_cut_counts counts;
     const bool good = log_cut(&options->cut, &sink, &counts);
@@ -208,10 +180,20 @@ static bool check_options(const struct args *args, const struct options *options
 
 int cmd_log_cut(int argc, char **argv)
 {
-    struct args args = {"log cut",           usage, own_options, take_option, .operand = "LOG",
-                        .operands_max = 4096};
     struct options options = {.cut = {.choice = log_choice_all()}};
-    int code = args_parse(&args, argc, argv, &options);
+    struct log_choice *choice = &options.cut.choice;
+    const struct args_option own[] = {
+        {"output", ARGS_TEXT, &options.cut.output, .letter = 'o'},
+        {"force", ARGS_FLAG, .out = &options.cut.force},
+        {"from", ARGS_NUMBER, &choice->from, .high = 1e12},
+        {"to", ARGS_NUMBER, &choice->to, .high = 1e12},
+        {"channel", ARGS_OTHER, choice, .take = take_channel},
+        {"body", ARGS_OTHER, choice, .take = take_body},
+        {"json", ARGS_FLAG, .out = &options.json},
+        {.name = NULL},
+    };
+    struct args args = {"log cut", usage, own, .operand = "LOG", .operands_max = 4096};
+    int code = args_parse(&args, argc, argv);
     if (code == ARGS_RUN && !check_options(&args, &options))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {

@@ -15,39 +15,22 @@
 static const char usage[] =
     "usage: fmb log info [OPTIONS] LOG...\n"
     "\n"
-    "Reads event logs and prints for each: its size, the time it covers, its channels with their\n"
-    "message types, counts and sizes, and each place that is damaged. A type that does not belong\n"
-    "to the service is printed as the fingerprint of its messages.\n"
+    "Reads event logs and prints for each: its size, the time it covers, its channels\n"
+    "with their message types, counts and sizes, and each place that is damaged. A\n"
+    "type that does not belong to the service is printed as the fingerprint of its\n"
+    "messages.\n"
     "\n"
-    "  --json               one line of JSON for each log, with all times in microseconds\n"
+    "  --json               one line of JSON for each log, with all times in\n"
+    "                       microseconds\n"
     "  -h, --help\n"
     "\n"
-    "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is printed; 2\n"
-    "wrong usage, or a file that cannot be read or is not a log.\n";
-
-struct options {
-    bool json;
-};
-
-enum { JSON = 1 };
-
-static const struct option own_options[] = {
-    {"json", no_argument, NULL, JSON},
-    {NULL, 0, NULL, 0},
-};
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    (void) args;
-    options->json = options->json || option == JSON;
-    return true;
-}
+    "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is\n"
+    "printed; 2 wrong usage, or a file that cannot be read or is not a log.\n";
 
 /* On output: NULL, or why it could not be read to its end. */
 static const char *read_all(struct log_reader *reader, struct log_info *info)
 {
-    struct progress progress = progress_begin_bytes((uint64_t) log_size(reader));
+    struct progress progress = progress_begin_of("bytes", (uint64_t) log_size(reader));
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
@@ -73,14 +56,13 @@ static int complain_of(const char *path, const char *why)
     return ARGS_USAGE;
 }
 
-static int report_log(const struct options *options, const char *path, struct log_reader *reader,
-                      struct log_info *info)
+static int report_log(bool json, const char *path, struct log_reader *reader, struct log_info *info)
 {
     struct log_report report = {.path = path, .size = log_size(reader), .info = info};
     report.error = read_all(reader, info);
     if (!report.error && info->all.events == 0 && report.size > 0)
         return complain_of(path, "no event log: there is no event in it");
-    if (options->json)
+    if (json)
         log_report_json(stdout, &report);
     else
         log_report_text(stdout, &report);
@@ -89,14 +71,14 @@ static int report_log(const struct options *options, const char *path, struct lo
     return info->damages > 0 ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
-static int open_and_report(const struct options *options, const char *path)
+static int open_and_report(bool json, const char *path)
 {
     char why[LOG_WHY_MAX];
     struct log_reader *reader = log_open(path, why);
     if (!reader)
         return complain_of(path, why);
     struct log_info *info = log_info_open();
-    const int code = report_log(options, path, reader, info);
+    const int code = report_log(json, path, reader, info);
     log_info_close(info);
     log_close(reader);
     return code;
@@ -104,10 +86,10 @@ static int open_and_report(const struct options *options, const char *path)
 
 int cmd_log_info(int argc, char **argv)
 {
-    struct args args = {
-        "log info", usage, own_options, take_option, .operand = "LOG", .operands_max = INT_MAX};
-    struct options options = {.json = false};
-    int code = args_parse(&args, argc, argv, &options);
+    bool json = false;
+    const struct args_option own[] = {{"json", ARGS_FLAG, .out = &json}, {.name = NULL}};
+    struct args args = {"log info", usage, own, .operand = "LOG", .operands_max = INT_MAX};
+    int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     if (args.operand_count == 0) {
@@ -116,9 +98,9 @@ int cmd_log_info(int argc, char **argv)
     }
     code = ARGS_ANSWERED;
     for (int i = 0; i < args.operand_count; i++) {
-        if (i > 0 && !options.json)
+        if (i > 0 && !json)
             putchar('\n');
-        const int one = open_and_report(&options, args.operands[i]);
+        const int one = open_and_report(json, args.operands[i]);
         code = one > code ? one : code;
     }
     return output_flush() || code != ARGS_ANSWERED ? code : ARGS_FAILED;

@@ -17,64 +17,50 @@
 static const char usage[] =
     "usage: fmb log scene [OPTIONS] LOG...\n"
     "\n"
-    "Prints one query of an LCM event log as a scene, exactly, as 'fmb query --local' takes it:\n"
+    "Prints one query of an LCM event log as a scene, exactly, as 'fmb query --local'\n"
+    "takes it:\n"
     "\n"
     "  fmb log scene LOG --event 17 | fmb query --local --json --box\n"
     "\n"
-    "Of several logs the last one contains the query, and the others are read for definitions of\n"
-    "bodies. Bodies that came by handle get their frames back.\n"
+    "Of several logs the last one contains the query, and the others are read for\n"
+    "definitions of bodies. Bodies that came by handle get their frames back.\n"
     "\n"
-    "  --event N            the event with this number, as 'fmb replay' prints it: a query, or\n"
-    "                       the result of one\n"
-    "  --offset BYTES       the event at this offset in the file, where numbers repeat\n"
+    "  --event N            the event with this number, as 'fmb replay' prints it: a\n"
+    "                       query, or the result of one\n"
+    "  --offset BYTES       the event at this offset in the file, where numbers\n"
+    "                       repeat\n"
     "  --client C, --sequence S  the query with these ids\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
-    "A query of all pairs prints no list of pairs; one of some bodies against the others lists\n"
-    "them; one with first_pair lists the pairs from there on. Bodies keep their ids. Anonymous\n"
-    "bodies, and those whose id is used by an earlier one, get free ids, which are reported on\n"
-    "standard error, with the command that repeats the query by its method and wants.\n"
+    "A query of all pairs prints no list of pairs; one of some bodies against the\n"
+    "others lists them; one with first_pair lists the pairs from there on. Bodies\n"
+    "keep their ids. Anonymous bodies, and those whose id is used by an earlier one,\n"
+    "get free ids, which are reported on standard error, with the command that\n"
+    "repeats the query by its method and wants.\n"
     "\n"
-    "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a handle is not\n"
-    "defined; 2 wrong usage, or a log cannot be read.\n";
+    "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
+    "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
 struct options {
     struct log_query_options query;
     bool has_event, has_offset, has_client, has_sequence;
 };
 
-enum { EVENT = 1, OFFSET, CLIENT, SEQUENCE };
-
-static const struct option own_options[] = {
-    {"event", required_argument, NULL, EVENT},
-    {"offset", required_argument, NULL, OFFSET},
-    {"client", required_argument, NULL, CLIENT},
-    {"sequence", required_argument, NULL, SEQUENCE},
-    {NULL, 0, NULL, 0},
+struct number {
+    int64_t *value;
+    bool *given;
+    int64_t low;
 };
 
-static bool take_number(const struct args *args, int64_t low, int64_t *out, bool *has)
+static bool take_number(const struct args *args, void *out)
 {
-    long number;
-    if (!args_integer(args, low, INT64_MAX, &number))
+    const struct number *number = out;
+    long value;
+    if (!args_integer(args, number->low, INT64_MAX, &value))
         return false;
-    *out = number;
-    *has = true;
-    return true;
-}
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    struct log_query_options *query = &options->query;
-    switch (option) {
-    case EVENT: return take_number(args, INT64_MIN, &query->number, &options->has_event);
-    case OFFSET: return take_number(args, 0, &query->offset, &options->has_offset);
-    case CLIENT: return take_number(args, INT64_MIN, &query->client_id, &options->has_client);
-    case SEQUENCE:
-        return take_number(args, INT64_MIN, &query->sequence_number, &options->has_sequence);
-    }
+    *number->value = value;
+    *number->given = true;
     return true;
 }
 
@@ -206,7 +192,8 @@ static void report_command(const struct log_query *query)
             query->number, query->offset, query->ids.client_id, query->ids.sequence_number);
     if (method != 0)
         fprintf(stderr, " --method %s", fmb_method_by_number(method)->name);
-    fprintf(stderr, "%s%s\n", want & QUERY_WANT_BOX ? " --box" : "",
+    fprintf(stderr, "%s%s%s\n", want & QUERY_WANT_BOX ? " --box" : "",
+            want & QUERY_WANT_GAP ? " --gap" : "",
             is_pair && want & QUERY_WANT_CERTIFICATE ? " --certificate" : "");
 }
 
@@ -214,9 +201,7 @@ static void report_command(const struct log_query *query)
 
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
-    struct progress *progress = user;
-    progress->total = (uint64_t) of;
-    progress_to(progress, (uint64_t) bytes);
+    progress_to_of(user, (uint64_t) bytes, (uint64_t) of);
 }
 
 static int print_scene(struct log_query *query)
@@ -236,7 +221,7 @@ static int run_scene(struct options *options)
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
                                   [LOG_QUERY_FAILED] = ARGS_USAGE};
     struct log_query *query = allocate(1, sizeof *query);
-    struct progress progress = progress_begin_bytes(0);
+    struct progress progress = progress_begin_of("bytes", 0);
     options->query.progress = on_progress;
     options->query.user = &progress;
     const enum log_query_outcome outcome = log_query(&options->query, query);
@@ -251,10 +236,21 @@ static int run_scene(struct options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    struct args args = {"log scene",         usage, own_options, take_option, .operand = "LOG",
-                        .operands_max = 4096};
     struct options options = {.query = {.log = NULL}};
-    const int code = args_parse(&args, argc, argv, &options);
+    struct log_query_options *query = &options.query;
+    struct number event = {&query->number, &options.has_event, INT64_MIN};
+    struct number offset = {&query->offset, &options.has_offset, 0};
+    struct number client = {&query->client_id, &options.has_client, INT64_MIN};
+    struct number sequence = {&query->sequence_number, &options.has_sequence, INT64_MIN};
+    const struct args_option own[] = {
+        {"event", ARGS_OTHER, &event, .take = take_number},
+        {"offset", ARGS_OTHER, &offset, .take = take_number},
+        {"client", ARGS_OTHER, &client, .take = take_number},
+        {"sequence", ARGS_OTHER, &sequence, .take = take_number},
+        {.name = NULL},
+    };
+    struct args args = {"log scene", usage, own, .operand = "LOG", .operands_max = 4096};
+    const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     if (!check_options(&args, &options))

@@ -21,79 +21,50 @@ static const char usage[] =
     "usage: fmb mesh [OPTIONS] A B\n"
     "       fmb mesh [OPTIONS] --self A\n"
     "\n"
-    "Decides exactly which faces of the triangle mesh A meet which faces of B, or of A itself. A\n"
-    "and B are files in PLY (ASCII or binary), STL (ASCII or binary) or OBJ. Faces are numbered\n"
-    "from 0, in the order of the file.\n"
+    "Decides exactly which faces of the triangle mesh A meet which faces of B, or of\n"
+    "A itself. A and B are files in PLY (ASCII or binary), STL (ASCII or binary) or\n"
+    "OBJ. Faces are numbered from 0, in the order of the file.\n"
     "\n"
-    "Transformations, applied in the order given. Those after a file apply to that mesh, those\n"
-    "before the first file to both.\n"
+    "Transformations, applied in the order given. Those after a file apply to that\n"
+    "mesh, those before the first file to both.\n"
     "  --scale S            S, or X,Y,Z: a factor for each axis\n"
-    "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the right-hand\n"
-    "                       rule\n"
+    "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the\n"
+    "                       right-hand rule\n"
     "  --mirror AXIS        x becomes -x, or y, or z\n"
     "  --translate X,Y,Z\n"
-    "  --velocity X,Y,Z     the mesh moves this far per second: faces meet at some time of the\n"
-    "                       window, and the answer says when\n"
+    "  --velocity X,Y,Z     the mesh moves this far per second: faces meet at some\n"
+    "                       time of the window, and the answer says when\n"
     "  --duration T         length of the window, in seconds (1)\n"
     "\n"
     "Query:\n"
-    "  --self               A with itself. Faces that share a vertex or an edge and have nothing\n"
-    "                       else in common are counted separately\n"
-    "  --as tetrahedra      a face is the tetrahedron of its edges and its unit normal, as in\n"
-    "                       the article; --as faces: a triangle (the default)\n"
-    "  --method NAME        how to decide: certified (the default), or exact, which takes longer\n"
-    "                       and gives the same verdicts\n"
+    "  --self               A with itself. Faces that share a vertex or an edge and\n"
+    "                       have nothing else in common are counted separately\n"
+    "  --as tetrahedra      a face is the tetrahedron of its edges and its unit\n"
+    "                       normal, as in the article; --as faces: a triangle (the\n"
+    "                       default)\n"
+    "  --method NAME        how to decide: certified (the default), or exact, which\n"
+    "                       takes longer and gives the same verdicts\n"
     "\n"
     "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
     "  --list               all pairs, a line each\n"
-    "  --ply FILE           write both meshes as one, coloured: red for faces that overlap,\n"
-    "                       yellow for those that touch, grey (A) and blue (B) for the others\n"
-    "  --html FILE          write a page that shows them, and the pairs: for any browser, with\n"
-    "                       nothing to install or to fetch\n"
+    "  --ply FILE           write both meshes as one, coloured: red for faces that\n"
+    "                       overlap, yellow for those that touch, grey (A) and blue\n"
+    "                       (B) for the others\n"
+    "  --html FILE          write a page that shows them, and the pairs: for any\n"
+    "                       browser, with nothing to install or to fetch\n"
     "  -h, --help\n"
     "\n"
-    "Two faces overlap if they have an inner point in common, and touch if they only have points\n"
-    "in common that lie on the rim of one of them. Coordinates in text become the nearest\n"
-    "doubles; transformations round each coordinate, the same way on every machine.\n"
+    "Two faces overlap if they have an inner point in common, and touch if they only\n"
+    "have points in common that lie on the rim of one of them. Coordinates in text\n"
+    "become the nearest doubles; transformations round each coordinate, the same way\n"
+    "on every machine.\n"
     "\n"
-    "  fmb mesh bunny.ply --scale 1000 bunny.ply --scale 1000 --mirror x --translate 50,-10,0\n"
+    "  fmb mesh bunny.ply --scale 1000 bunny.ply --scale 1000 --mirror x \\\n"
+    "    --translate 50,-10,0\n"
     "\n"
-    "Exit codes: 0 answered, 1 it could not be answered, 2 wrong usage, or a file that cannot be\n"
-    "read.\n";
-
-enum {
-    SCALE = 2, /* 1 is an operand */
-    ROTATE,
-    MIRROR,
-    TRANSLATE,
-    VELOCITY,
-    DURATION,
-    SELF,
-    AS,
-    METHOD,
-    JSON,
-    LIST,
-    PLY,
-    HTML
-};
-
-static const struct option own_options[] = {
-    {"scale", required_argument, NULL, SCALE},
-    {"rotate", required_argument, NULL, ROTATE},
-    {"mirror", required_argument, NULL, MIRROR},
-    {"translate", required_argument, NULL, TRANSLATE},
-    {"velocity", required_argument, NULL, VELOCITY},
-    {"duration", required_argument, NULL, DURATION},
-    {"self", no_argument, NULL, SELF},
-    {"as", required_argument, NULL, AS},
-    {"method", required_argument, NULL, METHOD},
-    {"json", no_argument, NULL, JSON},
-    {"list", no_argument, NULL, LIST},
-    {"ply", required_argument, NULL, PLY},
-    {"html", required_argument, NULL, HTML},
-    {NULL, 0, NULL, 0},
-};
+    "Exit codes: 0 answered, 1 it could not be answered, 2 wrong usage, or a file\n"
+    "that cannot be read.\n";
 
 /* What is said of one mesh. */
 struct placed {
@@ -135,16 +106,36 @@ static bool take_vector(const struct args *args, double out[3])
            args_error(args, "--%s: expected three numbers X,Y,Z, found '%s'", args->option, optarg);
 }
 
-static bool take_scale(const struct args *args, double out[3])
+/* Whether an option is about this mesh: it is after it, or before the first one. */
+static bool is_about(const struct args *args, int which)
 {
-    const char *end = read_numbers(optarg, 1, out);
-    if (end && !*end) {
-        out[1] = out[2] = out[0];
-        return true;
+    return args->operand_count == 0 || args->operand_count == which + 1;
+}
+
+static bool add_step(const struct args *args, const struct mesh_step *step, struct placed placed[2])
+{
+    for (int which = 0; which < 2; which++) {
+        struct mesh_transform *transform = &placed[which].transform;
+        if (!is_about(args, which))
+            continue;
+        if (transform->count == MESH_STEPS_MAX)
+            return args_error(args, "more than %d steps for a mesh", MESH_STEPS_MAX);
+        transform->step[transform->count++] = *step;
     }
-    end = read_numbers(optarg, 3, out);
-    return (end && !*end) ||
-           args_error(args, "--scale: expected a number, or three X,Y,Z, found '%s'", optarg);
+    return true;
+}
+
+static bool take_scale(const struct args *args, void *placed)
+{
+    struct mesh_step step = {.kind = MESH_SCALE};
+    const char *end = read_numbers(optarg, 1, step.number);
+    if (end && !*end)
+        step.number[1] = step.number[2] = step.number[0];
+    else
+        end = read_numbers(optarg, 3, step.number);
+    if (!end || *end)
+        return args_error(args, "--scale: expected a number, or three X,Y,Z, found '%s'", optarg);
+    return add_step(args, &step, placed);
 }
 
 static bool is_axis(char letter)
@@ -152,94 +143,60 @@ static bool is_axis(char letter)
     return letter >= 'x' && letter <= 'z';
 }
 
-static bool take_mirror(const struct args *args, int *axis)
+static bool take_rotate(const struct args *args, void *placed)
 {
-    *axis = *optarg - 'x';
-    return (is_axis(*optarg) && !optarg[1]) ||
-           args_error(args, "--mirror: expected x, y or z, found '%s'", optarg);
-}
-
-static bool take_rotate(const struct args *args, struct mesh_step *step)
-{
-    step->axis = *optarg - 'x';
+    struct mesh_step step = {.kind = MESH_ROTATE, .axis = *optarg - 'x'};
     const bool good = is_axis(*optarg) && optarg[1] == ',';
-    const char *end = good ? read_numbers(optarg + 2, 1, step->number) : NULL;
-    return (end && !*end) ||
-           args_error(args, "--rotate: expected an axis and degrees, such as z,90, found '%s'",
-                      optarg);
+    const char *end = good ? read_numbers(optarg + 2, 1, step.number) : NULL;
+    if (!end || *end)
+        return args_error(args, "--rotate: expected an axis and degrees, such as z,90, found '%s'",
+                          optarg);
+    return add_step(args, &step, placed);
 }
 
-static bool take_step_value(const struct args *args, int option, struct mesh_step *step)
+static bool take_mirror(const struct args *args, void *placed)
 {
-    switch (option) {
-    case SCALE: step->kind = MESH_SCALE; return take_scale(args, step->number);
-    case ROTATE: step->kind = MESH_ROTATE; return take_rotate(args, step);
-    case MIRROR: step->kind = MESH_MIRROR; return take_mirror(args, &step->axis);
-    default: step->kind = MESH_TRANSLATE; return take_vector(args, step->number);
-    }
+    const struct mesh_step step = {.kind = MESH_MIRROR, .axis = *optarg - 'x'};
+    if (!is_axis(*optarg) || optarg[1])
+        return args_error(args, "--mirror: expected x, y or z, found '%s'", optarg);
+    return add_step(args, &step, placed);
 }
 
-/* After a mesh: for that mesh; before the first one: for both. */
-static bool take_step(const struct args *args, int option, struct options *options)
+static bool take_translate(const struct args *args, void *placed)
 {
-    struct mesh_step step = {0};
-    if (!take_step_value(args, option, &step))
-        return false;
-    for (int which = 0; which < 2; which++) {
-        struct mesh_transform *transform = &options->placed[which].transform;
-        if (args->operand_count != 0 && args->operand_count != which + 1)
-            continue;
-        if (transform->count == MESH_STEPS_MAX)
-            return args_error(args, "more than %d steps for a mesh", MESH_STEPS_MAX);
-        transform->step[transform->count++] = step;
-    }
-    return true;
+    struct mesh_step step = {.kind = MESH_TRANSLATE};
+    return take_vector(args, step.number) && add_step(args, &step, placed);
 }
 
-static bool take_velocity(const struct args *args, struct options *options)
+static bool take_velocity(const struct args *args, void *out)
 {
+    struct placed *placed = out;
     double velocity[3];
     if (!take_vector(args, velocity))
         return false;
     for (int which = 0; which < 2; which++)
-        if (args->operand_count == 0 || args->operand_count == which + 1) {
-            options->placed[which].moving = true;
-            memcpy(options->placed[which].velocity, velocity, sizeof velocity);
+        if (is_about(args, which)) {
+            placed[which].moving = true;
+            memcpy(placed[which].velocity, velocity, sizeof velocity);
         }
     return true;
 }
 
-static bool take_as(const struct args *args, enum mesh_as *out)
+static bool take_as(const struct args *args, void *out)
 {
-    *out = strcmp(optarg, "tetrahedra") == 0 ? MESH_TETRAHEDRA : MESH_FACES;
-    return *out == MESH_TETRAHEDRA || strcmp(optarg, "faces") == 0 ||
+    enum mesh_as *as = out;
+    *as = strcmp(optarg, "tetrahedra") == 0 ? MESH_TETRAHEDRA : MESH_FACES;
+    return *as == MESH_TETRAHEDRA || strcmp(optarg, "faces") == 0 ||
            args_error(args, "--as: there are faces and tetrahedra, not '%s'", optarg);
 }
 
-static bool take_method(const struct args *args, const struct fmb_method **out)
+static bool take_method(const struct args *args, void *out)
 {
-    const struct fmb_method *method = fmb_method_by_name(optarg);
+    const struct fmb_method *method = fmb_method_by_name(optarg), **chosen = out;
     if (!method || !method->certain)
         return args_error(args, "--method: there are certified and exact, not '%s'", optarg);
-    *out = method == fmb_method_default() ? NULL : method;
+    *chosen = method == fmb_method_default() ? NULL : method;
     return true;
-}
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    switch (option) {
-    case VELOCITY: return take_velocity(args, options);
-    case DURATION: return args_number(args, 0, DBL_MAX, &options->duration);
-    case SELF: options->self = true; return true;
-    case AS: return take_as(args, &options->as);
-    case METHOD: return take_method(args, &options->method);
-    case JSON: options->json = true; return true;
-    case LIST: options->list = true; return true;
-    case PLY: options->ply = optarg; return true;
-    case HTML: options->html = optarg; return true;
-    default: return take_step(args, option, options);
-    }
 }
 
 /* What goes together, and how many files. */
@@ -260,19 +217,16 @@ static bool check(const struct args *args, const struct options *options)
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
-static void tell_bytes(void *context, uint64_t done, uint64_t total)
+static void on_progress(void *progress, uint64_t done, uint64_t total)
 {
-    struct progress *progress = context;
-    if (progress->total != total)
-        *progress = progress_begin_bytes(total);
-    progress_to(progress, done);
+    progress_to_of(progress, done, total);
 }
 
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
-    struct progress progress = {0};
-    const struct mesh_watch watch = {tell_bytes, &progress};
+    struct progress progress = progress_begin_of("bytes", 0);
+    const struct mesh_watch watch = {on_progress, &progress};
     const bool good = mesh_read(path, &watch, out, error);
     progress_end(&progress);
     if (!good) {
@@ -314,18 +268,10 @@ static int tell(const struct options *options, const struct mesh_report *report)
     return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
-static void tell_faces(void *context, uint64_t done, uint64_t total)
-{
-    struct progress *progress = context;
-    if (progress->total != total)
-        *progress = progress_begin_of(total, "faces");
-    progress_to(progress, done);
-}
-
 static int meet(const struct options *options, const struct mesh *a, const struct mesh *b,
                 char **names)
 {
-    struct progress progress = {0};
+    struct progress progress = progress_begin_of("faces", 0);
     const struct mesh_question question = {
         .a = a,
         .b = b,
@@ -334,7 +280,7 @@ static int meet(const struct options *options, const struct mesh *a, const struc
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration,
         .method = options->method,
-        .told = tell_faces,
+        .told = on_progress,
         .context = &progress};
     struct mesh_meeting meeting;
     const enum fmb_status status = mesh_meet(&question, &meeting);
@@ -357,16 +303,31 @@ static int meet(const struct options *options, const struct mesh *a, const struc
 
 int cmd_mesh(int argc, char **argv)
 {
-    struct args args = {"mesh",
-                        usage,
-                        own_options,
-                        take_option,
-                        .operand = "mesh",
-                        .operands_max = INT_MAX,
-                        .in_order = true}; /* check() counts them */
     struct options options = {.duration = 1};
+    const struct args_option own[] = {
+        {"scale", ARGS_OTHER, options.placed, .take = take_scale},
+        {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},
+        {"mirror", ARGS_OTHER, options.placed, .take = take_mirror},
+        {"translate", ARGS_OTHER, options.placed, .take = take_translate},
+        {"velocity", ARGS_OTHER, options.placed, .take = take_velocity},
+        {"duration", ARGS_NUMBER, &options.duration, .high = DBL_MAX},
+        {"self", ARGS_FLAG, .out = &options.self},
+        {"as", ARGS_OTHER, &options.as, .take = take_as},
+        {"method", ARGS_OTHER, &options.method, .take = take_method},
+        {"json", ARGS_FLAG, .out = &options.json},
+        {"list", ARGS_FLAG, .out = &options.list},
+        {"ply", ARGS_TEXT, .out = &options.ply},
+        {"html", ARGS_TEXT, .out = &options.html},
+        {.name = NULL},
+    };
+    struct args args = {.command = "mesh",
+                        .usage = usage,
+                        .options = own,
+                        .operand = "mesh",
+                        .operands_max = INT_MAX, /* check() counts them */
+                        .in_order = true};
     struct mesh mesh[2] = {{0}};
-    int code = args_parse(&args, argc, argv, &options);
+    int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     if (!check(&args, &options))

@@ -20,43 +20,50 @@
 static const char usage[] =
     "usage: fmb query [OPTIONS] [FILE]\n"
     "\n"
-    "Decides the pairs of the scenes in FILE, and prints the answers in the order of the pairs.\n"
-    "Without FILE, or where it is '-', reads standard input.\n"
+    "Decides the pairs of the scenes in FILE, and prints the answers in the order of\n"
+    "the pairs. Without FILE, or where it is '-', reads standard input.\n"
     "\n"
-    "  --local          decide in this process; without it, the service on the bus decides\n"
-    "  --json           one line of JSON for each scene, exact; without it, tables for\n"
-    "                   people, rounded\n"
+    "  --local          decide in this process; without it, the service on the bus\n"
+    "                   decides\n"
+    "  --json           one line of JSON for each scene, exact; without it, tables\n"
+    "                   for people, rounded\n"
     "  --box            give the box of the intersection too\n"
-    "  --certificate    give a proof of each verdict too. It is checked here with the numbers\n"
-    "                   of the scene alone; a verdict without a valid proof counts as not\n"
-    "                   decided. The service then decides each pair by a query of its own,\n"
-    "                   which takes longer\n"
+    "  --gap            give the signed distance too: how far apart the bodies are,\n"
+    "                   or minus how deep they overlap, as two bounds; with --json\n"
+    "                   also the direction that proves the lower one, and the nearest\n"
+    "                   points\n"
+    "  --certificate    give a proof of each verdict too. It is checked here with the\n"
+    "                   numbers of the scene alone; a verdict without a valid proof\n"
+    "                   counts as not decided. The service then decides each pair by\n"
+    "                   a query of its own, which takes longer\n"
     "  --svg FILE       draw the scenes into FILE; implies --box\n"
-    "  --method NAME    how to decide: certified (the default: never wrong, and fast); exact\n"
-    "                   (boxes and intervals to the last bit); or fmb or sat, which are\n"
-    "                   inexact, for comparison\n"
-    "  --timeout SECONDS    longest time before a query is sent again (0.5); the first\n"
-    "                       repeats come after milliseconds\n"
+    "  --method NAME    how to decide: certified (the default: never wrong, and\n"
+    "                   fast); exact (boxes and intervals to the last bit); or fmb or\n"
+    "                   sat, which are inexact, for comparison\n"
+    "  --timeout SECONDS    longest time before a query is sent again (0.5); the\n"
+    "                       first repeats come after milliseconds\n"
     "  --retries N          give a query up after N + 1 timeouts (5)\n" ARGS_COMMON_USAGE
     "\n"
-    "A scene. A body has frames, or is itself one: a box of full size, or components from an\n"
-    "origin. Pairs are all but those to ignore, unless \"pairs\": [[1,2]] lists them. name,\n"
-    "orientation [w,x,y,z] (of any length), velocity and duration (default 1) are optional:\n"
-    "  {\"dim\": 3, \"duration\": 1.0,\n"
+    "A scene. A body has frames, or is itself one: a box of full size, or components\n"
+    "from an origin. Pairs are all but those to ignore, unless \"pairs\": [[1,2]] lists\n"
+    "them. name, orientation [w,x,y,z] (of any length), velocity, duration (default\n"
+    "1) and margin are optional. With a margin, pairs that touch or overlap, or are\n"
+    "no farther apart, have gaps:\n"
+    "  {\"dim\": 3, \"duration\": 1.0, \"margin\": 0.001,\n"
     "   \"bodies\": [{\"id\": 1, \"name\": \"table\", \"shape\": \"box\", \"size\": [2,1,0.25],\n"
     "               \"position\": [0,0,0.125]},\n"
     "              {\"id\": 2, \"position\": [0.5,0,0.5], \"orientation\": [1,0,0,1],\n"
     "               \"velocity\": [0,0,-0.1],\n"
-    "               \"frames\": [{\"shape\": \"box\", \"size\": [0.1,0.1,0.2], \"position\": "
-    "[0,0,0.1]},\n"
+    "               \"frames\": [{\"shape\": \"box\", \"size\": [0.1,0.1,0.2],\n"
+    "                           \"position\": [0,0,0.1]},\n"
     "                          {\"shape\": \"tetrahedron\", \"origin\": [0,0,0],\n"
     "                           \"components\": [[1,0,0],[0,1,0],[0,0,1]]}]},\n"
     "              {\"id\": 3, \"shape\": \"cuboid\", \"origin\": [0,0,0],\n"
     "               \"components\": [[1,0,0],[0,1,0],[0,0,1]]}],\n"
     "   \"ignore\": [[1,3]]}\n"
     "\n"
-    "Exit codes: 0 answered; 1 a pair could not be decided, or no service answered; 2 wrong\n"
-    "usage, or input that cannot be read or is not a scene.\n";
+    "Exit codes: 0 answered; 1 a pair could not be decided, or no service answered; 2\n"
+    "wrong usage, or input that cannot be read or is not a scene.\n";
 
 struct options {
     bool local, json;
@@ -70,20 +77,6 @@ struct options {
 
 enum { METHOD_NAMES_MAX = 80 };
 
-enum { LOCAL = 1, JSON, BOX, CERTIFICATE, METHOD, SVG, TIMEOUT, RETRIES };
-
-static const struct option own_options[] = {
-    {"local", no_argument, NULL, LOCAL},
-    {"json", no_argument, NULL, JSON},
-    {"box", no_argument, NULL, BOX},
-    {"certificate", no_argument, NULL, CERTIFICATE},
-    {"method", required_argument, NULL, METHOD},
-    {"svg", required_argument, NULL, SVG},
-    {"timeout", required_argument, NULL, TIMEOUT},
-    {"retries", required_argument, NULL, RETRIES},
-    {NULL, 0, NULL, 0},
-};
-
 /* "exact, fmb and sat": the table's names. */
 static const char *method_names(char out[METHOD_NAMES_MAX])
 {
@@ -96,31 +89,13 @@ static const char *method_names(char out[METHOD_NAMES_MAX])
     return out;
 }
 
-static bool take_method(const struct args *args, struct options *out)
+static bool take_method(const struct args *args, void *out)
 {
     char names[METHOD_NAMES_MAX];
-    out->question.method = fmb_method_by_name(optarg);
-    return out->question.method ||
+    const struct fmb_method **method = out;
+    *method = fmb_method_by_name(optarg);
+    return *method ||
            args_error(args, "--method: there are %s, not '%s'", method_names(names), optarg);
-}
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    switch (option) {
-    case LOCAL: options->local = true; break;
-    case JSON: options->json = true; break;
-    case BOX: options->question.box = true; break;
-    case CERTIFICATE: options->question.certificate = true; break;
-    case SVG:
-        options->svg = optarg;
-        options->question.box = true;
-        break;
-    case METHOD: return take_method(args, options);
-    case TIMEOUT: return args_number(args, 0.001, 3600, &options->timeout);
-    case RETRIES: return args_integer(args, 0, 1000, &options->retries);
-    }
-    return true;
 }
 
 /* ---- The run --------------------------------------------------------------------------------- */
@@ -208,7 +183,7 @@ static int run_query(const struct options *options, const struct args_bus *bus, 
                      int fd)
 {
     struct report_json json = report_json(stdout);
-    struct report_text text = report_text(stdout, options->question.box);
+    struct report_text text = report_text(stdout, options->question.box, options->question.gap);
     struct svg *svg = options->svg ? svg_open() : NULL;
     struct run run = {
         .options = options,
@@ -226,12 +201,25 @@ static int run_query(const struct options *options, const struct args_bus *bus, 
 
 int cmd_query(int argc, char **argv)
 {
-    struct args args = {"query",          usage, own_options, take_option, .operand = "FILE",
-                        .operands_max = 1};
     struct options options = {.timeout = 0.5, .retries = 5};
-    int code = args_parse(&args, argc, argv, &options);
+    struct answers_question *question = &options.question;
+    const struct args_option own[] = {
+        {"local", ARGS_FLAG, .out = &options.local},
+        {"json", ARGS_FLAG, .out = &options.json},
+        {"box", ARGS_FLAG, .out = &question->box},
+        {"gap", ARGS_FLAG, .out = &question->gap},
+        {"certificate", ARGS_FLAG, .out = &question->certificate},
+        {"method", ARGS_OTHER, &question->method, .take = take_method},
+        {"svg", ARGS_TEXT, .out = &options.svg},
+        {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
+        {"retries", ARGS_INTEGER, &options.retries, .high = 1000},
+        {.name = NULL},
+    };
+    struct args args = {"query", usage, own, .operand = "FILE", .operands_max = 1};
+    int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
+    question->box = question->box || options.svg;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;

@@ -4,12 +4,10 @@
 #include "args.h"
 #include "bus_client.h"
 #include "clock.h"
-#include "complain.h"
 #include "fmb_client_raw.h"
 #include "log_choice.h"
 #include "log_write.h"
 #include "output.h"
-#include "record_line.h"
 #include "record_report.h"
 #include "signals.h"
 
@@ -24,32 +22,35 @@
 static const char usage[] =
     "usage: fmb record [OPTIONS] FILE\n"
     "\n"
-    "Writes the queries, results and heartbeats of a service that pass on the bus, byte for byte,\n"
-    "to an LCM event log, until SIGINT or SIGTERM. lcm-logplayer and other programs can read it.\n"
-    "Messages that cannot be decoded are recorded too, and counted.\n"
+    "Writes the queries, results and heartbeats of a service that pass on the bus,\n"
+    "byte for byte, to an LCM event log, until SIGINT or SIGTERM. lcm-logplayer and\n"
+    "other programs can read it. Messages that cannot be decoded are recorded too,\n"
+    "and counted.\n"
     "\n"
     "  --force              overwrite FILE\n"
     "  --json               report at the end as one line of JSON\n"
     "  --duration SECONDS   end after this time\n"
     "  --count N            end after N messages\n"
-    "  --split-mb N         write FILE.000, FILE.001, ... of at most N MB (1,048,576 bytes) each;\n"
-    "                       with --force all files with such names are removed first\n"
+    "  --split-mb N         write FILE.000, FILE.001, ... of at most N MB (1,048,576\n"
+    "                       bytes) each; with --force all files with such names are\n"
+    "                       removed first\n"
     "  --max-files K        keep only the newest K of these files\n"
     "  --channel REGEX      also record the channels whose whole name matches\n"
     "  --all                record all channels\n" ARGS_COMMON_USAGE
     "\n"
-    "Each file also defines the bodies that its queries name by handle. Definitions that no\n"
-    "message contains are requested from the service. Bodies are kept in up to 64 MB of memory.\n"
-    "Messages of more than one datagram are not recorded.\n"
+    "Each file also defines the bodies that its queries name by handle. Definitions\n"
+    "that no message contains are requested from the service. Bodies are kept in up\n"
+    "to 64 MB of memory. Messages of more than one datagram are not recorded.\n"
     "\n"
-    "The report at the end counts the datagrams that the system dropped, and the handles whose\n"
-    "bodies could not be obtained. To enlarge the receive buffer, and to raise the priority:\n"
+    "The report at the end counts the datagrams that the system dropped, and the\n"
+    "handles whose bodies could not be obtained. To enlarge the receive buffer, and\n"
+    "to raise the priority:\n"
     "  sudo sysctl net.core.rmem_max=4194304\n"
     "  sudo chrt -f 10 fmb record ...\n"
     "\n"
-    "Exit codes: 0 recorded, even if messages were lost; 1 the bus or the log failed (the disk is\n"
-    "full, FILE was deleted), and what was recorded before is valid; 2 wrong usage, or FILE\n"
-    "exists or cannot be created.\n";
+    "Exit codes: 0 recorded, even if messages were lost; 1 the bus or the log failed\n"
+    "(the disk is full, FILE was deleted), and what was recorded before is valid; 2\n"
+    "wrong usage, or FILE exists or cannot be created.\n";
 
 struct options {
     bool json, all;
@@ -77,36 +78,6 @@ struct recording {
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
-
-enum { FORCE = 1, JSON, DURATION, COUNT, SPLIT, MAX_FILES, CHANNEL, ALL };
-
-static const struct option own_options[] = {
-    {"force", no_argument, NULL, FORCE},
-    {"json", no_argument, NULL, JSON},
-    {"duration", required_argument, NULL, DURATION},
-    {"count", required_argument, NULL, COUNT},
-    {"split-mb", required_argument, NULL, SPLIT},
-    {"max-files", required_argument, NULL, MAX_FILES},
-    {"channel", required_argument, NULL, CHANNEL},
-    {"all", no_argument, NULL, ALL},
-    {NULL, 0, NULL, 0},
-};
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    switch (option) {
-    case FORCE: options->parts.force = true; break;
-    case JSON: options->json = true; break;
-    case DURATION: return args_number(args, 0.001, 1e8, &options->duration);
-    case COUNT: return args_integer(args, 1, 1000000000000, &options->count);
-    case SPLIT: return args_number(args, 0.001, 1e6, &options->split_mb);
-    case MAX_FILES: return args_integer(args, 1, 1000000, &options->parts.keep);
-    case CHANNEL: options->channel = optarg; break;
-    case ALL: options->all = true; break;
-    }
-    return true;
-}
 
 /* Checks what depends on several options. */
 static int complete(const struct args *args, struct options *options)
@@ -364,12 +335,22 @@ static bool choose_others(const struct args *args, struct recording *recording)
 
 int cmd_record(int argc, char **argv)
 {
-    struct args args = {"record",         usage, own_options, take_option, .operand = "FILE",
-                        .operands_max = 1};
     static struct recording recording;
     struct options options = {.json = false};
+    const struct args_option own[] = {
+        {"force", ARGS_FLAG, .out = &options.parts.force},
+        {"json", ARGS_FLAG, .out = &options.json},
+        {"duration", ARGS_NUMBER, &options.duration, .low = 0.001, .high = 1e8},
+        {"count", ARGS_INTEGER, &options.count, .low = 1, .high = 1e12},
+        {"split-mb", ARGS_NUMBER, &options.split_mb, .low = 0.001, .high = 1e6},
+        {"max-files", ARGS_INTEGER, &options.parts.keep, .low = 1, .high = 1e6},
+        {"channel", ARGS_TEXT, .out = &options.channel},
+        {"all", ARGS_FLAG, .out = &options.all},
+        {.name = NULL},
+    };
+    struct args args = {"record", usage, own, .operand = "FILE", .operands_max = 1};
     recording.options = &options;
-    int code = args_parse(&args, argc, argv, &options);
+    int code = args_parse(&args, argc, argv);
     if (code == ARGS_RUN)
         code = complete(&args, &options);
     if (code == ARGS_RUN && !choose_others(&args, &recording))

@@ -6,12 +6,10 @@
 #include "cache.h"
 #include "input.h"
 #include "listing.h"
+#include "number.h"
 #include "output.h"
 #include "progress.h"
-#include "replay_bus.h"
-#include "replay_json.h"
-#include "replay_junit.h"
-#include "replay_text.h"
+#include "replay_output.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -24,54 +22,64 @@
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
     "\n"
-    "Answers every query of one or more LCM event logs again, in this process, and compares with\n"
-    "the recorded results: verdicts, intervals, boxes and certificates must be the same bits. A\n"
-    "result belongs to the query with the same client id and sequence number, anywhere in the\n"
-    "logs. Several logs are read as one, in the order given, as rotation wrote them. Handles are\n"
-    "resolved by definitions, and by bodies with an id that were sent whole, before or after the\n"
-    "query.\n"
+    "Answers every query of one or more LCM event logs again, in this process, and\n"
+    "compares with the recorded results: verdicts, intervals, boxes and certificates\n"
+    "must be the same bits. A result belongs to the query with the same client id and\n"
+    "sequence number, anywhere in the logs. Several logs are read as one, in the\n"
+    "order given, as rotation wrote them. Handles are resolved by definitions, and by\n"
+    "bodies with an id that were sent whole, before or after the query.\n"
     "\n"
-    "  --golden FILE        compare with the results in FILE, not with the recorded ones\n"
+    "  --golden FILE        compare with the results in FILE, not with the recorded\n"
+    "                       ones\n"
     "  --write-golden FILE  write the results, as an event log, to compare with later\n"
     "  --force              FILE may exist already\n"
-    "  --tolerance T        for logs of other versions: ends of intervals may differ by T times\n"
-    "                       the duration, ends of boxes by T times the largest coordinate;\n"
-    "                       certificates are not compared\n"
-    "  --from S, --to S     only queries logged from S on and before S, in seconds since the\n"
-    "                       first event; the remainder is read for definitions and results\n"
-    "  --frames N           capacity of the cache, in frames, as fmbd --frames (65536)\n"
+    "  --tolerance T        for logs of other versions: ends of intervals may differ\n"
+    "                       by T times the duration, ends of boxes and gaps by T\n"
+    "                       times the largest coordinate; directions, nearest points\n"
+    "                       and certificates are not compared\n"
+    "  --from S, --to S     only queries logged from S on and before S, in seconds\n"
+    "                       since the first event; the remainder is read for\n"
+    "                       definitions and results\n"
+    "  --frames N           capacity of the cache, in frames, as fmbd --frames\n"
+    "                       (65536)\n"
     "  --bus                the service on the bus answers, not this process\n"
-    "  --speed X            with --bus: send X times as fast as was logged, 1 for real time;\n"
-    "                       without it, or 0, as fast as the service answers\n"
-    "  --timeout SECONDS    with --bus: longest time before a query is sent again (0.5)\n"
-    "  --retries N          with --bus: give a query up, and end, after N + 1 timeouts (9)\n"
+    "  --speed X            with --bus: send X times as fast as was logged, 1 for\n"
+    "                       real time; without it, or 0, as fast as the service\n"
+    "                       answers\n"
+    "  --timeout SECONDS    with --bus: longest time before a query is sent again\n"
+    "                       (0.5)\n"
+    "  --retries N          with --bus: give a query up, and end, after N + 1\n"
+    "                       timeouts (9)\n"
     "  --json               one line of JSON in place of the text\n"
     "  --junit FILE         also write JUnit XML, for CI systems\n"
     "  --limit N            list N differences, and only count the others (1000)\n"
     "  --html FILE          write a page that shows the replay\n" ARGS_COMMON_USAGE
     "\n"
-    "With --bus a running fmbd answers, many queries at a time, under a new client id. Bodies\n"
-    "that it does not hold are sent whole. SIGINT ends the replay with what was answered so far.\n"
+    "With --bus a running fmbd answers, many queries at a time, under a new client\n"
+    "id. Bodies that it does not hold are sent whole. SIGINT ends the replay with\n"
+    "what was answered so far.\n"
     "\n"
-    "Not compared, but counted: results that say the service was busy or did not hold a body, and\n"
-    "queries with handles that the logs do not define. Second results of a query that contradict\n"
-    "the first are reported and counted as different. Times to decide are shown, not compared.\n"
+    "Not compared, but counted: results that say the service was busy or did not hold\n"
+    "a body, and queries with handles that the logs do not define. Second results of\n"
+    "a query that contradict the first are reported and counted as different. Times\n"
+    "to decide are shown, not compared.\n"
     "\n"
-    "Memory, for logs of any size: some 300 bytes for each distinct body, and for each query that\n"
-    "waits for its result some 500 bytes (a pair) or 250 and its result of at most 64 kB (a\n"
-    "scene). A million pair queries before the first result take 500 MB.\n"
+    "Memory, for logs of any size: some 300 bytes for each distinct body, and for\n"
+    "each query that waits for its result some 500 bytes (a pair) or 250 and its\n"
+    "result of at most 64 kB (a scene). A million pair queries before the first\n"
+    "result take 500 MB.\n"
     "\n"
     "On several machines, by GNU parallel ($SLURM_ARRAY_TASK_ID for {} with Slurm):\n"
-    "  parallel --sshloginfile machines fmb replay --json --from {} --to '{= $_ += 60 =}' \\\n"
-    "    run.log ::: $(seq 0 60 3540) > parts\n"
+    "  parallel --sshloginfile machines fmb replay --json --from {} \\\n"
+    "    --to '{= $_ += 60 =}' run.log ::: $(seq 0 60 3540) > parts\n"
     "  jq -s '{queries: map(.queries) | add, same: map(.same) | add,\n"
     "    different: map(.different) | add, differences: map(.differences[]),\n"
     "    exit: (map(.exit) | if index(1) then 1 else max end)}' parts\n"
     "\n"
-    "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be read, is\n"
-    "damaged ('fmb log cut' copies what is intact) or was recorded by version 1, a message on the\n"
-    "service's channels cannot be read, there is nothing to compare, or the service on the bus\n"
-    "does not answer all queries.\n";
+    "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
+    "read, is damaged ('fmb log cut' copies what is intact) or was recorded by\n"
+    "version 1, a message on the service's channels cannot be read, there is nothing\n"
+    "to compare, or the service on the bus does not answer all queries.\n";
 
 struct options {
     struct replay_options replay;
@@ -81,52 +89,6 @@ struct options {
     bool json, live;
     const char *junit, *html;
 };
-
-enum { GOLDEN = 1, WRITE_GOLDEN, FORCE, TOLERANCE, FROM, TO, FRAMES, JSON, JUNIT, HTML, LIMIT };
-enum { BUS = LIMIT + 1, SPEED, TIMEOUT, RETRIES };
-
-static const struct option own_options[] = {
-    {"golden", required_argument, NULL, GOLDEN},
-    {"write-golden", required_argument, NULL, WRITE_GOLDEN},
-    {"force", no_argument, NULL, FORCE},
-    {"tolerance", required_argument, NULL, TOLERANCE},
-    {"from", required_argument, NULL, FROM},
-    {"to", required_argument, NULL, TO},
-    {"frames", required_argument, NULL, FRAMES},
-    {"json", no_argument, NULL, JSON},
-    {"junit", required_argument, NULL, JUNIT},
-    {"html", required_argument, NULL, HTML},
-    {"limit", required_argument, NULL, LIMIT},
-    {"bus", no_argument, NULL, BUS},
-    {"speed", required_argument, NULL, SPEED},
-    {"timeout", required_argument, NULL, TIMEOUT},
-    {"retries", required_argument, NULL, RETRIES},
-    {NULL, 0, NULL, 0},
-};
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    struct replay_options *replay = &options->replay;
-    switch (option) {
-    case GOLDEN: replay->golden = optarg; break;
-    case WRITE_GOLDEN: replay->write_golden = optarg; break;
-    case FORCE: replay->force = true; break;
-    case TOLERANCE: return args_number(args, 0, 1, &replay->compare.tolerance);
-    case FROM: return args_number(args, 0, 1e12, &replay->from);
-    case TO: return args_number(args, 0, 1e12, &replay->to);
-    case FRAMES: return args_integer(args, 1, CACHE_FRAMES_MAX, &options->frames);
-    case JSON: options->json = true; break;
-    case JUNIT: options->junit = optarg; break;
-    case HTML: options->html = optarg; break;
-    case LIMIT: return args_integer(args, 0, INT32_MAX, &options->limit);
-    case BUS: options->live = true; break;
-    case SPEED: return args_number(args, 0, 1e9, &options->bus.speed);
-    case TIMEOUT: return args_number(args, 0.001, 1e6, &options->bus.timeout);
-    case RETRIES: return args_integer(args, 0, 1000000, &options->retries);
-    }
-    return true;
-}
 
 /* ---- While it goes ---- */
 
@@ -139,7 +101,7 @@ struct run {
     int64_t first_utime;
     struct listing *differences;
     int64_t complaints;
-    struct replay_json json;
+    struct json_writer json;
 };
 
 static const char *log_name(const struct run *run, int log)
@@ -193,22 +155,6 @@ static void open_many(void)
         return;
     limit.rlim_cur = limit.rlim_max;
     setrlimit(RLIMIT_NOFILE, &limit);
-}
-
-/* When the logs begin. */
-static int64_t first_utime(const struct replay_options *options)
-{
-    char why[LOG_WHY_MAX];
-    struct input input;
-    struct log_event event = {.utime = 0};
-    struct log_damage damage;
-    enum log_outcome outcome;
-    if (!input_open(&input, options->log, options->log_count, why))
-        return 0;
-    while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
-        continue;
-    input_close(&input);
-    return outcome == LOG_EVENT ? event.utime : 0;
 }
 
 static bool write_junit(const struct run *run, const struct tally *tally)
@@ -294,6 +240,61 @@ static void report_all(struct run *run, const struct tally *all, int code)
         replay_text_summary(stdout, all);
 }
 
+/* ---- The end of a replay through a live service ---- */
+
+static void report_never(const struct answer_bus_options *options, double patience)
+{
+    const struct args_bus where = {options->url, options->prefix};
+    fprintf(stderr, "fmb: no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s",
+            options->prefix, options->prefix, args_bus_name(&where));
+    fprintf(stderr, " within %g s\n", patience);
+}
+
+static void report_no_more(const struct tally_bus *bus, double patience, char *const *log)
+{
+    char answered[NUMBER_TEXT_MAX];
+    fprintf(stderr, "fmb: fmbd answered %s queries, and then nothing for %g s; ",
+            number_grouped(bus->answered, answered), patience);
+    fprintf(stderr, "the next one is event %" PRId64 " (offset %" PRId64 ") of %s\n", bus->number,
+            bus->offset, log[bus->log]);
+}
+
+/* No service has answered at all, or none does any more. */
+static void report_no_service(const struct tally_bus *bus, const struct answer_bus_options *options,
+                              char *const *log)
+{
+    const double patience = options->timeout * (options->retries + 1);
+    if (bus->services == 0)
+        report_never(options, patience);
+    else
+        report_no_more(bus, patience, log);
+    if (bus->nonsense > 0)
+        fprintf(stderr, "fmb: %" PRId64 " results could not be read: another version of fmbd?\n",
+                bus->nonsense);
+    fprintf(stderr,
+            "fmb: start one with 'fmbd%s%s &', or replay in this process: leave out --bus\n",
+            *options->prefix ? " --prefix " : "", options->prefix);
+}
+
+static void report_signal(const struct tally_bus *bus)
+{
+    char answered[NUMBER_TEXT_MAX];
+    fprintf(stderr, "fmb: ended by a signal; counts are of %s queries, answered so far\n",
+            number_grouped(bus->answered, answered));
+}
+
+/* Reports why not all queries were answered, if so, and what to do. */
+static void report_end(const struct tally_bus *bus, const struct answer_bus_options *options,
+                       char *const *log)
+{
+    switch ((enum answer_bus_end) bus->end) {
+    case ANSWER_BUS_NO_END: break;
+    case ANSWER_BUS_SIGNAL: report_signal(bus); break;
+    case ANSWER_BUS_NOBODY: report_no_service(bus, options, log); break;
+    case ANSWER_BUS_FAILED: fputs("fmb: the bus has failed\n", stderr); break;
+    }
+}
+
 /* ---- The run ---- */
 
 static int replay(struct run *run, int64_t size, struct tally *tally)
@@ -301,13 +302,13 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     const struct options *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
-    run->progress = progress_begin_bytes((uint64_t) size);
+    run->progress = progress_begin_of("bytes", (uint64_t) size);
     run->progress.enabled = isatty(STDERR_FILENO); /* what is printed comes when it has ended */
     bool good = replay_run(&options->replay, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
         tally_add(&all, &tally[log]);
-    replay_bus_end(&all.bus, &options->bus, options->replay.log);
+    report_end(&all.bus, &options->bus, options->replay.log);
     int code = good ? code_of(options, &all) : ARGS_USAGE;
     if (options->junit && !write_junit(run, tally))
         code = ARGS_USAGE;
@@ -321,10 +322,9 @@ static int run_replay(struct options *options)
 {
     struct run run = {.options = options};
     open_many();
-    const int64_t size = replay_size(&options->replay);
-    if (size < 0)
+    int64_t size;
+    if (!replay_extent(&options->replay, &size, &run.first_utime))
         return ARGS_USAGE;
-    run.first_utime = first_utime(&options->replay);
     if (options->html)
         options->replay.page = page_open(options->replay.log[0], run.first_utime);
     run.differences = listing_open(options->limit);
@@ -386,13 +386,31 @@ static void complete(struct options *options)
 
 int cmd_replay(int argc, char **argv)
 {
-    struct args args = {
-        "replay", usage, own_options, take_option, .operand = "LOG", .operands_max = 4096};
     struct options options = {.replay = {.from = -INFINITY, .to = INFINITY},
                               .bus = {.speed = -1},
                               .limit = 1000,
                               .retries = -1};
-    const int code = args_parse(&args, argc, argv, &options);
+    struct replay_options *replay = &options.replay;
+    const struct args_option own[] = {
+        {"golden", ARGS_TEXT, .out = &replay->golden},
+        {"write-golden", ARGS_TEXT, .out = &replay->write_golden},
+        {"force", ARGS_FLAG, .out = &replay->force},
+        {"tolerance", ARGS_NUMBER, &replay->compare.tolerance, .high = 1},
+        {"from", ARGS_NUMBER, &replay->from, .high = 1e12},
+        {"to", ARGS_NUMBER, &replay->to, .high = 1e12},
+        {"frames", ARGS_INTEGER, &options.frames, .low = 1, .high = CACHE_FRAMES_MAX},
+        {"json", ARGS_FLAG, .out = &options.json},
+        {"junit", ARGS_TEXT, .out = &options.junit},
+        {"html", ARGS_TEXT, .out = &options.html},
+        {"limit", ARGS_INTEGER, &options.limit, .high = INT32_MAX},
+        {"bus", ARGS_FLAG, .out = &options.live},
+        {"speed", ARGS_NUMBER, &options.bus.speed, .high = 1e9},
+        {"timeout", ARGS_NUMBER, &options.bus.timeout, .low = 0.001, .high = 1e6},
+        {"retries", ARGS_INTEGER, &options.retries, .high = 1000000},
+        {.name = NULL},
+    };
+    struct args args = {"replay", usage, own, .operand = "LOG", .operands_max = 4096};
+    const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     if (!check_options(&args, &options) || !check_bus(&args, &options))

@@ -13,7 +13,8 @@
 static const char usage[] =
     "usage: fmb status [OPTIONS]\n"
     "\n"
-    "Waits for the next heartbeat of the service, which comes once a second, and prints it.\n"
+    "Waits for the next heartbeat of the service, which comes once a second, and\n"
+    "prints it.\n"
     "\n"
     "  --json               as one line of JSON\n"
     "  --timeout SECONDS    longest time to wait (3)\n" ARGS_COMMON_USAGE
@@ -31,24 +32,6 @@ struct heartbeat {
     bool received;
     const char *malformed; /* error of the last one that could not be read */
 };
-
-enum { JSON = 1, TIMEOUT };
-
-static const struct option own_options[] = {
-    {"json", no_argument, NULL, JSON},
-    {"timeout", required_argument, NULL, TIMEOUT},
-    {NULL, 0, NULL, 0},
-};
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    switch (option) {
-    case JSON: options->json = true; break;
-    case TIMEOUT: return args_number(args, 0.001, 3600, &options->timeout);
-    }
-    return true;
-}
 
 static void on_heartbeat(void *user, const struct fmb_client_heartbeat *status)
 {
@@ -71,6 +54,8 @@ static void print_json(const struct fmb_client_heartbeat *status)
 {
     struct json_writer json = {.out = stdout};
     json_begin(&json, NULL, '{');
+    json_integer(&json, "utime", status->utime);
+    json_integer(&json, "server_id", status->server_id);
     json_string(&json, "version", status->version);
 #define X(name) json_integer(&json, #name, status->name);
     FMB_CLIENT_COUNTERS(X)
@@ -167,13 +152,18 @@ static int print_heartbeat(const struct options *options, const struct fmb_clien
 
 int cmd_status(int argc, char **argv)
 {
-    struct args args = {"status", usage, own_options, take_option, .operand = NULL};
     struct options options = {.timeout = 3};
+    const struct args_option own[] = {
+        {"json", ARGS_FLAG, .out = &options.json},
+        {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
+        {.name = NULL},
+    };
+    struct args args = {"status", usage, own, .operand = NULL};
     struct listener listener;
     struct heartbeat heartbeat = {.received = false};
     const struct fmb_client_watcher watcher = {
         .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &heartbeat};
-    int code = args_parse(&args, argc, argv, &options);
+    int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     if (!listen_open(&args.bus, &watcher, &listener))

@@ -11,16 +11,18 @@
 static const char usage[] =
     "usage: fmb watch [OPTIONS]\n"
     "\n"
-    "Prints the results on the bus, of all clients, one line each, until SIGINT or SIGTERM. The\n"
-    "result of a pair names the bodies by id (0: anonymous). The result of a scene holds the\n"
-    "answers of one datagram, up to the pair that the line names. If the query did not list its\n"
-    "pairs, only those that touch or overlap are counted; all others are separated.\n"
+    "Prints the results on the bus, of all clients, one line each, until SIGINT or\n"
+    "SIGTERM. The result of a pair names the bodies by id (0: anonymous). The result\n"
+    "of a scene holds the answers of one datagram, up to the pair that the line\n"
+    "names. If the query did not list its pairs, only those that touch, overlap or\n"
+    "are near are counted; all others are separated.\n"
     "\n"
-    "  --json               one line of JSON for each result, exact, with its certificate\n"
-    "                       where it has one\n"
+    "  --json               one line of JSON for each result, exact, with its\n"
+    "                       certificate where it has one\n"
     "  --count N            end after N results\n" ARGS_COMMON_USAGE
     "\n"
-    "Exit codes: 0 ended by a signal or --count, 1 no bus, or the output failed, 2 wrong usage.\n";
+    "Exit codes: 0 ended by a signal or --count, 1 no bus, or the output failed, 2\n"
+    "wrong usage.\n";
 
 struct options {
     bool json;
@@ -34,24 +36,6 @@ struct watch {
     uint64_t malformed;
     bool enough;
 };
-
-enum { JSON = 1, COUNT };
-
-static const struct option own_options[] = {
-    {"json", no_argument, NULL, JSON},
-    {"count", required_argument, NULL, COUNT},
-    {NULL, 0, NULL, 0},
-};
-
-static bool take_option(const struct args *args, int option, void *out)
-{
-    struct options *options = out;
-    switch (option) {
-    case JSON: options->json = true; break;
-    case COUNT: return args_integer(args, 1, INT32_MAX, &options->count);
-    }
-    return true;
-}
 
 /* ---- Results of pairs ---- */
 
@@ -83,6 +67,8 @@ static void print_pair_json(const struct fmb_client_pair_result *result)
                result->compute_ns);
     json_integer(&json, "a", result->body_id[0]);
     json_integer(&json, "b", result->body_id[1]);
+    if (outcome.error)
+        json_integer(&json, "status", result->status);
     report_answer_json(&json, result->dim, &outcome);
     end_json(&json);
 }
@@ -114,6 +100,7 @@ static void print_scene_json(const struct fmb_client_scene_result *result)
     begin_json(&json, result->utime, result->client_id, result->sequence_number, result->server_id,
                result->compute_ns);
     if (result->status != FMB_OK) {
+        json_integer(&json, "status", result->status);
         json_string(&json, "error", result->text);
         end_json(&json);
         return;
@@ -121,7 +108,9 @@ static void print_scene_json(const struct fmb_client_scene_result *result)
     json_integer(&json, "end_pair", result->end_pair);
     json_integer(&json, "overlapping", result->overlapping);
     json_integer(&json, "touching", result->touching);
-    if (!result->names_pairs) {
+    if (result->names_pairs) {
+        json_integer(&json, "near", result->separated);
+    } else {
         json_integer(&json, "separated", result->separated);
         json_integer(&json, "undecided", result->undecided);
     }
@@ -137,8 +126,8 @@ static void print_scene_text(const struct fmb_client_scene_result *result)
     }
     printf("up to pair %" PRId64 ": %" PRId64 " overlapping, %" PRId64 " touching",
            result->end_pair, result->overlapping, result->touching);
-    if (!result->names_pairs)
-        printf(", %" PRId64 " separated", result->separated);
+    if (!result->names_pairs || result->separated > 0)
+        printf(", %" PRId64 " %s", result->separated, result->names_pairs ? "near" : "separated");
     if (result->undecided > 0)
         printf(", %" PRId64 " not decided", result->undecided);
     putchar('\n');
@@ -195,13 +184,18 @@ static int end_of_watch(const struct watch *watch, enum listen_end end)
 
 int cmd_watch(int argc, char **argv)
 {
-    struct args args = {"watch", usage, own_options, take_option, .operand = NULL};
     struct options options = {.count = 0};
+    const struct args_option own[] = {
+        {"json", ARGS_FLAG, .out = &options.json},
+        {"count", ARGS_INTEGER, &options.count, .low = 1, .high = INT32_MAX},
+        {.name = NULL},
+    };
+    struct args args = {"watch", usage, own, .operand = NULL};
     struct watch watch = {.options = &options, .columns = report_columns()};
     const struct fmb_client_watcher watcher = {
         .pair = on_pair, .scene = on_scene, .malformed = on_malformed, .user = &watch};
     struct listener listener;
-    int code = args_parse(&args, argc, argv, &options);
+    int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     if (!listen_open(&args.bus, &watcher, &listener))

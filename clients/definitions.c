@@ -136,6 +136,27 @@ const struct geometry *definitions_find(struct definitions *definitions,
     return body ? &body->geometry : NULL;
 }
 
+int32_t definitions_missing(struct definitions *definitions, const struct placement *placement,
+                            int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]) &&
+            !definitions_find(definitions, &placement[i].handle))
+            return i;
+    return -1;
+}
+
+void definitions_fill(struct definitions *definitions, struct placement *placement, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++) {
+        const struct geometry *geometry = placement_by_handle(&placement[i])
+                                              ? definitions_find(definitions, &placement[i].handle)
+                                              : NULL;
+        if (geometry)
+            placement[i].geometry = *geometry;
+    }
+}
+
 size_t definitions_count(const struct definitions *definitions)
 {
     return HASH_CNT(by_bytes, definitions->by_bytes);

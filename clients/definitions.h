@@ -36,6 +36,13 @@ const char *definitions_add_message(struct definitions *definitions, const void 
 const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle);
 
+/* The first placement by handle whose body was not added; -1: none. */
+int32_t definitions_missing(struct definitions *definitions, const struct placement *placement,
+                            int32_t count);
+
+/* Puts the geometries of bodies that were added into placements by handle. */
+void definitions_fill(struct definitions *definitions, struct placement *placement, int32_t count);
+
 /* Number of bodies, and the bytes of memory that they take, tables included. */
 size_t definitions_count(const struct definitions *definitions);
 size_t definitions_bytes(const struct definitions *definitions);

@@ -70,8 +70,9 @@ static int too_many(const char *word)
 
 static int cmd_help(int argc, char **argv)
 {
-    if (argc > 2)
-        return too_many(argv[2]);
+    const bool of_log = argc > 2 && strcmp(argv[1], "log") == 0;
+    if (argc > 2 + of_log)
+        return too_many(argv[2 + of_log]);
     if (argc < 2 || strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0) {
         print_help(stdout);
         return ARGS_ANSWERED;
@@ -80,8 +81,8 @@ static int cmd_help(int argc, char **argv)
     if (!command)
         return unknown_command(argv[1]);
     char help[] = "--help";
-    char *arguments[] = {argv[1], help, NULL};
-    return command->run(2, arguments);
+    char *arguments[] = {argv[1], of_log ? argv[2] : help, help, NULL};
+    return command->run(2 + of_log, arguments);
 }
 
 static bool is_one_of(const char *word, const char *first, const char *second)

@@ -192,6 +192,8 @@ static bool read_id(struct json_reader *reader, const struct place *place, const
     if (!cJSON_IsNumber(item))
         return refuse_kind(reader, place, item, EXPECTED_ID);
     double id = item->valuedouble;
+    if (id > id_max) /* its digits are lost */
+        return refuse(reader, place, "expected " EXPECTED_ID ", found a larger number");
     if (!(id >= 1 && id <= id_max && id == floor(id)))
         return refuse_value(reader, place, id, EXPECTED_ID);
     *out = (int64_t) id;
@@ -605,30 +607,31 @@ static bool read_dim(struct json_reader *reader, const cJSON *item, struct scene
     return true;
 }
 
-static bool read_duration(struct json_reader *reader, const cJSON *item, struct scene *out)
+/* On input: *out is its value where it is left out. */
+static bool read_from_0(struct json_reader *reader, const char *key, const cJSON *item, double *out)
 {
-    struct place place = {NULL, "duration", 0};
-    out->duration = 1;
+    struct place place = {NULL, key, 0};
     if (!item)
         return true;
-    if (!read_number(reader, &place, item, &out->duration))
-        return false;
-    return out->duration >= 0 ||
-           refuse_value(reader, &place, out->duration, "a number of at least 0");
+    return read_number(reader, &place, item, out) &&
+           (*out >= 0 || refuse_value(reader, &place, *out, "a number of at least 0"));
 }
 
-enum { DIM, DURATION, BODIES, PAIRS, IGNORE, SCENE_KEYS };
+enum { DIM, DURATION, MARGIN, BODIES, PAIRS, IGNORE, SCENE_KEYS };
 
 static const struct key scene_keys[SCENE_KEYS] = {
-    [DIM] = {"dim", false},    [DURATION] = {"duration", true}, [BODIES] = {"bodies", false},
-    [PAIRS] = {"pairs", true}, [IGNORE] = {"ignore", true},
+    [DIM] = {"dim", false},       [DURATION] = {"duration", true}, [MARGIN] = {"margin", true},
+    [BODIES] = {"bodies", false}, [PAIRS] = {"pairs", true},       [IGNORE] = {"ignore", true},
 };
 
 static bool read_scene(struct json_reader *reader, const cJSON *item, struct scene *out)
 {
     const cJSON *value[SCENE_KEYS];
+    out->duration = 1;
     return read_object(reader, NULL, item, scene_keys, SCENE_KEYS, value) &&
-           read_dim(reader, value[DIM], out) && read_duration(reader, value[DURATION], out) &&
+           read_dim(reader, value[DIM], out) &&
+           read_from_0(reader, "duration", value[DURATION], &out->duration) &&
+           read_from_0(reader, "margin", value[MARGIN], &out->margin) &&
            read_bodies(reader, value[BODIES], out) &&
            link_pairs(reader, value[PAIRS], value[IGNORE], out);
 }

@@ -1,7 +1,7 @@
 /* Scenes out of JSON text. The reading is strict: what is not understood in full is refused with
  * one line that names the place. The form:
  *
- *     {"dim": 3, "duration": 1.0,
+ *     {"dim": 3, "duration": 1.0, "margin": 0.001,
  *      "bodies": [{"id": 1, "name": "table", "shape": "box", "size": [2,1,0.25],
  *                  "position": [0,0,0.125]},
  *                 {"id": 2, "position": [0.5,0,0.5], "orientation": [0.9239,0,0,0.3827],
@@ -18,7 +18,7 @@
  * read as, ids too: 1e0 is the id 1, and no integer beyond 2^53 - 1, which two texts may share, is
  * an id. Keys may come in any order, but once. What is missing:
  *
- * - duration: 1.
+ * - duration: 1. margin: 0.
  * - pairs: all but those to ignore, in body order.
  * - position and origin: 0. (A body that is one frame of components needs one of position,
  *   orientation and origin.)

@@ -22,12 +22,7 @@ struct progress progress_begin(uint64_t total)
     return begin(isatty(STDERR_FILENO) && !isatty(STDOUT_FILENO), "pairs", total);
 }
 
-struct progress progress_begin_bytes(uint64_t total)
-{
-    return progress_begin_of(total, "bytes");
-}
-
-struct progress progress_begin_of(uint64_t total, const char *unit)
+struct progress progress_begin_of(const char *unit, uint64_t total)
 {
     return begin(isatty(STDERR_FILENO), unit, total);
 }
@@ -51,6 +46,12 @@ void progress_to(struct progress *progress, uint64_t done)
         return;
     progress->shown_at = time;
     show(progress);
+}
+
+void progress_to_of(struct progress *progress, uint64_t done, uint64_t total)
+{
+    progress->total = total;
+    progress_to(progress, done);
 }
 
 void progress_step(struct progress *progress)

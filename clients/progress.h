@@ -17,12 +17,12 @@ struct progress {
  * themselves show how far it is. */
 struct progress progress_begin(uint64_t total);
 
-/* Of a file, whose bytes are counted. Standard output may be a terminal too: nothing is printed
- * before the end. */
-struct progress progress_begin_bytes(uint64_t total);
+/* Of other things: "bytes". Standard output may be a terminal too: nothing is printed before the
+ * end. unit must live as long as the progress. */
+struct progress progress_begin_of(const char *unit, uint64_t total);
 
-/* Likewise of other things: "boxes". unit lives as long as the progress. */
-struct progress progress_begin_of(uint64_t total, const char *unit);
+/* As progress_to(), with the total, which may be known late. */
+void progress_to_of(struct progress *progress, uint64_t done, uint64_t total);
 
 /* One more is done; or so many are now. Shows after the first second, then a few times a second. */
 void progress_step(struct progress *progress);

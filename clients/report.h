@@ -25,10 +25,14 @@ struct report {
 /* One line, one JSON object, for each scene; flushed at its end:
  *
  *     {"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1],
- *                 "box": {"min": [0.5,0,0], "max": [1,1,1]}}]}
+ *                 "box": {"min": [0.5,0,0], "max": [1,1,1]},
+ *                 "gap": [-0.25, -0.25], "direction": [0,0,1]},
+ *                {"a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
+ *                 "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}}]}
  *
- * Doubles read back bit for bit; an infinite end of a box is null; a "certificate" comes last; a
- * pair that could not be decided has an "error" in place of the verdict. */
+ * Doubles read back bit for bit. null is an infinite end of a box, outward; or an infinite bound of
+ * a gap, positive where separated, else negative. A "certificate" comes last; a pair that could not
+ * be decided has an "error" in place of the verdict. */
 struct report_json {
     struct report report;
     struct json_writer json;
@@ -39,7 +43,7 @@ struct report_json report_json(FILE *out);
 /* How wide the columns of a table have become: a row with numbers of more digits than usual makes
  * them wider for the rows below it. */
 struct report_columns {
-    int contact;
+    int contact, gap;
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
 };
 
@@ -51,22 +55,23 @@ struct report_columns report_columns(void);
 struct report_text {
     struct report report;
     FILE *out;
-    bool box; /* boxes were asked for: a column more */
+    bool box, gap; /* wanted: a column each */
     size_t scenes;
     int id_width;                        /* of names, or else ids */
     struct report_columns columns;       /* of the scene */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
+    uint64_t near;                       /* of those separated, where the scene has a margin */
 };
 
-struct report_text report_text(FILE *out, bool box);
+struct report_text report_text(FILE *out, bool box, bool gap);
 
 /* The members of one answer as report_json writes them, without braces: "verdict": ..., or
  * "error": ... Used wherever answers are printed as JSON; the pair is not looked at. */
 void report_answer_json(struct json_writer *json, int dim, const struct outcome *outcome);
 
-/* Verdict, contact and box for people, in columns, without the end of the line:
+/* Verdict, contact, gap and box for people, in columns, without the end of the line:
  *
- *     overlapping  0.25 to 0.5 s         x        0 .. 1         y     -0.5 .. 0.5 */
+ *     overlapping  0.25 to 0.5 s         -0.5          x        0 .. 1         y     -0.5 .. 0.5 */
 void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns);
 

@@ -8,6 +8,19 @@ static void write_interval(struct json_writer *json, const char *key, const doub
     json_end(json, ']');
 }
 
+static void write_gap(struct json_writer *json, int dim, const struct fmb_gap *gap)
+{
+    write_interval(json, "gap", gap->bounds);
+    json_numbers(json, "direction", gap->direction, dim);
+    if (!gap->has_witness)
+        return;
+    json_begin(json, "witness", '{');
+    json_number(json, "time", gap->time);
+    json_numbers(json, "a", gap->witness[0], dim);
+    json_numbers(json, "b", gap->witness[1], dim);
+    json_end(json, '}');
+}
+
 void report_answer_json(struct json_writer *json, int dim, const struct outcome *outcome)
 {
     const struct fmb_answer *answer = &outcome->answer;
@@ -24,6 +37,8 @@ void report_answer_json(struct json_writer *json, int dim, const struct outcome 
         json_numbers(json, "max", answer->box[1], dim);
         json_end(json, '}');
     }
+    if (answer->has_gap)
+        write_gap(json, dim, &answer->gap);
     if (outcome->certificate)
         json_string(json, "certificate", outcome->certificate);
 }

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VERDICT_WIDTH = 11, CONTACT_WIDTH = 20 };
+enum { VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12 };
 
 /* How much is shown of a certificate: all of most, but some have thousands of digits. */
 enum { CERTIFICATE_WIDTH = 200 };
@@ -16,7 +16,7 @@ static const double large_end = 1e5;
 
 struct report_columns report_columns(void)
 {
-    struct report_columns columns = {.contact = CONTACT_WIDTH};
+    struct report_columns columns = {.contact = CONTACT_WIDTH, .gap = GAP_WIDTH};
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         columns.box[axis][0] = columns.box[axis][1] = END_WIDTH;
     return columns;
@@ -57,6 +57,17 @@ const char *report_contact_text(const struct fmb_answer *answer, char text[REPOR
     return text;
 }
 
+/* One number where the bounds look alike. */
+static int write_gap(const struct fmb_gap *gap, char text[REPORT_TEXT_MAX])
+{
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    number_short(gap->bounds[0], low);
+    number_short(gap->bounds[1], high);
+    const bool alike = strcmp(low, high) == 0;
+    snprintf(text, REPORT_TEXT_MAX, alike ? "%s" : "%s .. %s", low, high);
+    return alike ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
+}
+
 /* The ends stand in columns, so that boxes below each other can be compared. No blanks at the end
  * of a line. */
 static void write_box(FILE *out, int dim, const struct fmb_answer *answer,
@@ -74,15 +85,19 @@ static void write_box(FILE *out, int dim, const struct fmb_answer *answer,
 void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns)
 {
-    char contact[REPORT_TEXT_MAX] = "";
-    int digits = answer->has_contact ? write_contact(answer, contact) : 0;
+    char text[REPORT_TEXT_MAX] = "";
     const char *verdict = fmb_verdict_name((int) answer->verdict);
-    if (!answer->has_contact && !answer->has_box) {
+    if (!answer->has_contact && !answer->has_gap) {
         fputs(verdict, out);
         return;
     }
+    int digits = answer->has_contact ? write_contact(answer, text) : 0;
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
-            answer->has_box ? widen(&columns->contact, digits, contact) : 0, contact);
+            answer->has_gap || answer->has_box ? widen(&columns->contact, digits, text) : 0, text);
+    if (answer->has_gap) {
+        digits = write_gap(&answer->gap, text);
+        fprintf(out, "  %-*s", answer->has_box ? widen(&columns->gap, digits, text) : 0, text);
+    }
     if (answer->has_box)
         write_box(out, dim, answer, columns);
 }
@@ -116,11 +131,21 @@ static const char *plural(uint64_t count)
     return count == 1 ? "" : "s";
 }
 
+static void write_heads(const struct report_text *text, bool gap)
+{
+    fprintf(text->out, "  %*s  %*s  %-*s  %-*s", text->id_width, "a", text->id_width, "b",
+            VERDICT_WIDTH, "verdict", gap || text->box ? text->columns.contact : 0, "contact");
+    if (gap)
+        fprintf(text->out, "  %-*s", text->box ? text->columns.gap : 0, "gap");
+    fputs(text->box ? "  box\n" : "\n", text->out);
+}
+
 static void text_begin(struct report *report, const struct scene *scene)
 {
     struct report_text *text = (struct report_text *) report;
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
     memset(text->count, 0, sizeof text->count);
+    text->near = 0;
     text->columns = columns_for(scene);
     text->id_width = 1;
     for (size_t i = 0; i < scene->body_count; i++)
@@ -134,9 +159,7 @@ static void text_begin(struct report *report, const struct scene *scene)
             number_short(scene->duration, duration));
     text->scenes++;
     if (count > 0)
-        fprintf(text->out, "  %*s  %*s  %-*s  %-*s%s\n", text->id_width, "a", text->id_width, "b",
-                VERDICT_WIDTH, "verdict", text->box ? text->columns.contact : 0, "contact",
-                text->box ? "  box" : "");
+        write_heads(text, text->gap || scene->margin > 0);
 }
 
 static void text_pair(struct report *report, const struct scene *scene,
@@ -154,6 +177,8 @@ static void text_pair(struct report *report, const struct scene *scene,
     if (outcome->certificate)
         write_certificate(text->out, 2 * text->id_width + 6, outcome->certificate);
     text->count[outcome->answer.verdict]++;
+    text->near += outcome->answer.verdict == FMB_SEPARATED && outcome->answer.has_gap &&
+                  outcome->answer.gap.bounds[0] <= scene->margin;
 }
 
 static void text_end(struct report *report, const struct scene *scene)
@@ -161,19 +186,20 @@ static void text_end(struct report *report, const struct scene *scene)
     struct report_text *text = (struct report_text *) report;
     static const enum fmb_verdict order[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
     char count[NUMBER_TEXT_MAX];
-    (void) scene;
     for (int i = 0; i < 3; i++)
         fprintf(text->out, "%s%s %s", i ? ", " : "",
                 number_grouped((int64_t) text->count[order[i]], count),
                 fmb_verdict_name((int) order[i]));
+    if (scene->margin > 0)
+        fprintf(text->out, " (%s near)", number_grouped((int64_t) text->near, count));
     if (text->count[0] > 0)
         fprintf(text->out, ", %s not decided", number_grouped((int64_t) text->count[0], count));
     putc('\n', text->out);
     fflush(text->out);
 }
 
-struct report_text report_text(FILE *out, bool box)
+struct report_text report_text(FILE *out, bool box, bool gap)
 {
     return (struct report_text){
-        .report = {text_begin, text_pair, text_end}, .out = out, .box = box};
+        .report = {text_begin, text_pair, text_end}, .out = out, .box = box, .gap = gap};
 }

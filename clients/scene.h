@@ -41,6 +41,7 @@ struct scene_pair {
 struct scene {
     int dim;         /* 2 or 3, of all bodies */
     double duration; /* seconds, >= 0 */
+    double margin; /* >= 0; other than 0: separated pairs no farther apart have gaps, as contacts */
     size_t body_count;
     struct scene_body *body; /* owned */
     bool all_pairs;          /* i before j, in body order, minus ignored; not stored */

@@ -128,6 +128,8 @@ void scene_json_write(FILE *out, const struct scene *scene)
     json_begin(&json, NULL, '{');
     json_integer(&json, "dim", scene->dim);
     json_number(&json, "duration", scene->duration);
+    if (scene->margin > 0)
+        json_number(&json, "margin", scene->margin);
     write_bodies(&json, scene);
     if (!scene->all_pairs)
         write_pairs(&json, scene, "pairs", scene->pair, scene->pair_count);

@@ -174,6 +174,7 @@ void scene_of_query(const struct any_query *query, struct scene *out)
         return;
     }
     out->duration = query->scene.duration;
+    out->margin = query->scene.margin;
     set_bodies(query->scene.placement, (size_t) query->scene.placement_count, out);
     set_pairs(&query->scene, out);
 }

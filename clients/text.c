@@ -141,6 +141,19 @@ static enum scan scan_object(struct text *text)
     return result;
 }
 
+/* Skips a byte order mark at the start of the input. A failed read is left to the next one. */
+static void skip_mark(struct text *text)
+{
+    static const char mark[] = {'\xef', '\xbb', '\xbf'};
+    text->started = true;
+    while (text->used < sizeof mark &&
+           (text->used == 0 || memcmp(text->bytes, mark, text->used) == 0))
+        if (read_more(text) <= 0)
+            return;
+    if (text->used >= sizeof mark && memcmp(text->bytes, mark, sizeof mark) == 0)
+        text->begin = text->scanned = sizeof mark;
+}
+
 /* Skips white space. Returns 1 if another byte follows, 0 at the end, -1: errno. */
 static ssize_t find_object(struct text *text)
 {
@@ -158,6 +171,8 @@ static ssize_t find_object(struct text *text)
 
 enum text_outcome text_next(struct text *text, const char **object, size_t *length)
 {
+    if (!text->started)
+        skip_mark(text);
     advance(text, text->scanned - text->begin);
     ssize_t count = find_object(text);
     if (count <= 0)

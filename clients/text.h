@@ -2,7 +2,8 @@
  * still grow.
  *
  * An object ends where its first brace closes: brackets outside of strings are counted, nothing
- * else is looked at. Whether the text in between is JSON is for cJSON to decide (json.c). */
+ * else is looked at. A UTF-8 byte order mark at the start is skipped. Whether the text in between
+ * is JSON is for cJSON to decide (json.c). */
 #ifndef TEXT_H
 #define TEXT_H
 
@@ -29,6 +30,7 @@ struct text {
     size_t object_max;   /* TEXT_OBJECT_MAX */
     int depth;
     uint64_t objects; /* bit d: of the open brackets, the d-th from the innermost is a brace */
+    bool started;     /* the first bytes have been looked at */
     bool in_string, escaped;
     char error[TEXT_ERROR_MAX];
 };

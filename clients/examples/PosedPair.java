@@ -1,9 +1,16 @@
-/* Two boxes, one turned by 45 degrees about z: do they meet? Over plain LCM, once, without
- * repeating what the bus loses (AskPair.java does). Types, classes and fmbd as for AskPair.java. Prints
- * "overlapping". */
+/* Two boxes, one turned by 45 degrees about z: do they meet? On Debian, with the message types of
+ * share/fmb/lcmtypes and a running fmbd:
+ *
+ *     apt install liblcm-bin liblcm-java default-jdk-headless
+ *     lcm-gen -j --jpath types /usr/local/share/fmb/lcmtypes/*.lcm
+ *     javac -cp /usr/share/java/lcm.jar:types -d classes PosedPair.java
+ *     java -Djava.net.preferIPv4Stack=true -cp /usr/share/java/lcm.jar:classes PosedPair
+ *
+ * prints "overlapping". */
 import fmb_msgs.pair_query_t;
 import fmb_msgs.pair_result_t;
 import fmb_msgs.placement_t;
+import java.security.SecureRandom;
 import java.util.concurrent.LinkedBlockingQueue;
 import java.util.concurrent.TimeUnit;
 import lcm.lcm.LCM;
@@ -32,23 +39,35 @@ public final class PosedPair
         LCM lcm = new LCM(url != null ? url : "udpm://239.255.76.67:7667?ttl=0");
         LinkedBlockingQueue<pair_result_t> results = new LinkedBlockingQueue<>();
         pair_query_t query = new pair_query_t();
-        query.client_id = System.nanoTime() >>> 11;
+        query.client_id = new SecureRandom().nextLong() >>> 11; // below 2^53
         query.a = box(new double[] {2, 1, 0.25}, new double[] {0, 0, 0.125});
         query.b = box(new double[] {0.5, 0.5, 1}, new double[] {1.25, 0, 0.625}, 0.92388, 0, 0, 0.382683);
+        // The bus carries all clients' results; those of others are not decoded, since a damaged one
+        // may take any memory. A busy service has to be queried again later. An exception would end
+        // LCM's thread.
         lcm.subscribe("FMB_PAIR_RESULT", (bus, channel, bytes) -> {
             try {
-                results.add(new pair_result_t(bytes));
-            } catch (java.io.IOException damaged) {
+                bytes.readLong(); // fingerprint
+                bytes.readLong(); // utime
+                if (bytes.readLong() != query.client_id)
+                    return;
+                bytes.reset();
+                pair_result_t result = new pair_result_t(bytes);
+                if (result.status != pair_result_t.STATUS_BUSY)
+                    results.add(result);
+            } catch (java.io.IOException | RuntimeException damaged) {
                 return;
             }
         });
-        lcm.publish("FMB_PAIR_QUERY", query);
-        String[] names = {"", "separated", "touching", "overlapping"};
-        pair_result_t result = results.poll(1, TimeUnit.SECONDS);
-        while (result != null && result.client_id != query.client_id)
-            result = results.poll(1, TimeUnit.SECONDS);
+        // LCM loses datagrams: the same query is sent again until its result comes.
+        pair_result_t result = null;
+        for (int tries = 6; result == null && tries > 0; tries--) {
+            lcm.publish("FMB_PAIR_QUERY", query);
+            result = results.poll(500, TimeUnit.MILLISECONDS);
+        }
+        String[] verdicts = {"", "separated", "touching", "overlapping"};
         System.out.println(result == null ? "no fmbd answered"
-                           : result.status == 0 ? names[result.verdict] : result.detail);
+                           : result.status == 0 ? verdicts[result.verdict] : result.detail);
         System.exit(result != null && result.status == 0 ? 0 : 1); // LCM's threads would live on
     }
 }

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 struct cut {
     const struct log_cut_options *options;
@@ -152,18 +151,11 @@ static void copy_all(struct cut *cut)
 
 /* ---- All of it ---- */
 
-static bool is_same_file(const char *path, const char *other)
-{
-    struct stat a, b;
-    return stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
 /* Also by another name: it would be emptied before it is read. */
 static bool writes_into_log(const struct log_cut_options *options)
 {
     for (int i = 0; i < options->log_count; i++)
-        if (is_same_file(options->output, options->log[i]))
+        if (log_is_same_file(options->output, options->log[i]))
             return true;
     return false;
 }

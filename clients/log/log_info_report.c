@@ -1,6 +1,7 @@
 #include "log_info_report.h"
 
 #include "cursor.h"
+#include "escape.h"
 #include "json_write.h"
 #include "number.h"
 #include "wire_type.h"
@@ -187,10 +188,22 @@ static bool has_version_1(const struct log_info *info)
     return false;
 }
 
+/* Names with control characters, or not in UTF-8, are written like channels. */
+static void print_path(FILE *out, const char *path)
+{
+    const bool plain = escape_is_text(path);
+    for (; *path; path++)
+        fprintf(out,
+                plain || (cursor_is_printable((unsigned char) *path) && *path != '\\') ? "%c"
+                                                                                       : "\\x%02x",
+                (unsigned char) *path);
+    fputs(": ", out);
+}
+
 void log_report_text(FILE *out, const struct log_report *report)
 {
     const struct log_info *info = report->info;
-    fprintf(out, "%s: ", report->path);
+    print_path(out, report->path);
     if (report->size == 0) {
         fputs("empty, a log of no events\n", out);
         return;

@@ -220,49 +220,23 @@ static bool take_definitions(struct search *search, const struct log_event *even
     return true;
 }
 
-/* Puts geometries in place of handles. Returns the first placement whose body is not defined, -1:
- * there is none. */
-static int32_t resolve(struct log_query *out, struct placement **placement)
-{
-    int32_t count;
-    *placement = any_query_placements(&out->query, &count);
-    for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&(*placement)[i]))
-            continue;
-        const struct geometry *geometry =
-            definitions_find(out->definitions, &(*placement)[i].handle);
-        if (!geometry)
-            return i;
-        (*placement)[i].geometry = *geometry;
-    }
-    return -1;
-}
-
-static bool has_handles(struct any_query *query)
-{
-    int32_t count;
-    const struct placement *placement = any_query_placements(query, &count);
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]))
-            return true;
-    return false;
-}
-
 static void find_bodies(struct search *search)
 {
     struct log_query *out = search->out;
-    struct placement *placement;
+    int32_t count;
     const uint32_t size = (uint32_t) (out->size < LOG_DATA_MAX ? out->size : LOG_DATA_MAX);
     const char *error = any_query_read(&out->query, search->kind, out->bytes, size);
     if (error) {
         refuse(search, error);
         return;
     }
-    if (!has_handles(&out->query))
-        return;
+    struct placement *placement = any_query_placements(&out->query, &count);
+    if (definitions_missing(out->definitions, placement, count) < 0)
+        return; /* all came whole */
     input_rewind(&search->input);
     for_each_event(search, take_definitions);
-    const int32_t missing = resolve(out, &placement);
+    definitions_fill(out->definitions, placement, count);
+    const int32_t missing = definitions_missing(out->definitions, placement, count);
     if (search->outcome != LOG_QUERY_FOUND || missing < 0)
         return;
     begin_line(search);

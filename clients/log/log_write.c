@@ -41,6 +41,13 @@ struct log_writer *log_create(const char *path, bool force)
     return NULL;
 }
 
+bool log_is_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    return stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
 int64_t log_event_bytes(size_t channel_length, size_t size)
 {
     return LOG_HEADER_BYTES + (int64_t) channel_length + (int64_t) size;

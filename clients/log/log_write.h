@@ -16,6 +16,9 @@ struct log_writer;
  * with force, and an error (EEXIST) without. NULL: errno. */
 struct log_writer *log_create(const char *path, bool force);
 
+/* Whether both exist and are one file: a log must not be written over one that is read. */
+bool log_is_same_file(const char *path, const char *other);
+
 /* Appends an event. Events are numbered from 0. On input: utime: time of receipt, microseconds
  * since 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. False: errno. */
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,

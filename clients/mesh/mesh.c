@@ -1,11 +1,18 @@
+#define _FILE_OFFSET_BITS 64
 #include "mesh.h"
 
 #include "mesh_formats.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Kinds of files -------------------------------------------------------------------------- */
 
 static bool begins_with(const struct mesh_source *source, const char *text)
 {
@@ -89,4 +96,111 @@ void mesh_free(struct mesh *mesh)
     free(mesh->vertex);
     free(mesh->face);
     *mesh = (struct mesh){0};
+}
+
+/* ---- Files ----------------------------------------------------------------------------------- */
+
+/* What is read at once, so that a watch hears of it. */
+enum { PIECE = 1 << 24 };
+
+/* Reading is one half of what is done, and parsing the other: then the bytes of the file are done
+ * once in all. */
+struct half {
+    const struct mesh_watch *watch; /* may be NULL */
+    uint64_t done;
+};
+
+static void tell(const struct half *half, uint64_t done, uint64_t total)
+{
+    if (half->watch)
+        half->watch->told(half->watch->context, half->done + (done + 1) / 2, total);
+}
+
+static void told_by_parser(void *context, uint64_t done, uint64_t total)
+{
+    tell(context, done, total);
+}
+
+static bool refuse(char error[MESH_ERROR_MAX], const char *why)
+{
+    snprintf(error, MESH_ERROR_MAX, "%s", why);
+    return false;
+}
+
+static bool read_bytes(int fd, unsigned char *bytes, size_t size, const struct half *half,
+                       char error[MESH_ERROR_MAX])
+{
+    size_t done = 0;
+    while (done < size) {
+        const size_t left = size - done;
+        const ssize_t got = read(fd, bytes + done, left < PIECE ? left : PIECE);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return refuse(error, strerror(errno));
+        if (got == 0) {
+            snprintf(error, MESH_ERROR_MAX, "byte %zu: the file became shorter while it was read",
+                     done);
+            return false;
+        }
+        done += (size_t) got;
+        tell(half, done, size);
+    }
+    return true;
+}
+
+/* On output: the bytes, which the caller frees; or NULL and the error. */
+static unsigned char *read_open(int fd, size_t size, const struct half *half,
+                                char error[MESH_ERROR_MAX])
+{
+    unsigned char *bytes = malloc(size + 1);
+    if (!bytes) {
+        snprintf(error, MESH_ERROR_MAX, "there is no memory for its %zu bytes", size);
+        return NULL;
+    }
+    bytes[size] = '\0';
+    if (read_bytes(fd, bytes, size, half, error))
+        return bytes;
+    free(bytes);
+    return NULL;
+}
+
+/* O_NONBLOCK: a pipe is refused, not waited for. */
+static unsigned char *read_file(const char *path, size_t *size, const struct half *half,
+                                char error[MESH_ERROR_MAX])
+{
+    struct stat about;
+    unsigned char *bytes = NULL;
+    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (fd < 0 || fstat(fd, &about) != 0)
+        refuse(error, strerror(errno));
+    else if (S_ISDIR(about.st_mode))
+        refuse(error, "a folder, not a file");
+    else if (!S_ISREG(about.st_mode))
+        refuse(error, "no regular file: write what it gives into one first");
+    else if ((uintmax_t) about.st_size >= PTRDIFF_MAX)
+        refuse(error, "larger than memory can be");
+    else
+        bytes = read_open(fd, *size = (size_t) about.st_size, half, error);
+    if (fd >= 0)
+        close(fd);
+    return bytes;
+}
+
+bool mesh_read(const char *path, const struct mesh_watch *watch, struct mesh *out,
+               char error[MESH_ERROR_MAX])
+{
+    size_t size = 0;
+    struct half half = {.watch = watch};
+    const struct mesh_watch parser = {.told = told_by_parser, .context = &half};
+    *out = (struct mesh){0};
+    unsigned char *bytes = read_file(path, &size, &half, error);
+    if (!bytes)
+        return false;
+    half.done = size / 2;
+    const bool good = mesh_parse(bytes, size, path, &parser, out, error);
+    if (good)
+        tell(&half, size, size);
+    free(bytes);
+    return good;
 }

@@ -126,12 +126,3 @@ const unsigned char *mesh_number(const unsigned char *at, double *value)
         *value = -*value;
     return end;
 }
-
-const unsigned char *mesh_number_end(const unsigned char *at)
-{
-    double value;
-    struct decimal decimal = {0};
-    at += *at == '-' || *at == '+';
-    const unsigned char *end = read_decimal(at, &decimal);
-    return end ? end : read_word(at, &value);
-}

@@ -13,7 +13,4 @@
  * in: it never calls setlocale(). */
 const unsigned char *mesh_number(const unsigned char *at, double *value);
 
-/* The place behind a number, or NULL, without looking at its value. */
-const unsigned char *mesh_number_end(const unsigned char *at);
-
 #endif

@@ -1,6 +1,5 @@
 /* A statement a line, or more lines where a backslash ends all but the last. Vertices are v, faces
  * are f; what defines no surface of its own is passed over, and what would is refused. */
-#include "mesh_build.h"
 #include "mesh_formats.h"
 #include "mesh_number.h"
 

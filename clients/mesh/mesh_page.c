@@ -1,13 +1,10 @@
 #include "mesh_page.h"
 
-#include "allocate.h"
 #include "json_write.h"
-#include "mesh_thin.h"
-#include "page_base64.h"
 #include "page_template.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 /* The picture's coordinates: those of the meshes are centre + 2^exponent times these, which are
  * between -1 and 1. */
@@ -20,48 +17,60 @@ struct page {
     const struct mesh_report *report;
     int count;    /* of meshes */
     size_t pairs; /* that it holds */
-    struct mesh_thinned kept[2];
     struct units units;
 };
 
-/* ---- What is shown --------------------------------------------------------------------------- */
+/* ---- Base64, for large arrays ---------------------------------------------------------------- */
 
-/* What has a vertex in common with a face that meets lies beside it. Owned by the caller. */
-static unsigned char *roles_of(const struct mesh *mesh, const unsigned char *worst)
+/* The start of a text: all 0 but out. */
+struct base64 {
+    FILE *out; /* ferror() is set if writing failed */
+    int count; /* of buffered bytes: fewer than three */
+    unsigned char byte[3];
+};
+
+static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/* Three bytes are four digits; of one or two, digits of nothing but padding are written as '='. */
+static void put_group(const struct base64 *text)
 {
-    unsigned char *role = allocate(mesh->face_count, 1);
-    bool *is_met = allocate(mesh->vertex_count, sizeof *is_met);
-    for (size_t f = 0; f < mesh->face_count; f++)
-        for (int corner = 0; corner < 3 && worst[f]; corner++)
-            is_met[mesh->face[f][corner]] = true;
-    for (size_t f = 0; f < mesh->face_count; f++) {
-        const unsigned *face = mesh->face[f];
-        const bool beside = is_met[face[0]] || is_met[face[1]] || is_met[face[2]];
-        role[f] = worst[f] ? MESH_THIN_MET : beside ? MESH_THIN_BESIDE : MESH_THIN_REST;
-    }
-    free(is_met);
-    return role;
+    const unsigned bits =
+        (unsigned) text->byte[0] << 16 | (unsigned) text->byte[1] << 8 | text->byte[2];
+    for (int i = 0; i < 4; i++)
+        putc(i <= text->count ? digit[bits >> (18 - 6 * i) & 63] : '=', text->out);
 }
 
-/* The faces of the listed pairs are needed: whoever chooses a pair wants to see them. */
-static void thin(struct page *page)
+/* Writes the buffered bytes and the padding. The next byte begins another text. */
+static void base64_end(struct base64 *text)
 {
-    static const struct mesh_thin_cost cost = {/* base64 makes four bytes of three */
-                                               .face = 18,
-                                               .vertex = 16,
-                                               .number = 6};
-    const struct mesh_report *report = page->report;
-    unsigned char *role[2] = {NULL, NULL};
-    for (int m = 0; m < page->count; m++)
-        role[m] = roles_of(report->mesh[m], report->meeting->worst[m]);
-    for (size_t i = 0; i < page->pairs; i++) {
-        role[0][report->meeting->pair[i].a] = MESH_THIN_NEEDED;
-        role[page->count - 1][report->meeting->pair[i].b] = MESH_THIN_NEEDED;
-    }
-    mesh_thin(report->mesh, page->count, role, &cost, MESH_PAGE_BYTES_MAX, page->kept);
-    for (int m = 0; m < page->count; m++)
-        free(role[m]);
+    if (text->count > 0)
+        put_group(text);
+    memset(text->byte, 0, sizeof text->byte);
+    text->count = 0;
 }
+
+static void base64_byte(struct base64 *text, unsigned char byte)
+{
+    text->byte[text->count++] = byte;
+    if (text->count == 3)
+        base64_end(text);
+}
+
+/* Four bytes, the lowest first. */
+static void base64_u32(struct base64 *text, uint32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        base64_byte(text, (unsigned char) (value >> 8 * i));
+}
+
+static void base64_float(struct base64 *text, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    base64_u32(text, bits);
+}
+
+/* ---- Units ----------------------------------------------------------------------------------- */
 
 /* Halves are taken before sums, and ends before differences: of finite coordinates nothing becomes
  * infinite. */
@@ -70,9 +79,9 @@ static struct units units_of(const struct page *page)
     struct units units = {{0}, 0};
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int m = 0; m < page->count; m++)
-        for (size_t v = 0; v < page->kept[m].vertex_count; v++)
+        for (size_t v = 0; v < page->report->mesh[m]->vertex_count; v++)
             for (int axis = 0; axis < 3; axis++) {
-                const double at = page->report->mesh[m]->vertex[page->kept[m].vertex[v]][axis];
+                const double at = page->report->mesh[m]->vertex[v][axis];
                 low[axis] = fmin(low[axis], at);
                 high[axis] = fmax(high[axis], at);
             }
@@ -119,74 +128,54 @@ static void shift_of(const struct page *page, int which, double shift[3])
     }
 }
 
-static void put_coordinates(FILE *out, const struct page *page, int which)
+static void put_coordinates(FILE *out, const struct mesh *mesh, const struct units *units)
 {
-    const struct units *units = &page->units;
-    struct page_base64 text = {.out = out};
-    for (size_t v = 0; v < page->kept[which].vertex_count; v++) {
-        const double *vertex = page->report->mesh[which]->vertex[page->kept[which].vertex[v]];
+    struct base64 text = {.out = out};
+    for (size_t v = 0; v < mesh->vertex_count; v++)
         for (int axis = 0; axis < 3; axis++)
-            page_base64_float(&text,
-                              (float) ldexp(vertex[axis] - units->centre[axis], -units->exponent));
-    }
-    page_base64_end(&text);
+            base64_float(&text, (float) ldexp(mesh->vertex[v][axis] - units->centre[axis],
+                                              -units->exponent));
+    base64_end(&text);
 }
 
-static void put_faces(FILE *out, const struct page *page, int which)
+static void put_faces(FILE *out, const struct mesh *mesh)
 {
-    const struct mesh_thinned *kept = &page->kept[which];
-    struct page_base64 text = {.out = out};
-    for (size_t f = 0; f < kept->face_count; f++)
+    struct base64 text = {.out = out};
+    for (size_t f = 0; f < mesh->face_count; f++)
         for (int corner = 0; corner < 3; corner++)
-            page_base64_u32(&text,
-                            kept->place[page->report->mesh[which]->face[kept->face[f]][corner]]);
-    page_base64_end(&text);
+            base64_u32(&text, mesh->face[f][corner]);
+    base64_end(&text);
 }
 
-static void put_colours(FILE *out, const struct page *page, int which)
+static void put_colours(FILE *out, const unsigned char *worst, size_t count)
 {
-    const struct mesh_thinned *kept = &page->kept[which];
-    struct page_base64 text = {.out = out};
-    for (size_t f = 0; f < kept->face_count; f++)
-        page_base64_byte(&text, page->report->meeting->worst[which][kept->face[f]]);
-    page_base64_end(&text);
-}
-
-static void put_numbers(FILE *out, const struct mesh_thinned *kept)
-{
-    struct page_base64 text = {.out = out};
-    for (size_t f = 0; f < kept->face_count; f++)
-        page_base64_u32(&text, kept->face[f]);
-    page_base64_end(&text);
+    struct base64 text = {.out = out};
+    for (size_t f = 0; f < count; f++)
+        base64_byte(&text, worst[f]);
+    base64_end(&text);
 }
 
 static void put_mesh(struct json_writer *json, const struct page *page, int which)
 {
     const struct mesh_report *report = page->report;
+    const struct mesh *mesh = report->mesh[which];
     double shift[3];
     shift_of(page, which, shift);
     json_break(json, "\n");
     json_begin(json, NULL, '{');
     json_string(json, "name", report->name[which]);
-    json_integer(json, "faces", (int64_t) report->mesh[which]->face_count);
+    json_integer(json, "faces", (int64_t) mesh->face_count);
     json_integer(json, "met", (int64_t) report->meeting->faces[which]);
     json_numbers(json, "shift", shift, 3);
     json_begin(json, "corner", '"');
-    put_coordinates(json->out, page, which);
+    put_coordinates(json->out, mesh, &page->units);
     json_end(json, '"');
     json_begin(json, "face", '"');
-    put_faces(json->out, page, which);
+    put_faces(json->out, mesh);
     json_end(json, '"');
     json_begin(json, "colour", '"');
-    put_colours(json->out, page, which);
+    put_colours(json->out, report->meeting->worst[which], mesh->face_count);
     json_end(json, '"');
-    if (page->kept[which].face_count < report->mesh[which]->face_count) {
-        json_begin(json, "number", '"');
-        put_numbers(json->out, &page->kept[which]);
-        json_end(json, '"');
-    } else {
-        json_null(json, "number"); /* all are there, in their order */
-    }
     json_end(json, '}');
 }
 
@@ -225,11 +214,8 @@ void mesh_page_write(FILE *out, const struct mesh_report *report)
     struct page page = {.report = report,
                         .count = report->mesh[0] == report->mesh[1] ? 1 : 2,
                         .pairs = pairs < MESH_PAGE_PAIRS_MAX ? pairs : MESH_PAGE_PAIRS_MAX};
-    thin(&page);
     page.units = units_of(&page);
     page_template_begin(&page_template_mesh, out);
     put_data(out, &page);
     page_template_end(&page_template_mesh, out);
-    for (int m = 0; m < page.count; m++)
-        mesh_thinned_free(&page.kept[m]);
 }

@@ -9,10 +9,8 @@
 
 #include <stdio.h>
 
-/* What a page holds at most: so many pairs, the first ones; and so many bytes of faces and their
- * vertices. Beyond them faces are left out evenly (mesh_thin.h), those of the pairs never, which
- * take no more than 3 MB. Names and pairs take another 3 MB at most. */
-enum { MESH_PAGE_PAIRS_MAX = 20000, MESH_PAGE_BYTES_MAX = 12 << 20 };
+/* Limit on the pairs that a page lists; it has all faces, some 26 bytes each. */
+enum { MESH_PAGE_PAIRS_MAX = 20000 };
 
 /* Where out fails, ferror() tells. */
 void mesh_page_write(FILE *out, const struct mesh_report *report);

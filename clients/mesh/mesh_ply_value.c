@@ -50,8 +50,8 @@ static bool text_value(struct ply *ply, double *value)
 
 static bool text_skip(struct ply *ply)
 {
-    const unsigned char *begin = mesh_skip_blanks(ply->source->at);
-    return is_number(ply, begin, mesh_number_end(begin));
+    double value;
+    return text_value(ply, &value);
 }
 
 bool ply_begin_record(struct ply *ply)

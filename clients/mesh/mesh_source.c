@@ -1,5 +1,7 @@
 #include "mesh_source.h"
 
+#include "allocate.h"
+
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -83,4 +85,50 @@ void mesh_tell_now(struct mesh_source *source)
     if (watch)
         watch->told(watch->context, (uint64_t) (source->at - source->begin),
                     (uint64_t) (source->end - source->begin));
+}
+
+/* ---- A mesh that grows ----------------------------------------------------------------------- */
+
+static bool has_count(struct mesh_source *source, size_t count, const char *what)
+{
+    return count < MESH_COUNT_MAX ||
+           mesh_refuse_byte(source, source->at, NULL, 0, "more than %u %s", MESH_COUNT_MAX, what);
+}
+
+bool mesh_add_vertex(struct mesh_build *build, const double position[3])
+{
+    struct mesh *mesh = build->mesh;
+    if (!has_count(build->source, mesh->vertex_count, "vertices"))
+        return false;
+    mesh->vertex = allocate_room(mesh->vertex, &build->vertex_room, mesh->vertex_count + 1,
+                                 sizeof *mesh->vertex);
+    memcpy(mesh->vertex[mesh->vertex_count++], position, sizeof *mesh->vertex);
+    return true;
+}
+
+bool mesh_add_face(struct mesh_build *build, const unsigned corner[3])
+{
+    struct mesh *mesh = build->mesh;
+    if (!has_count(build->source, mesh->face_count, "faces"))
+        return false;
+    mesh->face =
+        allocate_room(mesh->face, &build->face_room, mesh->face_count + 1, sizeof *mesh->face);
+    memcpy(mesh->face[mesh->face_count++], corner, sizeof *mesh->face);
+    return true;
+}
+
+/* Where it cannot be moved, it stays. */
+static void *fit(void *memory, size_t count, size_t size)
+{
+    void *fitting = count > 0 ? realloc(memory, count * size) : NULL;
+    return fitting ? fitting : memory;
+}
+
+void mesh_fit(struct mesh_build *build)
+{
+    struct mesh *mesh = build->mesh;
+    mesh->vertex = fit(mesh->vertex, mesh->vertex_count, sizeof *mesh->vertex);
+    mesh->face = fit(mesh->face, mesh->face_count, sizeof *mesh->face);
+    build->vertex_room = mesh->vertex_count;
+    build->face_room = mesh->face_count;
 }

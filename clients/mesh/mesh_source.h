@@ -15,6 +15,21 @@ struct mesh_source {
 /* Of most, and no index: vertices or faces. */
 #define MESH_COUNT_MAX (UINT32_MAX - 1u)
 
+/* A mesh that grows, of a file that does not say how large it is. */
+struct mesh_build {
+    struct mesh_source *source;
+    struct mesh *mesh;
+    size_t vertex_room, face_room;
+};
+
+/* Returns false, with the error, if there are too many. Exits with status 1 if memory is exhausted.
+ */
+bool mesh_add_vertex(struct mesh_build *build, const double position[3]);
+bool mesh_add_face(struct mesh_build *build, const unsigned corner[3]);
+
+/* At the end: gives back the memory that nothing lies in. */
+void mesh_fit(struct mesh_build *build);
+
 /* What is wrong in the line of that place, or at that byte, in words of printf(). Both return
  * false. within: "face"; NULL where it is within nothing that is counted. */
 bool mesh_refuse_line(struct mesh_source *source, const unsigned char *where, const char *format,

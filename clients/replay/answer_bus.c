@@ -18,7 +18,7 @@
 enum { LOOK_EVERY = 256 };
 
 /* Where the ids stand in queries and results, and the service's id in results. */
-enum { UTIME_AT = 8, CLIENT_AT = 16, SERVER_AT = 32 };
+enum { CLIENT_AT = 16, SERVER_AT = 32 };
 
 /* Some 30 years: for ever. */
 static const double most_ns = 1e18;
@@ -266,7 +266,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
 
 struct tally_bus answer_bus_counts(const struct answer_bus *bus)
 {
-    const struct fmb_client_counts client = fmb_client_counts(bus->client);
+    const struct fmb_client_counts client = fmb_client_get_counts(bus->client);
     struct tally_bus counts = bus->counts;
     counts.again = (int64_t) client.repeated;
     counts.nonsense = (int64_t) client.malformed;

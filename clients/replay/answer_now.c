@@ -52,16 +52,6 @@ void answer_now_close(struct answer_now *now)
 
 /* ---- Definitions ---- */
 
-const struct handle *answer_now_undefined(struct definitions *definitions,
-                                          const struct placement *placement, int32_t count)
-{
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]) &&
-            !definitions_find(definitions, &placement[i].handle))
-            return &placement[i].handle;
-    return NULL;
-}
-
 /* Whether the cache holds the body, which is then its most recently used one. */
 static bool is_held(struct cache *cache, const struct handle *handle)
 {
@@ -94,13 +84,13 @@ static void supply(struct answer_now *now, const struct placement *placement, in
 /* After UNKNOWN_BODY: whether to answer once more. */
 static bool helps(struct answer_now *now, struct answered *out)
 {
-    const struct handle *undefined =
-        answer_now_undefined(now->definitions, out->placement, out->placement_count);
-    if (undefined)
-        out->undefined = *undefined;
+    const int32_t missing =
+        definitions_missing(now->definitions, out->placement, out->placement_count);
+    if (missing >= 0)
+        out->undefined = out->placement[missing].handle;
     else
         supply(now, out->placement, out->placement_count);
-    return !undefined;
+    return missing < 0;
 }
 
 /* ---- Pairs ---- */

@@ -30,8 +30,4 @@ struct answered {
 const char *answer_now(struct answer_now *now, enum log_kind kind, const unsigned char *bytes,
                        uint32_t size, struct answered *out);
 
-/* The first handle of the placements that is not defined; NULL: all are defined. */
-const struct handle *answer_now_undefined(struct definitions *definitions,
-                                          const struct placement *placement, int32_t count);
-
 #endif

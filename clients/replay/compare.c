@@ -9,9 +9,9 @@
 const char *difference_name(enum difference_kind kind)
 {
     static const char *const name[DIFFERENT_KINDS] = {
-        [DIFFERENT_STATUS] = "status",           [DIFFERENT_VERDICT] = "verdict",
-        [DIFFERENT_INTERVAL] = "interval",       [DIFFERENT_BOX] = "box",
-        [DIFFERENT_CERTIFICATE] = "certificate",
+        [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
+        [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
+        [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
     };
     return name[kind];
 }
@@ -36,18 +36,15 @@ static bool near(const struct compare_options *options, const double *a, const d
     return true;
 }
 
-/* Of all ends that are finite. */
-static double largest(const struct fmb_answer *a, const struct fmb_answer *b, int dim)
+/* The largest magnitude of those that are finite, or most. */
+static double largest(const double *number, int count, double most)
 {
-    double most = 0;
-    for (int side = 0; side < 2; side++)
-        for (int axis = 0; axis < dim; axis++) {
-            const double of_a = fabs(a->box[side][axis]), of_b = fabs(b->box[side][axis]);
-            most = isfinite(of_a) ? fmax(most, of_a) : most;
-            most = isfinite(of_b) ? fmax(most, of_b) : most;
-        }
+    for (int i = 0; i < count; i++)
+        most = isfinite(number[i]) ? fmax(most, fabs(number[i])) : most;
     return most;
 }
+
+enum { BOX_NUMBERS = 2 * FMB_DIM_MAX };
 
 /* ---- Answers ---- */
 
@@ -65,11 +62,29 @@ static bool same_boxes(const struct compare_options *options, int dim, const str
 {
     if (a->has_box != b->has_box)
         return false;
-    const double limit = options->tolerance > 0 ? options->tolerance * largest(a, b, dim) : 0;
+    const double most =
+        largest(a->box[0], BOX_NUMBERS, largest(b->box[0], BOX_NUMBERS, 0)); /* beyond dim all 0 */
+    const double limit = options->tolerance > 0 ? options->tolerance * most : 0;
     for (int side = 0; side < 2 && a->has_box; side++)
         if (!near(options, a->box[side], b->box[side], dim, limit))
             return false;
     return true;
+}
+
+static double largest_of_gap(const struct fmb_gap *gap, double most)
+{
+    return largest(gap->witness[0], BOX_NUMBERS, largest(gap->bounds, 2, most));
+}
+
+static bool same_gaps(const struct compare_options *options, const struct fmb_answer *a,
+                      const struct fmb_answer *b)
+{
+    if (a->has_gap != b->has_gap)
+        return false;
+    if (!(options->tolerance > 0))
+        return query_same_gap(&a->gap, &b->gap);
+    const double most = largest_of_gap(&a->gap, largest_of_gap(&b->gap, 0));
+    return near(options, a->gap.bounds, b->gap.bounds, 2, options->tolerance * most);
 }
 
 static bool same_certificates(const struct compare_options *options, const char *a, const char *b)
@@ -92,6 +107,8 @@ static bool find_difference(const struct compare_options *options, double durati
         out->kind = DIFFERENT_INTERVAL;
     else if (!same_boxes(options, out->dim, then, now))
         out->kind = DIFFERENT_BOX;
+    else if (!same_gaps(options, then, now))
+        out->kind = DIFFERENT_GAP;
     else if (!same_certificates(options, out->then.certificate, out->now.certificate))
         out->kind = DIFFERENT_CERTIFICATE;
     else
@@ -119,12 +136,13 @@ static int dim_of(const struct placement *placement)
 
 /* ---- Pairs ---- */
 
-/* A box of another dimension than the query's is none. */
+/* A box or gap of another dimension than the query's is none. */
 static struct difference_side side_of_pair(const struct pair_result *result, int dim)
 {
     struct difference_side side = {
         .status = result->status, .answer = result->answer, .certificate = result->certificate};
     side.answer.has_box = side.answer.has_box && result->dim == dim;
+    side.answer.has_gap = side.answer.has_gap && result->dim == dim;
     return side;
 }
 
@@ -182,11 +200,22 @@ static void take_box(const struct answers *answers, int32_t contact, struct fmb_
         out->box[i / dim][i % dim] = answers->result->boxes[2 * dim * contact + i];
 }
 
+/* The same of its gap. */
+static void take_gap(const struct answers *answers, int32_t verdict, struct fmb_answer *out)
+{
+    const struct scene_result *result = answers->result;
+    out->has_gap = result->has_gaps && query_has_gap(&result->gap[verdict]) &&
+                   result->dim == dim_of(&answers->query->placement[0]);
+    if (out->has_gap)
+        out->gap = result->gap[verdict];
+}
+
 /* The answer there, and on to the next one. */
 static struct fmb_answer take(struct answers *answers)
 {
     const struct scene_result *result = answers->result;
-    struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[answers->next++]};
+    struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[answers->next]};
+    take_gap(answers, answers->next++, &answer);
     if (!is_contact((unsigned char) answer.verdict))
         return answer;
     const int32_t contact = answers->contact++;

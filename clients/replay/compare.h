@@ -1,9 +1,9 @@
 /* Compares two results of one query: the recorded one (then) and the new one (now).
  *
- * They are the same if their statuses are, and the verdicts, intervals, boxes and certificates of
- * all pairs answered by both: bit for bit, or within a tolerance. The service, times and handles
- * are not compared. A result of a scene may answer fewer pairs than requested (end_pair): pairs
- * that one of the two lacks are not compared. */
+ * They are the same if their statuses are, and the verdicts, intervals, boxes, gaps and
+ * certificates of all pairs answered by both: bit for bit, or within a tolerance. The service,
+ * times and handles are not compared. A result of a scene may answer fewer pairs than requested
+ * (end_pair): pairs that one of the two lacks are not compared. */
 #ifndef COMPARE_H
 #define COMPARE_H
 
@@ -17,6 +17,7 @@ enum difference_kind {
     DIFFERENT_VERDICT,
     DIFFERENT_INTERVAL,
     DIFFERENT_BOX,
+    DIFFERENT_GAP,
     DIFFERENT_CERTIFICATE,
     DIFFERENT_KINDS
 };
@@ -42,7 +43,8 @@ struct difference {
 
 struct compare_options {
     /* 0: bit for bit. Otherwise ends of intervals may differ by tolerance * duration, ends of boxes
-     * by tolerance * (largest number of both boxes), and certificates are not compared. */
+     * by tolerance * (largest number of both boxes), bounds of gaps by tolerance * (largest number
+     * of both gaps), and directions, witness points and certificates are not compared. */
     double tolerance;
 };
 

@@ -88,21 +88,6 @@ static bool read_both(struct judge *judge, const struct match_item *item)
 
 /* ---- For the page ---- */
 
-/* Placements by handle get the geometry that the log defines. */
-static void complete(const struct judge *judge, struct placement *placement, int32_t count)
-{
-    for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]))
-            continue;
-        const struct geometry *geometry =
-            definitions_find(judge->options.definitions, &placement[i].handle);
-        if (!geometry)
-            continue;
-        placement[i].geometry = *geometry;
-        placement[i].frame_count = (int32_t) big_endian_32(geometry->bytes + 4);
-    }
-}
-
 static void show(struct judge *judge, const struct match_item *item, bool has_then,
                  enum replay_outcome outcome)
 {
@@ -113,7 +98,10 @@ static void show(struct judge *judge, const struct match_item *item, bool has_th
                                 .outcome = outcome};
     int32_t count;
     struct placement *placement = any_query_placements(&judge->query, &count);
-    complete(judge, placement, count);
+    definitions_fill(judge->options.definitions, placement, count);
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]) && placement[i].geometry.size > GEOMETRY_NONE_BYTES)
+            placement[i].frame_count = geometry_begin(&placement[i].geometry).frames_left;
     if (item->key.kind == LOG_PAIR_QUERY) {
         replayed.pair = &judge->query.pair;
         replayed.pair_now = &judge->now.pair;

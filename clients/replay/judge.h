@@ -2,9 +2,9 @@
 #ifndef JUDGE_H
 #define JUDGE_H
 
-#include "again.h"
 #include "definitions.h"
 #include "found.h"
+#include "input.h"
 #include "page.h"
 #include "tally.h"
 

@@ -11,7 +11,7 @@ struct entry {
     char *certificate[2]; /* owned; NULL: none */
 };
 
-/* A heap, the last one on top: entry[i] is not before entry[2 * i + 1] and entry[2 * i + 2]. */
+/* Up to twice the limit, in no order. */
 struct listing {
     struct entry *entry;
     size_t count, capacity, limit;
@@ -52,37 +52,6 @@ static int compare_entries(const void *left, const void *right)
     return a->number < b->number ? -1 : a->number > b->number;
 }
 
-static bool is_before(const struct listing *list, size_t a, size_t b)
-{
-    return compare_entries(&list->entry[a], &list->entry[b]) < 0;
-}
-
-static void swap(struct listing *list, size_t a, size_t b)
-{
-    const struct entry entry = list->entry[a];
-    list->entry[a] = list->entry[b];
-    list->entry[b] = entry;
-}
-
-static void sift_up(struct listing *list, size_t i)
-{
-    for (size_t above = (i - 1) / 2; i > 0 && is_before(list, above, i); above = (i - 1) / 2) {
-        swap(list, above, i);
-        i = above;
-    }
-}
-
-static void sift_down(struct listing *list, size_t i)
-{
-    for (size_t below; (below = 2 * i + 1) < list->count; i = below) {
-        if (below + 1 < list->count && is_before(list, below, below + 1))
-            below++;
-        if (!is_before(list, i, below))
-            return;
-        swap(list, i, below);
-    }
-}
-
 static char *copy_of(const char *certificate)
 {
     if (!certificate)
@@ -103,29 +72,34 @@ static void set(struct entry *entry, const struct found *found, int64_t number)
     difference->now.certificate = entry->certificate[1];
 }
 
+/* Sorts, and drops what is beyond the limit. */
+static void shorten(struct listing *list)
+{
+    if (list->count > 0)
+        qsort(list->entry, list->count, sizeof *list->entry, compare_entries);
+    while (list->count > list->limit)
+        free_entry(&list->entry[--list->count]);
+}
+
 void listing_put(struct listing *list, const struct found *found)
 {
-    const struct entry here = {.found = *found, .number = list->put++};
-    if (list->count < list->limit) {
-        list->entry = allocate_room(list->entry, &list->capacity, list->count + 1, sizeof here);
-        set(&list->entry[list->count++], found, here.number);
-        sift_up(list, list->count - 1);
-    } else if (list->limit > 0 && compare_entries(&here, &list->entry[0]) < 0) {
-        free_entry(&list->entry[0]);
-        set(&list->entry[0], found, here.number);
-        sift_down(list, 0);
-    }
+    const int64_t number = list->put++;
+    if (list->limit == 0)
+        return;
+    if (list->count == 2 * list->limit)
+        shorten(list);
+    list->entry = allocate_room(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
+    set(&list->entry[list->count++], found, number);
 }
 
 int64_t listing_beyond(const struct listing *list)
 {
-    return list->put - (int64_t) list->count;
+    return list->put > (int64_t) list->limit ? list->put - (int64_t) list->limit : 0;
 }
 
 void listing_each(struct listing *list, found_sink *sink, void *user)
 {
-    if (list->count > 0)
-        qsort(list->entry, list->count, sizeof *list->entry, compare_entries);
+    shorten(list);
     for (size_t i = 0; i < list->count; i++)
         sink(user, &list->entry[i].found);
 }

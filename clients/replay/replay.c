@@ -7,7 +7,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Reports what cannot be read or written; the replay continues. */
 void replay_fail(struct replay *replay, const char *what)
@@ -179,19 +178,12 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- Opening and closing ---- */
 
-static bool same_file(const char *path, const char *other)
-{
-    struct stat a, b;
-    return stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
 static bool is_read(const struct replay_options *options, const char *path)
 {
     for (int log = 0; log < options->log_count; log++)
-        if (same_file(options->log[log], path))
+        if (log_is_same_file(options->log[log], path))
             return true;
-    return options->golden && same_file(options->golden, path);
+    return options->golden && log_is_same_file(options->golden, path);
 }
 
 static bool open_goldens(struct replay *replay)
@@ -338,15 +330,21 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
     return good;
 }
 
-int64_t replay_size(const struct replay_options *options)
+bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime)
 {
     struct input input;
     char why[LOG_WHY_MAX];
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
     if (!input_open(&input, options->log, options->log_count, why)) {
         fprintf(stderr, "fmb: %s\n", why);
-        return -1;
+        return false;
     }
-    const int64_t size = input_size(&input);
+    while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
+        continue;
+    *size = input_size(&input);
+    *first_utime = outcome == LOG_EVENT ? event.utime : 0;
     input_close(&input);
-    return size;
+    return true;
 }

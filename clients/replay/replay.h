@@ -20,8 +20,9 @@ struct replay_options {
     const struct answer_bus_options *bus; /* the service that answers; NULL: this process */
 };
 
-/* Total bytes of the logs; negative: one cannot be opened, which was reported on stderr. */
-int64_t replay_size(const struct replay_options *options);
+/* On output: total bytes of the logs, and the time of their first event, 0 if there is none. False:
+ * a log cannot be opened, which was reported on stderr. */
+bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime);
 
 /* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written
  * or was recorded by version 1, or the bus cannot be opened, which was reported on stderr; or if

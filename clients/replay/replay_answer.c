@@ -97,16 +97,11 @@ bool replay_on_answered(void *user, struct match_item *query, const struct answe
 /* Puts the frames of the bodies in place of their handles. */
 static void make_whole(struct replay *replay, struct placement *placement, int32_t count)
 {
-    for (int32_t i = 0; i < count; i++) {
-        const struct geometry *geometry =
-            placement_by_handle(&placement[i])
-                ? definitions_find(replay->definitions, &placement[i].handle)
-                : NULL;
-        if (!geometry)
-            continue;
-        placement[i].geometry = *geometry;
-        memset(&placement[i].handle, 0, sizeof placement[i].handle);
-    }
+    definitions_fill(replay->definitions, placement, count);
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]) &&
+            definitions_find(replay->definitions, &placement[i].handle))
+            memset(&placement[i].handle, 0, sizeof placement[i].handle);
 }
 
 /* Bodies whose query has no space for their frames go ahead of it, as many in one scene query as
@@ -141,9 +136,9 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
     int32_t count;
     any_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes, message->size);
     struct placement *placement = any_query_placements(&replay->query, &count);
-    const struct handle *undefined = answer_now_undefined(replay->definitions, placement, count);
-    if (undefined && !last) {
-        pending_add(replay->pending, undefined, query);
+    const int32_t missing = definitions_missing(replay->definitions, placement, count);
+    if (missing >= 0 && !last) {
+        pending_add(replay->pending, &placement[missing].handle, query);
         return;
     }
     make_whole(replay, placement, count);

@@ -1,15 +1,15 @@
-#include "replay_json.h"
+#include "replay_output.h"
 
 #include "report.h"
 #include "wire.h"
 
 static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
-struct replay_json replay_json_begin(FILE *out)
+struct json_writer replay_json_begin(FILE *out)
 {
-    struct replay_json json = {.json = {.out = out}};
-    json_begin(&json.json, NULL, '{');
-    json_begin(&json.json, "differences", '[');
+    struct json_writer json = {.out = out};
+    json_begin(&json, NULL, '{');
+    json_begin(&json, "differences", '[');
     return json;
 }
 
@@ -53,10 +53,9 @@ static void write_difference(struct json_writer *json, const struct difference *
     }
 }
 
-void replay_json_found(struct replay_json *replay, const struct found *found, const char *log,
+void replay_json_found(struct json_writer *json, const struct found *found, const char *log,
                        int64_t first_utime)
 {
-    struct json_writer *json = &replay->json;
     json_begin(json, NULL, '{');
     json_string(json, "log", log);
     json_integer(json, "event", found->place.number);
@@ -137,10 +136,9 @@ static void write_channels(struct json_writer *json, const struct tally *tally)
     json_end(json, '}');
 }
 
-void replay_json_end(struct replay_json *replay, const struct tally *tally, int64_t not_listed,
+void replay_json_end(struct json_writer *json, const struct tally *tally, int64_t not_listed,
                      int exit_code)
 {
-    struct json_writer *json = &replay->json;
     json_end(json, ']');
     json_integer(json, "not_listed", not_listed);
     json_integer(json, "exit", exit_code);

@@ -1,7 +1,6 @@
-#include "replay_junit.h"
+#include "replay_output.h"
 
 #include "escape.h"
-#include "replay_text.h"
 #include "wire.h"
 
 #include <inttypes.h>

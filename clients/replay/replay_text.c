@@ -1,4 +1,4 @@
-#include "replay_text.h"
+#include "replay_output.h"
 
 #include "number.h"
 #include "wire.h"
@@ -39,6 +39,21 @@ static void box_text(const struct fmb_answer *answer, int dim, char text[REPLAY_
             end_text(answer->box[0][axis], ends[0]), end_text(answer->box[1][axis], ends[1]));
 }
 
+static void gap_text(const struct fmb_answer *answer, int dim, char text[REPLAY_SIDE_MAX])
+{
+    char number[2][NUMBER_TEXT_MAX];
+    const struct fmb_gap *gap = &answer->gap;
+    strcpy(text, "none");
+    if (!answer->has_gap)
+        return;
+    size_t used =
+        (size_t) snprintf(text, REPLAY_SIDE_MAX, "%s..%s along",
+                          end_text(gap->bounds[0], number[0]), end_text(gap->bounds[1], number[1]));
+    for (int axis = 0; axis < dim; axis++)
+        used += (size_t) snprintf(text + used, REPLAY_SIDE_MAX - used, " %s",
+                                  number_exact(gap->direction[axis], number[0]));
+}
+
 static void status_text(const struct difference_side *side, char text[REPLAY_SIDE_MAX])
 {
     const char *verdict = fmb_verdict_name((int) side->answer.verdict);
@@ -53,6 +68,7 @@ void replay_side_text(const struct difference *difference, const struct differen
     switch (difference->kind) {
     case DIFFERENT_INTERVAL: interval_text(&side->answer, text); break;
     case DIFFERENT_BOX: box_text(&side->answer, difference->dim, text); break;
+    case DIFFERENT_GAP: gap_text(&side->answer, difference->dim, text); break;
     case DIFFERENT_CERTIFICATE:
         snprintf(text, REPLAY_SIDE_MAX, "%.200s", side->certificate ? side->certificate : "none");
         break;

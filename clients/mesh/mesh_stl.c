@@ -1,0 +1,259 @@
+/* ASCII: solid NAME, then for each facet
+ *
+ *     facet normal NX NY NZ
+ *       outer loop
+ *         vertex X Y Z            three times
+ *       endloop
+ *     endfacet
+ *
+ * and endsolid NAME; words in letters of any size, with any white space between them. There may be
+ * several solids, one behind the other: they become one mesh. */
+#include "keyed_hash.h"
+#include "mesh_bits.h"
+#include "mesh_formats.h"
+#include "mesh_number.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* ---- Vertices of equal coordinates are one --------------------------------------------------- */
+
+struct joined {
+    double position[3];
+    unsigned index;
+    UT_hash_handle hh;
+};
+
+struct join {
+    struct mesh_build *build; /* all its vertices are added by join_vertex() */
+    struct joined *vertex;    /* owned: a table by coordinates; NULL: empty */
+};
+
+static void join_close(struct join *join)
+{
+    struct joined *at = join->vertex, *next;
+    HASH_CLEAR(hh, join->vertex);
+    for (; at; at = next) {
+        next = at->hh.next;
+        free(at);
+    }
+}
+
+static bool join_vertex(struct join *join, const double position[3], unsigned *index)
+{
+    /* -0 + 0 is 0; all else plus 0 is what it was. */
+    const double clean[3] = {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0};
+    struct joined *joined;
+    HASH_FIND(hh, join->vertex, clean, sizeof clean, joined);
+    if (!joined) {
+        if (!mesh_add_vertex(join->build, clean))
+            return false;
+        joined = allocate(1, sizeof *joined);
+        memcpy(joined->position, clean, sizeof clean);
+        joined->index = (unsigned) join->build->mesh->vertex_count - 1;
+        HASH_ADD(hh, join->vertex, position, sizeof clean, joined);
+    }
+    *index = joined->index;
+    return true;
+}
+
+/* ---- ASCII ----------------------------------------------------------------------------------- */
+
+static bool is_next(struct mesh_source *source, const char *word)
+{
+    const size_t length = strlen(word);
+    source->at = mesh_skip_spaces(source->at);
+    return strncasecmp((const char *) source->at, word, length) == 0 &&
+           mesh_ends_word(source, source->at + length);
+}
+
+static bool refuse_next(struct mesh_source *source, const char *expected)
+{
+    char text[MESH_WORD_MAX];
+    source->at = mesh_skip_spaces(source->at);
+    if (source->at == source->end)
+        return mesh_refuse_line(source, source->at, "the file ends where %s should stand",
+                                expected);
+    return mesh_refuse_line(source, source->at, "'%s' stands where %s should",
+                            mesh_word(source, source->at, text), expected);
+}
+
+static bool take(struct mesh_source *source, const char *word)
+{
+    if (!is_next(source, word))
+        return refuse_next(source, word);
+    source->at += strlen(word);
+    return true;
+}
+
+/* Any numbers: some programs write normals that are not. */
+static bool skip_normal(struct mesh_source *source)
+{
+    double value;
+    for (int axis = 0; axis < 3; axis++) {
+        source->at = mesh_skip_spaces(source->at);
+        const unsigned char *end = mesh_number(source->at, &value);
+        if (!end || !mesh_ends_word(source, end))
+            return refuse_next(source, "a number");
+        source->at = end;
+    }
+    return true;
+}
+
+static bool read_position(struct mesh_source *source, double out[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        source->at = mesh_skip_spaces(source->at);
+        const unsigned char *end = mesh_number(source->at, &out[axis]);
+        if (!end || !mesh_ends_word(source, end))
+            return refuse_next(source, "a number");
+        if (!isfinite(out[axis]))
+            return mesh_refuse_line(source, source->at, "%c is not finite", "xyz"[axis]);
+        source->at = end;
+    }
+    return true;
+}
+
+static bool read_loop(struct join *join)
+{
+    struct mesh_source *source = join->build->source;
+    unsigned corner[3];
+    for (int i = 0; i < 3; i++) {
+        double position[3];
+        if (i > 0 && is_next(source, "endloop"))
+            return mesh_refuse_line(source, source->at, "a facet of %d vertices: remove it first",
+                                    i);
+        if (!take(source, "vertex") || !read_position(source, position) ||
+            !join_vertex(join, position, &corner[i]))
+            return false;
+    }
+    if (is_next(source, "vertex"))
+        return mesh_refuse_line(source, source->at,
+                                "a facet of more than 3 vertices: triangulate it first");
+    return mesh_add_face(join->build, corner);
+}
+
+static bool read_facet(struct join *join)
+{
+    struct mesh_source *source = join->build->source;
+    return take(source, "facet") && take(source, "normal") && skip_normal(source) &&
+           take(source, "outer") && take(source, "loop") && read_loop(join) &&
+           take(source, "endloop") && take(source, "endfacet");
+}
+
+static bool read_solid(struct join *join)
+{
+    struct mesh_source *source = join->build->source;
+    if (!take(source, "solid"))
+        return false;
+    mesh_skip_line(source);
+    while (!is_next(source, "endsolid")) {
+        if (!is_next(source, "facet"))
+            return refuse_next(source, "facet or endsolid");
+        if (!read_facet(join))
+            return false;
+        mesh_tell(source);
+    }
+    mesh_skip_line(source);
+    return true;
+}
+
+bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
+{
+    struct mesh_build build = {.source = source, .mesh = out};
+    struct join join = {.build = &build};
+    bool good;
+    do {
+        good = read_solid(&join);
+        source->at = mesh_skip_spaces(source->at);
+    } while (good && source->at < source->end);
+    join_close(&join);
+    mesh_fit(&build);
+    return good;
+}
+
+/* ---- Binary ---------------------------------------------------------------------------------- */
+
+/* 80 bytes of anything, the number of facets as 32 bits, then 50 bytes for each facet: its normal
+ * and three vertices, each of three floats of 32 bits, and 16 bits of anything. All little-endian.
+ */
+enum { COUNT_AT = 80, HEADER_BYTES = 84, FACET_BYTES = 50, NORMAL_BYTES = 12, FLOAT_BYTES = 4 };
+
+static uint32_t word_at(const unsigned char *bytes)
+{
+    return (uint32_t) mesh_bits(bytes, sizeof(uint32_t), false);
+}
+
+static uint64_t size_of(uint32_t facets)
+{
+    return HEADER_BYTES + (uint64_t) FACET_BYTES * facets;
+}
+
+bool mesh_is_stl_binary(const struct mesh_source *source)
+{
+    const size_t size = (size_t) (source->end - source->begin);
+    return size >= HEADER_BYTES && size == size_of(word_at(source->begin + COUNT_AT));
+}
+
+static bool refuse_size(struct mesh_source *source)
+{
+    const size_t size = (size_t) (source->end - source->begin);
+    if (size < HEADER_BYTES)
+        return mesh_refuse_byte(source, source->end, NULL, 0,
+                                "the file ends within the %d bytes that begin a binary STL file",
+                                HEADER_BYTES);
+    const uint32_t facets = word_at(source->begin + COUNT_AT);
+    return mesh_refuse_byte(source, source->begin + COUNT_AT, NULL, 0,
+                            "%" PRIu32 " facets of binary STL are %" PRIu64
+                            " bytes with their header, the file has %zu: it is cut off, or the "
+                            "count is wrong",
+                            facets, size_of(facets), size);
+}
+
+static bool read_vertex(struct join *join, size_t facet, unsigned *index)
+{
+    struct mesh_source *source = join->build->source;
+    double position[3];
+    for (int axis = 0; axis < 3; axis++) {
+        position[axis] = mesh_float(word_at(source->at));
+        if (!isfinite(position[axis]))
+            return mesh_refuse_byte(source, source->at, "face", facet, "%c is not finite",
+                                    "xyz"[axis]);
+        source->at += FLOAT_BYTES;
+    }
+    return join_vertex(join, position, index);
+}
+
+static bool read_facets(struct join *join)
+{
+    struct mesh_source *source = join->build->source;
+    source->at = source->begin + HEADER_BYTES;
+    for (size_t facet = 0; source->at < source->end; facet++) {
+        const unsigned char *begin = source->at;
+        unsigned corner[3];
+        source->at += NORMAL_BYTES;
+        for (int i = 0; i < 3; i++)
+            if (!read_vertex(join, facet, &corner[i]))
+                return false;
+        if (!mesh_add_face(join->build, corner))
+            return false;
+        source->at = begin + FACET_BYTES;
+        mesh_tell(source);
+    }
+    return true;
+}
+
+bool mesh_stl_binary(struct mesh_source *source, struct mesh *out)
+{
+    struct mesh_build build = {.source = source, .mesh = out};
+    struct join join = {.build = &build};
+    if (!mesh_is_stl_binary(source))
+        return refuse_size(source);
+    const bool good = read_facets(&join);
+    join_close(&join);
+    mesh_fit(&build);
+    return good;
+}

@@ -1,0 +1,54 @@
+/* Reports of a replay: as text, as one line of JSON, and as JUnit XML. */
+#ifndef REPLAY_OUTPUT_H
+#define REPLAY_OUTPUT_H
+
+#include "json_write.h"
+#include "listing.h"
+#include "replay.h"
+
+/* ---- For people ---- */
+
+/* One side of a difference as text, for example "touching". Numbers read back as the same bits;
+ * certificates are truncated. */
+enum { REPLAY_SIDE_MAX = 320 };
+void replay_side_text(const struct difference *difference, const struct difference_side *side,
+                      char text[REPLAY_SIDE_MAX]);
+
+/* One line without its end:
+ *
+ *     event 17  1.25 s  bodies 3 7  verdict: touching, now separated
+ *
+ * The time is log time, in seconds since first_utime. log: name of the log; NULL if there is only
+ * one. */
+enum { REPLAY_LINE_MAX = 2 * REPLAY_SIDE_MAX + 512 };
+void replay_line(const struct found *found, const char *log, int64_t first_utime,
+                 char line[REPLAY_LINE_MAX]);
+
+/* Prints the counts. */
+void replay_text_summary(FILE *out, const struct tally *tally);
+
+/* ---- As JSON ---- */
+
+/* The report of a replay as one line of JSON:
+ *
+ *     {"differences": [{"log": "a.log", "event": 17, "utime": ..., "time": 1.25,
+ *                       "channel": "FMB_PAIR_QUERY", "client_id": 7, "sequence_number": 3,
+ *                       "a": 3, "b": 7, "kind": "verdict",
+ *                       "then": {"verdict": "touching"}, "now": {"verdict": "separated"}}],
+ *      "not_listed": 0, "same": 12, "different": 1, ...}
+ *
+ * not_listed: number of differences beyond the limit. */
+struct json_writer replay_json_begin(FILE *out);
+void replay_json_found(struct json_writer *json, const struct found *found, const char *log,
+                       int64_t first_utime);
+void replay_json_end(struct json_writer *json, const struct tally *tally, int64_t not_listed,
+                     int exit_code);
+
+/* ---- As JUnit XML, for CI systems: a suite for each log, with a case for each channel, and one
+ * for damage ---- */
+
+/* On input: tally[log_count]. Check ferror(out) for write errors. */
+void replay_junit(FILE *out, const struct replay_options *options, struct listing *list,
+                  const struct tally *tally, int64_t first_utime);
+
+#endif
