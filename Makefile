@@ -5,14 +5,16 @@
 #
 # Others: all, examples, tests (builds them), test-fast, validate, accuracy, soak, fuzz, fuzz-afl,
 # fuzz-merge, bench, bench-bus, bench-replay, report, logs, goldens, headers, format,
-# format-check, install, clean; deps-fuzz, deps-bench and deps-report install what is only good for
-# these.
+# format-check, install, install-strip, uninstall, clean; deps-fuzz, deps-bench and deps-report
+# install what is only good for these.
 # MODE=release|debug|asan|fuzz. OPENMP=1: batches may be spread over threads (fmb_batch.threads).
-# CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX and DESTDIR are the user's.
+# INSTRUCTIONS=sse2: without the kernels of newer ones, which take long to compile.
+# CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR and DESTDIR are the user's.
 
 VERSION := 0.1.0
 MODE ?= release
 OPENMP ?=
+INSTRUCTIONS ?=
 ifeq ($(origin CC),default)
 CC := $(if $(filter fuzz,$(MODE)),clang,gcc)
 endif
@@ -20,24 +22,28 @@ CFLAGS ?=
 CPPFLAGS ?=
 LDFLAGS ?=
 PREFIX ?= /usr/local
+override PREFIX := $(if $(filter /%,$(firstword $(PREFIX))),$(PREFIX),$(CURDIR)/$(PREFIX))
+LIBDIR ?= $(PREFIX)/lib
 DESTDIR ?=
 INSTALL ?= install
 OBJCOPY ?= objcopy
 
-# What the default mode builds lies in build/, what another mode or compiler does beside it.
+# What the default mode builds lies in build/, what another mode or compiler does beside it. OpenMP
+# changes batch.o and its test alone: objects lie in O with and without it, those of unit tests in V.
 compiler := $(notdir $(firstword $(CC)))
 openmp_flag := $(if $(filter-out 0,$(OPENMP)),-fopenmp)
-variant := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))$(openmp_flag:-f%=-%)
+objects := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))$(INSTRUCTIONS:%=-%)
+variant := $(objects)$(openmp_flag:-f%=-%)
 B := $(if $(filter release,$(variant)),build,build/$(variant))
-O := build/obj/$(variant)
+O := build/obj/$(objects)
+V := build/obj/$(variant)
 GEN := build/msgs
 
 mode_flags_release := -O2 -g1 -DNDEBUG
 mode_flags_debug := -O0 -g3
-mode_flags_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all \
+mode_flags_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all \
 	-fno-omit-frame-pointer
-mode_flags_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined \
-	-fno-sanitize-recover=all -fno-omit-frame-pointer
+mode_flags_fuzz := $(mode_flags_asan) -fsanitize=fuzzer-no-link
 ifeq ($(mode_flags_$(MODE)),)
 $(error MODE is release, debug, asan or fuzz)
 endif
@@ -45,9 +51,9 @@ mode_link_asan := -fsanitize=address,undefined
 mode_link_fuzz := $(mode_link_asan)
 
 # -ffp-contract=off: the same bits on every machine.
-flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -g \
+flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
-	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(openmp_flag) $(CPPFLAGS) $(CFLAGS)
+	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(CPPFLAGS) $(CFLAGS)
 # Release builds are hardened. The engine is not: its loops write into arrays whose sizes the
 # compiler sees, and every instruction of them counts. A user who sets _FORTIFY_SOURCE keeps it.
 hardened_release := -fstack-protector-strong -fPIE
@@ -89,8 +95,8 @@ run_flags_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vec
 run_alone_plain := -DLANES=1
 run_alone_sse2 := -DLANES=2
 run_alone_avx2 := -DLANES=2 -mavx2 -mfma
-run_sets := plain $(if $(x86),sse2 avx2 avx512)
-run_alone_sets := $(if $(x86),sse2 avx2,plain)
+run_sets := plain $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2 avx512))
+run_alone_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
 run_verdicts := $(run_sets:%=$(O)/run/%.o)
 run_times := $(run_sets:%=$(O)/run/times_%.o)
 run_boxes := $(run_sets:%=$(O)/run/boxes_%.o)
@@ -103,6 +109,7 @@ run_objects := $(run_verdicts) $(run_times) $(run_boxes) $(alone_verdicts) $(alo
 	$(alone_boxes)
 lib_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/run.c %/alone.c,$(wildcard service/fmb/*.c))) \
 	$(run_objects)
+lib_objects := $(lib_objects:%/batch.o=%/batch$(openmp_flag:-f%=_%).o)
 message_names := body_t definition_query_t definition_t pair_query_t pair_result_t placement_t \
 	scene_query_t scene_result_t status_t
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
@@ -125,11 +132,11 @@ programs := $(B)/fmbd $(B)/fmb
 capped_sets := plain $(if $(x86),sse2 avx2)
 capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
 demo_programs := $(B)/netns $(B)/arm
-test_programs := $(B)/plain $(B)/poke $(B)/poison $(B)/validate $(B)/accuracy $(B)/accuracy-planted \
-	$(B)/bench/bench $(B)/bus/bench-bus $(B)/bus/echo $(B)/replay/bench-replay $(B)/soak-asker \
-	$(B)/soak-memory $(B)/soak-rate $(B)/soak-blast $(B)/soak-fair $(B)/soak-relay $(B)/logs/generate \
-	$(B)/logs/tell $(B)/mesh/make-mesh $(B)/mesh/bench-mesh $(B)/make-page $(B)/edit-log \
-	$(B)/events $(capped_programs)
+# Beside the programs in tests of them; and those that measure.
+helpers := $(addprefix $(B)/,plain poke poison soak-asker soak-memory soak-rate soak-blast soak-fair \
+	soak-relay logs/generate logs/tell mesh/make-mesh edit-log events)
+measures := $(addprefix $(B)/,validate accuracy accuracy-planted bench/bench bus/bench-bus bus/echo \
+	replay/bench-replay mesh/bench-mesh make-page)
 
 .PHONY: all
 all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
@@ -139,10 +146,11 @@ all: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
 names := $(O)/service/fmb/names.o
 define archive
 	@mkdir -p $(@D)
-	$(CC) -r -nostdlib -fno-lto -o $(O)/$(@F:.a=.o) $(filter-out $(names),$^)
-	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(O)/$(@F:.a=.o)
+	$(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $(filter-out $(names),$^)
+	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(@:.a=.o)
 	rm -f $@
-	$(AR) rcs $@ $(O)/$(@F:.a=.o) $(names)
+	$(AR) rcs $@ $(@:.a=.o) $(names)
+	rm $(@:.a=.o)
 endef
 
 $(B)/libfmb.a: $(lib_objects)
@@ -171,10 +179,19 @@ $(B)/netns: $(O)/clients/demo/netns.o
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^
 
+ifneq ($(INSTRUCTIONS),)
+$(if $(filter-out sse2,$(INSTRUCTIONS)),$(error INSTRUCTIONS is sse2 or empty))
+$(O)/service/fmb/instructions.o: flags += -DINSTRUCTIONS_MOST=2
+endif
+
 # The engine sees nothing but itself, GMP and libc.
 $(O)/service/fmb/%.o: service/fmb/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile)
+
+$(O)/service/fmb/batch_openmp.o: service/fmb/batch.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -fopenmp
 
 compile_run = @mkdir -p $(@D) && \
 	$(compile) -DRUN_NAME=$(basename $(@F)) -Wno-psabi
@@ -227,10 +244,11 @@ page_source := clients/page/template/
 page_shared := $(addprefix $(page_source),page.html stage.html)
 page_styles_replay := $(addprefix $(page_source),page.css timeline.css)
 page_scripts_replay := $(addprefix $(page_source),numbers.js verdict.js data.js dom.js clock.js timeline.js \
-	world.js camera.js canvas.js scene.js stage.js play.js hands.js window.js panel.js main.js)
+	world.js camera.js canvas.js raster.js picture.js scene.js stage.js play.js hands.js window.js panel.js \
+	main.js)
 page_styles_mesh := $(addprefix $(page_source),page.css mesh.css)
 page_scripts_mesh := $(addprefix $(page_source),numbers.js verdict.js mesh_data.js dom.js world.js camera.js \
-	canvas.js mesh_raster.js mesh_paint.js mesh_stage.js play.js hands.js mesh_panel.js mesh_main.js)
+	canvas.js raster.js picture.js mesh_shade.js mesh_stage.js play.js hands.js mesh_panel.js mesh_main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
 define page_rule
@@ -269,8 +287,8 @@ $(foreach m,$(message_names),$(GEN)/fmb_msgs_$(m).c $(GEN)/fmb_msgs_$(m).h) &: \
 	lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
 
 # Changes when the flags or the lists of files do, and then everything is built again.
-settings := $(CC) $(flags) $(hardened) $(link_flags) $(link_whole) $(lib_objects) $(client_objects) \
-	$(asking_objects)
+settings := $(CC) $(flags) $(hardened) $(filter-out -fopenmp,$(link_flags) $(link_whole)) \
+	$(lib_objects:%_openmp.o=%.o) $(client_objects) $(asking_objects)
 $(O)/settings: Makefile FORCE
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ && [ $@ -nt Makefile ] || \
@@ -288,7 +306,7 @@ lcm_jar := /usr/share/java/lcm.jar
 .PHONY: examples
 examples: $(E)/lua/fmb_msgs/init.lua
 	@if command -v javac > /dev/null && [ -f $(lcm_jar) ]; then \
-		$(MAKE) -s $(E)/java/AskPair.class; \
+		$(MAKE) -s $(E)/java/PosedPair.class; \
 	else echo 'make $@: not the one in Java: there is no javac, or no $(lcm_jar)'; fi
 
 # A type that is gone would stay: each begins afresh.
@@ -297,8 +315,7 @@ $(E)/lua/fmb_msgs/init.lua: $(message_files) Makefile
 	@mkdir -p $(E)/lua
 	lcm-gen -l --lpath $(E)/lua $(message_files)
 
-$(E)/java/AskPair.class: clients/examples/AskPair.java clients/examples/PosedPair.java \
-		tests/system/Largest.java $(message_files) Makefile
+$(E)/java/PosedPair.class: clients/examples/PosedPair.java tests/system/Largest.java $(message_files) Makefile
 	@rm -rf $(E)/java
 	@mkdir -p $(E)/java
 	lcm-gen -j --jpath $(E)/java $(message_files)
@@ -314,38 +331,25 @@ engine_tests := $(filter test_engine_% test_frame test_oracle test_integer,$(uni
 # Those that see inside of it.
 internal_tests := test_bounds test_limbs test_outward test_kernels test_placing
 # Those that draw from the hard families of the campaigns.
-family_tests := test_kernels test_engine_batch test_engine_tree
-# Those of what answers queries; they link no bus and no clients.
-answer_tests := $(filter test_answer_%,$(unit_names))
+family_tests := test_kernels test_engine_batch test_engine_gap test_engine_tree
+# Those of what answers queries; they see no bus and no clients.
+answer_tests := $(filter test_answer_%,$(unit_names)) test_cache test_runs test_answer
 comma := ,
-family_objects := $(O)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
+family_objects := $(V)/tests/unit/pair_draw.o $(addprefix $(O)/tests/campaign/,cell.o contact.o \
 	family.o meet.o meeting.o odd.o scene.o solids.o)
 
-client_tests := $(filter test_client_%,$(unit_names))
-$(B)/tests/test_client_bad: $(hostile_objects)
-$(client_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/relay.o \
-		$(asking_objects) $(answer_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a \
-		| $(B)/netns
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
-
-log_tests := $(filter test_log_%,$(unit_names))
-$(log_tests:%=$(B)/tests/%): $(O)/tests/unit/log_bytes.o
-# Counts what is read.
-wraps_test_log_read := -Wl,--wrap=pread64
-
-$(B)/tests/test_replay_run: $(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
-
-world_tests := test_log_cut test_log_query
-$(world_tests:%=$(B)/tests/%): $(O)/tests/unit/log_world.o
-# Sees what becomes of each query.
-wraps_test_log_cut := $(addprefix -Wl$(comma)--wrap=,page_open page_take)
-
-$(B)/tests/test_mesh_read: $(addprefix $(O)/tests/mesh/,bumpy.o formats.o)
-
-# Meshes against the oracle of triangles.
-$(B)/tests/test_mesh_meet: $(addprefix $(O)/tests/oracle/,triangles.o lp.o draw.o) \
-	$(O)/tests/mesh/bumpy.o
+# What tests share, and what they test of the service and of clients: archives, of which the linker
+# takes what a test needs. The engine is the library, or what lies in it.
+shared := $(V)/shared.a
+$(shared): $(patsubst tests/unit/%.c,$(V)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c,\
+		$(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c)))) $(family_objects) \
+		$(O)/tests/campaign/climb.o $(oracle_objects) $(hostile_objects) \
+		$(addprefix $(O)/tests/mesh/,bumpy.o formats.o)
+product := $(O)/product.a
+$(product): $(server_objects) $(client_objects) $(asking_objects) $(bus_objects) $(message_objects)
+$(sort $(shared) $(product)):
+	@rm -f $@
+	$(AR) rcs $@ $(sort $^)
 
 # A client over plain LCM: it shares nothing with ours but the message types.
 $(B)/plain: $(O)/tests/system/plain.o $(message_objects)
@@ -377,31 +381,24 @@ $(O)/tests/page/%.o: tests/page/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) $(clients_see)
 
-$(B)/edit-log: $(O)/tests/replay/edit_log.o $(O)/tests/unit/log_draft.o $(client_objects) \
+$(B)/edit-log: $(O)/tests/replay/edit_log.o $(V)/tests/unit/log_draft.o $(client_objects) \
 		$(answer_objects) $(bus_objects) $(message_objects) \
 		$(asking_objects) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 # Tests of the engine link neither LCM nor the service.
-$(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(oracle_objects) $(B)/libfmb.a
+$(engine_tests:%=$(B)/tests/%): $(B)/tests/%: $(V)/tests/unit/%.o $(shared) $(B)/libfmb.a
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lgmp -lm
 
-# Counts what GMP is asked to do.
-$(B)/tests/test_engine_work: $(O)/tests/unit/gmp_work.o $(O)/tests/campaign/climb.o
-wraps_test_engine_work := $(addprefix -Wl$(comma)--wrap=__gmp,z_mul z_addmul z_submul z_add z_sub \
-	z_fdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize)
-
-$(family_tests:%=$(B)/tests/%): $(family_objects)
-
 # slabs.c is there three times: as it is, with fused operations (which a compiler makes only where
 # it optimises), with a bound that is wrong. So is what the kernels make of a pair.
-slab_objects := $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
+slab_objects := $(V)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o)
 
-$(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(slab_objects) \
-		$(oracle_objects) $(lib_objects)
+$(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(V)/tests/unit/%.o $(slab_objects) \
+		$(shared) $(lib_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
@@ -433,49 +430,23 @@ $(run_wide): $(O)/run/%.o: service/fmb/run.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DLANES=8 -DRUN_NAME=$* $(run_wide_$*)
 
-# The bus: no other part of the program. The test replaces the kernel's counter of
-# drops, and counts yields.
-wraps_test_bus := $(addprefix -Wl$(comma)--wrap=,bus_socket_drops sched_yield)
-$(B)/tests/test_bus: $(O)/tests/unit/test_bus.o $(receiver_objects) | $(B)/netns
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) $(wraps_test_bus) -o $@ $^ -lcmocka -llcm
-
-$(O)/tests/unit/test_bus.o: tests/unit/test_bus.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) -Imsgs/bus
-
-# Counts what our own code allocates.
-wraps_test_answer_scene := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc aligned_alloc)
-$(answer_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/scene_truth.o \
-		$(family_objects) $(oracle_objects) $(answer_objects) $(codec_objects) $(message_objects) \
-		$(B)/libfmb.a
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
-
-cache_tests := test_cache test_runs test_answer
-$(cache_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o \
-		$(answer_objects) $(codec_objects) $(message_objects) $(B)/libfmb.a
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
-
-wire_tests := $(filter test_wire% test_handle,$(unit_names))
-$(wire_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(codec_objects) \
-		$(message_objects) $(B)/libfmb.a
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
-
-service_tests := $(filter test_server% test_turns test_queue test_counters,$(unit_names))
-$(service_tests:%=$(B)/tests/%): $(B)/tests/%: $(O)/tests/unit/%.o $(O)/tests/unit/service.o \
-		$(hostile_objects) $(server_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) -o $@ $^ -lcmocka -llcm -lglib-2.0 -lgmp -lm
-
-$(filter-out $(patsubst %,$(B)/tests/%,$(engine_tests) $(internal_tests) $(answer_tests) \
-		$(cache_tests) $(wire_tests) $(client_tests) $(service_tests) test_bus),$(unit_tests)): \
-		$(B)/tests/%: $(O)/tests/unit/%.o $(hostile_objects) $(server_objects) \
-		$(client_objects) $(asking_objects) $(bus_objects) $(message_objects) $(B)/libfmb.a
+# The others. Some count what GMP is asked to do, what is read and what our own code allocates, see
+# what becomes of each query of a log, or replace the kernel's counter of drops.
+wraps = $(addprefix -Wl$(comma)--wrap=,$1)
+wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
+	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize))
+wraps_test_log_read := $(call wraps,pread64)
+wraps_test_log_cut := $(call wraps,page_open page_take)
+wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
+wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
+$(patsubst %,$(B)/tests/%,$(filter-out $(engine_tests) $(internal_tests),$(unit_names))): \
+		$(B)/tests/%: $(V)/tests/unit/%.o $(shared) $(product) $(B)/libfmb.a | $(B)/netns
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) $(wraps_$*) -o $@ $^ -lcmocka -lcjson -llcm -lglib-2.0 -lgmp -lm
+
+$(V)/tests/unit/test_bus.o: tests/unit/test_bus.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile) -Imsgs/bus
 
 $(O)/tests/oracle/%.o: tests/oracle/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -488,7 +459,7 @@ $(O)/tests/hostile/%.o: tests/hostile/%.c $(O)/settings | $(message_headers)
 # Tests of the engine see it and the oracle, those of scenes the service too; of all others that
 # of meshes alone an oracle.
 engine_views := $(engine_tests) $(internal_tests) slab_truth pair_draw
-scene_views := $(answer_tests) $(cache_tests) scene_truth
+scene_views := $(answer_tests) scene_truth
 family_views := $(family_tests) $(scene_views) pair_draw test_engine_work
 unit_sees = -Iservice/fmb $(if $(filter $1,$(engine_views) $(scene_views) test_mesh_meet),-Itests/oracle) \
 	$(if $(filter $1,$(family_views)),-Itests/campaign) \
@@ -499,9 +470,9 @@ $(O)/tests/replay/%.o: tests/replay/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(clients_see) -Itests/unit -Itests/bench -I$(GEN)
 
-$(O)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
+$(V)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(compile) $(call unit_sees,$*)
+	$(compile) $(openmp_flag) $(call unit_sees,$*)
 
 # ---- Fuzz targets: each in a program that replays its corpus and, with MODE=fuzz, in fuzzers ----
 
@@ -513,7 +484,7 @@ fuzz_objects := $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o same.o results_pair
 fuzz_pieces_answer := $(O)/tests/fuzz/model.o
 fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
 fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
-fuzz_pieces_replay_log := $(addprefix $(O)/tests/unit/,log_draft.o replay_report.o)
+fuzz_pieces_replay_log := $(addprefix $(V)/tests/unit/,log_draft.o replay_report.o)
 
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),fuzz)
@@ -562,7 +533,7 @@ $(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
 	$(CC) $(link_flags) -fsanitize=fuzzer -o $@ $^ $(fuzz_libraries)
 
 seed_objects := $(addprefix $(O)/tests/fuzz/,seeds.o seeds_message.o seeds_service.o seeds_file.o) \
-	$(O)/tests/unit/log_draft.o
+	$(V)/tests/unit/log_draft.o
 $(B)/fuzz_seeds: $(seed_objects) $(call fuzz_archives,seeds)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ $(fuzz_libraries)
@@ -582,10 +553,14 @@ deps-fuzz:
 
 # ---- Running the tests ----
 
-.PHONY: tests test test-fast check
-tests: all examples $(test_programs) $(unit_tests) $(replayers)
+.PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check
+tests: fast-tests examples $(measures)
+fast-tests: tested-programs unit-tests $(capped_programs)
+tested-programs: all $(helpers)
+unit-tests: $(unit_tests) $(replayers) $(B)/netns
+replay-set: $(B)/fmb $(B)/logs/generate $(filter %/fmb-plain %/fmb-sse2 %/fmb-avx2,$(capped_programs))
 
-# The script builds what it tests: release, asan with gcc and with clang, and release with OPENMP=1.
+# The script builds what it tests, in the modes that it says.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
 ifneq ($(variant),release)
 $(error 'make test' chooses modes and compilers itself: leave out MODE, CC and OPENMP)
@@ -607,17 +582,19 @@ $(B)/validate $(B)/accuracy: $(B)/%: $(O)/tests/campaign/%.o $(campaign_objects)
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $^ -lgmp -lm
 
-# With a bound on rounding that is wrong, which the campaign must find.
+# With bounds on rounding that are wrong, which the campaign must find.
+campaign_plants := slabs.o gap_distance.o gap_depth.o
 $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_objects) \
-		$(lib_objects:%/slabs.o=$(O)/planted/slabs.o)
+		$(filter-out $(addprefix %/,$(campaign_plants)),$(lib_objects)) \
+		$(addprefix $(O)/planted/,$(campaign_plants))
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $^ -lgmp -lm
 
 # Sanitizers would take long for what another object of theirs has seen.
-$(O)/planted/slabs.o: service/fmb/slabs.c $(O)/settings
+$(addprefix $(O)/planted/,$(campaign_plants)): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) -DINLINED_NOT \
-		-DSLABS_ROUNDING=0x1p-70
+		-DSLABS_ROUNDING=0x1p-70 -DGAP_ROUNDING=0x1p-70
 
 $(O)/tests/campaign/%.o: tests/campaign/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -634,7 +611,7 @@ accuracy: $(B)/accuracy
 # Clients that know the answers, and a service to which bad things are done; some ten minutes, a
 # minute for each trial or SECONDS=.
 .PHONY: soak
-soak: all $(filter $(B)/soak-% %/poke %/poison,$(test_programs))
+soak: all $(filter $(B)/soak-% %/poke %/poison,$(helpers))
 	tests/soak/soak.sh $(B) $(SECONDS)
 
 $(B)/soak-asker: $(O)/tests/soak/asker.o $(O)/service/clock.o $(B)/libfmb-client.a $(B)/libfmb.a
@@ -704,11 +681,11 @@ $(capped_sets:%=$(B)/capped/libfmb-%.a): $(B)/capped/libfmb-%.a: $(O)/capped/%.o
 	$(call archive,fmb_*)
 
 $(capped_sets:%=$(B)/capped/fmbd-%): $(B)/capped/fmbd-%: $(fmbd_objects) $(B)/capped/libfmb-%.a
-	$(CC) $(link_whole) -o $@ $^ $(fmbd_libraries)
+	$(CC) $(link_flags) -o $@ $^ $(fmbd_libraries)
 
 $(capped_sets:%=$(B)/capped/fmb-%): $(B)/capped/fmb-%: $(fmb_objects) $(B)/libfmb-client.a \
 		$(B)/capped/libfmb-%.a
-	$(CC) $(link_whole) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
+	$(CC) $(link_flags) -o $@ $^ -lcjson -llcm -lglib-2.0 -lgmp -lm
 
 $(capped_sets:%=$(B)/capped/generate-%): $(B)/capped/generate-%: $(logs_objects) \
 		$(B)/capped/libfmb-%.a
@@ -738,13 +715,27 @@ $(O)/service/fmb/sat.o $(O)/tests/bench/lean_sat.o: flags += -ffinite-math-only 
 # libccd is raced too where it is installed: make deps-bench, then make bench.
 ccd := $(shell pkg-config --exists ccd 2> /dev/null && echo ccd)
 peers := $(O)/peers/$(or $(ccd),none).o
-bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/peers.c,$(wildcard tests/bench/*.c))) \
-	$(peers) $(O)/ordered/eliminate.o
+# Gaps are raced beside those that are installed of libccd, FCL and Bullet.
+gap_libraries := $(foreach l,ccd fcl bullet,$(shell pkg-config --exists $l 2> /dev/null && echo $l))
+gap_peers := $(O)/gap_peers/$(if $(gap_libraries),with$(subst $() ,,$(gap_libraries:%=_%)),none).o
+bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/peers.c %/gap_none.c,$(wildcard tests/bench/*.c))) \
+	$(peers) $(gap_peers) $(O)/ordered/eliminate.o
 
 $(B)/bench/bench: $(bench_objects) $(campaign_objects) $(lib_objects)
 	@[ ! -f $(@D) ] || rm $(@D) # it was a program once
 	@mkdir -p $(@D)
-	$(CC) $(link_flags) -pthread -o $@ $^ $(if $(ccd),$(shell pkg-config --libs ccd)) -lgmp -lm
+	$(CC) $(link_flags) -pthread -o $@ $^ \
+		$(if $(gap_libraries),$$(pkg-config --libs $(gap_libraries)) -lstdc++) -lgmp -lm
+
+$(O)/gap_peers/none.o: tests/bench/gap_none.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile)
+
+$(filter-out %/none.o,$(gap_peers)): tests/bench/gap_peers.cc $(O)/settings
+	@mkdir -p $(@D)
+	$(CXX) $$(pkg-config --cflags $(gap_libraries)) -std=c++17 -O2 -MMD -MP \
+		$(subst bullet,-DBENCH_BULLET,$(subst fcl,-DBENCH_FCL,$(subst ccd,-DBENCH_CCD,$(gap_libraries)))) \
+		-c $< -o $@
 
 $(O)/tests/bench/%.o: tests/bench/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -767,7 +758,7 @@ bench: $(B)/bench/bench $(B)/robot/robot
 	$(B)/robot/robot
 
 deps-bench:
-	$(call install_packages,libccd-dev libfcl-dev pkg-config)
+	$(call install_packages,libccd-dev libfcl-dev libbullet-dev pkg-config)
 
 # States of a robot, beside FCL where it is installed.
 fcl := $(shell pkg-config --exists fcl 2> /dev/null && echo fcl)
@@ -901,22 +892,30 @@ demo: # builds on all cores, also where packages are installed first
 	+$(MAKE) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) all
 	clients/demo/run.sh $(B)
 
-.PHONY: install
+fill_in = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|'
+.PHONY: install install-strip uninstall
 install: all
-	$(INSTALL) -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/lib/pkgconfig" \
+	$(INSTALL) -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(LIBDIR)/pkgconfig" \
 		"$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes" \
-		"$(DESTDIR)$(PREFIX)/lib/systemd/system"
-	$(INSTALL) $(programs) "$(DESTDIR)$(PREFIX)/bin"
-	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(PREFIX)/lib"
+		"$(DESTDIR)$(PREFIX)/share/doc/fmb" "$(DESTDIR)$(PREFIX)/lib/systemd/system"
+	$(INSTALL) $(strip_option) $(programs) "$(DESTDIR)$(PREFIX)/bin"
+	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(LIBDIR)"
 	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h "$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_names:%=msgs/%.lcm) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' \
-		$(if $(openmp_flag),-e 's|^Libs:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
-		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb.pc"
-	sed -e 's|@PREFIX@|$(PREFIX)|' service/fmbd.service.in \
-		> "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' clients/lib/fmb-client.pc.in \
-		> "$(DESTDIR)$(PREFIX)/lib/pkgconfig/fmb-client.pc"
+	$(INSTALL) -m 644 LICENSE "$(DESTDIR)$(PREFIX)/share/doc/fmb"
+	$(fill_in) $(if $(openmp_flag),-e 's|^Libs:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
+		> "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
+	$(fill_in) clients/lib/fmb-client.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc"
+	$(fill_in) service/fmbd.service.in > "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
+
+install-strip: strip_option := -s
+install-strip: install
+
+uninstall:
+	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_client.h \
+		share/fmb share/doc/fmb lib/systemd/system/fmbd.service
+	cd "$(DESTDIR)$(LIBDIR)" && rm -f libfmb.a libfmb-client.a pkgconfig/fmb.pc \
+		pkgconfig/fmb-client.pc
 
 .PHONY: clean
 clean:
@@ -960,4 +959,4 @@ endif
 .SECONDARY:
 .DEFAULT_GOAL := all
 
--include $(shell find build/obj/$(variant) -name '*.d' 2> /dev/null)
+-include $(shell find $(O) $(V) -name '*.d' 2> /dev/null)

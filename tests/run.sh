@@ -13,23 +13,31 @@ self=tests/run.sh
 log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
 
-# Where sanitizers would find nothing that they do not find elsewhere: other languages, what is
-# installed, what is measured, the command lines of what unit tests go through.
-unsanitized='system/examples.bats system/library.bats system/bus.bats cli/report.bats cli/page.bats'
-unsanitized="$unsanitized cli/mesh_page.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats"
-# Those that take long, and of them where one sanitizer is enough.
-long='system/soak.bats system/fairness.bats system/record.bats'
-long="$long system/replay_bus.bats cli/replay.bats cli/mesh.bats"
-sanitized_once="$long system/service.bats"
-slow="$long cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/bus.bats"
-slow="$slow cli/page.bats cli/mesh_page.bats"
+# Three builds, each for what it alone proves. Release: every suite. Sanitizers of gcc: the programs, as
+# their users start them, where these suites take them furthest; kernels of one instruction set are
+# enough. Sanitizers of clang, instrumented for fuzzing: unit tests, with all kernels, fuzzers, and the
+# goldens, which another compiler must reproduce.
+# With OpenMP: the one suite that uses threads.
+release=build
+programs=build/asan-sse2
+units=build/fuzz-clang
+threads=build/release-openmp
+sanitized='system/service.bats system/record.bats system/replay_bus.bats system/soak.bats'
+sanitized="$sanitized cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
+
+# Those that take longest, which begin first; and what 'make test-fast' leaves out.
+first='test_engine_triangle test_engine_small_world fuzz/fuzz.bats system/bus.bats system/service.bats'
+first="$first test_engine_pose cli/log.bats cli/campaign.bats test_engine_hard"
+slow='system/soak.bats system/fairness.bats system/record.bats system/replay_bus.bats cli/replay.bats'
+slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats"
+slow="$slow system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
 run_suite() {
     kind=$1 build=$2 what=$3
     export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
-    case $build in *asan*) export FMB_FAST=1 ;; esac
+    case $build in "$programs" | "$units") export FMB_FAST=1 ;; esac
     case $kind in
     unit) timeout "$limit" "$build/tests/$what" ;;
     bats) timeout "$limit" bats --tap "tests/$what" ;;
@@ -57,12 +65,19 @@ name_of() {
     echo "$1 $2 $3" | tr ' /' '._'
 }
 
+# cpu_seconds FILE: in which times wrote, whose last line is about processes that have ended.
+cpu_seconds() {
+    awk 'END { split($1, user, "m"); split($2, kernel, "m")
+        print int(60 * (user[1] + kernel[1]) + user[2] + kernel[2] + 0.5) }' "$1"
+}
+
 one() {
     kind=$1 build=$2 what=$3
     out=$log/$(name_of "$kind" "$build" "$what")
     begin=$(date +%s)
     run_suite "$kind" "$build" "$what" > "$out.tap" 2> "$out.err" < /dev/null
     code=$?
+    times > "$out.times"
     if [ "$kind" = netns ] && [ $code = 77 ]; then
         counts="0 0 $(grep -c '^@test' "tests/$what")"
     else
@@ -71,7 +86,8 @@ one() {
     echo "$counts" > "$out.count"
     # shellcheck disable=SC2086
     set -- $counts
-    printf '%-12s %-34s %4d s %4d passed' "$(basename "$build")" "$what" $(($(date +%s) - begin)) "$1"
+    printf '%-14s %-32s %4d s, %4d of CPU %4d passed' "$(basename "$build")" "$what" \
+        $(($(date +%s) - begin)) "$(cpu_seconds "$out.times")" "$1"
     [ "$2" = 0 ] || printf ', %d failed' "$2"
     [ "$3" = 0 ] || printf ', %d skipped' "$3"
     echo
@@ -104,66 +120,62 @@ list_units() {
     done
 }
 
-# is_one_of FILE LIST
-is_one_of() {
-    case " $2 " in *" $1 "*) ;; *) return 1 ;; esac
-}
-
-# wants BUILD FILE: whether the suite runs on this build.
-wants() {
-    [ -n "${FMB_FAST-}" ] && is_one_of "$2" "$slow" && return 1
-    case $1 in
-    *asan-clang) ! is_one_of "$2" "$unsanitized $sanitized_once" ;;
-    *asan) ! is_one_of "$2" "$unsanitized" ;;
-    esac
-}
-
-# list_bats KIND BUILD FOLDER
+# list_bats BUILD FILE...: system suites have a network of their own.
 list_bats() {
-    for file in tests/"$3"/*.bats; do
-        file=$3/$(basename "$file")
-        if wants "$2" "$file"; then echo "$1 $2 $file"; fi
+    build=$1
+    shift
+    for file in "$@"; do
+        case $file in
+        system/*) echo "netns $build $file" ;;
+        *) echo "bats $build $file" ;;
+        esac
     done
 }
 
-# Of a build with threads only the one suite that uses them was built.
-list() {
-    for build in "$@"; do
-        [ "$build" = "$threads" ] || list_bats netns "$build" system # they wait much: first
-        list_units "$build"
-        [ "$build" = "$threads" ] || list_bats bats "$build" cli
+list_release() {
+    for file in tests/system/*.bats tests/cli/*.bats; do
+        file=${file#tests/}
+        case "${FMB_FAST:+ $slow }" in *" $file "*) continue ;; esac
+        list_bats $release "$file"
     done
+    list_units $release
+}
+
+list_all() {
+    list_release
+    [ -z "${FMB_FAST-}" ] || return 0
+    # shellcheck disable=SC2086
+    list_bats $programs $sanitized
+    list_units $units
+    list_bats $units fuzz/fuzz.bats cli/replay_set.bats
+    list_units $threads
 }
 
 rm -rf "$log"
 mkdir -p "$log"
-threads=build/release-openmp
-rm -rf build/tests build/asan/tests build/asan-clang/tests $threads/tests
-build format-check headers tests
-builds=build
+rm -rf $release/tests $programs/tests $units/tests $threads/tests
+build format-check headers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
-    build MODE=asan tests
-    build MODE=asan CC=clang tests
+    build MODE=asan INSTRUCTIONS=sse2 tested-programs
+    build MODE=fuzz unit-tests fuzzers replay-set
     build OPENMP=1 $threads/tests/test_engine_batch
-    build MODE=fuzz fuzzers
-    builds="build build/asan build/asan-clang $threads"
 fi
-# Fuzzers have a suite of their own.
-all() {
-    list "$@"
-    [ -n "${FMB_FAST-}" ] || echo "bats build/fuzz-clang fuzz/fuzz.bats"
-}
+list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
+    { line[NR] = $0; what[NR] = $3 }
+    END {
+        for (i = 1; i <= count; i++)
+            for (k = 1; k <= NR; k++)
+                if (what[k] == name[i]) { print line[k]; delete line[k] }
+        for (k = 1; k <= NR; k++)
+            if (k in line) print line[k]
+    }' > "$log/list"
 
 # Until it has ended, a suite has failed.
-# shellcheck disable=SC2086
-all $builds | while read -r kind build what; do
+while read -r kind build what; do
     echo "0 1 0" > "$log/$(name_of "$kind" "$build" "$what").count"
-done
-# In a hurry one more than there are cores: suites that wait for a bus leave theirs to others.
-jobs=$(nproc)
-[ -z "${FMB_FAST-}" ] || jobs=$((jobs + 1))
-# shellcheck disable=SC2086
-all $builds | xargs -d '\n' -n 1 -P "$jobs" "$self" --suite
+done < "$log/list"
+# One more than there are cores: suites that wait for a bus leave theirs to others.
+xargs -d '\n' -n 1 -P $(($(nproc) + 1)) "$self" --suite < "$log/list"
 
 awk '{ p += $1; f += $2; s += $3 }
     END {

@@ -150,6 +150,7 @@ int main(int argc, char **argv)
     growth_run(&bench);
     grids_run(&bench);
     poses_run(&bench);
+    gaps_run(&bench);
     broad_run(&bench);
     worst_run(&bench);
     print_noise(pinned);

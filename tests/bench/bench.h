@@ -41,6 +41,8 @@ void instructions_run(struct bench *bench); /* instructions */
 void growth_run(struct bench *bench);       /* growth */
 void grids_run(struct bench *bench);        /* grids */
 void poses_run(struct bench *bench);        /* poses */
+void gaps_run(struct bench *bench);         /* gaps */
+void margins_run(struct bench *bench);      /* part of gaps */
 void broad_run(struct bench *bench);        /* broad */
 void worst_run(struct bench *bench);        /* worst */
 

@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const sections[] = {"cells", "inverse", "order",        "hybrid",
-                                       "box",   "article", "instructions", "growth",
-                                       "grids", "poses",   "broad",        "worst"};
+static const char *const sections[] = {"cells",   "inverse",      "order",  "hybrid", "box",
+                                       "article", "instructions", "growth", "grids",  "poses",
+                                       "gaps",    "broad",        "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

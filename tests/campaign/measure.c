@@ -5,11 +5,15 @@
 #include <string.h>
 #include <time.h>
 
+#include "gap_check.h"
+
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each asked once,
  * so that no branch is predicted from having seen the pair before. */
 enum { BATCH = 250 };
 
-enum { IN_ORDER, SWAPPED, BOXLESS, ASKINGS };
+enum { IN_ORDER, SWAPPED, BOXLESS, GAP, ASKINGS };
+
+enum { TIMES = 3 }; /* of verdicts, boxes and gaps */
 
 struct batch {
     int count;
@@ -38,8 +42,9 @@ static double ns_spent(void)
 /* Puts all pairs of the batch to a method. Returns nanoseconds a query. */
 static double ask_all(struct batch *batch, int method, int asking)
 {
-    static const unsigned wants[ASKINGS] = {FMB_WANT_BOX, FMB_WANT_BOX, 0};
     const struct fmb_method *asked = fmb_method_at((size_t) method);
+    const unsigned gap = asked->certain ? FMB_WANT_GAP : 0;
+    const unsigned wants[ASKINGS] = {FMB_WANT_BOX, FMB_WANT_BOX | gap, 0, gap};
     struct reply *reply = batch->reply[method][asking];
     const double start = ns_spent();
     for (int i = 0; i < batch->count; i++)
@@ -65,6 +70,23 @@ static void check_promises(struct tally *tally, const struct fmb_method *method,
             tally_broken(tally, &trial->question, why);
     if (!reply_same_verdict(reply[IN_ORDER], reply[BOXLESS]))
         tally_broken(tally, &trial->question, "another verdict without the box");
+}
+
+/* The same of gaps: in either order, with a box or without, the same bits; and proven. */
+static void check_gap(struct tally *tally, enum fmb_verdict verdict, const struct trial *trial,
+                      const struct reply *reply[ASKINGS])
+{
+    const struct fmb_answer *answer = &reply[GAP]->answer, *swapped = &reply[SWAPPED]->answer;
+    char why[TALLY_WHY_MAX];
+    if (!reply_same_verdict(reply[IN_ORDER], reply[GAP]))
+        tally_broken(tally, &trial->question, "another verdict with the gap");
+    else if (!answer->has_gap || !swapped->has_gap)
+        tally_broken(tally, &trial->question, "no gap");
+    else if (!gap_check_swapped(question_is_symmetric(&trial->question), &answer->gap,
+                                &swapped->gap))
+        tally_broken(tally, &trial->question, "another gap in the other order");
+    else if (!tally_gap(tally, verdict, &trial->pair[0], &answer->gap, why))
+        tally_broken(tally, &trial->question, why);
 }
 
 /* Of bodies of several frames, the last step that any pair of them needs. */
@@ -96,14 +118,16 @@ static void judge_pair(struct measure *measure, const struct batch *batch, int i
     for (int m = 0; m < trial_methods(); m++) {
         const struct fmb_method *method = fmb_method_at((size_t) m);
         struct tally *tally = &measure->method[m].tally;
-        const struct reply *reply[ASKINGS] = {&batch->reply[m][IN_ORDER][i],
-                                              &batch->reply[m][SWAPPED][i],
-                                              &batch->reply[m][BOXLESS][i]};
+        const struct reply *reply[ASKINGS] = {
+            &batch->reply[m][IN_ORDER][i], &batch->reply[m][SWAPPED][i],
+            &batch->reply[m][BOXLESS][i], &batch->reply[m][GAP][i]};
         for (int order = 0; order < 2; order++)
             tally_reply(tally, truth, &trial->pair[order], reply[order]);
         tally_orders(tally, reply[IN_ORDER], reply[SWAPPED]);
-        if (trial_never_wrong(method))
-            check_promises(tally, method, truth, trial, reply);
+        if (!trial_never_wrong(method))
+            continue;
+        check_promises(tally, method, truth, trial, reply);
+        check_gap(tally, truth->verdict, trial, reply);
     }
 }
 
@@ -134,7 +158,7 @@ void measure_cell(struct measure *measure, long pairs, uint64_t seed)
     const size_t batches = (size_t) (pairs + BATCH - 1) / BATCH;
     const int methods = trial_methods();
     struct batch *batch = get_memory(sizeof *batch);
-    double *ns = get_memory(2 * TRIAL_METHODS_MAX * batches * sizeof *ns);
+    double *ns = get_memory(TIMES * TRIAL_METHODS_MAX * batches * sizeof *ns);
     struct draw draw = cell_draw(seed, measure->family->name, &measure->cell, 0);
     struct oracle_answer truth;
     oracle_init(&truth);
@@ -146,16 +170,21 @@ void measure_cell(struct measure *measure, long pairs, uint64_t seed)
             trial_begin(&question, &batch->trial[i]);
         }
         for (int m = 0; m < methods; m++) {
-            ns[(size_t) (2 * m) * batches + n] = ask_all(batch, m, BOXLESS);
-            ns[(size_t) (2 * m + 1) * batches + n] = ask_all(batch, m, IN_ORDER);
+            double *at = ns + (size_t) (TIMES * m) * batches + n;
+            at[0] = ask_all(batch, m, BOXLESS);
+            at[batches] = ask_all(batch, m, IN_ORDER);
             ask_all(batch, m, SWAPPED);
+            if (fmb_method_at((size_t) m)->certain)
+                at[2 * batches] = ask_all(batch, m, GAP);
         }
         for (int i = 0; i < batch->count; i++)
             judge_pair(measure, batch, i, &truth);
     }
     for (int m = 0; m < methods; m++) {
-        measure->method[m].ns_verdict = median(ns + (size_t) (2 * m) * batches, batches);
-        measure->method[m].ns_box = median(ns + (size_t) (2 * m + 1) * batches, batches);
+        double *at = ns + (size_t) (TIMES * m) * batches;
+        measure->method[m].ns_verdict = median(at, batches);
+        measure->method[m].ns_box = median(at + batches, batches);
+        measure->method[m].ns_gap = median(at + 2 * batches, batches);
     }
     oracle_clear(&truth);
     free(ns);

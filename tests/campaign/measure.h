@@ -18,6 +18,7 @@ struct measure_method {
     struct tally tally;
     double ns_verdict; /* a query, verdict (and interval) only */
     double ns_box;     /* a query, with the box where there is contact */
+    double ns_gap;     /* a query with the gap; 0: the method has none */
 };
 
 struct measure {

@@ -571,6 +571,23 @@ static void yaw_on_table(struct draw *draw, const struct family *family, const s
     out->a.velocity[2] = out->b.velocity[2] = draw_uniform(draw, -1, 1);
 }
 
+/* Some numbers near the largest double, so that vertices and gaps are beyond it. */
+static void beyond_doubles(struct draw *draw, const struct family *family, const struct cell *cell,
+                           struct question *out)
+{
+    const double large = DBL_MAX / 128;
+    random_poses(draw, family, cell, out);
+    for (int side = 0; side < 2; side++) {
+        struct solid *solid = question_solid(out, side);
+        for (int axis = 0; axis < cell->dim; axis++) {
+            solid->origin[axis] *= draw_coin(draw) ? large : 1;
+            solid->local[axis] *= draw_coin(draw) ? large : 1;
+            solid->velocity[axis] *= draw_coin(draw) ? large : 1;
+            solid->component[axis][axis] *= draw_coin(draw) ? large : 1;
+        }
+    }
+}
+
 /* clang-format off */
 static const struct family families[] = {
     {"pose-random", "uniform numbers and quaternions", random_poses, .cells = FAMILY_POSED},
@@ -605,6 +622,8 @@ static const struct family families[] = {
      .cells = FAMILY_POSED},
     {"pose-length", "quaternions of lengths from 1e-150 to 1e150", of_any_length,
      .amount = 498, .cells = FAMILY_POSED},
+    {"pose-beyond", "vertices and gaps beyond the largest double", beyond_doubles,
+     .cells = FAMILY_POSED},
     {"pose-frames", "bodies of up to 3 frames that share faces, touching or nearly", rows,
      .amount = 3, .cells = FAMILY_POSED},
     {"pose-frames-shared", "bodies of 2 frames, one pose for both, touching", shared_pose,

@@ -23,6 +23,7 @@ static void add_measure(struct measure *into, const struct measure *from, double
         tally_merge(&into->method[m].tally, &from->method[m].tally);
         into->method[m].ns_verdict += share * from->method[m].ns_verdict;
         into->method[m].ns_box += share * from->method[m].ns_box;
+        into->method[m].ns_gap += share * from->method[m].ns_gap;
     }
 }
 
@@ -63,9 +64,10 @@ uint64_t report_not_as_made(const struct report *report)
 /* ---- The table ---- */
 
 static const char *const heads[] = {
-    "family", "cell",    "truth s/t/o", "method", "queries", "f.sep", "f.con",    "f.kind",
-    "order",  "refused", "box miss",    "median", "p99",     "max",   "int miss", "median",
-    "p99",    "max",     "unsure",      "ns",     "ns+box",  NULL};
+    "family",   "cell",   "truth s/t/o", "method",   "queries", "f.sep",    "f.con",
+    "f.kind",   "order",  "refused",     "box miss", "median",  "p99",      "max",
+    "int miss", "median", "p99",         "max",      "gaps",    "unproven", "widest",
+    "unsure",   "ns",     "ns+box",      "ns+gap",   NULL};
 
 static const char legend[] =
     "truth: percent of the pairs separated, touching, overlapping. queries: two a pair, one an\n"
@@ -73,8 +75,9 @@ static const char legend[] =
     "to be in contact; f.kind, touching and overlapping confused. order: pairs whose two orders\n"
     "differ in the verdict. refused: 'cannot decide'. box, int(erval): those that do not contain\n"
     "the true one; then how far out their worst ends lie, relative to the largest coordinate\n"
-    "of any vertex over the window, and to T. unsure: pairs that the filter of the certified\n"
-    "method left open. ns: a query without the box, and with the box.\n";
+    "of any vertex over the window, and to T. gaps: of (A, B); unproven: by rational numbers;\n"
+    "widest: enclosure, relative to the limit. unsure: pairs that the filter of the certified\n"
+    "method left open. ns: a query without the box, with the box, with the gap.\n";
 
 static void add_ends(struct table *table, const struct tally_ends *ends)
 {
@@ -88,6 +91,18 @@ static void add_ends(struct table *table, const struct tally_ends *ends)
     table_small(table, spread_quantile(&ends->out, 0.5));
     table_small(table, spread_quantile(&ends->out, 0.99));
     table_small(table, ends->out.max);
+}
+
+static void add_gaps(struct table *table, const struct tally_gaps *gaps)
+{
+    if (gaps->width.count == 0) {
+        for (int i = 0; i < 3; i++)
+            table_text(table, "-");
+        return;
+    }
+    table_count(table, gaps->width.count);
+    table_count(table, gaps->unproven);
+    table_small(table, gaps->width.max);
 }
 
 static void add_truth(struct table *table, const struct measure *measure)
@@ -130,9 +145,14 @@ static void add_row(struct table *table, const struct measure *measure, const ch
     table_count(table, tally->refused);
     add_ends(table, &tally->box);
     add_ends(table, &tally->contact);
+    add_gaps(table, &tally->gap);
     add_unsure(table, measure, name);
     table_time(table, method->ns_verdict);
     table_time(table, method->ns_box);
+    if (method->ns_gap > 0)
+        table_time(table, method->ns_gap);
+    else
+        table_text(table, "-");
 }
 
 static void add_rows(struct table *table, const struct measure *measure, const char *cell)
@@ -192,6 +212,7 @@ static void print_reproducers(const struct report *report, int m)
 static void print_never_wrong(const struct report *report, int m, FILE *out)
 {
     uint64_t queries = 0, wrong = 0, order = 0, refused = 0, broken = 0;
+    struct tally_gaps gap = {0};
     for (size_t i = 0; i < report->measures; i++) {
         const struct tally *tally = &report->measure[i].method[m].tally;
         queries += tally->queries;
@@ -199,12 +220,16 @@ static void print_never_wrong(const struct report *report, int m, FILE *out)
         order += tally->order_verdict;
         refused += tally->refused;
         broken += tally->broken;
+        gap.unproven += tally->gap.unproven;
+        spread_merge(&gap.width, &tally->gap.width);
     }
     fprintf(out,
             "%s: %" PRIu64 " queries, %" PRIu64 " wrong verdicts, %" PRIu64
             " pairs with another verdict in the other order, %" PRIu64 " refused, %" PRIu64
-            " answers that break a promise (verdict, interval, box)\n",
-            fmb_method_at((size_t) m)->name, queries, wrong, order, refused, broken);
+            " answers that break a promise (verdict, interval, box, gap)\n"
+            "%s: %" PRIu64 " gaps, %" PRIu64 " unproven, the widest %.2g of the limit\n",
+            fmb_method_at((size_t) m)->name, queries, wrong, order, refused, broken,
+            fmb_method_at((size_t) m)->name, gap.width.count, gap.unproven, gap.width.max);
 }
 
 static void print_paths(const struct report *report, FILE *out)

@@ -120,6 +120,17 @@ static void put_ends(FILE *out, const char *name, const struct tally_ends *ends)
     fprintf(out, "}");
 }
 
+static void put_gaps(FILE *out, const struct tally_gaps *gaps)
+{
+    fprintf(out, ",\n     \"gap\": {\"count\": %" PRIu64 ", \"unproven\": %" PRIu64,
+            gaps->width.count, gaps->unproven);
+    fprintf(out, ", \"width_median\": ");
+    put_number(out, spread_quantile(&gaps->width, 0.5));
+    fprintf(out, ", \"width_max\": ");
+    put_number(out, gaps->width.max);
+    fprintf(out, "}");
+}
+
 static void put_method(FILE *out, const struct measure_method *method, const char *name)
 {
     const struct tally *tally = &method->tally;
@@ -138,10 +149,13 @@ static void put_method(FILE *out, const struct measure_method *method, const cha
             tally->order_bits);
     put_ends(out, "box", &tally->box);
     put_ends(out, "interval", &tally->contact);
+    put_gaps(out, &tally->gap);
     fprintf(out, ",\n     \"broken\": %" PRIu64 ", \"ns_verdict\": ", tally->broken);
     put_number(out, method->ns_verdict);
     fprintf(out, ", \"ns_box\": ");
     put_number(out, method->ns_box);
+    fprintf(out, ", \"ns_gap\": ");
+    put_number(out, method->ns_gap);
     fprintf(out, "}");
 }
 

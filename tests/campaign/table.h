@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { TABLE_COLUMNS_MAX = 24, TABLE_TEXT_MAX = 32 };
+enum { TABLE_COLUMNS_MAX = 26, TABLE_TEXT_MAX = 32 };
 
 struct table {
     int columns;

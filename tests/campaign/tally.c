@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "gap_check.h"
+
 static void merge_ends(struct tally_ends *into, const struct tally_ends *from)
 {
     into->misses += from->misses;
@@ -24,6 +26,8 @@ void tally_merge(struct tally *into, const struct tally *from)
     into->order_bits += from->order_bits;
     merge_ends(&into->contact, &from->contact);
     merge_ends(&into->box, &from->box);
+    into->gap.unproven += from->gap.unproven;
+    spread_merge(&into->gap.width, &from->gap.width);
 }
 
 uint64_t tally_false_separated(const struct tally *tally)
@@ -75,6 +79,15 @@ void tally_orders(struct tally *tally, const struct reply *one, const struct rep
 {
     tally->order_verdict += !reply_same_verdict(one, other);
     tally->order_bits += !reply_same(one, other);
+}
+
+bool tally_gap(struct tally *tally, enum fmb_verdict verdict, const struct pair *pair,
+               const struct fmb_gap *gap, char why[TALLY_WHY_MAX])
+{
+    const bool proven = gap_check(pair, verdict, gap, why, TALLY_WHY_MAX);
+    tally->gap.unproven += !proven;
+    spread_add(&tally->gap.width, gap_check_width(pair, gap));
+    return proven;
 }
 
 void tally_broken(struct tally *tally, const struct question *question, const char *why)

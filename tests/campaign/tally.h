@@ -19,6 +19,12 @@ struct tally_ends {
     struct spread out; /* how far out the worst end of each lies, relative */
 };
 
+/* Gaps of pairs in one order. A width is that of the enclosure divided by the limit of fmb.h. */
+struct tally_gaps {
+    uint64_t unproven; /* by gap_check.h */
+    struct spread width;
+};
+
 /* The first reply of a method that is never wrong, and was. */
 struct tally_wrong {
     struct question question;
@@ -31,6 +37,7 @@ struct tally {
     uint64_t order_verdict; /* pairs whose two orders differ, in the verdict or in refusing */
     uint64_t order_bits;    /* and those that differ in anything */
     struct tally_ends contact, box;
+    struct tally_gaps gap;
     /* Of methods that are never wrong: queries that break what is promised, in any way. */
     uint64_t broken;
     struct tally_wrong first;
@@ -50,6 +57,10 @@ void tally_reply(struct tally *tally, const struct oracle_answer *truth, const s
 
 /* Both orders. */
 void tally_orders(struct tally *tally, const struct reply *one, const struct reply *other);
+
+/* A gap of a pair with this verdict, the true one. False if it is not proven; why is one line. */
+bool tally_gap(struct tally *tally, enum fmb_verdict verdict, const struct pair *pair,
+               const struct fmb_gap *gap, char why[TALLY_WHY_MAX]);
 
 /* Something was wrong that must not be. why is one line. */
 void tally_broken(struct tally *tally, const struct question *question, const char *why);

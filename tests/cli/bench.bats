@@ -11,7 +11,7 @@ setup() {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
     jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .poses,
-                   .rest, .broad, .worst;
+                   .rest, .gaps, .margins, .broad, .worst;
                length > 0)' "$JSON"
     jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
     jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",
@@ -19,6 +19,9 @@ setup() {
     jq -e 'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' "$JSON"
     jq -e '[.poses[] | [.dim, .moving, .shapes, .contact]] | unique | length == 72' "$JSON"
     jq -e '.unsure.unsure < 5' "$JSON"
+    jq -e '[.gaps[] | [.kind, .gap]] | unique | length == 32' "$JSON"
+    jq -e 'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' "$JSON"
+    jq -e 'any(.margins[]; .near > 0)' "$JSON"
     jq -e '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)' "$JSON"
 }
 

@@ -16,6 +16,8 @@ setup() {
     jq -e 'all(.cells[].methods[] | select(.name == "certified" or .name == "exact");
                .broken == 0 and .order_verdict == 0 and .refused == 0
                and .false_separated + .false_contact + .false_kind == 0)' "$JSON"
+    jq -e "all(.cells[].methods[] | select(.name == \"certified\" or .name == \"exact\");
+               .gap.count == $pairs and .gap.unproven == 0 and .gap.width_max <= 1)" "$JSON"
     jq -e '[.cells[].methods[] | select(.name == "certified")] | length > 1700' "$JSON"
     jq -e 'all(.cells[]; .not_as_made == 0)' "$JSON"
     jq -e '[.families[] | select(.verdict == "touching") | .name] |
@@ -27,7 +29,8 @@ setup() {
         run "$BUILD/accuracy" --pairs 20 --family gap-ulp --family faces --workers $workers \
             --json "$JSON"
         ended 0
-        jq 'del(.workers, .cells[].methods[].ns_verdict, .cells[].methods[].ns_box)' "$JSON" \
+        jq 'del(.workers, .cells[].methods[].ns_verdict, .cells[].methods[].ns_box,
+            .cells[].methods[].ns_gap)' "$JSON" \
             > "$BATS_TEST_TMPDIR/$workers"
     done
     cmp "$BATS_TEST_TMPDIR/1" "$BATS_TEST_TMPDIR/3"
@@ -39,6 +42,8 @@ setup() {
     ended 1
     jq -e '[.cells[].methods[] | select(.name == "certified") |
             .false_separated + .false_contact + .false_kind] | add > 0' "$JSON"
+    jq -e '[.cells[] | select(.family == "random").methods[] |
+            select(.name == "certified") | .gap.unproven] | add > 0' "$JSON"
     jq -e 'all(.cells[].methods[] | select(.name == "exact"); .broken == 0)' "$JSON"
     [[ $output == *"struct question question = {"* ]] # a reproducer
 }

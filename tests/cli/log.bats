@@ -252,6 +252,18 @@ field() {
 
 # ---- The command -----------------------------------------------------------------------------
 
+@test "names of files reach the terminal without control characters" {
+    name=$BATS_TEST_TMPDIR/$'\e[31mred'
+    good > "$name"
+    run "$FMB" log info "$name"
+    ended 0
+    [[ ${lines[0]} == "$BATS_TEST_TMPDIR/\x1b[31mred: "* ]]
+    name=$BATS_TEST_TMPDIR/naïf
+    good > "$name"
+    run "$FMB" log info "$name"
+    [[ ${lines[0]} == "$name: "* ]]
+}
+
 @test "output that cannot be written is a failure" {
     [ -w /dev/full ] || skip 'no /dev/full'
     good > "$log"
@@ -271,9 +283,26 @@ field() {
     run --separate-stderr "$FMB" help log
     ended 0
     is "$help"
+    run --separate-stderr "$FMB" log help
+    ended 0
+    is "$help"
     run --separate-stderr "$FMB" log
     ended 2
     said "$help"
+    for command in info cut scene; do
+        help=$("$FMB" log $command --help)
+        [[ $help == "usage: fmb log $command "* ]]
+        for words in "help log $command" "log help $command"; do
+            run --separate-stderr "$FMB" $words
+            ended 0
+            is "$help"
+            said ''
+        done
+    done
+    run "$FMB" help log cut cut
+    ended 2
+    run "$FMB" log help cut cut
+    ended 2
     run --separate-stderr "$FMB" log info --help
     ended 0
     [[ $output == 'usage: fmb log info'*'--json'* ]]

@@ -72,11 +72,15 @@ capped_at() {
     [ "$(unique "$scenes.verdicts[]")" = '[0,1,2,3]' ]
     [ "$(unique "$pairs.method")" = '[0,1,2,3,4]' ]
     [ "$(unique "$scenes.method")" = '[0,1,2,3,4]' ]
-    # All but BAD_ORIENTATION and BAD_SIZE, which this version does not give.
-    [ "$(unique 'select(.status).status')" = '[0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,18]' ]
+    # All but NOT_SUPPORTED, which this version does not give, BAD_ORIENTATION and BAD_SIZE.
+    [ "$(unique 'select(.status).status')" = '[0,1,2,3,4,5,6,7,8,9,10,11,12,13,15,18,19]' ]
     [ "$(unique "$pairs | select(.certificate > 0) | .verdicts[]")" = '[1,2,3]' ]
     [ "$(unique "$pairs | select(.boxes > 0) | .boxes")" = '[4,6]' ]
     [ "$(unique "$scenes | select(.times > 0 and .boxes > 0) | .status")" = '[0]' ]
+    # Gaps of all verdicts; and pairs that are named since they are near.
+    [ "$(unique "$pairs | select(.gaps == 2) | [.verdicts[0], .witnesses]")" = '[[1,5],[1,7],[2,0],[3,0]]' ]
+    [ "$(unique "$scenes | select(.pairs > 0 and .gaps > 0) | .verdicts[]")" = '[1,2,3]' ]
+    [ "$(unique "$scenes | select(.pairs == 0 and .gaps > 0) | .verdicts[]")" = '[1,2,3]' ]
 }
 
 @test "results come late, early and not at all; services start anew, and beside each other" {

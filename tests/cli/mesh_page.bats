@@ -25,7 +25,6 @@ setup_file() {
     "$build/mesh/make-mesh" --faces 200 "$BATS_FILE_TMPDIR/a.ply"
     "$build/mesh/make-mesh" --faces 200 --seed 2 "$BATS_FILE_TMPDIR/b.ply"
     "$build/mesh/make-mesh" --faces 2000 "$BATS_FILE_TMPDIR/same.ply"
-    "$build/mesh/make-mesh" --faces 900000 --format ply-le "$BATS_FILE_TMPDIR/fine.ply"
     cp tests/page/drive_mesh.html tests/page/drive_mesh.js tests/page/tools.js "$BATS_FILE_TMPDIR"
     cd "$BATS_FILE_TMPDIR" || return
     mkdir -p "x$hostile"
@@ -38,7 +37,6 @@ setup_file() {
     page self --self a.ply
     page empty none.ply none.ply
     page large same.ply same.ply
-    page thin fine.ply b.ply --translate 1.3,0.4,0.2
     page huge --scale 1e300 a.ply b.ply --translate 1.3e300,0,0
     page tiny --scale 1e-300 a.ply b.ply --translate 1.3e-300,0,0
     command -v chromium > /dev/null || return 0
@@ -53,7 +51,7 @@ setup() {
 # ---- What it holds ---------------------------------------------------------------------------
 
 @test "one file that refers to nothing else, and lets nothing else run" {
-    for page in small touching moving self empty large thin; do
+    for page in small touching moving self empty large; do
         data $page.html | jq -e '.pairs | type == "array"' > /dev/null
         is_alone $page.html
     done
@@ -101,18 +99,8 @@ numbers() {
           for (i = 1; i <= 3; i++) { off = at[i] - $i - by[i]; if (off > 1e-6 || off < -1e-6) exit 1 } }' corner -
 }
 
-@test "what is left out is counted, and the page stays small" {
+@test "the list ends somewhere, and what is left out is counted" {
     data large.html | jq -e '.count > 20000 and (.pairs | length) == 20000'
-    [ "$(stat -c %s thin.html)" -lt $((16 << 20)) ]
-    [ "$(stat -c %s thin.html)" -gt $((8 << 20)) ]
-    numbers thin 0 number u4 4 > kept
-    sort -nuc kept
-    [ "$(wc -l < kept)" -lt 900000 ]
-    data thin.html | jq -r '.pairs[][0]' | sort -nu > met
-    [ "$(wc -l < met)" -gt 100 ]
-    # Each face that meets is among them.
-    [ -z "$(awk 'NR == FNR { kept[$1] = 1; next } !kept[$1]' kept met)" ]
-    data thin.html | jq -e '.meshes[1].number == null'
 }
 
 @test "a file that cannot be written is said" {

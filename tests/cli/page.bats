@@ -64,7 +64,7 @@ setup() {
 
 @test "errors in a page are detected" {
     found dark '.done'
-    grep -q 'Executing inline script violates.*source: .*changed.html' dark.console
+    grep -q 'inline script.*violates.*source: .*changed.html' dark.console
     grep -q 'Uncaught SyntaxError.*source: .*cut.html' dark.console
 }
 
@@ -83,6 +83,12 @@ setup() {
         and .lane == ["1 2"] and .hash == "#0:31" and .query == "Query 31"'
     found light '.clicked | .drawn > 10000 and .red > 3000 and .violet > 300'
     found light '.moved.sum != .clicked.sum and .zoomed.red > 1.5 * .moved.red'
+}
+
+@test "a gap: its size, and a line between the nearest points" {
+    found light '.gap | .verdict == ["separated"] and .texts[:3] == ["pair", "verdict", "gap"]
+        and (.texts[3] | tonumber) > 0.1 and .blue > 20'
+    found light '.clicked.blue == 0'
 }
 
 @test "the body below the pointer is named" {

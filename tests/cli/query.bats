@@ -49,6 +49,23 @@ query() {
     is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}]}'
 }
 
+@test "a byte order mark is skipped at the start of the input, and nowhere else" {
+    mark=$'\xef\xbb\xbf'
+    query "$mark$scene $scene"
+    ended 0
+    [ "${#lines[@]}" = 2 ]
+    run --separate-stderr bash -c '{ printf "\357"; sleep 0.1; printf "\273"; sleep 0.1; printf "\277%s" "$1"; } |
+        "$2" query --local --json' - "$scene" "$FMB"
+    ended 0
+    query "$scene $mark$scene"
+    ended 2
+    [[ $stderr == *'found byte 0xef'* ]]
+    query "$mark$mark$scene"
+    ended 2
+    query "${mark:0:2}"
+    ended 2
+}
+
 @test "separated pairs have neither contact nor box" {
     query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [0,0]},
            {\"id\": 2, $square, \"origin\": [3,0], \"velocity\": [-1,0]}]}" --box
@@ -199,6 +216,98 @@ $two, \"pairs\": []}"
     is '{"pairs": [{"a": 1, "b": 3, "verdict": "touching", "contact": [0, 1]}]}'
     query "$bodies, \"ignore\": [[2,1]], \"pairs\": [[3,1]]}"
     is '{"pairs": [{"a": 3, "b": 1, "verdict": "touching", "contact": [0, 1]}]}'
+}
+
+# ---- Gaps ------------------------------------------------------------------------------------
+
+# spaced REST: a square with others at -0.5, 0, 0.5 and 3 from it, the last one moving towards it.
+spaced() {
+    local unit='"shape": "box", "size": [1,1]'
+    echo "{\"dim\": 2, \"duration\": 0.5, \"bodies\": [{\"id\": 1, $unit},
+        {\"id\": 2, $unit, \"position\": [0.5,0]}, {\"id\": 3, $unit, \"position\": [0,-1]},
+        {\"id\": 4, $unit, \"position\": [-1.5,0]},
+        {\"id\": 5, $unit, \"position\": [0,4], \"velocity\": [0,-2]}],
+        \"pairs\": [[1,2],[1,3],[1,4],[1,5]]$1}"
+}
+
+# gap K NUMBER: the gap of pair K encloses the number, and no more than it may
+gap() {
+    jq -e --argjson k "$1" --argjson gap "$2" \
+        '.pairs[$k].gap | .[0] <= $gap and $gap <= .[1] and .[1] - .[0] <= 5e-12' <<< "$output"
+}
+
+@test "--gap: depths, distances, directions and nearest points" {
+    query "$(spaced)" --gap
+    ended 0
+    gap 0 -0.5
+    jq -e '.pairs[0] | .verdict == "overlapping" and .direction == [1,0] and (has("witness") | not)' <<< "$output"
+    jq -e '.pairs[1] | .verdict == "touching" and .gap == [0,0] and .direction == [0,-1] and (has("witness") | not)' <<< "$output"
+    gap 2 0.5
+    jq -e '.pairs[2] | .verdict == "separated" and .direction == [-1,0]' <<< "$output"
+    jq -e '.pairs[2].witness | .a[0] == -0.5 and .b[0] == -1 and (.a[1] - .b[1] | fabs) <= 1e-12' <<< "$output"
+    gap 3 2
+    jq -e '.pairs[3] | .direction == [0,1] and .witness.time == 0.5 and .witness.b[1] == 2.5' <<< "$output"
+    jq -e '[.pairs[] | keys_unsorted[-2:] == ["gap", "direction"] or keys_unsorted[-3:] == ["gap", "direction", "witness"]] | all' <<< "$output"
+    query "$(spaced)"
+    [[ $output != *gap* ]]
+}
+
+@test "the gap stands in a table, before the box" {
+    run "$FMB" query --local --gap --box <<< "$(spaced)"
+    ended 0
+    is "scene 1: 5 bodies in 2D, 4 pairs, 0 to 0.5 s
+  a  b  verdict      contact               gap           box
+  1  2  overlapping  0 to 0.5 s            -0.5          x        0 .. 0.5       y     -0.5 .. 0.5
+  1  3  touching     0 to 0.5 s            0             x     -0.5 .. 0.5       y     -0.5 .. -0.5
+  1  4  separated                          0.5
+  1  5  separated                          2
+1 overlapping, 1 touching, 2 separated"
+}
+
+@test "with a margin, contacts and near pairs have gaps" {
+    query "$(spaced ', "margin": 0.5000001')"
+    ended 0
+    [ "$(jq -c '[.pairs[] | has("gap")]' <<< "$output")" = '[true,true,true,false]' ]
+    gap 2 0.5
+    near=$output
+    query "$(spaced ', "margin": 0.5000001')" --gap
+    [ "$(jq -c '[.pairs[] | has("gap")]' <<< "$output")" = '[true,true,true,true]' ]
+    [ "$(jq -c '.pairs[:3]' <<< "$output")" = "$(jq -c '.pairs[:3]' <<< "$near")" ]
+    run "$FMB" query --local <<< "$(spaced ', "margin": 2.25')"
+    ended 0
+    [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (2 near)' ]
+    run "$FMB" query --local <<< "$(spaced ', "margin": 0.4999')"
+    [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (0 near)' ]
+}
+
+@test "cubes at rest as programs compute it are near at a margin of 1e-9, whatever their verdict" {
+    clients/demo/cubes.sh > "$BATS_TEST_TMPDIR/cubes.json"
+    query "$(cat "$BATS_TEST_TMPDIR/cubes.json")"
+    ended 0
+    jq -e '[.pairs[] | select(.gap)] | length == 96 and all(.a == 97) and all(.gap[0] > -1e-12 and .gap[1] < 1e-12)' <<< "$output"
+    jq -e '[.pairs[] | select(.gap) | .verdict] | unique | length == 3' <<< "$output"
+    jq -e '[.pairs[] | select(.gap) | select(.verdict != "separated")] | length < 96' <<< "$output"
+}
+
+@test "a gap beyond the largest double is null" {
+    query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [1e308,0]},
+        {\"id\": 2, $square, \"origin\": [-1e308,0]}]}" --gap
+    ended 0
+    jq -e '.pairs[0] | .verdict == "separated" and .gap[1] == null and .direction == [-1,0]' <<< "$output"
+}
+
+@test "methods that give no gaps: errors, exit code 1" {
+    for method in fmb sat; do
+        query "$(spaced)" --gap --method $method
+        ended 1
+        [ "$(jq -c '[.pairs[].error] | unique' <<< "$output")" = '["method: gives no gaps"]' ]
+        query "$(spaced ', "margin": 1e-9')" --method $method
+        ended 1
+        query "$(spaced ', "margin": 0')" --method $method
+        ended 0
+    done
+    query "$(spaced)" --gap --method exact
+    ended 0
 }
 
 # ---- Certificates ----------------------------------------------------------------------------
@@ -379,6 +488,8 @@ refused() {
     refused "$box, \"name\": 5" '' 'bodies[1].name: expected a string, found a number'
     refused "$box, \"name\": \"a\\u0085b\"" '' 'bodies[1].name: expected UTF-8 without control characters'
     refused "$box, \"name\": \"$(printf '%065d' 0)\"" '' 'bodies[1].name: expected at most 64 bytes, found 65'
+    refused "$box" ', "margin": -1' 'margin: expected a number of at least 0, found -1'
+    refused "$box" ', "margin": 1e999' 'margin: expected a finite number, found infinity (doubles end at 1.8e308)'
     refused "$box" ', "ignore": [[1,9],[1,2]]' 'ignore[1][1]: no body has the id 2'
     refused "$box" ', "ignore": [[1,1]]' 'ignore[0]: a body is no pair with itself (1)'
     refused "$box" ', "ignore": [[1,9]], "pairs": [[9,1]]' 'pairs[0]: "ignore" has this pair too'
@@ -497,6 +608,17 @@ all_pairs() {
         ended 0
         is "$help"
     done
+}
+
+@test "help fits 80 columns" {
+    for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' mesh; do
+        run "$FMB" $words --help
+        ended 0
+        [ "$(wc -L <<< "$output")" -le 80 ]
+    done
+    run "${FMB}d" --help
+    ended 0
+    [ "$(wc -L <<< "$output")" -le 80 ]
 }
 
 @test "the example of the help is a scene" {

@@ -7,9 +7,10 @@ setup_file() {
     cd "$BATS_FILE_TMPDIR" || return
     local build
     build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
-    for kind in arm clients foreign refused; do "$build/logs/generate" $kind $kind.log; done
+    for kind in arm clients foreign refused stack; do "$build/logs/generate" $kind $kind.log; done
     "$build/logs/generate" --blast pairs 400 --box --certificate blast.log
     "$build/logs/generate" --blast pairs 40 --moving --box --whole moving.log
+    "$build/logs/generate" --blast pairs 20 --dim 3 --static --gap apart.log
 }
 
 setup() {
@@ -69,7 +70,7 @@ xpath() {
     replay arm.log
     ended 0
     counts '.queries == 72 and .same == 72 and .differences == [] and .exit == 0'
-    counts '.events == 146 and .bytes == 67539 and .statuses == 2 and .results == 72'
+    counts '.events == 146 and .bytes == 67555 and .statuses == 2 and .results == 72'
     counts '.channels.FMB_PAIR_QUERY.queries == 48 and .channels.FMB_SCENE_QUERY.pairs == 408'
     counts '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
 }
@@ -107,7 +108,7 @@ xpath() {
     replay spoiled.log
     ended 1
     counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70'
-    counts '.differences[0] | .event == 7 and .offset == 3872 and .time == 0.01 and .a == 3 and .b == 1'
+    counts '.differences[0] | .event == 7 and .offset == 3880 and .time == 0.01 and .a == 3 and .b == 1'
     counts '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"'
     counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
@@ -141,6 +142,27 @@ xpath() {
     run "$FMB" replay spoiled.log
     ended 1
     [[ ${lines[0]} == *" box: x "*"..inf  y "*", now x "* ]]
+}
+
+@test "another gap, of a pair and of a scene" {
+    for n in $(seq 0 19); do
+        edit --nudge "$n" 1e-9 apart.log
+        replay spoiled.log
+        ended 1
+        [ "$(jq .different_in.gap <<< "$output")" = 0 ] || break
+    done
+    counts '.different == 1 and .different_in.gap == 1'
+    counts '.differences[0] | .kind == "gap" and .then.gap[0] == .now.gap[0] and .then.gap[1] > .now.gap[1]'
+    counts '.differences[0] | .then.direction == .now.direction and .then.witness == .now.witness'
+    run "$FMB" replay spoiled.log
+    ended 1
+    [[ ${lines[0]} =~ \ gap:\ [-0-9.e]+\.\.[-0-9.e]+\ along\ [-0-9.e]+\ [-0-9.e]+\ [-0-9.e]+,\ now\  ]]
+    replay --tolerance 1e-6 spoiled.log
+    ended 0
+    edit --nudge 0 1e-9 stack.log
+    replay spoiled.log
+    ended 1
+    counts '.different == 1 and .different_in.gap == 1 and .differences[0].channel == "FMB_SCENE_QUERY"'
 }
 
 @test "another certificate" {
@@ -252,7 +274,7 @@ xpath() {
     tail -c +$((middle + 1)) arm.log > b.log
     replay a.log b.log
     ended 2
-    counts '.damages == 2 and .bytes == 67539 and .events == 145'
+    counts '.damages == 2 and .bytes == 67555 and .events == 145'
     [ "$stderr" = "fmb: a.log: offset $((middle - 11)): 11 bytes: the last event is cut off
 fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no event" ]
     junit a.log b.log arm.log
@@ -425,7 +447,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
         replay spoiled.log
         ended 2
         [[ $stderr == *'spoiled.log: offset '*': the last event is cut off' ]]
-        counts ".damages == 1 and .bytes == 67539 - $lost and .same >= 70"
+        counts ".damages == 1 and .bytes == 67555 - $lost and .same >= 70"
     done
 }
 

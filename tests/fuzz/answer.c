@@ -59,7 +59,19 @@ static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
     return a->verdict == b->verdict && a->has_contact == b->has_contact &&
            a->has_box == b->has_box && same_doubles(a->contact, b->contact, 2) &&
            same_doubles(a->box[0], b->box[0], FMB_DIM_MAX) &&
-           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX);
+           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX) && a->has_gap == b->has_gap &&
+           query_same_gap(&a->gap, &b->gap);
+}
+
+static unsigned want_of(int32_t want)
+{
+    return (want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0) | (want & QUERY_WANT_GAP ? FMB_WANT_GAP : 0);
+}
+
+/* Gaps are given by methods that are never wrong. */
+static bool good_gaps(int32_t method, bool wanted)
+{
+    return !wanted || method == 0 || method == 1 || method == 4;
 }
 
 /* ---- Pairs ---- */
@@ -68,7 +80,8 @@ static bool is_good_pair(const struct pair_query *query)
 {
     return model_good_request(query->client_id, query->sequence_number, query->duration,
                               query->method, query->want,
-                              QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE) &&
+                              QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE | QUERY_WANT_GAP) &&
+           good_gaps(query->method, query->want & QUERY_WANT_GAP) &&
            model_good_placement(&query->placement[0]) &&
            model_good_placement(&query->placement[1]) &&
            query->placement[0].dim == query->placement[1].dim;
@@ -106,14 +119,13 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     const struct fmb_placement place[2] = {model_place(&query->placement[0], &made[0]),
                                            model_place(&query->placement[1], &made[1])};
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
     struct fmb_answer answer;
-    const int32_t status =
-        (int32_t) fmb_decide(method, &place[0], &place[1], query->duration, want, &answer);
+    const int32_t status = (int32_t) fmb_decide(method, &place[0], &place[1], query->duration,
+                                                want_of(query->want), &answer);
     FUZZ_CHECK(result->status == status);
     FUZZ_CHECK(same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
-    FUZZ_CHECK(result->dim == (answer.has_box ? query->placement[0].dim : 0));
+    FUZZ_CHECK(result->dim == (answer.has_box || answer.has_gap ? query->placement[0].dim : 0));
     if (result->certificate)
         check_certificate(place, query->duration, result->certificate);
     FUZZ_CHECK(!result->certificate || query->want & QUERY_WANT_CERTIFICATE);
@@ -275,12 +287,19 @@ static bool good_which(const struct scene_query *query, int total)
              query->split <= query->placement_count));
 }
 
+static bool wants_gaps(const struct scene_query *query)
+{
+    return query->want & QUERY_WANT_GAP || query->margin > 0;
+}
+
 static bool is_good_scene(const struct scene_query *query, int total)
 {
     return model_good_request(query->client_id, query->sequence_number, query->duration,
-                              query->method, query->want, QUERY_WANT_BOX | QUERY_WANT_TIMES) &&
-           good_which(query, total) && query->margin == 0 && good_placements(query) &&
-           good_pairs(query);
+                              query->method, query->want,
+                              QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP) &&
+           query->margin >= 0 && isfinite(query->margin) &&
+           good_gaps(query->method, wants_gaps(query)) && good_which(query, total) &&
+           good_placements(query) && good_pairs(query);
 }
 
 /* Bodies and handles of a good query. */
@@ -359,18 +378,23 @@ static void check_scene_pair(struct reading *reading, const unsigned pair[2])
     const struct scene_result *result = reading->result;
     const struct fmb_placement a = model_place(&query->placement[pair[0]], &reading->made[pair[0]]);
     const struct fmb_placement b = model_place(&query->placement[pair[1]], &reading->made[pair[1]]);
-    const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
+    const unsigned want = want_of(query->want) | (wants_gaps(query) ? FMB_WANT_GAP : 0);
     struct fmb_answer answer;
     if (query->which != QUERY_PAIRS_LISTED && is_ignored(query, pair))
         return;
     fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, &answer);
     const bool contact = answer.verdict >= FMB_TOUCHING;
-    if (query->which != QUERY_PAIRS_LISTED && !contact)
+    const bool near = query->margin > 0 && answer.gap.bounds[0] <= query->margin;
+    if (query->which != QUERY_PAIRS_LISTED && !contact && !near)
         return;
     const int n = reading->verdicts++;
     FUZZ_CHECK(n < result->verdict_count && result->verdict[n] == answer.verdict);
     if (result->names_pairs)
         FUZZ_CHECK(result->pair[n][0] == pair[0] && result->pair[n][1] == pair[1]);
+    if (wants_gaps(query) && (contact || near || query->want & QUERY_WANT_GAP))
+        FUZZ_CHECK(query_same_gap(&result->gap[n], &answer.gap));
+    else if (result->has_gaps)
+        FUZZ_CHECK(!query_has_gap(&result->gap[n]));
     if (contact)
         check_contact(reading, &answer);
 }
@@ -389,6 +413,7 @@ static void check_answers(const struct scene_query *query, const struct scene_re
     FUZZ_CHECK(result->names_pairs ==
                (query->which != QUERY_PAIRS_LISTED && result->verdict_count > 0));
     FUZZ_CHECK(result->has_times == (some && query->want & QUERY_WANT_TIMES));
+    FUZZ_CHECK(result->has_gaps == (result->verdict_count > 0 && wants_gaps(query)));
     FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & QUERY_WANT_BOX));
     for (int k = query->first_pair; k < result->end_pair; k++)
         check_scene_pair(&reading, pair[k]);

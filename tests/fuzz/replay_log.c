@@ -4,10 +4,8 @@
 
 #include "cursor.h"
 #include "log_draft.h"
-#include "replay_junit.h"
-#include "replay_json.h"
+#include "replay_output.h"
 #include "replay_report.h"
-#include "replay_text.h"
 #include "wire.h"
 
 #include <cjson/cJSON.h>
@@ -133,7 +131,7 @@ static struct look look_at(const char *path)
 
 struct reporting {
     struct listing *list;
-    struct replay_json json;
+    struct json_writer json;
     int64_t found, reported;
     const struct replay_options *options;
 };

@@ -6,6 +6,7 @@
 #include "fmb_msgs_pair_result_t.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,10 +34,61 @@ static bool is_box(const fmb_msgs_pair_result_t *message)
     return good;
 }
 
-/* Lists that this version leaves empty. */
-static bool has_gap(const fmb_msgs_pair_result_t *message)
+bool results_are_none(const double *numbers, int count)
 {
-    return message->num_gap || message->num_direction || message->num_witness;
+    bool none = true;
+    for (int i = 0; i < count && none; i++) {
+        uint64_t bits;
+        memcpy(&bits, &numbers[i], sizeof bits);
+        none = bits == 0x7ff8000000000000;
+    }
+    return none;
+}
+
+bool results_is_gap(int verdict, int dim, const struct results_gap *gap)
+{
+    bool good = gap->bounds[0] <= gap->bounds[1];
+    for (int axis = 0; axis < dim; axis++)
+        good = good && fabs(gap->direction[axis]) <= DBL_MAX;
+    if (verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING)
+        good = good && gap->bounds[0] == 0 && gap->bounds[1] == 0;
+    if (!gap->witness)
+        return good && verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
+    for (int i = 1; i < 1 + 2 * dim; i++)
+        good = good && gap->witness[i] == gap->witness[i];
+    return good && verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED && gap->witness[0] >= 0 &&
+           gap->witness[0] <= DBL_MAX;
+}
+
+bool results_same_gap(const struct fmb_gap *read, int dim, const struct results_gap *gap)
+{
+    bool same = same_doubles(read->bounds, gap->bounds, 2) &&
+                same_doubles(read->direction, gap->direction, (size_t) dim) &&
+                read->has_witness == (gap->witness != NULL);
+    if (gap->witness)
+        same = same && same_doubles(&read->time, gap->witness, 1) &&
+               same_doubles(read->witness[0], gap->witness + 1, (size_t) dim) &&
+               same_doubles(read->witness[1], gap->witness + 1 + dim, (size_t) dim);
+    return same;
+}
+
+static struct results_gap gap_of(const fmb_msgs_pair_result_t *message)
+{
+    const bool separated = message->verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED;
+    return (struct results_gap){message->gap, message->direction,
+                                separated ? message->witness : NULL};
+}
+
+static bool is_gap(const fmb_msgs_pair_result_t *message)
+{
+    const int32_t dim = message->num_direction;
+    const struct results_gap gap = gap_of(message);
+    if (message->num_gap == 0)
+        return dim == 0 && message->num_witness == 0;
+    return message->num_gap == 2 && (dim == 2 || dim == 3) &&
+           (message->num_box == 0 || message->num_box == 2 * dim) &&
+           message->num_witness == (gap.witness ? 1 + 2 * dim : 0) &&
+           results_is_gap(message->verdict, dim, &gap);
 }
 
 static bool is_certificate(const fmb_msgs_pair_result_t *message)
@@ -57,7 +109,7 @@ static bool is_result(const fmb_msgs_pair_result_t *message)
     return (answered ? is_verdict(message->verdict) : message->verdict == 0) &&
            (meet ? is_contact(message) && is_box(message)
                  : message->num_contact == 0 && message->num_box == 0) &&
-           !has_gap(message) && is_certificate(message);
+           is_gap(message) && is_certificate(message);
 }
 
 /* ---- The same fields ---- */
@@ -76,12 +128,15 @@ static bool same_ids(const struct pair_result *result, const fmb_msgs_pair_resul
 static bool same_answer(const struct pair_result *result, const fmb_msgs_pair_result_t *message)
 {
     const struct fmb_answer *answer = &result->answer;
-    const int dim = message->num_box / 2;
+    const int dim = message->num_box > 0 ? message->num_box / 2 : message->num_direction;
+    const struct results_gap gap = gap_of(message);
     bool same = (int) answer->verdict == message->verdict && result->dim == dim &&
+                answer->has_gap == (message->num_gap > 0) &&
+                (!answer->has_gap || results_same_gap(&answer->gap, dim, &gap)) &&
                 answer->has_contact == (message->num_contact > 0) &&
                 answer->has_box == (message->num_box > 0) &&
                 same_doubles(answer->contact, message->contact, (size_t) message->num_contact);
-    for (int side = 0; side < 2 && same && dim > 0; side++)
+    for (int side = 0; side < 2 && same && answer->has_box; side++)
         same = same_doubles(answer->box[side], message->box + side * dim, (size_t) dim);
     return same;
 }

@@ -38,10 +38,63 @@ static bool is_answer(const fmb_msgs_scene_result_t *message)
     return message->num_verdicts || message->num_handle_bytes || message->end_pair;
 }
 
-/* Lists that this version leaves empty. */
-static bool has_gaps(const fmb_msgs_scene_result_t *message)
+enum { SEPARATED = FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED };
+
+static int32_t dim_of_gaps(const fmb_msgs_scene_result_t *message)
 {
-    return message->num_gaps || message->num_directions || message->num_witnesses;
+    return message->num_gaps > 0 ? message->num_directions / message->num_verdicts : 0;
+}
+
+static int32_t dim_of_boxes(const fmb_msgs_scene_result_t *message)
+{
+    return message->num_boxes == 0 ? 0 : message->num_boxes == 4 * contacts_of(message) ? 2 : 3;
+}
+
+static struct results_gap gap_of(const fmb_msgs_scene_result_t *message, int32_t i)
+{
+    const int32_t dim = dim_of_gaps(message), points = 1 + 2 * dim;
+    return (struct results_gap){
+        message->gaps + 2 * i, message->directions + dim * i,
+        message->verdicts[i] == SEPARATED ? message->witnesses + points * i : NULL};
+}
+
+/* Neither near nor a contact. */
+static bool is_far(const fmb_msgs_scene_result_t *message, int32_t i)
+{
+    const int32_t dim = dim_of_gaps(message);
+    return message->verdicts[i] == SEPARATED && results_are_none(message->gaps + 2 * i, 2) &&
+           results_are_none(message->directions + dim * i, dim) &&
+           results_are_none(message->witnesses + (1 + 2 * dim) * i, 1 + 2 * dim);
+}
+
+static bool are_gaps(const fmb_msgs_scene_result_t *message)
+{
+    const int64_t verdicts = message->num_verdicts;
+    if (message->num_gaps == 0)
+        return message->num_directions == 0 && message->num_witnesses == 0;
+    if (message->num_gaps != 2 * verdicts || verdicts > QUERY_GAPS_MAX)
+        return false;
+    const int32_t dim = dim_of_gaps(message), points = 1 + 2 * dim;
+    bool good = (dim == 2 || dim == 3) && message->num_directions == dim * verdicts &&
+                message->num_witnesses == points * verdicts &&
+                (message->num_boxes == 0 || dim_of_boxes(message) == dim);
+    for (int32_t i = 0; i < verdicts && good; i++) {
+        const struct results_gap gap = gap_of(message, i);
+        const double *witness = message->witnesses + points * i;
+        good = is_far(message, i) || (results_is_gap(message->verdicts[i], dim, &gap) &&
+                                      (gap.witness || results_are_none(witness, points)));
+    }
+    return good;
+}
+
+/* Contacts, and near pairs, where the gaps have been checked. */
+static bool are_named(const fmb_msgs_scene_result_t *message)
+{
+    bool good = true;
+    for (int32_t i = 0; i < message->num_indices / 2 && good; i++)
+        good = message->verdicts[i] >= TOUCHING ||
+               (message->verdicts[i] == SEPARATED && message->num_gaps > 0 && !is_far(message, i));
+    return good;
 }
 
 static bool are_verdicts(const fmb_msgs_scene_result_t *message)
@@ -61,8 +114,7 @@ static bool are_names(const fmb_msgs_scene_result_t *message)
     for (int32_t i = 0; i < count / 2 && good; i++) {
         const int16_t a = message->indices[2 * i], b = message->indices[2 * i + 1];
         const int32_t here = a * QUERY_PLACEMENTS_MAX + b;
-        good = 0 <= a && a < b && b < QUERY_PLACEMENTS_MAX && last < here &&
-               message->verdicts[i] >= TOUCHING;
+        good = 0 <= a && a < b && b < QUERY_PLACEMENTS_MAX && last < here;
         last = here;
     }
     return good;
@@ -98,7 +150,7 @@ static bool is_result(const fmb_msgs_scene_result_t *message)
            message->num_handle_bytes % HANDLE_BYTES == 0 &&
            message->num_handle_bytes / HANDLE_BYTES <= QUERY_PLACEMENTS_MAX &&
            are_verdicts(message) && are_names(message) && are_times(message, contacts) &&
-           are_boxes(message, contacts) && !has_gaps(message);
+           are_boxes(message, contacts) && are_gaps(message) && are_named(message);
 }
 
 /* ---- The same fields ---- */
@@ -140,10 +192,19 @@ static bool same_contacts(const struct scene_result *result, const fmb_msgs_scen
     return result->contact_count == contacts && result->has_times == (message->num_times > 0) &&
            same_doubles(result->times, message->times, (size_t) message->num_times) &&
            result->has_boxes == (boxes > 0) &&
-           result->dim == (boxes == 0              ? 0
-                           : boxes == 4 * contacts ? 2
-                                                   : 3) &&
+           result->dim == (boxes > 0 ? dim_of_boxes(message) : dim_of_gaps(message)) &&
            same_doubles(result->boxes, message->boxes, (size_t) boxes);
+}
+
+static bool same_gaps(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
+{
+    bool same = result->has_gaps == (message->num_gaps > 0);
+    for (int32_t i = 0; i < message->num_verdicts && result->has_gaps && same; i++) {
+        const struct results_gap gap = gap_of(message, i);
+        same = is_far(message, i) ? !query_has_gap(&result->gap[i])
+                                  : results_same_gap(&result->gap[i], result->dim, &gap);
+    }
+    return same;
 }
 
 /* ---- Reading ---- */
@@ -164,6 +225,7 @@ static bool check_decoder(const struct scene_result *result, bool accepted, cons
         FUZZ_CHECK(same_bodies(result, &message));
         FUZZ_CHECK(same_verdicts(result, &message));
         FUZZ_CHECK(same_contacts(result, &message));
+        FUZZ_CHECK(same_gaps(result, &message));
     }
     SAME_ENCODED(fmb_msgs_scene_result_t, message, bytes, size);
     return good;

@@ -153,8 +153,9 @@ static bool same_pairs(const struct scene_pair *a, const struct scene_pair *b, s
 static bool same_scene(const struct scene *a, const struct scene *b)
 {
     bool same = a->dim == b->dim && same_doubles(&a->duration, &b->duration, 1) &&
-                a->body_count == b->body_count && a->all_pairs == b->all_pairs &&
-                a->pair_count == b->pair_count && a->ignored_count == b->ignored_count;
+                a->margin == b->margin && a->body_count == b->body_count &&
+                a->all_pairs == b->all_pairs && a->pair_count == b->pair_count &&
+                a->ignored_count == b->ignored_count;
     for (size_t i = 0; same && i < a->body_count; i++)
         same = same_body(&a->body[i], &b->body[i]);
     return same && same_pairs(a->pair, b->pair, a->pair_count) &&
@@ -190,7 +191,8 @@ static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
     return a->verdict == b->verdict && a->has_contact == b->has_contact &&
            a->has_box == b->has_box && same_doubles(a->contact, b->contact, 2) &&
            same_doubles(a->box[0], b->box[0], FMB_DIM_MAX) &&
-           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX);
+           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX) && a->has_gap == b->has_gap &&
+           same_doubles(a->gap.bounds, b->gap.bounds, 2);
 }
 
 static void check_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
@@ -201,8 +203,9 @@ static void check_outcome(void *user, const struct scene *scene, const struct ou
     uint64_t *count = user;
     ++*count;
     FUZZ_CHECK(!outcome->error && fmb_verdict_name((int) outcome->answer.verdict));
-    FUZZ_CHECK(fmb_decide(fmb_method_default(), &b, &a, scene->duration, FMB_WANT_BOX, &answer) ==
-               FMB_OK);
+    const unsigned want = FMB_WANT_BOX | (scene->margin > 0 ? FMB_WANT_GAP : 0);
+    FUZZ_CHECK(fmb_decide(fmb_method_default(), &b, &a, scene->duration, want, &answer) == FMB_OK);
+    query_remove_far_gap(scene->margin, &answer);
     FUZZ_CHECK(same_answer(&outcome->answer, &answer));
 }
 

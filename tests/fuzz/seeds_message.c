@@ -85,6 +85,15 @@ static void write_pair_results(void)
     result.answer.has_contact = false;
     result.certificate = "overlapping at 0 (1/2 1/3)";
     write_pair_result("certificate", &result);
+    result = (struct pair_result){.method = 4, .dim = 3};
+    result.answer.verdict = FMB_SEPARATED;
+    result.answer.has_gap = true;
+    result.answer.gap = (struct fmb_gap){.bounds = {1, HUGE_VAL},
+                                         .direction = {0, -1, 0},
+                                         .has_witness = true,
+                                         .time = 0.5,
+                                         .witness = {{1, 2, 3}, {-1, -HUGE_VAL, 0}}};
+    write_pair_result("gap-apart", &result);
     result = (struct pair_result){.status = FMB_BAD_ID, .detail = "client_id: not from 0"};
     write_pair_result("refused", &result);
     memset(result.detail, 'a', sizeof result.detail - 1);
@@ -107,6 +116,9 @@ static void write_scene_queries(void)
     write_scene_query("all", seeds_scene(5, QUERY_PAIRS_ALL, BOX));
     write_scene_query("across", seeds_scene(6, QUERY_PAIRS_ACROSS, TIMES));
     struct scene_query *query = fuzz_room(sizeof *query);
+    *query = *seeds_scene(5, QUERY_PAIRS_ALL, QUERY_WANT_GAP);
+    query->margin = 0.5;
+    write_scene_query("margin", query);
     *query = *seeds_scene(0, QUERY_PAIRS_ALL, 0);
     const struct placement placement = seeds_by_handle(seeds_placement(0, FMB_CUBOID, 2, 0, 0));
     query->placement_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
@@ -144,6 +156,27 @@ static void write_named_results(struct scene_result *result)
     write_scene_result("named-3d", result);
 }
 
+/* Of listed pairs, one of each verdict and one that is far; and of those that are named. */
+static void write_gaps(void)
+{
+    static const unsigned char verdicts[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED,
+                                             FMB_SEPARATED};
+    static struct scene_result result = {.method = 4, .end_pair = 9, .dim = 3, .has_gaps = true};
+    result.verdict_count = 4;
+    result.contact_count = 2;
+    memcpy(result.verdict, verdicts, sizeof verdicts);
+    result.gap[0] = (struct fmb_gap){.bounds = {-0.5, -0.25}, .direction = {1}};
+    result.gap[2] = (struct fmb_gap){
+        .bounds = {0.5, 1}, .direction = {0, 1}, .has_witness = true, .witness = {{1}, {2}}};
+    result.gap[3].bounds[0] = result.gap[3].bounds[1] = NAN;
+    write_scene_result("gaps-listed", &result);
+    result.names_pairs = true;
+    result.verdict_count = 3;
+    for (unsigned i = 0; i < 3; i++)
+        result.pair[i][1] = i + 1;
+    write_scene_result("gaps-named", &result);
+}
+
 static void write_scene_results(void)
 {
     static struct scene_result result = {.client_id = 2, .method = 4, .end_pair = 9};
@@ -168,6 +201,7 @@ static void write_scene_results(void)
     write_scene_result("unknown", &result);
     result = (struct scene_result){.status = FMB_BUSY, .detail = "queue full"};
     write_scene_result("refused", &result);
+    write_gaps();
 }
 
 /* ---- Definitions ---- */

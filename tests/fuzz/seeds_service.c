@@ -9,7 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOX = QUERY_WANT_BOX, CERTIFICATE = QUERY_WANT_CERTIFICATE, TIMES = QUERY_WANT_TIMES };
+enum {
+    BOX = QUERY_WANT_BOX,
+    CERTIFICATE = QUERY_WANT_CERTIFICATE,
+    TIMES = QUERY_WANT_TIMES,
+    GAP = QUERY_WANT_GAP
+};
 
 static unsigned char bytes[QUERY_BYTES_MAX];
 
@@ -93,6 +98,24 @@ static void write_talks_about_handles(void)
     end_talk("definitions");
 }
 
+static void write_talks_about_gaps(void)
+{
+    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    struct scene_query *query = fuzz_room(sizeof *query);
+    for (int shape = FMB_CUBOID; shape <= FMB_FACE; shape++)
+        add_pair(seeds_pair(seeds_placement(1, shape, 3, 0, 0),
+                            seeds_placement(2, FMB_CUBOID, 3, shape, shape % 2 ? -0.5 : 0), 0,
+                            GAP | (shape % 2 ? BOX : CERTIFICATE)));
+    end_talk("gaps");
+    for (int i = 0; i < 3; i++) {
+        *query = *seeds_scene(4, which[i], i == 0 ? GAP | BOX : TIMES);
+        query->margin = 0.75 * i;
+        add_scene(query);
+    }
+    end_talk("margins");
+    free(query);
+}
+
 static void write_talks_about_scenes(void)
 {
     static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
@@ -127,6 +150,7 @@ void seeds_talks(void)
     }
     write_talks_about_handles();
     write_talks_about_scenes();
+    write_talks_about_gaps();
 }
 
 /* ---- Logs that are replayed ---- */
@@ -260,7 +284,7 @@ static void write_replays_of_scenes(void)
     static const char *const names[] = {"scenes-listed", "scenes-all", "scenes-across"};
     for (int i = 0; i < 3; i++) {
         log_scene(seeds_scene(4, which[i], BOX | TIMES));
-        log_scene(seeds_scene(5, which[i], 0));
+        log_scene(seeds_scene(5, which[i], i == 1 ? GAP : 0));
         end_replayed(names[i]);
     }
 }

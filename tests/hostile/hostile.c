@@ -10,6 +10,7 @@
 #include "fmb_msgs_status_t.h"
 
 #include <glib.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -78,7 +79,7 @@ static size_t good_pair_query(unsigned char *out)
 static size_t good_pair_result(unsigned char *out)
 {
     char detail[] = "", certificate[] = "touching + a0 at 0 (1 0 1/2)";
-    double contact[2] = {0, 0.5}, box[6] = {0, 0, 0, 1, 1, 1};
+    double contact[2] = {0, 0.5}, box[6] = {0, 0, 0, 1, 1, 1}, gap[2] = {0}, direction[3] = {0, 1};
     fmb_msgs_pair_result_t result = {.client_id = 2,
                                      .detail = detail,
                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
@@ -87,6 +88,10 @@ static size_t good_pair_result(unsigned char *out)
                                      .contact = contact,
                                      .num_box = 6,
                                      .box = box,
+                                     .num_gap = 2,
+                                     .gap = gap,
+                                     .num_direction = 3,
+                                     .direction = direction,
                                      .certificate = certificate};
     return (size_t) fmb_msgs_pair_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
 }
@@ -102,6 +107,7 @@ static size_t good_scene_query(unsigned char *out)
                                     .sequence_number = 3,
                                     .duration = 1,
                                     .want = FMB_MSGS_SCENE_QUERY_T_WANT_BOX,
+                                    .margin = 0.25,
                                     .num_placements = 3,
                                     .placements = placements,
                                     .num_indices = 4,
@@ -113,9 +119,14 @@ static size_t good_scene_result(unsigned char *out)
 {
     char detail[] = "";
     uint8_t handles[32] = {1, 2, 3};
-    uint8_t verdicts[2] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING,
-                           FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING};
-    int16_t indices[4] = {0, 1, 0, 2};
+    uint8_t verdicts[3] = {FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING,
+                           FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
+                           FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED};
+    int16_t indices[6] = {0, 1, 0, 2, 1, 2};
+    double gaps[6] = {0, 0, -0.5, -0.25, 1, 1}, directions[9] = {1, 0, 0, 0, -1, 0, 1, 0, 0};
+    double witnesses[21];
+    for (int i = 0; i < 21; i++)
+        witnesses[i] = i < 14 ? NAN : i - 14;
     double times[4] = {0, 0.5, 0.25, 0.25}, boxes[12] = {0, 0, 0, 1, 1, 1, -1, 2, 0, 1, 2, 3};
     fmb_msgs_scene_result_t result = {.client_id = 2,
                                       .detail = detail,
@@ -123,14 +134,20 @@ static size_t good_scene_result(unsigned char *out)
                                       .num_handle_bytes = 32,
                                       .handles = handles,
                                       .end_pair = 3,
-                                      .num_verdicts = 2,
+                                      .num_verdicts = 3,
                                       .verdicts = verdicts,
-                                      .num_indices = 4,
+                                      .num_indices = 6,
                                       .indices = indices,
                                       .num_times = 4,
                                       .times = times,
                                       .num_boxes = 12,
-                                      .boxes = boxes};
+                                      .boxes = boxes,
+                                      .num_gaps = 6,
+                                      .gaps = gaps,
+                                      .num_directions = 9,
+                                      .directions = directions,
+                                      .num_witnesses = 21,
+                                      .witnesses = witnesses};
     return (size_t) fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
 }
 

@@ -122,7 +122,9 @@ static void ask_and_be_broken_off(struct crowd *crowd)
 static void ask_step(struct crowd *crowd, int step)
 {
     begin_query(crowd, QUERY_PAIRS_ACROSS, QUERY_WANT_TIMES, 30, 20 + step);
+    crowd->query.margin = 0.25;
     ask_to_the_end(crowd);
+    crowd->query.margin = 0;
     begin_query(crowd, QUERY_PAIRS_LISTED, QUERY_WANT_BOX | QUERY_WANT_TIMES, 25, 5);
     list_neighbours(crowd);
     ask_to_the_end(crowd);

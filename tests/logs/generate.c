@@ -52,6 +52,7 @@ static const char usage[] =
     "  --by-handle     pairs by handle, as soon as it is known\n"
     "  --box           pairs with boxes\n"
     "  --certificate   pairs with certificates\n"
+    "  --gap           pairs with gaps\n"
     "  --list          prints the kinds\n"
     "  --instructions  prints the instruction sets that this program knows and\n"
     "                  this machine has, the best one last\n";
@@ -72,6 +73,7 @@ enum {
     BY_HANDLE,
     BOX,
     CERTIFICATE,
+    GAP,
     LIST,
     INSTRUCTIONS,
     HELP
@@ -87,6 +89,7 @@ static const struct option long_options[] = {{"blast", required_argument, NULL, 
                                              {"by-handle", no_argument, NULL, BY_HANDLE},
                                              {"box", no_argument, NULL, BOX},
                                              {"certificate", no_argument, NULL, CERTIFICATE},
+                                             {"gap", no_argument, NULL, GAP},
                                              {"list", no_argument, NULL, LIST},
                                              {"instructions", no_argument, NULL, INSTRUCTIONS},
                                              {"help", no_argument, NULL, HELP},
@@ -134,6 +137,7 @@ static bool take(int option, char **argv, struct options *out)
     case BY_HANDLE: out->blast.by_handle = 1; return true;
     case BOX: out->blast.want |= QUERY_WANT_BOX; return true;
     case CERTIFICATE: out->blast.want |= QUERY_WANT_CERTIFICATE; return true;
+    case GAP: out->blast.want |= QUERY_WANT_GAP; return true;
     default: return refuse("wrong option", argv[optind - 1]);
     }
 }

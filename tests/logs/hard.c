@@ -1,7 +1,7 @@
 /* Pairs that are hard for a reason: of each family of the campaigns one for each cell that it has.
  * At rest those of a family are listed in one scene, with boxes; what moves is asked pair by pair,
  * since windows differ, and some once more, by handle and the other way round. Methods,
- * certificates and boxes are drawn. */
+ * certificates, boxes and gaps are drawn. */
 #include "kinds.h"
 
 #include "asker.h"
@@ -33,6 +33,12 @@ static int32_t draw_method(struct draw *draw)
     return methods[draw_int(draw, 0, 5)];
 }
 
+/* The inexact methods give none. */
+static int32_t draw_gap(struct draw *draw, int32_t method)
+{
+    return draw_coin(draw) && fmb_method_by_number(method)->certain ? QUERY_WANT_GAP : 0;
+}
+
 /* ---- One by one ---- */
 
 static void ask_again(struct hard *hard, const struct pair_query *query)
@@ -54,6 +60,7 @@ static void ask_pair(struct hard *hard, const struct question *question)
         query.want |= QUERY_WANT_BOX;
     if (draw_int(draw, 0, 3) == 0)
         query.want |= QUERY_WANT_CERTIFICATE;
+    query.want |= draw_gap(draw, query.method);
     part_place(&question->a, again ? ++hard->body_id : 0, &query.placement[0]);
     part_place(&question->b, again ? ++hard->body_id : 0, &query.placement[1]);
     asker_pair(&hard->asker, &query, &result);
@@ -87,7 +94,7 @@ static void begin_scene(struct hard *hard)
     query->duration = 1;
     query->which = QUERY_PAIRS_LISTED;
     query->method = draw_method(&hard->draw);
-    query->want = QUERY_WANT_BOX;
+    query->want = QUERY_WANT_BOX | draw_gap(&hard->draw, query->method);
     query->placement_count = query->index_count = 0;
 }
 

@@ -230,8 +230,9 @@ static void wants_all(struct pair_query *query)
     query->want = -1;
 }
 
-static void wants_gap(struct pair_query *query)
+static void wants_gap_of_fmb(struct pair_query *query)
 {
+    query->method = 2;
     query->want = QUERY_WANT_GAP;
 }
 
@@ -284,7 +285,7 @@ static spoil_pair *const spoilt_pairs[] = {
     method_5,
     method_below_0,
     wants_times,
-    wants_gap,
+    wants_gap_of_fmb,
     wants_all,
     flat_for_fmb,
     handle_not_held,
@@ -404,13 +405,15 @@ static void margin_below_0(struct scene_query *query)
     query->margin = -1;
 }
 
-static void margin_1(struct scene_query *query)
+static void margin_for_sat(struct scene_query *query)
 {
+    query->method = 3;
     query->margin = 1;
 }
 
-static void gaps(struct scene_query *query)
+static void gaps_of_fmb(struct scene_query *query)
 {
+    query->method = 2;
     query->want = QUERY_WANT_GAP;
 }
 
@@ -456,7 +459,7 @@ static spoil_scene *const spoilt_scenes[] = {
     which_3,        split_of_listed, split_too_far,  first_pair_too_far,    first_pair_below_0,
     index_of_none,  index_below_0,   against_itself, indices_odd,           indices_of_all,
     certificates,   all_by_sat,      one_in_plane,   one_not_finite,        one_not_held,
-    margin_below_0, margin_1,        gaps,           one_ignored,           ignored_odd,
+    margin_below_0, margin_for_sat,  gaps_of_fmb,    one_ignored,           ignored_odd,
     time_runs_back, client_is_none,  nothing_listed, first_pair_at_the_end, nothing_placed,
 };
 

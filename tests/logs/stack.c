@@ -1,5 +1,6 @@
 /* Three towers that fall onto a plate, level by level, at 100 Hz, and come to rest: all pairs of
- * all bodies in each step, by handle, and of some that lie on each other a certificate. One tower
+ * all bodies in each step, by handle, some with a margin, and of some that lie on each other a
+ * certificate and a gap. One tower
  * is laid out in multiples of 1/64, so that it touches face on face. One is of tenths, and in turns
  * its levels touch but for rounding, are an ulp apart, or overlap by an ulp. One leans. */
 #include "kinds.h"
@@ -119,12 +120,13 @@ static void set_placements(const struct stack *stack, int step, struct scene_que
 static void ask_scene(struct asker *asker, const struct stack *stack, int step)
 {
     static const int32_t wants[] = {0, QUERY_WANT_TIMES, QUERY_WANT_BOX,
-                                    QUERY_WANT_TIMES | QUERY_WANT_BOX};
+                                    QUERY_WANT_TIMES | QUERY_WANT_BOX | QUERY_WANT_GAP};
     static struct scene_query query;
     static struct scene_result result;
     query.duration = step_s;
     query.want = wants[step % 4];
     query.which = QUERY_PAIRS_ALL;
+    query.margin = step % 2 ? 0 : step % 8 ? 1e-9 : 0.03125;
     set_placements(stack, step, &query);
     asker_scene(asker, &query, &result);
 }
@@ -135,6 +137,8 @@ static void ask_pair(struct asker *asker, const struct stack *stack, int tower, 
     const int level = 1 + step % (LEVELS - 1);
     struct pair_query query = {.duration = step_s, .want = QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE};
     struct pair_result result;
+    if (step % 2)
+        query.want |= QUERY_WANT_GAP;
     for (int f = 0; f < 2; f++) {
         const struct solid solid = level_at(stack, tower, level - f, step);
         part_place(&solid, body_of(tower, level - f) + 1, &query.placement[f]);

@@ -27,8 +27,9 @@ static void tell_pair_result(const lcm_eventlog_event_t *event)
            result.client_id, result.sequence_number, result.server_id);
     printf(", \"status\": %d, \"method\": %d, \"verdicts\": [%d]", (int) result.status,
            (int) result.method, (int) result.verdict);
-    printf(", \"times\": %d, \"boxes\": %d, \"certificate\": %zu", (int) result.num_contact,
-           (int) result.num_box, strlen(result.certificate));
+    printf(", \"times\": %d, \"boxes\": %d, \"gaps\": %d, \"witnesses\": %d, \"certificate\": %zu",
+           (int) result.num_contact, (int) result.num_box, (int) result.num_gap,
+           (int) result.num_witness, strlen(result.certificate));
     fmb_msgs_pair_result_t_decode_cleanup(&result);
 }
 
@@ -43,7 +44,9 @@ static void tell_scene_result(const lcm_eventlog_event_t *event)
            (int) result.method, (int) result.end_pair);
     for (int32_t i = 0; i < result.num_verdicts; i++)
         printf("%s%d", i ? "," : "", (int) result.verdicts[i]);
-    printf("], \"times\": %d, \"boxes\": %d", (int) result.num_times, (int) result.num_boxes);
+    printf("], \"pairs\": %d, \"times\": %d, \"boxes\": %d, \"gaps\": %d",
+           (int) result.num_indices / 2, (int) result.num_times, (int) result.num_boxes,
+           (int) result.num_gaps);
     fmb_msgs_scene_result_t_decode_cleanup(&result);
 }
 

@@ -83,6 +83,26 @@ void question_pair(const struct question *question, struct fmb_body body[2], str
                           solid_placement(&question->b, &body[1]), question->duration};
 }
 
+static bool same_numbers(const double *x, const double *y, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (x[i] != y[i])
+            return false;
+    return true;
+}
+
+bool question_is_symmetric(const struct question *question)
+{
+    static const double rest[FMB_DIM_MAX];
+    const struct solid *a = &question->a, *b = &question->b;
+    return a->shape == b->shape && solid_frames(a) == solid_frames(b) &&
+           a->by_vertices == b->by_vertices && a->orientation_count == b->orientation_count &&
+           same_numbers(a->component[0], b->component[0], FMB_COMPONENTS_MAX) &&
+           same_numbers(a->origin, b->origin, a->dim) && same_numbers(a->local, b->local, a->dim) &&
+           same_numbers(a->moving ? a->velocity : rest, b->moving ? b->velocity : rest, a->dim) &&
+           same_numbers(a->orientation, b->orientation, a->orientation_count);
+}
+
 struct question question_swapped(const struct question *question)
 {
     struct question swapped = *question;

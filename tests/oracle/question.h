@@ -59,6 +59,9 @@ struct fmb_placement solid_placement(const struct solid *solid, const struct fmb
  * which only what the oracle reads is filled: not enough for the engine. */
 void question_pair(const struct question *question, struct fmb_body body[2], struct pair *pair);
 
+/* Whether a and b are equal in all numbers. */
+bool question_is_symmetric(const struct question *question);
+
 /* The same question with a and b in each other's place. */
 struct question question_swapped(const struct question *question);
 

@@ -143,3 +143,20 @@ void rational_solid_farthest(const struct rational_solid *solid, const mpq_t dur
     mpq_add(out, out, most);
     mpq_clears(term, most, direction, NULL);
 }
+
+void rational_vector_init(rational_vector v)
+{
+    mpq_inits(v[0], v[1], v[2], NULL);
+}
+
+void rational_vector_clear(rational_vector v)
+{
+    mpq_clears(v[0], v[1], v[2], NULL);
+}
+
+void rational_dot(mpq_t out, rational_vector x, rational_vector y)
+{
+    mpq_set_ui(out, 0, 1);
+    for (int axis = 0; axis < 3; axis++)
+        rational_add_product(out, 1, x[axis], y[axis]);
+}

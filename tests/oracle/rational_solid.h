@@ -25,6 +25,12 @@ void rational_solid_clear(struct rational_solid *solid);
 void rational_solid_farthest(const struct rational_solid *solid, const mpq_t duration, int axis,
                              int sign, mpq_t out);
 
+/* Three coordinates. */
+typedef mpq_t rational_vector[FMB_DIM_MAX];
+void rational_vector_init(rational_vector v);
+void rational_vector_clear(rational_vector v);
+void rational_dot(mpq_t out, rational_vector x, rational_vector y);
+
 /* sum += sign * x * y. */
 void rational_add_product(mpq_t sum, int sign, const mpq_t x, const mpq_t y);
 

@@ -20,7 +20,7 @@ async function point() {
 
 /* Counts of pixels: all that are drawn, and those close to a colour; and a checksum. */
 function picture() {
-    const data = pixels(), count = { drawn: 0, sum: 0, violet: 0, red: 0, pink: 0 };
+    const data = pixels(), count = { drawn: 0, sum: 0, violet: 0, red: 0, pink: 0, blue: 0 };
     const isNear = (i, red, green, blue) => data[i + 3] > 60 && Math.abs(data[i] - red) < 60
         && Math.abs(data[i + 1] - green) < 60 && Math.abs(data[i + 2] - blue) < 60;
     for (let i = 0; i < data.length; i += 4) {
@@ -31,6 +31,7 @@ function picture() {
         count.violet += isNear(i, 106, 22, 196) ? 1 : 0;
         count.red += isNear(i, 228, 120, 112) ? 1 : 0;
         count.pink += isNear(i, 196, 0, 111) ? 1 : 0;
+        count.blue += isNear(i, 11, 87, 208) ? 1 : 0;
     }
     return count;
 }
@@ -70,6 +71,9 @@ async function mixed() {
         ...chosen(), ...picture(), lane: all(".row.chosen").map((row) => row.dataset.row),
     };
     found.pointed = await point();
+    await mouse(marks("1 2", ".run.separated")[0], 0.1);
+    found.gap = { ...chosen(), ...picture(), texts: texts("#event-pairs th, #event-pairs td.number") };
+    await mouse(marks("1 2", ".run.overlapping")[0], 0.5);
     await mouse(one("#stage"), 0.5, 0.5, [40, 30]);
     found.moved = picture();
     await wheel(one("#stage"), -300);

@@ -70,7 +70,8 @@ static void add_plane(struct sample_log *log)
         const double at[] = {i * 0.2 - 1, 0.25};
         struct placement square = sample_solid(1, 2, FMB_CUBOID, 1, at);
         sample_move(&square, velocity);
-        const struct pair_query query = pair_of(square, triangle, 0.5);
+        struct pair_query query = pair_of(square, triangle, 0.5);
+        query.want |= QUERY_WANT_GAP;
         sample_pair(log, &query);
         sample_wait(log, 0.05);
     }

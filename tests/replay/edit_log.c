@@ -227,6 +227,8 @@ static void nudge_pair(const char *argument)
         pair.answer.box[1][0] += atof(argument);
     else if (pair.answer.has_contact)
         pair.answer.contact[1] += atof(argument);
+    else if (pair.answer.has_gap)
+        pair.answer.gap.bounds[1] += atof(argument);
     else
         give_up("this result has no numbers");
 }
@@ -237,6 +239,8 @@ static void nudge_scene(const char *argument)
         scene.boxes[scene.dim] += atof(argument);
     else if (scene.has_times)
         scene.times[1] += atof(argument);
+    else if (scene.has_gaps)
+        scene.gap[0].bounds[1] += atof(argument);
     else
         give_up("this result has no numbers");
 }
@@ -255,7 +259,7 @@ static void refuse_scene(const char *status)
     scene.unknown_count = scene.status == FMB_UNKNOWN_BODY;
     scene.unknown[0] = 0;
     scene.handle_count = scene.verdict_count = scene.contact_count = 0;
-    scene.names_pairs = scene.has_times = scene.has_boxes = false;
+    scene.names_pairs = scene.has_times = scene.has_boxes = scene.has_gaps = false;
 }
 
 static void certify_pair(const char *text)

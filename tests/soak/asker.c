@@ -199,7 +199,7 @@ static int report(const struct asker *asker, const struct plan *plan, double sec
     int64_t queries = 0, pairs = 0, unanswered = 0, wrong = 0, longest_ns = 0;
     struct fmb_client_counts sum = {0};
     for (long i = 0; i < plan->clients; i++) {
-        const struct fmb_client_counts counts = fmb_client_counts(asker[i].client);
+        const struct fmb_client_counts counts = fmb_client_get_counts(asker[i].client);
         queries += asker[i].queries;
         pairs += asker[i].pairs;
         unanswered += asker[i].unanswered;

@@ -2,7 +2,7 @@
 #ifndef SAME_H
 #define SAME_H
 
-#include "fmb.h"
+#include "query.h"
 
 #include <string.h>
 
@@ -11,7 +11,8 @@ static inline bool same_answer(const struct fmb_answer *x, const struct fmb_answ
 {
     return x->verdict == y->verdict && x->has_contact == y->has_contact &&
            x->has_box == y->has_box && memcmp(x->contact, y->contact, sizeof x->contact) == 0 &&
-           memcmp(x->box, y->box, sizeof x->box) == 0;
+           memcmp(x->box, y->box, sizeof x->box) == 0 && x->has_gap == y->has_gap &&
+           query_same_gap(&x->gap, &y->gap);
 }
 
 #endif

@@ -61,7 +61,7 @@ END
             $(pkg-config --cflags fmb-client) $libraries -o "$BATS_TEST_TMPDIR/both"
         "$BATS_TEST_TMPDIR/both"
     done
-    $compiler -x c++ -fsyntax-only -Wall -Wextra -Werror "$BATS_TEST_TMPDIR/both.c" \
+    $compiler -x c++ -fsyntax-only -Wall -Wextra -Wshadow -Werror "$BATS_TEST_TMPDIR/both.c" \
         $(pkg-config --cflags fmb-client) || ! command -v g++
 }
 
@@ -71,4 +71,22 @@ END
     grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
     [ -z "$(grep -v '^fmb_\|asan' "$BATS_TEST_TMPDIR/names")" ]
     [ -z "$(grep fmb_msgs "$BATS_TEST_TMPDIR/names")" ]
+}
+
+# Options of make are those of setup().
+@test "a prefix may hold a space, or be relative; uninstall removes all that was installed" {
+    printf '#include <fmb_client.h>\nint main(void) { return !fmb_client_prefix_ok("a"); }\n' \
+        > "$BATS_TEST_TMPDIR/small.c"
+    for prefix in "$BATS_TEST_TMPDIR/a prefix" "$(realpath --relative-to=. "$BATS_TEST_TMPDIR")/relative"; do
+        make -s -o all "${options[@]}" install-strip PREFIX="$prefix" LIBDIR="$(realpath -m "$prefix")/lib64"
+        PKG_CONFIG_PATH="$(realpath "$prefix")/lib64/pkgconfig"
+        cd "$BATS_TEST_TMPDIR"
+        eval "$compiler $flags small.c $(pkg-config --static --cflags --libs fmb-client) -o small"
+        ./small
+        cd "$OLDPWD"
+        [ -f "$prefix/share/doc/fmb/LICENSE" ]
+        ! nm "$prefix/bin/fmb" 2> /dev/null | grep -q main || false
+        make -s "${options[@]}" uninstall PREFIX="$prefix" LIBDIR="$(realpath -m "$prefix")/lib64"
+        [ -z "$(find "$prefix" ! -type d)" ]
+    done
 }

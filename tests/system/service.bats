@@ -80,6 +80,30 @@ grid_scene() {
     stop_fmbd
 }
 
+@test "the bus gives the gaps of --local, for all verdicts, at rest and moving" {
+    start_fmbd
+    for scene in '2 0' '3 0' '2 1' '3 1'; do
+        grid_scene $scene > "$BATS_TEST_TMPDIR/all.json"
+        sed 's/{/{"margin":0.75,/' "$BATS_TEST_TMPDIR/all.json" > "$BATS_TEST_TMPDIR/near.json"
+        for options in '--gap all' '--gap --box --certificate all' '--box near' '--gap near' '--certificate near'; do
+            name=${options##* }
+            # shellcheck disable=SC2086
+            "$FMB" query ${options% *} --json "$BATS_TEST_TMPDIR/$name.json" > "$BATS_TEST_TMPDIR/bus"
+            # shellcheck disable=SC2086
+            "$FMB" query ${options% *} --json --local "$BATS_TEST_TMPDIR/$name.json" > "$BATS_TEST_TMPDIR/local"
+            cmp "$BATS_TEST_TMPDIR/bus" "$BATS_TEST_TMPDIR/local"
+            gaps=$(jq '[.pairs[] | select(.gap)] | length' "$BATS_TEST_TMPDIR/bus")
+            case $options in
+            --gap*) [ "$gaps" = 66 ] ;;
+            *) [ "$gaps" -gt 10 ] && [ "$gaps" -lt 66 ] ;;
+            esac
+        done
+    done
+    "$FMB" query --gap --method sat --json "$BATS_TEST_TMPDIR/all.json" > "$BATS_TEST_TMPDIR/bus" || [ $? = 1 ]
+    [ "$(jq -c '[.pairs[].error] | unique' "$BATS_TEST_TMPDIR/bus")" = '["method: gives no gaps"]' ]
+    stop_fmbd
+}
+
 @test "a certificate of many kilobytes comes over the bus" {
     start_fmbd
     echo '{"dim": 3, "bodies": [
@@ -125,7 +149,7 @@ grid_scene() {
     "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
     watch=$!
     started="$started $watch"
-    grid_scene 3 1 > "$BATS_TEST_TMPDIR/scene.json"
+    grid_scene 3 1 | sed 's/{/{"margin":0.75,/' > "$BATS_TEST_TMPDIR/scene.json"
     asked() {
         "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
         ! kill -0 $watch 2> /dev/null
@@ -133,21 +157,43 @@ grid_scene() {
     wait_until asked
     [ "$(jq -c '[.end_pair, .overlapping, .touching]' "$BATS_TEST_TMPDIR/watch")" = \
         "$(jq -c '[.pairs[].verdict] | [length, (map(select(. == "overlapping")) | length), (map(select(. == "touching")) | length)]' "$BATS_TEST_TMPDIR/bus")" ]
+    jq -e --slurpfile bus "$BATS_TEST_TMPDIR/bus" \
+        '.near == ([$bus[0].pairs[] | select(.verdict == "separated" and .gap)] | length) and .near > 0' "$BATS_TEST_TMPDIR/watch"
     stop_fmbd
 }
 
-@test "watch shows the certificates that pass, in JSON" {
+@test "watch shows the status of errors, in JSON" {
+    start_fmbd
+    random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
+    for options in '' --certificate; do
+        "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+        watch=$!
+        started="$started $watch"
+        asked() {
+            "$FMB" query --method fmb --gap $options --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+            ! kill -0 $watch 2> /dev/null
+        }
+        wait_until asked
+        jq -e --arg error "$(jq -r '.pairs[0].error' "$BATS_TEST_TMPDIR/bus")" \
+            '.error == $error and .status > 0' "$BATS_TEST_TMPDIR/watch"
+    done
+    stop_fmbd
+}
+
+@test "watch shows the certificates and gaps that pass, in JSON" {
     start_fmbd
     "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
     watch=$!
     started="$started $watch"
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
     asked() {
-        "$FMB" query --certificate --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+        "$FMB" query --certificate --gap --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
         ! kill -0 $watch 2> /dev/null
     }
     wait_until asked
-    [ "$(jq .certificate "$BATS_TEST_TMPDIR/watch")" = "$(jq '.pairs[0].certificate' "$BATS_TEST_TMPDIR/bus")" ]
+    for member in certificate gap direction; do
+        [ "$(jq -c .$member "$BATS_TEST_TMPDIR/watch")" = "$(jq -c ".pairs[0].$member" "$BATS_TEST_TMPDIR/bus")" ]
+    done
     stop_fmbd
 }
 
@@ -295,6 +341,8 @@ grid_scene() {
     "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
     # The first body stays while the scene uses it; there is no space for the others.
     "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
+    [ "$(jq .server_id "$BATS_TEST_TMPDIR/status")" = "$("$FMB" status | sed 's/.*server \([0-9-]*\),.*/\1/;q')" ]
+    jq -e '.utime / 1000000 - now | fabs < 60' "$BATS_TEST_TMPDIR/status"
     [ "$(jq -c '[.bodies, .misses, .evictions]' "$BATS_TEST_TMPDIR/status")" = '[1,20,0]' ]
     "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"

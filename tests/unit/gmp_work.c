@@ -83,6 +83,14 @@ void __wrap___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den)
     __real___gmpz_fdiv_q(out, num, den);
 }
 
+void __real___gmpz_tdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
+void __wrap___gmpz_tdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
+void __wrap___gmpz_tdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den)
+{
+    count_quotient(num, den);
+    __real___gmpz_tdiv_q(out, num, den);
+}
+
 void __real___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den);
 void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den);
 void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den)

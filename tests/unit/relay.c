@@ -425,15 +425,18 @@ struct bodies {
     struct fmb_placement *placement;
 };
 
-/* Whether the pair is surely separated: no vertex is as far from a body's position as this. */
-static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b, double duration)
+/* Whether the pair is surely farther apart than the margin: no vertex is as far from a body's
+ * position as its radius. */
+static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b,
+                    const struct fmb_client_scene *scene)
 {
     double distance = 0, speed = 0;
     for (int axis = 0; axis < a->body->dim; axis++) {
         distance += pow(a->position[axis] - b->position[axis], 2);
         speed += fabs(a->velocity[axis] - b->velocity[axis]);
     }
-    return sqrt(distance) > a->body->radius + b->body->radius + duration * speed + 0.001;
+    return sqrt(distance) >
+           a->body->radius + b->body->radius + scene->duration * speed + scene->margin + 0.001;
 }
 
 static bool is_ignored(const struct fmb_client_scene *scene, unsigned a, unsigned b)
@@ -450,18 +453,23 @@ static void decide(const struct fmb_client_scene *scene, const struct bodies *bo
                    const unsigned pair[2], struct relay_truth *out)
 {
     const struct fmb_placement *a = &bodies->placement[pair[0]], *b = &bodies->placement[pair[1]];
+    const bool all_gaps = scene->want & FMB_CLIENT_WANT_GAP;
+    const unsigned want = (scene->want & FMB_CLIENT_WANT_BOX ? FMB_WANT_BOX : 0) |
+                          (all_gaps || scene->margin > 0 ? FMB_WANT_GAP : 0);
     struct fmb_answer answer = {.verdict = FMB_SEPARATED};
     if (is_ignored(scene, pair[0], pair[1]))
         return;
-    if (!are_far(a, b, scene->duration))
-        assert_int_equal(fmb_decide(fmb_method_default(), a, b, scene->duration,
-                                    scene->want & FMB_CLIENT_WANT_BOX ? FMB_WANT_BOX : 0, &answer),
+    if (all_gaps || !are_far(a, b, scene))
+        assert_int_equal(fmb_decide(fmb_method_default(), a, b, scene->duration, want, &answer),
                          FMB_OK);
+    const bool near = scene->margin > 0 && answer.has_gap && answer.gap.bounds[0] <= scene->margin;
+    if (!all_gaps)
+        query_remove_far_gap(scene->margin, &answer);
     if (!(scene->want & FMB_CLIENT_WANT_TIMES)) {
         answer.has_contact = false;
         memset(answer.contact, 0, sizeof answer.contact);
     }
-    if (scene->which == FMB_CLIENT_LISTED || answer.verdict != FMB_SEPARATED)
+    if (scene->which == FMB_CLIENT_LISTED || answer.verdict != FMB_SEPARATED || near)
         add(out, pair, &answer);
 }
 
@@ -510,6 +518,8 @@ void relay_check(void *user, const struct fmb_client_answer *answer)
     assert_int_equal(is->has_box, should->has_box);
     assert_memory_equal(is->contact, should->contact, sizeof is->contact);
     assert_memory_equal(is->box, should->box, sizeof is->box);
+    assert_int_equal(is->has_gap, should->has_gap);
+    assert_true(query_same_gap(&is->gap, &should->gap));
 }
 
 void relay_query(struct fmb_client *client, const struct fmb_client_scene *scene)

@@ -169,14 +169,19 @@ static struct fmb_placement place(const struct placement *placement, struct trut
     return out;
 }
 
+static bool wants_gaps(const struct scene_query *query)
+{
+    return query->want & QUERY_WANT_GAP || query->margin > 0;
+}
+
 enum fmb_status scene_decide(const struct scene_query *query, const unsigned pair[2],
                              struct fmb_answer *answer)
 {
     static struct truth_body body[2];
     const struct fmb_placement a = place(&query->placement[pair[0]], &body[0]);
     const struct fmb_placement b = place(&query->placement[pair[1]], &body[1]);
-    return fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, FMB_WANT_BOX,
-                      answer);
+    const unsigned want = FMB_WANT_BOX | (wants_gaps(query) ? FMB_WANT_GAP : 0);
+    return fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, answer);
 }
 
 /* ---- Answers ---- */
@@ -222,14 +227,32 @@ static void assert_box(const struct reading *reading, const struct fmb_answer *a
         assert_memory_equal(box + side * dim, answer->box[side], (size_t) dim * sizeof *box);
 }
 
+static bool is_near(const struct scene_query *query, const struct fmb_answer *answer)
+{
+    return query->margin > 0 && answer->verdict == FMB_SEPARATED &&
+           answer->gap.bounds[0] <= query->margin;
+}
+
+static void assert_gap(const struct reading *reading, const struct fmb_answer *answer, bool close)
+{
+    const struct fmb_gap *gap = &reading->result->gap[reading->verdict];
+    if (close || reading->query->want & QUERY_WANT_GAP)
+        assert_true(query_same_gap(gap, &answer->gap));
+    else
+        assert_true(isnan(gap->bounds[0]) && isnan(gap->bounds[1]));
+}
+
 static void assert_pair(struct reading *reading, const unsigned pair[2])
 {
     const struct scene_result *result = reading->result;
     struct fmb_answer answer;
     scene_decide(reading->query, pair, &answer);
     const bool contact = answer.verdict >= FMB_TOUCHING;
-    if (result->names_pairs && !contact)
+    const bool near = is_near(reading->query, &answer);
+    if (result->names_pairs && !contact && !near)
         return;
+    if (result->has_gaps)
+        assert_gap(reading, &answer, contact || near);
     assert_true(reading->verdict < result->verdict_count);
     if (result->names_pairs)
         assert_memory_equal(result->pair[reading->verdict], pair, sizeof result->pair[0]);
@@ -266,6 +289,7 @@ void scene_assert(const struct scene_query *whole, const struct scene_result *re
     assert_int_equal(result->names_pairs, whole->which != QUERY_PAIRS_LISTED);
     assert_int_equal(result->has_times, (whole->want & QUERY_WANT_TIMES) != 0);
     assert_int_equal(result->has_boxes, whole->want & QUERY_WANT_BOX && method->boxes);
+    assert_int_equal(result->has_gaps, wants_gaps(whole));
     assert_true(whole->first_pair <= result->end_pair && result->end_pair <= count);
     assert_true(result->end_pair > whole->first_pair || whole->first_pair == count);
     for (int32_t i = whole->first_pair; i < result->end_pair; i++)

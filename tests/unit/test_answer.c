@@ -496,7 +496,8 @@ static struct fmb_placement placement_of(struct query_bodies *own, const struct 
 static struct fmb_answer truth(const struct pair_query *query)
 {
     static struct query_bodies own;
-    const unsigned want = query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0;
+    const unsigned want = (query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0) |
+                          (query->want & QUERY_WANT_GAP ? FMB_WANT_GAP : 0);
     struct fmb_answer answer;
     own.used = 0;
     const struct fmb_placement a = placement_of(&own, &query->placement[0]);
@@ -535,12 +536,14 @@ static void test_bodies_of_several_frames(void **state)
         for (int method = 0; method <= 4; method++) {
             struct pair_query query = gratings(7, 2, distance[i]);
             query.method = method;
+            if (fmb_method_by_number(method)->certain)
+                query.want |= QUERY_WANT_GAP;
             const struct fmb_answer expected = truth(&query);
             for (int by_handle = 0; by_handle < 2; by_handle++) {
                 const struct pair_result result = answer_to(&query);
                 assert_int_equal(result.status, FMB_OK);
                 assert_memory_equal(&result.answer, &expected, sizeof expected);
-                assert_int_equal(result.dim, expected.has_box ? 3 : 0);
+                assert_int_equal(result.dim, expected.has_box || expected.has_gap ? 3 : 0);
                 assert_int_equal(handle_is_none(&result.handle[0]), by_handle);
                 for (int f = 0; f < 2 && !by_handle; f++)
                     name(&query.placement[f], &result.handle[f]);
@@ -670,7 +673,8 @@ static void test_bad_requests(void **state)
     query.want = QUERY_WANT_BOX | 1 << 20;
     expect(&query, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
     query.want = QUERY_WANT_GAP;
-    expect(&query, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
+    for (query.method = 2; query.method <= 3; query.method++)
+        expect(&query, FMB_CANNOT_DECIDE, "method: gives no gaps");
 }
 
 static void test_refused_without_being_read(void **state)
@@ -760,6 +764,26 @@ static void test_inexact_methods_on_a_flat_frame(void **state)
     assert_int_equal(counts().hits, 2);
 }
 
+/* Of bodies of one frame, moving. */
+static void test_gaps(void **state)
+{
+    (void) state;
+    const double speed[] = {0, -2, -2.5, -7};
+    for (int i = 0; i < 4; i++) {
+        struct pair_query query = cubes();
+        query.want = QUERY_WANT_GAP;
+        query.placement[1].position[0] = 3;
+        query.placement[1].velocity_count = 3;
+        query.placement[1].velocity[0] = speed[i];
+        const struct pair_result result = answer_to(&query);
+        const struct fmb_answer expected = truth(&query);
+        assert_memory_equal(&result.answer, &expected, sizeof expected);
+        assert_true(result.answer.has_gap);
+        assert_int_equal(result.answer.gap.has_witness, i == 0);
+        assert_int_equal(result.dim, 3);
+    }
+}
+
 static void test_a_repeat_gets_the_same(void **state)
 {
     (void) state;
@@ -803,6 +827,7 @@ int main(void)
         TEST(test_certificates),
         TEST(test_certificate_by_handle),
         TEST(test_inexact_methods_on_a_flat_frame),
+        TEST(test_gaps),
         TEST(test_a_repeat_gets_the_same),
     };
     return cmocka_run_group_tests_name("answer", tests, NULL, NULL);

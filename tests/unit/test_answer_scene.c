@@ -66,7 +66,8 @@ static size_t assert_fits(void)
         HANDLE_BYTES * (size_t) result.handle_count +
         (size_t) result.verdict_count * (1 + (result.names_pairs ? WIRE_PAIR_BYTES : 0)) +
         (result.has_times ? 16 * contacts : 0) +
-        (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0);
+        (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0) +
+        (result.has_gaps ? (size_t) wire_gap_bytes(result.dim) * (size_t) result.verdict_count : 0);
     assert_true(size <= promised && promised <= QUERY_BYTES_MAX);
     const char *error = wire_read_scene_result(bytes, (uint32_t) size, &again);
     if (error)
@@ -114,8 +115,21 @@ static struct cache_counts counts(void)
 
 /* ---- Right answers ---- */
 
-static const int32_t wants[] = {0, QUERY_WANT_BOX, QUERY_WANT_TIMES,
-                                QUERY_WANT_BOX | QUERY_WANT_TIMES};
+enum { WANTS_WITHOUT_GAPS = 4 };
+static const int32_t wants[] = {
+    0,
+    QUERY_WANT_BOX,
+    QUERY_WANT_TIMES,
+    QUERY_WANT_BOX | QUERY_WANT_TIMES,
+    QUERY_WANT_GAP,
+    QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP,
+};
+
+static double draw_margin(struct draw *draw)
+{
+    static const double margins[] = {0, 0, 0x1p-1074, 1e-9, 0.5, 3, DBL_MAX};
+    return margins[draw_int(draw, 0, (int) COUNT(margins) - 1)];
+}
 
 static void answer_in_every_way(struct draw *draw, const char *method)
 {
@@ -124,6 +138,7 @@ static void answer_in_every_way(struct draw *draw, const char *method)
         for (size_t w = 0; w < COUNT(wants); w++) {
             query->which = which;
             query->want = wants[w];
+            query->margin = draw_margin(draw);
             query->index_count = query->split = 0;
             if (which == QUERY_PAIRS_LISTED)
                 scene_draw_pairs(draw, 60, query);
@@ -174,7 +189,7 @@ static void test_answers_of_inexact_methods(void **state)
     for (long round = 0; round < draw_sample(160); round++) {
         query->method = fmb_method_by_name(round % 2 ? "fmb" : "sat")->number;
         query->which = QUERY_PAIRS_LISTED;
-        query->want = wants[round / 2 % 4];
+        query->want = wants[round / 2 % WANTS_WITHOUT_GAPS];
         scene_draw_placements(&draw, 2 + (int) (round / 8 % 2), -1, 12, &scene);
         scene_draw_pairs(&draw, 60, query);
         answer_and_check(query);
@@ -199,6 +214,7 @@ static void test_no_contact_is_lost_anywhere(void **state)
     draw_begin(&draw, "scenes of all sizes");
     query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
     for (long round = 0; round < draw_sample(112); round++) {
+        query->margin = draw_margin(&draw);
         const double scale = scales[round % (int) COUNT(scales)];
         const int dim = draw_int(&draw, 2, 3), half_width = draw_int(&draw, 0, 3);
         query->placement_count = 20;
@@ -313,6 +329,22 @@ static void test_parts_fill_their_datagrams(void **state)
         query->index_count += 2;
     }
     assert_int_equal(answer_all_parts(1 + 32), parts_of(11000, 1 + 32, 0));
+    query->want = QUERY_WANT_GAP;
+    query->index_count = 4000;
+    assert_int_equal(answer_all_parts(1 + 72), parts_of(2000, 1 + 72, 0));
+}
+
+/* Near pairs count for the space of a result as contacts do. */
+static void test_near_pairs_fill_their_datagrams(void **state)
+{
+    (void) state;
+    set_row(100);
+    query->margin = 200;
+    assert_int_equal(answer_all_parts(5 + 96), parts_of(4950, 5 + 96, 100));
+    query->margin = 2;
+    assert_int_equal(answer_all_parts(5 + 96), 1);
+    assert_int_equal(result.verdict_count, 99 + 98 + 97);
+    assert_int_equal(result.contact_count, 99);
 }
 
 /* As many pairs as a query has space for, of two placements or of many: all verdicts fit, beside
@@ -531,7 +563,8 @@ static void test_ignored_pairs(void **state)
         scene_draw_placements(&draw, 2 + round % 2, -1, 10, &scene);
         query->which = QUERY_PAIRS_ALL + round % 4 / 2;
         query->split = query->which == QUERY_PAIRS_ACROSS ? 5 : 0;
-        query->want = wants[round % 4];
+        query->want = wants[round % (int) COUNT(wants)];
+        query->margin = draw_margin(&draw);
         query->ignored_count = 2 * draw_int(&draw, 1, 30);
         for (int32_t i = 0; i < query->ignored_count / 2; i++) {
             const unsigned a = (unsigned) draw_int(&draw, 0, 9);
@@ -596,13 +629,23 @@ static void test_bad_requests(void **state)
         expect(FMB_BAD_DURATION, "duration: negative or not finite");
         query->duration = 1;
         query->margin = durations[i];
-        expect(FMB_NOT_FINITE, "margin: negative or not finite");
+        expect(FMB_BAD_MARGIN, "margin: negative or not finite");
         query->margin = 0;
     }
+    query->which = QUERY_PAIRS_LISTED;
+    for (query->method = 2; query->method <= 3; query->method++) {
+        query->want = QUERY_WANT_GAP;
+        expect(FMB_CANNOT_DECIDE, "method: gives no gaps");
+        query->want = 0;
+        query->margin = 0x1p-1074;
+        expect(FMB_CANNOT_DECIDE, "method: gives no gaps");
+        query->margin = 0;
+    }
+    query->which = QUERY_PAIRS_ALL;
     query->method = -1;
     expect(FMB_UNKNOWN_METHOD, "method: unknown method");
     query->method = 0;
-    for (query->want = 2; query->want <= QUERY_WANT_GAP; query->want += 6)
+    for (query->want = 2; query->want <= 2 * QUERY_WANT_GAP; query->want *= 8)
         expect(FMB_UNKNOWN_WANT, "want: wants what this version does not give");
     query->want = 0;
     for (query->which = -1; query->which <= 3; query->which += 4)
@@ -626,17 +669,6 @@ static void test_bad_requests(void **state)
     query->client_id = 1;
     query->sequence_number = INT64_MAX;
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
-}
-
-/* Later versions support it. What is wrong besides comes first. */
-static void test_not_supported(void **state)
-{
-    (void) state;
-    set_row(3);
-    query->margin = 0x1p-1074;
-    expect(FMB_NOT_SUPPORTED, "margin: not in this version");
-    query->placement[2].position[0] = NAN;
-    expect(FMB_NOT_FINITE, "placements[2].position[0]: not a finite number");
 }
 
 static void test_refused_without_being_read(void **state)
@@ -1100,6 +1132,7 @@ int main(void)
         TEST(test_no_contact_is_lost_anywhere),
         TEST(test_every_pair_can_be_the_first),
         TEST(test_parts_fill_their_datagrams),
+        TEST(test_near_pairs_fill_their_datagrams),
         TEST(test_verdicts_of_listed_pairs_fit),
         TEST(test_empty_scenes),
         TEST(test_echo),
@@ -1111,7 +1144,6 @@ int main(void)
         TEST(test_ignored_pairs),
         TEST(test_too_many_frames),
         TEST(test_bad_requests),
-        TEST(test_not_supported),
         TEST(test_refused_without_being_read),
         TEST(test_bytes_that_are_no_query),
         TEST(test_handles_mixed_with_whole_placements),

@@ -79,9 +79,9 @@ static void test_what_the_bus_loses_is_sent_again(void **state)
     scene = listed();
     for (int i = 0; i < 10; i++)
         relay_query(client, &scene);
-    assert_true(fmb_client_counts(client).repeated > 5);
-    assert_int_equal(fmb_client_counts(client).malformed, 0);
-    assert_int_equal(fmb_client_counts(client).outages, 0);
+    assert_true(fmb_client_get_counts(client).repeated > 5);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(client).outages, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -110,7 +110,7 @@ static void test_messages_that_cannot_be_read_are_counted(void **state)
     const struct fmb_client_scene scene = listed();
     relay_query(client, &scene);
     assert_true(count > 300);
-    assert_int_equal(fmb_client_counts(client).malformed, count);
+    assert_int_equal(fmb_client_get_counts(client).malformed, count);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -148,27 +148,37 @@ static double seconds_since(int64_t start)
 static void test_a_service_that_comes_back_is_found(void **state)
 {
     (void) state;
+    const double timeout = 0.1;
+    const int tries = 10;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.02, 50);
+    struct fmb_client *client = relay_client(relay, timeout, tries);
     const struct fmb_client_scene scene = listed();
     int64_t start = clock_ns();
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
-    assert_true(seconds_since(start) >= 50 * 0.02);
+    assert_true(seconds_since(start) >= tries * timeout);
     for (int i = 0; i < 3; i++) {
-        const uint64_t queries = fmb_client_counts(client).queries;
+        const uint64_t queries = fmb_client_get_counts(client).queries;
         start = clock_ns();
         assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
-        assert_true(seconds_since(start) >= 0.02 && seconds_since(start) < 25 * 0.02);
-        assert_int_equal(fmb_client_counts(client).queries, queries + 1);
+        assert_true(seconds_since(start) >= timeout && seconds_since(start) < tries * timeout);
+        assert_int_equal(fmb_client_get_counts(client).queries, queries + 1);
     }
-    assert_int_equal(fmb_client_counts(client).outages, 1);
+    assert_int_equal(fmb_client_get_counts(client).outages, 1);
     relay->deaf = false;
+    /* On a busy machine an answer may take longer than a call waits while there is none. */
+    for (int i = 0; i < 50 && query(client, &scene).good == 0; i++)
+        continue;
     relay_query(client, &scene);
+    assert_int_equal(fmb_client_get_counts(client).outages, 1);
     relay->deaf = true;
-    assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
-    assert_int_equal(fmb_client_counts(client).outages, 2);
+    /* Results of queries that were repeated may arrive even now: then a service is there. */
+    size_t none = 0;
+    for (int i = 0; i < 5 && none < 2000; i++)
+        none = query(client, &scene).none[-FMB_CLIENT_NO_SERVICE];
+    assert_int_equal(none, 2000);
+    assert_int_equal(fmb_client_get_counts(client).outages, 2);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -210,7 +220,7 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE],
                      PLACEMENTS * (PLACEMENTS - 1) / 2);
     assert_true(seconds_since(start) >= 2 * 0.05);
-    assert_int_equal(fmb_client_counts(client).queries, 2); /* the window's */
+    assert_int_equal(fmb_client_get_counts(client).queries, 2); /* the window's */
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -229,13 +239,13 @@ static void test_a_lost_query_is_repeated_soon_and_then_more_rarely(void **state
     relay_draw(placement, 2, 3, 1, 1, 1);
     for (int i = 0; i < 20; i++)
         assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    const uint64_t before = fmb_client_counts(client).repeated;
+    const uint64_t before = fmb_client_get_counts(client).repeated;
     relay->deaf = true;
     const int first = relay->queries;
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer),
                      FMB_CLIENT_NO_SERVICE);
     const int count = relay->queries - first;
-    assert_in_range(fmb_client_counts(client).repeated - before, count - 1, count);
+    assert_in_range(fmb_client_get_counts(client).repeated - before, count - 1, count);
     assert_in_range(count, 5, 10); /* 8, 16, ... 512 ms, about, in a second */
     for (int i = 0; i + 1 < count; i++) {
         const struct relay_arrival *at = &relay->arrival[(first + i) % RELAY_ARRIVALS];
@@ -270,7 +280,7 @@ static void test_queries_in_line_are_not_repeated(void **state)
     give_one_frame();
     tally = query(client, &scene);
     assert_int_equal(tally.good, 150);
-    assert_in_range(fmb_client_counts(client).repeated, 1, 30);
+    assert_in_range(fmb_client_get_counts(client).repeated, 1, 30);
     /* The lost one is repeated once later ones have their results, not when nothing else is left of
      * the window. */
     int again = 3;
@@ -369,7 +379,7 @@ static void test_what_is_under_way_is_limited(void **state)
         scene.want = small ? FMB_CLIENT_WANT_CERTIFICATE : 0;
         scene.within = 0.005;
         query(client, &scene);
-        const struct fmb_client_counts counts = fmb_client_counts(client);
+        const struct fmb_client_counts counts = fmb_client_get_counts(client);
         assert_true(small ? counts.queries > 30 && counts.queries <= 64 : counts.queries == 2);
         assert_true(counts.bytes <= (small ? 20000 : 130000) * (1 + counts.repeated));
         fmb_client_close(client);
@@ -559,23 +569,92 @@ static void test_forged_results_are_ignored(void **state)
                 print_error("lie: %s, %s\n", lies[i].name, of_list ? "listed" : "all");
             assert_int_equal(tally.good, 0);
             assert_int_equal(tally.none[-FMB_CLIENT_NO_SERVICE], of_list ? 2000 : 400 * 399 / 2);
-            assert_in_range(fmb_client_counts(client).malformed, 1, relay->turn);
+            assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
             fmb_client_close(client);
             relay_close(relay);
         }
 }
 
-/* Of a pair query: which of box and certificate are present, and whether that fits. (wire.h checks
- * the interval.) */
+static void no_gaps(struct scene_result *result, int turn)
+{
+    (void) turn;
+    result->has_gaps = false;
+}
+
+/* That of the first separated pair. */
+static struct fmb_gap *near_gap(struct scene_result *result)
+{
+    int32_t i = 0;
+    while (result->verdict[i] != FMB_SEPARATED)
+        i++;
+    return &result->gap[i];
+}
+
+static void too_far_apart(struct scene_result *result, int turn)
+{
+    (void) turn;
+    near_gap(result)->bounds[0] = near_gap(result)->bounds[1] = 1;
+}
+
+static void no_gap(struct scene_result *result, int turn)
+{
+    (void) turn;
+    near_gap(result)->bounds[0] = NAN;
+}
+
+static void gaps_of_2d(struct scene_result *result, int turn)
+{
+    (void) turn;
+    result->dim = 2;
+}
+
+static void gaps_unasked(struct scene_result *result, int turn)
+{
+    (void) turn;
+    result->has_gaps = true;
+    result->dim = 3;
+    memset(result->gap, 0, (size_t) result->verdict_count * sizeof *result->gap);
+}
+
+static void test_forged_gaps_are_ignored(void **state)
+{
+    (void) state;
+    static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d, gaps_unasked};
+    for (size_t i = 0; i < sizeof gap_lies / sizeof *gap_lies; i++) {
+        struct relay *relay = relay_new();
+        struct fmb_client_scene scene = all_pairs();
+        scene.placement_count = 200;
+        scene.want = 0;
+        scene.margin = gap_lies[i] == gaps_unasked ? 0 : 0.5;
+        relay->lie = gap_lies[i];
+        relay_open(relay, 2000);
+        struct fmb_client *client = relay_client(relay, 0.1, 1);
+        const struct tally tally = query(client, &scene);
+        if (tally.good != 0)
+            print_error("lie %zu\n", i);
+        assert_int_equal(tally.good, 0);
+        assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
+        fmb_client_close(client);
+        relay_close(relay);
+    }
+}
+
+/* Of a pair query: which of box, certificate and gap are present, and whether that fits. (wire.h
+ * checks the interval.) */
 static const struct {
     enum fmb_verdict verdict;
-    bool box, certificate;
+    bool box, certificate, gap;
     unsigned want;
     bool good;
 } pair_lies[] = {
-    {FMB_TOUCHING, true, true, 3, true},      {FMB_OVERLAPPING, true, true, 3, true},
-    {FMB_SEPARATED, false, true, 3, true},    {FMB_SEPARATED, true, false, 1, false},
-    {FMB_OVERLAPPING, true, false, 2, false}, {FMB_OVERLAPPING, false, true, 1, false},
+    {FMB_TOUCHING, true, true, false, 3, true},
+    {FMB_OVERLAPPING, true, true, true, 11, true},
+    {FMB_SEPARATED, false, true, true, 11, true},
+    {FMB_SEPARATED, true, false, false, 1, false},
+    {FMB_OVERLAPPING, true, false, false, 2, false},
+    {FMB_OVERLAPPING, false, true, false, 1, false},
+    {FMB_SEPARATED, false, false, false, 8, false},
+    {FMB_SEPARATED, false, false, true, 0, false},
 };
 
 static void test_results_of_a_pair_fit_their_query(void **state)
@@ -586,7 +665,9 @@ static void test_results_of_a_pair_fit_their_query(void **state)
         struct part_answers answers = {0};
         const struct pair_result result = {
             .dim = 3,
-            .answer = {.verdict = pair_lies[i].verdict, .has_box = pair_lies[i].box},
+            .answer = {.verdict = pair_lies[i].verdict,
+                       .has_box = pair_lies[i].box,
+                       .has_gap = pair_lies[i].gap},
             .certificate = pair_lies[i].certificate ? "proof" : NULL};
         scene.want = pair_lies[i].want;
         assert_int_equal(part_take_pair(&scene, &result, &answers),
@@ -617,7 +698,7 @@ static void test_the_right_result_after_forged_ones_is_taken(void **state)
     struct fmb_client_scene scene = all_pairs();
     scene.placement_count = 400;
     relay_query(client, &scene);
-    assert_true(fmb_client_counts(client).malformed > 0);
+    assert_true(fmb_client_get_counts(client).malformed > 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -642,7 +723,7 @@ static void test_steps_of_one_pair_end(void **state)
     struct fmb_client_scene scene = listed();
     scene.pair_count = 300;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_counts(client).queries, 300);
+    assert_int_equal(fmb_client_get_counts(client).queries, 300);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -668,14 +749,14 @@ static void test_slow_services_get_fewer_pairs_a_query(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     const struct fmb_client_scene scene = listed();
     relay_query(client, &scene);
-    uint64_t before = fmb_client_counts(client).queries;
+    uint64_t before = fmb_client_get_counts(client).queries;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_counts(client).queries - before, 2000 / 16);
+    assert_int_equal(fmb_client_get_counts(client).queries - before, 2000 / 16);
     relay->lie = in_no_time;
     relay_query(client, &scene);
-    before = fmb_client_counts(client).queries;
+    before = fmb_client_get_counts(client).queries;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_counts(client).queries - before, 1);
+    assert_int_equal(fmb_client_get_counts(client).queries - before, 1);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -699,10 +780,10 @@ static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
     scene.pair_count = 100;
     relay_query(client, &scene);
     relay->lie = unknown_body;
-    const uint64_t before = fmb_client_counts(client).queries;
+    const uint64_t before = fmb_client_get_counts(client).queries;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_counts(client).queries, before + 2); /* by handle, then whole */
-    assert_int_equal(fmb_client_counts(client).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(client).queries, before + 2); /* by handle, then whole */
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -723,9 +804,9 @@ static void test_an_answer_counts_more_than_an_unknown_body(void **state)
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     for (int i = 0; i < 3; i++)
         relay_query(client, &scene);
-    assert_int_equal(fmb_client_counts(client).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     assert_int_equal(relay_dropped(relay), 0);
-    assert_int_equal(fmb_client_counts(client).contradicting, 0);
+    assert_int_equal(fmb_client_get_counts(client).contradicting, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -796,7 +877,7 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
         relay_draw(placement, 2, 3, 1, 1, 1);
         assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer),
                          FMB_CLIENT_NO_SERVICE);
-        assert_in_range(fmb_client_counts(client).malformed, 1, relay->turn);
+        assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
         fmb_client_close(client);
         relay_close(relay);
     }
@@ -839,7 +920,7 @@ static uint64_t contradicting(struct fmb_client *client)
 {
     while (fmb_client_handle(client, 0.05) > 0)
         continue;
-    return fmb_client_counts(client).contradicting;
+    return fmb_client_get_counts(client).contradicting;
 }
 
 static void test_contradicting_second_results_are_counted(void **state)
@@ -858,7 +939,7 @@ static void test_contradicting_second_results_are_counted(void **state)
         struct fmb_client_scene scene = listed();
         scene.want = 0;
         relay_query(client, &scene);
-        const uint64_t results = fmb_client_counts(client).answered;
+        const uint64_t results = fmb_client_get_counts(client).answered;
         assert_true(results > 1);
         if (second[i].contradicts) /* more where a query was repeated */
             assert_true(contradicting(client) >= results);
@@ -1035,10 +1116,13 @@ static void test_watching(void **state)
     assert_true(fmb_client_fileno(watch) >= 0);
     while (fmb_client_handle(watch, 0.1) > 0)
         continue;
-    assert_int_equal(watching.scenes, 1);
+    /* On a busy machine queries may have been repeated: then their results were too. */
+    assert_true(watching.scenes >= 1);
     assert_int_equal(watching.end_pair, 4950);
-    assert_int_equal(watching.overlapping + watching.touching, truth.count);
-    assert_int_equal(watching.pairs, 1);
+    assert_int_equal(watching.overlapping + watching.touching, watching.scenes * truth.count);
+    assert_true(watching.pairs >= 1);
+    assert_true((uint64_t) (watching.scenes + watching.pairs) <=
+                2 + fmb_client_get_counts(other).repeated);
     assert_true(watching.heartbeats >= 1);
     assert_int_equal(watching.served, 2);
     assert_int_equal(watching.served_scenes, 1);
@@ -1086,6 +1170,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_a_caller_that_takes_long_gets_all_answers),
         cmocka_unit_test(test_what_is_under_way_is_limited),
         cmocka_unit_test(test_forged_results_are_ignored),
+        cmocka_unit_test(test_forged_gaps_are_ignored),
         cmocka_unit_test(test_results_of_a_pair_fit_their_query),
         cmocka_unit_test(test_the_right_result_after_forged_ones_is_taken),
         cmocka_unit_test(test_steps_of_one_pair_end),

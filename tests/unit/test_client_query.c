@@ -55,11 +55,12 @@ static void test_small_scenes_of_every_kind(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     for (size_t count = 0; count < 40; count += count < 4 ? 1 : 9)
         for (int dim = 2; dim <= 3; dim++)
-            for (unsigned want = 0; want <= ALL_WANTS; want++) {
+            for (unsigned want = 0; want <= (ALL_WANTS | FMB_CLIENT_WANT_GAP); want++) {
                 if (want & FMB_CLIENT_WANT_CERTIFICATE)
                     continue;
                 struct fmb_client_placement *frame = frames_of(count, dim, 3, 1);
                 struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, want);
+                scene.margin = (want + count) % 2 ? 0.5 : 0;
                 relay_query(client, &scene);
                 scene.which = FMB_CLIENT_ACROSS;
                 for (scene.split = 0; scene.split <= count; scene.split += 1 + count / 3)
@@ -73,7 +74,7 @@ static void test_small_scenes_of_every_kind(void **state)
                 free(frame);
             }
     assert_int_equal(relay_dropped(relay), 0);
-    assert_int_equal(fmb_client_counts(client).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -88,7 +89,7 @@ static void test_all_pairs_of_many_bodies(void **state)
     struct fmb_client_placement *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
     const struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, ALL_WANTS);
     relay_query(client, &scene);
-    assert_true(fmb_client_counts(client).queries > 10);
+    assert_true(fmb_client_get_counts(client).queries > 10);
     assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     free(frame);
@@ -106,7 +107,7 @@ static void test_all_pairs_of_a_crowd(void **state)
     struct fmb_client_placement *frame = frames_of(count, 2, 2, 1);
     struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, ALL_WANTS);
     relay_query(client, &scene);
-    assert_true(fmb_client_counts(client).queries > 30);
+    assert_true(fmb_client_get_counts(client).queries > 30);
     scene.which = FMB_CLIENT_ACROSS;
     scene.split = count / 3;
     relay_query(client, &scene);
@@ -155,8 +156,12 @@ static enum fmb_status decide(struct giving *giving, struct fmb_answer *answer)
     const struct fmb_placement b = relay_place(&scene->placements[giving->b], &body[1]);
     if (++giving->b == scene->placement_count)
         giving->b = ++giving->a + 1;
-    const enum fmb_status status = fmb_decide(fmb_method_by_number(scene->method), &a, &b,
-                                              scene->duration, scene->want & FMB_WANT_BOX, answer);
+    const unsigned want = (scene->want & FMB_CLIENT_WANT_BOX ? FMB_WANT_BOX : 0) |
+                          (scene->margin > 0 ? FMB_WANT_GAP : 0);
+    const enum fmb_status status =
+        fmb_decide(fmb_method_by_number(scene->method), &a, &b, scene->duration, want, answer);
+    if (!(scene->want & FMB_CLIENT_WANT_GAP))
+        query_remove_far_gap(scene->margin, answer);
     relay_body_free(&body[0]);
     relay_body_free(&body[1]);
     return status;
@@ -168,18 +173,23 @@ static void check_method(void *user, const struct fmb_client_answer *answer)
     struct fmb_answer should;
     enum fmb_status status;
     unsigned a, b;
+    bool separated;
     do {
         a = giving->a;
         b = giving->b;
         status = decide(giving, &should);
-        giving->separated += status == FMB_OK && should.verdict == FMB_SEPARATED;
-    } while (status == FMB_OK && should.verdict == FMB_SEPARATED);
+        separated = status == FMB_OK && should.verdict == FMB_SEPARATED &&
+                    !(should.has_gap && should.gap.bounds[0] <= giving->scene->margin);
+        giving->separated += separated;
+    } while (separated);
     assert_int_equal(answer->a, a);
     assert_int_equal(answer->b, b);
     assert_int_equal(answer->status, status);
     assert_int_equal(answer->answer.verdict, should.verdict);
-    assert_memory_equal(answer->answer.contact, should.contact, sizeof should.contact);
+    if (giving->scene->want & FMB_CLIENT_WANT_TIMES)
+        assert_memory_equal(answer->answer.contact, should.contact, sizeof should.contact);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
+    assert_true(query_same_gap(&answer->answer.gap, &should.gap));
     giving->given++;
     giving->undecided += status != FMB_OK;
 }
@@ -206,6 +216,34 @@ static void test_every_method(void **state)
     relay_close(relay);
 }
 
+/* Near pairs, none missed, in the blocks that a large scene is divided into. */
+static void test_near_pairs_of_many_bodies(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    relay_open(relay, 65536);
+    struct fmb_client *client = relay_client(relay, 20, 1);
+    struct fmb_client_placement *frame = frames_of(800, 3, 25, 1);
+    struct fmb_client_scene scene = scene_of(frame, 800, FMB_CLIENT_ALL, 0);
+    scene.margin = 0.25;
+    relay_query(client, &scene);
+    assert_true(fmb_client_get_counts(client).queries > 3);
+    scene.method = fmb_method_by_name("exact")->number; /* is answered by lists */
+    scene.placement_count = 60;
+    for (size_t i = 0; i < 60; i++)
+        for (int axis = 0; axis < 3; axis++)
+            frame[i].position[axis] /= 4;
+    for (scene.want = 0; scene.want <= FMB_CLIENT_WANT_GAP; scene.want += FMB_CLIENT_WANT_GAP) {
+        struct giving giving = {.scene = &scene, .b = 1};
+        assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
+        assert_true(giving.separated > 0 && giving.given > 0);
+    }
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    free(frame);
+    relay_close(relay);
+}
+
 static void check_certificate(void *user, const struct fmb_client_answer *answer)
 {
     struct giving *giving = user;
@@ -218,6 +256,8 @@ static void check_certificate(void *user, const struct fmb_client_answer *answer
     assert_int_equal(decide(giving, &should), FMB_OK);
     assert_int_equal(answer->answer.verdict, should.verdict);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
+    assert_true(query_same_gap(&answer->answer.gap, &should.gap));
+    giving->separated += should.verdict == FMB_SEPARATED && should.has_gap;
     const struct fmb_placement a = relay_place(&giving->scene->placements[answer->a], &body[0]);
     const struct fmb_placement b = relay_place(&giving->scene->placements[answer->b], &body[1]);
     assert_non_null(answer->certificate);
@@ -237,11 +277,13 @@ static void test_certificates_of_all_pairs(void **state)
     struct fmb_client_placement *frame = frames_of(40, 2, 3, 1);
     for (int i = 0; i < 40; i++)
         frame[i].frame_count = 1; /* certificates are of those */
-    const struct fmb_client_scene scene =
+    struct fmb_client_scene scene =
         scene_of(frame, 40, FMB_CLIENT_ALL, ALL_WANTS | FMB_CLIENT_WANT_CERTIFICATE);
+    scene.margin = 0.25;
     struct giving giving = {.scene = &scene, .b = 1};
     assert_int_equal(fmb_client_query(client, &scene, check_certificate, &giving), FMB_OK);
     assert_int_equal(giving.given, 780);
+    assert_in_range(giving.separated, 1, 779);
     assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     free(frame);
@@ -262,6 +304,9 @@ static void test_one_pair(void **state)
     assert_int_equal(fmb_client_query_pair(client, pair, 1, 0, &answer), FMB_OK);
     assert_int_equal(answer.answer.verdict, FMB_TOUCHING);
     assert_null(answer.certificate);
+    assert_false(answer.answer.has_gap);
+    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_CLIENT_WANT_GAP, &answer), FMB_OK);
+    assert_true(answer.answer.has_gap && !answer.answer.gap.has_witness);
     assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_CLIENT_WANT_CERTIFICATE, &answer),
                      FMB_OK);
     assert_memory_equal(answer.certificate, "touching", 8);
@@ -337,10 +382,16 @@ static void test_wrong_scenes_are_refused(void **state)
     wrong(client, &scene, FMB_BAD_PAIR, "split: ");
     scene.which = (enum fmb_client_which) 3;
     wrong(client, &scene, FMB_UNKNOWN_WANT, "which: ");
-    scene.which = FMB_CLIENT_ALL, scene.want = 8;
+    scene.which = FMB_CLIENT_ALL, scene.want = 16;
     wrong(client, &scene, FMB_UNKNOWN_WANT, "want: ");
     scene.want = 0, scene.duration = -1;
     wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
+    const double margins[] = {-0x1p-1074, INFINITY, NAN};
+    scene.duration = 0;
+    for (int i = 0; i < 3; i++) {
+        scene.margin = margins[i];
+        wrong(client, &scene, FMB_BAD_MARGIN, "margin: ");
+    }
     assert_int_equal(relay->queries, 0);
     fmb_client_close(client);
     relay_close(relay);
@@ -367,6 +418,33 @@ static void test_refusals_of_the_service_are_given(void **state)
     scene.method = 77;
     assert_int_equal(fmb_client_query(client, &scene, count_refusals, &count), FMB_OK);
     assert_int_equal(count, 10);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+static void count_no_gaps(void *user, const struct fmb_client_answer *answer)
+{
+    assert_int_equal(answer->status, FMB_CANNOT_DECIDE);
+    assert_string_equal(answer->text, "method: gives no gaps");
+    ++*(int *) user;
+}
+
+static void test_methods_without_gaps(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    int count = 0;
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement frame[5];
+    relay_draw(frame, 5, 3, 1, 1, 1);
+    struct fmb_client_scene scene = scene_of(frame, 5, FMB_CLIENT_ALL, FMB_CLIENT_WANT_GAP);
+    scene.method = fmb_method_by_name("sat")->number;
+    assert_int_equal(fmb_client_query(client, &scene, count_no_gaps, &count), FMB_OK);
+    scene.want = 0;
+    scene.margin = 1e-9;
+    assert_int_equal(fmb_client_query(client, &scene, count_no_gaps, &count), FMB_OK);
+    assert_int_equal(count, 20);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -400,9 +478,9 @@ static void close_world(struct world *world)
 /* Queries the scene. On output: what was done for it. */
 static struct fmb_client_counts query_world(struct world *world)
 {
-    const struct fmb_client_counts before = fmb_client_counts(world->client);
+    const struct fmb_client_counts before = fmb_client_get_counts(world->client);
     relay_query(world->client, &world->scene);
-    struct fmb_client_counts counts = fmb_client_counts(world->client);
+    struct fmb_client_counts counts = fmb_client_get_counts(world->client);
     counts.queries -= before.queries;
     counts.bytes -= before.bytes;
     counts.whole -= before.whole;
@@ -457,7 +535,7 @@ static void test_equal_ids_of_two_clients_do_not_matter(void **state)
     assert_int_equal(counts.by_handle, 100);
     assert_int_equal(counts.whole, 0);
     relay_query(other, &scene);
-    assert_int_equal(fmb_client_counts(other).whole, 10);
+    assert_int_equal(fmb_client_get_counts(other).whole, 10);
     fmb_client_close(other);
     free(others);
     close_world(&world);
@@ -504,11 +582,11 @@ static void test_bodies_that_are_never_held_end(void **state)
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
-    const uint64_t repeated = fmb_client_counts(world.client).repeated;
+    const uint64_t repeated = fmb_client_get_counts(world.client).repeated;
     world.relay->before = steal;
     for (int i = 0; i < 3; i++)
         assert_int_equal(query_world(&world).queries, 2);
-    assert_int_equal(stolen, 6 + fmb_client_counts(world.client).repeated - repeated);
+    assert_int_equal(stolen, 6 + fmb_client_get_counts(world.client).repeated - repeated);
     struct fmb_client_answer answer;
     assert_int_equal(fmb_client_query_pair(world.client, world.frame, 1, 0, &answer), FMB_OK);
     close_world(&world);
@@ -577,11 +655,11 @@ static void test_bodies_of_many_frames(void **state)
     }
     const struct fmb_client_scene scene = scene_of(placement, BODIES, FMB_CLIENT_ALL, ALL_WANTS);
     relay_query(client, &scene);
-    const struct fmb_client_counts first = fmb_client_counts(client);
+    const struct fmb_client_counts first = fmb_client_get_counts(client);
     assert_in_range(first.whole, BODIES, 3 * BODIES); /* queries that are under way at once */
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_counts(client).whole, first.whole);
-    assert_int_equal(fmb_client_counts(client).queries, first.queries + 1);
+    assert_int_equal(fmb_client_get_counts(client).whole, first.whole);
+    assert_int_equal(fmb_client_get_counts(client).queries, first.queries + 1);
     relay_restart(relay, 20000);
     relay_query(client, &scene);
     /* Without ids there is no other way than both in one datagram. */
@@ -591,7 +669,7 @@ static void test_bodies_of_many_frames(void **state)
     placement[0].frame_count = 700;
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
     assert_string_equal(fmb_client_why(client), "placements[0].frame_count: over the limit");
-    assert_int_equal(fmb_client_counts(client).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     free(placement);
     free(frame);
@@ -612,8 +690,8 @@ static void test_two_clients_in_a_process(void **state)
         query_world(&world);
         relay_query(other, &scene);
     }
-    assert_int_equal(fmb_client_counts(other).malformed, 0);
-    assert_int_equal(fmb_client_counts(world.client).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(other).malformed, 0);
+    assert_int_equal(fmb_client_get_counts(world.client).malformed, 0);
     fmb_client_close(other);
     free(others);
     close_world(&world);
@@ -681,10 +759,12 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_all_pairs_of_a_crowd),
         cmocka_unit_test(test_many_pairs_listed),
         cmocka_unit_test(test_every_method),
+        cmocka_unit_test(test_near_pairs_of_many_bodies),
         cmocka_unit_test(test_certificates_of_all_pairs),
         cmocka_unit_test(test_one_pair),
         cmocka_unit_test(test_wrong_scenes_are_refused),
         cmocka_unit_test(test_refusals_of_the_service_are_given),
+        cmocka_unit_test(test_methods_without_gaps),
         cmocka_unit_test(test_bodies_go_by_handle_the_second_time),
         cmocka_unit_test(test_equal_ids_of_two_clients_do_not_matter),
         cmocka_unit_test(test_a_new_service_holds_no_bodies),

@@ -109,8 +109,8 @@ static void test_many_pairs_over_a_bad_bus(void **state)
         assert_int_not_equal(pair[i].result.client_id, 5);
         assert_int_equal(pair[i].result.client_id, pair[0].result.client_id);
     }
-    assert_true(fmb_client_counts(client).repeated > 10);
-    assert_int_equal(fmb_client_counts(client).queries, COUNT);
+    assert_true(fmb_client_get_counts(client).repeated > 10);
+    assert_int_equal(fmb_client_get_counts(client).queries, COUNT);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -377,7 +377,7 @@ static void test_a_tap_gets_all_messages_first(void **state)
         assert_int_equal(pair.status, FMB_OK);
         assert_int_equal(tapped.queries, 1);
         assert_int_equal(tapped.results, 1);
-        assert_int_equal(fmb_client_counts(client).malformed, 0);
+        assert_int_equal(fmb_client_get_counts(client).malformed, 0);
         assert_int_equal(fmb_client_raw_bus_counts(client).received, every ? 5 : 2);
         fmb_client_close(client);
     }

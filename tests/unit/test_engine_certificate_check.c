@@ -578,6 +578,24 @@ static void many_digits_are_read(void **state)
     free(zeros);
 }
 
+/* Of a box whose corner is beyond the largest double. */
+static void corners_beyond_the_doubles_are_judged(void **state)
+{
+    (void) state;
+    struct question question = {{.dim = 3, .shape = FMB_BOX}, {.dim = 3, .shape = FMB_BOX}, 0};
+    struct ready ready;
+    char text[4096];
+    size_t length;
+    for (int i = 0; i < 3; i++)
+        question.a.component[i][i] = question.b.component[i][i] = i ? 1 : DBL_MAX;
+    question.a.local[0] = -DBL_MAX;
+    question.b.local[0] = DBL_MAX;
+    referee_ready(&question, &ready);
+    assert_int_equal(pair_certificate(&ready.pair, text, sizeof text, &length), FMB_OK);
+    assert_true(holds(&ready.pair, FMB_SEPARATED, text));
+    assert_false(holds(&ready.pair, FMB_OVERLAPPING, text));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -590,6 +608,7 @@ int main(void)
         cmocka_unit_test(normals_are_what_whole_numbers_say),
         cmocka_unit_test(random_bytes_prove_nothing),
         cmocka_unit_test(many_digits_are_read),
+        cmocka_unit_test(corners_beyond_the_doubles_are_judged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,6 +109,8 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
                                 .duration = below(draw, 3),
                                 .contacts = below(draw, 2),
                                 .boxes = below(draw, 2),
+                                .gaps = below(draw, 3) == 0,
+                                .margin = below(draw, 3) ? 0 : 0.25 * below(draw, 12),
                                 .which = (enum fmb_pairs) below(draw, 3)};
     if (scene->which == FMB_PAIRS_ACROSS)
         scene->split = (size_t) below(draw, (int) count + 1);
@@ -166,6 +168,17 @@ struct truth {
     struct fmb_answer answer;
 };
 
+static bool wants_gaps(const struct fmb_scene *scene)
+{
+    return scene->gaps || scene->margin > 0;
+}
+
+static bool is_near(const struct fmb_scene *scene, const struct fmb_answer *answer)
+{
+    return scene->margin > 0 && answer->verdict == FMB_SEPARATED &&
+           answer->gap.bounds[0] <= scene->margin;
+}
+
 static size_t find_truth(const struct fmb_scene *scene, struct truth *out)
 {
     const struct fmb_method *method = scene->method ? scene->method : fmb_method_default();
@@ -179,8 +192,11 @@ static size_t find_truth(const struct fmb_scene *scene, struct truth *out)
         truth->number = number;
         memcpy(truth->pair, pair, sizeof pair);
         fmb_decide(method, &scene->placements[pair[0]], &scene->placements[pair[1]],
-                   scene->duration, scene->boxes ? FMB_WANT_BOX : 0, &truth->answer);
-        count += scene->which == FMB_PAIRS_LISTED || truth->answer.verdict != FMB_SEPARATED;
+                   scene->duration,
+                   (scene->boxes ? FMB_WANT_BOX : 0) | (wants_gaps(scene) ? FMB_WANT_GAP : 0),
+                   &truth->answer);
+        count += scene->which == FMB_PAIRS_LISTED || truth->answer.verdict != FMB_SEPARATED ||
+                 is_near(scene, &truth->answer);
     }
     assert_int_equal(number, fmb_scene_pair_count(scene));
     return count;
@@ -197,6 +213,22 @@ static void check_numbers(const double *got, const double *truth, size_t count, 
             assert_true(isnan(got[i]));
 }
 
+static void check_gap(const struct fmb_scene *scene, const struct fmb_gap *got,
+                      const struct fmb_answer *truth)
+{
+    const struct fmb_gap *gap = &truth->gap;
+    if (!truth->has_gap ||
+        (truth->verdict == FMB_SEPARATED && !scene->gaps && gap->bounds[0] > scene->margin)) {
+        assert_true(isnan(got->bounds[0]) && isnan(got->bounds[1]));
+        return;
+    }
+    assert_memory_equal(got->bounds, gap->bounds, sizeof gap->bounds);
+    assert_memory_equal(got->direction, gap->direction, sizeof gap->direction);
+    assert_int_equal(got->has_witness, gap->has_witness);
+    assert_memory_equal(&got->time, &gap->time, sizeof gap->time);
+    assert_memory_equal(got->witness, gap->witness, sizeof gap->witness);
+}
+
 static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_answers *answers,
                          size_t k, const struct truth *truth)
 {
@@ -204,6 +236,9 @@ static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_a
     assert_int_equal(answers->verdicts[k], truth->answer.verdict);
     assert_true(scene->contacts == !!answers->contacts);
     assert_true(scene->boxes == !!answers->boxes);
+    assert_true(wants_gaps(scene) == !!answers->gaps);
+    if (answers->gaps)
+        check_gap(scene, &answers->gaps[k], &truth->answer);
     if (answers->contacts)
         check_numbers(answers->contacts[k], truth->answer.contact, 2, truth->answer.has_contact);
     if (answers->boxes)
@@ -211,6 +246,8 @@ static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_a
             check_numbers(answers->boxes[k][end], truth->answer.box[end],
                           (size_t) scene->placements->body->dim, truth->answer.has_box);
 }
+
+static size_t near_pairs; /* so far */
 
 /* Returns how many of the pairs meet. */
 static size_t check_scene(const struct fmb_scene *scene, size_t slots)
@@ -233,6 +270,7 @@ static size_t check_scene(const struct fmb_scene *scene, size_t slots)
             check_answer(scene, &answers, k, &truth[at]);
             assert_int_equal(fmb_scene_number(state, k), truth[at].number);
             meeting += truth[at].answer.verdict > FMB_SEPARATED;
+            near_pairs += is_near(scene, &truth[at].answer);
         }
         const unsigned long long next = fmb_scene_next_pair(state);
         assert_true(at == 0 || truth[at - 1].number < next);
@@ -261,6 +299,7 @@ static void random_scenes(void **state)
         meeting += check_scene(&world.scene, FMB_SCENE_SLOTS_MIN + (size_t) below(&draw, 30));
     }
     assert_true(meeting > 3000);
+    assert_true(near_pairs > 300);
 }
 
 /* The answers to two halves are those to the whole. */
@@ -286,6 +325,8 @@ static void every_method(void **state)
         world.scene.method = fmb_method_at((size_t) n / 2 % 4);
         if (!world.scene.method->boxes)
             world.scene.boxes = false;
+        if (!world.scene.method->certain)
+            world.scene.margin = world.scene.gaps = 0;
         if (!world.scene.method->certain && world.scene.which != FMB_PAIRS_LISTED)
             continue;
         check_scene(&world.scene, 0);
@@ -378,6 +419,16 @@ static void bad_scenes(void **state)
     draw_good(FMB_PAIRS_ALL);
     scene->method = fmb_method_by_name("fmb");
     assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
+    draw_good(FMB_PAIRS_LISTED);
+    scene->gaps = true;
+    scene->method = fmb_method_by_name("sat");
+    assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
+    static const double margins[] = {-0x1p-1074, INFINITY, NAN};
+    for (int i = 0; i < 3; i++) {
+        draw_good(FMB_PAIRS_ALL);
+        scene->margin = margins[i];
+        assert_int_equal(begin(scene), FMB_BAD_MARGIN);
+    }
     draw_good(FMB_PAIRS_ALL);
     scene->duration = -1;
     assert_int_equal(begin(scene), FMB_BAD_DURATION);

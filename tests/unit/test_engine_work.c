@@ -16,17 +16,27 @@
 enum { TEXT_SIZE = 1 << 18 };
 
 /* Products of limbs, half a nanosecond each: 2 ms for an answer, and 10 ms with a certificate, 2 of
- * them for the answer beside it. */
-static const double most_work = 4e6, most_work_certified = 16e6;
+ * them for the answer beside it; 0.1 ms for a gap. */
+static const double most_work = 4e6, most_work_certified = 16e6, most_work_of_gap = 2e5;
 
-static double work_of_box(const struct question *question)
+static double work_of(const struct question *question, unsigned want)
 {
     struct ready ready;
     struct fmb_answer answer;
     referee_ready(question, &ready);
     const double before = gmp_work;
-    assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
+    assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, want, &answer), FMB_OK);
     return gmp_work - before;
+}
+
+static double work_of_box(const struct question *question)
+{
+    return work_of(question, FMB_WANT_BOX);
+}
+
+static double work_of_gap(const struct question *question)
+{
+    return work_of(question, FMB_WANT_GAP) - work_of(question, 0);
 }
 
 static double work_of_body(const struct question *question)
@@ -79,11 +89,13 @@ int main(void)
     static struct search searches[] = {
         {"bodies", work_of_body, 2e4, 8},
         {"boxes", work_of_box, most_work, 16},
+        {"gaps", work_of_gap, most_work_of_gap, 8},
         {"certificates", work_of_certificate, most_work_certified, 8}};
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(work_is_bounded, &searches[0]),
         cmocka_unit_test_prestate(work_is_bounded, &searches[1]),
         cmocka_unit_test_prestate(work_is_bounded, &searches[2]),
+        cmocka_unit_test_prestate(work_is_bounded, &searches[3]),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

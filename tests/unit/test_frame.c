@@ -466,7 +466,7 @@ static void decide_checks_first(void **state)
     struct fmb_answer answer;
     for (size_t i = 0; fmb_method_at(i); i++) {
         struct pair pair = plane_pair();
-        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 2, &answer), FMB_UNKNOWN_WANT);
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 4, &answer), FMB_UNKNOWN_WANT);
         assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0x80000001U, &answer),
                          FMB_UNKNOWN_WANT);
         pair.duration = -1;
@@ -525,7 +525,8 @@ static void statuses(void **state)
     assert_int_equal(FMB_BAD_ORIENTATION, 16);
     assert_int_equal(FMB_BAD_SIZE, 17);
     assert_int_equal(FMB_NO_FRAMES, 18);
-    assert_int_equal(FMB_STATUS_COUNT, 19);
+    assert_int_equal(FMB_BAD_MARGIN, 19);
+    assert_int_equal(FMB_STATUS_COUNT, 20);
 #define X(name, number, text) assert_string_equal(fmb_status_text(number), text);
     FMB_STATUS_MAP(X)
 #undef X

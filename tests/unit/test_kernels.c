@@ -793,7 +793,7 @@ static bool needs_wide_limbs(const struct frame_pair *pair)
     struct limbs_pair limbs;
     certified_verdict(pair, &path);
     return (faces || path == CERTIFIED_LIMBS) && limbs_prepare(pair, limbs_span_of(pair), &limbs) &&
-           limbs.limbs > 2;
+           limbs.limbs > CERTIFIED_QUICK_LIMBS;
 }
 
 /* Returns whether it is left open. */

@@ -12,6 +12,7 @@
 #include <math.h>
 
 #include "draw.h"
+#include "exact.h"
 #include "limbs.h"
 #include "question.h"
 #include "referee.h"
@@ -20,8 +21,8 @@
 
 /* ---- Numbers of a span ---- */
 
-/* Most bits that fit one limb, and so on; the last is the most that fit at all. */
-static const int widest[] = {61, 125, 253, 64 * LIMBS_MAX - 3};
+/* The most bits of lengths for numbers of 2, 3, 4, 5, 6, 12 and LIMBS_MAX limbs. */
+static const int widest[] = {39, 61, 82, 103, 125, 253, 509};
 enum { WIDTHS = sizeof widest / sizeof widest[0] };
 
 /* A multiple of 2^unit below 2^(unit + bits) in magnitude, often as large or as small as that
@@ -76,21 +77,37 @@ static struct question draw_question(struct draw *draw, int unit, int bits)
 
 /* ---- Slabs ---- */
 
-static int edge_numbers(enum fmb_shape shape, int dim)
+static int draw_edge_of(struct draw *draw, enum fmb_shape shape, int dim)
 {
-    return shape == FMB_CUBOID ? dim : dim == 3 ? SLABS_EDGES : 3;
+    static const int of_face[] = {0, 1, 5};
+    switch (shape) {
+    case FMB_FACE: return of_face[draw_int(draw, 0, 2)];
+    case FMB_TETRAHEDRON: return draw_int(draw, 0, dim == 3 ? SLABS_EDGES - 1 : 2);
+    default: return draw_int(draw, 0, dim - 1);
+    }
 }
 
-/* Any two edges: also such as are no slab of the pair. */
+/* Any edge: two of them may be no slab of the pair. */
 static int draw_edge(struct draw *draw, const struct question *question)
 {
     const int dim = question->a.dim;
     switch (draw_int(draw, 0, 4)) {
     case 0: return SLABS_DRIFT;
     case 1:
-    case 2: return draw_int(draw, 0, edge_numbers(question->a.shape, dim) - 1);
-    default: return SLABS_EDGE_OF_B + draw_int(draw, 0, edge_numbers(question->b.shape, dim) - 1);
+    case 2: return draw_edge_of(draw, question->a.shape, dim);
+    default: return SLABS_EDGE_OF_B + draw_edge_of(draw, question->b.shape, dim);
     }
+}
+
+/* Two edges in the order of slabs: of a, of b, the drift; not the drift twice. */
+static struct slab_normal draw_normal(struct draw *draw, const struct question *question)
+{
+    struct slab_normal normal = {draw_edge(draw, question), draw_edge(draw, question)};
+    while (question->a.dim == 3 && normal.u == SLABS_DRIFT)
+        normal.u = draw_edge(draw, question);
+    if (normal.u >= SLABS_EDGE_OF_B && normal.v < SLABS_EDGE_OF_B)
+        return (struct slab_normal){normal.v, normal.u};
+    return normal;
 }
 
 /* Whether x 2^of_x = y 2^of_y. */
@@ -104,7 +121,7 @@ static bool same_number(mpz_t x, long of_x, mpz_t y, long of_y)
 }
 
 /* Compares one slab; returns the sign of its gap. */
-static int compare_slab(const struct question *question, const struct limbs_pair *limbs,
+static int compare_slab(const struct question *question, struct limbs_pair *limbs,
                         struct dyadic_span span, struct slab_normal normal,
                         struct slab_truth *truth)
 {
@@ -133,7 +150,7 @@ struct seen {
 
 static int limbs_of(long bits)
 {
-    return bits <= 61 ? 1 : bits <= 125 ? 2 : bits <= 253 ? 4 : 8;
+    return bits <= 39 ? 2 : (int) (3 * bits + 8) / 64 + 1;
 }
 
 static void compare_pair(struct draw *draw, const struct question *question,
@@ -146,7 +163,7 @@ static void compare_pair(struct draw *draw, const struct question *question,
     const struct dyadic_span span = limbs_span_of(&frames);
     const long bits = span.top - span.unit;
     const bool fits = limbs_prepare(&frames, span, &limbs);
-    if (fits != (bits <= 64 * LIMBS_MAX - 3))
+    if (fits != (bits <= widest[WIDTHS - 1]))
         referee_fail(question, "fits, or does not");
     if (!fits || bits < 0)
         return;
@@ -154,7 +171,7 @@ static void compare_pair(struct draw *draw, const struct question *question,
         referee_fail(question, "another width");
     slab_truth_set(truth, &ready.pair);
     for (int n = 0; n < 4; n++) {
-        const struct slab_normal normal = {draw_edge(draw, question), draw_edge(draw, question)};
+        const struct slab_normal normal = draw_normal(draw, question);
         seen->sign[compare_slab(question, &limbs, span, normal, truth) + 1]++;
         seen->zero += truth->zero;
     }
@@ -211,7 +228,7 @@ static struct question cubes_of(double size)
 static void what_does_not_fit_is_refused(void **state)
 {
     (void) state;
-    const int most = 64 * LIMBS_MAX - 3;
+    const int most = widest[WIDTHS - 1];
     for (int bits = most - 1; bits <= most + 1; bits++) {
         struct question question = cubes_of(1);
         struct ready ready;
@@ -223,6 +240,208 @@ static void what_does_not_fit_is_refused(void **state)
         assert_int_equal(span.top - span.unit, bits);
         assert_int_equal(limbs_prepare(&frames, span, &limbs), bits <= most);
     }
+}
+
+/* ---- Orientations ---- */
+
+static void draw_orientation(struct draw *draw, int count, double *q)
+{
+    const double angle = acos(-1) / (draw_coin(draw) ? 2 : 4);
+    memset(q, 0, 4 * sizeof *q);
+    switch (draw_int(draw, 0, 4)) {
+    case 0: draw_integers(draw, count, -2, 2, q); break;
+    case 1: /* quarter and half turns from libm */
+        q[0] = cos(angle);
+        q[draw_int(draw, 1, count - 1)] = sin(angle);
+        break;
+    case 2: /* integers as long as they get */
+        for (int i = 0; i < count; i++)
+            q[i] = draw_log(draw, -195, 0);
+        break;
+    default:
+        for (int i = 0; i < count; i++)
+            q[i] = draw_uniform(draw, -1, 1);
+        break;
+    }
+    q[0] += q[0] == 0;
+}
+
+static double draw_number(struct draw *draw, bool whole)
+{
+    return whole ? draw_int(draw, -2, 2) : draw_uniform(draw, -1, 1);
+}
+
+static void draw_posed(struct draw *draw, int dim, struct solid *solid)
+{
+    const bool whole = draw_coin(draw);
+    solid->dim = dim;
+    solid->shape = (enum fmb_shape) draw_int(draw, FMB_CUBOID, FMB_BOX);
+    if (dim == 2 && solid->shape == FMB_FACE)
+        solid->shape = FMB_TETRAHEDRON;
+    const bool box = solid->shape == FMB_BOX, local = draw_coin(draw);
+    solid->moving = draw_coin(draw);
+    for (int axis = 0; axis < dim; axis++) {
+        for (int i = 0; i < solid_count(solid); i++) {
+            const double number = draw_number(draw, whole);
+            solid->component[i][axis] = !box ? number : i == axis ? fabs(number) : 0;
+        }
+        solid->origin[axis] = draw_number(draw, whole);
+        solid->velocity[axis] = draw_number(draw, whole);
+        solid->local[axis] = local ? draw_number(draw, whole) : 0;
+    }
+    solid->by_vertices = !box && solid->shape != FMB_CUBOID && draw_coin(draw);
+    if (draw_int(draw, 0, 3) == 0)
+        return;
+    solid->orientation_count = dim == 3 ? 4 : 2;
+    draw_orientation(draw, solid->orientation_count, solid->orientation);
+}
+
+/* The same orientation, or the opposite quaternion, in the same least integers. */
+static void share_orientation(struct draw *draw, struct question *question)
+{
+    const double sign = draw_coin(draw) ? 1 : -1;
+    question->b.orientation_count = question->a.orientation_count;
+    for (int i = 0; i < 4; i++)
+        question->b.orientation[i] = sign * question->a.orientation[i];
+}
+
+static void set_edge(struct exact_pair *pair, int edge, int dim, mpz_t out[3])
+{
+    const int e = edge % SLABS_EDGES, p = dim == 2 ? 0 : (e + 1) % 3,
+              q = dim == 2 ? 1 : (e + 2) % 3;
+    mpz_t *from = NULL, *to = pair->drift;
+    if (edge != SLABS_DRIFT) {
+        struct exact_frame *frame = &pair->frame[edge >= SLABS_EDGE_OF_B];
+        from = e < dim ? NULL : frame->component[p];
+        to = frame->component[e < dim ? e : q];
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_set(out[axis], to[axis]);
+        if (from)
+            mpz_sub(out[axis], out[axis], from[axis]);
+    }
+}
+
+/* start - low, high - start, slope of the same slab, from the numbers of the exact step. */
+static void set_expected(struct exact_pair *pair, struct slab_normal edges, int dim, mpz_t out[3])
+{
+    mpz_t u[3], v[3], normal[3], value[EXACT_VECTORS], range[4];
+    for (int i = 0; i < 3; i++)
+        mpz_inits(u[i], v[i], normal[i], NULL);
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        mpz_init(value[k]);
+    for (int i = 0; i < 4; i++)
+        mpz_init(range[i]);
+    set_edge(pair, edges.u, dim, u);
+    if (dim == 2) {
+        mpz_neg(normal[0], u[1]);
+        mpz_set(normal[1], u[0]);
+    } else {
+        set_edge(pair, edges.v, dim, v);
+        integer_cross(normal, u, v, pair->scratch[0]);
+    }
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        exact_dot(pair, value[k], normal, k);
+    for (int f = 0; f < 2; f++)
+        exact_extent(pair, f, value, range[2 * f], range[2 * f + 1]);
+    mpz_sub(out[0], value[EXACT_OFFSET], range[0]); /* low of a - high of b */
+    mpz_add(out[0], out[0], range[3]);
+    mpz_sub(out[1], range[1], range[2]);
+    mpz_sub(out[1], out[1], value[EXACT_OFFSET]);
+    mpz_set(out[2], value[EXACT_DRIFT]);
+    for (int i = 0; i < 3; i++)
+        mpz_clears(u[i], v[i], normal[i], NULL);
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        mpz_clear(value[k]);
+    for (int i = 0; i < 4; i++)
+        mpz_clear(range[i]);
+}
+
+/* Whether x is y times a positive number, or both are 0. */
+static bool same_direction(mpz_t x[3], mpz_t y[3], mpz_t scratch[2])
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3;
+        mpz_mul(scratch[0], x[i], y[j]);
+        mpz_mul(scratch[1], x[j], y[i]);
+        if (mpz_sgn(x[i]) != mpz_sgn(y[i]) || mpz_cmp(scratch[0], scratch[1]) != 0)
+            return false;
+    }
+    return true;
+}
+
+/* The gap is the larger of low - start and start - high, at the end of the window where each is
+ * less. */
+static int expected_sign(mpz_t number[3], mpz_t scratch)
+{
+    int sign = -1;
+    for (int side = 0; side < 2; side++) {
+        (side ? mpz_sub : mpz_add)(scratch, number[side], number[2]);
+        const int last = mpz_sgn(scratch), first = mpz_sgn(number[side]);
+        const int of_side = -(last > first ? last : first);
+        sign = of_side > sign ? of_side : sign;
+    }
+    return sign;
+}
+
+static void compare_posed(const struct question *question, struct limbs_pair *limbs,
+                          struct exact_pair *exact, struct slab_normal edges, long seen[3])
+{
+    mpz_t low, high, start, found[3], expected[3], scratch[2];
+    mpz_inits(low, high, start, scratch[0], scratch[1], NULL);
+    for (int i = 0; i < 3; i++)
+        mpz_inits(found[i], expected[i], NULL);
+    limbs_slab(limbs, edges, low, high, start, found[2]);
+    mpz_sub(found[0], start, low);
+    mpz_sub(found[1], high, start);
+    set_expected(exact, edges, question->a.dim, expected);
+    if (!same_direction(found, expected, scratch))
+        referee_fail(question, "the numbers of a slab of turned frames");
+    const int sign = limbs_gap_sign(limbs, edges);
+    const bool nothing = mpz_sgn(expected[0]) == 0 && mpz_sgn(expected[1]) == 0 &&
+                         mpz_sgn(expected[2]) == 0; /* perhaps the normal is zero, perhaps not */
+    if (!nothing && sign != expected_sign(expected, scratch[0]))
+        referee_fail(question, "the sign of a gap of turned frames");
+    seen[sign + 1]++;
+    mpz_clears(low, high, start, scratch[0], scratch[1], NULL);
+    for (int i = 0; i < 3; i++)
+        mpz_clears(found[i], expected[i], NULL);
+}
+
+static void turned_slabs_are_gmp(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long seen[3] = {0}, same = 0, limbs_of_pair[LIMBS_MAX + 1] = {0};
+    draw_begin(&draw, "turned_slabs_are_gmp");
+    for (long n = draw_sample(40000); n > 0; n--) {
+        const int dim = draw_int(&draw, 0, 3) ? 3 : 2;
+        struct question question = {.duration = draw_int(&draw, 0, 2)};
+        draw_posed(&draw, dim, &question.a);
+        draw_posed(&draw, dim, &question.b);
+        if (draw_int(&draw, 0, 3) == 0)
+            share_orientation(&draw, &question);
+        struct ready ready;
+        struct limbs_pair limbs;
+        struct exact_pair exact;
+        referee_ready(&question, &ready);
+        const struct frame_pair frames = pair_frames(&ready.pair);
+        assert_true(limbs_prepare(&frames, limbs_span_of(&frames), &limbs));
+        exact_pair_init(&exact, &frames);
+        for (int k = 0; k < 6; k++)
+            compare_posed(&question, &limbs, &exact, draw_normal(&draw, &question), seen);
+        exact_pair_clear(&exact);
+        same += limbs.common != NULL;
+        limbs_of_pair[limbs.limbs]++;
+    }
+    printf("# %ld of equal orientations; gaps below 0 %ld, 0 %ld, above %ld; pairs by limbs", same,
+           seen[0], seen[1], seen[2]);
+    for (int i = 0; i <= LIMBS_MAX; i++)
+        printf(" %ld", limbs_of_pair[i]);
+    printf("\n");
+    assert_true(same > 0 && seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
+    for (int limbs = 2; limbs <= 18; limbs++)
+        assert_true(limbs_of_pair[limbs] > 0);
 }
 
 /* ---- What does not round ---- */
@@ -326,6 +545,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(limbs_are_gmp),
         cmocka_unit_test(what_does_not_fit_is_refused),
+        cmocka_unit_test(turned_slabs_are_gmp),
         cmocka_unit_test(what_is_said_not_to_round_does_not),
         cmocka_unit_test(the_limit_is_where_it_is_said_to_be),
     };

@@ -585,8 +585,11 @@ static void numbers_that_are_no_doubles(void **state)
 static struct fmb_answer tight_thirds(void)
 {
     const double third = 1. / 3, two_thirds = nextafter(2. / 3, 1);
-    return (struct fmb_answer){
-        FMB_OVERLAPPING, true, true, {third, two_thirds}, {{third, 0, 0}, {two_thirds, 1, 0}}};
+    return (struct fmb_answer){.verdict = FMB_OVERLAPPING,
+                               .has_contact = true,
+                               .has_box = true,
+                               .contact = {third, two_thirds},
+                               .box = {{third, 0, 0}, {two_thirds, 1, 0}}};
 }
 
 static bool design(const struct fmb_answer *answer)
@@ -664,8 +667,11 @@ static void an_end_beyond_the_doubles_is_infinite(void **state)
     struct fmb_body body[2];
     struct pair pair;
     question_pair(&question, body, &pair);
-    struct fmb_answer answer = {
-        FMB_OVERLAPPING, true, true, {0, 1}, {{DBL_MAX, 0, 0}, {HUGE_VAL, 1, 0}}};
+    struct fmb_answer answer = {.verdict = FMB_OVERLAPPING,
+                                .has_contact = true,
+                                .has_box = true,
+                                .contact = {0, 1},
+                                .box = {{DBL_MAX, 0, 0}, {HUGE_VAL, 1, 0}}};
     assert_true(oracle_check_tightest(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
     answer.box[1][0] = DBL_MAX;
     assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
@@ -687,8 +693,11 @@ static void doubles_too_coarse_for_the_limit(void **state)
     struct fmb_body body[2];
     struct pair pair;
     question_pair(&question, body, &pair);
-    struct fmb_answer answer = {
-        FMB_OVERLAPPING, true, true, {0x1p-1074, 0x1p-1072}, {{0, 0.5, 0}, {0x1p-1073, 0.5, 0}}};
+    struct fmb_answer answer = {.verdict = FMB_OVERLAPPING,
+                                .has_contact = true,
+                                .has_box = true,
+                                .contact = {0x1p-1074, 0x1p-1072},
+                                .box = {{0, 0.5, 0}, {0x1p-1073, 0.5, 0}}};
     assert_true(oracle_check_tightest(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
     answer.contact[0] = 0;
     assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));

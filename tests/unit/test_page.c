@@ -498,6 +498,33 @@ static void invalid_ends_of_boxes_are_strings(void **state)
     expect_answers(&now, &now, "[[0,1,[3,null,null,\"inf\",\"NaN\",\"-inf\",1]]]");
 }
 
+static void gaps_come_last(void **state)
+{
+    struct pair_result then = overlapping(), now;
+    struct fmb_gap *gap = &then.answer.gap;
+    (void) state;
+    then.answer.has_gap = true;
+    gap->bounds[0] = -INFINITY;
+    gap->bounds[1] = -0.5;
+    expect_answers(&then, &then, "[[0,1,[3,null,null,0.5,0.5,1,1,[null,-0.5]]]]");
+    then.answer.has_box = false;
+    then.answer.verdict = FMB_SEPARATED;
+    gap->bounds[0] = 1;
+    gap->bounds[1] = INFINITY;
+    gap->has_witness = true;
+    gap->time = 0.25;
+    gap->witness[0][1] = 2;
+    gap->witness[1][0] = -3;
+    now = then;
+    expect_answers(&then, &now, "[[0,1,[1,null,null,[1,null,0.25,0,2,-3,0]]]]");
+    now.answer.gap.witness[1][1] = 4;
+    expect_answers(&then, &now,
+                   "[[0,1,[1,null,null,[1,null,0.25,0,2,-3,0]],"
+                   "[1,null,null,[1,null,0.25,0,2,-3,4]]]]");
+    now.answer.has_gap = false;
+    expect_answers(&now, &then, "[[0,1,1,[1,null,null,[1,null,0.25,0,2,-3,0]]]]");
+}
+
 static void statuses_are_written(void **state)
 {
     const struct pair_query query = pair_query(2);
@@ -584,6 +611,25 @@ static void listed_pairs_have_times_and_boxes(void **state)
     expect_scene(
         "[[3,4,[3,0.25,0.5,5,6,7,null],[3,0.25,0.75,5,6,7,null]],"
         "[1,2,[2,0,1,1,2,3,4]],[0,1,1],[2,3,0]]");
+}
+
+/* The second of the pairs that are named is near; of the third there is none. */
+static void named_pairs_have_gaps(void **state)
+{
+    (void) state;
+    make_scene(QUERY_PAIRS_ALL, 3);
+    scene.margin = 0.5;
+    add_verdict(&result_then, 0, 1, FMB_TOUCHING);
+    add_verdict(&result_then, 0, 2, FMB_SEPARATED);
+    result_then.names_pairs = result_then.has_gaps = true;
+    result_then.dim = 2;
+    result_then.end_pair = 3;
+    result_then.gap[1] =
+        (struct fmb_gap){.bounds = {0.25, 0.5}, .has_witness = true, .witness = {{1, 2}, {3, 4}}};
+    result_now = result_then;
+    expect_scene("[[0,1,[2,null,null,[0,0]]],[0,2,[1,null,null,[0.25,0.5,0,1,2,3,4]]]]");
+    result_now.verdict_count = 1;
+    expect_scene("[[0,2,[1,null,null,[0.25,0.5,0,1,2,3,4]],1],[0,1,[2,null,null,[0,0]]]]");
 }
 
 static void without_times_and_boxes_a_pair_is_its_verdict(void **state)
@@ -746,9 +792,11 @@ int main(void)
         cmocka_unit_test(a_scene_has_all_its_placements),
         cmocka_unit_test(results_of_a_pair_stand_side_by_side),
         cmocka_unit_test(invalid_ends_of_boxes_are_strings),
+        cmocka_unit_test(gaps_come_last),
         cmocka_unit_test(statuses_are_written),
         cmocka_unit_test(a_different_certificate_is_reported),
         cmocka_unit_test(listed_pairs_have_times_and_boxes),
+        cmocka_unit_test(named_pairs_have_gaps),
         cmocka_unit_test(without_times_and_boxes_a_pair_is_its_verdict),
         cmocka_unit_test(partial_results_answer_some_pairs),
         cmocka_unit_test(pairs_not_named_are_separated),

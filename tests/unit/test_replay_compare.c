@@ -151,14 +151,20 @@ static void expect_same(double tolerance, const struct pair_query *query,
     assert_int_equal(compare_with(tolerance, query, then, now), REPLAY_SAME);
 }
 
-enum { BOX = QUERY_WANT_BOX, CERTIFICATE = QUERY_WANT_CERTIFICATE, TIMES = QUERY_WANT_TIMES };
+enum {
+    BOX = QUERY_WANT_BOX,
+    CERTIFICATE = QUERY_WANT_CERTIFICATE,
+    TIMES = QUERY_WANT_TIMES,
+    GAP = QUERY_WANT_GAP
+};
 
 static void test_every_kind(void **state)
 {
-    const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE);
+    const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE | GAP);
     const struct pair_result now = answer(&query);
     (void) state;
     assert_true(now.answer.has_box && now.answer.has_contact && now.certificate);
+    assert_true(now.answer.has_gap);
     struct pair_result then = now;
     expect_same(0, &query, &then, &now);
     then.certificate = "none such";
@@ -167,6 +173,13 @@ static void test_every_kind(void **state)
     then.certificate = NULL;
     expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
     expect_kind(0, &query, &now, &then, DIFFERENT_CERTIFICATE);
+    then.answer.gap.direction[2] = -then.answer.gap.direction[2] + 1;
+    expect_kind(0, &query, &then, &now, DIFFERENT_GAP);
+    then.answer.gap = now.answer.gap;
+    then.answer.gap.bounds[1] = nextafter(then.answer.gap.bounds[1], 9);
+    expect_kind(0, &query, &then, &now, DIFFERENT_GAP);
+    then.answer.has_gap = false;
+    expect_kind(0, &query, &then, &now, DIFFERENT_GAP);
     then.answer.box[1][2] = nextafter(then.answer.box[1][2], 9);
     expect_kind(0, &query, &then, &now, DIFFERENT_BOX);
     then.answer.has_box = false;
@@ -298,6 +311,50 @@ static void test_ends_of_boxes(void **state)
     }
 }
 
+/* A result with one of the numbers for a bound of a gap, measured by its witness points. */
+static void set_gap(struct pair_result *result, int bound, double value)
+{
+    struct fmb_gap *gap = &result->answer.gap;
+    result->answer.verdict = FMB_SEPARATED;
+    result->answer.has_contact = false;
+    result->answer.has_gap = gap->has_witness = true;
+    gap->bounds[bound] = value;
+    gap->witness[1][2] = 1;
+}
+
+static void test_bounds_of_gaps(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 0, 0);
+    const struct pair_result good = answer(&query);
+    (void) state;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        for (int bound = 0; bound < 2; bound++) {
+            struct pair_result then = good, now = good;
+            set_gap(&then, bound, ends[i].then);
+            set_gap(&now, bound, ends[i].now);
+            if (ends[i].box)
+                expect_same(ends[i].tolerance, &query, &then, &now);
+            else
+                expect_kind(ends[i].tolerance, &query, &then, &now, DIFFERENT_GAP);
+        }
+}
+
+/* Nearest points need not be the only ones. */
+static void test_with_a_tolerance_witness_points_may_differ(void **state)
+{
+    const struct pair_query query = pair(3, 2, 0, GAP);
+    const struct pair_result now = answer(&query);
+    struct pair_result then = now;
+    (void) state;
+    assert_true(now.answer.gap.has_witness);
+    then.answer.gap.witness[0][1] += 0.25;
+    then.answer.gap.direction[0] += 0.25;
+    expect_same(1e-12, &query, &then, &now);
+    expect_kind(0, &query, &then, &now, DIFFERENT_GAP);
+    then.answer.has_gap = false;
+    expect_kind(1, &query, &then, &now, DIFFERENT_GAP);
+}
+
 static void test_with_a_tolerance_certificates_may_differ(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, CERTIFICATE);
@@ -339,6 +396,8 @@ struct plain {
     int verdict;
     bool has_times, has_box;
     double times[2], box[6];
+    bool has_gap;
+    struct fmb_gap gap;
 };
 
 enum { PAIRS_MAX = 20000 };
@@ -375,6 +434,10 @@ static int number_of(const unsigned pair_of[2], int from, int count)
 static void put_plain(const struct scene_result *result, int i, int *contact, struct plain *out)
 {
     *out = (struct plain){.there = true, .verdict = result->verdict[i]};
+    out->has_gap = result->has_gaps && result->dim == scene.placement[0].dim &&
+                   !isnan(result->gap[i].bounds[0]);
+    if (out->has_gap)
+        out->gap = result->gap[i];
     if (out->verdict < FMB_TOUCHING)
         return;
     const int at = (*contact)++;
@@ -417,7 +480,8 @@ static bool same_plain(const struct plain *a, const struct plain *b)
 {
     return a->verdict == b->verdict && a->has_times == b->has_times && a->has_box == b->has_box &&
            memcmp(a->times, b->times, sizeof a->times) == 0 &&
-           memcmp(a->box, b->box, sizeof a->box) == 0;
+           memcmp(a->box, b->box, sizeof a->box) == 0 && a->has_gap == b->has_gap &&
+           query_same_gap(&a->gap, &b->gap);
 }
 
 /* What is reported is what the model says. */
@@ -441,7 +505,7 @@ static void check_differences(int total)
             assert_int_equal(difference->kind, DIFFERENT_VERDICT);
         else
             assert_true(difference->kind == DIFFERENT_INTERVAL ||
-                        difference->kind == DIFFERENT_BOX);
+                        difference->kind == DIFFERENT_BOX || difference->kind == DIFFERENT_GAP);
     }
     assert_int_equal(found, reported_count);
 }
@@ -504,6 +568,10 @@ static void draw_scene(void)
     scene.want = (int32_t) (draw(2) * BOX | draw(2) * TIMES);
     scene.which = (int32_t) draw(3);
     scene.method = methods[draw(scene.which == QUERY_PAIRS_LISTED ? 6 : 4)];
+    if (scene.method < 2 || scene.method > 3) {
+        scene.want |= draw(2) ? GAP : 0;
+        scene.margin = 0.5 * (double) draw(3);
+    }
     scene.placement_count = frames;
     for (int i = 0; i < frames; i++) {
         const int64_t id = draw(2) ? 20 + i : 0;
@@ -554,11 +622,16 @@ static void change_one(struct scene_result *result)
 {
     const int at = result->verdict_count ? (int) draw((uint64_t) result->verdict_count) : 0;
     const int contact = result->contact_count ? (int) draw((uint64_t) result->contact_count) : -1;
-    switch (draw(4)) {
+    switch (draw(6)) {
     case 0:
         if (result->verdict_count > 0 && result->verdict[at] >= FMB_TOUCHING)
             result->verdict[at] ^= FMB_TOUCHING ^ FMB_OVERLAPPING;
         break;
+    case 3:
+        if (result->verdict_count > 0 && result->has_gaps)
+            result->gap[at].direction[1] += 0.5;
+        break;
+    case 4: result->has_gaps = false; break;
     case 1:
         if (contact >= 0 && result->has_times)
             result->times[2 * contact + 1] += 0.5;
@@ -579,12 +652,20 @@ static void drop_one(struct scene_result *result)
     const size_t count = (size_t) result->verdict_count, at = draw(count),
                  dim = (size_t) result->dim;
     const size_t after = count - at - 1;
+    const bool contact = result->verdict[at] >= FMB_TOUCHING;
+    size_t from = 0;
+    for (size_t i = 0; i < at; i++)
+        from += result->verdict[i] >= FMB_TOUCHING;
+    const size_t rest = (size_t) result->contact_count - from - contact;
+    memmove(&result->gap[at], &result->gap[at + 1], after * sizeof result->gap[0]);
     memmove(&result->verdict[at], &result->verdict[at + 1], after);
     memmove(&result->pair[at], &result->pair[at + 1], after * sizeof result->pair[0]);
-    memmove(&result->times[2 * at], &result->times[2 * at + 2], 2 * after * sizeof(double));
-    memmove(&result->boxes[2 * dim * at], &result->boxes[2 * dim * (at + 1)],
-            2 * dim * after * sizeof(double));
     result->verdict_count--;
+    if (!contact)
+        return;
+    memmove(&result->times[2 * from], &result->times[2 * from + 2], 2 * rest * sizeof(double));
+    memmove(&result->boxes[2 * dim * from], &result->boxes[2 * dim * (from + 1)],
+            2 * dim * rest * sizeof(double));
     result->contact_count--;
 }
 
@@ -841,6 +922,8 @@ int main(void)
         TEST(statuses_of_the_moment),
         TEST(ends_of_intervals),
         TEST(ends_of_boxes),
+        TEST(bounds_of_gaps),
+        TEST(with_a_tolerance_witness_points_may_differ),
         TEST(with_a_tolerance_certificates_may_differ),
         TEST(boxes_of_another_dimension),
         TEST(scenes_against_the_model),

@@ -439,6 +439,8 @@ static void test_pair_result_round_trip(void **state)
         for (int axis = 0; axis < dim; axis++)
             result.answer.box[1][axis] = 1.0 / (axis + 3);
         result.answer.box[1][0] = HUGE_VAL;
+        result.answer.has_gap = true;
+        result.answer.gap = (struct fmb_gap){.bounds = {-0.5, -0.25}, .direction = {0, -1}};
         result.compute_ns = 1234;
         unsigned char bytes[QUERY_BYTES_MAX];
         size_t size = wire_write_pair_result(&result, bytes);
@@ -449,6 +451,33 @@ static void test_pair_result_round_trip(void **state)
         size = wire_write_pair_result(&result, bytes);
         assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
         assert_same_result(&result, &read, bytes, size);
+        ASSERT_AS_LCM_WRITES(fmb_msgs_pair_result_t, bytes, size);
+    }
+}
+
+static void test_pair_result_apart_round_trip(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct pair_result result, read;
+        unsigned char bytes[QUERY_BYTES_MAX];
+        memset(&result, 0, sizeof result);
+        result.dim = dim;
+        result.answer.verdict = FMB_SEPARATED;
+        result.answer.has_gap = true;
+        struct fmb_gap *gap = &result.answer.gap;
+        gap->bounds[0] = 1e-9;
+        gap->bounds[1] = HUGE_VAL;
+        gap->has_witness = true;
+        gap->time = 0.5;
+        for (int axis = 0; axis < dim; axis++) {
+            gap->direction[axis] = 1.0 / (axis + 3);
+            gap->witness[0][axis] = axis + 1;
+            gap->witness[1][axis] = -axis - 1;
+        }
+        size_t size = wire_write_pair_result(&result, bytes);
+        assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
+        assert_memory_equal(&result, &read, sizeof result);
         ASSERT_AS_LCM_WRITES(fmb_msgs_pair_result_t, bytes, size);
     }
 }
@@ -526,6 +555,37 @@ static void test_refusal_round_trip(void **state)
     ASSERT_AS_LCM_WRITES(fmb_msgs_pair_result_t, bytes, size);
 }
 
+static bool is_accepted(const struct pair_result *result)
+{
+    unsigned char bytes[QUERY_BYTES_MAX];
+    struct pair_result read;
+    return !wire_read_pair_result(bytes, (uint32_t) wire_write_pair_result(result, bytes), &read);
+}
+
+/* Bodies that are separated have witness points, and they alone; those that touch have a gap of 0.
+ */
+static void test_gaps_are_consistent(void **state)
+{
+    (void) state;
+    for (int verdict = 0; verdict <= FMB_OVERLAPPING; verdict++)
+        for (int witness = 0; witness < 2; witness++) {
+            struct pair_result result = {.status = verdict ? FMB_OK : FMB_BUSY, .dim = 3};
+            struct fmb_gap *gap = &result.answer.gap;
+            result.answer.verdict = (enum fmb_verdict) verdict;
+            result.answer.has_contact = verdict >= FMB_TOUCHING;
+            result.answer.has_gap = true;
+            gap->has_witness = witness;
+            const bool good = verdict > 0 && witness == (verdict == FMB_SEPARATED);
+            assert_int_equal(is_accepted(&result), good);
+            gap->bounds[1] = 1;
+            assert_int_equal(is_accepted(&result), good && verdict != FMB_TOUCHING);
+            gap->bounds[0] = 2;
+            assert_false(is_accepted(&result));
+            gap->bounds[0] = NAN;
+            assert_false(is_accepted(&result));
+        }
+}
+
 /* Bodies that meet have a contact interval, and they alone may have a box; only pairs that were
  * decided have a verdict. */
 static void test_answers_are_consistent(void **state)
@@ -551,13 +611,11 @@ static void test_answers_are_consistent(void **state)
         {FMB_BUSY, FMB_OVERLAPPING + 1, true, true, false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        unsigned char bytes[QUERY_BYTES_MAX];
-        struct pair_result result = {.status = cases[i].status, .dim = 3}, read;
+        struct pair_result result = {.status = cases[i].status, .dim = 3};
         result.answer.verdict = (enum fmb_verdict) cases[i].verdict;
         result.answer.has_contact = cases[i].contact;
         result.answer.has_box = cases[i].box;
-        const size_t size = wire_write_pair_result(&result, bytes);
-        assert_int_equal(!wire_read_pair_result(bytes, (uint32_t) size, &read), cases[i].accepted);
+        assert_int_equal(is_accepted(&result), cases[i].accepted);
     }
 }
 
@@ -631,10 +689,12 @@ int main(void)
         cmocka_unit_test(test_definition_round_trip),
         cmocka_unit_test(test_definitions_match_their_handles),
         cmocka_unit_test(test_pair_result_round_trip),
+        cmocka_unit_test(test_pair_result_apart_round_trip),
         cmocka_unit_test(test_certificates_end_somewhere),
         cmocka_unit_test(test_certificates_are_printable),
         cmocka_unit_test(test_certificates_have_a_verdict),
         cmocka_unit_test(test_refusal_round_trip),
+        cmocka_unit_test(test_gaps_are_consistent),
         cmocka_unit_test(test_answers_are_consistent),
         cmocka_unit_test(test_status_round_trip),
         cmocka_unit_test(test_status_of_a_newer_service),

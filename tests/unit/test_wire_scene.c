@@ -182,16 +182,43 @@ static void test_more_than_the_capacity(void **state)
 
 /* ---- Results ---- */
 
-static void set_result(int dim, int32_t handles, int32_t verdicts, bool names, bool times,
-                       bool boxes)
+/* What results have besides verdicts. */
+enum { NAMES = 1, TIMES = 2, BOXES = 4, GAPS = 8, FORMS = 16 };
+
+/* A gap that goes with the verdict. Every seventh of separated pairs that are not named has none.
+ */
+static void set_gap(int dim, int32_t i)
 {
+    struct fmb_gap *gap = &result.gap[i];
+    const int verdict = result.verdict[i];
+    memset(gap, 0, sizeof *gap);
+    gap->has_witness = verdict == FMB_SEPARATED;
+    if (gap->has_witness && i % 7 == 0 && !result.names_pairs) {
+        gap->has_witness = false;
+        gap->bounds[0] = gap->bounds[1] = NAN;
+        return;
+    }
+    if (verdict != FMB_TOUCHING) {
+        gap->bounds[0] = verdict == FMB_SEPARATED ? 0.25 * i : -i - 0.5;
+        gap->bounds[1] = i % 5 == 0 && verdict == FMB_SEPARATED ? HUGE_VAL : gap->bounds[0];
+    }
+    gap->direction[i % dim] = i % 2 ? -1 : 1;
+    for (int axis = 0; axis < dim && gap->has_witness; axis++) {
+        gap->witness[0][axis] = axis + 0.5 * i;
+        gap->witness[1][axis] = -axis;
+    }
+    gap->time = gap->has_witness ? 0.125 * i : 0;
+}
+
+static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
+{
+    const bool names = form & NAMES, times = form & TIMES, boxes = form & BOXES;
     result.utime = 1;
     result.client_id = 2;
     result.sequence_number = 3;
     result.server_id = QUERY_ID_MAX;
     result.method = 4;
     result.compute_ns = 1234;
-    result.dim = boxes ? dim : 0;
     result.handle_count = handles;
     result.verdict_count = verdicts;
     result.end_pair = verdicts + 1000;
@@ -199,7 +226,9 @@ static void set_result(int dim, int32_t handles, int32_t verdicts, bool names, b
     for (int32_t i = 0; i < handles; i++)
         memset(&result.handle[i], i % 255 + 1, sizeof result.handle[i]);
     for (int32_t i = 0; i < verdicts; i++) {
-        result.verdict[i] = (unsigned char) (names ? 2 + i % 2 : i % 4);
+        result.verdict[i] = (unsigned char) (names         ? (form & GAPS ? 1 : 2) + i % 2
+                                             : form & GAPS ? 1 + i % 3
+                                                           : i % 4);
         result.contact_count += result.verdict[i] >= 2;
         if (!names)
             continue;
@@ -215,8 +244,10 @@ static void set_result(int dim, int32_t handles, int32_t verdicts, bool names, b
     result.names_pairs = names && verdicts > 0;
     result.has_times = times && result.contact_count > 0;
     result.has_boxes = boxes && result.contact_count > 0;
-    if (!result.has_boxes)
-        result.dim = 0;
+    result.has_gaps = form & GAPS && verdicts > 0;
+    for (int32_t i = 0; i < verdicts && result.has_gaps; i++)
+        set_gap(dim, i);
+    result.dim = result.has_boxes || result.has_gaps ? dim : 0;
 }
 
 static size_t bound_of_result(void)
@@ -226,7 +257,8 @@ static size_t bound_of_result(void)
            2 * (size_t) result.unknown_count + verdicts +
            (result.names_pairs ? WIRE_PAIR_BYTES * verdicts : 0) +
            (result.has_times ? 16 * contacts : 0) +
-           (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0);
+           (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0) +
+           (result.has_gaps ? (size_t) wire_gap_bytes(result.dim) * verdicts : 0);
 }
 
 static void assert_same_result(void)
@@ -249,6 +281,9 @@ static void assert_same_result(void)
     assert_int_equal(result.names_pairs, result_read.names_pairs);
     assert_int_equal(result.has_times, result_read.has_times);
     assert_int_equal(result.has_boxes, result_read.has_boxes);
+    assert_int_equal(result.has_gaps, result_read.has_gaps);
+    for (size_t i = 0; i < verdicts && result.has_gaps; i++)
+        assert_true(query_same_gap(&result.gap[i], &result_read.gap[i]));
     assert_memory_equal(result.handle, result_read.handle,
                         (size_t) result.handle_count * sizeof *result.handle);
     assert_memory_equal(result.unknown, result_read.unknown,
@@ -275,9 +310,9 @@ static size_t write_and_read(void)
 static void test_result_round_trip(void **state)
 {
     (void) state;
-    for (int form = 0; form < 16; form++)
+    for (int form = 0; form < 2 * FORMS; form++)
         for (int32_t verdicts = 0; verdicts < 40; verdicts++) {
-            set_result(2 + form % 2, verdicts / 2, verdicts, form & 2, form & 4, form & 8);
+            set_result(2 + form / FORMS, verdicts / 2, verdicts, form);
             const size_t size = write_and_read();
             if (verdicts == 0)
                 continue; /* lcm-gen's decoder copies no bytes to nowhere, which sanitizers see */
@@ -290,21 +325,22 @@ static void test_result_round_trip(void **state)
 static void test_results_that_fill_a_message(void **state)
 {
     (void) state;
-    for (int form = 0; form < 16; form++) {
+    for (int form = 0; form < 2 * FORMS; form++) {
         int32_t verdicts = 0;
         do
-            set_result(2 + form % 2, 300, ++verdicts, form & 2, form & 4, form & 8);
-        while (bound_of_result() + 5 + 16 + 48 < QUERY_BYTES_MAX && verdicts < QUERY_VERDICTS_MAX);
+            set_result(2 + form / FORMS, 300, ++verdicts, form);
+        while (bound_of_result() + 5 + 16 + 48 + 96 < QUERY_BYTES_MAX &&
+               verdicts < QUERY_VERDICTS_MAX);
         memset(result.detail, 'x', QUERY_TEXT_MAX - 1);
         const size_t size = write_and_read();
         assert_true(size <= QUERY_BYTES_MAX);
         assert_true(bound_of_result() - size < 8);
         result.detail[0] = '\0';
     }
-    set_result(2, 0, QUERY_VERDICTS_MAX, false, false, false);
+    set_result(2, 0, QUERY_VERDICTS_MAX, 0);
     write_and_read();
     /* To the very last byte. */
-    set_result(2, 0, QUERY_NAMED_MAX - 60, true, false, false);
+    set_result(2, 0, QUERY_NAMED_MAX - 60, NAMES);
     const size_t left = QUERY_BYTES_MAX - wire_write_scene_result(&result, bytes);
     result.handle_count = (int32_t) (left / HANDLE_BYTES);
     memset(result.handle, 1, left / HANDLE_BYTES * HANDLE_BYTES);
@@ -347,7 +383,7 @@ struct lie {
     fmb_msgs_scene_result_t message;
     char detail[8];
     uint8_t handles[HANDLE_BYTES * (QUERY_PLACEMENTS_MAX + 1)];
-    double gaps[2];
+    double gaps[8], directions[12], witnesses[28];
     uint8_t verdicts[QUERY_VERDICTS_MAX + 1];
     int16_t indices[2 * QUERY_NAMED_MAX + 2];
     double times[QUERY_NUMBERS_MAX + 8], boxes[QUERY_NUMBERS_MAX + 8];
@@ -362,6 +398,8 @@ static void begin_lie(void)
     lie.message = (fmb_msgs_scene_result_t){.detail = lie.detail,
                                             .handles = lie.handles,
                                             .gaps = lie.gaps,
+                                            .directions = lie.directions,
+                                            .witnesses = lie.witnesses,
                                             .end_pair = 3,
                                             .num_verdicts = 3,
                                             .verdicts = lie.verdicts,
@@ -417,7 +455,6 @@ static void test_lies_about_verdicts(void **state)
     LIE((lie.message.num_verdicts = QUERY_VERDICTS_MAX + 1, lie.message.num_indices = 0));
     LIE(lie.message.num_handle_bytes = HANDLE_BYTES * (QUERY_PLACEMENTS_MAX + 1));
     LIE(lie.message.num_handle_bytes = HANDLE_BYTES + 1);
-    LIE(lie.message.num_gaps = 2);
     LIE(lie.message.end_pair = -1);
     TRUE((lie.verdicts[0] = FMB_SEPARATED, lie.message.num_times = 4, lie.message.num_boxes = 12,
           lie.message.num_indices = 0));
@@ -471,6 +508,85 @@ static void test_lies_about_boxes(void **state)
     TRUE(lie.message.num_boxes = 0);
 }
 
+/* Three pairs in 3D with gaps: one that overlaps, one that touches, one that is near. */
+static void begin_gaps(void)
+{
+    begin_lie();
+    lie.verdicts[1] = FMB_TOUCHING;
+    lie.verdicts[2] = FMB_SEPARATED;
+    lie.message.num_times = 4;
+    lie.message.num_boxes = 12;
+    lie.message.num_gaps = 6;
+    lie.message.num_directions = 9;
+    lie.message.num_witnesses = 21;
+    lie.gaps[0] = lie.gaps[1] = -1;
+    lie.gaps[4] = 0.5;
+    lie.gaps[5] = 0.75;
+    for (int i = 0; i < 14; i++)
+        lie.witnesses[i] = NAN;
+    assert_null(read_lie());
+}
+
+#define GAP_LIE(change)                        \
+    do {                                       \
+        begin_gaps();                          \
+        change;                                \
+        if (!read_lie())                       \
+            fail_msg("believed: %s", #change); \
+    } while (0)
+
+/* No gap of the last pair, which is near. */
+static void remove_gap(void)
+{
+    lie.gaps[4] = lie.gaps[5] = NAN;
+    for (int i = 0; i < 3; i++)
+        lie.directions[6 + i] = NAN;
+    for (int i = 14; i < 21; i++)
+        lie.witnesses[i] = NAN;
+}
+
+static void test_lies_about_gaps(void **state)
+{
+    (void) state;
+    GAP_LIE(lie.message.num_gaps = 0);
+    GAP_LIE(lie.message.num_gaps = 4);
+    GAP_LIE(lie.message.num_gaps = 7);
+    GAP_LIE(lie.message.num_directions = 8);
+    GAP_LIE(lie.message.num_directions = 0);
+    GAP_LIE(lie.message.num_witnesses = 14);
+    GAP_LIE((lie.message.num_directions = 6, lie.message.num_witnesses = 15)); /* 2D, boxes 3D */
+    GAP_LIE(lie.message.num_gaps = lie.message.num_directions = lie.message.num_witnesses = 0);
+    GAP_LIE(lie.gaps[0] = -0.5);
+    GAP_LIE(lie.gaps[1] = NAN);
+    GAP_LIE(lie.gaps[0] = lie.gaps[1] = NAN);
+    GAP_LIE(lie.gaps[2] = -1);
+    GAP_LIE(lie.gaps[3] = 1);
+    GAP_LIE(lie.directions[0] = NAN);
+    GAP_LIE(lie.directions[8] = INFINITY);
+    GAP_LIE(lie.witnesses[0] = 0);
+    GAP_LIE(lie.witnesses[13] = -NAN); /* with other bits */
+    GAP_LIE(lie.witnesses[14] = -1);
+    GAP_LIE(lie.witnesses[14] = INFINITY);
+    GAP_LIE(lie.witnesses[20] = NAN);
+    GAP_LIE((lie.verdicts[2] = 0, lie.message.num_indices = 0));
+    GAP_LIE(remove_gap());
+    begin_gaps();
+    remove_gap();
+    lie.message.num_indices = 0;
+    assert_null(read_lie());
+    lie.directions[6] = 0;
+    assert_non_null(read_lie());
+    begin_gaps();
+    lie.gaps[5] = lie.witnesses[20] = INFINITY;
+    assert_null(read_lie());
+    lie.message.num_boxes = 0;
+    lie.message.num_directions = 6;
+    lie.message.num_witnesses = 15;
+    lie.witnesses[10] = lie.witnesses[11] = lie.witnesses[12] = lie.witnesses[13] = 0;
+    assert_null(read_lie());
+    assert_int_equal(result_read.dim, 2);
+}
+
 /* ---- Mutants ---- */
 
 static uint64_t next_random(uint64_t *seed)
@@ -522,6 +638,7 @@ int main(void)
         TEST(test_lies_about_pairs),
         TEST(test_lies_about_times),
         TEST(test_lies_about_boxes),
+        TEST(test_lies_about_gaps),
         TEST(test_what_is_read_of_mutants_is_there),
     };
     return cmocka_run_group_tests_name("wire_scene", tests, NULL, NULL);
