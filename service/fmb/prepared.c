@@ -120,6 +120,8 @@ INLINE void turn_components(const struct fmb_frame *frame, const struct rotation
     UNROLL(3)
     for (int i = 0; i < FMB_DIM_MAX; i++) {
         const double *c = frame->component[i];
+        if (i == 2 && rotation->dim == 2)
+            continue; /* nothing reads it */
         if (frame->shape == FMB_BOX) {
             const rotation_two xy = rotation->xy[i] * c[i];
             memcpy(out[i], &xy, sizeof xy);
@@ -229,7 +231,7 @@ INLINE void set(const struct fmb_frame *frame, const struct rotation *rotation,
     if (frame->dim == 3)
         return;
     double *number = out->number;
-    memset(number, 0, sizeof out->number);
+    memset(number + PREPARED_ERROR_2D, 0, sizeof out->number - PREPARED_ERROR_2D * sizeof *number);
     memcpy(number, plane.origin, 2 * sizeof *number);
     memcpy(number + 2, plane.component[0], 2 * sizeof *number);
     memcpy(number + 4, plane.component[1], 2 * sizeof *number);
