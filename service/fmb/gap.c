@@ -1,5 +1,7 @@
 #include "gap.h"
 
+#include "range.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -49,7 +51,7 @@ bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
     return order > 0;
 }
 
-/* Equal frames at the same place are told apart by the bodies that they belong to. */
+/* The order of equal frames at the same place is that of their bodies. */
 static bool frames_swap(const struct placed_frame *a, const struct placed_frame *b)
 {
     int order = compare_placements(a->placement, b->placement);
@@ -76,14 +78,9 @@ static double sum_of(const double v[FMB_DIM_MAX])
     return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
 }
 
-static double greatest(double x, double y)
-{
-    return x > y ? x : y;
-}
-
 static double largest_of(const double v[FMB_DIM_MAX])
 {
-    return greatest(fabs(v[0]), greatest(fabs(v[1]), fabs(v[2])));
+    return range_greatest(fabs(v[0]), range_greatest(fabs(v[1]), fabs(v[2])));
 }
 
 /* Lengths are sizes (2-norms, at most a fifteenth too large) and sums of magnitudes; of a component
@@ -104,14 +101,14 @@ INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
     pair->error += number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
     pair->reach += sizes;
     pair->far[f] = sum_of(origin) + 2 * sizes;
-    pair->least = greatest(pair->least, largest_of(origin));
-    pair->least = greatest(pair->least, 0.25 * greatest(x, greatest(y, z)));
+    pair->least = range_greatest(pair->least, largest_of(origin));
+    pair->least = range_greatest(pair->least, 0.25 * range_greatest(x, range_greatest(y, z)));
     if (!(kind & PREPARED_MOVING))
         return;
     const double way[FMB_DIM_MAX] = {velocity[0] * pair->duration, velocity[1] * pair->duration,
                                      dim == 3 ? velocity[2] * pair->duration : 0};
     pair->far[f] += sum_of(way);
-    pair->least = greatest(pair->least, 0.5 * largest_of(way));
+    pair->least = range_greatest(pair->least, 0.5 * largest_of(way));
 }
 
 /* As slabs_prepare(): drifts that are tiny are left to integers. */
@@ -268,7 +265,7 @@ void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct sw
         turn_round(&x);
         turn_round(&y);
     }
-    const double lower = greatest(-x.bounds[0], -y.bounds[0]);
+    const double lower = range_greatest(-x.bounds[0], -y.bounds[0]);
     if (all->direction[0] == INFINITY || compare_gaps(&x, &y) < 0)
         *all = raised;
     all->bounds[0] = 0 - lower;

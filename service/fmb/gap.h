@@ -118,7 +118,7 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
 /* Whether gaps of the placements are found for the pair the other way round. */
 bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b);
 
-/* That of nothing, of which the least with any gap is that gap. */
+/* The neutral element of gap_include(). */
 struct fmb_gap gap_none(void);
 
 /* The least of two gaps of the same placements: the lesser lower bound, and the rest from the one
@@ -126,9 +126,9 @@ struct fmb_gap gap_none(void);
  * not depend on their order. swaps: gap_swaps() of the placements; a, b: the boxes of the frames of
  * one.
  *
- * The lower bound is not below the distance of the boxes on any axis; the axis proves it then. So
- * frames whose boxes are farther apart than the least upper bound have no say, and need not be
- * looked at. */
+ * The lower bound of each is raised to the distance of the boxes on an axis where that is more; the
+ * axis then proves it. So frames whose boxes are farther apart than the least upper bound do not
+ * change the result, and can be skipped. */
 void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct swept *a,
                  const struct swept *b, bool swaps);
 
@@ -137,7 +137,7 @@ void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct sw
 void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap);
 
 /* For boxes of frames within a and b, with bounds[1] of the least gap so far: those that are
- * farther apart on an axis have no say, and surely do not meet. */
+ * farther apart on an axis do not change the gap, and do not meet. */
 double gap_reach(double upper, const struct swept *a, const struct swept *b);
 
 #endif

@@ -26,6 +26,8 @@
  * time, and that within the error of the frame from the true one. */
 #include "gap.h"
 
+#include "range.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -242,18 +244,13 @@ static bool move(struct simplex *simplex)
 
 /* ---- Bounds ---- */
 
-static double least_of(double x, double y)
-{
-    return x < y ? x : y;
-}
-
 /* The share of vector k in the point. */
 static double share_of(const struct simplex *simplex, int k)
 {
     double sum = 0;
     for (int c = 0; c < simplex->count; c++)
         sum += simplex->corner[c].bits >> k & 1 ? simplex->weight[c] : 0;
-    return least_of(sum, 1);
+    return range_least(sum, 1);
 }
 
 static void set_witness(const struct gap_pair *pair, const struct simplex *simplex,

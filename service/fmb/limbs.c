@@ -41,6 +41,8 @@
  * 2^b has n < 2^(2b+2). In 2D everything is smaller. */
 #include "limbs.h"
 
+#include "range.h"
+
 #include <math.h>
 
 /* ---- From doubles ---- */
@@ -89,11 +91,6 @@ struct dyadic_span limbs_span_of(const struct frame_pair *pair)
     return span;
 }
 
-static double greatest(double x, double y)
-{
-    return x > y ? x : y;
-}
-
 /* A gap of slabs.c is a sum of monomials u_i v_j w_k of lengths; its partial sums are at most
  * 6 |u| |v| T, in largest magnitudes. In units of the pair, with s the largest size and R the sum
  * of all (reach): two cuboids have |u|, |v| <= s and T <= 2 R, all of them integers. Else edges may
@@ -108,7 +105,7 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
     const bool cuboids = pair->a.shape == FMB_CUBOID && pair->b.shape == FMB_CUBOID;
     double largest = pair->drift_size;
     for (int i = 0; i < pair->a.dim; i++)
-        largest = greatest(largest, greatest(pair->a.size[i], pair->b.size[i]));
+        largest = range_greatest(largest, range_greatest(pair->a.size[i], pair->b.size[i]));
     const double scaled = ldexp(largest, (int) -span.unit);
     const double sum = 2 * ldexp(pair->reach, (int) -span.unit);
     return (cuboids ? 6 : 6 * 16) * scaled * scaled * sum < 0x1p53;
