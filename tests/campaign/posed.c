@@ -327,13 +327,27 @@ static void random_poses(struct draw *draw, const struct family *family, const s
     family_draw_posed(draw, cell, out);
 }
 
+/* In any poses, nearly touching. */
+static void draw_near(struct draw *draw, double amount, struct question *out)
+{
+    draw_any(draw, &out->a);
+    draw_any(draw, &out->b);
+    meet_nearly_posed(draw, amount, out);
+}
+
+/* Turned by whole numbers up to most. */
+static void draw_exact(struct draw *draw, int most, double amount, struct question *out)
+{
+    draw_whole(draw, most, &out->a);
+    draw_whole(draw, most, &out->b);
+    meet_exactly_posed(draw, amount, out);
+}
+
 static void near_poses(struct draw *draw, const struct family *family, const struct cell *cell,
                        struct question *out)
 {
     begin(cell, out);
-    draw_any(draw, &out->a);
-    draw_any(draw, &out->b);
-    meet_nearly_posed(draw, family->amount, out);
+    draw_near(draw, family->amount, out);
 }
 
 /* Quaternions of whole numbers up to the amount. */
@@ -341,9 +355,7 @@ static void whole(struct draw *draw, const struct family *family, const struct c
                   struct question *out)
 {
     begin(cell, out);
-    draw_whole(draw, (int) family->amount, &out->a);
-    draw_whole(draw, (int) family->amount, &out->b);
-    meet_exactly_posed(draw, 0, out);
+    draw_exact(draw, (int) family->amount, 0, out);
 }
 
 static void whole_but_an_ulp(struct draw *draw, const struct family *family,
@@ -443,13 +455,9 @@ static void of_any_length(struct draw *draw, const struct family *family, const 
 {
     begin(cell, out);
     if (draw_coin(draw)) {
-        draw_whole(draw, 3, &out->a);
-        draw_whole(draw, 3, &out->b);
-        meet_exactly_posed(draw, 0, out);
+        draw_exact(draw, 3, 0, out);
     } else {
-        draw_any(draw, &out->a);
-        draw_any(draw, &out->b);
-        meet_nearly_posed(draw, 0, out);
+        draw_near(draw, 0, out);
     }
     const int most = (int) family->amount;
     scale_orientation(draw_log(draw, -most, most), &out->a);
@@ -461,13 +469,9 @@ static void far_poses(struct draw *draw, const struct family *family, const stru
 {
     begin(cell, out);
     if (draw_coin(draw)) {
-        draw_whole(draw, 3, &out->a);
-        draw_whole(draw, 3, &out->b);
-        meet_exactly_posed(draw, family->amount, out);
+        draw_exact(draw, 3, family->amount, out);
     } else {
-        draw_any(draw, &out->a);
-        draw_any(draw, &out->b);
-        meet_nearly_posed(draw, family->amount, out);
+        draw_near(draw, family->amount, out);
     }
 }
 
@@ -479,13 +483,9 @@ static void rows(struct draw *draw, const struct family *family, const struct ce
     out->a.frames = draw_int(draw, 2, (int) family->amount);
     out->b.frames = draw_int(draw, 1, (int) family->amount);
     if (draw_coin(draw)) {
-        draw_whole(draw, 3, &out->a);
-        draw_whole(draw, 3, &out->b);
-        meet_exactly_posed(draw, 0, out);
+        draw_exact(draw, 3, 0, out);
     } else {
-        draw_any(draw, &out->a);
-        draw_any(draw, &out->b);
-        meet_nearly_posed(draw, 0, out);
+        draw_near(draw, 0, out);
     }
 }
 

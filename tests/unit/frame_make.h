@@ -22,4 +22,13 @@ static inline struct fmb_frame make(int dim, int shape, const double *number)
     return frame;
 }
 
+/* A body of one cuboid. */
+static inline struct fmb_body make_body(int dim, const double *number)
+{
+    struct fmb_body body;
+    memset(&body, 0xa5, sizeof body); /* what is not written shows */
+    assert_int_equal(fmb_body_make(dim, FMB_CUBOID, number, (size_t) (dim * dim), &body), FMB_OK);
+    return body;
+}
+
 #endif

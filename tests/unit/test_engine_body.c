@@ -283,14 +283,6 @@ static void bodies_that_are_refused(void **state)
 
 static struct fmb_body plane_body, space_body;
 
-static struct fmb_body make_body(int dim, const double *number)
-{
-    struct fmb_body body;
-    memset(&body, 0xa5, sizeof body); /* what is not written shows */
-    assert_int_equal(fmb_body_make(dim, FMB_CUBOID, number, (size_t) (dim * dim), &body), FMB_OK);
-    return body;
-}
-
 /* Every function that takes a placement says the same of it, and writes nothing but zeros. */
 static void expect_status(const struct fmb_placement *placement, enum fmb_status status)
 {

@@ -379,14 +379,6 @@ static void frames_without_inverse(void **state)
 
 static struct fmb_body plane_body, space_body;
 
-static struct fmb_body make_body(int dim, const double *number)
-{
-    struct fmb_body body;
-    memset(&body, 0xa5, sizeof body); /* what is not written shows */
-    assert_int_equal(fmb_body_make(dim, FMB_CUBOID, number, (size_t) (dim * dim), &body), FMB_OK);
-    return body;
-}
-
 static struct pair plane_pair(void)
 {
     plane_body = make_body(2, unit2);
