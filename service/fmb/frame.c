@@ -25,6 +25,17 @@ static void cross(const double u[3], const double v[3], double out[3])
     out[2] = u[0] * v[1] - u[1] * v[0];
 }
 
+/* x 2^-exponent, rounded once. ldexp() takes longer. */
+static double scaled_down(double x, int exponent)
+{
+    if (exponent < -1000 || exponent > 1000)
+        return ldexp(x, -exponent);
+    const uint64_t bits = (uint64_t) (1023 - exponent) << 52;
+    double scale;
+    memcpy(&scale, &bits, sizeof scale);
+    return x * scale;
+}
+
 /* The components times 2^-*exponent, so that the largest number lies in [0.5, 1); a frame in 2D
  * gets the unit vector along z as third. */
 static void scale_components(const struct fmb_frame *frame, double scaled[3][3], int *exponent)
@@ -36,7 +47,7 @@ static void scale_components(const struct fmb_frame *frame, double scaled[3][3],
     frexp(largest, exponent);
     for (int i = 0; i < 3; i++)
         for (int axis = 0; axis < 3; axis++)
-            scaled[i][axis] = ldexp(frame->component[i][axis], -*exponent);
+            scaled[i][axis] = scaled_down(frame->component[i][axis], *exponent);
     if (frame->dim == 2)
         scaled[2][2] = 1;
 }
@@ -76,7 +87,7 @@ static bool invert_in_doubles(struct fmb_frame *frame)
         return false;
     for (int axis = 0; axis < frame->dim; axis++)
         for (int i = 0; i < frame->dim; i++)
-            frame->inverse[axis][i] = ldexp(k[i][axis] / determinant, -exponent);
+            frame->inverse[axis][i] = scaled_down(k[i][axis] / determinant, exponent);
     return true;
 }
 
@@ -92,22 +103,28 @@ static void invert(struct fmb_frame *frame)
  * nor lose bits to underflow; and no number so small that a product of two underflows. */
 static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
-static double length_of(const double v[FMB_DIM_MAX])
+/* What is thinner might be turned inside out by the rounding of a rotation, or of vertices: each of
+ * three components is off by at most ROTATION_ERROR and 2^-52 of itself, less than 2^-48 together,
+ * and the volume by three times that. */
+static const double least_thickness = 0x1p-44;
+
+static double square_of(const double v[FMB_DIM_MAX])
 {
-    return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
+    return (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2];
 }
 
-/* The volume of a solid, or twice the area of a face, against the product of the lengths of its
- * components; numbers in range. Off by less than 2^-48. */
-static double thickness(const struct fmb_frame *frame)
+/* Whether the volume of a solid, or twice the area of a face, against the product of the lengths of
+ * its components is large enough; numbers in range. The quotient is off by less than 2^-48. */
+static bool is_thick(const struct fmb_frame *frame)
 {
     const double(*c)[FMB_DIM_MAX] = frame->component;
-    double normal[3], size = length_of(c[0]) * length_of(c[1]);
+    const double square = square_of(c[0]) * square_of(c[1]);
+    double normal[3];
     cross(c[0], c[1], normal);
     if (frame->count < 3)
-        return length_of(normal) / size;
+        return square_of(normal) >= least_thickness * least_thickness * square;
     const double volume = normal[0] * c[2][0] + normal[1] * c[2][1] + normal[2] * c[2][2];
-    return fabs(volume) / (size * length_of(c[2]));
+    return fabs(volume) >= least_thickness * sqrt(square) * sqrt(square_of(c[2]));
 }
 
 /* Whether x y = z w, for products that are doubles with errors that are doubles. */
@@ -141,11 +158,6 @@ static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span
         frame->in_range && frame->size[i] >= least_size && frame->size[i] <= largest_size;
 }
 
-/* What is thinner might be turned inside out by the rounding of a rotation, or of vertices: each of
- * three components is off by at most ROTATION_ERROR and 2^-52 of itself, less than 2^-48 together,
- * and the volume by three times that. */
-static const double least_thickness = 0x1p-44;
-
 /* in_range: the filter may use the doubles of a frame that is not turned. They have to be the frame
  * itself, or one near it that is surely not flat. sturdy: however it is turned. */
 static void measure(struct fmb_frame *frame)
@@ -156,7 +168,7 @@ static void measure(struct fmb_frame *frame)
     for (int i = 0; i < frame->count; i++)
         measure_component(frame, i, &span);
     frame->in_range = frame->in_range && (frame->shape != FMB_FACE || has_area(frame));
-    frame->sturdy = frame->in_range && thickness(frame) >= least_thickness;
+    frame->sturdy = frame->in_range && is_thick(frame);
     frame->in_range = frame->in_range && (frame->sturdy || !frame->rounded);
     frame->bits[0] = (int) span.unit;
     frame->bits[1] = (int) span.top;
@@ -316,16 +328,31 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
 
 /* ---- Bodies ---- */
 
+/* As prepared_set() of a frame whose body is at the origin and not turned: nothing rounds. */
+INLINE struct swept box_at_origin(const struct fmb_frame *frame, const int dim,
+                                  const struct fmb_placement *placement)
+{
+    struct fmb_prepared prepared = {.head = frame->head, .frame = frame, .placement = placement};
+    double *number = prepared.number;
+    UNROLL(3)
+    for (int axis = 0; axis < dim; axis++) {
+        number[axis] = frame->origin[axis] + 0.0;
+        for (int i = 0; i < dim; i++)
+            number[(1 + i) * dim + axis] = frame->component[i][axis];
+    }
+    number[(1 + dim) * dim] = frame->slack * (1 + 0x1p-40);
+    return swept_of(&prepared, 0);
+}
+
 /* The box of the frames, where the body is at the origin and not turned. */
 static void set_body_box(struct fmb_body *out)
 {
     const struct fmb_placement origin = {.body = out};
     struct swept box;
     for (unsigned i = 0; i < out->frame_count; i++) {
-        const struct placed_frame placed = {fmb_body_frame(out, i), &origin};
-        struct fmb_prepared prepared;
-        prepared_set(&placed, &prepared);
-        const struct swept one = swept_of(&prepared, 0);
+        const struct fmb_frame *frame = fmb_body_frame(out, i);
+        const struct swept one =
+            frame->dim == 3 ? box_at_origin(frame, 3, &origin) : box_at_origin(frame, 2, &origin);
         box = i == 0 ? one : swept_hull(box, one);
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {

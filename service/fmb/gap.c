@@ -83,6 +83,20 @@ static double largest_of(const double v[FMB_DIM_MAX])
     return range_greatest(fabs(v[0]), range_greatest(fabs(v[1]), fabs(v[2])));
 }
 
+/* Bounds the coordinates of a frame over the window, several times over. */
+INLINE double far_of(const int dim, const struct fmb_prepared *frame, double duration)
+{
+    const double *number = frame->number;
+    const double origin[FMB_DIM_MAX] = {number[0], number[1], dim == 3 ? number[2] : 0};
+    const double sizes = (prepared_size(frame->head, 0) + prepared_size(frame->head, 1)) +
+                         prepared_size(frame->head, 2);
+    const double far = sum_of(origin) + 2 * sizes;
+    if (!(prepared_kind(frame) & PREPARED_MOVING))
+        return far;
+    const double *v = prepared_velocity(frame);
+    return far + ((fabs(v[0]) + fabs(v[1])) + (dim == 3 ? fabs(v[2]) : 0)) * duration;
+}
+
 /* Lengths are sizes (2-norms, at most a fifteenth too large) and sums of magnitudes; of a component
  * these are less than twice the size, and the largest magnitude is more than half of it.
  *
@@ -100,14 +114,13 @@ INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
     pair->count[f] = kind & PREPARED_FACE ? 2 : dim;
     pair->error += number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
     pair->reach += sizes;
-    pair->far[f] = sum_of(origin) + 2 * sizes;
+    pair->far[f] = far_of(dim, frame, pair->duration);
     pair->least = range_greatest(pair->least, largest_of(origin));
     pair->least = range_greatest(pair->least, 0.25 * range_greatest(x, range_greatest(y, z)));
     if (!(kind & PREPARED_MOVING))
         return;
     const double way[FMB_DIM_MAX] = {velocity[0] * pair->duration, velocity[1] * pair->duration,
                                      dim == 3 ? velocity[2] * pair->duration : 0};
-    pair->far[f] += sum_of(way);
     pair->least = range_greatest(pair->least, 0.5 * largest_of(way));
 }
 
@@ -170,6 +183,13 @@ bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, do
 bool gap_is_tight(const struct gap_pair *pair, const double bounds[2])
 {
     return bounds[1] - bounds[0] <= limit * pair->least;
+}
+
+double gap_surely(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                  double farthest)
+{
+    const int dim = prepared_kind(a) & PREPARED_SPACE ? 3 : 2;
+    return farthest + 0x1p-38 * (far_of(dim, a, duration) + far_of(dim, b, duration));
 }
 
 /* ---- Pairs of frames ---- */

@@ -109,6 +109,11 @@ void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct f
 /* The same of a pair in any order. */
 void gap_exactly(const struct frame_pair *pair, enum fmb_verdict verdict, struct fmb_gap *out);
 
+/* Frames that are farther apart than this have a gap that is surely greater than farthest, as
+ * doubles have it. In: a usable pair. */
+double gap_surely(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                  double farthest);
+
 /* The gap of a prepared pair with this verdict. quick: UNSURE where it needs GMP. */
 enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                         enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out);

@@ -3,7 +3,8 @@
  * Method. f at the normals of all facets that P can have: of the faces of both frames, of each edge
  * of A with each edge of B and, where the pair drifts, of each edge with the drift (exact_slabs.c);
  * in 2D of each edge. The greatest f is the gap; its direction proves the lower bound, all of them
- * the upper one.
+ * the upper one. In 3D they are bounded first (gap_bounds.c), and only those that may be near
+ * the greatest are made.
  *
  * Accuracy, with u = 2^-53 and R the reach. The f of a direction at hand is within gap_error() of
  * that of the same direction for the true P. The greatest f moves by no more than P does, so that
@@ -27,22 +28,13 @@
  * its edges that are not parallel: these are normals of the old list that are not among the nearly
  * parallel ones. Their f moves by no more than P. So the gap is at most the greatest f of the other
  * normals and 12 2^-50 R; R is less than 42 times the largest coordinate. */
-#include "gap.h"
+#include "gap_bounds.h"
 
 #include <math.h>
 #include <string.h>
 
-struct edge {
-    double at[3], square; /* the square of its length, rounded */
-    bool simplex, exact;  /* of a simplex; not a difference that was rounded */
-};
-
-enum { EDGES = 6 };
-
 struct depth {
-    const struct gap_pair *pair;
-    struct edge edge[2][EDGES], drift;
-    int edges[2];
+    struct gap_edges edges;
     double greatest;  /* f */
     double upper;     /* the greatest of f + what its direction is off by, times R */
     bool bundled;     /* some edges are nearly parallel, and have no normal */
@@ -51,20 +43,20 @@ struct depth {
 
 /* ---- Edges ---- */
 
-static struct edge edge_of(const double v[3], bool simplex)
+static struct gap_edge edge_of(const double v[3], bool simplex)
 {
-    struct edge out = {{v[0], v[1], v[2]}, gap_dot(v, v), simplex, true};
+    struct gap_edge out = {{v[0], v[1], v[2]}, gap_dot(v, v), simplex, true};
     return out;
 }
 
 /* Vector k. */
-static struct edge edge_at(const struct gap_pair *pair, int k)
+static struct gap_edge edge_at(const struct gap_pair *pair, int k)
 {
     const double v[3] = {gap_vector(pair, k, 0), gap_vector(pair, k, 1), gap_vector(pair, k, 2)};
     return edge_of(v, k < GAP_DRIFT && pair->simplex[k / GAP_OF_B]);
 }
 
-static struct edge difference_of(const struct edge *x, const struct edge *y)
+static struct gap_edge difference_of(const struct gap_edge *x, const struct gap_edge *y)
 {
     double v[3];
     bool exact = true;
@@ -72,22 +64,22 @@ static struct edge difference_of(const struct edge *x, const struct edge *y)
         v[axis] = x->at[axis] - y->at[axis];
         exact = exact && prepared_exact_sum(x->at[axis], -y->at[axis], v[axis]);
     }
-    struct edge out = edge_of(v, true);
+    struct gap_edge out = edge_of(v, true);
     out.exact = exact;
     return out;
 }
 
-/* Of frame f: the components c (of a negated); of a simplex then c1 - c0, c2 - c0, c2 - c1. Returns
- * how many. */
-static int set_edges(const struct gap_pair *pair, int f, struct edge out[EDGES])
+/* Of frame f, of a negated. */
+static void set_edges(const struct gap_pair *pair, int f, struct gap_edge out[GAP_EDGES])
 {
-    int count = pair->count[f];
-    for (int i = 0; i < count; i++)
-        out[i] = edge_at(pair, f * GAP_OF_B + i);
-    for (int i = 1; pair->simplex[f] && i < pair->count[f]; i++)
-        for (int j = 0; j < i; j++)
-            out[count++] = difference_of(&out[i], &out[j]);
-    return count;
+    const double none[3] = {0, 0, 0};
+    for (int i = 0; i < GAP_EDGES; i++)
+        out[i] =
+            i < pair->count[f] ? edge_at(pair, f * GAP_OF_B + i) : edge_of(none, pair->simplex[f]);
+    if (pair->simplex[f] && pair->dim == 2)
+        out[2] = difference_of(&out[1], &out[0]);
+    for (int r = pair->count[f] == 2 ? 2 : 0; pair->simplex[f] && pair->dim == 3 && r < 3; r++)
+        out[3 + r] = difference_of(&out[gap_next(gap_next(r))], &out[gap_next(r)]);
 }
 
 /* ---- Normals ---- */
@@ -141,10 +133,10 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
         depth->upper = INFINITY;
         return;
     }
-    set_ends(depth->pair, n, ends);
-    const double offset = gap_dot(n, depth->pair->offset);
+    set_ends(depth->edges.pair, n, ends);
+    const double offset = gap_dot(n, depth->edges.pair->offset);
     const double low = offset + ends[0], high = offset + ends[1];
-    const double best = low > -high ? low : -high, off = slip * depth->pair->reach;
+    const double best = low > -high ? low : -high, off = slip * depth->edges.pair->reach;
     const double most = (off - depth->greatest) * (1 + 0x1p-40);
     if (best < 0 && most > 0 && best * best > most * most * square)
         return; /* f + off is below the greatest f */
@@ -173,7 +165,7 @@ static bool are_parallel(const double u[3], const double v[3])
 }
 
 /* The normal of edges that are nearly parallel, and not rounded. */
-static void add_close(struct depth *depth, const struct edge *u, const struct edge *v)
+static void add_close(struct depth *depth, const struct gap_edge *u, const struct gap_edge *v)
 {
     const double share = gap_dot(u->at, v->at) / u->square;
     double w[3], n[3];
@@ -193,7 +185,7 @@ static void add_close(struct depth *depth, const struct edge *u, const struct ed
 }
 
 /* Where the sine is above 0.28, 8.8 u / s is below 2^-48. */
-static void add_edges(struct depth *depth, const struct edge *u, const struct edge *v)
+static void add_edges(struct depth *depth, const struct gap_edge *u, const struct gap_edge *v)
 {
     const double most = u->square * v->square;
     double n[3];
@@ -209,33 +201,59 @@ static void add_edges(struct depth *depth, const struct edge *u, const struct ed
         depth->upper = INFINITY;
 }
 
-/* The faces of frame f in 3D. */
-static void add_faces(struct depth *depth, int f)
+/* ---- All normals ---- */
+
+/* That of a number in bounds. */
+static void add_number(struct depth *depth, int number)
 {
-    const struct edge *edge = depth->edge[f];
-    add_edges(depth, &edge[0], &edge[1]);
-    if (depth->pair->count[f] == 2)
-        return;
-    add_edges(depth, &edge[1], &edge[2]);
-    add_edges(depth, &edge[2], &edge[0]);
-    if (depth->pair->simplex[f])
-        add_edges(depth, &edge[3], &edge[4]);
+    const int f = number / GAP_FACES, k = number % GAP_FACES;
+    const int of_b = depth->edges.pair->simplex[1] ? 6 : 4, edge = number - 2 * GAP_FACES;
+    if (f < 2)
+        add_edges(depth, &depth->edges.of[f][gap_face_edge[k][0]],
+                  &depth->edges.of[f][gap_face_edge[k][1]]);
+    else
+        add_edges(depth, &depth->edges.of[0][edge / of_b], &depth->edges.of[1][edge % of_b]);
 }
 
+/* The first with the least square; -1: there is none. */
+static int first_of(const struct gap_bounds *bounds)
+{
+    lanes least = lanes_of(INFINITY);
+    for (int i = 0; i < bounds->count; i++)
+        least = lanes_least(bounds->square[i], least);
+    const double square = least[0] < least[1] ? least[0] : least[1];
+    for (int i = 0; i < bounds->count && square < INFINITY; i++) {
+        const unsigned bits = lanes_mask_bits(bounds->square[i] == square);
+        if (bits)
+            return 2 * i + !(bits & 1);
+    }
+    return -1;
+}
+
+/* The normal with the least bound, then all whose bound is not below its f. */
 static void add_space(struct depth *depth)
 {
-    add_faces(depth, 0);
-    add_faces(depth, 1);
-    for (int i = 0; i < depth->edges[0]; i++)
-        for (int j = 0; j < depth->edges[1]; j++)
-            add_edges(depth, &depth->edge[0][i], &depth->edge[1][j]);
-    for (int f = 0; f < 2 && depth->pair->drifts; f++)
-        for (int i = 0; i < depth->edges[f]; i++)
-            add_edges(depth, &depth->edge[f][i], &depth->drift);
+    const double reach = depth->edges.pair->reach;
+    struct gap_bounds bounds;
+    gap_bounds_set(&depth->edges, &bounds);
+    const int first = first_of(&bounds);
+    if (first >= 0)
+        add_number(depth, first);
+    const double most = (0x1p-38 * reach - depth->greatest) * (1 + 0x1p-40);
+    const lanes limit = lanes_of(most > 0 ? most * most : 0);
+    for (int i = 0; i < bounds.count; i++) {
+        const unsigned bits = lanes_mask_bits(bounds.square[i] <= limit);
+        for (int lane = 0; bits && lane < 2; lane++)
+            if (bits >> lane & 1 && 2 * i + lane != first)
+                add_number(depth, 2 * i + lane);
+    }
+    for (int f = 0; f < 2 && depth->edges.pair->drifts; f++)
+        for (int i = 0; i < GAP_EDGES; i++)
+            add_edges(depth, &depth->edges.of[f][i], &depth->edges.drift);
 }
 
 /* In 2D: the edge turned by a right angle. */
-static void add_turned(struct depth *depth, const struct edge *edge)
+static void add_turned(struct depth *depth, const struct gap_edge *edge)
 {
     const double n[3] = {-edge->at[1], edge->at[0], 0};
     add_normal(depth, n, edge->square, 0x1p-50);
@@ -244,10 +262,10 @@ static void add_turned(struct depth *depth, const struct edge *edge)
 static void add_plane(struct depth *depth)
 {
     for (int f = 0; f < 2; f++)
-        for (int i = 0; i < depth->edges[f]; i++)
-            add_turned(depth, &depth->edge[f][i]);
-    if (depth->pair->drifts)
-        add_turned(depth, &depth->drift);
+        for (int i = 0; i < depth->edges.pair->count[f] + depth->edges.pair->simplex[f]; i++)
+            add_turned(depth, &depth->edges.of[f][i]);
+    if (depth->edges.pair->drifts)
+        add_turned(depth, &depth->edges.drift);
 }
 
 enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict,
@@ -255,12 +273,12 @@ enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict
 {
     const double error = gap_error(pair);
     struct depth depth;
-    depth.pair = pair;
+    depth.edges.pair = pair;
     depth.greatest = depth.upper = -INFINITY;
     depth.bundled = false;
     for (int f = 0; f < 2; f++)
-        depth.edges[f] = set_edges(pair, f, depth.edge[f]);
-    depth.drift = edge_at(pair, GAP_DRIFT);
+        set_edges(pair, f, depth.edges.of[f]);
+    depth.edges.drift = edge_at(pair, GAP_DRIFT);
     if (pair->dim == 3)
         add_space(&depth);
     else

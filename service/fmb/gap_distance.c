@@ -12,15 +12,15 @@
  * Nothing is believed of this but the direction and the weights. Both bounds are derived from them:
  * the lower one is f(n) less its error, the upper one the distance of the witness points.
  *
- * Accuracy, with u = 2^-53. Along a direction with |n| = 1 +- 4 u, f(n) is a sum of products of
- * coordinates: of the offset, rounded once, of the drift, rounded twice, and of components; a
- * product is rounded 3 times with its sum over the axes, and at most 8 times in sums of these. So
- * its error is below 13.01 u sum |n_k| |x_k| <= 13.1 u R, R the sum of the lengths of all these
- * vectors; f(n) is at most R, and dividing it by |n| moves it by 5 u R more. gap_error() has 32 u
- * R, and the errors of both frames.
+ * Accuracy, with u = 2^-53. The direction n has any length. f(n) is n . p for a vertex p: a sum of
+ * products of a coordinate of n with one of the offset, rounded once, of the drift, rounded twice,
+ * or of a component, each rounded at most 4 times in p and 3 times in the product with n. So its
+ * error is below 9.01 u sum |n_k| |x_k| <= 9.1 u |n| R, R the sum of the lengths of all these
+ * vectors; f(n) is at most R |n|. Dividing it by |n| moves it by 5 u R, and rounding the direction
+ * of unit length by 2 u R more. gap_error() has 32 u R, and the errors of both frames.
  *
  * A witness point is o + sum x_i c_i + t v for parameters x_i and a time t of the window that are
- * doubles. Each monomial is rounded at most 7 times. Sums of weights are off by 4 u; those of a
+ * doubles. Each monomial is rounded at most 6 times. Sums of weights are off by 4 u; those of a
  * cuboid are cut off at 1, those of a simplex may be 4 u too large in all. So the point is within
  * 7.01 u |..|_1 + 4 u sum |c_i|, which is below 16 u far, from a point of the rounded frame at this
  * time, and that within the error of the frame from the true one. */
@@ -44,6 +44,7 @@ struct simplex {
     struct corner corner[CORNERS];
     double weight[CORNERS];
     double edge[CORNERS - 1][3], normal[3]; /* from the first corner; of a triangle */
+    double inverse;                         /* of two corners: 1 / the square of the edge */
 };
 
 static void subtract(const double x[3], const double y[3], double out[3])
@@ -54,21 +55,13 @@ static void subtract(const double x[3], const double y[3], double out[3])
 
 /* ---- Vertices ---- */
 
-/* Of a simplex of vectors first to first + 2 the mask keeps the one with the least n . x alone. */
-static void keep_least(int first, const lanes at[GAP_LANES], lanes_mask mask[GAP_LANES])
-{
-    int least = first;
-    for (int k = first + 1; k < first + 3; k++)
-        if (at[k / 2][k % 2] < at[least / 2][least % 2])
-            least = k;
-    for (int k = first; k < first + 3; k++)
-        if (k != least)
-            mask[k / 2][k % 2] = 0;
-}
+/* The lanes of two bits. */
+static const lanes_mask mask_of[4] = {{0, 0}, {-1, 0}, {0, -1}, {-1, -1}};
 
-INLINE lanes masked(lanes_mask mask, lanes x)
+/* x in the lanes of the vectors in bits, i the position of the lanes; else 0. */
+INLINE lanes masked(unsigned bits, int i, lanes x)
 {
-    return (lanes) (mask & (lanes_mask) x);
+    return (lanes) (mask_of[bits >> 2 * i & 3] & (lanes_mask) x);
 }
 
 INLINE double sum_of(const lanes x[GAP_LANES])
@@ -77,33 +70,40 @@ INLINE double sum_of(const lanes x[GAP_LANES])
     return sum[0] + sum[1];
 }
 
-/* The vertex with the least n . p; returns that. */
-static double support(const struct gap_pair *pair, const double n[3], struct corner *out)
+/* Of the vectors of a simplex, first to first + 2, the one with the least n . x, if that is
+ * negative: the first of several. */
+INLINE unsigned least_of(int first, const lanes at[GAP_LANES])
 {
+    const double x = at[first / 2][first % 2], y = at[(first + 1) / 2][(first + 1) % 2];
+    const double z = at[(first + 2) / 2][(first + 2) % 2];
+    const double least = range_least(range_least(x, y), z);
+    const unsigned equal =
+        (unsigned) (x == least) | (unsigned) (y == least) << 1 | (unsigned) (z == least) << 2;
+    return least < 0 ? (equal & -equal) << first : 0;
+}
+
+/* The vertex with the least n . p. */
+INLINE void support(const struct gap_pair *pair, const double n[3], struct corner *out)
+{
+    const unsigned of_a = 7, of_b = 7 << GAP_OF_B;
     lanes at[GAP_LANES], part[GAP_LANES];
-    lanes_mask mask[GAP_LANES];
+    unsigned bits = 0;
     gap_dots(pair, n, at);
     UNROLL(4)
     for (int i = 0; i < GAP_LANES; i++)
-        mask[i] = at[i] < 0;
+        bits |= lanes_mask_bits(at[i] < 0) << 2 * i;
     if (pair->simplex[0])
-        keep_least(0, at, mask);
+        bits = (bits & ~of_a) | least_of(0, at);
     if (pair->simplex[1])
-        keep_least(GAP_OF_B, at, mask);
-    out->bits = 0;
-    UNROLL(4)
-    for (int i = 0; i < GAP_LANES; i++) {
-        out->bits |= lanes_mask_bits(mask[i]) << 2 * i;
-        at[i] = masked(mask[i], at[i]);
-    }
+        bits = (bits & ~of_b) | least_of(GAP_OF_B, at);
+    out->bits = bits;
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
         UNROLL(4)
         for (int i = 0; i < GAP_LANES; i++)
-            part[i] = masked(mask[i], pair->vector[axis][i]);
+            part[i] = masked(bits, i, pair->vector[axis][i]);
         out->at[axis] = pair->offset[axis] + sum_of(part);
     }
-    return gap_dot(n, pair->offset) + sum_of(at);
 }
 
 static bool has_corner(const struct simplex *simplex, unsigned bits)
@@ -128,9 +128,8 @@ static void set_first(const struct gap_pair *pair, struct simplex *out)
 /* ---- The point of a simplex next to the origin ---- */
 
 /* x less its part along e: twice, the second time for what the first one rounds. */
-static void reject(const double x[3], const double e[3], double out[3])
+static void reject(const double x[3], const double e[3], double inverse, double out[3])
 {
-    const double inverse = 1 / gap_dot(e, e);
     memcpy(out, x, 3 * sizeof *out);
     for (int step = 0; step < 2; step++) {
         const double share = gap_dot(out, e) * inverse;
@@ -139,8 +138,9 @@ static void reject(const double x[3], const double e[3], double out[3])
     }
 }
 
-/* The direction of the point, of unit length; false if there is none. */
-static bool direction_of(const struct simplex *simplex, bool plane, double n[3])
+/* The direction of the point, of any length; *square is that of its length. False if there is
+ * none. */
+static bool direction_of(const struct simplex *simplex, bool plane, double n[3], double *square)
 {
     const double *w = simplex->corner[0].at;
     if (simplex->count == 1) {
@@ -154,15 +154,13 @@ static bool direction_of(const struct simplex *simplex, bool plane, double n[3])
         n[1] = simplex->edge[0][0];
         n[2] = 0;
     } else {
-        reject(w, simplex->edge[0], n);
+        reject(w, simplex->edge[0], simplex->inverse, n);
     }
-    const double square = gap_dot(n, n);
-    if (!(square >= 0x1p-950)) /* it may have underflowed */
-        return false;
-    const double scale = (gap_dot(n, w) < 0 ? -1 : 1) / sqrt(square);
+    const double sign = copysign(1, gap_dot(n, w));
     for (int axis = 0; axis < 3; axis++)
-        n[axis] *= scale;
-    return true;
+        n[axis] *= sign;
+    *square = gap_dot(n, n);
+    return *square >= 0x1p-950; /* else it may have underflowed */
 }
 
 /* Weights of the point of the affine hull next to the origin; false if the corners are not affinely
@@ -191,6 +189,7 @@ static bool affine_weights(struct simplex *simplex, double out[CORNERS])
         }
     }
     const double inverse = 1 / total;
+    simplex->inverse = inverse;
     out[0] = 1;
     for (int i = 1; i < simplex->count; i++) {
         out[i] *= inverse;
@@ -244,34 +243,32 @@ static bool move(struct simplex *simplex)
 
 /* ---- Bounds ---- */
 
-/* The share of vector k in the point. */
-static double share_of(const struct simplex *simplex, int k)
-{
-    double sum = 0;
-    for (int c = 0; c < simplex->count; c++)
-        sum += simplex->corner[c].bits >> k & 1 ? simplex->weight[c] : 0;
-    return range_least(sum, 1);
-}
-
 static void set_witness(const struct gap_pair *pair, const struct simplex *simplex,
                         struct fmb_gap *out)
 {
-    double apart[3] = {0}, error = pair->error;
-    out->time = share_of(simplex, GAP_DRIFT) * pair->duration + 0.0;
-    for (int f = 0; f < 2; f++) {
-        const double *number = pair->frame[f]->number;
-        const double *velocity = prepared_velocity(pair->frame[f]);
-        double share[3];
-        for (int i = 0; i < pair->count[f]; i++)
-            share[i] = share_of(simplex, f * GAP_OF_B + i);
-        for (int axis = 0; axis < pair->dim; axis++) {
-            double at = out->time * velocity[axis];
-            for (int i = 0; i < pair->count[f]; i++)
-                at += share[i] * number[(1 + i) * pair->dim + axis];
-            out->witness[f][axis] = number[axis] + at + 0.0;
-        }
-        error += 0x1p-49 * pair->far[f];
+    lanes share[GAP_LANES] = {{0}}, part[GAP_LANES];
+    double apart[3] = {0};
+    for (int c = 0; c < simplex->count; c++)
+        UNROLL(4)
+    for (int i = 0; i < GAP_LANES; i++)
+        share[i] += masked(simplex->corner[c].bits, i, lanes_of(simplex->weight[c]));
+    UNROLL(4)
+    for (int i = 0; i < GAP_LANES; i++)
+        share[i] = lanes_least(share[i], lanes_of(1));
+    out->time = share[GAP_DRIFT / 2][GAP_DRIFT % 2] * pair->duration + 0.0;
+    const double *a = pair->frame[0]->number, *b = pair->frame[1]->number;
+    const double *of_a = prepared_velocity(pair->frame[0]);
+    const double *of_b = prepared_velocity(pair->frame[1]);
+    for (int axis = 0; axis < pair->dim; axis++) {
+        UNROLL(3)
+        for (int i = 0; i < GAP_LANES - 1; i++)
+            part[i] = share[i] * pair->vector[axis][i];
+        const double at_a = (part[0][0] + part[0][1]) + part[1][0];
+        const double at_b = (part[1][1] + part[2][0]) + part[2][1];
+        out->witness[0][axis] = a[axis] + (out->time * of_a[axis] - at_a) + 0.0;
+        out->witness[1][axis] = b[axis] + (out->time * of_b[axis] + at_b) + 0.0;
     }
+    const double error = pair->error + 0x1p-49 * (pair->far[0] + pair->far[1]);
     subtract(out->witness[1], out->witness[0], apart);
     out->has_witness = true;
     out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
@@ -282,27 +279,31 @@ enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, stru
     const double error = gap_error(pair), close = 0x1p-47 * pair->reach;
     const double far = farthest + 0x1p-38 * (pair->far[0] + pair->far[1]) + error;
     struct simplex simplex;
-    struct corner next;
-    double n[3], best = -INFINITY;
+    double n[3], square, of_direction = 1, f = -INFINITY;
     set_first(pair, &simplex);
     for (int step = 0; step < STEPS_MAX; step++) {
-        if (!direction_of(&simplex, pair->dim == 2, n))
+        if (!direction_of(&simplex, pair->dim == 2, n, &square))
             break;
-        const double f = support(pair, n, &next);
-        if (f > far)
+        struct corner *next = &simplex.corner[simplex.count];
+        support(pair, n, next);
+        f = gap_dot(n, next->at);
+        if (farthest < INFINITY && f > far * sqrt(square))
             return GAP_FAR;
-        if (f > best) {
-            best = f;
-            memcpy(out->direction, n, sizeof n);
-        }
-        if (gap_dot(n, simplex.corner[0].at) - f <= close || has_corner(&simplex, next.bits))
+        for (int axis = 0; axis < 3; axis++)
+            out->direction[axis] = n[axis];
+        of_direction = square;
+        const double above = gap_dot(n, simplex.corner[0].at) - f;
+        if (above <= 0 || above * above <= close * close * square ||
+            has_corner(&simplex, next->bits))
             break;
-        simplex.corner[simplex.count] = next;
         simplex.weight[simplex.count++] = 0;
         if (!move(&simplex))
             return GAP_UNSURE;
     }
-    out->bounds[0] = best - error;
+    const double inverse = 1 / sqrt(of_direction);
+    for (int axis = 0; axis < 3; axis++)
+        out->direction[axis] *= inverse;
+    out->bounds[0] = f * inverse - error;
     set_witness(pair, &simplex, out);
     return gap_is_tight(pair, out->bounds) ? GAP_KNOWN : GAP_UNSURE;
 }

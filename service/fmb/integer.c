@@ -13,35 +13,9 @@ static_assert(sizeof(long) == 8, "GMP takes its numbers as longs: a mantissa mus
 /* Exponent of the lowest bit of the subnormals, and of the lowest bit of the largest double. */
 enum { LOWEST_UNIT = -1074, HIGHEST_UNIT = 971 };
 
-/* Bits of a double: sign 1, biased exponent e 11, fraction f 52. The value is
- * (2^52 + f) 2^(e - 1075), or f 2^-1074 for e = 0. */
-struct dyadic dyadic_of(double x)
-{
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
-    int biased = (int) (bits >> 52 & 0x7ff);
-    uint64_t mantissa = biased ? fraction | UINT64_C(1) << 52 : fraction;
-    if (mantissa == 0)
-        return (struct dyadic){0, INTEGER_NO_EXPONENT};
-    int trailing = __builtin_ctzll(mantissa);
-    long long odd = (long long) (mantissa >> trailing);
-    return (struct dyadic){bits >> 63 ? -odd : odd, (biased ? biased : 1) - 1075 + trailing};
-}
-
 struct dyadic_span dyadic_span_begin(void)
 {
     return (struct dyadic_span){INTEGER_NO_EXPONENT, -INTEGER_NO_EXPONENT};
-}
-
-void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
-{
-    if (x.mantissa == 0)
-        return;
-    uint64_t magnitude = (uint64_t) llabs(x.mantissa);
-    long top = x.exponent + 64 - __builtin_clzll(magnitude);
-    span->unit = integer_lower_unit(span->unit, x.exponent);
-    span->top = top > span->top ? top : span->top;
 }
 
 long integer_lower_unit(long unit, long exponent)

@@ -8,6 +8,8 @@
 
 #include <gmp.h>
 #include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 /* value = mantissa * 2^exponent; the mantissa is odd, or 0 with exponent INTEGER_NO_EXPONENT. */
 struct dyadic {
@@ -18,8 +20,24 @@ struct dyadic {
 /* Larger than every exponent: the exponent of 0, so that minima come out right. */
 #define INTEGER_NO_EXPONENT 1000000L
 
-/* x must be finite. */
-struct dyadic dyadic_of(double x);
+/* x must be finite. This and dyadic_span_add() are inline: they are called for each number of each
+ * frame that is made.
+ *
+ * Bits of a double: sign 1, biased exponent e 11, fraction f 52. The value is
+ * (2^52 + f) 2^(e - 1075), or f 2^-1074 for e = 0. */
+static inline struct dyadic dyadic_of(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
+    int biased = (int) (bits >> 52 & 0x7ff);
+    uint64_t mantissa = biased ? fraction | UINT64_C(1) << 52 : fraction;
+    if (mantissa == 0)
+        return (struct dyadic){0, INTEGER_NO_EXPONENT};
+    int trailing = __builtin_ctzll(mantissa);
+    long long odd = (long long) (mantissa >> trailing);
+    return (struct dyadic){bits >> 63 ? -odd : odd, (biased ? biased : 1) - 1075 + trailing};
+}
 
 /* All numbers of a set are multiples of 2^unit and below 2^top in magnitude. */
 struct dyadic_span {
@@ -27,7 +45,16 @@ struct dyadic_span {
 };
 
 struct dyadic_span dyadic_span_begin(void); /* of no number: unit INTEGER_NO_EXPONENT, top less */
-void dyadic_span_add(struct dyadic_span *span, struct dyadic x);
+
+static inline void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
+{
+    if (x.mantissa == 0)
+        return;
+    const uint64_t magnitude = x.mantissa < 0 ? -(uint64_t) x.mantissa : (uint64_t) x.mantissa;
+    const long top = x.exponent + 64 - __builtin_clzll(magnitude);
+    span->unit = x.exponent < span->unit ? x.exponent : span->unit;
+    span->top = top > span->top ? top : span->top;
+}
 
 /* The smaller of two units, or exponents. */
 long integer_lower_unit(long unit, long exponent);

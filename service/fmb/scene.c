@@ -103,7 +103,10 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
     frames->chunk = take(base, &at, most_chunks(limits), sizeof *frames->chunk);
     frames->first_chunk = take(base, &at, placements, sizeof *frames->first_chunk);
     frames->body_box = take(base, &at, placements, sizeof *frames->body_box);
-    pairs->found = take(base, &at, placements, sizeof *pairs->found);
+    pairs->space = take(base, &at, placements, sizeof *pairs->space);
+    pairs->start = take(base, &at, placements + 2, sizeof *pairs->start);
+    pairs->partner = take(base, &at, scene_pairs_room(placements), sizeof *pairs->partner);
+    pairs->pair = take(base, &at, scene_pairs_room(placements), sizeof *pairs->pair);
     pairs->head = take(base, &at, placements, sizeof *pairs->head);
     pairs->mark = take(base, &at, placements, sizeof *pairs->mark);
     pairs->link = take(base, &at, limits->ignored, sizeof *pairs->link);
@@ -114,7 +117,7 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
 size_t fmb_scene_bytes(const struct fmb_scene_limits *limits)
 {
     /* Indices have 32 bits; and no sum below overflows. */
-    const size_t most = SIZE_MAX / 4096 < UINT_MAX / 2 ? SIZE_MAX / 4096 : UINT_MAX / 2;
+    const size_t most = SIZE_MAX / 4096 < UINT_MAX / 16 ? SIZE_MAX / 4096 : UINT_MAX / 16;
     struct fmb_scene_state state;
     if (limits->placements > most || limits->frames > most || limits->ignored > most ||
         limits->slots > most)
@@ -167,8 +170,8 @@ static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t p
     return !bad;
 }
 
-/* Gaps are found, if only to know which pairs are near. */
-static bool wants_gaps(const struct fmb_scene *scene)
+/* Pairs in the answers have gaps: all, or those that meet or are near. */
+static bool has_gaps(const struct fmb_scene *scene)
 {
     return scene->gaps || scene->margin > 0;
 }
@@ -186,7 +189,7 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene)
         scene->first_pair > scene_pairs_total(scene))
         return FMB_BAD_PAIR;
     const bool certain = !scene->method || scene->method->certain;
-    return certain || (listed && !wants_gaps(scene)) ? FMB_OK : FMB_CANNOT_DECIDE;
+    return certain || (listed && !has_gaps(scene)) ? FMB_OK : FMB_CANNOT_DECIDE;
 }
 
 static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_scene_limits *limits)
@@ -309,13 +312,15 @@ static double farthest_of_frames(const struct fmb_scene_state *state)
     return farthest(state) + 0x1p-37 * largest;
 }
 
-/* How far apart boxes of frames of two bodies may be, with bounds[1] of their gap so far. */
-static double reach_of(const struct fmb_scene_state *state, unsigned a, unsigned b, double upper)
+/* How far apart boxes of frames of the n-th pair of bodies may be, with its answer so far. */
+static double reach_of(const struct fmb_scene_state *state, size_t n)
 {
+    const struct block *block = &state->block;
     const struct swept *box = state->frames.body_box;
-    if (!wants_gaps(&state->scene))
+    const double upper = block->answers.gap[n].bounds[1];
+    if (!has_gaps(&state->scene))
         return 0;
-    return gap_reach(fmin(upper, farthest(state)), &box[a], &box[b]);
+    return gap_reach(fmin(upper, farthest(state)), &box[block->out[n][0]], &box[block->out[n][1]]);
 }
 
 static void begin_answer(struct fmb_scene_state *state, size_t n)
@@ -345,14 +350,13 @@ static void keep_halfway(struct fmb_scene_state *state)
     const size_t last = block->body_count - 1;
     const unsigned char verdict = block->answers.verdict[last];
     const bool verdict_alone =
-        !state->scene.contacts && !state->scene.boxes && !wants_gaps(&state->scene) &&
+        !state->scene.contacts && !state->scene.boxes && !has_gaps(&state->scene) &&
         state->scene.method->certain; /* others may refuse a pair of frames yet to come */
     memmove(block->out[0], block->out[last], sizeof block->out[0]);
     copy_answer(&block->answers, 0, &block->answers, last);
     block->body_count = 1;
     block->first += last;
-    state->cursor.reach =
-        reach_of(state, block->out[0][0], block->out[0][1], block->answers.gap[0].bounds[1]);
+    state->cursor.reach = reach_of(state, 0);
     if (verdict == FMB_REFUSED || (verdict == FMB_OVERLAPPING && verdict_alone))
         state->halfway = false;
 }
@@ -364,8 +368,7 @@ static bool next_bodies(struct fmb_scene_state *state)
     if (n == BLOCK || scene_pairs_next(&state->pairs, &block->out[n], 1) == 0)
         return false;
     begin_answer(state, n);
-    scene_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1],
-                       reach_of(state, block->out[n][0], block->out[n][1], INFINITY));
+    scene_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1], reach_of(state, n));
     block->body_count++;
     state->halfway = true;
     return true;
@@ -415,7 +418,7 @@ static void decide_batch(struct fmb_scene_state *state, size_t first, size_t cou
         .verdicts = block->outcomes.verdict + first,
         .contacts = scene->contacts ? block->outcomes.contact + first : NULL,
         .boxes = scene->boxes ? block->outcomes.box + first : NULL,
-        .gaps = wants_gaps(scene) ? block->outcomes.gap + first : NULL,
+        .gaps = has_gaps(scene) ? block->outcomes.gap + first : NULL,
         .open = open,
         .open_count = open_count};
     const enum fmb_status status = batch_decide(&batch, farthest_of_frames(state));
@@ -433,7 +436,7 @@ static void decide_single(struct fmb_scene_state *state)
         {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
     struct fmb_answer answer = {0};
     const unsigned want =
-        (state->scene.boxes ? FMB_WANT_BOX : 0) | (wants_gaps(&state->scene) ? FMB_WANT_GAP : 0);
+        (state->scene.boxes ? FMB_WANT_BOX : 0) | (has_gaps(&state->scene) ? FMB_WANT_GAP : 0);
     if (state->scene.method->decide(&pair, want, &answer) != FMB_OK)
         answer = (struct fmb_answer){.gap.bounds = {NAN, NAN}};
     block->outcomes.verdict[0] = (unsigned char) answer.verdict;
@@ -492,7 +495,7 @@ static void include(struct fmb_scene_state *state, size_t k)
     const struct outcomes *one = &block->outcomes;
     const size_t n = block->owner[k];
     const unsigned char verdict = one->verdict[k];
-    if (wants_gaps(&state->scene))
+    if (has_gaps(&state->scene))
         include_gap(state, k, n);
     if (verdict == FMB_SEPARATED || answers->verdict[n] == FMB_REFUSED)
         return;
@@ -532,11 +535,14 @@ static size_t include_decided(struct fmb_scene_state *state)
 /* Clears the gap of a pair that has none, or is farther apart than the margin. */
 static void end_gap(const struct fmb_scene_state *state, unsigned char verdict, struct fmb_gap *gap)
 {
+    if (isnan(gap->bounds[0])) /* as the batch has it */
+        return;
     const bool known = gap->bounds[0] < INFINITY || gap->direction[0] < INFINITY;
-    if (!known || verdict == FMB_REFUSED ||
-        (verdict == FMB_SEPARATED && gap->bounds[0] > farthest(state)))
+    const bool wanted = verdict != FMB_SEPARATED || gap->bounds[0] <= farthest(state);
+    if (known && wanted && verdict != FMB_REFUSED)
+        gap_end((enum fmb_verdict) verdict, gap);
+    else
         *gap = (struct fmb_gap){.bounds = {NAN, NAN}};
-    gap_end((enum fmb_verdict) verdict, gap);
 }
 
 static bool is_near(const struct fmb_scene_state *state, const struct fmb_gap *gap)
@@ -568,7 +574,7 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     struct outcomes *answers = state->frames.direct ? &block->outcomes : &block->answers;
     const size_t first = block->given, end = include_decided(state);
     block->given = end;
-    for (size_t n = first; wants_gaps(&state->scene) && n < end; n++)
+    for (size_t n = first; has_gaps(&state->scene) && n < end; n++)
         end_gap(state, answers->verdict[n], &answers->gap[n]);
     state->first_answer = first;
     state->answered = is_listed(state) ? end - first : drop_separated(state, answers, first, end);
@@ -576,7 +582,7 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     out->pairs = block->bodies + first;
     out->verdicts = answers->verdict + first;
     out->contacts = state->scene.contacts ? (const double(*)[2]) answers->contact + first : NULL;
-    out->gaps = wants_gaps(&state->scene) ? answers->gap + first : NULL;
+    out->gaps = has_gaps(&state->scene) ? answers->gap + first : NULL;
     out->boxes = state->scene.boxes ? (const double(*)[2][FMB_DIM_MAX]) answers->box + first : NULL;
 }
 

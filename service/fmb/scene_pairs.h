@@ -15,18 +15,32 @@ struct scene_pairs {
     struct fmb_tree tree;
     unsigned a, first;
     size_t found_count, given;
+    unsigned *found; /* in space, or in partner */
     int searches;    /* reset by the caller */
-    unsigned *found; /* [placement] */
+    unsigned *space; /* [placement] */
+    /* All, where there are no more than so many pairs: listed, partner[start[a]] to
+     * partner[start[a + 1] - 1] are those of a, ascending. */
+    bool listed;
+    unsigned *start;     /* [placement + 2] */
+    unsigned *partner;   /* [scene_pairs_room()] */
+    unsigned (*pair)[2]; /* [scene_pairs_room()], scratch */
     /* Ignored pairs as lists by the lower index: entries are positions in ignored + 1, 0 ends. */
     unsigned *head; /* [placement] */
     unsigned *link; /* [ignored] */
     unsigned *mark; /* [placement]: a + 1 where its pair with a is ignored */
 };
 
+/* Pairs that are found at once, of so many placements; of more, those of one placement after the
+ * other. */
+static inline size_t scene_pairs_room(size_t placements)
+{
+    return 8 * placements + FMB_TREE_ROOM;
+}
+
 /* Number of pairs, whether they can meet or not. */
 unsigned long long scene_pairs_total(const struct fmb_scene *scene);
 
-/* In: the scene, checked; pairs->found, head, link and mark; tree: fmb_tree_bytes() of the
+/* In: the scene, checked; the arrays of pairs; tree: fmb_tree_bytes() of the
  * placements; box: those of the placements, which may be NULL with FMB_PAIRS_LISTED. All are needed
  * until the last pair. Begins with first_pair. */
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,

@@ -546,8 +546,8 @@ static size_t part_by_bit(unsigned *number, size_t count, unsigned bit)
     return before;
 }
 
-/* In place and in bounded time: by one bit after the other, from the highest on, below most. */
-static void sort(unsigned *number, size_t count, unsigned most)
+/* By one bit after the other, from the highest on. */
+void tree_sort(unsigned *number, size_t count, unsigned most)
 {
     struct {
         unsigned *number;
@@ -580,7 +580,7 @@ static void sort(unsigned *number, size_t count, unsigned most)
 size_t tree_find(const struct fmb_tree *tree, const struct swept *box, unsigned from, unsigned *out)
 {
     const size_t count = tree_walk(tree, box, from, out, NULL);
-    sort(out, count, (unsigned) tree->frame_count);
+    tree_sort(out, count, (unsigned) tree->frame_count);
     return count;
 }
 

@@ -66,6 +66,9 @@ INLINE size_t tree_walk(const struct fmb_tree *tree, const struct swept *box, un
     return found;
 }
 
+/* Sorts numbers up to most, in place and in bounded time. */
+void tree_sort(unsigned *number, size_t count, unsigned most);
+
 /* The same in ascending order: fmb_tree_ask() for a box. */
 size_t tree_find(const struct fmb_tree *tree, const struct swept *box, unsigned from,
                  unsigned *out);
