@@ -1,20 +1,13 @@
 /* One pair alone. It lies in both of two lanes: an instruction does as much for two doubles as for
- * one, and the set has minima and maxima besides. Two frames of the same shape in 2D lie in the
- * second lane the other way round, so that half of the walk does for all of it. */
-#include "run_lanes.h"
+ * one, and the set has minima and maxima besides. Two frames of the same shape lie in the second
+ * lane the other way round, so that half of the walk does for all of it. */
+#include "run_exact.h"
 
+/* Times promise the bits of a batch, which is not mirrored. */
 INLINE bool is_mirrored(const struct walk_kind kind)
 {
-    return LANES == 2 && !kind.ordered && kind.dim == 2 && kind.simplex[0] == kind.simplex[1];
-}
-
-INLINE lanes exchanged(lanes x)
-{
-#if LANES == 1
-    return x;
-#else
-    return __builtin_shufflevector(x, x, 1, 0);
-#endif
+    return LANES == 2 && !kind.ordered && !kind.exact && kind.simplex[0] == kind.simplex[1] &&
+           kind.face[0] == kind.face[1];
 }
 
 INLINE lanes side_by_side(double x, double y)
@@ -36,16 +29,16 @@ INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepar
     UNROLL(16)
     for (int w = 0; w < word_count(kind); w++) {
         words[0][w] = side_by_side(x[w], y[w]);
-        words[1][w] = exchanged(words[0][w]);
+        words[1][w] = lanes_exchanged(words[0][w]);
     }
     set_run_frame(kind, words[0], of_a);
     set_run_frame(kind, words[1], of_b);
     if (!kind.drifts)
         return;
-    UNROLL(2)
-    for (int axis = 0; axis < 2; axis++) {
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
         of_a->velocity[axis] = side_by_side(prepared_velocity(a)[axis], prepared_velocity(b)[axis]);
-        of_b->velocity[axis] = exchanged(of_a->velocity[axis]);
+        of_b->velocity[axis] = lanes_exchanged(of_a->velocity[axis]);
     }
 }
 
@@ -58,7 +51,7 @@ INLINE void gather_both(const struct walk_kind kind, const struct fmb_prepared *
     gather(kind, frame[1], of_b);
 }
 
-#if defined(RUN_TIMES) || defined(RUN_BOXES)
+#ifdef RUN_TIMES
 
 INLINE void put_first(lanes x, double *out)
 {
@@ -67,7 +60,7 @@ INLINE void put_first(lanes x, double *out)
 
 #endif
 
-#ifndef RUN_BOXES
+#ifndef RUN_EXACT
 
 /* From lanes that hold the same, or, mirrored, each half of what there is to know. */
 INLINE enum slabs_outcome outcome_of(const struct walk_kind kind, struct outcomes outcomes)
@@ -84,20 +77,17 @@ INLINE enum slabs_outcome outcome_of(const struct walk_kind kind, struct outcome
 INLINE enum slabs_outcome run_one(struct walk_kind kind, const struct fmb_prepared *a,
                                   const struct fmb_prepared *b, double duration, double *out)
 {
-    struct run_frame of_a, of_b;
+    struct run_frame frame[2];
     struct walk_pair pair;
     kind.mirrored = is_mirrored(kind);
     if (kind.mirrored)
-        gather_mirrored(kind, a, b, &of_a, &of_b);
+        gather_mirrored(kind, a, b, &frame[0], &frame[1]);
     else
-        gather_both(kind, a, b, &of_a, &of_b);
-    set_pair(kind, &of_a, &of_b, duration, &pair);
-#ifdef RUN_BOXES
-    lanes box[2][3];
-    boxes_of(kind, &pair, &of_a, &of_b, box);
-    for (int i = 0; i < 6; i++)
-        put_first(box[i / 3][i % 3], &out[i]);
-    return SLABS_UNSURE;
+        gather_both(kind, a, b, &frame[0], &frame[1]);
+    set_pair(kind, &frame[0], &frame[1], duration, &pair);
+#ifdef RUN_EXACT
+    (void) out;
+    return outcome_at(exact_outcomes(kind, &frame[0], &frame[1], duration, &pair), 0);
 #else
     struct walk_found found;
     walk_pair_of(kind, &pair, &found);

@@ -3,7 +3,9 @@
 #include "batch.h"
 
 #include "certified.h"
+#include "exact.h"
 #include "gap.h"
+#include "inlined.h"
 #include "run.h"
 
 #include <math.h>
@@ -34,6 +36,7 @@ struct block {
     const unsigned char *slot; /* whose pair it is, after first: sorted, or in_order */
     unsigned char outcome[BLOCK + RUN_LANES];
     double contact[BLOCK + RUN_LANES][2];
+    bool far[BLOCK];        /* after first: the gap is surely greater than wanted */
     int alone;              /* pairs decided alone so far */
     enum fmb_status status; /* of the first pair refused */
 };
@@ -48,34 +51,97 @@ static const struct fmb_prepared unprepared = {.placement = &nowhere};
 
 static inline const struct fmb_prepared *frame_at(const struct fmb_batch *batch, unsigned index)
 {
-    const struct fmb_prepared *frame =
-        index < batch->frame_count ? &batch->frames[index] : &missing;
-    return frame == &missing || prepared_kind(frame) & PREPARED_GOOD ? frame : &unprepared;
+    return index < batch->frame_count ? &batch->frames[index] : &missing;
 }
 
-/* Puts the pairs into the block, in the order of the batch. Returns whether their heads are all of
- * the same kinds as those of the first. */
-static bool set_pairs(struct block *block)
+/* Bits of the heads of some frames: set in any of them, and in all. */
+struct heads {
+    unsigned long long any, all;
+};
+
+static inline void heads_add(struct heads *heads, const struct fmb_prepared *frame)
+{
+    heads->any |= frame->head;
+    heads->all &= frame->head;
+}
+
+/* Whether the frames are all of the same kind, and prepared. */
+static inline bool heads_are_alike(const struct heads *heads)
+{
+    return (heads->any ^ heads->all) >> 3 * PREPARED_SIZE_BITS == 0 &&
+           heads->all >> 3 * PREPARED_SIZE_BITS & PREPARED_GOOD;
+}
+
+static void replace_unprepared(struct block *block)
+{
+    for (size_t i = 0; i < block->count; i++)
+        for (int f = 0; f < 2; f++) {
+            const struct fmb_prepared **frame = &block->pair[i][f];
+            if (*frame != &missing && !(prepared_kind(*frame) & PREPARED_GOOD))
+                *frame = &unprepared;
+        }
+}
+
+/* So many frames and more do not stay in the second cache. */
+enum { MANY_FRAMES = 4096 };
+
+/* Fetches the first halves of the frames of pair i, whatever the indices are. */
+static inline void fetch_heads(const struct fmb_batch *batch, size_t i)
+{
+    const uintptr_t frames = (uintptr_t) batch->frames;
+    __builtin_prefetch((const void *) (frames + batch->pairs[i][0] * sizeof *batch->frames));
+    __builtin_prefetch((const void *) (frames + batch->pairs[i][1] * sizeof *batch->frames));
+}
+
+/* Of the loop over pairs, known when it is compiled. */
+struct fetching {
+    bool whole; /* the second halves of the frames are read next */
+    bool ahead; /* the frames of the next block are fetched */
+};
+
+INLINE void put_pairs(struct block *block, const struct fetching fetching, struct heads heads[2])
 {
     const struct fmb_batch *batch = block->batch;
     const unsigned(*pairs)[2] = batch->pairs + block->first;
-    const unsigned first_a = prepared_kind(frame_at(batch, pairs[0][0]));
-    const unsigned first_b = prepared_kind(frame_at(batch, pairs[0][1]));
-    unsigned different = 0;
     for (size_t i = 0; i < block->count; i++) {
         const struct fmb_prepared *a = frame_at(batch, pairs[i][0]);
         const struct fmb_prepared *b = frame_at(batch, pairs[i][1]);
-        different |= (prepared_kind(a) ^ first_a) | (prepared_kind(b) ^ first_b);
-        if (first_a & PREPARED_SPACE) { /* what will be read next */
+        if (fetching.ahead && block->first + i + BLOCK < batch->pair_count)
+            fetch_heads(batch, block->first + i + BLOCK);
+        if (fetching.whole) {
             __builtin_prefetch((const char *) a + sizeof *a / 2);
             __builtin_prefetch((const char *) b + sizeof *b / 2);
         }
+        heads_add(&heads[0], a);
+        heads_add(&heads[1], b);
         block->pair[i][0] = a;
         block->pair[i][1] = b;
     }
     for (size_t i = block->count; i < block->count + RUN_LANES; i++)
         block->pair[i][0] = block->pair[i][1] = &missing;
-    return different == 0;
+}
+
+/* Puts the pairs into the block, in the order of the batch. Returns whether all are prepared, and
+ * their heads of the same kinds. In 3D the frames of the next block are not fetched: those of this
+ * one fill the first cache. */
+static bool set_pairs(struct block *block)
+{
+    const struct fmb_batch *batch = block->batch;
+    const unsigned kind = prepared_kind(frame_at(batch, batch->pairs[block->first][0]));
+    const bool ahead = batch->frame_count >= MANY_FRAMES;
+    struct heads heads[2] = {{0, ~0ull}, {0, ~0ull}};
+    if (kind & PREPARED_SPACE)
+        put_pairs(block, (struct fetching){true, false}, heads);
+    else if (!ahead)
+        put_pairs(block, (struct fetching){false, false}, heads);
+    else if (kind & PREPARED_MOVING)
+        put_pairs(block, (struct fetching){true, true}, heads);
+    else
+        put_pairs(block, (struct fetching){false, true}, heads);
+    const bool alike = heads_are_alike(&heads[0]) && heads_are_alike(&heads[1]);
+    if (!alike)
+        replace_unprepared(block);
+    return alike;
 }
 
 static struct run_kinds kinds_at(const struct block *block, size_t i)
@@ -170,33 +236,34 @@ static void set_block(const struct job *job, size_t first, struct block *block)
 
 /* ---- Answers ---- */
 
-static void put_nothing(const struct fmb_batch *batch, size_t i)
+static void put_no_box(const struct fmb_batch *batch, size_t i)
 {
-    for (int end = 0; end < 2; end++) {
-        if (batch->contacts)
-            batch->contacts[i][end] = NAN;
-        for (int axis = 0; axis < FMB_DIM_MAX && batch->boxes; axis++)
-            batch->boxes[i][end][axis] = NAN;
-    }
+    for (int k = 0; k < 2 * FMB_DIM_MAX && batch->boxes; k++)
+        batch->boxes[i][k / FMB_DIM_MAX][k % FMB_DIM_MAX] = NAN;
 }
 
-/* Counts a pair to be decided alone. False: it is left open instead, since enough have been. Boxes
- * are no reason: frames that move have theirs from nowhere else. */
+static void put_nothing(const struct fmb_batch *batch, size_t i)
+{
+    if (batch->contacts)
+        batch->contacts[i][0] = batch->contacts[i][1] = NAN;
+    put_no_box(batch, i);
+}
+
+/* Counts a pair to be decided alone. False: it is left open instead, since enough have been. */
 static bool may_decide_alone(struct block *block)
 {
     const struct fmb_batch *batch = block->batch;
-    return !batch->open || batch->boxes || block->alone++ < ALONE_MAX;
+    return !batch->open || block->alone++ < ALONE_MAX;
 }
 
-/* Pair k by itself, with all that is wanted of it; or left open. On input: its box is NAN, its
- * contact NAN or already known. */
-static void decide_alone(struct block *block, size_t k)
+/* Pair k by itself, or left open. want: 0, or FMB_WANT_BOX. On input: its contact is NAN or already
+ * known, and its box NAN. */
+static void decide_alone(struct block *block, size_t k, unsigned want)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
     struct fmb_answer answer = {0};
-    const unsigned want = batch->boxes ? FMB_WANT_BOX : 0;
     if (!may_decide_alone(block) ||
         certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
                                   &answer) != FMB_OK) {
@@ -207,7 +274,7 @@ static void decide_alone(struct block *block, size_t k)
     batch->verdicts[i] = (unsigned char) answer.verdict;
     if (batch->contacts && answer.has_contact)
         memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
-    if (batch->boxes && answer.has_box)
+    if (want && answer.has_box)
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
@@ -217,7 +284,7 @@ static void put_verdict_alone(struct block *block, size_t k)
     const struct fmb_prepared *const *pair = block->pair[k];
     enum fmb_verdict verdict = 0;
     if (may_decide_alone(block))
-        verdict = certified_unsure(pair[0], pair[1], batch->duration, batch->open);
+        verdict = certified_unsure(pair[0], pair[1], batch->duration, 2, batch->open);
     batch->verdicts[block->first + block->slot[k]] =
         verdict ? (unsigned char) verdict : FMB_LEFT_OPEN;
 }
@@ -243,7 +310,7 @@ static const double *contact_at(const struct block *block, enum run_kind kind, s
                                 const double whole[2])
 {
     static const double none[2] = {NAN, NAN};
-    if (block->outcome[k] != SLABS_OVERLAPPING)
+    if (block->outcome[k] == SLABS_SEPARATED || block->outcome[k] == SLABS_UNSURE)
         return none;
     if (!(kind & RUN_DRIFTS))
         return whole;
@@ -259,61 +326,109 @@ static void put_contacts(struct block *block, enum run_kind kind, size_t start, 
         const double *contact = contact_at(block, kind, k, whole);
         memcpy(batch->contacts[i], contact, sizeof whole);
         batch->verdicts[i] = block->outcome[k];
-        if (block->outcome[k] == SLABS_UNSURE ||
-            (block->outcome[k] == SLABS_OVERLAPPING && kind & RUN_DRIFTS && isnan(contact[0])))
-            decide_alone(block, k);
+        if (block->outcome[k] != SLABS_SEPARATED && isnan(contact[0]))
+            decide_alone(block, k, 0);
     }
 }
 
-/* Pairs at rest that overlap, with their boxes. */
-struct overlaps {
+/* Pairs of a block in contact, to be asked for their boxes. */
+struct contacts {
     size_t count, of[BLOCK]; /* numbers of the block's pairs */
     const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
     double box[BLOCK + RUN_LANES][2][FMB_DIM_MAX];
 };
 
-/* Whether the filter may give the box: the method does so for the same pairs. */
-static bool has_plain_box(const struct block *block, enum run_kind kind, size_t k)
-{
-    const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
-    return block->outcome[k] == SLABS_OVERLAPPING && !(kind & (RUN_DRIFTS | RUN_FACE)) &&
-           !prepared_both_plain(a, b) && !((prepared_kind(a) | prepared_kind(b)) & PREPARED_MOVING);
-}
-
-static void put_boxes(struct block *block, run_function *boxes, enum run_kind kind, size_t start,
-                      size_t end)
+/* A box that the filter does not give. */
+static void put_box_alone(struct block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
-    const double whole[2] = {0, batch->duration + 0.0}; /* never -0 */
-    struct overlaps overlaps;
-    overlaps.count = 0;
-    for (size_t k = start; k < end; k++) {
-        const size_t i = block->first + block->slot[k];
-        batch->verdicts[i] = block->outcome[k];
+    const struct fmb_prepared *const *pair = block->pair[k];
+    const size_t i = block->first + block->slot[k];
+    if (batch->open) {
         put_nothing(batch, i);
-        if (has_plain_box(block, kind, k)) {
-            if (batch->contacts)
-                memcpy(batch->contacts[i], whole, sizeof whole);
-            overlaps.pair[overlaps.count][0] = block->pair[k][0];
-            overlaps.pair[overlaps.count][1] = block->pair[k][1];
-            overlaps.of[overlaps.count++] = k;
-        } else if (block->outcome[k] != SLABS_SEPARATED) {
-            decide_alone(block, k);
-        }
+        batch->verdicts[i] = FMB_LEFT_OPEN;
+    } else {
+        const struct frame_pair frames = {{pair[0]->frame, pair[0]->placement},
+                                          {pair[1]->frame, pair[1]->placement},
+                                          batch->duration};
+        exact_box(&frames, batch->boxes[i]);
     }
-    if (overlaps.count == 0)
-        return;
-    for (size_t n = overlaps.count; n < overlaps.count + RUN_LANES; n++)
-        overlaps.pair[n][0] = overlaps.pair[n][1] = &missing;
-    const struct run run = {.pairs = overlaps.pair, .count = overlaps.count, .boxes = overlaps.box};
-    boxes(&run);
-    for (size_t n = 0; n < overlaps.count; n++) {
-        const size_t k = overlaps.of[n], i = block->first + block->slot[k];
-        if (isnan(overlaps.box[n][0][0]))
-            decide_alone(block, k);
+}
+
+/* The boxes of pairs that are all of one kind of run_box_kind(). */
+static void put_boxes(struct block *block, run_function *boxes, struct contacts *contacts)
+{
+    const struct run run = {.pairs = contacts->pair,
+                            .count = contacts->count,
+                            .duration = block->batch->duration,
+                            .boxes = contacts->box};
+    for (size_t n = contacts->count; n < contacts->count + RUN_LANES; n++)
+        contacts->pair[n][0] = contacts->pair[n][1] = &missing;
+    if (contacts->count > 0)
+        boxes(&run);
+    for (size_t n = 0; n < contacts->count; n++) {
+        const size_t k = contacts->of[n];
+        if (isnan(contacts->box[n][0][0]))
+            put_box_alone(block, k);
         else
-            memcpy(batch->boxes[i], overlaps.box[n], sizeof overlaps.box[n]);
+            memcpy(block->batch->boxes[block->first + block->slot[k]], contacts->box[n],
+                   sizeof contacts->box[n]);
     }
+}
+
+/* Boxes of all pairs in contact, whose verdicts are known: first of those at rest, then of those in
+ * which a frame moves. */
+static void put_all_boxes(struct block *block, const struct job *job, size_t start, size_t end)
+{
+    const struct fmb_batch *batch = block->batch;
+    struct contacts contacts;
+    for (unsigned moving = 0; moving < 2; moving++) {
+        enum run_kind kind = 0;
+        contacts.count = 0;
+        for (size_t k = start; k < end; k++) {
+            const size_t i = block->first + block->slot[k];
+            const struct fmb_prepared *const *pair = block->pair[k];
+            bool swapped;
+            if (batch->verdicts[i] != FMB_TOUCHING && batch->verdicts[i] != FMB_OVERLAPPING) {
+                put_no_box(batch, i);
+                continue;
+            }
+            const enum run_kind own = run_box_kind(pair[0], pair[1], batch->duration, &swapped);
+            if (!(own & RUN_DRIFTS) != !moving)
+                continue;
+            kind = own;
+            contacts.pair[contacts.count][0] = pair[swapped];
+            contacts.pair[contacts.count][1] = pair[!swapped];
+            contacts.of[contacts.count++] = k;
+        }
+        put_boxes(block, job->run.boxes[kind], &contacts);
+    }
+}
+
+/* Runs the second pass on the pairs of a kind that the first left unsure, side by side. Two faces
+ * that may have parallel planes stay unsure. */
+static void run_exactly(run_function *exact, bool faces, const struct run *first)
+{
+    unsigned char of[BLOCK], outcome[BLOCK + RUN_LANES];
+    const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
+    size_t count = 0;
+    if (!memchr(first->outcomes, SLABS_UNSURE, first->count))
+        return;
+    for (size_t k = 0; k < first->count; k++) {
+        if (first->outcomes[k] != SLABS_UNSURE)
+            continue;
+        pair[count][0] = first->pairs[k][0];
+        pair[count][1] = first->pairs[k][1];
+        of[count++] = (unsigned char) k;
+    }
+    for (size_t n = count; n < count + RUN_LANES; n++)
+        pair[n][0] = pair[n][1] = &missing;
+    const struct run run = {
+        .pairs = pair, .count = count, .duration = first->duration, .outcomes = outcome};
+    exact(&run);
+    for (size_t n = 0; n < count; n++)
+        if (!faces || outcome[n] != SLABS_TOUCHING)
+            first->outcomes[of[n]] = outcome[n];
 }
 
 static void run_kind(struct block *block, const struct job *job, enum run_kind kind)
@@ -325,14 +440,15 @@ static void run_kind(struct block *block, const struct job *job, enum run_kind k
                             .duration = batch->duration,
                             .outcomes = &block->outcome[start],
                             .contacts = &block->contact[start]};
-    const bool times = batch->contacts && !batch->boxes && kind & RUN_DRIFTS;
+    const bool times = batch->contacts && kind & RUN_DRIFTS;
     (times ? job->run.times : job->run.verdicts)[kind](&run);
-    if (batch->boxes)
-        put_boxes(block, job->run.boxes[kind], kind, start, end);
-    else if (batch->contacts)
+    run_exactly(job->run.exact[kind], kind & RUN_FACE && kind & RUN_ALIKE, &run);
+    if (batch->contacts)
         put_contacts(block, kind, start, end);
     else
         put_verdicts(block, start, end);
+    if (batch->boxes)
+        put_all_boxes(block, job, start, end);
 }
 
 /* ---- Pairs of which doubles can say nothing, and such as cannot be asked ---- */
@@ -351,7 +467,7 @@ static void answer_odd(struct block *block)
         const size_t i = block->first + block->slot[k];
         put_nothing(block->batch, i);
         if (k < block->start[RUN_REFUSED]) {
-            decide_alone(block, k);
+            decide_alone(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
             continue;
         }
         block->batch->verdicts[i] = FMB_REFUSED;
@@ -364,14 +480,67 @@ static void answer_odd(struct block *block)
  *
  * Of frames in the order of the query: the block may have exchanged them. */
 
-static void put_gap(const struct job *job, size_t i)
+/* Separated pairs of one kind, GROWN at a time. */
+enum { GROWN = 32 };
+struct grown {
+    size_t count;
+    unsigned char slot[GROWN];
+    struct fmb_prepared frame[GROWN];
+    const struct fmb_prepared *pair[GROWN + RUN_LANES][2];
+};
+
+/* Pairs that the filter separates even where b has an error that is larger by as much as gaps may
+ * be wanted are farther apart than that (slabs.h). */
+static void run_grown(struct block *block, const struct job *job, enum run_kind kind,
+                      struct grown *grown)
 {
+    unsigned char outcome[GROWN + RUN_LANES];
+    const struct run run = {.pairs = grown->pair,
+                            .count = grown->count,
+                            .duration = job->batch->duration,
+                            .outcomes = outcome};
+    if (grown->count == 0)
+        return;
+    for (size_t n = grown->count; n < grown->count + RUN_LANES; n++)
+        grown->pair[n][0] = grown->pair[n][1] = &missing;
+    job->run.verdicts[kind](&run);
+    for (size_t n = 0; n < grown->count; n++)
+        block->far[grown->slot[n]] = outcome[n] == SLABS_SEPARATED;
+    grown->count = 0;
+}
+
+static void find_far(struct block *block, const struct job *job, enum run_kind kind)
+{
+    struct grown grown;
+    grown.count = 0;
+    for (size_t k = block->start[kind]; k < block->start[kind + 1]; k++) {
+        const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
+        struct fmb_prepared *larger = &grown.frame[grown.count];
+        const int error = prepared_kind(b) & PREPARED_SPACE ? PREPARED_ERROR_3D : PREPARED_ERROR_2D;
+        if (block->outcome[k] != SLABS_SEPARATED)
+            continue;
+        *larger = *b;
+        larger->number[error - 1] +=
+            gap_surely(a, b, job->batch->duration, job->farthest) * (1 + 0x1p-40);
+        grown.slot[grown.count] = block->slot[k];
+        grown.pair[grown.count][0] = a;
+        grown.pair[grown.count++][1] = larger;
+        if (grown.count == GROWN)
+            run_grown(block, job, kind, &grown);
+    }
+    run_grown(block, job, kind, &grown);
+}
+
+static void put_gap(const struct job *job, const struct block *block, size_t slot)
+{
+    const size_t i = block->first + slot;
     const struct fmb_batch *batch = job->batch;
     const struct fmb_gap none = {.bounds = {NAN, NAN}};
     struct fmb_gap *gap = &batch->gaps[i];
     unsigned char *verdict = &batch->verdicts[i];
     enum gap_outcome outcome = GAP_FAR;
-    if (*verdict != FMB_REFUSED && *verdict != FMB_LEFT_OPEN)
+    const bool contact = *verdict == FMB_TOUCHING || *verdict == FMB_OVERLAPPING;
+    if (contact || (*verdict == FMB_SEPARATED && !block->far[slot]))
         outcome = gap_of(&batch->frames[batch->pairs[i][0]], &batch->frames[batch->pairs[i][1]],
                          batch->duration, (enum fmb_verdict) * verdict, job->farthest,
                          batch->open != NULL, gap);
@@ -392,8 +561,13 @@ static enum fmb_status decide_block(const struct job *job, size_t first)
         if (block.start[kind] < block.start[kind + 1])
             run_kind(&block, job, (enum run_kind) kind);
     answer_odd(&block);
-    for (size_t i = 0; job->batch->gaps && i < block.count; i++)
-        put_gap(job, first + i);
+    if (!job->batch->gaps)
+        return block.status;
+    memset(block.far, 0, sizeof block.far);
+    for (int kind = 0; kind < RUN_KINDS && job->farthest < INFINITY; kind++)
+        find_far(&block, job, (enum run_kind) kind);
+    for (size_t i = 0; i < block.count; i++)
+        put_gap(job, &block, i);
     return block.status;
 }
 
@@ -463,11 +637,10 @@ enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared
     const enum run_kind kind = run_kind_of(a, b, duration, &swapped);
     if (kind == RUN_REFUSED)
         return refusal((const struct fmb_prepared *const[2]){a, b});
-    const enum slabs_outcome outcome =
-        kind == RUN_ODD
-            ? SLABS_UNSURE
-            : run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
-    *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, false)
+    enum slabs_outcome outcome = SLABS_UNSURE;
+    if (kind != RUN_ODD)
+        outcome = run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
+    *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, 1, false)
                                        : (enum fmb_verdict) outcome;
     return FMB_OK;
 }

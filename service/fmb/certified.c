@@ -1,6 +1,5 @@
 #include "certified.h"
 
-#include "axis.h"
 #include "exact.h"
 #include "faces.h"
 #include "gap.h"
@@ -98,12 +97,6 @@ static enum fmb_verdict verdict_in_limbs(struct limbs_pair *limbs, const struct 
     return verdict_of_sign(sign);
 }
 
-/* Where nothing rounds, unsure is touching. */
-static enum fmb_verdict verdict_of_outcome(enum slabs_outcome outcome)
-{
-    return outcome == SLABS_UNSURE ? FMB_TOUCHING : (enum fmb_verdict) outcome;
-}
-
 /* By the exact method; 0 where the decision is quick. */
 static enum fmb_verdict verdict_in_full(struct certified *certified)
 {
@@ -120,10 +113,6 @@ static enum fmb_verdict verdict_in_full(struct certified *certified)
 static enum fmb_verdict verdict_of_slabs(struct certified *certified)
 {
     find_span(certified);
-    if (!certified->rounds) {
-        certified->path = CERTIFIED_UNROUNDED;
-        return verdict_of_outcome(slabs_filter_exactly(&certified->slabs));
-    }
     struct slab_normal open[SLABS_MAX];
     struct limbs_pair limbs;
     bool separated;
@@ -154,25 +143,6 @@ static enum fmb_verdict verdict_of_planes(struct certified *certified)
                                              : verdict_in_full(certified);
 }
 
-static enum fmb_verdict verdict_of_unsure(struct certified *certified)
-{
-    if (!find_slabs(certified))
-        return verdict_in_full(certified);
-    const bool faces =
-        certified->pair->a.frame->shape == FMB_FACE && certified->pair->b.frame->shape == FMB_FACE;
-    enum fmb_verdict verdict = faces ? 0 : axis_verdict(&certified->slabs);
-    certified->path = CERTIFIED_REFINED;
-    if (!verdict)
-        verdict = verdict_of_slabs(certified);
-    if (!faces)
-        return verdict;
-    if (certified->path == CERTIFIED_EXACT) {
-        certified->planes = FACES_ELSE; /* they may be parallel: that was not tested */
-        return verdict;
-    }
-    return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;
-}
-
 /* Sets the kind of a pair from its prepared frames; false if doubles cannot decide it. */
 static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
                      const struct fmb_prepared *b)
@@ -192,6 +162,40 @@ static enum slabs_outcome run_alone(const struct certified *certified,
                                       certified->pair->duration, out);
 }
 
+static bool are_faces(const struct certified *certified)
+{
+    return certified->kind & RUN_FACE && certified->kind & RUN_ALIKE;
+}
+
+/* On input: a pair that the second pass leaves unsure; or two faces, TOUCHING by it. */
+static enum fmb_verdict verdict_in_integers(struct certified *certified, bool touching)
+{
+    if (!find_slabs(certified))
+        return verdict_in_full(certified);
+    const enum fmb_verdict verdict = touching ? FMB_TOUCHING : verdict_of_slabs(certified);
+    if (!are_faces(certified))
+        return verdict;
+    if (certified->path == CERTIFIED_EXACT) {
+        certified->planes = FACES_ELSE; /* they may be parallel: that was not tested */
+        return verdict;
+    }
+    find_span(certified);
+    return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;
+}
+
+/* On input: a pair that the first pass leaves unsure. */
+static enum fmb_verdict verdict_of_unsure(struct certified *certified)
+{
+    if (certified->kind >= RUN_KINDS)
+        return verdict_in_full(certified);
+    const enum slabs_outcome outcome = run_alone(certified, run_exact_alone(), NULL);
+    const bool touching = outcome == SLABS_TOUCHING;
+    certified->path = CERTIFIED_SECOND;
+    if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
+        return verdict_in_integers(certified, touching);
+    return (enum fmb_verdict) outcome;
+}
+
 /* On input: a pair that is prepared. contact: NULL, or where the times of a pair that drifts go, as
  * in struct run. */
 static enum fmb_verdict verdict_of(struct certified *certified, double contact[2])
@@ -199,15 +203,15 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
     run_alone_function *const *functions = contact ? run_times_alone() : run_verdicts_alone();
     certified->path = CERTIFIED_FILTER;
     const enum slabs_outcome outcome = run_alone(certified, functions, contact);
-    return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : verdict_of_outcome(outcome);
+    return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
 }
 
 /* On input: a pair that has begun. */
 static enum fmb_verdict verdict_of_any(struct certified *certified)
 {
     struct fmb_prepared a, b;
-    prepared_set(&certified->pair->a, &a);
-    prepared_set(&certified->pair->b, &b);
+    prepared_set(certified->pair->a, &a);
+    prepared_set(certified->pair->b, &b);
     return set_kind(certified, &a, &b) ? verdict_of(certified, NULL) : verdict_in_full(certified);
 }
 
@@ -267,26 +271,29 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
                       !certified->quick, answer->contact);
 }
 
-/* Where frames only touch, and numbers round, doubles cannot be sure of a single common point. */
-static bool answer_box(struct certified *certified, struct fmb_answer *answer)
+bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                   double box[2][FMB_DIM_MAX])
+{
+    const struct fmb_prepared *pairs[RUN_LANES][2];
+    double boxes[RUN_LANES][2][FMB_DIM_MAX];
+    bool swapped;
+    const enum run_kind kind = run_box_kind(a, b, duration, &swapped);
+    const struct run run = {.pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
+    for (int lane = 0; lane < RUN_LANES; lane++) {
+        pairs[lane][0] = swapped ? b : a;
+        pairs[lane][1] = swapped ? a : b;
+    }
+    run_boxes_single()[kind](&run);
+    memcpy(box, boxes[0], sizeof boxes[0]);
+    return !isnan(boxes[0][0][0]);
+}
+
+/* False where doubles do not give it. */
+static bool answer_box(const struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
-    if (certified->planes != FACES_CROSSING)
-        return false;
-    if (answer->verdict == FMB_OVERLAPPING && !pair_moves(certified->pair) &&
-        !(certified->kind & RUN_FACE) && !never_rounds(certified)) {
-        double box[2][FMB_DIM_MAX];
-        run_alone(certified, run_boxes_alone(), (double *) box);
-        memcpy(answer->box, box, sizeof box);
-        if (!isnan(box[0][0]))
-            return true;
-    }
-    if (!find_slabs(certified))
-        return false;
-    find_span(certified);
-    if (answer->verdict == FMB_TOUCHING && certified->rounds)
-        return false;
-    return box_of(&certified->slabs, certified->rounds, answer->box);
+    return certified_box(certified->frame[0], certified->frame[1], certified->pair->duration,
+                         answer->box);
 }
 
 /* The exact method gives what the doubles did not, and that alone: which of them gives what is
@@ -347,8 +354,8 @@ static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want,
                                    struct fmb_answer *answer)
 {
     struct fmb_prepared a, b;
-    prepared_set(&pair->a, &a);
-    prepared_set(&pair->b, &b);
+    prepared_set(pair->a, &a);
+    prepared_set(pair->b, &b);
     return decide_all(pair, &a, &b, want, quick, answer);
 }
 
@@ -376,11 +383,12 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
 }
 
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                                  double duration, bool quick)
+                                  double duration, int passes, bool quick)
 {
     const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
     struct certified certified;
     begin(&certified, &pair, quick);
     set_kind(&certified, a, b);
-    return verdict_of_unsure(&certified);
+    return passes == 2 && !are_faces(&certified) ? verdict_in_integers(&certified, false)
+                                                 : verdict_of_unsure(&certified);
 }

@@ -1,14 +1,12 @@
 /* The certified method: doubles with bounds on their errors; exact arithmetic where these leave
  * something open.
  *
- *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c); where unsure, the axis
- * along which the frames touch (axis.c), the open slabs in integers (limbs.c), or the whole
- *               question by the exact method; of two faces in one plane, that of two triangles in
- *               2D (faces.c)
+ *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c); where unsure, its second
+ *               pass (walk_exact.h), the open slabs in integers (limbs.c), or the exact method; of
+ *               two faces in one plane, that of two triangles in 2D (faces.c)
  *     contact   the filter bounds the time in the same walk (walk_slab.h); where that is not near
  *               enough, or nothing rounds, the slabs one by one (contact.c)
- *     box       edges of each frame cut by the other: of solid frames at rest by the filter
- *               (walk_box.h), of others, and where nothing rounds, by box.c
+ *     box       the least of a list of bounds for each end (walk_box.h)
  *     gap       from the verdict on, by steps of its own (gap.h)
  *
  * Contact and box are two-sided: the outer value surely contains the true one, the inner one is
@@ -35,12 +33,11 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);
 
-/* Which step decides the verdict of a pair: the filter; the same slabs in doubles that are known
- * not to round; those left open, in doubles with bounds of their own; integers of fixed width;
- * GMP. For tests and reports. */
+/* Which step decides the verdict of a pair: the filter; its second pass; the slabs left open, in
+ * doubles with bounds of their own; integers of fixed width; GMP. For tests and reports. */
 enum certified_path {
     CERTIFIED_FILTER,
-    CERTIFIED_UNROUNDED,
+    CERTIFIED_SECOND,
     CERTIFIED_REFINED,
     CERTIFIED_LIMBS,
     CERTIFIED_EXACT
@@ -49,10 +46,10 @@ enum certified_path {
 /* The verdict of a checked pair, and who found it. */
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
-/* The same of a prepared pair of which the filter is known to be unsure. quick: 0 where it needs
- * GMP or wider integers. */
+/* The same of a prepared pair that one or both passes of the filter leave unsure. quick: 0 where it
+ * needs GMP or wider integers. */
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                                  double duration, bool quick);
+                                  double duration, int passes, bool quick);
 
 /* For a pair in contact that drifts: its contact. rounds: whether operations on these numbers
  * may round; span: of the pair; exact: where doubles do not give an end within its limit, integers
@@ -60,7 +57,9 @@ enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* For a pair in contact: the box. False if doubles do not give it within its limit. */
-bool box_of(const struct slabs_pair *slabs, bool rounds, double box[2][FMB_DIM_MAX]);
+/* For a pair in contact, prepared: the box. False, and NAN, if doubles do not give it within its
+ * limit. */
+bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                   double box[2][FMB_DIM_MAX]);
 
 #endif

@@ -165,7 +165,8 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
                            const struct fmb_placement *b, double duration, unsigned want,
                            struct fmb_answer *answer)
 {
-    memset(answer, 0, sizeof *answer);
+    static const struct fmb_answer none;
+    *answer = none;
     enum fmb_status status = placements_check(a, b, duration);
     if (status != FMB_OK)
         return status;
@@ -183,6 +184,6 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
         *answer = frames.all;
     }
     if (status != FMB_OK) /* a method may have gone some way before it knew */
-        memset(answer, 0, sizeof *answer);
+        *answer = none;
     return status;
 }

@@ -241,11 +241,11 @@ struct fmb_gap {
  * Contacts and boxes of the methods certified and exact contain the exact ones. Those of exact are
  * the smallest of doubles that do: no end is farther off than the next double. Of those of
  * certified, an end of a contact is at most 1e-12 T too far out, and one of a box 1e-12 of the
- * largest magnitude of a coordinate of any vertex of either body over the window; in
- * scenes of small whole numbers, halves and quarters most are the tightest. Both are the same bits
- * for the pair the other way round and on every machine; another version of the library may give
- * other ones within these limits. An end of a box beyond the largest double is infinite, with its
- * sign. No number is -0. Those of fmb and sat are rounded as they come. */
+ * largest magnitude of a coordinate of any vertex of either body over the window;
+ * ends that are those of a frame, and small numbers in scenes of such numbers, are exact. Both are
+ * the same bits for the pair the other way round and on every machine; another version of the
+ * library may give other ones within these limits. An end of a box beyond the largest double is
+ * infinite, with its sign. No number is -0. Those of fmb and sat are rounded as they come. */
 struct fmb_answer {
     enum fmb_verdict verdict;
     bool has_contact;           /* touching or overlapping */
@@ -318,7 +318,7 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
 struct fmb_prepared {
     unsigned long long head; /* its kind and sizes */
     /* 3D: origin, components one after the other, error; 2D the same with two numbers for three,
-     * and the rest 0. */
+     * then the velocity, and the rest 0. */
     double number[13];
     const struct fmb_frame *frame; /* NULL: not prepared */
     const struct fmb_placement *placement;
@@ -365,14 +365,14 @@ struct fmb_batch {
     double (*boxes)[2][FMB_DIM_MAX];
     /* [pair_count], or NULL; as fmb_answer.gap; bounds of NAN for pairs refused or left open. */
     struct fmb_gap *gaps;
-    /* Both NULL, or a bound on the time of a call: [pair_count], and the count. Pairs
-     * whose verdict, contact or box (as far as these are wanted) needs integers of more than 128
-     * bits are then not decided but left open and listed: open[0] to open[*open_count - 1] are
-     * their positions in pairs, ascending. Each of them may take as long as fmb_decide() of a pair;
-     * any other takes tens of microseconds at most, and no memory is allocated. Where no boxes are
-     * wanted, pairs that need more than the filter in doubles are left open too if 32 of the same
-     * 128 pairs have been decided before. A batch of one such pair, with both NULL, gives its
-     * answer: the same bits as in a batch of all pairs with both NULL. */
+    /* Both NULL, or a bound on the time of a call: [pair_count], and the count. Pairs whose verdict
+     * or contact (where wanted) needs integers of more than 512 bits, or whose box or gap needs
+     * integers, are then left open and listed: open[0] to open[*open_count - 1] are their positions
+     * in pairs, ascending. Each of them may take as long as fmb_decide() of a pair; any other takes
+     * tens of microseconds at most, and no memory is allocated. Pairs that need more than the
+     * filter in doubles are left open too if 32 of the same 128 pairs have been decided before.
+     * Which pairs are left open does not depend on the instructions. A batch of one such pair, with
+     * both NULL, gives its answer: the same bits as in a batch of all pairs with both NULL. */
     size_t *open;
     size_t *open_count;
     enum fmb_instructions instructions; /* 0: the best */
@@ -528,8 +528,8 @@ struct fmb_scene {
     const struct fmb_method *method; /* NULL: the default; not certain: only FMB_PAIRS_LISTED */
     bool contacts, boxes;            /* wanted, of pairs that meet */
     bool gaps;                       /* wanted, of all pairs in the answers */
-    /* Separated pairs whose lower bound is at most the margin are among the answers, with their
-     * gaps: they are near. Not negative, finite; 0: none are near. */
+    /* Separated pairs whose lower bound is at most the margin are near: they are among the answers.
+     * They and pairs that meet have their gaps. Not negative, finite; 0: no pair is near. */
     double margin;
     enum fmb_pairs which;
     size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; else 0 */
@@ -588,7 +588,7 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 struct fmb_scene_state **out);
 
 /* Does the next part of the work: tens of microseconds, except a step that decides one pair of
- * frames in exact arithmetic, and the one that builds the tree of all placements. The answers come
+ * frames in exact arithmetic, and the one that finds which placements may meet. The answers come
  * in the order of the pairs; of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS those that meet, and
  * near ones.
  * Returns whether the scene is complete. */

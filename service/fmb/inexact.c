@@ -21,8 +21,8 @@ static void set_inverse(const struct placed_frame *placed, struct inexact_pair *
 bool inexact_pair_of(const struct frame_pair *pair, struct inexact_pair *out)
 {
     struct fmb_prepared a, b;
-    prepared_set(&pair->a, &a);
-    prepared_set(&pair->b, &b);
+    prepared_set(pair->a, &a);
+    prepared_set(pair->b, &b);
     world_frame_of(&a, &out->a);
     world_frame_of(&b, &out->b);
     set_inverse(&pair->a, out);

@@ -11,15 +11,16 @@
 _Static_assert(FMB_PLAIN == 1 && FMB_SSE2 == 2 && FMB_AVX512 == 4,
                "INSTRUCTIONS_MOST is a number of the enum");
 
-#define RUN_DECLARE(name)                                                                 \
-    extern run_function *const run_##name[RUN_KINDS], *const run_times_##name[RUN_KINDS], \
-                                                          *const run_boxes_##name[RUN_KINDS];
+#define RUN_DECLARE(name)                                                                     \
+    extern run_function *const run_##name[RUN_KINDS], *const run_exact_##name[RUN_KINDS],     \
+                                                          *const run_times_##name[RUN_KINDS], \
+                                                              *const run_boxes_##name[RUN_KINDS];
 #define RUN_DECLARE_ALONE(name)                                   \
     extern run_alone_function *const run_alone_##name[RUN_KINDS], \
-        *const run_times_alone_##name[RUN_KINDS], *const run_boxes_alone_##name[RUN_KINDS];
-#define RUN_SET(name)                                  \
-    {                                                  \
-        run_##name, run_times_##name, run_boxes_##name \
+        *const run_exact_alone_##name[RUN_KINDS], *const run_times_alone_##name[RUN_KINDS];
+#define RUN_SET(name)                                                    \
+    {                                                                    \
+        run_##name, run_exact_##name, run_times_##name, run_boxes_##name \
     }
 
 RUN_DECLARE(plain)
@@ -73,14 +74,14 @@ run_alone_function *const *run_verdicts_alone(void)
     return RUN_ALONE_BEST(run);
 }
 
+run_alone_function *const *run_exact_alone(void)
+{
+    return RUN_ALONE_BEST(run_exact);
+}
+
 run_alone_function *const *run_times_alone(void)
 {
     return RUN_ALONE_BEST(run_times);
-}
-
-run_alone_function *const *run_boxes_alone(void)
-{
-    return RUN_ALONE_BEST(run_boxes);
 }
 
 static int best(void)
@@ -89,6 +90,11 @@ static int best(void)
         if (has(instructions))
             return instructions;
     return FMB_PLAIN;
+}
+
+run_function *const *run_boxes_single(void)
+{
+    return sets[best() < FMB_AVX2 ? best() : FMB_AVX2].boxes;
 }
 
 bool fmb_instructions_supported(int instructions)

@@ -122,6 +122,16 @@ INLINE lanes lanes_choose(lanes_mask mask, lanes x, lanes y)
 #endif
 }
 
+/* x where the mask is set, else 0. */
+INLINE lanes_bits lanes_bits_where(lanes_mask mask, lanes_bits x)
+{
+#if LANES == 1
+    return mask ? x : 0;
+#else
+    return (lanes_bits) mask & x;
+#endif
+}
+
 /* magnitude >= 0, with the sign of x. */
 INLINE lanes lanes_with_sign(lanes magnitude, lanes x)
 {
@@ -155,5 +165,29 @@ INLINE bool lanes_all(lanes_mask mask)
 {
     return lanes_mask_bits(mask) == (1u << LANES) - 1;
 }
+
+/* Bit i: x > y in lane i. Not by a mask where comparisons give the bits. */
+INLINE unsigned lanes_bits_above(lanes x, lanes y)
+{
+#if LANES == 8 && defined(__AVX512F__)
+    return _mm512_cmp_pd_mask((__m512d) x, (__m512d) y, _CMP_GT_OQ);
+#else
+    return lanes_mask_bits(x > y);
+#endif
+}
+
+#if LANES <= 2
+
+/* The two lanes, each in the place of the other. */
+INLINE lanes lanes_exchanged(lanes x)
+{
+#if LANES == 1
+    return x;
+#else
+    return __builtin_shufflevector(x, x, 1, 0);
+#endif
+}
+
+#endif
 
 #endif

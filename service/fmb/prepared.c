@@ -50,6 +50,8 @@ static uint64_t in_head(unsigned kind)
     return (uint64_t) kind << 3 * PREPARED_SIZE_BITS;
 }
 
+static const unsigned true_axes = PREPARED_TRUE_X * 7;
+
 unsigned long long prepared_head_of(const struct fmb_frame *frame)
 {
     const bool plain = !frame->rounded && frame->bits[1] - frame->bits[0] <= 24;
@@ -59,6 +61,7 @@ unsigned long long prepared_head_of(const struct fmb_frame *frame)
     kind |= frame->dim == 3 ? PREPARED_SPACE : 0;
     kind |= frame->in_range ? PREPARED_USABLE : 0;
     kind |= plain ? PREPARED_PLAIN : 0;
+    kind |= frame->rounded ? 0 : true_axes;
     kind |= has_edge_along(frame_is_simplex(frame), frame->count,
                            (const double(*)[FMB_DIM_MAX]) frame->component)
                 ? PREPARED_ALONG
@@ -181,6 +184,8 @@ static uint64_t head_of(const struct fmb_frame *frame, const struct rotation *ro
         head &= ~in_head(PREPARED_PLAIN);
     if (rotation->exact)
         return head;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        head &= rotation->axis_exact[axis] ? head : ~in_head((unsigned) PREPARED_TRUE_X << axis);
     head &= ~in_head(PREPARED_ALONG | (frame->sturdy ? 0 : PREPARED_USABLE));
     if (frame->dim == 3 && has_edge_along(frame_is_simplex(frame), frame->count,
                                           (const double(*)[FMB_DIM_MAX]) place->component))
@@ -208,13 +213,53 @@ INLINE void set_general(const struct fmb_frame *frame, const struct rotation *ro
     place->error = frame->slack + frame->turn_error;
     place->error += 0x1p-52 * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
     place->error *= 1 + 0x1p-40; /* for its own rounding */
-    out->head = (frame->head & ~in_head(PREPARED_ALONG | PREPARED_PLAIN)) |
+    out->head = (frame->head & ~in_head(PREPARED_ALONG | PREPARED_PLAIN | true_axes)) |
                 (placement_moves(placement, FMB_DIM_MAX) ? in_head(PREPARED_MOVING) : 0);
     out->frame = frame;
     out->placement = placement;
 }
 
 /* ---- Any frames ---- */
+
+INLINE void put_plane(const double origin[2], const double component[][FMB_DIM_MAX], double error,
+                      const double velocity[2], double number[13])
+{
+    const int used = PREPARED_VELOCITY_2D + 1;
+    memcpy(number, origin, 2 * sizeof *number);
+    memcpy(number + 2, component[0], 2 * sizeof *number);
+    memcpy(number + 4, component[1], 2 * sizeof *number);
+    number[PREPARED_ERROR_2D - 1] = error;
+    memcpy(number + PREPARED_VELOCITY_2D - 1, velocity, 2 * sizeof *number);
+    memset(number + used, 0, sizeof((struct fmb_prepared *) 0)->number - used * sizeof *number);
+}
+
+/* A frame without orientation whose origin is that of its body: what set_place() and head_of() make
+ * of it, its own numbers. */
+static void set_unturned(const struct fmb_frame *frame, const struct fmb_placement *placement,
+                         struct fmb_prepared *out)
+{
+    const unsigned axes = (frame->dim == 3 ? 7u : 3u) * PREPARED_EXACT_X;
+    const double error = frame->slack * (1 + 0x1p-40);
+    out->head = frame->head | (frame->slack == 0 ? in_head(axes) : 0) |
+                (placement_moves(placement, frame->dim) ? in_head(PREPARED_MOVING) : 0);
+    if (error != 0)
+        out->head &= ~in_head(PREPARED_PLAIN);
+    out->frame = frame;
+    out->placement = placement;
+    if (frame->dim == 2) {
+        put_plane(placement->position, frame->component, error, placement->velocity, out->number);
+        return;
+    }
+    struct place *place = (struct place *) out->number;
+    memcpy(place->origin, placement->position, sizeof place->origin);
+    memcpy(place->component, frame->component, sizeof place->component);
+    place->error = error;
+}
+
+INLINE bool is_unturned(const struct fmb_frame *frame, const struct fmb_placement *placement)
+{
+    return placement->orientation_count == 0 && is_zero(frame->origin);
+}
 
 INLINE void set(const struct fmb_frame *frame, const struct rotation *rotation,
                 const struct fmb_placement *placement, struct fmb_prepared *out)
@@ -228,21 +273,26 @@ INLINE void set(const struct fmb_frame *frame, const struct rotation *rotation,
     out->head = head_of(frame, rotation, placement, place, exact);
     out->frame = frame;
     out->placement = placement;
-    if (frame->dim == 3)
-        return;
-    double *number = out->number;
-    memset(number + PREPARED_ERROR_2D, 0, sizeof out->number - PREPARED_ERROR_2D * sizeof *number);
-    memcpy(number, plane.origin, 2 * sizeof *number);
-    memcpy(number + 2, plane.component[0], 2 * sizeof *number);
-    memcpy(number + 4, plane.component[1], 2 * sizeof *number);
-    number[PREPARED_ERROR_2D - 1] = plane.error;
+    if (frame->dim == 2)
+        put_plane(plane.origin, plane.component, plane.error, placement->velocity, out->number);
 }
 
-void prepared_set(const struct placed_frame *placed, struct fmb_prepared *out)
+/* Not inlined: prepared_set() would save its registers even for frames that are not turned. */
+static __attribute__((noinline)) void set_alone(const struct fmb_frame *frame,
+                                                const struct fmb_placement *placement,
+                                                struct fmb_prepared *out)
 {
     struct rotation rotation;
-    rotation_of(placed->placement, placed->frame->dim, &rotation);
-    set(placed->frame, &rotation, placed->placement, out);
+    rotation_of(placement, frame->dim, &rotation);
+    set(frame, &rotation, placement, out);
+}
+
+void prepared_set(struct placed_frame placed, struct fmb_prepared *out)
+{
+    if (is_unturned(placed.frame, placed.placement))
+        set_unturned(placed.frame, placed.placement, out);
+    else
+        set_alone(placed.frame, placed.placement, out);
 }
 
 INLINE void place(const struct fmb_placement *placement, unsigned first, unsigned count,
@@ -250,8 +300,13 @@ INLINE void place(const struct fmb_placement *placement, unsigned first, unsigne
 {
     struct rotation rotation;
     rotation_of(placement, placement->body->dim, &rotation);
-    for (unsigned i = 0; i < count; i++)
-        set(fmb_body_frame(placement->body, first + i), &rotation, placement, &out[i]);
+    for (unsigned i = 0; i < count; i++) {
+        const struct fmb_frame *frame = fmb_body_frame(placement->body, first + i);
+        if (is_unturned(frame, placement))
+            set_unturned(frame, placement, &out[i]);
+        else
+            set(frame, &rotation, placement, &out[i]);
+    }
 }
 
 void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,

@@ -29,12 +29,16 @@ enum {
     PREPARED_PLAIN = 1 << 6,  /* the error is 0, and the components have few bits */
     PREPARED_GOOD = 1 << 7,   /* it was prepared */
     /* And the next two for y and z: the error does not reach these coordinates. */
-    PREPARED_EXACT_X = 1 << 8
+    PREPARED_EXACT_X = 1 << 8,
+    /* Likewise: the components are exact along x. */
+    PREPARED_TRUE_X = 1 << 11
 };
 
-/* Words of struct fmb_prepared, the head being word 0. */
+/* Words of struct fmb_prepared, the head being word 0. In 2D a pair at rest reads the first eight
+ * alone, and the velocity follows. */
 enum {
     PREPARED_ERROR_2D = 7,
+    PREPARED_VELOCITY_2D = 8,
     PREPARED_ERROR_3D = 13,
     PREPARED_FRAME = 14,
     PREPARED_PLACEMENT = 15
@@ -55,7 +59,8 @@ static inline bool prepared_both_plain(const struct fmb_prepared *a, const struc
 /* On input: a frame that is prepared. */
 static inline const double *prepared_velocity(const struct fmb_prepared *frame)
 {
-    return frame->placement->velocity;
+    return prepared_kind(frame) & PREPARED_SPACE ? frame->placement->velocity
+                                                 : &frame->number[PREPARED_VELOCITY_2D - 1];
 }
 
 static inline double prepared_error(const struct fmb_prepared *frame)
@@ -94,7 +99,7 @@ bool prepared_is_duration(double duration);
 unsigned long long prepared_head_of(const struct fmb_frame *frame);
 
 /* As fmb_prepare() of one frame, without a check. */
-void prepared_set(const struct placed_frame *placed, struct fmb_prepared *out);
+void prepared_set(struct placed_frame placed, struct fmb_prepared *out);
 
 /* As fmb_prepare(), without a check. */
 void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,

@@ -1,17 +1,21 @@
 /* LANES pairs side by side. */
-#include "run_lanes.h"
+#include "run_box.h"
+
+INLINE void gather_side(const struct run *run, const struct walk_kind kind, size_t first, int which,
+                        struct run_frame *out)
+{
+    const double *frame[LANES];
+    UNROLL(8)
+    for (size_t lane = 0; lane < LANES; lane++)
+        frame[lane] = (const double *) run->pairs[first + lane][which];
+    gather(kind, frame, out);
+}
 
 INLINE void gather_pairs(const struct run *run, const struct walk_kind kind, size_t first,
                          struct run_frame pair[2])
 {
-    const double *frame[2][LANES];
-    UNROLL(8)
-    for (size_t lane = 0; lane < LANES; lane++) {
-        frame[0][lane] = (const double *) run->pairs[first + lane][0];
-        frame[1][lane] = (const double *) run->pairs[first + lane][1];
-    }
-    gather(kind, frame[0], &pair[0]);
-    gather(kind, frame[1], &pair[1]);
+    gather_side(run, kind, first, 0, &pair[0]);
+    gather_side(run, kind, first, 1, &pair[1]);
 }
 
 #if defined(RUN_TIMES) || defined(RUN_BOXES)
@@ -37,12 +41,24 @@ INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t
     lanes box[2][3];
     gather_pairs(run, kind, first, frame);
     set_pair(kind, &frame[0], &frame[1], run->duration, &pair);
-    boxes_of(kind, &pair, &frame[0], &frame[1], box);
+    boxes_of(kind, &pair, frame, run->duration, box);
     UNROLL(2)
     for (int end = 0; end < 2; end++)
         UNROLL(3)
     for (int axis = 0; axis < 3; axis++)
         scatter(box[end][axis], &run->boxes[first][end][axis], 6);
+}
+
+#elif defined(RUN_EXACT)
+
+INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+{
+    struct run_frame frame[2];
+    struct walk_pair pair;
+    gather_pairs(run, kind, first, frame);
+    set_pair(kind, &frame[0], &frame[1], run->duration, &pair);
+    put_outcomes(exact_outcomes(kind, &frame[0], &frame[1], run->duration, &pair),
+                 &run->outcomes[first]);
 }
 
 #else

@@ -71,6 +71,35 @@ static inline enum run_kind run_kind_of(const struct fmb_prepared *a, const stru
     return kinds.moving && run_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }
 
+/* An order of two frames of one shape that does not depend on their places in a query: whether b
+ * comes before a. Frames that are equal in all numbers are in order both ways. */
+static inline bool run_is_turned(const struct fmb_prepared *a, const struct fmb_prepared *b)
+{
+    if (a->head != b->head)
+        return b->head < a->head;
+    for (int i = 0; i < PREPARED_ERROR_3D; i++)
+        if (a->number[i] != b->number[i])
+            return b->number[i] < a->number[i];
+    const double *v = prepared_velocity(a), *w = prepared_velocity(b);
+    for (int axis = 0; axis < (prepared_kind(a) & PREPARED_SPACE ? 3 : 2); axis++)
+        if (v[axis] != w[axis])
+            return w[axis] < v[axis];
+    return false;
+}
+
+/* The kind of a pair whose box is asked: RUN_DRIFTS says that a frame moves, even if both do so
+ * together. The kernels of boxes are not symmetric: frames of one shape are put in order. On input:
+ * frames that may be compared. */
+static inline enum run_kind run_box_kind(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                         double duration, bool *swapped)
+{
+    const struct run_kinds kinds = run_kinds_of(prepared_kind(a), prepared_kind(b), duration);
+    const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE;
+    const bool alike = ((prepared_kind(a) ^ prepared_kind(b)) & shapes) == 0;
+    *swapped = alike ? run_is_turned(a, b) : kinds.swapped;
+    return kinds.moving ? kinds.drifting : kinds.at_rest;
+}
+
 struct run {
     /* [count][a, b]. Up to RUN_LANES - 1 more are read, and have to be frames of some kind. */
     const struct fmb_prepared *(*pairs)[2];
@@ -82,7 +111,7 @@ struct run {
     /* [count][first, last], of pairs in contact: seconds; NAN where they are not known well enough.
      */
     double (*contacts)[2];
-    double (*boxes)[2][FMB_DIM_MAX]; /* [count], of pairs that overlap; likewise */
+    double (*boxes)[2][FMB_DIM_MAX]; /* [count], likewise */
 };
 
 enum { RUN_LANES = 8 };
@@ -90,23 +119,30 @@ enum { RUN_LANES = 8 };
 typedef void run_function(const struct run *run);
 
 /* Tables have a function for each kind, NULL for combinations that do not exist. verdicts write
- * outcomes, of all kinds; times outcomes and contacts, of kinds that drift; boxes boxes, of kinds
- * at rest. */
+ * outcomes, of all kinds; times outcomes and contacts, of kinds that drift; boxes boxes, of all
+ * kinds, where RUN_DRIFTS says that a frame moves.
+ *
+ * exact: the second pass, for pairs that another one leaves unsure. It decides all that verdicts
+ * does, pairs that touch along coordinate axes, and those on whose numbers nothing rounds
+ * (walk_exact.h). What it leaves unsure is the same with every instruction set. TOUCHING of two
+ * faces: they are neither separated nor do they overlap unless their planes are parallel. */
 struct run_set {
-    run_function *const *verdicts, *const *times, *const *boxes;
+    run_function *const *verdicts, *const *exact, *const *times, *const *boxes;
 };
 
 /* By enum fmb_instructions; false if this machine does not have them, or they were not compiled. */
 bool run_set_of(int instructions, struct run_set *out);
 
-/* The same for a pair alone, of any instruction set. Returns the outcome, where it is asked; out is
- * the contact or the box, [2][FMB_DIM_MAX]. */
+/* The same for a pair alone, of any instruction set. out: the contact, from times. */
 typedef enum slabs_outcome run_alone_function(const struct fmb_prepared *a,
                                               const struct fmb_prepared *b, double duration,
                                               double *out);
 
 run_alone_function *const *run_verdicts_alone(void);
+run_alone_function *const *run_exact_alone(void);
 run_alone_function *const *run_times_alone(void);
-run_alone_function *const *run_boxes_alone(void);
+
+/* Boxes of a pair alone: the kernels that take least time for it. */
+run_function *const *run_boxes_single(void);
 
 #endif

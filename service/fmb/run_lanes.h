@@ -1,19 +1,30 @@
 /* What run.c and alone.c have in common: prepared frames into lanes, and what a walk found into
  * outcomes and times; and the table of functions, one for each kind of pair, that each of them
- * makes. RUN_NAME names the table; RUN_TIMES: outcomes with the times of contact; RUN_BOXES: boxes,
- * of pairs at rest; the bits of both are promised. RUN_ALONE: one pair, in all lanes. */
+ * makes. RUN_NAME names the table; RUN_EXACT: the second pass; RUN_TIMES: outcomes with the times
+ * of contact; RUN_BOXES: boxes, of pairs at rest; the bits of these three are promised. RUN_ALONE:
+ * one pair, in all lanes. */
 #ifndef FMB_RUN_LANES_H
 #define FMB_RUN_LANES_H
 
 #include "run.h"
 #include "walk.h"
-#include "walk_box.h"
 
 #ifdef RUN_TIMES
 enum { TIMES = 1, ORDERED = 1 };
 #else
 enum { TIMES = 0, ORDERED = 0 };
 #endif
+#ifdef RUN_BOXES
+enum { BOXES = 1 };
+#else
+enum { BOXES = 0 };
+#endif
+#ifdef RUN_EXACT
+enum { EXACT = 1 };
+#else
+enum { EXACT = 0 };
+#endif
+enum { ROUGH = !TIMES && !EXACT && !BOXES };
 
 /* ---- The gather: words[w] holds word w of LANES frames ---- */
 
@@ -51,46 +62,63 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
     }
 }
 
-#else
+#elif LANES == 4
 
-enum { GATHERED = LANES };
+enum { GATHERED = 4 };
 
-typedef double four __attribute__((vector_size(32)));
-
-INLINE four four_at(const double *from)
+INLINE lanes four_at(const double *from)
 {
-    four out;
+    lanes out;
     memcpy(&out, from, sizeof out);
     return out;
 }
 
-/* The transpose of a square. */
-INLINE void transpose(const double *const frame[4], int first, four out[4])
-{
-    const four x = four_at(frame[0] + first), y = four_at(frame[1] + first);
-    const four z = four_at(frame[2] + first), w = four_at(frame[3] + first);
-    const four xy_even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-    const four xy_odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-    const four zw_even = __builtin_shufflevector(z, w, 0, 4, 2, 6);
-    const four zw_odd = __builtin_shufflevector(z, w, 1, 5, 3, 7);
-    out[0] = __builtin_shufflevector(xy_even, zw_even, 0, 1, 4, 5);
-    out[1] = __builtin_shufflevector(xy_odd, zw_odd, 0, 1, 4, 5);
-    out[2] = __builtin_shufflevector(xy_even, zw_even, 2, 3, 6, 7);
-    out[3] = __builtin_shufflevector(xy_odd, zw_odd, 2, 3, 6, 7);
-}
-
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
-#if LANES == 4
-    transpose(frame, first, (four *) words);
+    UNROLL(2)
+    for (int odd = 0; odd < 2; odd++) {
+        const lanes x = four_at(frame[0] + first), y = four_at(frame[1] + first);
+        const lanes z = four_at(frame[2] + first), w = four_at(frame[3] + first);
+        const lanes xy = odd ? __builtin_shufflevector(x, y, 1, 5, 3, 7)
+                             : __builtin_shufflevector(x, y, 0, 4, 2, 6);
+        const lanes zw = odd ? __builtin_shufflevector(z, w, 1, 5, 3, 7)
+                             : __builtin_shufflevector(z, w, 0, 4, 2, 6);
+        words[odd] = __builtin_shufflevector(xy, zw, 0, 1, 4, 5);
+        words[2 + odd] = __builtin_shufflevector(xy, zw, 2, 3, 6, 7);
+    }
+}
+
 #else
-    four low[4], high[4];
-    transpose(frame, first, low);
-    transpose(frame + 4, first, high);
-    UNROLL(4)
-    for (int w = 0; w < 4; w++)
-        words[w] = __builtin_shufflevector(low[w], high[w], 0, 1, 2, 3, 4, 5, 6, 7);
+
+enum { GATHERED = 8 };
+
+/* Four words of two frames: the second half is inserted as it is loaded, without a shuffle. */
+INLINE lanes four_of_two(const double *low, const double *high)
+{
+#ifdef __AVX512F__
+    return (lanes) _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)),
+                                      _mm256_loadu_pd(high), 1);
+#else
+    return (lanes){low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
 #endif
+}
+
+/* Frames are two apart in a register: shuffles of two registers then put the words into the order
+ * of the lanes. */
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    const lanes x = four_of_two(frame[0] + first, frame[2] + first);
+    const lanes y = four_of_two(frame[1] + first, frame[3] + first);
+    const lanes z = four_of_two(frame[4] + first, frame[6] + first);
+    const lanes w = four_of_two(frame[5] + first, frame[7] + first);
+    const lanes xy_even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+    const lanes xy_odd = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+    const lanes zw_even = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
+    const lanes zw_odd = __builtin_shufflevector(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
+    words[0] = __builtin_shufflevector(xy_even, zw_even, 0, 1, 4, 5, 8, 9, 12, 13);
+    words[1] = __builtin_shufflevector(xy_odd, zw_odd, 0, 1, 4, 5, 8, 9, 12, 13);
+    words[2] = __builtin_shufflevector(xy_even, zw_even, 2, 3, 6, 7, 10, 11, 14, 15);
+    words[3] = __builtin_shufflevector(xy_odd, zw_odd, 2, 3, 6, 7, 10, 11, 14, 15);
 }
 
 #endif
@@ -99,12 +127,14 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 struct run_frame {
     lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
     lanes error;
+    lanes_bits head;
 };
 
 INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
                           struct run_frame *out)
 {
     const lanes_bits head = lanes_as_bits(words[0]);
+    out->head = head;
     out->origin[2] = lanes_of(0);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
@@ -139,17 +169,20 @@ INLINE int word_count(const struct walk_kind kind)
     return 1 + (kind.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D);
 }
 
-/* Velocities are in the placements, where more numbers follow. */
-INLINE void gather_velocity(const double *const frame[LANES], struct run_frame *out)
+/* In 3D velocities are in the placements, where more numbers follow. */
+INLINE void gather_velocity(const struct walk_kind kind, const double *const frame[LANES],
+                            struct run_frame *out)
 {
     const double *velocity[LANES];
     lanes words[4];
     UNROLL(8)
     for (int lane = 0; lane < GATHERED; lane++)
-        velocity[lane] = prepared_velocity((const struct fmb_prepared *) frame[lane]);
+        velocity[lane] = kind.dim == 2
+                             ? frame[lane] + PREPARED_VELOCITY_2D
+                             : ((const struct fmb_prepared *) frame[lane])->placement->velocity;
     gather_four(velocity, 0, words);
     UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < kind.dim; axis++)
         out->velocity[axis] = words[axis];
 }
 
@@ -166,13 +199,14 @@ INLINE void gather(const struct walk_kind kind, const double *const frame[LANES]
         words[used - 1] = gather_one(frame, used - 1);
     set_run_frame(kind, words, out);
     if (kind.drifts)
-        gather_velocity(frame, out);
+        gather_velocity(kind, frame, out);
 }
 
 INLINE void set_pair(const struct walk_kind kind, const struct run_frame *a,
                      const struct run_frame *b, double duration, struct walk_pair *out)
 {
     lanes component[2][3][3], size[2][3], offset[3], drift[3];
+    size[0][2] = size[1][2] = lanes_of(0);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         offset[axis] = b->origin[axis] - a->origin[axis];
@@ -201,40 +235,48 @@ INLINE void walk_pair_of(const struct walk_kind kind, const struct walk_pair *pa
 
 /* ---- Outcomes ---- */
 
-/* Bit i of each: lane i. Lanes of neither are unsure. */
+/* Bit i of each: lane i. Lanes of none are unsure. */
 struct outcomes {
-    unsigned separated, overlapping;
+    unsigned separated, touching, overlapping;
 };
 
 INLINE struct outcomes outcomes_of(const struct walk_pair *pair, const struct walk_found *found)
 {
-    const lanes_mask separated = pair->in_range & (found->surely > 0);
-    const lanes_mask overlapping = pair->in_range & (found->possibly < 0) & (found->surely <= 0);
-    return (struct outcomes){lanes_mask_bits(separated), lanes_mask_bits(overlapping)};
+    const unsigned in_range = lanes_mask_bits(pair->in_range);
+    const unsigned separated = lanes_bits_above(found->surely, lanes_of(0));
+    const unsigned overlapping = lanes_bits_above(lanes_of(0), found->possibly);
+    return (struct outcomes){in_range & separated, 0, in_range & overlapping & ~separated};
 }
 
 INLINE enum slabs_outcome outcome_at(struct outcomes outcomes, int lane)
 {
     return (enum slabs_outcome)((outcomes.separated >> lane & 1) * SLABS_SEPARATED +
+                                (outcomes.touching >> lane & 1) * SLABS_TOUCHING +
                                 (outcomes.overlapping >> lane & 1) * SLABS_OVERLAPPING);
 }
 
-/* To bytes. */
+/* Byte i is 1 where bit i of the eight is set, else 0. */
+INLINE uint64_t bits_to_bytes(unsigned bits)
+{
+    const uint64_t one_each = UINT64_C(0x0101010101010101);
+    const uint64_t own = bits * one_each & UINT64_C(0x8040201008040201); /* bit i of byte i */
+    return (own + 0x7f * one_each) >> 7 & one_each;
+}
+
 INLINE void put_outcomes(struct outcomes outcomes, unsigned char out[LANES])
 {
 #if LANES >= 4 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
-    UNROLL(2)
-    for (int lane = 0; lane < LANES; lane += 4) { /* bits 0 to 3 of a number to its four bytes */
-        const uint32_t separated = (outcomes.separated >> lane & 15) * 0x00204081 & 0x01010101;
-        const uint32_t overlapping = (outcomes.overlapping >> lane & 15) * 0x00204081 & 0x01010101;
-        const uint32_t bytes = separated * SLABS_SEPARATED + overlapping * SLABS_OVERLAPPING;
-        memcpy(out + lane, &bytes, sizeof bytes);
-    }
+    const uint64_t bytes = bits_to_bytes(outcomes.separated) * SLABS_SEPARATED +
+                           bits_to_bytes(outcomes.touching) * SLABS_TOUCHING +
+                           bits_to_bytes(outcomes.overlapping) * SLABS_OVERLAPPING;
+    memcpy(out, &bytes, LANES);
 #else
     for (int lane = 0; lane < LANES; lane++)
         out[lane] = (unsigned char) outcome_at(outcomes, lane);
 #endif
 }
+
+/* ---- Times and boxes ---- */
 
 /* Seconds: below this a product with a time may underflow. */
 #define LEAST_DURATION 0x1p-900
@@ -243,13 +285,13 @@ INLINE void put_outcomes(struct outcomes outcomes, unsigned char out[LANES])
  * rounded after. */
 #define TIMES_LIMIT 1.8e-12
 
-/* From outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart. Quotients,
- * slack and this are rounded a few times, each by less than 2^-52 where it matters, within [-1, 1]:
- * 2^-49 covers all. The product with the duration rounds once more. */
+/* From outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart.
+ * SLABS_TIMES_SLACK covers the rounding of the ends (walk_slab.h). The product with the duration
+ * rounds three times more, each time by less than 2^-53 of it. */
 INLINE void times_of(const struct walk_pair *pair, const struct walk_found *found, double window,
                      lanes times[2])
 {
-    const lanes slack = lanes_of(0x1p-49), one = lanes_of(1), duration = lanes_of(window);
+    const lanes slack = lanes_of(SLABS_TIMES_SLACK), one = lanes_of(1), duration = lanes_of(window);
     const lanes enter = lanes_greatest(found->enter[0] - slack, -one);
     const lanes leave = lanes_least(found->leave[0] + slack, one);
     const lanes enter_inner = lanes_greatest(found->enter[1] + slack, -one);
@@ -260,25 +302,6 @@ INLINE void times_of(const struct walk_pair *pair, const struct walk_found *foun
                             (leave - leave_inner <= TIMES_LIMIT) & (duration >= LEAST_DURATION);
     times[0] = lanes_choose(good, first, lanes_of(NAN));
     times[1] = lanes_choose(good, last, lanes_of(NAN));
-}
-
-/* NAN where doubles do not give it within its limit, and in axes that are not there. */
-INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
-                     const struct run_frame *a, const struct run_frame *b, lanes box[2][3])
-{
-    lanes origin[2][3];
-    UNROLL(3)
-    for (int axis = 0; axis < 3; axis++) {
-        origin[0][axis] = a->origin[axis];
-        origin[1][axis] = b->origin[axis];
-    }
-    const lanes_mask good = walk_box(pair, kind, origin, box);
-    UNROLL(2)
-    for (int end = 0; end < 2; end++)
-        UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
-        box[end][axis] =
-            axis < kind.dim ? lanes_choose(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
 }
 
 /* ---- The table ----
@@ -294,26 +317,29 @@ enum run_shape { RUN_C, RUN_T, RUN_F }; /* cuboid, tetrahedron, face */
                                        .drifts = drift,                     \
                                        .along = parallel,                   \
                                        .ordered = ORDERED,                  \
-                                       .times = TIMES}))
+                                       .times = TIMES,                      \
+                                       .box = BOXES,                        \
+                                       .rough = ROUGH,                      \
+                                       .exact = EXACT}))
 #define RUN_SOLIDS(FUNCTION, name, dimension, drift, parallel)              \
     RUN_KIND(FUNCTION, name##_cc, dimension, RUN_C, RUN_C, drift, parallel) \
     RUN_KIND(FUNCTION, name##_ct, dimension, RUN_C, RUN_T, drift, parallel) \
     RUN_KIND(FUNCTION, name##_tt, dimension, RUN_T, RUN_T, drift, parallel)
 /* Of faces, which are often parallel to something, one function for both. */
-#define RUN_FACES(FUNCTION, name, drift)                     \
-    RUN_KIND(FUNCTION, name##_cf, 3, RUN_C, RUN_F, drift, 1) \
-    RUN_KIND(FUNCTION, name##_tf, 3, RUN_T, RUN_F, drift, 1) \
-    RUN_KIND(FUNCTION, name##_ff, 3, RUN_F, RUN_F, drift, 1)
+#define RUN_FACES(FUNCTION, name, drift, parallel)                  \
+    RUN_KIND(FUNCTION, name##_cf, 3, RUN_C, RUN_F, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_tf, 3, RUN_T, RUN_F, drift, parallel) \
+    RUN_KIND(FUNCTION, name##_ff, 3, RUN_F, RUN_F, drift, parallel)
 #define RUN_DRIFTING(FUNCTION)                        \
     RUN_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)       \
     RUN_SOLIDS(FUNCTION, space_drifts, 3, 1, 0)       \
     RUN_SOLIDS(FUNCTION, space_drifts_along, 3, 1, 1) \
-    RUN_FACES(FUNCTION, space_drifts, 1)
+    RUN_FACES(FUNCTION, space_drifts, 1, 1)
 #define RUN_AT_REST(FUNCTION)                  \
     RUN_SOLIDS(FUNCTION, plane, 2, 0, 0)       \
     RUN_SOLIDS(FUNCTION, space, 3, 0, 0)       \
     RUN_SOLIDS(FUNCTION, space_along, 3, 0, 1) \
-    RUN_FACES(FUNCTION, space, 0)
+    RUN_FACES(FUNCTION, space, 0, 1)
 
 #define RUN_SOLID_ENTRIES(name, kind)                           \
     [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON] = name##_ct, \
@@ -338,14 +364,25 @@ enum run_shape { RUN_C, RUN_T, RUN_F }; /* cuboid, tetrahedron, face */
     {                        \
         RUN_DRIFTING_ENTRIES \
     }
-#elif defined(RUN_BOXES) /* of solid frames; normals that are zero do not matter */
-#define RUN_FUNCTIONS(FUNCTION)          \
-    RUN_SOLIDS(FUNCTION, plane, 2, 0, 0) \
-    RUN_SOLIDS(FUNCTION, space, 3, 0, 0)
-#define RUN_TABLE                                                         \
-    {                                                                     \
-        RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(space, RUN_SPACE), \
-            RUN_SOLID_ENTRIES(space, RUN_SPACE + RUN_ALONG)               \
+#elif defined(RUN_EXACT) || defined(RUN_BOXES)
+/* One function for edges parallel to an axis and for others: boxes find zero normals by their
+ * masks, and the second pass always looks for them. */
+#define RUN_FUNCTIONS(FUNCTION)                     \
+    RUN_SOLIDS(FUNCTION, plane, 2, 0, 0)            \
+    RUN_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)     \
+    RUN_SOLIDS(FUNCTION, space, 3, 0, EXACT)        \
+    RUN_SOLIDS(FUNCTION, space_drifts, 3, 1, EXACT) \
+    RUN_FACES(FUNCTION, space, 0, EXACT)            \
+    RUN_FACES(FUNCTION, space_drifts, 1, EXACT)
+#define RUN_SPACE_ENTRIES(name, kind)                            \
+    RUN_SOLID_ENTRIES(name, RUN_SPACE + (kind)),                 \
+        RUN_SOLID_ENTRIES(name, RUN_SPACE + RUN_ALONG + (kind)), \
+        RUN_FACE_ENTRIES(name, RUN_SPACE + (kind)),              \
+        RUN_FACE_ENTRIES(name, RUN_SPACE + RUN_ALONG + (kind))
+#define RUN_TABLE                                                                    \
+    {                                                                                \
+        RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),    \
+            RUN_SPACE_ENTRIES(space, 0), RUN_SPACE_ENTRIES(space_drifts, RUN_DRIFTS) \
     }
 #else
 #define RUN_FUNCTIONS(FUNCTION) RUN_AT_REST(FUNCTION) RUN_DRIFTING(FUNCTION)

@@ -54,9 +54,9 @@
  * Maxima and minima do not round, and move by no more than what they choose from. The sum of a gap,
  * which is at most |u| |v| T (Hadamard), and its bound rounds by 1.01 u |u| |v| T more. That
  * makes 17.3 of the 18 u of SLABS_ROUNDING; the rest is for the bound itself, computed with 15
- * roundings, and for the swing that is made longer by 2^-10 of it (bound_times). In 2D a product is
- * two monomials, magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 = 10 times,
- * and 10.01 + 1.01 leaves as much of 12 u.
+ * roundings. Times make no such sum, and need less of it than that for theirs (bound_times). In 2D
+ * a product is two monomials, magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 =
+ * 10 times, and 10.01 + 1.01 leaves as much of 12 u.
  *
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.
@@ -67,11 +67,27 @@
  * Along an axis a coordinate of a component is rounded at most 6 times, and the difference with the
  * bound once: 7.01 u T against 16 u T.
  *
+ * Two passes. Let R be the bound on rounding, and F that on the errors of the frames. The gaps that
+ * two kernels compute of the same rounded frames differ by at most 2 R. A first pass decides a slab
+ * where its gap is beyond 4 R + F: that of any other kernel then is beyond 2 R + F, and R + F is
+ * enough for it (SLABS_ROUGH).
+ *
  * Overflow and underflow: components and a drift that is not 0 have sizes between 2^-200 and 2^200,
  * offsets are below 2^200 (slabs_prepare, walk_pair.in_range), so that nothing overflows. Entries
  * and products may underflow: each of at most 100 operations then adds less than 2^-1074, to cross
  * products and H before they are multiplied by at most 2^405, while |u| |v| T 2^-53 is at least
- * 2^-653: the rest of the bound covers that many times over. */
+ * 2^-653: the rest of the bound covers that many times over.
+ *
+ * A coordinate of H may underflow to 0, and a normal with it that is not zero in truth: its slab
+ * says nothing then, as if the frames moved without that coordinate. Let S' be swept by this other
+ * drift. Its bounds differ from those of S by less than 2^-1072 along every unit vector, and the
+ * list without the slab is complete for S'. So the proof of the filter (slabs.h) holds with an
+ * error of the frames that is larger by 2^-1072: all other slabs hold the offset farther inside
+ * than that, since what the bound has to spare is more than 2^-53 T > 2^-260 of a distance. It
+ * holds for slabs decided one by one, too: such a pair spans too many bits for integers
+ * (limbs_prepare), and a slab with a bound of its own leaves 2^-660 of the gap (weighed_error),
+ * 2^-1064 of the distance. Along axes with known signs (walk_exact.h) the velocities are equal, and
+ * nothing underflows. */
 #include "slabs.h"
 
 #include "prepared.h"
@@ -99,8 +115,8 @@ static bool are_not_tiny(const double v[3])
  * theirs as the scale of a slab has them. The normal u x v is off by at most (2 t + t^2) |u| |v|,
  * and the gap along it by as much times all lengths; along the rounded normal, the bounds of D are
  * off by the errors of the frames, times |u| |v|. In 2D the normal is off by t |u|. A product
- * [u v w] of edges is off by (3 t + 3 t^2 + t^3) |u| |v| |w| (box.c). 4 t is more than all of
- * these. */
+ * [u v w] of edges is off by (3 t + 3 t^2 + t^3) |u| |v| |w|. 4 t is more than all of these.
+ */
 static void set_placing(struct slabs_pair *out)
 {
     double lengths = 0;
@@ -149,9 +165,11 @@ INLINE void set_pair(const struct slabs_pair *pair, const struct walk_kind kind,
         }
     walk_pair_set(kind, (const double(*)[3][3]) component, (const double(*)[3]) size,
                   pair->motion.offset, pair->motion.drift, pair->placing, out);
+    out->signed_axes = 0;
+    memset(out->across, 0, sizeof out->across);
 }
 
-/* next: where slabs are to be kept, or NULL. */
+/* next: where slabs are kept. */
 INLINE void walk_one(const struct slabs_pair *pair, const struct walk_kind kind, bool rounds,
                      struct slab_value *next, struct walk_found *found)
 {
@@ -177,7 +195,8 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
                                     .face = {(x) == FMB_FACE, (y) == FMB_FACE},        \
                                     .drifts = drift,                                   \
                                     .along = (dimension) == 3,                         \
-                                    .ordered = true},                                  \
+                                    .ordered = true,                                   \
+                                    .exact = true},                                    \
                  rounds, next, &found);
 #define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
 #define WALK_PAIR(x, y) WALK_MOTIONS(2, x, y) WALK_MOTIONS(3, x, y)
@@ -194,14 +213,6 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
 #undef WALK_MOTIONS
 #undef WALK
     return found;
-}
-
-enum slabs_outcome slabs_filter_exactly(const struct slabs_pair *pair)
-{
-    const struct walk_found found = walk_list(pair, false, NULL);
-    if (found.surely > 0)
-        return SLABS_SEPARATED;
-    return found.possibly < 0 ? SLABS_OVERLAPPING : SLABS_UNSURE;
 }
 
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX])

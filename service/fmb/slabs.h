@@ -51,6 +51,16 @@
 #define SLABS_ROUNDING_2D (SLABS_ROUNDING * 2 / 3)
 #define SLABS_ROUNDING_AXES 0x1p-49
 
+/* The ends of a contact, in a window from -1 to 1, are off by less than this, but for what the
+ * errors of slabs have to spare: derived in walk_slab.h. */
+#define SLABS_TIMES_SLACK 0x1p-49
+
+/* The first of two passes (run.h) takes bounds that are so many times as wide. Two computations of
+ * the same gap differ by at most two of these bounds, so that what any first pass decides is
+ * decided by every second one: what stays open does not depend on the first, whose operations may
+ * be fused. */
+#define SLABS_ROUGH 4
+
 /* A pair that doubles can decide. */
 struct slabs_pair {
     struct world_frame a, b;
@@ -101,12 +111,9 @@ static inline double slab_gap(const struct slab_value *slab)
 enum slabs_outcome {
     SLABS_UNSURE = 0,
     SLABS_SEPARATED = FMB_SEPARATED,
+    SLABS_TOUCHING = FMB_TOUCHING, /* of the second pass alone (run.h) */
     SLABS_OVERLAPPING = FMB_OVERLAPPING
 };
-
-/* The filter of a pair on whose numbers no operation rounds, and without errors: unsure means
- * touching. */
-enum slabs_outcome slabs_filter_exactly(const struct slabs_pair *pair);
 
 enum { SLABS_MAX = 56 }; /* two tetrahedra, moving: 4 + 4 + 36 + 12 */
 

@@ -21,7 +21,7 @@ INLINE void walk(const struct walk_pair *pair, const struct walk_kind kind,
         return;
     }
     ask_axes(pair, kind, found);
-    if (!is_enough(found))
+    if (!is_enough(kind, found))
         walk_space(pair, kind, found);
 }
 

@@ -1,41 +1,77 @@
-/* The box of the intersection of a pair at rest, of LANES pairs at once.
+/* The box of the intersection of a pair in contact, at rest or moving, of LANES pairs at once.
  *
- * Method. The vertices of the intersection are the ends of what is left of the edges of each frame
- * when the faces of the other have cut them. An edge is start + s direction, s in [-1, 1] (cuboids,
- * seen from the middle of the edge) or [0, 1]; a face of the other frame, low <= n . x <= high,
- * leaves s between (low - n . start) / n . direction and (high - n . start) / n . direction. With
- * bounds that are a little too far out all of that is an outer part of the edge, with bounds a
- * little too far in an inner one, which is surely there. The outer box, of all outer parts, is
- * the answer where the inner box is near enough.
+ * Method. With h_A(y) = max { y . a : a in A }, the support function, and the frames about the
+ * middle of the window, displaced by -way to way, every y bounds coordinate k of the intersection:
  *
- * Accuracy. As in slabs.c, the error of n . x - low for a point x of an edge is a sum over
- * monomials of at most 13 roundings each: 4 in the offset between the reference points of two
- * cuboids, 3 where one is a tetrahedron; 5 in a triple product; 2 for the sum of three normals,
- * which a cuboid does not have; 2 for the way to an edge of a cuboid, or 1 each for the start and
- * the direction of one that is a difference; 1 for the difference with the bound. For each of the
- * vectors w that x and the bound are made of, the sum of the magnitudes of its monomials is W .
- * |w|, where W = (|c_i| |c_j| + |c_j| |c_i|) is the cross product with all signs positive, summed
- * over three normals for the face across from the origin. These w are the offset of the origins;
- * the components of a cuboid, once in the way to its reference point and once in that to the edge
- * and along it; those of a tetrahedron that the edge starts at (in start and direction, so twice)
- * and ends at; and one component of the frame of the face, for the bound, which is the volume of
- * that frame. So the error is at most 13.01 u times their sum, and 14 u leaves room for the
- * rounding of this bound and for a direction made longer by 2^-10 of it, so that no quotient
- * overflows (bound_times). Quotients and what is made of them are rounded a few times within [-1,
- * 1]: 2^-49 covers it. A coordinate is made of the origin, the components and s times one by 8
- * roundings at most: 2^-50 of the sum of the magnitudes.
+ *     x_k = y . x + (e_k - y) . x  <=  c(y) = h_A(y) + h_B(e_k - y) + |way_B[k] - y . H|,
+ *     H = way_B - way_A
  *
- * In 2D the products [x y] take the place of the triple ones, with fewer roundings. The errors of
- * the frames themselves are counted in addition (placing_weight()). */
+ * since x is a point of A and of B at the same time. Where the frames meet, the least of these
+ * bounds is the end of the box (duality of linear programs; this is the article's elimination of
+ * all coordinates but one, and of the time, done on paper). c is convex and linear between walls:
+ *
+ *     y . a = 0              for the edges a of A
+ *     (e_k - y) . b = 0      for the edges b of B
+ *     way_B[k] - y . H = 0   where the pair drifts.
+ *
+ * If the normals of the walls at hand span the space, c has its least value in a vertex: a point in
+ * which three walls with independent normals meet (in 2D two). Two walls of A meet in the line of a
+ * normal of A, three in 0; likewise for B. So the vertices are
+ *
+ *     y = 0 and y = e_k                      c is the end of the extent of B, of A
+ *     y = l n, n a normal of A, on a wall of B: l = b[k] / (n . b), or on that of the drift
+ *     e_k - y = l n, n a normal of B, on a wall of A or that of the drift
+ *     a wall of A, one of B and that of the drift:
+ *                y = (b[k] (H x a) + way_B[k] (a x b)) / [a b H].
+ *
+ * Which of them are corners of the polytope in space and time does not matter: c(y) is a bound for
+ * all y. With -y the same vertices bound -x_k.
+ *
+ * Accuracy: outer ends. What is computed is c for the l, or for the two factors of the third kind,
+ * at hand, and so a bound. Let W be n with the magnitudes of its monomials. A monomial of a triple
+ * product is rounded 5 times, twice more in a sum of three normals; the wall itself is left out of
+ * c, and its term is at most what its determinant is off by, times l: 8 u more for a difference of
+ * two edges, which is rounded once more. 17 u (8 u without a simplex) times W . (the magnitudes of
+ * the vectors at hand) covers these. The offset is rounded 4 times before: 5 u times |n| . (the
+ * magnitudes of what it is made of). The products, the largest being slope in all, are rounded 8
+ * times on their way into c: 9 u. All of this is multiplied with |l| (value_error()). Coordinates
+ * that are not multiplied with l (origin, components, way) round at most 15 times: 2^-49 of the sum
+ * of their magnitudes, the slack. The errors of frames, e in all, widen h by at most |y| e and
+ * |e_k - y| e, |y| being at most |l| S for the scale S of n. In the third kind m (H x a) and
+ * n (a x b) take the place of l n, one after the other.
+ *
+ * Inner ends. For each true vertex c is at least the value at hand less its error. The determinant
+ * d of a vertex (n . b, n . H, [a b H]) is off by at most 8 u W . |b|, or 10 u where a frame is a
+ * simplex (5 roundings, 2 of the drift, 1 of each difference, or 2 of the sum of three normals);
+ * and by 3.1 t times its scale, the product of the lengths, for components that are off by t. If d
+ * is more than 16 times its error the vertex is certain. The true l is then l / (1 + r), |r| at
+ * most 1.1 times the relative error of d and 5 u. With f - l d for the terms of c (f coordinates, d
+ * products with n), those of the true vertex are (f - l d + r f) / (1 + r): what c has besides the
+ * base changes by at most 1.1 r times the sum of the |f| and of itself. Coordinates of the wall's
+ * edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by the slope times as much.
+ * Components that are off move the products with n by at most 3.1 t S times all lengths at hand
+ * (placing).
+ *
+ * A vertex that is not certain may be left out if c surely grows along a line through it, the line
+ * of the other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
+ * -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are not
+ * certain: each is at most twice 17 times the error of a determinant, and lengths have a sum of at
+ * most 2 T, so that all of them change c at a certain vertex by at most 68 (18 u + 4 t) T S |l|,
+ * bends. Where gap(N) is below minus twice that, what is left grows at both ends, and is least at a
+ * vertex that is certain, or at 0. A determinant that is exactly 0, each of its monomials having a
+ * factor 0, is no vertex at all.
+ *
+ * Something certain makes the normals span the space. Where nothing rounds (walk_exact.h),
+ * determinants are exact. NAN bounds nothing, and stands for what is not certain. Underflow: as in
+ * slabs.c; some component is at least 2^-200, and 2^-49 of it far above all that is lost. */
 #ifndef FMB_WALK_BOX_H
 #define FMB_WALK_BOX_H
 
 #include "rotation.h"
 #include "walk.h"
+#include "walk_exact.h"
 
-#define BOX_ROUNDING (14 * 0x1p-53)
-#define BOX_POINT_ROUNDING 0x1p-50
-#define BOX_CUT_ROUNDING 0x1p-49
+#define BOX_POINT_ROUNDING 0x1p-49
 
 /* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
 #define BOX_LIMIT 0.9e-12
@@ -43,60 +79,268 @@
 /* Farther away nothing is said, for fear of overflow. */
 #define BOX_FARTHEST 0x1p500
 
-/* What a linear function, along the normal of a face or along an axis, is at the reference point of
- * a frame and on its components. */
-struct box_function {
-    lanes at, component[3];
-};
-
-/* A face of the other frame. weight: the sum of the magnitudes of the monomials of function, and of
- * the bounds. */
-struct box_face {
-    struct box_function function, weight;
-    lanes low, high;
-};
-
-/* A frame to be cut. Lengths are those of walk_pair. */
-struct box_frame {
-    int faces;
-    struct box_face face[4];     /* of the other frame */
-    struct box_function axis[3]; /* places in the world */
-    lanes slack[3];              /* of places */
-};
-
-struct box_found {
-    lanes outer[2][3], inner[2][3]; /* [lower, upper][axis] */
-};
-
-/* An edge, seen along a function: start + s direction. */
-struct box_line {
-    lanes start, direction;
-};
-
-/* ---- Faces ---- */
-
-/* Magnitudes of what the offset between reference points is made of. */
-INLINE void set_way(const struct walk_pair *pair, const struct walk_kind kind,
-                    const lanes origin[2][3], lanes way[3])
+/* Roundings of a monomial of a triple product, those of the wall that is left out included. */
+INLINE double product_rounding(const struct walk_kind kind)
 {
+    return (kind.simplex[0] || kind.simplex[1] ? 17 : 8) * 0x1p-53;
+}
+
+INLINE double determinant_rounding(const struct walk_kind kind)
+{
+    return (kind.simplex[0] || kind.simplex[1] ? 10 : 8) * 0x1p-53;
+}
+
+/* What the boxes need of the frames besides struct walk_pair: as they stand in prepared frames. */
+struct box_places {
+    lanes_bits head[2];
+    lanes origin[2][3], velocity[2][3]; /* velocities are read where the kind drifts */
+    lanes error[2];
+    lanes_mask exact; /* nothing rounds (walk_exact.h) */
+    double duration;
+};
+
+/* A frame; lengths are those of walk_pair. Edges by number (slabs.h). */
+struct box_frame {
+    lanes edge[6][3];
+    lanes length[6][3];    /* magnitudes of the components that an edge is made of */
+    lanes_mask some[6][3]; /* where the coordinate of an edge may not be 0 */
+    lanes centre[3];       /* of the reference point, in the middle of the window */
+    lanes way[3];          /* half of the displacement */
+    lanes sum[3];          /* of the magnitudes of all that a coordinate is made of */
+    lanes own_sum[3];      /* of those of the components and way */
+};
+
+/* A normal n of a frame, and what it makes of the pair. */
+struct box_ray {
+    lanes scale;                /* S */
+    lanes normal[3], weight[3]; /* magnitudes of n, and of its monomials */
+    lanes_mask some[3];         /* of n, as of edges */
+    lanes own;                  /* n . c of the component that is not across n, or of all of them */
+    lanes at[6];                /* n . edges of the other frame */
+    lanes middle;               /* n . (reference point of the other frame - that of this one) */
+    lanes swing;                /* n . (way of the other frame - that of this one) */
+};
+
+/* The determinant of a vertex. */
+struct box_vertex {
+    lanes inverse;   /* NAN where it may be 0 */
+    lanes error;     /* relative */
+    lanes_mask open; /* nor is it surely 0 */
+};
+
+/* What c is off by at a vertex. */
+struct box_errors {
+    lanes outer; /* what is computed, and what the errors of frames add */
+    lanes inner; /* that, and how far the true vertex is from the one at hand, but for theta */
+};
+
+struct box_walk {
+    struct box_frame frame[2];
+    lanes_mask drift[3];   /* where the drift may not be 0 */
+    lanes_mask exact;      /* no triple product rounds */
+    lanes unit;            /* of the small numbers that ends are made of; 0: they are not */
+    lanes turn;            /* t */
+    lanes placing;         /* 3.1 t times all lengths */
+    lanes bends;           /* 68 (18 u + 4 t) T */
+    lanes size[3], way[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
+    lanes slack[3];        /* of coordinates; errors of frames included */
+    lanes outer[2][3], inner[2][3]; /* [lower, upper][axis] */
+    lanes_mask spans, good;
+    lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
+    lanes_mask bent; /* where errors are to allow for that */
+};
+
+/* ---- Masks ---- */
+
+INLINE lanes_mask is_not(lanes_mask mask)
+{
+    return mask == 0;
+}
+
+/* Whether a monomial of u x v, of [u v], of u . v, may not be 0. */
+INLINE void cross_some(const lanes_mask u[3], const lanes_mask v[3], lanes_mask out[3])
+{
+    out[0] = (u[1] & v[2]) | (u[2] & v[1]);
+    out[1] = (u[2] & v[0]) | (u[0] & v[2]);
+    out[2] = (u[0] & v[1]) | (u[1] & v[0]);
+}
+
+INLINE lanes_mask dot_some(const struct walk_kind kind, const lanes_mask u[3],
+                           const lanes_mask v[3])
+{
+    const lanes_mask plane = (u[0] & v[0]) | (u[1] & v[1]);
+    return kind.dim == 2 ? plane : plane | (u[2] & v[2]);
+}
+
+/* ---- Frames ---- */
+
+/* The components from whose ends an edge that is a difference goes, and to which. */
+INLINE int edge_from(const struct walk_kind kind, int e)
+{
+    return kind.dim == 2 ? 0 : next(e % 3);
+}
+
+INLINE int edge_to(const struct walk_kind kind, int e)
+{
+    return kind.dim == 2 ? 1 : next(next(e % 3));
+}
+
+INLINE bool has_edge(const struct walk_kind kind, int which, int e)
+{
+    return e < 3 ? e < component_count(kind, which) : has_difference(kind, which, e - 3);
+}
+
+INLINE lanes_mask has_bit(lanes_bits head, unsigned bit)
+{
+    return (head & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * bit) != 0;
+}
+
+INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                          const struct box_places *places, struct box_frame *out)
+{
+    const lanes(*c)[3] = pair->component[which];
+    const double twice = is_doubled(kind) ? 2 : 1;
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        const lanes apart = lanes_magnitude(origin[1][axis] - origin[0][axis]);
-        lanes of[2] = {lanes_of(0), lanes_of(0)};
-        UNROLL(2)
-        for (int f = 0; f < 2; f++)
-            UNROLL(3)
-        for (int i = 0; i < kind.dim; i++)
-            if (!kind.simplex[f])
-                of[f] += lanes_magnitude(pair->component[f][i][axis]);
-        way[axis] = (of[0] + of[1]) + (is_doubled(kind) ? apart + apart : apart);
+        const lanes_mask inexact =
+            is_not(has_bit(places->head[which], (unsigned) PREPARED_TRUE_X << axis));
+        const lanes at = twice * places->origin[which][axis];
+        out->way[axis] =
+            kind.drifts
+                ? (0.5 * twice) * (places->velocity[which][axis] * lanes_of(places->duration))
+                : lanes_of(0);
+        out->centre[axis] =
+            (kind.simplex[which] ? at : at + shift_of(kind, c, axis)) + out->way[axis];
+        out->own_sum[axis] = lanes_magnitude(out->way[axis]);
+        UNROLL(3)
+        for (int i = 0; i < component_count(kind, which); i++)
+            out->own_sum[axis] += lanes_magnitude(c[i][axis]);
+        out->sum[axis] = lanes_magnitude(at) + 2 * out->own_sum[axis];
+        UNROLL(6)
+        for (int index = 0; index < edge_count(kind, which); index++) {
+            const int e = edge_at(kind, which, index);
+            const lanes from = e < kind.dim ? lanes_of(0) : c[edge_from(kind, e)][axis];
+            const lanes to = e < kind.dim ? c[e][axis] : c[edge_to(kind, e)][axis];
+            out->edge[e][axis] = e < kind.dim ? to : to - from;
+            out->length[e][axis] = lanes_magnitude(to) + lanes_magnitude(from);
+            out->some[e][axis] = (out->edge[e][axis] != 0) | inexact;
+        }
     }
 }
 
-INLINE lanes weight_of(const lanes weight[3], const lanes v[3])
+/* The largest magnitude of a coordinate of a vertex over the window, or a little less. */
+INLINE lanes largest_place(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                           const struct box_frame *frame)
 {
-    return weight[0] * lanes_magnitude(v[0]) + weight[1] * lanes_magnitude(v[1]) +
-           weight[2] * lanes_magnitude(v[2]);
+    lanes largest = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        const lanes centre = frame->centre[axis];
+        lanes farthest = lanes_magnitude(centre);
+        UNROLL(3)
+        for (int i = 0; i < component_count(kind, which); i++) {
+            const lanes c = pair->component[which][i][axis];
+            farthest = kind.simplex[which] ? lanes_greatest(lanes_magnitude(centre + c), farthest)
+                                           : farthest + lanes_magnitude(c);
+        }
+        largest = lanes_greatest(farthest + lanes_magnitude(frame->way[axis]), largest);
+    }
+    return (1 - 0x1p-40) * largest;
+}
+
+/* ---- Candidates ---- */
+
+/* Bounds of the box along an axis by c at a vertex, which is low or high. What is not a number
+ * bounds nothing. */
+INLINE void add_bounds(int axis, lanes low, lanes high, lanes outer_error, lanes low_error,
+                       lanes high_error, struct box_walk *walk)
+{
+    walk->outer[0][axis] = lanes_greatest(low - outer_error, walk->outer[0][axis]);
+    walk->outer[1][axis] = lanes_least(high + outer_error, walk->outer[1][axis]);
+    walk->inner[0][axis] = lanes_greatest(low + low_error, walk->inner[0][axis]);
+    walk->inner[1][axis] = lanes_least(high - high_error, walk->inner[1][axis]);
+}
+
+INLINE lanes extent_low(const struct walk_kind kind, struct walk_extent d)
+{
+    const bool none = !kind.simplex[0] && !kind.simplex[1];
+    const bool both = kind.simplex[0] && kind.simplex[1] && !kind.drifts;
+    return none ? -d.radius : both ? d.low : d.low - d.radius;
+}
+
+INLINE lanes extent_high(const struct walk_kind kind, struct walk_extent d)
+{
+    const bool none = !kind.simplex[0] && !kind.simplex[1];
+    const bool both = kind.simplex[0] && kind.simplex[1] && !kind.drifts;
+    return none ? d.radius : both ? d.high : d.high + d.radius;
+}
+
+/* With the term of the drift. */
+INLINE struct walk_extent widened(struct walk_extent d, lanes swing)
+{
+    d.radius += lanes_magnitude(swing);
+    return d;
+}
+
+/* weight: the sum of the magnitudes of the monomials; scale: the product of the lengths. */
+INLINE struct box_vertex vertex_of(const struct walk_kind kind, lanes det, lanes weight,
+                                   lanes scale, lanes_mask some, struct box_walk *walk)
+{
+    const lanes error = lanes_choose(
+        walk->exact, lanes_of(0), determinant_rounding(kind) * weight + (3.1 * walk->turn) * scale);
+    const lanes_mask certain = lanes_magnitude(det) > 16 * error;
+    struct box_vertex out;
+    out.inverse = 1 / lanes_choose(certain, det, lanes_of(NAN));
+    out.error = (1.2 * error) * lanes_magnitude(out.inverse) + 0x1p-50;
+    out.open = is_not(certain) & some & is_not(walk->exact);
+    walk->spans |= certain;
+    return out;
+}
+
+/* c goes from the extents of d about base - along. sum: of the magnitudes of the coordinates. Slack
+ * is added at the end. */
+INLINE void add_vertex(const struct walk_kind kind, int axis, lanes base, lanes along,
+                       struct walk_extent d, lanes sum, struct box_errors errors,
+                       const struct box_vertex *vertex, struct box_walk *walk)
+{
+    const bool none = !kind.simplex[0] && !kind.simplex[1];
+    const lanes inner = errors.inner + vertex->error * sum;
+    const lanes above = extent_high(kind, d) - along;
+    const lanes below = none ? d.radius + along : along - extent_low(kind, d);
+    add_bounds(axis, base - below, base + above, errors.outer,
+               inner + vertex->error * lanes_magnitude(below),
+               inner + vertex->error * lanes_magnitude(above), walk);
+}
+
+/* ---- Vertices y = 0 and y = e_k: extents ---- */
+
+INLINE void add_extents(const struct walk_kind kind, const struct walk_pair *pair,
+                        struct box_walk *walk)
+{
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        lanes at[3];
+        UNROLL(3)
+        for (int i = 0; i < component_count(kind, which); i++)
+            at[i] = pair->component[which][i][axis];
+        const struct walk_extent own = extent_of_frame(kind, which, at);
+        const struct walk_extent none = {lanes_of(0), lanes_of(0), lanes_of(0)};
+        const struct walk_extent d = widened(
+            extent_sum(kind, which ? none : own, which ? own : none), walk->frame[which].way[axis]);
+        const lanes centre = walk->frame[which].centre[axis], none_error = lanes_of(0);
+        add_bounds(axis, centre + extent_low(kind, d), centre + extent_high(kind, d), none_error,
+                   none_error, none_error, walk);
+    }
+}
+
+INLINE const lanes *magnitudes(const lanes v[3], lanes out[3])
+{
+    UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = lanes_magnitude(v[axis]);
+    return out;
 }
 
 /* The cross product with all signs positive. */
@@ -109,386 +353,592 @@ INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
     }
 }
 
-INLINE void set_bounds(const struct walk_kind kind, int of, lanes size, struct box_face *face)
+/* ---- Vertices on the line of a normal ---- */
+
+/* h of both, the other frame seen along what is at[] on its components. */
+INLINE struct walk_extent extent_of_ray(const struct walk_kind kind, int which, lanes own,
+                                        struct walk_extent other)
 {
-    const struct walk_extent own = extent_of_one(kind.simplex[of], size);
-    face->low = kind.simplex[of] ? own.low : -own.radius;
-    face->high = kind.simplex[of] ? own.high : own.radius;
+    const struct walk_extent of_own = extent_of_one(kind.simplex[which], own);
+    return extent_sum(kind, which ? other : of_own, which ? of_own : other);
 }
 
-INLINE lanes sum_of_three(const struct box_function function[3], int i)
+/* The extent of a frame along what is 0 on its edge e, and at[] on its components. */
+INLINE struct walk_extent extent_across(const struct walk_kind kind, int which, int e,
+                                        const lanes at[3])
 {
-    return i < 0 ? (function[0].at + function[1].at) + function[2].at
-                 : (function[0].component[i] + function[1].component[i]) + function[2].component[i];
-}
-
-/* What frames with errors add to the weights of a slab of scale 1, as slabs_pair.placing does to
- * its error: with t = ROTATION_ERROR, 4 t times all lengths, and the errors. */
-INLINE lanes placing_weight(const struct walk_pair *pair)
-{
-    const lanes placing = (4 * ROTATION_ERROR) * pair->reach + pair->error;
-    return lanes_choose(pair->error != 0, placing * (1 / BOX_ROUNDING), lanes_of(0));
-}
-
-/* The offset is that of b from a. */
-INLINE void set_space_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                            const lanes way[3], struct box_frame *out)
-{
-    const int other = !which;
-    const lanes(*c)[3] = pair->component[other];
-    struct walk_side side;
-    struct box_function function[3], weight[3];
-    const lanes placing = placing_weight(pair);
-    const lanes *size = pair->size[other];
-    lanes own = lanes_of(0);
-    set_side(pair, kind, other, &side);
-    out->faces = kind.simplex[other] ? 4 : 3;
-    UNROLL(3)
-    for (int k = 0; k < 3; k++) {
-        lanes normal_weight[3];
-        cross_weight(c[next(k)], c[next(next(k))], normal_weight);
-        if (k == 0)
-            own = weight_of(normal_weight, c[0]);
-        function[k].at = which ? side.middle[k] : -side.middle[k];
-        weight[k].at =
-            (weight_of(normal_weight, way) + own) + placing * (size[next(k)] * size[next(next(k))]);
-        UNROLL(3)
-        for (int i = 0; i < 3; i++) {
-            function[k].component[i] = side.other[k][i];
-            weight[k].component[i] = weight_of(normal_weight, pair->component[which][i]);
-        }
-        out->face[k].function = function[k];
-        out->face[k].weight = weight[k];
-        set_bounds(kind, other, side.volume, &out->face[k]);
+    const int p = kind.dim == 2 ? 1 - e % 2 : next(e % 3), q = next(p);
+    if (e >= kind.dim) { /* as much at the ends of both components */
+        const int r = e % 3, from = edge_from(kind, e);
+        return kind.dim == 2 || component_count(kind, which) == 2
+                   ? extent_of_one(true, at[from])
+                   : extent_of_two(true, at[r], at[from]);
     }
-    if (!kind.simplex[other])
-        return;
-    struct box_face *face = &out->face[3];
-    face->function.at = sum_of_three(function, -1);
-    face->weight.at = sum_of_three(weight, -1);
-    UNROLL(3)
-    for (int i = 0; i < 3; i++) {
-        face->function.component[i] = sum_of_three(function, i);
-        face->weight.component[i] = sum_of_three(weight, i);
-    }
-    set_bounds(kind, other, side.volume, face);
+    return component_count(kind, which) == 2 ? extent_of_one(kind.simplex[which], at[e == 0])
+                                             : extent_of_two(kind.simplex[which], at[p], at[q]);
 }
 
-INLINE lanes plane_weight(const lanes e[3], const lanes v[3])
+/* Whether the offset surely is so far inside a slab that c grows at both ends of its line. */
+INLINE lanes_mask is_inside(const struct walk_kind kind, struct walk_extent d, lanes middle,
+                            lanes swing, lanes scale, const struct walk_pair *pair,
+                            const struct box_walk *walk)
 {
-    return lanes_magnitude(e[0] * v[1]) + lanes_magnitude(e[1] * v[0]);
+    return gap_of(kind, d, middle, swing) + scale * (2 * walk->bends + 2 * pair->unit) < 0;
 }
 
-INLINE void set_plane_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                            const lanes way[3], struct box_frame *out)
+INLINE lanes dot_of(const struct walk_kind kind, const lanes u[3], const lanes v[3])
 {
-    const int other = !which;
-    const lanes(*c)[3] = pair->component[other];
-    const lanes area = product(c[0], c[1]), own = plane_weight(c[0], c[1]);
-    const lanes placing = placing_weight(pair);
-    struct walk_plane_edges edges;
-    struct box_function weight[2];
-    set_plane_edges(pair, kind, other, &edges);
-    out->faces = edge_count(kind, other);
-    UNROLL(2)
-    for (int e = 0; e < 2; e++) {
-        weight[e].at = (plane_weight(c[e], way) + own) + placing * pair->size[other][e];
-        UNROLL(2)
-        for (int i = 0; i < 2; i++)
-            weight[e].component[i] = plane_weight(c[e], pair->component[which][i]);
-    }
-    UNROLL(3)
-    for (int e = 0; e < edge_count(kind, other); e++) {
-        struct box_face *face = &out->face[e];
-        face->function.at = which ? edges.middle[e] : -edges.middle[e];
-        face->weight.at = e < 2 ? weight[e].at : weight[0].at + weight[1].at;
-        UNROLL(2)
-        for (int i = 0; i < 2; i++) {
-            face->function.component[i] = edges.other[e][i];
-            face->weight.component[i] =
-                e < 2 ? weight[e].component[i] : weight[0].component[i] + weight[1].component[i];
-        }
-        set_bounds(kind, other, e == 0 ? area : -area, face);
-    }
+    return kind.dim == 2 ? u[0] * v[0] + u[1] * v[1] : dot(u, v);
 }
 
-/* ---- Places ---- */
-
-/* origin: in the world, of the frame as it is. */
-INLINE void set_places(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                       const lanes origin[3], struct box_frame *out)
+INLINE lanes weight_of(const struct walk_kind kind, const lanes weight[3], const lanes v[3])
 {
-    UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        struct box_function *function = &out->axis[axis];
-        const lanes at = is_doubled(kind) ? origin[axis] + origin[axis] : origin[axis];
-        lanes sum = lanes_of(0);
-        UNROLL(3)
-        for (int i = 0; i < kind.dim; i++) {
-            function->component[i] = pair->component[which][i][axis];
-            sum += lanes_magnitude(function->component[i]);
-        }
-        function->at = kind.simplex[which] ? at : at + shift_of(kind, pair->component[which], axis);
-        out->slack[axis] = BOX_POINT_ROUNDING * (lanes_magnitude(at) + (sum + sum)) + pair->error;
-    }
+    const lanes plane = weight[0] * lanes_magnitude(v[0]) + weight[1] * lanes_magnitude(v[1]);
+    return kind.dim == 2 ? plane : plane + weight[2] * lanes_magnitude(v[2]);
 }
 
-/* ---- Edges ---- */
+/* What c is off by on the line of a vector n, for the parameter 1: products with n, those of the
+ * offset, and what is made of them; sum: of the magnitudes of these products. */
+INLINE lanes value_error(const struct walk_kind kind, const lanes weight[3], const lanes normal[3],
+                         lanes sum, const struct box_walk *walk)
+{
+    return product_rounding(kind) * dot_of(kind, weight, walk->size) +
+           (5 * 0x1p-53) * dot_of(kind, normal, walk->way) + (9 * 0x1p-53) * sum;
+}
 
-/* What the faces leave of an edge. */
-struct box_part {
-    lanes outer[2], inner[2];
+/* A line and what is the same for all of its vertices. */
+struct box_line {
+    const struct box_ray *ray;
+    lanes outer, inner; /* errors for l = 1 */
+    lanes slope;        /* no less than that of c */
 };
 
-/* inverse: of face . direction, made a little longer; slack: error in s. */
-struct box_cut {
-    lanes inverse, slack;
-};
-
-INLINE struct box_cut cut_of(lanes direction, lanes weight)
+/* The vertex of a line on a wall; l det = numerator[axis], known within error. e: the wall's edge,
+ * or -1. */
+INLINE void add_ray_vertex(const struct walk_kind kind, int which, const struct box_line *line,
+                           const struct box_vertex *vertex, int e, const lanes numerator[3],
+                           lanes error, struct box_walk *walk)
 {
-    const lanes error = BOX_ROUNDING * weight;
-    struct box_cut cut;
-    cut.inverse = 1 / (direction + lanes_with_sign(0x1p-10 * error, direction));
-    cut.slack = error * lanes_magnitude(cut.inverse) + BOX_CUT_ROUNDING;
-    return cut;
-}
-
-INLINE void cut_edge(const struct box_face *face, struct box_cut cut, lanes start,
-                     struct box_part *part)
-{
-    const lanes one = (face->low - start) * cut.inverse;
-    const lanes other = (face->high - start) * cut.inverse;
-    const lanes enter = lanes_least(one, other), leave = lanes_greatest(one, other);
-    part->outer[0] = lanes_greatest(enter - cut.slack, part->outer[0]);
-    part->outer[1] = lanes_least(leave + cut.slack, part->outer[1]);
-    part->inner[0] = lanes_greatest(enter + cut.slack, part->inner[0]);
-    part->inner[1] = lanes_least(leave - cut.slack, part->inner[1]);
-}
-
-/* Widens a box by a part, along an axis; nothing where there is none. */
-INLINE void widen(const lanes part[2], struct box_line line, lanes slack, int axis, lanes box[2][3])
-{
-    const lanes_mask empty = part[0] > part[1];
-    const lanes x = part[0] * line.direction, y = part[1] * line.direction;
-    const lanes low = line.start + (lanes_least(x, y) + slack);
-    const lanes high = line.start + (lanes_greatest(x, y) - slack);
-    box[0][axis] = lanes_least(lanes_choose(empty, lanes_of(INFINITY), low), box[0][axis]);
-    box[1][axis] = lanes_greatest(lanes_choose(empty, lanes_of(-INFINITY), high), box[1][axis]);
-}
-
-INLINE void widen_both(const struct walk_kind kind, const struct box_part *part,
-                       const struct box_line line[3], const lanes slack[3], struct box_found *found)
-{
+    const int other = !which;
+    const struct box_ray *ray = line->ray;
+    const struct box_frame *frame = &walk->frame[other];
+    const lanes apart = (1.2 * error) * (line->slope * lanes_magnitude(vertex->inverse));
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        widen(part->outer, line[axis], -slack[axis], axis, found->outer);
-        widen(part->inner, line[axis], slack[axis], axis, found->inner);
+        const lanes l = numerator[axis] * vertex->inverse, length = lanes_magnitude(l);
+        lanes at[3];
+        UNROLL(3)
+        for (int i = 0; i < component_count(kind, other); i++)
+            at[i] = frame->edge[i][axis] - l * ray->at[i];
+        struct walk_extent d = extent_of_ray(
+            kind, which, l * ray->own,
+            e < 0 ? extent_of_frame(kind, other, at) : extent_across(kind, other, e, at));
+        if (kind.drifts && e >= 0)
+            d = widened(d, frame->way[axis] - l * ray->swing);
+        const struct box_errors errors = {length * line->outer, length * line->inner + apart};
+        add_vertex(kind, axis, frame->centre[axis], l * ray->middle, d, frame->own_sum[axis],
+                   errors, vertex, walk);
     }
 }
 
-/* The four (2D: two) edges of direction i of a cuboid, each with the signs of the others. */
-INLINE lanes cuboid_start(const struct walk_kind kind, const struct box_function *function, int i,
-                          int signs)
+INLINE void add_ray(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                    const struct box_ray *ray, struct box_walk *walk)
 {
-    const int j = kind.dim == 2 ? !i : next(i), k = next(next(i));
-    const lanes at =
-        signs & 1 ? function->at + function->component[j] : function->at - function->component[j];
+    const int other = !which, walls = kind.dim == 2 && which ? 0 : edge_count(kind, other);
+    const struct box_frame *frame = &walk->frame[other];
+    struct box_vertex vertex[7];
+    lanes_mask open = {0};
+    UNROLL(6)
+    for (int index = 0; index < walls; index++) {
+        const int e = edge_at(kind, other, index);
+        vertex[index] = vertex_of(kind, ray->at[e], weight_of(kind, ray->weight, frame->length[e]),
+                                  ray->scale * pair->size[other][e],
+                                  dot_some(kind, ray->some, frame->some[e]), walk);
+        open |= vertex[index].open;
+    }
+    if (kind.drifts) {
+        vertex[walls] =
+            vertex_of(kind, ray->swing, weight_of(kind, ray->weight, pair->half),
+                      ray->scale * pair->half_size, dot_some(kind, ray->some, walk->drift), walk);
+        open |= vertex[walls].open;
+    }
+    const struct walk_extent own = extent_of_one(kind.simplex[which], ray->own);
+    const struct walk_extent of_other = extent_of_frame(kind, other, ray->at);
+    const struct walk_extent d =
+        extent_difference(kind, which ? of_other : own, which ? own : of_other);
     if (kind.dim == 2)
-        return at;
-    return signs & 2 ? at + function->component[k] : at - function->component[k];
+        walk->open |= open;
+    walk->good &= is_not(open) | is_inside(kind, d, which ? -ray->middle : ray->middle, ray->swing,
+                                           ray->scale, pair, walk);
+    struct box_line line = {.ray = ray};
+    line.slope = ((d.high - d.low) + d.radius) +
+                 (lanes_magnitude(ray->middle) + lanes_magnitude(ray->swing));
+    line.outer =
+        value_error(kind, ray->weight, ray->normal, line.slope, walk) + ray->scale * pair->error;
+    line.inner = line.outer + ray->scale * walk->placing;
+    line.inner += lanes_choose(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
+    UNROLL(6)
+    for (int index = 0; index < walls; index++) {
+        const int e = edge_at(kind, other, index);
+        add_ray_vertex(kind, which, &line, &vertex[index], e, frame->edge[e],
+                       walk->turn * pair->size[other][e], walk);
+    }
+    if (kind.drifts)
+        add_ray_vertex(kind, which, &line, &vertex[walls], -1, frame->way, lanes_of(0), walk);
 }
 
-/* Of all edges alike. */
-INLINE lanes cuboid_weight(const struct walk_kind kind, const struct box_function *weight)
+INLINE void add_plane_rays(const struct walk_pair *pair, const struct walk_kind kind,
+                           struct box_walk *walk)
 {
-    const lanes sum = weight->component[0] + weight->component[1];
-    return weight->at + (kind.dim == 2 ? sum : sum + weight->component[2]);
-}
-
-INLINE void add_cuboid_edges(const struct walk_kind kind, const struct box_frame *frame, int i,
-                             struct box_found *found)
-{
-    const int edges = kind.dim == 2 ? 2 : 4;
-    struct box_cut cut[4];
-    UNROLL(4)
-    for (int k = 0; k < frame->faces; k++)
-        cut[k] = cut_of(frame->face[k].function.component[i],
-                        cuboid_weight(kind, &frame->face[k].weight));
-    UNROLL(4)
-    for (int signs = 0; signs < edges; signs++) {
-        struct box_part part = {{lanes_of(-1), lanes_of(1)}, {lanes_of(-1), lanes_of(1)}};
-        struct box_line line[3];
-        UNROLL(4)
-        for (int k = 0; k < frame->faces; k++)
-            cut_edge(&frame->face[k], cut[k],
-                     cuboid_start(kind, &frame->face[k].function, i, signs), &part);
+    UNROLL(2)
+    for (int which = 0; which < 2; which++) {
+        struct walk_plane_edges edges;
+        const lanes area = product(pair->component[which][0], pair->component[which][1]);
+        set_plane_edges(pair, kind, which, &edges);
         UNROLL(3)
-        for (int axis = 0; axis < kind.dim; axis++)
-            line[axis] = (struct box_line){cuboid_start(kind, &frame->axis[axis], i, signs),
-                                           frame->axis[axis].component[i]};
-        widen_both(kind, &part, line, frame->slack, found);
+        for (int e = 0; e < edge_count(kind, which); e++) {
+            const lanes *length = walk->frame[which].length[e];
+            const lanes_mask *some = walk->frame[which].some[e];
+            struct box_ray ray = {.scale = pair->size[which][e],
+                                  .normal = {length[1], length[0]},
+                                  .weight = {length[1], length[0]},
+                                  .some = {some[1], some[0]},
+                                  .own = e == 0 ? area : -area,
+                                  .at = {edges.other[e][0], edges.other[e][1]},
+                                  .middle = which ? -edges.middle[e] : edges.middle[e],
+                                  .swing = which ? -edges.swing[e] : edges.swing[e]};
+            ray.at[2] = ray.at[1] - ray.at[0];
+            add_ray(pair, kind, which, &ray, walk);
+        }
     }
 }
 
-/* Edge e: of a component from the origin, or from the end of one to that of another. */
-INLINE struct box_line simplex_line(const struct walk_kind kind,
-                                    const struct box_function *function, int e)
+/* The ray of the face across from the origin. */
+INLINE void add_sums(const struct box_ray rays[3], struct box_ray *out)
 {
-    if (e < kind.dim)
-        return (struct box_line){function->at, function->component[e]};
-    const int p = kind.dim == 2 ? 0 : next(e - 3), q = kind.dim == 2 ? 1 : next(p);
-    return (struct box_line){function->at + function->component[p],
-                             function->component[q] - function->component[p]};
-}
-
-INLINE lanes simplex_weight(const struct walk_kind kind, const struct box_function *weight, int e)
-{
-    if (e < kind.dim)
-        return weight->at + weight->component[e];
-    const int p = kind.dim == 2 ? 0 : next(e - 3), q = kind.dim == 2 ? 1 : next(p);
-    return weight->at + ((weight->component[p] + weight->component[p]) + weight->component[q]);
-}
-
-INLINE void add_simplex_edge(const struct walk_kind kind, const struct box_frame *frame, int e,
-                             struct box_found *found)
-{
-    struct box_part part = {{lanes_of(0), lanes_of(1)}, {lanes_of(0), lanes_of(1)}};
-    struct box_line line[3];
-    UNROLL(4)
-    for (int k = 0; k < frame->faces; k++) {
-        const struct box_face *face = &frame->face[k];
-        const struct box_line along = simplex_line(kind, &face->function, e);
-        cut_edge(face, cut_of(along.direction, simplex_weight(kind, &face->weight, e)), along.start,
-                 &part);
-    }
+    out->scale = (rays[0].scale + rays[1].scale) + rays[2].scale;
+    out->own = rays[0].own;
+    out->middle = (rays[0].middle + rays[1].middle) + rays[2].middle;
+    out->swing = (rays[0].swing + rays[1].swing) + rays[2].swing;
+    UNROLL(6)
+    for (int i = 0; i < 6; i++)
+        out->at[i] = (rays[0].at[i] + rays[1].at[i]) + rays[2].at[i];
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
-        line[axis] = simplex_line(kind, &frame->axis[axis], e);
-    widen_both(kind, &part, line, frame->slack, found);
+    for (int axis = 0; axis < 3; axis++) {
+        out->some[axis] = (rays[0].some[axis] | rays[1].some[axis]) | rays[2].some[axis];
+        out->weight[axis] = (rays[0].weight[axis] + rays[1].weight[axis]) + rays[2].weight[axis];
+        out->normal[axis] = (rays[0].normal[axis] + rays[1].normal[axis]) + rays[2].normal[axis];
+    }
 }
 
-/* ---- Extents ----
- *
- * The intersection lies in the extents of both frames. Where these are ends of it (boxes along the
- * axes, a frame within the other) they are as near as doubles go: a sum is rounded outward, if it
- * rounds. The error of a sum is a double (Knuth, The Art of Computer Programming, volume 2, 4.2.2,
- * theorem B), and 2^-52 of a normal number is between one and two units in its last place; sums
- * that are not normal are exact. */
-
-INLINE lanes sum_error(lanes x, lanes y, lanes sum)
+INLINE void add_space_rays(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                           const struct walk_side *side, struct box_walk *walk)
 {
-    const lanes part = sum - x;
-    return (x - (sum - part)) + (y - part);
+    struct box_ray rays[4];
+    const int first = first_plane(kind, which);
+    const bool across = kind.simplex[which] && !kind.face[which];
+    UNROLL(3)
+    for (int k = first; k < 3; k++) {
+        struct box_ray *ray = &rays[k];
+        const int i = next(k), j = next(i);
+        ray->scale = pair->size[which][i] * pair->size[which][j];
+        ray->own = side->volume;
+        ray->middle = which ? -side->middle[k] : side->middle[k];
+        ray->swing = which ? -side->swing[k] : side->swing[k];
+        cross_weight(pair->component[which][i], pair->component[which][j], ray->weight);
+        UNROLL(3)
+        for (int axis = 0; axis < 3; axis++)
+            ray->normal[axis] = lanes_magnitude(side->normal[k][axis]);
+        cross_some(walk->frame[which].some[i], walk->frame[which].some[j], ray->some);
+        UNROLL(6)
+        for (int e = 0; e < 6; e++)
+            ray->at[e] = has_edge(kind, !which, e) ? side->other[k][e] : lanes_of(0);
+    }
+    if (across)
+        add_sums(rays, &rays[3]);
+    for (int k = first; k < (across ? 4 : 3); k++)
+        add_ray(pair, kind, which, &rays[k], walk);
 }
+
+/* ---- Vertices on a wall of each frame and that of the drift ---- */
+
+/* What is linear in an edge of each, and what in an edge and the drift. */
+struct box_products {
+    struct walk_edges edges;
+    lanes drift_middle[6];   /* [a half offset], of edges of A */
+    lanes error[6];          /* on the line of H x a: value_error() */
+    lanes_mask inside[2][6]; /* the slab of an edge and the drift surely has the offset inside */
+};
+
+INLINE void set_drift_slabs(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                            const struct walk_side *own, struct box_products *products,
+                            struct box_walk *walk)
+{
+    lanes plane[3], middle[6];
+    cross(pair->half, pair->offset, plane);
+    UNROLL(3)
+    for (int i = 0; i < component_count(kind, which); i++)
+        middle[i] = dot(plane, pair->component[which][i]);
+    add_differences(kind, which, middle);
+    for (int index = 0; index < edge_count(kind, which); index++) {
+        const int e = edge_at(kind, which, index);
+        lanes at[3];
+        UNROLL(3)
+        for (int j = 0; j < component_count(kind, !which); j++)
+            at[j] = which ? products->edges.swing[j][e] : -products->edges.swing[e][j];
+        const struct walk_extent of_own =
+            extent_at_edge(kind, which, e, own->swing[0], own->swing[1], own->swing[2]);
+        const struct walk_extent of_other = extent_of_frame(kind, !which, at);
+        const struct walk_extent d =
+            extent_difference(kind, which ? of_other : of_own, which ? of_own : of_other);
+        products->inside[which][e] = is_inside(kind, d, middle[e], lanes_of(0),
+                                               pair->size[which][e] * pair->half_size, pair, walk);
+        if (which)
+            continue;
+        lanes normal[3], weight[3];
+        cross(pair->half, walk->frame[0].edge[e], normal);
+        cross_weight(pair->half, walk->frame[0].length[e], weight);
+        products->drift_middle[e] = middle[e];
+        products->error[e] =
+            value_error(kind, weight, magnitudes(normal, normal),
+                        ((d.high - d.low) + d.radius) + lanes_magnitude(middle[e]), walk);
+    }
+}
+
+/* y = m (H x a) + n (a x b): what it makes of the components of both frames. a = edge i of A,
+ * b = edge j of B. */
+INLINE struct walk_extent extent_of_crossing(const struct walk_kind kind, int i, int j, lanes m,
+                                             lanes n, const struct walk_side side[2],
+                                             const struct box_products *products,
+                                             const lanes component[3])
+{
+    const struct walk_side *a = &side[0], *b = &side[1];
+    const struct walk_extent of_a =
+        extent_at_edge(kind, 0, i, n * a->other[0][j] - m * a->swing[0],
+                       n * a->other[1][j] - m * a->swing[1], n * a->other[2][j] - m * a->swing[2]);
+    /* (a x b) . c for the components c of B, a and b as above: those of extent_at_edge() */
+    const lanes *across[3] = {b->other[0], b->other[1], b->other[2]};
+    const int p = next(j % 3), q = next(p);
+    lanes product[3];
+    if (j < 3) {
+        product[j] = lanes_of(0);
+        product[p] = across[q][i];
+        product[q] = -across[p][i];
+    } else { /* b = c_q - c_p */
+        product[p] = product[q] = -across[j % 3][i];
+        product[j % 3] = across[p][i] + across[q][i];
+    }
+    lanes at[3];
+    UNROLL(3)
+    for (int k = 0; k < component_count(kind, 1); k++)
+        at[k] = component[k] - (m * products->edges.swing[i][k] + n * product[k]);
+    return extent_sum(kind, of_a, extent_across(kind, 1, j, at));
+}
+
+/* The vertex on the walls of edge i of A, edge j of B and the drift. */
+INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind kind, int i, int j,
+                         const struct walk_side side[2], const struct box_products *products,
+                         struct box_walk *walk)
+{
+    const struct box_frame *a = &walk->frame[0], *b = &walk->frame[1];
+    const lanes length_a = pair->size[0][i], length_b = pair->size[1][j];
+    const lanes scale = length_a * length_b;
+    lanes normal[3], weight[3];
+    lanes_mask some[3];
+    cross(a->edge[i], b->edge[j], normal);
+    cross_weight(a->length[i], b->length[j], weight);
+    cross_some(a->some[i], b->some[j], some);
+    const struct box_vertex vertex =
+        vertex_of(kind, products->edges.swing[i][j], weight_of(kind, weight, pair->half),
+                  scale * pair->half_size, dot_some(kind, some, walk->drift), walk);
+    const struct walk_extent d = extent_sum(
+        kind,
+        extent_at_edge(kind, 0, i, side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]),
+        extent_at_edge(kind, 1, j, side[1].other[0][i], side[1].other[1][i], side[1].other[2][i]));
+    walk->good &= is_not(vertex.open) | products->inside[0][i] | products->inside[1][j] |
+                  is_inside(kind, d, products->edges.middle[i][j], products->edges.swing[i][j],
+                            scale, pair, walk);
+    walk->open |= vertex.open;
+    /* Errors for m = 1 and n = 1. */
+    const lanes drift_scale = length_a * pair->half_size;
+    const lanes placing = walk->placing + lanes_choose(walk->bent, walk->bends, lanes_of(0));
+    const lanes sum =
+        ((d.high - d.low) + d.radius) + (lanes_magnitude(products->edges.middle[i][j]) +
+                                         lanes_magnitude(products->edges.swing[i][j]));
+    const lanes of_m = products->error[i] + drift_scale * pair->error;
+    const lanes of_n =
+        value_error(kind, weight, magnitudes(normal, normal), sum, walk) + scale * pair->error;
+    const lanes apart = ((1.2 * walk->turn) * length_b) *
+                        ((drift_scale * pair->reach) * lanes_magnitude(vertex.inverse));
+    UNROLL(3)
+    for (int axis = 0; axis < 3; axis++) {
+        const lanes m = b->edge[j][axis] * vertex.inverse, n = b->way[axis] * vertex.inverse;
+        const lanes m_size = lanes_magnitude(m), n_size = lanes_magnitude(n);
+        lanes component[3];
+        UNROLL(3)
+        for (int k = 0; k < component_count(kind, 1); k++)
+            component[k] = pair->component[1][k][axis];
+        const lanes outer = m_size * of_m + n_size * of_n;
+        const struct box_errors errors = {
+            outer, (outer + (m_size * drift_scale + n_size * scale) * placing) + apart};
+        add_vertex(kind, axis, b->centre[axis],
+                   n * products->edges.middle[i][j] - m * products->drift_middle[i],
+                   extent_of_crossing(kind, i, j, m, n, side, products, component),
+                   b->own_sum[axis], errors, &vertex, walk);
+    }
+}
+
+INLINE void add_crossings(const struct walk_pair *pair, const struct walk_kind kind,
+                          const struct walk_side side[2], struct box_walk *walk)
+{
+    struct box_products products;
+    set_products(pair, kind, pair->offset, products.edges.middle);
+    set_products(pair, kind, pair->half, products.edges.swing);
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        set_drift_slabs(pair, kind, which, &side[which], &products, walk);
+    for (int i = 0; i < edge_count(kind, 0); i++)
+        UNROLL(6)
+    for (int j = 0; j < edge_count(kind, 1); j++)
+        add_crossing(pair, kind, edge_at(kind, 0, i), edge_at(kind, 1, j), side, &products, walk);
+}
+
+/* ---- Ends that are exact ----
+ *
+ * Where the ends of an extent are those of the box (boxes along the axes, a frame within the other)
+ * they are as near as doubles go: a sum or product is rounded outward, if it rounds. The error of a
+ * sum is a double (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B), that of a
+ * product above 2^-900 too, found from halves of the factors (Dekker); 2^-52 of a normal number is
+ * between one and two units in its last place; sums that are not normal are exact. */
 
 INLINE lanes sum_below(lanes x, lanes y)
 {
     const lanes sum = x + y;
-    return lanes_choose(sum_error(x, y, sum) < 0, sum - 0x1p-52 * lanes_magnitude(sum), sum);
+    return lanes_choose(error_of_sum(x, y, sum) < 0, sum - 0x1p-52 * lanes_magnitude(sum), sum);
 }
 
 INLINE lanes sum_above(lanes x, lanes y)
 {
     const lanes sum = x + y;
-    return lanes_choose(sum_error(x, y, sum) > 0, sum + 0x1p-52 * lanes_magnitude(sum), sum);
+    return lanes_choose(error_of_sum(x, y, sum) > 0, sum + 0x1p-52 * lanes_magnitude(sum), sum);
+}
+
+INLINE lanes upper_half(lanes x)
+{
+    const lanes large = 134217729 * x;
+    return large - (large - x);
+}
+
+/* What a product is off by at most, 0 where it is exact. Factors beyond 2^900 count as inexact: NAN
+ * is not 0. */
+INLINE lanes product_slack(lanes x, lanes y, lanes product)
+{
+    const lanes x_high = upper_half(x), y_high = upper_half(y);
+    const lanes x_low = x - x_high, y_low = y - y_high;
+    const lanes error =
+        ((x_high * y_high - product) + x_high * y_low + x_low * y_high) + x_low * y_low;
+    const lanes_mask exact =
+        ((error == 0) & (lanes_magnitude(product) >= 0x1p-900)) | (x == 0) | (y == 0);
+    return lanes_choose(exact, lanes_of(0), 0x1p-52 * lanes_magnitude(product) + 0x1p-950);
 }
 
 /* Cuts the box, in the lengths of the world. */
 INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                          const lanes origin[3], int axis, lanes box[2][3])
+                          const struct box_places *places, int axis, lanes box[2][3])
 {
     const bool twice = is_doubled(kind) && kind.simplex[which];
-    lanes low = origin[axis], high = origin[axis];
+    const lanes origin = places->origin[which][axis];
+    lanes low = origin, high = origin;
     UNROLL(3)
-    for (int i = 0; i < kind.dim; i++) {
+    for (int i = 0; i < component_count(kind, which); i++) {
         const lanes c = (twice ? 0.5 : 1.0) * pair->component[which][i][axis];
         if (kind.simplex[which]) {
-            low = lanes_least(sum_below(origin[axis], c), low);
-            high = lanes_greatest(sum_above(origin[axis], c), high);
+            low = lanes_least(sum_below(origin, c), low);
+            high = lanes_greatest(sum_above(origin, c), high);
         } else {
             low = sum_below(low, lanes_least(c, lanes_of(0)));
             high = sum_above(high, lanes_greatest(c, lanes_of(0)));
         }
     }
-    const lanes error = (is_doubled(kind) ? 0.5 : 1.0) * pair->error;
+    if (kind.drifts) {
+        const lanes velocity = places->velocity[which][axis], time = lanes_of(places->duration);
+        const lanes way = velocity * time, slack = product_slack(velocity, time, way);
+        low = sum_below(low, lanes_least(way - slack, lanes_of(0)));
+        high = sum_above(high, lanes_greatest(way + slack, lanes_of(0)));
+    }
+    const lanes error =
+        lanes_choose(has_bit(places->head[which], (unsigned) PREPARED_EXACT_X << axis), lanes_of(0),
+                     places->error[which]);
     box[0][axis] = lanes_greatest(sum_below(low, -error), box[0][axis]);
     box[1][axis] = lanes_least(sum_above(high, error), box[1][axis]);
 }
 
 /* ---- All of it ---- */
 
-/* Of a vertex along an axis, in the lengths of walk_pair: the largest magnitude, or a little less.
- */
-INLINE lanes largest_place(const struct walk_kind kind, int which, const struct box_frame *frame)
+/* Sums of magnitudes along an axis. */
+INLINE void set_sizes(const struct walk_pair *pair, const struct walk_kind kind,
+                      const struct box_places *places, int axis, struct box_walk *walk)
+{
+    const lanes apart = lanes_magnitude(places->origin[1][axis] - places->origin[0][axis]);
+    const lanes half = kind.drifts ? lanes_magnitude(pair->half[axis]) : lanes_of(0);
+    lanes sum[2] = {lanes_of(0), lanes_of(0)};
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        UNROLL(3)
+    for (int i = 0; i < component_count(kind, which); i++)
+        sum[which] += lanes_magnitude(pair->component[which][i][axis]);
+    walk->size[axis] = ((sum[0] + sum[1]) + half) + lanes_magnitude(pair->offset[axis]);
+    walk->way[axis] = (is_doubled(kind) ? apart + apart : apart) + 2 * half;
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        if (!kind.simplex[which])
+            walk->way[axis] += sum[which];
+}
+
+/* Of lanes in which nothing rounds: whether all numbers of the pair are multiples of g, with at =
+ * 2^52 g, and the frames' own ways do not round either. */
+INLINE lanes_mask are_multiples(const struct walk_pair *pair, const struct walk_kind kind,
+                                const struct box_places *places, const struct box_walk *walk,
+                                lanes at)
+{
+    lanes_mask all = walk->exact;
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        UNROLL(2)
+    for (int which = 0; which < 2; which++) {
+        if (lanes_mask_bits(all) == 0)
+            break;
+        all &= is_multiple(places->origin[which][axis], at);
+        UNROLL(3)
+        for (int i = 0; i < component_count(kind, which); i++)
+            all &= is_multiple(pair->component[which][i][axis], at);
+        if (!kind.drifts)
+            continue;
+        const lanes v = places->velocity[which][axis], time = lanes_of(places->duration);
+        all &=
+            is_multiple(walk->frame[which].way[axis], at) & (product_slack(v, time, v * time) == 0);
+    }
+    return all;
+}
+
+INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
+                      const struct box_places *places, struct box_walk *walk)
 {
     lanes largest = lanes_of(0);
-    UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        const struct box_function *function = &frame->axis[axis];
-        lanes farthest = lanes_magnitude(function->at);
-        UNROLL(3)
-        for (int i = 0; i < kind.dim; i++)
-            farthest = kind.simplex[which]
-                           ? lanes_greatest(lanes_magnitude(function->at + function->component[i]),
-                                            farthest)
-                           : farthest + lanes_magnitude(function->component[i]);
-        largest = lanes_greatest(farthest, largest);
-    }
-    return (1 - 0x1p-40) * largest;
-}
-
-INLINE void begin_box(const struct walk_kind kind, struct box_found *found)
-{
-    UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        found->outer[0][axis] = found->inner[0][axis] = lanes_of(INFINITY);
-        found->outer[1][axis] = found->inner[1][axis] = lanes_of(-INFINITY);
-    }
-}
-
-INLINE void add_edges_of(const struct walk_kind kind, int which, const struct box_frame *frame,
-                         struct box_found *found)
-{
-    UNROLL(6)
-    for (int e = 0; e < edge_count(kind, which); e++) {
-        if (kind.simplex[which])
-            add_simplex_edge(kind, frame, e, found);
-        else
-            add_cuboid_edges(kind, frame, e, found);
-    }
-}
-
-/* Boxes and which of them are good. On input: the pair at rest; the origins of its frames. */
-INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind kind,
-                           const lanes origin[2][3], lanes box[2][3])
-{
-    struct box_found found;
-    lanes way[3], largest = lanes_of(0);
-    begin_box(kind, &found);
-    set_way(pair, kind, origin, way);
+    const unsigned all_true = PREPARED_TRUE_X * (kind.dim == 2 ? 3u : 7u);
+    lanes_mask inexact = {0}, lost = {0};
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
-        struct box_frame frame;
-        if (kind.dim == 3)
-            set_space_faces(pair, kind, which, way, &frame);
-        else
-            set_plane_faces(pair, kind, which, way, &frame);
-        set_places(pair, kind, which, origin[which], &frame);
-        largest = lanes_greatest(largest_place(kind, which, &frame), largest);
-        add_edges_of(kind, which, &frame, &found);
+        set_box_frame(pair, kind, which, places, &walk->frame[which]);
+        largest = lanes_greatest(largest_place(pair, kind, which, &walk->frame[which]), largest);
+        inexact |= (places->head[which] & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true) !=
+                   (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true;
     }
-    lanes_mask good = pair->in_range & (largest <= BOX_FARTHEST);
+    walk->turn = lanes_choose(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
+    lanes lengths = pair->half_size;
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        UNROLL(3)
+    for (int i = 0; i < component_count(kind, which); i++)
+        lengths += pair->size[which][i];
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        lengths += lanes_magnitude(pair->offset[axis]);
+    walk->placing = (3.1 * walk->turn) * lengths;
+    walk->bends = 68 * ((walk_error(kind) + 4 * walk->turn) * pair->reach);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        good &= (found.inner[0][axis] - found.outer[0][axis] <= BOX_LIMIT * largest) &
-                (found.outer[1][axis] - found.inner[1][axis] <= BOX_LIMIT * largest);
+        set_sizes(pair, kind, places, axis, walk);
+        walk->slack[axis] =
+            BOX_POINT_ROUNDING * (walk->frame[0].sum[axis] + walk->frame[1].sum[axis]) +
+            pair->error;
+        walk->outer[0][axis] = lanes_of(-INFINITY);
+        walk->outer[1][axis] = lanes_of(INFINITY);
+        if (!kind.drifts)
+            continue;
+        walk->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
+        lost |= walk->drift[axis] & (pair->half[axis] == 0);
+    }
+    walk->exact = places->exact;
+    const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
+    walk->unit = lanes_choose(are_multiples(pair, kind, places, walk, 0x1p45 * power),
+                              0x1p-7 * power, lanes_of(0));
+    walk->spans = walk->open = walk->bent = (lanes_mask){0};
+    walk->good = is_not(lost) & (largest <= BOX_FARTHEST);
+}
+
+/* Ends that are small numbers, to the last bit. With the numbers of the pair multiples of a unit g,
+ * and T < 2^8 g, a determinant is less than T^3 / 27 < 2^20 g^3, and an end a fraction of g with a
+ * denominator below that. Two such fractions, or one and a multiple of 2^-20 g, are 2^-40 g apart
+ * if they differ: where the end is known to 2^-44 g, and such a multiple may be it, it is. */
+INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
+{
+    const lanes large = (0x1.8p52 * 0x1p-20) * unit, middle = 0.5 * (outer + inner);
+    const lanes snap = (middle + large) - large;
+    const lanes near = 0x1p-44 * unit;
+    lanes_mask is_end = unit != 0;
+    is_end &= lanes_magnitude(snap - outer) <= near;
+    is_end &= lanes_magnitude(snap - inner) <= near;
+    is_end &= lanes_magnitude(middle) <= 0x1p30 * unit;
+    return lanes_choose(is_end, snap, outer);
+}
+
+INLINE void begin_inner(const struct walk_kind kind, struct box_walk *walk)
+{
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        walk->inner[0][axis] = lanes_of(-INFINITY);
+        walk->inner[1][axis] = lanes_of(INFINITY);
+    }
+}
+
+INLINE void add_all(const struct walk_pair *pair, const struct walk_kind kind,
+                    struct box_walk *walk)
+{
+    add_extents(kind, pair, walk);
+    if (kind.dim == 2) {
+        add_plane_rays(pair, kind, walk);
+        return;
+    }
+    struct walk_side side[2];
+    UNROLL(2)
+    for (int which = 0; which < 2; which++) {
+        set_side(pair, kind, which, &side[which]);
+        add_space_rays(pair, kind, which, &side[which], walk);
+    }
+    if (kind.drifts)
+        add_crossings(pair, kind, side, walk);
+}
+
+/* Boxes and which of them are good. */
+INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind kind,
+                           const struct box_places *places, lanes box[2][3])
+{
+    struct box_walk walk;
+    begin_box(pair, kind, places, &walk);
+    for (int pass = 0; pass < 2; pass++) { /* one is enough unless a vertex is left out */
+        begin_inner(kind, &walk);
+        add_all(pair, kind, &walk);
+        if (lanes_mask_bits(walk.open) == 0)
+            break;
+        walk.bent = walk.open;
+    }
+    lanes_mask good = walk.good & walk.spans;
+    const lanes largest = lanes_greatest(largest_place(pair, kind, 0, &walk.frame[0]),
+                                         largest_place(pair, kind, 1, &walk.frame[1]));
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
         UNROLL(2)
-        for (int end = 0; end < 2; end++)
-            box[end][axis] = (is_doubled(kind) ? 0.5 : 1.0) * found.outer[end][axis];
+        for (int end = 0; end < 2; end++) {
+            const lanes slack = end ? walk.slack[axis] : -walk.slack[axis];
+            const lanes outer = walk.outer[end][axis] + slack;
+            const lanes inner = walk.inner[end][axis] - slack;
+            good &= lanes_magnitude(outer - inner) <= BOX_LIMIT * largest;
+            box[end][axis] = (is_doubled(kind) ? 0.5 : 1.0) * snapped(outer, inner, walk.unit);
+        }
         UNROLL(2)
         for (int which = 0; which < 2; which++)
-            cut_to_extent(pair, kind, which, origin[which], axis, box);
+            cut_to_extent(pair, kind, which, places, axis, box);
         UNROLL(2)
         for (int end = 0; end < 2; end++)
             box[end][axis] += 0.0; /* never -0 */

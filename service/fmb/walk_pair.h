@@ -14,10 +14,14 @@ struct walk_kind {
     bool drifts;
     bool along;   /* edges may be parallel to the same axis: zero normals are looked for (3D) */
     bool ordered; /* every number is to have the same bits for the pair the other way round */
-    /* 2D: the second of two lanes holds the pair the other way round. The slabs of b are those of a
-     * there. */
+    /* Two frames of the same shape; the second of two lanes holds the pair the other way round. The
+     * slabs of b are those of a there, and those of edges i of a and j of b are those of j and i.
+     */
     bool mirrored;
     bool times; /* the times of contact are wanted; ordered */
+    bool box;   /* the box is wanted: of pairs that drift, and of such that move together */
+    bool rough; /* first of two passes: bounds are SLABS_ROUGH times as wide */
+    bool exact; /* the second pass: in some lanes nothing rounds, and signs along axes are known */
 };
 
 /* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex.
@@ -33,6 +37,10 @@ struct walk_pair {
     lanes unit;          /* the error of a slab of scale 1, those of the frames included */
     lanes error;         /* of both frames (prepared.h) */
     lanes_mask in_range; /* doubles can say something of it */
+    lanes_mask tiny;     /* products with the drift may underflow to 0 */
+    /* kind.exact (walk_exact.h). Bit i: of axis i, the sign of the gap along it is known exactly;
+     * of such an axis, the edge has no extent along it. */
+    lanes_bits signed_axes, across[2][6];
 };
 
 INLINE int next(int i)
@@ -86,7 +94,7 @@ INLINE lanes product(const lanes x[3], const lanes y[3])
  * derived in slabs.c. */
 INLINE double walk_error(const struct walk_kind kind)
 {
-    return kind.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING;
+    return (kind.rough ? SLABS_ROUGH : 1) * (kind.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING);
 }
 
 INLINE bool is_doubled(const struct walk_kind kind)
@@ -149,7 +157,7 @@ INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][
     const lanes reach_a = set_frame(kind, 0, component[0], size[0], out);
     const lanes reach_b = set_frame(kind, 1, component[1], size[1], out);
     lanes offset_size = lanes_of(0), half_size = lanes_of(0);
-    lanes_mask tiny = {0};
+    out->tiny = (lanes_mask){0};
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         const lanes at = is_doubled(kind) ? offset[axis] + offset[axis] : offset[axis];
@@ -160,17 +168,31 @@ INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][
         out->offset[axis] = offset_of(kind, component, at, half, axis);
         offset_size += lanes_magnitude(at);
         half_size += lanes_magnitude(half);
-        tiny |= (half != 0) & (lanes_magnitude(half) < 0x1p-400);
+        out->tiny |= (half != 0) & (lanes_magnitude(half) < 0x1p-400);
     }
     out->half_size = half_size;
     out->reach = (reach_a + reach_b) + (offset_size + (half_size + half_size));
     out->error = is_doubled(kind) ? error + error : error;
     out->unit = walk_error(kind) * out->reach + out->error;
     out->in_range = offset_size <= 0x1p200;
-    if (kind.drifts)
-        out->in_range &= (half_size <= 0x1p200) & (half_size >= 0x1p-200);
-    if (kind.drifts && kind.along)
-        out->in_range &= tiny == 0;
+    if (!kind.drifts)
+        return;
+    lanes_mask usable = half_size >= 0x1p-200;
+    if (kind.box)
+        usable |= half_size == 0;
+    out->in_range &= usable & (half_size <= 0x1p200);
+}
+
+/* An edge by number; a difference that is 0 is exact, and none is tiny. */
+INLINE void walk_edge(const struct walk_kind kind, const struct walk_pair *pair, int which, int e,
+                      lanes out[3])
+{
+    const int p = kind.dim == 2 ? 0 : next(e % 3), q = kind.dim == 2 ? 1 : next(p);
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        out[axis] = e < kind.dim
+                        ? pair->component[which][e][axis]
+                        : pair->component[which][q][axis] - pair->component[which][p][axis];
 }
 
 #endif

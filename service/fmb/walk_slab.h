@@ -101,10 +101,35 @@ INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes mid
 
 /* ---- A slab ---- */
 
-/* What is known of the time: middle + s swing lies within the bounds of D, s in [-1, 1]. With
- * swing made a little longer no quotient overflows; the error has room for it (slabs.c), and for
- * its sign too where it is 0: then both signs are right, and what they have in common is the same
- * for the pair the other way round. */
+/* What is known of the time: middle + s swing lies within the bounds of D, s in [-1, 1].
+ *
+ * Let l be the computed low - middle, and w the swing, made longer by 2^-10 of the error e: then no
+ * quotient overflows. What l - s w stands for is off by at most e - r, for all s in [-1, 1]; r is
+ * what the error has to spare. So the true offset is below the bound where l - s w > e - r, and
+ * above it where l - s w < -(e - r). For w > 0 it enters the slab
+ *
+ *     not before (l - e + r) / w,      surely by (l + e - r) / w,
+ *
+ * as far as these are in [-1, 1]; with w < 0, and at the other bound, likewise. Let q = |l / w| and
+ * t = e / |w|. Computed are l (1 / w) -+ e (1 / w), with u = 2^-53: either product is rounded
+ * twice, so that they are off by 2.01 u (q + t), and their difference by another u of itself.
+ *
+ *     q <= 2   An end in [-1, 1] has t <= 3. It is off by at most 2.01 u 5 + u < 12 u, and
+ *              SLABS_TIMES_SLACK is 16 u.
+ *     q > 2    An end in [-1, 1], computed or true, has t >= q - 1.01 > 0.49 q, however large both
+ *              are: a slab that is nearly parallel to the drift. It is off by at most 2.01 u (q +
+ *              t) + u < 6.2 u t + u. The slack covers u, and r / |w| the rest: 6.2 u e < r.
+ *
+ * An end that is not in [-1, 1] becomes -1 or 1, or is too far from the other one (times_of). What
+ * r is: the error of a slab is SLABS_ROUNDING |u| |v| T and that of the frames, |u| |v| E. Of the
+ * first 18 u, 16.2 u are used where no sum is made with the bound (slabs.c). The longer swing takes
+ * 2^-10 of both, and w, which is at most |u| |v| T / 2, is rounded once more: 0.54 u |u| |v| T. The
+ * rest, 1.2 u |u| |v| T, is more than 6.2 u of the first part. Of E the same shares are covered by
+ * what E has to spare: a tenth (rotation.h), or half (sums counted twice, frame.c), but for the
+ * rests of components that were rounded as differences of vertices, which are less than 2 u T.
+ *
+ * Where the swing is 0 both signs of w are right; what they have in common is the same for the pair
+ * the other way round. */
 INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes error,
                         lanes middle, lanes swing, lanes_mask nothing, struct walk_found *found)
 {
@@ -133,7 +158,18 @@ INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes
     found->leave[1] = lanes_least(leave - slack, found->leave[1]);
 }
 
-/* nothing: lanes whose normal is zero; they say nothing. timeless: the slab of a drift. */
+/* kind.exact: lanes in which the normal of two edges is parallel to an axis along which the sign of
+ * the gap is known: their slab is decided by that. Bits as in walk_pair.across. */
+INLINE lanes_mask is_along_axis(const struct walk_kind kind, lanes_bits across_u,
+                                lanes_bits across_v)
+{
+    if (kind.exact)
+        return (lanes_mask) ((across_u & across_v) != 0);
+    return (lanes_mask){0};
+}
+
+/* nothing: lanes whose normal is zero, or whose gap is known; they say nothing. timeless: the slab
+ * of a drift. */
 INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, struct walk_extent d,
                      lanes scale, lanes unit, lanes middle, lanes swing, bool timeless,
                      lanes_mask nothing, struct walk_found *found)
@@ -142,7 +178,8 @@ INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, str
     const lanes above = gap + scale * unit;
     found->surely = lanes_greatest(gap - scale * unit, found->surely);
     found->possibly = lanes_greatest(
-        kind.along ? lanes_choose(nothing, lanes_of(-INFINITY), above) : above, found->possibly);
+        kind.along || kind.exact ? lanes_choose(nothing, lanes_of(-INFINITY), above) : above,
+        found->possibly);
     if (kind.times && !timeless)
         bound_times(kind, d, scale * unit, middle, swing, nothing, found);
 #if LANES == 1
@@ -161,14 +198,15 @@ INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, str
 #endif
 }
 
-/* Whether every lane is known to be separated, and no more is wanted. */
-INLINE bool is_enough(const struct walk_found *found)
+/* Whether every pair is known to be separated, and no more is wanted. */
+INLINE bool is_enough(const struct walk_kind kind, const struct walk_found *found)
 {
+    const unsigned separated = lanes_bits_above(found->surely, lanes_of(0));
 #if LANES == 1
     if (found->next)
         return false;
 #endif
-    return lanes_all(found->surely > 0);
+    return kind.mirrored ? separated != 0 : separated == (1u << LANES) - 1;
 }
 
 /* ---- Axes ----
@@ -191,7 +229,8 @@ INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
                                                        extent_of_frame(kind, 1, at[1]));
         gap = lanes_greatest(gap_of(kind, d, pair->offset[axis], pair->half[axis]), gap);
     }
-    found->surely = gap - (SLABS_ROUNDING_AXES * pair->reach + pair->error);
+    found->surely =
+        gap - ((kind.rough ? SLABS_ROUGH : 1) * SLABS_ROUNDING_AXES * pair->reach + pair->error);
 }
 
 #endif

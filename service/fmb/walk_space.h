@@ -53,9 +53,10 @@ INLINE void add_face(const struct walk_pair *pair, const struct walk_kind kind, 
 {
     const struct walk_extent own = extent_of_one(kind.simplex[which], side->volume);
     const struct walk_extent other = extent_of_frame(kind, !which, at);
-    const lanes_mask none = {0};
+    const lanes_mask along = is_along_axis(kind, pair->across[which][normal.u % SLABS_EDGES],
+                                           pair->across[which][normal.v % SLABS_EDGES]);
     add_slab(kind, normal, extent_difference(kind, which ? other : own, which ? own : other), scale,
-             pair->unit, middle, swing, false, none, found);
+             pair->unit, middle, swing, false, along, found);
 }
 
 INLINE void add_faces(const struct walk_pair *pair, const struct walk_kind kind, int which,
@@ -116,6 +117,28 @@ INLINE void add_product_differences(const struct walk_kind kind, lanes value[6][
     }
 }
 
+/* Where the pair is mirrored, the other way round: of the same products for i and j exchanged. */
+INLINE lanes mirrored(lanes x)
+{
+#if LANES == 2
+    return lanes_exchanged(x);
+#else
+    return x;
+#endif
+}
+
+/* What edges need of side 1, where the pair is mirrored. */
+INLINE void mirror_side(const struct walk_kind kind, const struct walk_side *side,
+                        struct walk_side *out)
+{
+    UNROLL(3)
+    for (int k = 0; k < 3; k++)
+        UNROLL(6)
+    for (int j = 0; j < 6; j++)
+        if (j < component_count(kind, 0) || (j >= 3 && has_difference(kind, 0, j - 3)))
+            out->other[k][j] = mirrored(side->other[k][j]);
+}
+
 /* [a_i b_j w] for all i, j: (a_i x b_j) . w has the same bits the other way round, (w x a_i) . b_j
  * takes fewer operations. */
 INLINE void set_products(const struct walk_pair *pair, const struct walk_kind kind,
@@ -128,7 +151,9 @@ INLINE void set_products(const struct walk_pair *pair, const struct walk_kind ki
             cross(w, pair->component[0][i], turned);
         UNROLL(3)
         for (int j = 0; j < component_count(kind, 1); j++) {
-            if (kind.ordered) {
+            if (kind.mirrored && j < i) {
+                value[i][j] = mirrored(value[j][i]);
+            } else if (kind.ordered) {
                 cross(pair->component[0][i], pair->component[1][j], turned);
                 value[i][j] = dot(turned, w);
             } else {
@@ -156,16 +181,6 @@ INLINE struct walk_extent extent_at_edge(const struct walk_kind kind, int which,
     return extent_of_two(true, at[r], -(at[p] + at[q]));
 }
 
-/* An edge by number; a difference that is 0 is exact, and none is tiny. */
-INLINE void walk_edge(const struct walk_pair *pair, int which, int e, lanes out[3])
-{
-    const int p = next(e % 3), q = next(p);
-    UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = e < 3 ? pair->component[which][e][axis]
-                          : pair->component[which][q][axis] - pair->component[which][p][axis];
-}
-
 /* Whether u x v is exactly 0 because each of the products in it has a factor 0. No product of two
  * numbers that are not 0 is so small as to become 0. */
 INLINE lanes_mask cross_is_nothing(const lanes u[3], const lanes v[3])
@@ -176,18 +191,14 @@ INLINE lanes_mask cross_is_nothing(const lanes u[3], const lanes v[3])
     return (x + y) + z == 0;
 }
 
-/* Where nothing rounds (unit = 0), the normal of two edges that is zero shows in that neither frame
- * has an extent along it. Those of two faces in parallel planes have none along that of the planes
- * either, but a face has that one of its own. */
-INLINE lanes_mask extent_is_nothing(lanes unit, struct walk_extent d)
+/* kind.exact: where nothing rounds (unit = 0), the normal of two edges that is zero shows in that
+ * neither frame has an extent along it. Those of two faces in parallel planes have none along that
+ * of the planes either, but a face has that one of its own. */
+INLINE lanes_mask extent_is_nothing(const struct walk_kind kind, lanes unit, struct walk_extent d)
 {
-#if LANES == 1
-    return (lanes_mask){unit == 0 && d.low == d.high && d.radius == 0};
-#else
-    (void) unit;
-    (void) d;
+    if (kind.exact)
+        return (lanes_mask) ((unit == 0) & (d.low == d.high) & (d.radius == 0));
     return (lanes_mask){0};
-#endif
 }
 
 INLINE void add_edges(const struct walk_pair *pair, const struct walk_kind kind,
@@ -202,22 +213,23 @@ INLINE void add_edges(const struct walk_pair *pair, const struct walk_kind kind,
         lanes u[3], v[3];
         lanes_mask nothing = {0};
         if (kind.along)
-            walk_edge(pair, 0, i, u);
+            walk_edge(kind, pair, 0, i, u);
         UNROLL(6)
-        for (int edge_b = 0; edge_b < edge_count(kind, 1); edge_b++) {
+        for (int edge_b = kind.mirrored ? edge_a : 0; edge_b < edge_count(kind, 1); edge_b++) {
             const int j = edge_at(kind, 1, edge_b);
             const struct walk_extent of_a =
                 extent_at_edge(kind, 0, i, a->other[0][j], a->other[1][j], a->other[2][j]);
             const struct walk_extent of_b =
                 extent_at_edge(kind, 1, j, b->other[0][i], b->other[1][i], b->other[2][i]);
             if (kind.along) {
-                walk_edge(pair, 1, j, v);
+                walk_edge(kind, pair, 1, j, v);
                 nothing = cross_is_nothing(u, v);
             }
             const lanes scale =
                 kind.ordered ? pair->size[0][i] * pair->size[1][j] : pair->size[1][j];
             const struct walk_extent d = extent_sum(kind, of_a, of_b);
-            nothing |= extent_is_nothing(unit, d);
+            nothing |= extent_is_nothing(kind, unit, d) |
+                       is_along_axis(kind, pair->across[0][i], pair->across[1][j]);
             add_slab(kind, (struct slab_normal){i, SLABS_EDGE_OF_B + j}, d, scale, unit,
                      edges->middle[i][j], edges->swing[i][j], false, nothing, found);
         }
@@ -248,15 +260,16 @@ INLINE void add_drift(const struct walk_pair *pair, const struct walk_kind kind,
         for (int j = 0; j < component_count(kind, !which); j++)
             at[j] = which ? edges->swing[j][i] : -edges->swing[i][j];
         if (kind.along) {
-            walk_edge(pair, which, i, edge);
-            nothing = cross_is_nothing(edge, pair->half);
+            walk_edge(kind, pair, which, i, edge);
+            nothing = cross_is_nothing(edge, pair->half) & ~pair->tiny;
         }
         const struct walk_extent of_own =
             extent_at_edge(kind, which, i, own->swing[0], own->swing[1], own->swing[2]);
         const struct walk_extent of_other = extent_of_frame(kind, !which, at);
         const struct walk_extent d =
             extent_difference(kind, which ? of_other : of_own, which ? of_own : of_other);
-        nothing |= extent_is_nothing(unit, d);
+        nothing |= extent_is_nothing(kind, unit, d) |
+                   is_along_axis(kind, pair->across[which][i], pair->signed_axes);
         add_slab(kind, (struct slab_normal){(which ? SLABS_EDGE_OF_B : 0) + i, SLABS_DRIFT}, d,
                  pair->size[which][i], unit, middle[i], lanes_of(0), true, nothing, found);
     }
@@ -269,9 +282,13 @@ INLINE void walk_space(const struct walk_pair *pair, const struct walk_kind kind
     struct walk_edges edges;
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
+        if (which == 1 && kind.mirrored) {
+            mirror_side(kind, &side[0], &side[1]);
+            break;
+        }
         set_side(pair, kind, which, &side[which]);
         add_faces(pair, kind, which, &side[which], found);
-        if (is_enough(found))
+        if (is_enough(kind, found))
             return;
     }
     set_products(pair, kind, pair->offset, edges.middle);
@@ -280,10 +297,11 @@ INLINE void walk_space(const struct walk_pair *pair, const struct walk_kind kind
     else
         memset(edges.swing, 0, sizeof edges.swing);
     add_edges(pair, kind, side, &edges, found);
-    if (!kind.drifts || is_enough(found))
+    if (!kind.drifts || is_enough(kind, found))
         return;
     add_drift(pair, kind, 0, &side[0], &edges, found);
-    add_drift(pair, kind, 1, &side[1], &edges, found);
+    if (!kind.mirrored)
+        add_drift(pair, kind, 1, &side[1], &edges, found);
 }
 
 #endif

@@ -1,0 +1,143 @@
+/* Pairs that the first pass leaves open: lanes in which nothing rounds, and exact signs along
+ * coordinate axes.
+ *
+ * Nothing rounds. Let g be a power of two, and let all components, the origins, and the drift of a
+ * lane be multiples of g in the lengths of walk_pair. Then every number that the walk computes is a
+ * sum of products of three of these (two in 2D), a multiple of g^3 (g^2), and so is every partial
+ * sum. slabs.c bounds the sum of the magnitudes of these products by (2 / sqrt(3)) |u| |v| T. T
+ * counts every length in it: 2 |c| for a component of a cuboid, |c| for one of a simplex, 2 |H|
+ * for the drift. So 2 (|u| + |v|) <= T for two edges of a cuboid, |u| + |v| <= T for the edges of
+ * all other slabs, and |u| |v| <= T^2 / 4. For the face across from the origin, |u| |v| stands for
+ * the sum of the three products of lengths, which is at most T^2 / 3. With T <= 2^18 g,
+ *
+ *     (2 / sqrt(3)) T^3 / 3 < 0.385 * 2^54 g^3 < 2^53 g^3,
+ *
+ * and all of these numbers are doubles. In 2D the sum is at most |u| T <= T^2, and T <= 2^26 g is
+ * enough. The gaps are exact then, and so is the verdict.
+ *
+ * Axes. Let the coordinates of both frames along some axis be exact (PREPARED_EXACT_X), even where
+ * the frames have errors (a box that is turned about this axis), and let the pair not drift along
+ * it. The gap along the axis is a sum of a few doubles; errors of sums are doubles (Knuth), and so
+ * its sign is known exactly. Call these axes X, and let every slab of the rounded S whose
+ * normal is not parallel to one of X hold the offset w farther inside than the error e of the
+ * frames. Then
+ *
+ *     a gap along X is > 0: the pair is SEPARATED,
+ *     all are < 0: it is OVERLAPPING,
+ *     else it is TOUCHING.
+ *
+ * The first is plain. For the others let K be the axes of X with gap 0, and F the part of the
+ * rounded S on all of their bounds: a face of S, in the flat L = {x : x_k = w_k for k in K}, that
+ * contains w. Let z be any vector along L whose part across X has a length of at most e, and whose
+ * coordinates along X are at most d. For small d > 0, w + z lies in F: the slabs that are not
+ * parallel to X are farther than e away, the others farther than 0 or parallel to L. So the support
+ * function of F in the direction n, a unit vector along L, is at least n . w + e |n'| + d |n''|,
+ * where n' is the part of n across X and n'' that along X. The true S has points near all vertices
+ * of F, each moved by e at most, and not moved along X. So these are points of L too, and the
+ * support function of their hull is at least n . w for every n: the hull contains w, and so does
+ * the true S. Where K is empty, L is the space, and the slabs that are not parallel to X leave more
+ * than e: w is in the interior of the true S. Where it is not, w lies on its bound.
+ *
+ * TOUCHING asks for an S with an interior: two faces are not decided by it. */
+#ifndef FMB_WALK_EXACT_H
+#define FMB_WALK_EXACT_H
+
+#include "walk_pair.h"
+
+/* ---- Nothing rounds ---- */
+
+/* Whether x is a multiple of g, with at = 2^52 g: sums from at on are multiples of g. */
+INLINE lanes_mask is_multiple(lanes x, lanes at)
+{
+    const lanes magnitude = lanes_magnitude(x);
+    return (magnitude + at) - at == magnitude;
+}
+
+/* Whether x y does not round unless it is tiny. 26 bits of each are enough. */
+INLINE lanes_mask has_few_bits(lanes x)
+{
+    return (lanes_as_bits(x) & 0x7ffffff) == 0;
+}
+
+/* Bounds T from above by a power of two; 2^52 g follows from it. */
+INLINE lanes grid_of(const struct walk_kind kind, lanes reach)
+{
+    const lanes power = lanes_from_bits(lanes_as_bits(reach) & 0x7ff0000000000000);
+    return power * (kind.dim == 2 ? 0x1p27 : 0x1p35);
+}
+
+/* ---- Axes ---- */
+
+/* A sum of doubles, as two: exact unless rounds. */
+struct walk_sum {
+    lanes value, rest;
+    lanes_mask rounds;
+};
+
+/* The error of x + y = sum (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B). */
+INLINE lanes error_of_sum(lanes x, lanes y, lanes sum)
+{
+    const lanes part = sum - x;
+    return (x - (sum - part)) + (y - part);
+}
+
+INLINE void add_exactly(struct walk_sum *sum, lanes x)
+{
+    const lanes value = sum->value + x, error = error_of_sum(sum->value, x, value);
+    const lanes rest = sum->rest + error;
+    sum->rounds |= error_of_sum(sum->rest, error, rest) != 0;
+    sum->rest = rest;
+    sum->value = value;
+}
+
+/* From the origin of a frame to its ends along an axis. */
+struct walk_ends {
+    lanes low, high;
+    lanes_mask rounds;
+};
+
+/* A cuboid usually extends along an axis with one of its components: then no sum of them rounds. */
+INLINE struct walk_ends ends_of(const struct walk_kind kind, int which, const lanes component[3][3],
+                                int axis)
+{
+    lanes_mask some = {0};
+    struct walk_ends out = {lanes_of(0), lanes_of(0), some};
+    UNROLL(3)
+    for (int i = 0; i < component_count(kind, which); i++) {
+        const lanes c = component[i][axis];
+        const lanes low = lanes_least(c, lanes_of(0)), high = lanes_greatest(c, lanes_of(0));
+        if (kind.simplex[which]) {
+            out.low = lanes_least(low, out.low);
+            out.high = lanes_greatest(high, out.high);
+            continue;
+        }
+        const lanes_mask other = c != 0;
+        out.rounds |= some & other;
+        some |= other;
+        out.low += low;
+        out.high += high;
+    }
+    return out;
+}
+
+/* The gap along an axis; rounds: its sign is not known. */
+INLINE struct walk_sum gap_along(const struct walk_kind kind, const lanes component_a[3][3],
+                                 const lanes origin_a[3], const lanes component_b[3][3],
+                                 const lanes origin_b[3], int axis)
+{
+    const struct walk_ends a = ends_of(kind, 0, component_a, axis);
+    const struct walk_ends b = ends_of(kind, 1, component_b, axis);
+    const lanes offset = origin_b[axis] - origin_a[axis];
+    const lanes error = error_of_sum(origin_b[axis], -origin_a[axis], offset);
+    struct walk_sum above = {offset, error, a.rounds | b.rounds};
+    struct walk_sum below = {-offset, -error, above.rounds};
+    add_exactly(&above, b.low);
+    add_exactly(&above, -a.high);
+    add_exactly(&below, a.low);
+    add_exactly(&below, -b.high);
+    above.value = lanes_greatest(above.value + above.rest, below.value + below.rest);
+    above.rounds |= below.rounds; /* of either */
+    return above;
+}
+
+#endif
