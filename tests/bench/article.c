@@ -42,7 +42,8 @@ static double time_of(enum contender contender, const struct scene *scene, const
                       double budget)
 {
     static unsigned same[REPEATS_MOST][2];
-    struct work work = {.scene = scene, .pair = (const unsigned(*)[2]) same};
+    static unsigned char verdicts[REPEATS_MOST];
+    struct work work = {.scene = scene, .pair = (const unsigned(*)[2]) same, .verdicts = verdicts};
     for (int i = 0; i < REPEATS_MOST; i++)
         memcpy(same[i], pair, sizeof same[i]);
     double ns = 0;

@@ -34,16 +34,25 @@ void bench_put_cell(struct json *json, const struct cell *cell)
     json_text(json, "shapes", cell_shapes_text(cell, text));
 }
 
+void arena_of(const struct bench *bench, struct scene scene, struct pairs pairs, struct arena *out)
+{
+    out->scene = scene;
+    out->pairs = pairs;
+    out->work = work_of(&out->scene, &out->pairs);
+    out->work.count = bench->pairs;
+    out->work.warm = out->work.pair + bench->pairs;
+    out->work.warm_count = pairs.count - bench->pairs;
+    out->work.instructions = bench->instructions;
+}
+
+/* So many pairs that the others, for warming up, touch nearly all bodies. */
 void arena_open(const struct bench *bench, const struct cell *cell, bool in_contact,
                 struct arena *out)
 {
-    out->scene = scene_draw(cell, bench->bodies, bench->seed);
-    out->pairs = pairs_draw_of(&out->scene, in_contact, 5 * bench->pairs, bench->seed);
-    out->work = work_of(&out->scene, &out->pairs);
-    out->work.count = bench->pairs;
-    out->work.warm = out->work.pair + bench->pairs; /* so many that they touch nearly all bodies */
-    out->work.warm_count = 4 * bench->pairs;
-    out->work.instructions = bench->instructions;
+    const bool boxes = cell->shape[0] == FMB_BOX;
+    const struct scene scene =
+        (boxes ? scene_draw_posed : scene_draw)(cell, bench->bodies, bench->seed);
+    arena_of(bench, scene, pairs_draw_of(&scene, in_contact, 5 * bench->pairs, bench->seed), out);
 }
 
 void arena_close(struct arena *arena)
@@ -149,6 +158,7 @@ int main(int argc, char **argv)
     instructions_run(&bench);
     growth_run(&bench);
     grids_run(&bench);
+    contacts_run(&bench);
     poses_run(&bench);
     gaps_run(&bench);
     broad_run(&bench);

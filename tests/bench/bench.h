@@ -24,13 +24,17 @@ void bench_progress(const char *text);
 /* "dim", "moving", "shapes" of an open object. */
 void bench_put_cell(struct json *json, const struct cell *cell);
 
-/* A scene of a cell, with pairs that are in contact, or such that are not. Not to be copied: the
- * work points to the scene. */
+/* A scene, and pairs of it. Not to be copied: the work points to the scene. */
 struct arena {
     struct scene scene;
     struct pairs pairs;
     struct work work;
 };
+/* Takes the scene and the pairs: the first bench->pairs of them are timed, the others for warming
+ * up. */
+void arena_of(const struct bench *bench, struct scene scene, struct pairs pairs, struct arena *out);
+/* A random scene of the cell, boxes in any pose, with pairs that are in contact, or such that are
+ * not. */
 void arena_open(const struct bench *bench, const struct cell *cell, bool in_contact,
                 struct arena *out);
 void arena_close(struct arena *arena);
@@ -40,6 +44,7 @@ void article_run(struct bench *bench);      /* article */
 void instructions_run(struct bench *bench); /* instructions */
 void growth_run(struct bench *bench);       /* growth */
 void grids_run(struct bench *bench);        /* grids */
+void contacts_run(struct bench *bench);     /* contacts */
 void poses_run(struct bench *bench);        /* poses */
 void gaps_run(struct bench *bench);         /* gaps */
 void margins_run(struct bench *bench);      /* part of gaps */

@@ -1,11 +1,13 @@
 #include "contender.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "gpr.h"
 #include "ordered.h"
-#include "peers.h"
+#include "seidel.h"
 
 static volatile unsigned sink; /* so that nothing is left out */
 
@@ -16,7 +18,8 @@ struct work work_of(const struct scene *scene, const struct pairs *pairs)
                          .count = pairs->count,
                          .verdicts = scene_allocate(pairs->count, 1),
                          .contacts = scene_allocate(pairs->count, 2 * sizeof(double)),
-                         .boxes = scene_allocate(pairs->count, 6 * sizeof(double))};
+                         .boxes = scene_allocate(pairs->count, 6 * sizeof(double)),
+                         .gaps = scene_allocate(pairs->count, sizeof(double))};
 }
 
 void work_free(struct work *work)
@@ -24,6 +27,7 @@ void work_free(struct work *work)
     free(work->verdicts);
     free(work->contacts);
     free(work->boxes);
+    free(work->gaps);
 }
 
 /* ---- The contenders ---- */
@@ -57,17 +61,17 @@ static void batch_box(const struct work *work)
     run_batch(work, false, true);
 }
 
-static unsigned meets(const struct fmb_prepared *a, const struct fmb_prepared *b)
+static unsigned char meets(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
     enum fmb_verdict verdict;
-    return fmb_meet(a, b, 1, &verdict) == FMB_OK ? verdict : 0;
+    return fmb_meet(a, b, 1, &verdict) == FMB_OK ? (unsigned char) verdict : 0;
 }
 
 static void single(const struct work *work)
 {
     const struct fmb_prepared *prepared = work->scene->prepared;
     for (size_t i = 0; i < work->count; i++)
-        sink += meets(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]]);
+        work->verdicts[i] = meets(&prepared[work->pair[i][0]], &prepared[work->pair[i][1]]);
 }
 
 static void single_computed(const struct work *work)
@@ -77,15 +81,38 @@ static void single_computed(const struct work *work)
         struct fmb_prepared a, b;
         fmb_prepare(&placement[work->pair[i][0]], 0, 1, &a);
         fmb_prepare(&placement[work->pair[i][1]], 0, 1, &b);
-        sink += meets(&a, &b);
+        work->verdicts[i] = meets(&a, &b);
     }
+}
+
+/* The verdict of a method that takes touching for contact and does not tell it. */
+static unsigned char verdict_of(bool meets)
+{
+    return meets ? FMB_OVERLAPPING : FMB_SEPARATED;
+}
+
+static inline void run_lean(const struct work *work,
+                            bool (*test)(const struct lean_frame *, const struct lean_frame *,
+                                         double))
+{
+    const struct lean_frame *lean = work->scene->lean;
+    for (size_t i = 0; i < work->count; i++)
+        work->verdicts[i] = verdict_of(test(&lean[work->pair[i][0]], &lean[work->pair[i][1]], 1));
 }
 
 static void sat(const struct work *work)
 {
-    const struct lean_frame *lean = work->scene->lean;
-    for (size_t i = 0; i < work->count; i++)
-        sink += lean_meets(&lean[work->pair[i][0]], &lean[work->pair[i][1]], 1);
+    run_lean(work, lean_meets);
+}
+
+static void seidel(const struct work *work)
+{
+    run_lean(work, seidel_meets);
+}
+
+static void gpr(const struct work *work)
+{
+    run_lean(work, gpr_meets);
 }
 
 static void sat_placed(const struct work *work)
@@ -97,7 +124,7 @@ static void sat_placed(const struct work *work)
         struct lean_frame lean[2];
         lean_place(fmb_body_frame(a->body, 0), a, &lean[0]);
         lean_place(fmb_body_frame(b->body, 0), b, &lean[1]);
-        sink += lean_meets(&lean[0], &lean[1], 1);
+        work->verdicts[i] = verdict_of(lean_meets(&lean[0], &lean[1], 1));
     }
 }
 
@@ -119,7 +146,7 @@ static void run_method(const struct work *work, const struct fmb_method *method,
         struct fmb_answer answer;
         fmb_decide(method, &placement[work->pair[i][first]], &placement[work->pair[i][!first]], 1,
                    want, &answer);
-        sink += answer.verdict;
+        work->verdicts[i] = (unsigned char) answer.verdict;
     }
 }
 
@@ -188,8 +215,15 @@ static void fmb_computed(const struct work *work)
         a.body = &made;
         struct fmb_answer answer;
         fmb_decide(fmb_method_by_name("fmb"), &a, &placement[work->pair[i][1]], 1, 0, &answer);
-        sink += answer.verdict;
+        work->verdicts[i] = (unsigned char) answer.verdict;
     }
+}
+
+static void run_peer(const struct work *work, int peer)
+{
+    peer_run(work->peers, peer, work->pair, work->count, work->gaps);
+    for (size_t i = 0; i < work->count; i++)
+        work->verdicts[i] = isnan(work->gaps[i]) ? 0 : verdict_of(work->gaps[i] <= 0);
 }
 
 /* ---- The table ---- */
@@ -206,21 +240,36 @@ static const struct {
 
 const char *contender_name(enum contender contender)
 {
-    return table[contender].name;
+    return contender < CONTENDERS ? table[contender].name
+                                  : peer_name((int) (contender - CONTENDERS));
+}
+
+static bool peer_runs(int peer, const struct cell *cell)
+{
+    const bool boxes = cell->shape[0] == FMB_BOX && cell->shape[1] == FMB_BOX;
+    return peer_name(peer) && peer_answers(peer) & PEER_VERDICT &&
+           peer_takes(peer, cell->dim, cell->moving, boxes);
 }
 
 bool contender_runs(enum contender contender, const struct cell *cell)
 {
+    if (contender >= CONTENDERS)
+        return peer_runs((int) (contender - CONTENDERS), cell);
     switch (table[contender].where) {
     case ONLY_MOVING: return cell->moving;
-    case ONLY_3D_STATIC: return cell->dim == 3 && !cell->moving && peers_are_there();
+    case ONLY_TETRAHEDRA_AT_REST:
+        return cell->dim == 3 && !cell->moving && cell->shape[0] == FMB_TETRAHEDRON &&
+               cell->shape[1] == FMB_TETRAHEDRON;
     default: return true;
     }
 }
 
 void contender_run(enum contender contender, const struct work *work)
 {
-    table[contender].run(work);
+    if (contender < CONTENDERS)
+        table[contender].run(work);
+    else
+        run_peer(work, (int) (contender - CONTENDERS));
 }
 
 void contender_help(void)
@@ -232,9 +281,8 @@ void contender_help(void)
         "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
         "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
         "doubles,\n"
-        "verdict alone, of placed frames: the yardstick; placed: in the call. gjk, mpr: "
-        "libccd's%s.\n",
-        peers_are_there() ? "" : " (not in this build: make deps-bench)");
+        "verdict alone, of placed frames: the yardstick; placed: in the call. seidel, gpr:\n"
+        "methods that the article names, in doubles, of placed frames.\n");
 }
 
 /* ---- Races ---- */
@@ -273,8 +321,8 @@ static struct work cut(const struct race *race, const struct work *work, enum co
 void race_run(const struct race *race, const struct work *work, const enum contender *contenders,
               int count, struct spread *out)
 {
-    struct work some[CONTENDERS];
-    double times[CONTENDERS][BLOCKS_MAX];
+    struct work some[CONTENDERS_AND_PEERS];
+    double times[CONTENDERS_AND_PEERS][BLOCKS_MAX];
     const int blocks = race->blocks < BLOCKS_MAX ? race->blocks : BLOCKS_MAX;
     for (int i = 0; i < count; i++)
         some[i] = cut(race, work, contenders[i]);

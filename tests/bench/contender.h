@@ -16,13 +16,15 @@ struct work {
     unsigned char *verdicts;            /* [count] */
     double (*contacts)[2];              /* [count] */
     double (*boxes)[2][FMB_DIM_MAX];    /* [count] */
+    struct peers *peers;                /* of the scene's bodies; NULL: they are not raced */
+    double *gaps;                       /* [count], theirs */
 };
 
 /* With room for the answers. work_free() frees that. */
 struct work work_of(const struct scene *scene, const struct pairs *pairs);
 void work_free(struct work *work);
 
-enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_3D_STATIC = 2 };
+enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_TETRAHEDRA_AT_REST = 2 };
 
 /* What each of them is, contender_help() says. */
 #define CONTENDER_MAP(X)                                             \
@@ -44,22 +46,24 @@ enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_3D_STATIC = 2 };
     X(PLACING, "placing", placing, ANYWHERE)                         \
     X(SAT_QUERY, "sat query", sat_query, ANYWHERE)                   \
     X(EXACT, "exact", exact, ANYWHERE)                               \
-    X(GJK, "gjk", peers_gjk, ONLY_3D_STATIC)                         \
-    X(MPR, "mpr", peers_mpr, ONLY_3D_STATIC)
+    X(SEIDEL, "seidel", seidel, ANYWHERE)                            \
+    X(GPR, "gpr", gpr, ONLY_TETRAHEDRA_AT_REST)
 
 enum contender {
 #define X(id, name, run, where) CONTENDER_##id,
     CONTENDER_MAP(X)
 #undef X
-        CONTENDERS
+        CONTENDERS,
+    CONTENDERS_AND_PEERS = CONTENDERS + PEERS_MAX /* CONTENDERS + k is peer k */
 };
 
 const char *contender_name(enum contender contender);
 
-/* Whether it is there for such a cell, and in this build (libccd). */
+/* Whether it is there for such a cell. A peer: whether it gives verdicts of it. */
 bool contender_runs(enum contender contender, const struct cell *cell);
 
-/* Asks all pairs. */
+/* Queries all pairs. Writes verdicts (all but PLACING): an enum fmb_verdict, or 0 where there is no
+ * answer. */
 void contender_run(enum contender contender, const struct work *work);
 
 /* Lines on what the names mean. */

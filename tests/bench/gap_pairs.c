@@ -55,21 +55,7 @@ static bool shift(struct question *question, double target)
     }
 }
 
-/* In: a cuboid, a box or a tetrahedron, placed. */
-static void vertices_of(const struct lean_frame *frame, struct gap_solid *out)
-{
-    const bool simplex = frame->kind & LEAN_SIMPLEX;
-    out->count = simplex ? 4 : 8;
-    for (int v = 0; v < out->count; v++)
-        for (int axis = 0; axis < 3; axis++) {
-            out->vertex[v][axis] = frame->origin[axis];
-            for (int c = 0; c < 3; c++)
-                if (simplex ? v == c + 1 : v >> c & 1)
-                    out->vertex[v][axis] += frame->component[c][axis];
-        }
-}
-
-static double diameter(const struct gap_solid *solid)
+static double diameter(const struct peer_solid *solid)
 {
     double most = 0;
     for (int i = 0; i < solid->count; i++)
@@ -98,11 +84,9 @@ void gap_pairs_draw(const struct cell *cell, double target, size_t count, uint64
     *out = (struct gap_pairs){.count = count,
                               .scene = scene_of_questions(question, count),
                               .pair = scene_allocate(count, sizeof *out->pair),
-                              .solid = scene_allocate(2 * count, sizeof *out->solid),
                               .size = scene_allocate(count, sizeof *out->size)};
     free(question);
-    for (size_t i = 0; i < 2 * count; i++)
-        vertices_of(&out->scene.lean[i], &out->solid[i]);
+    out->solid = scene_solids(&out->scene);
     for (size_t i = 0; i < count; i++) {
         out->pair[i][0] = (unsigned) i;
         out->pair[i][1] = (unsigned) (count + i);

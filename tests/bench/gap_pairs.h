@@ -2,15 +2,14 @@
 #ifndef GAP_PAIRS_H
 #define GAP_PAIRS_H
 
-#include "gap_peers.h"
 #include "scene.h"
 
 struct gap_pairs {
-    size_t count;            /* pair i is body i and body count + i */
-    struct scene scene;      /* the bodies, at rest */
-    unsigned (*pair)[2];     /* [count] */
-    struct gap_solid *solid; /* [2 count], world coordinates */
-    double *size;            /* [count]: the largest distance of two vertices of one body */
+    size_t count;             /* pair i is body i and body count + i */
+    struct scene scene;       /* the bodies, at rest */
+    unsigned (*pair)[2];      /* [count] */
+    struct peer_solid *solid; /* [2 count] */
+    double *size;             /* [count]: the largest distance of two vertices of one body */
 };
 
 /* Random bodies of two shapes in 3D, boxes with random orientations, shifted until both bounds of

@@ -17,7 +17,7 @@ struct gaps {
     struct gap_pairs pairs;
     unsigned char *verdict;
     struct fmb_gap *gap;
-    struct gap_peers *peers;
+    struct peers *peers;
     double *peer_gap;
 };
 
@@ -32,12 +32,12 @@ static void gaps_open(const struct bench *bench, const struct cell *cell, double
                          .gap = scene_allocate(count, sizeof *out->gap),
                          .peer_gap = scene_allocate(count, sizeof *out->peer_gap)};
     gap_pairs_draw(cell, target, count, bench->seed, &out->pairs);
-    out->peers = gap_peers_open(out->pairs.solid, count);
+    out->peers = peers_open(out->pairs.solid, 2 * count);
 }
 
 static void gaps_close(struct gaps *gaps)
 {
-    gap_peers_close(gaps->peers);
+    peers_close(gaps->peers);
     gap_pairs_free(&gaps->pairs);
     free(gaps->verdict);
     free(gaps->gap);
@@ -83,7 +83,7 @@ static const struct {
 
 static const char *run_name(int k)
 {
-    return k < OWN_RUNS ? own[k].name : gap_peer_name(k - OWN_RUNS);
+    return k < OWN_RUNS ? own[k].name : peer_name(k - OWN_RUNS);
 }
 
 /* The runs that give what a pair has. Returns how many. */
@@ -91,8 +91,8 @@ static int runs_of(bool separated, int run[RUNS_MAX])
 {
     int count = 0;
     for (int k = 0; run_name(k) && count < RUNS_MAX; k++) {
-        const int answers = k < OWN_RUNS ? GAP_PEER_MEETS : gap_peer_answers(k - OWN_RUNS);
-        if (answers == GAP_PEER_MEETS || answers & (separated ? GAP_PEER_DISTANCE : GAP_PEER_DEPTH))
+        const int gap = separated ? PEER_DISTANCE : PEER_DEPTH;
+        if (k < OWN_RUNS || peer_answers(k - OWN_RUNS) & gap)
             run[count++] = k;
     }
     return count;
@@ -103,7 +103,8 @@ static void run(struct gaps *gaps, int k, size_t first, size_t count)
     if (k < OWN_RUNS)
         own[k].run(gaps, first, count);
     else
-        gap_peer_run(gaps->peers, k - OWN_RUNS, first, count, gaps->peer_gap);
+        peer_run(gaps->peers, k - OWN_RUNS, (const unsigned(*)[2]) gaps->pairs.pair + first, count,
+                 gaps->peer_gap + first);
 }
 
 /* ---- Times and errors ---- */
@@ -164,15 +165,11 @@ static void put_run(struct bench *bench, struct gaps *gaps, int k, double ns)
     json_number(&bench->json, "ns", ns);
     printf(" %7.0f", ns);
     if (k >= OWN_RUNS) {
-        const bool gives_gap = gap_peer_answers(k - OWN_RUNS) != GAP_PEER_MEETS;
         run(gaps, k, 0, gaps->timed);
         const struct errors errors = errors_of(gaps);
-        if (gives_gap) {
-            json_number(&bench->json, "off", errors.off);
-            printf(" %5.1f", 100 * errors.off);
-        }
+        json_number(&bench->json, "off", errors.off);
         json_number(&bench->json, "wrong", errors.wrong);
-        printf(" %5.1f", 100 * errors.wrong);
+        printf(" %5.1f %5.1f", 100 * errors.off, 100 * errors.wrong);
     }
     json_close(&bench->json, '}');
 }
@@ -208,11 +205,8 @@ static void table(struct bench *bench, bool separated)
     int runs[RUNS_MAX];
     const int count = runs_of(separated, runs);
     printf("\n%-17s", separated ? "separated" : "overlapping");
-    for (int k = 0; k < count; k++) {
-        const bool meets =
-            runs[k] >= OWN_RUNS && gap_peer_answers(runs[k] - OWN_RUNS) == GAP_PEER_MEETS;
-        printf(" %*s", runs[k] < OWN_RUNS ? 7 : meets ? 13 : 19, run_name(runs[k]));
-    }
+    for (int k = 0; k < count; k++)
+        printf(" %*s", runs[k] < OWN_RUNS ? 7 : 19, run_name(runs[k]));
     if (count > OWN_RUNS)
         printf("  batch single  query / %s", run_name(runs[OWN_RUNS]));
     putchar('\n');
@@ -232,7 +226,7 @@ void gaps_run(struct bench *bench)
         "After the time of each comes the percentage of its gaps that are missing or off by\n"
         "more than 1e-9 of the size of the larger body, then that of its wrong verdicts. Last:\n"
         "ratios of batch, single and query to the first of the others.\n");
-    gap_peers_help();
+    peers_help();
     json_open(&bench->json, "gaps", '[');
     table(bench, true);
     table(bench, false);

@@ -92,8 +92,8 @@ void margins_run(struct bench *bench)
     static const double neighbours[] = {0.1, 1, 8}, margins[] = {1e-3, 1e-2};
     printf(
         "\nScenes of bodies of about size 1 in a cloud, nanoseconds a body: verdicts; verdicts\n"
-        "and gaps of pairs that meet; the same with a margin, and near pairs. boxes: how many\n"
-        "others the box of a body meets; meet, near: pairs. Ratios to verdicts alone.\n\n"
+        "and gaps of pairs that meet; verdicts with a margin, and gaps of near pairs. boxes: how\n"
+        "many others the box of a body meets; meet, near: pairs. Ratios to verdicts alone.\n\n"
         "%-18s %6s %6s %8s %6s %8s %8s %8s %8s %8s\n",
         "", "boxes", "meet", "margin", "near", "verdicts", "gaps", "margin", "gaps", "margin");
     json_open(&bench->json, "margins", '[');

@@ -5,8 +5,8 @@
 #include <string.h>
 
 static const char *const sections[] = {"cells",   "inverse",      "order",  "hybrid", "box",
-                                       "article", "instructions", "growth", "grids",  "poses",
-                                       "gaps",    "broad",        "worst"};
+                                       "article", "instructions", "growth", "grids",  "contacts",
+                                       "poses",   "gaps",         "broad",  "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

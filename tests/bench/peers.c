@@ -1,107 +1,91 @@
 #include "peers.h"
 
-#ifdef BENCH_CCD
+#include <stdio.h>
+#include <stdlib.h>
 
-#include <ccd/ccd.h>
+#include "scene.h"
 
-#include "prepared.h"
+/* PEER_LIBRARIES: X(name) for each library of this build. */
+#define X(name) &peer_library_##name,
+static const struct peer_library *const libraries[] = {PEER_LIBRARIES NULL};
+#undef X
 
-/* number: origin, then the components (fmb.h). */
+enum { LIBRARIES = sizeof libraries / sizeof *libraries - 1 };
 
-static void support_of_cuboid(const double *number, const ccd_vec3_t *way, ccd_vec3_t *out)
+struct peers {
+    void *bodies[LIBRARIES + 1]; /* NULL: the library takes no such solids */
+};
+
+/* *library: whose it is. Returns NULL past the last. */
+static const struct peer *find(int peer, int *library)
 {
-    for (int axis = 0; axis < 3; axis++)
-        out->v[axis] = number[axis];
-    for (int i = 0; i < 3; i++) {
-        const double *c = &number[3 + 3 * i];
-        if (c[0] * way->v[0] + c[1] * way->v[1] + c[2] * way->v[2] > 0)
-            for (int axis = 0; axis < 3; axis++)
-                out->v[axis] += c[axis];
+    for (*library = 0; *library < LIBRARIES; ++*library) {
+        if (peer < libraries[*library]->count)
+            return &libraries[*library]->peer[peer];
+        peer -= libraries[*library]->count;
     }
+    return NULL;
 }
 
-static void support_of_tetrahedron(const double *number, const ccd_vec3_t *way, ccd_vec3_t *out)
+static bool library_takes(const struct peer_library *library, int dim)
 {
-    static const double origin[3];
-    const double *farthest = origin;
-    double most = 0;
-    for (int i = 0; i < 3; i++) {
-        const double *c = &number[3 + 3 * i];
-        const double at = c[0] * way->v[0] + c[1] * way->v[1] + c[2] * way->v[2];
-        if (at > most) {
-            most = at;
-            farthest = c;
-        }
-    }
-    for (int axis = 0; axis < 3; axis++)
-        out->v[axis] = number[axis] + farthest[axis];
+    bool takes = false;
+    for (int i = 0; i < library->count; i++)
+        takes = takes || library->peer[i].takes & (dim == 3 ? PEER_3D : PEER_2D);
+    return takes;
 }
 
-static void support(const void *object, const ccd_vec3_t *way, ccd_vec3_t *out)
+struct peers *peers_open(const struct peer_solid *solid, size_t count)
 {
-    const struct fmb_prepared *frame = object;
-    if (prepared_kind(frame) & PREPARED_TETRAHEDRON)
-        support_of_tetrahedron(frame->number, way, out);
-    else
-        support_of_cuboid(frame->number, way, out);
+    struct peers *peers = scene_allocate(1, sizeof *peers);
+    for (int i = 0; i < LIBRARIES && count > 0; i++)
+        if (library_takes(libraries[i], solid->dim))
+            peers->bodies[i] = libraries[i]->open(solid, count);
+    return peers;
 }
 
-static void centre(const void *object, ccd_vec3_t *out)
+void peers_close(struct peers *peers)
 {
-    const struct fmb_prepared *frame = object;
-    const double part = prepared_kind(frame) & PREPARED_TETRAHEDRON ? 0.25 : 0.5;
-    const double *number = frame->number;
-    for (int axis = 0; axis < 3; axis++)
-        out->v[axis] =
-            number[axis] + part * (number[3 + axis] + number[6 + axis] + number[9 + axis]);
+    for (int i = 0; i < LIBRARIES && peers; i++)
+        if (peers->bodies[i])
+            libraries[i]->close(peers->bodies[i]);
+    free(peers);
 }
 
-static volatile int sink; /* so that nothing is left out */
-
-static void run(const struct work *work, int (*meets)(const void *, const void *, const ccd_t *))
+const char *peer_name(int peer)
 {
-    ccd_t ccd;
-    CCD_INIT(&ccd);
-    ccd.support1 = ccd.support2 = support;
-    ccd.center1 = ccd.center2 = centre;
-    ccd.max_iterations = 100;
-    int sum = 0;
-    for (size_t i = 0; i < work->count; i++)
-        sum += meets(&work->scene->prepared[work->pair[i][0]],
-                     &work->scene->prepared[work->pair[i][1]], &ccd);
-    sink = sum;
+    int library;
+    const struct peer *found = find(peer, &library);
+    return found ? found->name : NULL;
 }
 
-bool peers_are_there(void)
+int peer_answers(int peer)
 {
-    return true;
+    int library;
+    return find(peer, &library)->answers;
 }
 
-void peers_gjk(const struct work *work)
+bool peer_takes(int peer, int dim, bool moving, bool boxes)
 {
-    run(work, ccdGJKIntersect);
+    int library;
+    const int takes = find(peer, &library)->takes;
+    return takes & (dim == 3 ? PEER_3D : PEER_2D) && (takes & PEER_MOVING || !moving) &&
+           (boxes || !(takes & PEER_BOXES));
 }
 
-void peers_mpr(const struct work *work)
+void peer_run(const struct peers *peers, int peer, const unsigned (*pair)[2], size_t count,
+              double *gap)
 {
-    run(work, ccdMPRIntersect);
+    int library;
+    const struct peer *found = find(peer, &library);
+    for (size_t i = 0; i < count; i++)
+        gap[i] = found->gap(peers->bodies[library], pair[i][0], pair[i][1]);
 }
 
-#else
-
-bool peers_are_there(void)
+void peers_help(void)
 {
-    return false;
+    for (int i = 0; i < LIBRARIES; i++)
+        puts(libraries[i]->help);
+    if (LIBRARIES == 0)
+        puts("Other libraries are not in this build: make deps-bench.");
 }
-
-void peers_gjk(const struct work *work)
-{
-    (void) work;
-}
-
-void peers_mpr(const struct work *work)
-{
-    (void) work;
-}
-
-#endif

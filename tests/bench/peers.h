@@ -1,14 +1,75 @@
-/* Another library that answers 'do they meet?' of convex bodies at rest: libccd, where it was found
- * when this was built. */
+/* Other libraries that decide whether convex solids meet, or how far apart they are: each where it
+ * was found when this was built. */
 #ifndef PEERS_H
 #define PEERS_H
 
-#include "contender.h"
+#include <stdbool.h>
+#include <stddef.h>
 
-bool peers_are_there(void);
+#ifdef __cplusplus
+extern "C" {
+#endif
 
-/* On input: they are there; 3D. */
-void peers_gjk(const struct work *work);
-void peers_mpr(const struct work *work);
+/* A cuboid, box or tetrahedron (2D: parallelogram, rectangle, triangle) in world coordinates. */
+struct peer_solid {
+    int dim;
+    bool box;  /* its components are at right angles */
+    int count; /* of vertices: 2^dim, or dim + 1 of a simplex */
+    double origin[3], component[3][3], vertex[8][3];
+    double centre[3], size[3], axis[3][3]; /* of a box: components are size times unit axis */
+    double velocity[3];                    /* during [0, 1] */
+};
+
+/* ---- All of them ---- */
+
+enum { PEERS_MAX = 16 };
+
+struct peers;
+
+/* The solids are all of one dimension and must outlive the peers. */
+struct peers *peers_open(const struct peer_solid *solid, size_t count);
+void peers_close(struct peers *peers);
+
+/* What a peer answers: a sum. PEER_VERDICT: it is raced for verdicts. */
+enum { PEER_VERDICT = 1, PEER_DISTANCE = 2, PEER_DEPTH = 4 };
+
+/* Which pairs it takes: a sum. Moving ones need the bit; with PEER_BOXES it takes nothing else. */
+enum { PEER_2D = 1, PEER_3D = 2, PEER_MOVING = 4, PEER_BOXES = 8 };
+
+/* NULL past the last. */
+const char *peer_name(int peer);
+int peer_answers(int peer);
+bool peer_takes(int peer, int dim, bool moving, bool boxes);
+
+/* pair: [count], indices of solids. Writes the gaps: positive for separated, else overlapping or
+ * touching; infinite where the peer gives the verdict alone; NAN where it failed. */
+void peer_run(const struct peers *peers, int peer, const unsigned (*pair)[2], size_t count,
+              double *gap);
+
+/* Prints lines on what the names mean. */
+void peers_help(void);
+
+/* ---- One library ---- */
+
+struct peer {
+    const char *name;
+    int answers, takes;
+    double (*gap)(void *bodies, size_t a, size_t b);
+};
+
+struct peer_library {
+    const struct peer *peer;
+    int count;
+    const char *help;
+    void *(*open)(const struct peer_solid *solid, size_t count);
+    void (*close)(void *bodies);
+};
+
+extern const struct peer_library peer_library_bullet, peer_library_box2d, peer_library_ccd,
+    peer_library_cgal, peer_library_fcl, peer_library_ode;
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -36,25 +36,13 @@ static const struct {
 enum { RUNS = sizeof runs / sizeof *runs, BLOCKS_MAX = 64 };
 enum { RUN_CORNERS = 1, RUN_BATCH = 2, RUN_SINGLE = 4, RUN_SAT = 5, RUN_QUERY = 6 };
 
-static void arena_of(const struct bench *bench, struct scene scene, const struct pairs *pairs,
-                     struct arena *out)
-{
-    out->scene = scene;
-    out->pairs = (struct pairs){pairs->count, scene_allocate(pairs->count, sizeof *pairs->at)};
-    memcpy(out->pairs.at, pairs->at, pairs->count * sizeof *pairs->at);
-    out->work = work_of(&out->scene, &out->pairs);
-    out->work.count = bench->pairs;
-    out->work.instructions = bench->instructions;
-}
-
 static void sides_open(const struct bench *bench, const struct cell *cell, bool in_contact,
                        struct sides *out)
 {
     struct scene scene = scene_draw_posed(cell, bench->bodies, bench->seed);
     struct pairs pairs = pairs_draw_of(&scene, in_contact, 5 * bench->pairs, bench->seed);
-    arena_of(bench, scene, &pairs, &out->posed);
-    arena_of(bench, scene_of_corners(&scene), &pairs, &out->corners);
-    pairs_free(&pairs);
+    arena_of(bench, scene_of_corners(&scene), pairs_copy(&pairs), &out->corners);
+    arena_of(bench, scene, pairs, &out->posed);
 }
 
 /* Taken in turn in each block, each warmed up with other pairs of the same bodies. */

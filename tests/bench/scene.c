@@ -168,9 +168,60 @@ struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours
     return scene;
 }
 
+static void set_vertices(struct peer_solid *solid)
+{
+    const bool simplex = solid->count == solid->dim + 1;
+    for (int v = 0; v < solid->count; v++) {
+        memcpy(solid->vertex[v], solid->origin, sizeof solid->origin);
+        for (int c = 0; c < solid->dim; c++)
+            for (int axis = 0; axis < 3; axis++)
+                if (simplex ? v == c + 1 : v >> c & 1)
+                    solid->vertex[v][axis] += solid->component[c][axis];
+    }
+}
+
+static void set_box(struct peer_solid *solid)
+{
+    memcpy(solid->centre, solid->origin, sizeof solid->origin);
+    for (int c = 0; c < solid->dim; c++) {
+        const double *component = solid->component[c];
+        solid->size[c] = vector_length(component);
+        for (int axis = 0; axis < solid->dim; axis++) {
+            solid->axis[c][axis] = component[axis] / solid->size[c];
+            solid->centre[axis] += component[axis] / 2;
+        }
+    }
+}
+
+struct peer_solid *scene_solids(const struct scene *scene)
+{
+    struct peer_solid *solids = scene_allocate(scene->count, sizeof *solids);
+    for (size_t i = 0; i < scene->count; i++) {
+        const struct lean_frame *lean = &scene->lean[i];
+        const struct fmb_frame *frame = fmb_body_frame(scene->placement[i].body, 0);
+        solids[i].dim = frame->dim;
+        solids[i].box = frame->shape == FMB_BOX;
+        solids[i].count = lean->kind & LEAN_SIMPLEX ? frame->dim + 1 : 1 << frame->dim;
+        memcpy(solids[i].component, lean->component, sizeof lean->component);
+        memcpy(solids[i].origin, lean->origin, sizeof lean->origin);
+        memcpy(solids[i].velocity, lean->velocity, sizeof lean->velocity);
+        set_vertices(&solids[i]);
+        set_box(&solids[i]);
+    }
+    return solids;
+}
+
 static struct pairs pairs_of_size(size_t count)
 {
     return (struct pairs){0, scene_allocate(count, 2 * sizeof(unsigned))};
+}
+
+struct pairs pairs_copy(const struct pairs *pairs)
+{
+    struct pairs copy = pairs_of_size(pairs->count);
+    memcpy(copy.at, pairs->at, pairs->count * sizeof *pairs->at);
+    copy.count = pairs->count;
+    return copy;
 }
 
 void pairs_free(struct pairs *pairs)

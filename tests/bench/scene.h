@@ -9,6 +9,7 @@
 #include "cell.h"
 #include "fmb.h"
 #include "lean_sat.h"
+#include "peers.h"
 #include "question.h"
 
 struct scene {
@@ -42,6 +43,8 @@ struct scene scene_of_grid(double pitch, int side);
  * Components are uniform in [-1/2, 1/2], velocities in a tenth of that. */
 struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours, size_t count,
                             uint64_t seed);
+/* Its bodies of one frame as other libraries are given them: [count], to be freed. No faces. */
+struct peer_solid *scene_solids(const struct scene *scene);
 void scene_free(struct scene *scene);
 
 /* One of the first half, and one of the rest; anything. */
@@ -50,6 +53,7 @@ struct pairs pairs_draw(const struct scene *scene, size_t count, uint64_t seed);
 struct pairs pairs_draw_of(const struct scene *scene, bool in_contact, size_t count, uint64_t seed);
 /* All cubes of a grid with those of their 26 neighbours that come after them. */
 struct pairs pairs_of_grid(int side);
+struct pairs pairs_copy(const struct pairs *pairs);
 void pairs_free(struct pairs *pairs);
 
 #endif

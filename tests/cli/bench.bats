@@ -7,11 +7,27 @@ setup() {
     JSON=$BATS_TEST_TMPDIR/report.json
 }
 
+# Certified verdicts are right; the other methods are right about random pairs, not about all; what
+# other libraries have here is nearly right about random pairs.
+contacts() {
+    jq -e '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 137' "$JSON"
+    jq -e 'all(.contacts[]; [.methods[].name] | contains(["batch", "batch+box", "single", "query",
+                                                          "sat", "seidel"]))' "$JSON"
+    jq -e '[.contacts[] | select([.methods[].name] | index("gpr")) | [.dim, .moving, .shapes]]
+           | length == 10 and unique == [[3, false, "TT"]]' "$JSON"
+    jq -e 'all(.contacts[].methods[]; .ns > 0 and .wrong >= 0 and .wrong <= 1)' "$JSON"
+    jq -e 'all(.contacts[].methods[] | select(.name | test("batch|single|query")); .wrong == 0)' "$JSON"
+    jq -e '[.contacts[] | select(.pairs_are | startswith("random")) | .methods[]]
+           | all(.[] | select(.name == ("sat", "seidel", "gpr")); .wrong == 0) and
+             all(.[]; .wrong < 0.05)' "$JSON"
+    jq -e 'any(.contacts[].methods[] | select(.name == "sat"); .wrong > 0)' "$JSON"
+}
+
 @test "bench --quick measures every section, in every cell, by every method" {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
-    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .poses,
-                   .rest, .gaps, .margins, .broad, .worst;
+    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .contacts,
+                   .poses, .rest, .gaps, .margins, .broad, .worst;
                length > 0)' "$JSON"
     jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
     jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",
@@ -19,6 +35,7 @@ setup() {
     jq -e 'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' "$JSON"
     jq -e '[.poses[] | [.dim, .moving, .shapes, .contact]] | unique | length == 72' "$JSON"
     jq -e '.unsure.unsure < 5' "$JSON"
+    contacts
     jq -e '[.gaps[] | [.kind, .gap]] | unique | length == 32' "$JSON"
     jq -e 'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' "$JSON"
     jq -e 'any(.margins[]; .near > 0)' "$JSON"

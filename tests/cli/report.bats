@@ -88,7 +88,8 @@ well_formed() {
 @test "every method, family and section is there" {
     report
     ended 0
-    jq -r '.cells[].methods[].name, (.grids, .instructions, .broad, .worst)[].name' "$BENCH" |
+    jq -r '.cells[].methods[].name, (.grids, .instructions, .broad, .worst)[].name,
+        .contacts[].methods[].name' "$BENCH" |
         sort -u > "$BATS_TEST_TMPDIR/names"
     jq -r '.methods[].name, .families[].summary' "$ACCURACY" >> "$BATS_TEST_TMPDIR/names"
     while read -r name; do
@@ -98,7 +99,7 @@ well_formed() {
         has "$OUT/speed-error.svg" "mark $method"
         has "$OUT/speed-error.svg" "$method"
     done
-    for id in wrong-and-slow families boxes kinds article more growth bus numbers; do
+    for id in wrong-and-slow families boxes kinds contacts article more growth bus numbers; do
         has "$OUT/index.html" "<section id=$id>"
     done
     for target in 'make accuracy' 'make bench' 'make bench-bus' 'make report'; do
@@ -119,6 +120,21 @@ well_formed() {
             | .false_separated + .false_contact + .false_kind] | add == 811' "$ACCURACY"
     has "$OUT/speed-error.svg" 'fmb, all 4 families: 811 wrong of 5,000 answers'
     has "$OUT/speed-error.svg" '16.2 % wrong'
+}
+
+@test "contacts: a large marker near contact, small ones of random pairs, and all numbers" {
+    report
+    ended 0
+    sed -n '/^<section id=contacts>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/contacts.html"
+    # Of three rows near contact, none of the random ones.
+    jq -e '[.contacts[] | select(.dim == 3 and (.pairs_are | startswith("random") | not)) | .methods[]
+            | select(.name == "ccd gjk").wrong] | length == 3 and (add / 3 * 1000 | round) == 281' "$BENCH"
+    has "$BATS_TEST_TMPDIR/contacts.html" 'ccd gjk: 28.1 % wrong, 495 ns'
+    has "$BATS_TEST_TMPDIR/contacts.html" 'box2d: 65.2 % wrong'
+    has "$BATS_TEST_TMPDIR/contacts.html" 'gpr, 2 rows near contact: 0 wrong'
+    has "$BATS_TEST_TMPDIR/contacts.html" 'ccd mpr, 3D static TT, random, apart: 91 ns, 0 wrong'
+    has_none "$BATS_TEST_TMPDIR/contacts.html" 'batch\+box[:,]'
+    [ "$(grep -c '^<tr><td class=w>' "$BATS_TEST_TMPDIR/contacts.html")" = "$(jq '.contacts | length' "$BENCH")" ]
 }
 
 @test "what makes a missing report is said, and nothing is run" {
@@ -148,7 +164,7 @@ well_formed() {
     report
     ended 0
     has "$OUT/index.html" '<section id=kinds>'
-    has_none "$OUT/index.html" '<section id=(article|more|growth)>'
+    has_none "$OUT/index.html" '<section id=(contacts|article|more|growth)>'
 }
 
 @test "the bus: every row that was measured, and its numbers" {

@@ -3,7 +3,7 @@ include "text";
 include "picture";
 include "dots";
 
-def in_picture: ["batch", "single", "query", "sat", "fmb", "exact", "libccd GJK", "libccd MPR"];
+def in_picture: ["batch", "single", "query", "sat", "fmb", "exact"];
 
 # "CT" in 3D -> cuboid, tetrahedron.
 def shapes_text:

@@ -34,7 +34,7 @@ def ends_table($what):
 
 def decided_table:
     ([.families[].decided_by | keys_unsorted[]] | unique) as $all
-    | (["filter", "unrounded", "refined", "limbs", "exact"] as $steps
+    | (["filter", "second", "refined", "limbs", "exact"] as $steps
        | ($steps | map(select([.] | inside($all)))) + ($all - $steps)) as $paths
     | [.families[] | . as $f
        | [(.summary | @html), (.pairs | grouped)]

@@ -7,6 +7,7 @@ include "scatter";
 include "speed_error";
 include "families";
 include "kinds";
+include "contacts";
 include "growth";
 include "measured";
 include "bus";
@@ -124,6 +125,7 @@ def parts($bench; $sums; $accuracy; $bus):
       ["families", "Every family of pairs", ($sums | families_part)],
       ["boxes", "The box: how tight, at what cost", ($sums | boxes_part + boxes_rows_part)],
       ["kinds", "Speed by kind of pair", ($bench | kinds_part)],
+      ["contacts", "Contacts, beside other libraries", ($bench | contacts_part)],
       ["article", "Beside the article’s Table 1", ($bench | article_part)],
       ["more", "What else was measured", ($bench | others_part)],
       ["growth", "Growth", ($bench | growth_part)],

@@ -60,8 +60,15 @@ def style_of:
       single: {shape: "circle", colour: "certified", hollow: true},
       query: {shape: "diamond", colour: "certified", hollow: true},
       "sat query": {shape: "diamond", colour: "sat", hollow: true},
-      "libccd GJK": {shape: "plus", colour: "other"},
-      "libccd MPR": {shape: "down", colour: "other"},
+      seidel: {shape: "square", colour: "sat"},
+      gpr: {shape: "up", colour: "sat"},
+      "ccd gjk": {shape: "plus", colour: "other"},
+      "ccd mpr": {shape: "down", colour: "other"},
+      fcl: {shape: "square", colour: "other"},
+      bullet: {shape: "circle", colour: "other"},
+      ode: {shape: "diamond", colour: "other"},
+      cgal: {shape: "up", colour: "other"},
+      box2d: {shape: "plus", colour: "other", hollow: true},
       "the article": {shape: "square", colour: "other", hollow: true} }[.]
     // {shape: "circle", colour: "other", hollow: true};
 

@@ -3,15 +3,14 @@
 #
 # On input:
 #   {about, x_title, y_title, y_kind, points: [...], means: [...], zero: {method: text},
-#    zero_tick, above, notes}
+#    zero_tick, above, lane_names, notes}
 #   a point: {method, x, y, tip, hollow}; a mean: {method, x, y, name, value, short}
 #   y_kind: "share" or "size", for the ticks. zero: what a method's lane in the band says.
+#   lane_names: the lanes are low, and have their methods' names in the margin instead.
 #   above: names above, not beside the markers, as on a narrow screen.
 #   notes: lines beneath, each a list of pieces that a narrow screen breaks apart.
 include "text";
 include "picture";
-
-def lane_height: 42;
 
 # The lanes of the band, a method each, from top to bottom: those with anything in them.
 def lanes:
@@ -22,7 +21,7 @@ def lanes:
 def layout($width):
     . as $o
     | ($width < 600) as $narrow
-    | (if $narrow then 50 else 72 end) as $left
+    | (if $narrow | not then 72 elif .lane_names then 62 else 50 end) as $left
     | ($width - if $narrow then 12 else 24 end) as $right
     | [.means[] | select(.y > 0)] as $some
     | (.above or $narrow) as $above
@@ -30,10 +29,12 @@ def layout($width):
       as $top
     | ($top + (if $narrow then 240 else 320 end)) as $bottom
     | lanes as $lanes
+    | (if .lane_names then {lane: 20, mark: 10} else {lane: 42, mark: 29} end) as $heights
     | ($bottom + 16) as $band
-    | ($band + lane_height * ($lanes | length)) as $foot
+    | ($band + $heights.lane * ($lanes | length)) as $foot
     | [.points[].y, .means[].y | select(. != null and . > 0)] as $ys
-    | { $width, $narrow, $left, $right, $top, $bottom, $band, $foot, $lanes, $some, $above,
+    | $heights
+    + { $width, $narrow, $left, $right, $top, $bottom, $band, $foot, $lanes, $some, $above,
         names: (if $narrow then 14 else $left + 8 end),
         x: scale_near([.points[].x, .means[].x]; $left + 14; $right - 14),
         y: (scale_of(if $ys == [] then [0.1] else $ys end; $bottom; $top)
@@ -55,18 +56,20 @@ def grid($l; $kind):
 def band($l): . as $o |
     if $l.lanes == [] then "" else
         box($l.left; $l.band; $l.right - $l.left; $l.foot - $l.band; "band")
-        + ($o.zero_tick | text($l.left - 8; ($l.band + $l.foot) / 2 + 4; "end"; "strong"))
+        + ($o.zero_tick // "" | text($l.left - 8; ($l.band + $l.foot) / 2 + 4; "end"; "strong"))
         + ([$l.lanes | to_entries[] | .value as $m
-            | ($l.band + lane_height * .key) as $y
+            | ($l.band + $l.lane * .key) as $y
             | (if .key > 0 then line($l.left; $y; $l.right; $y; "grid") else "" end)
-              + ($o.zero[$m] // "" | text($l.left + 8; $y + 16; "start"; "strong small " + $m))]
+              + if $o.lane_names then $m | text($l.left - 8; $y + 14; "end"; "dim small")
+                else $o.zero[$m] // "" | text($l.left + 8; $y + 16; "start"; "strong small " + $m)
+                end]
            | add)
     end;
 
 # Where a value lies; zero in its method's lane.
 def height($l): . as $p
     | if .y > 0 then .y | at($l.y)
-      else $l.band + lane_height * ($l.lanes | index($p.method)) + 29 end;
+      else $l.band + $l.lane * ($l.lanes | index($p.method)) + $l.mark end;
 
 def spot($l; $r; $class): . as $p
     | (.method | style_of + {hollow: ($p.hollow // false)}) as $style
