@@ -8,8 +8,8 @@ static struct walk_kind kind_of(const struct frame_pair *pair, bool along)
     struct slabs_pair slabs;
     struct fmb_prepared a, b;
     struct walk_kind kind = {.dim = pair->a.frame->dim};
-    prepared_set(&pair->a, &a);
-    prepared_set(&pair->b, &b);
+    prepared_set(pair->a, &a);
+    prepared_set(pair->b, &b);
     kind.simplex[0] = pair->a.frame->shape != FMB_CUBOID;
     kind.simplex[1] = pair->b.frame->shape != FMB_CUBOID;
     kind.face[0] = pair->a.frame->shape == FMB_FACE;
@@ -26,8 +26,8 @@ static void set_walk_pair(const struct frame_pair *pair, const struct walk_kind 
     const double *const at[2][LANES] = {{(const double *) &prepared[0]},
                                         {(const double *) &prepared[1]}};
     struct run_frame frame[2];
-    prepared_set(&pair->a, &prepared[0]);
-    prepared_set(&pair->b, &prepared[1]);
+    prepared_set(pair->a, &prepared[0]);
+    prepared_set(pair->b, &prepared[1]);
     gather(kind, at[0], &frame[0]);
     gather(kind, at[1], &frame[1]);
     set_pair(kind, &frame[0], &frame[1], pair->duration, out);
@@ -43,6 +43,21 @@ int slab_kernel_list(const struct frame_pair *pair, bool along, struct slab_valu
     found.next = out;
     walk(&one, kind, &found);
     return (int) (found.next - out);
+}
+
+void slab_kernel_times(double low, double high, double swing, double error, double enter[2],
+                       double leave[2])
+{
+    const struct walk_kind kind = {
+        .dim = 3, .simplex = {true, true}, .drifts = true, .ordered = true, .times = true};
+    const struct walk_extent d = {low, high, 0};
+    struct walk_found found;
+    walk_begin(&found);
+    bound_times(kind, d, error, 0, swing, false, &found);
+    for (int side = 0; side < 2; side++) {
+        enter[side] = found.enter[side];
+        leave[side] = found.leave[side];
+    }
 }
 
 double slab_kernel_axes(const struct frame_pair *pair, double *bound)

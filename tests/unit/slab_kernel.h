@@ -17,6 +17,11 @@ typedef int slab_kernel_function(const struct frame_pair *pair, bool along,
  * them surely parts it; *bound is what the gap was made smaller by. */
 typedef double slab_kernel_axes_function(const struct frame_pair *pair, double *bound);
 
+/* The ends of the time, from -1 to 1, that a slab leaves of a pair that drifts: enter and leave,
+ * [outer, inner]. On input: its bounds from the middle of the window. */
+void slab_kernel_times(double low, double high, double swing, double error, double enter[2],
+                       double leave[2]);
+
 /* Compiled as run.c is; with fused operations; with a bound that is wrong (Makefile). */
 slab_kernel_function slab_kernel_list, fused_slab_kernel_list, planted_slab_kernel_list;
 slab_kernel_axes_function slab_kernel_axes, fused_slab_kernel_axes, planted_slab_kernel_axes;

@@ -122,8 +122,8 @@ bool slab_truth_prepare(const struct pair *pair, struct slabs_pair *out)
 {
     const struct frame_pair frames = pair_frames(pair);
     struct fmb_prepared a, b;
-    prepared_set(&frames.a, &a);
-    prepared_set(&frames.b, &b);
+    prepared_set(frames.a, &a);
+    prepared_set(frames.b, &b);
     return slabs_prepare(&a, &b, pair->duration, out);
 }
 

@@ -954,9 +954,12 @@ static void test_a_scene_without_answers_stops_as_busy(void **state)
     for (;; steps++) {
         set_row(BODIES);
         scene_begin(job, query);
-        for (int i = 0; i < steps; i++)
-            assert_false(scene_job_step(job, answerer));
-        if (scene_job_has_answers(job))
+        bool complete = false;
+        for (int i = 0; i < steps; i++) {
+            assert_false(complete);
+            complete = scene_job_step(job, answerer);
+        }
+        if (complete || scene_job_has_answers(job))
             break;
         scene_job_stop(job);
         result = *scene_job_result(job);

@@ -525,6 +525,56 @@ static void windows_of_subnormals(void **state)
 
 /* ---- What is refused ---- */
 
+/* A speed over a window of 2^-500 s: some make a way of about 1, of others the way is less than any
+ * double. */
+static double draw_speed(struct draw *draw)
+{
+    const double some = ldexp(draw_int(draw, -3, 3), 499);
+    return draw_coin(draw) ? some : ldexp(draw_int(draw, -3, 3), draw_int(draw, -590, -570));
+}
+
+static double draw_offset(struct draw *draw)
+{
+    return draw_int(draw, -2, 2) + (draw_coin(draw) ? 0 : ldexp(draw_int(draw, -2, 2), -1074)) +
+           (draw_coin(draw) ? 0 : draw_int(draw, -2, 2) * 0x1p-52);
+}
+
+/* A coordinate of the drift that is 0 as a double and not in truth makes the normals of its slabs
+ * vanish where an edge is parallel to what is left of the drift; and of 0 along an axis. */
+static void drifts_that_vanish_along_an_axis(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long verdicts[4] = {0}, vanished = 0;
+    draw_begin(&draw, "drifts_that_vanish_along_an_axis");
+    for (long n = draw_sample(20000); n > 0; n--) {
+        const int dim = 2 + draw_coin(&draw);
+        struct question question = {.duration = 0x1p-500};
+        struct fmb_answer answer, exact;
+        struct ready ready;
+        question.a = draw_solid(&draw, dim, whole);
+        question.b = draw_solid(&draw, dim, whole);
+        question.a.moving = question.b.moving = true;
+        for (int axis = 0; axis < dim; axis++) {
+            question.a.origin[axis] = 0;
+            question.b.origin[axis] = draw_offset(&draw);
+            question.a.velocity[axis] = 0;
+            question.b.velocity[axis] = draw_speed(&draw);
+            vanished += question.b.velocity[axis] != 0 &&
+                        question.b.velocity[axis] * question.duration == 0;
+        }
+        referee_ready(&question, &ready);
+        decide("certified", &question, &ready, &answer);
+        decide("exact", &question, &ready, &exact);
+        if (answer.verdict != exact.verdict)
+            referee_fail(&question, "the exact method has another verdict");
+        verdicts[answer.verdict]++;
+    }
+    printf("# %ld separated, %ld touching, %ld overlapping, %ld coordinates vanished\n",
+           verdicts[FMB_SEPARATED], verdicts[FMB_TOUCHING], verdicts[FMB_OVERLAPPING], vanished);
+    assert_true(verdicts[1] > 0 && verdicts[2] > 0 && verdicts[3] > 0 && vanished > 0);
+}
+
 static void expect_refused(const struct pair *pair, enum fmb_status expected)
 {
     static const struct fmb_answer nothing;
@@ -575,6 +625,7 @@ int main(void)
         cmocka_unit_test(a_common_velocity_changes_no_times),
         cmocka_unit_test(time_runs_backwards),
         cmocka_unit_test(windows_of_subnormals),
+        cmocka_unit_test(drifts_that_vanish_along_an_axis),
         cmocka_unit_test(what_is_not_finite_is_refused),
     };
     struct CMUnitTest tests[COUNT(others) + COUNT(cases)];

@@ -141,6 +141,30 @@ static void random_pairs(void **state)
     assert_true(verdicts[1] > 0 && verdicts[2] > 0 && verdicts[3] > 0);
 }
 
+/* Pairs in 3D brought to a depth of 1e-3 by shifts along the direction of the gap, so that every
+ * kind of facet, and each pair of edges, is the nearest of some. */
+static void shallow_pairs(void **state)
+{
+    (void) state;
+    struct draw draw;
+    int shallow = 0;
+    draw_begin(&draw, "shallow_pairs");
+    for (long n = draw_sample(6000); n > 0; n--) {
+        struct question question = {draw_solid(&draw, 3, any), draw_solid(&draw, 3, any), 1};
+        question_draw_movers(&draw, &question);
+        question.b.origin[0] += 3;
+        for (int round = 0; round < 3; round++) {
+            const struct fmb_gap now = ask(&question, "certified").gap;
+            for (int axis = 0; axis < 3; axis++)
+                question.b.origin[axis] += (-1e-3 - now.bounds[0]) * now.direction[axis];
+        }
+        const double gap = check_by(&question, "certified").gap.bounds[0];
+        shallow += gap < -0.99e-3 && gap > -1.01e-3;
+    }
+    print_message("%d of depth 1e-3\n", shallow);
+    assert_true(shallow > 0);
+}
+
 /* ---- Hard families ---- */
 
 static void hard_families(void **state)
@@ -782,6 +806,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_pairs),
+        cmocka_unit_test(shallow_pairs),
         cmocka_unit_test(hard_families),
         cmocka_unit_test(all_exponents),
         cmocka_unit_test(small_worlds),

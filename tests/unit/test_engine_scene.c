@@ -291,15 +291,39 @@ static void random_scenes(void **state)
     struct draw draw = {0x5ce9e5};
     size_t meeting = 0;
     (void) state;
-    for (int n = 0; n < 400; n++) {
+    const size_t scenes = (size_t) draw_sample(400);
+    for (size_t n = 0; n < scenes; n++) {
         const size_t frames = n % 4 == 0 ? 1 : n % 4 == 1 ? 4 : n % 4 == 2 ? 20 : FRAMES_MAX;
         const size_t count = (size_t) below(&draw, frames < 20 ? PLACEMENTS_MAX + 1 : 9);
         draw_world(&draw, count, frames, &world);
         meeting += check_scene(&world.scene, 0);
         meeting += check_scene(&world.scene, FMB_SCENE_SLOTS_MIN + (size_t) below(&draw, 30));
     }
-    assert_true(meeting > 3000);
-    assert_true(near_pairs > 300);
+    assert_true(meeting > 15 * scenes / 2);
+    assert_true(near_pairs > 3 * scenes / 4);
+}
+
+/* In a heap, where all boxes meet, there is no room for all pairs at once; in a row there is. */
+static void heaps_and_rows(void **state)
+{
+    struct draw draw = {41};
+    size_t meeting = 0;
+    (void) state;
+    for (int n = 0; n < 12; n++) {
+        const bool heap = n % 2;
+        draw_world(&draw, PLACEMENTS_MAX, 1, &world);
+        for (size_t i = 0; i < world.count; i++)
+            for (int axis = 0; axis < world.dim; axis++) {
+                world.placement[i].position[axis] = heap || axis ? 0 : 4 * (double) i;
+                world.placement[i].velocity[axis] = 0;
+            }
+        world.scene.which = FMB_PAIRS_ALL;
+        world.scene.split = world.scene.pair_count = 0;
+        world.scene.margin = heap ? 100 : 0;
+        world.scene.first_pair = (unsigned long long) below(&draw, 2 * PLACEMENTS_MAX);
+        meeting += check_scene(&world.scene, 0);
+    }
+    assert_true(meeting > 1000);
 }
 
 /* The answers to two halves are those to the whole. */
@@ -462,9 +486,10 @@ static void limits_hold(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes), cmocka_unit_test(any_first_pair),
-        cmocka_unit_test(every_method),  cmocka_unit_test(extremes),
-        cmocka_unit_test(bad_scenes),    cmocka_unit_test(limits_hold),
+        cmocka_unit_test(random_scenes),  cmocka_unit_test(heaps_and_rows),
+        cmocka_unit_test(any_first_pair), cmocka_unit_test(every_method),
+        cmocka_unit_test(extremes),       cmocka_unit_test(bad_scenes),
+        cmocka_unit_test(limits_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

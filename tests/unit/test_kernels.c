@@ -1,6 +1,7 @@
 /* The filter's kernels, each instruction set of this machine and eight lanes without AVX-512: no
- * outcome contradicts the exact method, wherever in the lanes a pair lies; times of contact and
- * boxes are the same bits everywhere, hold the exact ones, and are close to them. */
+ * outcome contradicts the exact method, wherever in the lanes a pair lies; those of the second
+ * pass, times of contact and boxes are the same everywhere; times and boxes hold the exact ones,
+ * and are close to them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,15 +24,17 @@
 #include "question.h"
 #include "referee.h"
 #include "run.h"
+#include "slab_kernel.h"
 #include "solids.h"
 
 /* run.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (Makefile). */
-extern run_function *const run_wide[RUN_KINDS], *const run_times_wide[RUN_KINDS],
-                                                    *const run_boxes_wide[RUN_KINDS],
-                                                        *const run_wide_planted[RUN_KINDS];
+extern run_function *const run_wide[RUN_KINDS], *const run_exact_wide[RUN_KINDS],
+                                                    *const run_times_wide[RUN_KINDS],
+                                                        *const run_boxes_wide[RUN_KINDS],
+                                                            *const run_wide_planted[RUN_KINDS];
 #if defined __x86_64__
 extern run_alone_function *const run_alone_sse2[RUN_KINDS],
-    *const run_times_alone_sse2[RUN_KINDS], *const run_boxes_alone_sse2[RUN_KINDS];
+    *const run_exact_alone_sse2[RUN_KINDS], *const run_times_alone_sse2[RUN_KINDS];
 #endif
 
 /* ---- Subjects ---- */
@@ -54,14 +57,15 @@ static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
         if (there)
             out[count++] = one;
     }
-    out[count++] = (struct subject){"wide", {run_wide, run_times_wide, run_boxes_wide}};
+    out[count++] =
+        (struct subject){"wide", {run_wide, run_exact_wide, run_times_wide, run_boxes_wide}};
     return count;
 }
 
 /* Of pairs alone. */
 struct alone {
     const char *name;
-    run_alone_function *const *verdicts, *const *times, *const *boxes;
+    run_alone_function *const *verdicts, *const *exact, *const *times;
 };
 
 enum { ALONE_MAX = 2 };
@@ -69,10 +73,10 @@ enum { ALONE_MAX = 2 };
 /* That of this machine, and what older ones have. Returns how many. */
 static int alone_of_machine(struct alone out[ALONE_MAX])
 {
-    out[0] = (struct alone){"alone", run_verdicts_alone(), run_times_alone(), run_boxes_alone()};
+    out[0] = (struct alone){"alone", run_verdicts_alone(), run_exact_alone(), run_times_alone()};
 #if defined __x86_64__
     out[1] =
-        (struct alone){"alone, sse2", run_alone_sse2, run_times_alone_sse2, run_boxes_alone_sse2};
+        (struct alone){"alone, sse2", run_alone_sse2, run_exact_alone_sse2, run_times_alone_sse2};
     return 2;
 #else
     return 1;
@@ -443,7 +447,6 @@ static void run_alone(run_alone_function *function, const struct pool *pool, str
         out->outcome[i] = (unsigned char) function(&pool->frame[i][0], &pool->frame[i][1],
                                                    pool->duration, numbers);
         memcpy(out->contact[i], numbers, sizeof out->contact[i]);
-        memcpy(out->box[i], numbers, sizeof out->box[i]);
     }
 }
 
@@ -477,6 +480,153 @@ static void no_outcome_alone_is_wrong(void **state)
             }
             assert_int_equal(of_random, 0);
         }
+}
+
+/* ---- The second pass ---- */
+
+/* TOUCHING of two faces is not a verdict. */
+static void expect_exact_outcomes(const struct subject *subject, const struct pool *pool,
+                                  const struct left *left)
+{
+    struct left verdicts = *left;
+    const bool faces = pool->kind & RUN_FACE && pool->kind & RUN_ALIKE;
+    for (int i = 0; i < pool->count && faces; i++)
+        if (left->outcome[i] == SLABS_TOUCHING)
+            verdicts.outcome[i] = SLABS_UNSURE;
+    expect_outcomes(subject, pool, &verdicts);
+}
+
+/* What one pass decides another does, as it does. */
+static void expect_decided(const char *name, const struct pool *pool, const struct left *less,
+                           const struct left *more)
+{
+    for (int i = 0; i < pool->count; i++)
+        if (less->outcome[i] != SLABS_UNSURE && less->outcome[i] != more->outcome[i]) {
+            printf("# %s, %s: %d, %d\n", name, kind_text(pool->kind), less->outcome[i],
+                   more->outcome[i]);
+            referee_fail(&pool->question[i], "an outcome that the second pass does not have");
+        }
+}
+
+/* Every set decides the same, and all that any first pass does. */
+static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
+                                    const struct subject *subject, int subjects,
+                                    const struct left *whole)
+{
+    struct alone alone[ALONE_MAX];
+    struct left left;
+    for (int s = 0; s < subjects; s++) {
+        run_all(subject[s].set.exact[pool->kind], pool, &left);
+        assert_memory_equal(left.outcome, whole->outcome, (size_t) pool->count);
+        expect_same_in_parts(draw, subject[s].set.exact[pool->kind], pool, whole);
+        run_all(subject[s].set.verdicts[pool->kind], pool, &left);
+        expect_decided(subject[s].name, pool, &left, whole);
+    }
+    for (int i = alone_of_machine(alone) - 1; i >= 0; i--) {
+        run_alone(alone[i].exact[pool->kind], pool, &left);
+        assert_memory_equal(left.outcome, whole->outcome, (size_t) pool->count);
+        run_alone(alone[i].verdicts[pool->kind], pool, &left);
+        expect_decided(alone[i].name, pool, &left, whole);
+    }
+}
+
+/* Whether a kernel of plain C separates the pair. */
+static bool is_separated(const struct question *question, bool exact)
+{
+    struct ready ready;
+    struct fmb_prepared a, b;
+    struct run_set set;
+    bool swapped;
+    unsigned char outcome[RUN_LANES] = {SLABS_UNSURE};
+    referee_ready(question, &ready);
+    assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &a), FMB_OK);
+    assert_int_equal(fmb_prepare(&ready.pair.b, 0, 1, &b), FMB_OK);
+    assert_true(run_set_of(FMB_PLAIN, &set));
+    const enum run_kind kind = run_kind_of(&a, &b, question->duration, &swapped);
+    const struct fmb_prepared *pairs[RUN_LANES][2] = {{swapped ? &b : &a, swapped ? &a : &b}};
+    const struct run run = {pairs, 1, question->duration, outcome, NULL, NULL};
+    (exact ? set.exact : set.verdicts)[kind](&run);
+    return outcome[0] == SLABS_SEPARATED;
+}
+
+static void set_offset(const struct question *from, double factor, struct question *out)
+{
+    *out = *from;
+    for (int axis = 0; axis < from->a.dim; axis++)
+        out->b.origin[axis] =
+            from->a.origin[axis] + factor * (from->b.origin[axis] - from->a.origin[axis]);
+}
+
+/* A pair so far apart that one of the passes just separates it, or just does not. */
+static void draw_near_bound(struct draw *draw, const struct cell *cell, struct question *out)
+{
+    const bool exact = draw_coin(draw);
+    double near = 0, far = 64;
+    struct question question;
+    do {
+        family_draw_random(draw, cell, &question);
+        set_offset(&question, far, out);
+    } while (!is_separated(out, exact));
+    for (int step = 0; step < 64; step++) {
+        const double middle = near + (far - near) / 2;
+        set_offset(&question, middle, out);
+        *(is_separated(out, exact) ? &far : &near) = middle;
+    }
+    set_offset(&question, far * (1 + draw_int(draw, -4, 3) * 0x1p-52), out);
+}
+
+/* What a first pass decides depends on its instruction set: the second decides all of it. */
+static void near_a_bound_the_second_pass_decides_what_any_first_does(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    long unsure = 0, decided = 0;
+    draw_begin(&draw, "near_a_bound_the_second_pass_decides_what_any_first_does");
+    for (int kind = 0; kind < RUN_KINDS; kind++)
+        for (long n = is_kind(kind) ? draw_sample(12) : 0; n > 0; n--) {
+            struct pool pool;
+            struct left whole;
+            draw_pool(&draw, draw_near_bound, kind, 1, &pool);
+            run_all(subject[0].set.exact[kind], &pool, &whole);
+            expect_exact_outcomes(&subject[0], &pool, &whole);
+            expect_same_second_pass(&draw, &pool, subject, subjects, &whole);
+            unsure += unsure_among(&pool, &whole);
+            decided += pool.count - unsure_among(&pool, &whole);
+        }
+    printf("# %ld unsure, %ld decided\n", unsure, decided);
+    assert_true(unsure > 0 && decided > 0);
+}
+
+static void the_second_pass_decides_more_and_the_same_everywhere(void **state)
+{
+    (void) state;
+    struct draw draw;
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    draw_begin(&draw, "the_second_pass_decides_more_and_the_same_everywhere");
+    for (int kind = 0; kind < RUN_KINDS; kind++) {
+        long touching = 0, decided = 0;
+        if (!is_kind(kind))
+            continue;
+        for (long n = draw_sample(60); n > 0; n--) {
+            struct pool pool;
+            struct left whole;
+            const bool stretched = draw_int(&draw, 0, 3) == 0;
+            draw_pool(&draw, stretched ? pair_draw_stretched : pair_draw, kind,
+                      stretched ? draw_duration(&draw) : 1, &pool);
+            run_all(subject[0].set.exact[kind], &pool, &whole);
+            expect_exact_outcomes(&subject[0], &pool, &whole);
+            expect_same_second_pass(&draw, &pool, subject, subjects, &whole);
+            for (int i = 0; i < pool.count && !stretched; i++) {
+                touching += pool.exact[i].verdict == FMB_TOUCHING;
+                decided += whole.outcome[i] == SLABS_TOUCHING;
+            }
+        }
+        printf("# %s: %ld of %ld that touch\n", kind_text(kind), decided, touching);
+        assert_true(decided > 0);
+    }
 }
 
 /* ---- Times ---- */
@@ -613,6 +763,80 @@ static void times_hold_the_exact_ones(void **state)
     }
 }
 
+/* ---- Ends of the time ---- */
+
+/* The slab of an end: its distance from the bound at s is sign (bound - s swing), in parts of the
+ * error, which is 1 at a true outer end and -1 at an inner one. */
+struct end {
+    double bound, swing, error, sign;
+};
+
+/* Whether that distance at s, no farther than -1 or 1, is at least 1 - spare (outer), or at most
+ * spare - 1; spare: what rounding and the longer swing may take of the error. */
+static bool end_holds(const struct end *end, double s, bool outer, double spare)
+{
+    mpq_t at, number, limit;
+    mpq_inits(at, number, limit, NULL);
+    mpq_set_d(at, s < -1 ? -1 : s > 1 ? 1 : s);
+    mpq_set_d(number, end->swing);
+    mpq_mul(at, at, number);
+    mpq_set_d(number, end->bound);
+    mpq_sub(at, number, at);
+    if ((end->sign < 0) == outer)
+        mpq_neg(at, at);
+    mpq_set_d(limit, end->error);
+    mpq_set_d(number, spare);
+    mpq_sub(limit, limit, number);
+    const bool holds = mpq_cmp(at, limit) >= 0;
+    mpq_clears(at, number, limit, NULL);
+    return holds;
+}
+
+/* One that lies before the window, or after it, says nothing. */
+static bool ends_hold(const double ends[2], bool enter, const struct end *end, double slack,
+                      double spare)
+{
+    const double outer = enter ? ends[0] - slack : ends[0] + slack;
+    const double inner = enter ? ends[1] + slack : ends[1] - slack;
+    const bool before = enter ? outer <= -1 : outer >= 1, after = enter ? inner > 1 : inner < -1;
+    return (before || end_holds(end, outer, true, spare)) &&
+           (after || end_holds(end, inner, false, spare));
+}
+
+/* Slabs that are anything from perpendicular to nearly parallel to the drift, with ends near the
+ * window: those of which errors are larger than the way count most. */
+static void ends_of_the_time_are_covered(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long without_slack = 0, without_spare = 0;
+    draw_begin(&draw, "ends_of_the_time_are_covered");
+    for (long n = draw_sample(100000); n > 0; n--) {
+        const double swing = draw_uniform(&draw, 1, 2) * (draw_coin(&draw) ? 1 : -1);
+        const double error = ldexp(draw_uniform(&draw, 1, 2), draw_int(&draw, -70, 40));
+        const double length = fabs(swing) + 0x1p-10 * error;
+        const double t = error / length, spare = (0x1p-10 + 7 * 0x1p-53) * error + 0x1p-53 * length;
+        const double enter_at = draw_uniform(&draw, -1.2, 1.2) + (draw_coin(&draw) ? t : -t);
+        const double leave_at = draw_uniform(&draw, -1.2, 1.2) + (draw_coin(&draw) ? t : -t);
+        const double low = length * (swing > 0 ? enter_at : -leave_at);
+        const double high = length * (swing > 0 ? leave_at : -enter_at);
+        const struct end of_low = {low, swing, error, 1}, of_high = {high, swing, error, -1};
+        const struct end *first = swing > 0 ? &of_low : &of_high;
+        const struct end *last = swing > 0 ? &of_high : &of_low;
+        double enter[2], leave[2];
+        if (low > high)
+            continue;
+        slab_kernel_times(low, high, swing, error, enter, leave);
+        assert_true(ends_hold(enter, true, first, SLABS_TIMES_SLACK, spare));
+        assert_true(ends_hold(leave, false, last, SLABS_TIMES_SLACK, spare));
+        without_slack += !ends_hold(enter, true, first, 0, spare);
+        without_spare += !ends_hold(enter, true, first, SLABS_TIMES_SLACK, 0);
+    }
+    printf("# %ld wrong without the slack, %ld without what the error spares\n", without_slack,
+           without_spare);
+    assert_true(without_slack > 0 && without_spare > 0);
+}
+
 /* ---- Boxes ---- */
 
 static bool has_known_box(const struct left *left, int i)
@@ -632,8 +856,11 @@ static double largest_coordinate(const struct question *question)
     for (int f = 0; f < 2; f++) {
         double vertex[VERTICES_MAX][FMB_DIM_MAX];
         for (int v = solid_vertices(solids[f], vertex) - 1; v >= 0; v--)
-            for (int axis = 0; axis < solids[f]->dim; axis++)
-                largest = fmax(largest, fabs(solids[f]->origin[axis] + vertex[v][axis]));
+            for (int axis = 0; axis < solids[f]->dim; axis++) {
+                const double at = solids[f]->origin[axis] + vertex[v][axis];
+                const double way = solids[f]->moving ? solids[f]->velocity[axis] : 0;
+                largest = fmax(largest, fmax(fabs(at), fabs(at + way * question->duration)));
+            }
     }
     return largest;
 }
@@ -694,7 +921,6 @@ static void expect_same_boxes_for_all(struct draw *draw, struct pool *pool,
                                       const struct left *whole)
 {
     struct left part;
-    struct alone alone[ALONE_MAX];
     for (int s = 0; s < subjects; s++) {
         run_function *boxes = subject[s].set.boxes[pool->kind];
         for (int count = 1; count <= 17; count++) {
@@ -702,16 +928,8 @@ static void expect_same_boxes_for_all(struct draw *draw, struct pool *pool,
             run_part(boxes, pool, first, count, &part);
             expect_same_boxes(subject[s].name, pool, first, count, whole, &part);
         }
-        if (is_symmetric(pool->kind))
-            swap_pool(pool);
         run_all(boxes, pool, &part);
         expect_same_boxes(subject[s].name, pool, 0, pool->count, whole, &part);
-        if (is_symmetric(pool->kind))
-            swap_pool(pool);
-    }
-    for (int i = alone_of_machine(alone) - 1; i >= 0; i--) {
-        run_alone(alone[i].boxes[pool->kind], pool, &part);
-        expect_same_boxes(alone[i].name, pool, 0, pool->count, whole, &part);
     }
 }
 
@@ -726,7 +944,7 @@ static void boxes_hold_the_exact_ones(void **state)
         struct seen hard = {0}, random = {0};
         if (!run_boxes_wide[kind])
             continue;
-        for (long n = draw_sample(40); n > 0; n--) {
+        for (long n = draw_sample(kind & RUN_FACE ? 160 : 40); n > 0; n--) {
             struct pool pool;
             struct left whole;
             const bool is_hard = n % 4;
@@ -804,8 +1022,8 @@ static bool expect_quick(const struct question *question, unsigned want)
     referee_ready(question, &ready);
     const struct frame_pair frames = pair_frames(&ready.pair);
     struct fmb_prepared a, b;
-    prepared_set(&frames.a, &a);
-    prepared_set(&frames.b, &b);
+    prepared_set(frames.a, &a);
+    prepared_set(frames.b, &b);
     const long before = gmp_allocations;
     const enum fmb_status status =
         certified_decide_prepared(&a, &b, question->duration, want, true, &quick);
@@ -845,7 +1063,10 @@ int main(void)
         cmocka_unit_test(random_pairs_are_never_unsure),
         cmocka_unit_test(a_wrong_bound_is_found),
         cmocka_unit_test(no_outcome_alone_is_wrong),
+        cmocka_unit_test(the_second_pass_decides_more_and_the_same_everywhere),
+        cmocka_unit_test(near_a_bound_the_second_pass_decides_what_any_first_does),
         cmocka_unit_test(times_hold_the_exact_ones),
+        cmocka_unit_test(ends_of_the_time_are_covered),
         cmocka_unit_test(boxes_hold_the_exact_ones),
         cmocka_unit_test(ends_of_the_range),
         cmocka_unit_test(quick_decisions_need_no_wide_integers),

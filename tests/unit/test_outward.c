@@ -418,6 +418,15 @@ struct tally {
     double contact, box; /* how far out the worst end was */
 };
 
+/* Whether doubles give the box. */
+static bool box_of(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
+{
+    struct fmb_prepared frame[2];
+    prepared_set(pair->a, &frame[0]);
+    prepared_set(pair->b, &frame[1]);
+    return certified_box(&frame[0], &frame[1], pair->duration, box);
+}
+
 /* *answer has the interval and the box of the exact method, which those of doubles replace. */
 static void ask_doubles(const struct ready *ready, const struct slabs_pair *slabs, bool rounds,
                         struct dyadic_span span, struct fmb_answer *answer, bool good[2])
@@ -426,7 +435,7 @@ static void ask_doubles(const struct ready *ready, const struct slabs_pair *slab
     struct fmb_answer doubles = *answer;
     good[0] =
         slabs->motion.drifts && contact_of(&frames, slabs, rounds, span, true, doubles.contact);
-    good[1] = box_of(slabs, rounds, doubles.box);
+    good[1] = box_of(&frames, doubles.box);
     if (good[0])
         memcpy(answer->contact, doubles.contact, sizeof answer->contact);
     if (good[1])
