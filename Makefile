@@ -79,13 +79,16 @@ link_whole := $(link_user) -flto=auto -O3
 $(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: \
 	whole := -flto=auto -ffat-lto-objects
 $(O)/service/fmb/%.o: whole := -fno-lto
+# Vectors of three doubles that are written one by one and read as pairs wait for the writes.
+$(O)/service/fmb/gap%.o: flags += -fno-tree-slp-vectorize
 endif
 endif
 
 # ---- The parts, and who may see whom: an arrow in the wrong direction fails to build ----
 
-# run.c is there three times for each instruction set: for verdicts, with fused operations where there
-# are any, for times and for boxes, whose bits are promised; alone.c likewise, for pairs alone.
+# run.c is there four times for each instruction set: for verdicts, with fused operations where there
+# are any; for the second pass, for times and for boxes, whose bits are promised; alone.c likewise, for
+# pairs alone.
 # Asked before 'make deps' has installed the compiler, it is the machine that answers.
 x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 run_flags_plain := -DLANES=1
@@ -98,15 +101,16 @@ run_alone_avx2 := -DLANES=2 -mavx2 -mfma
 run_sets := plain $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2 avx512))
 run_alone_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
 run_verdicts := $(run_sets:%=$(O)/run/%.o)
+run_exact := $(run_sets:%=$(O)/run/exact_%.o)
 run_times := $(run_sets:%=$(O)/run/times_%.o)
 run_boxes := $(run_sets:%=$(O)/run/boxes_%.o)
 # What other machines take for pairs alone, for the programs of tests that take nothing else.
-alone_plain := $(addprefix $(O)/run/,alone_plain.o times_alone_plain.o boxes_alone_plain.o)
+alone_plain := $(addprefix $(O)/run/,alone_plain.o exact_alone_plain.o times_alone_plain.o)
 alone_verdicts := $(run_alone_sets:%=$(O)/run/alone_%.o)
+alone_exact := $(run_alone_sets:%=$(O)/run/exact_alone_%.o)
 alone_times := $(run_alone_sets:%=$(O)/run/times_alone_%.o)
-alone_boxes := $(run_alone_sets:%=$(O)/run/boxes_alone_%.o)
-run_objects := $(run_verdicts) $(run_times) $(run_boxes) $(alone_verdicts) $(alone_times) \
-	$(alone_boxes)
+run_objects := $(run_verdicts) $(run_exact) $(run_times) $(run_boxes) $(alone_verdicts) \
+	$(alone_exact) $(alone_times)
 lib_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/run.c %/alone.c,$(wildcard service/fmb/*.c))) \
 	$(run_objects)
 lib_objects := $(lib_objects:%/batch.o=%/batch$(openmp_flag:-f%=_%).o)
@@ -197,16 +201,18 @@ compile_run = @mkdir -p $(@D) && \
 	$(compile) -DRUN_NAME=$(basename $(@F)) -Wno-psabi
 $(run_verdicts): $(O)/run/%.o: service/fmb/run.c $(O)/settings
 	$(compile_run) $(run_flags_$*) -ffp-contract=fast
+$(run_exact): $(O)/run/exact_%.o: service/fmb/run.c $(O)/settings
+	$(compile_run) $(run_flags_$*) -DRUN_EXACT
 $(run_times): $(O)/run/times_%.o: service/fmb/run.c $(O)/settings
 	$(compile_run) $(run_flags_$*) -DRUN_TIMES
 $(run_boxes): $(O)/run/boxes_%.o: service/fmb/run.c $(O)/settings
 	$(compile_run) $(run_flags_$*) -DRUN_BOXES
 $(sort $(alone_verdicts) $(O)/run/alone_plain.o): $(O)/run/alone_%.o: service/fmb/alone.c $(O)/settings
 	$(compile_run) $(run_alone_$*) -DRUN_ALONE -ffp-contract=fast
+$(sort $(alone_exact) $(O)/run/exact_alone_plain.o): $(O)/run/exact_alone_%.o: service/fmb/alone.c $(O)/settings
+	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_EXACT
 $(sort $(alone_times) $(O)/run/times_alone_plain.o): $(O)/run/times_alone_%.o: service/fmb/alone.c $(O)/settings
 	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_TIMES
-$(sort $(alone_boxes) $(O)/run/boxes_alone_plain.o): $(O)/run/boxes_alone_%.o: service/fmb/alone.c $(O)/settings
-	$(compile_run) $(run_alone_$*) -DRUN_ALONE -DRUN_BOXES
 
 # The wire: bytes <-> structs.
 glib_flags = $(shell pkg-config --cflags glib-2.0)
@@ -402,7 +408,7 @@ $(internal_tests:%=$(B)/tests/%): $(B)/tests/%: $(V)/tests/unit/%.o $(slab_objec
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -o $@ $^ -lcmocka -lgmp -lm
 
-slabs_names := slabs_prepare slabs_filter_exactly slabs_list slabs_refine slab_inequalities
+slabs_names := slabs_prepare slabs_list slabs_refine slab_inequalities
 slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
 slabs_planted := -DSLABS_ROUNDING=0x1p-54
 # Optimised, and without sanitizers, whatever the mode: they would take long for what another object
@@ -417,14 +423,15 @@ $(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/
 		tests/unit/slab_kernel.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -Iservice/fmb -DLANES=1 $(slabs_$(*:kernel_%=%)) \
-		$(if $(filter kernel_%,$*),$(foreach f,slab_kernel_list slab_kernel_axes,-D$f=$(*:kernel_%=%)_$f))
+		$(if $(filter kernel_%,$*),$(foreach f,slab_kernel_list slab_kernel_axes slab_kernel_times,-D$f=$(*:kernel_%=%)_$f))
 
 # run.c with eight lanes, in vectors that every machine has; and with a bound that is wrong.
-run_wide := $(addprefix $(O)/run/,wide.o times_wide.o boxes_wide.o wide_planted.o)
+run_wide := $(addprefix $(O)/run/,wide.o exact_wide.o times_wide.o boxes_wide.o wide_planted.o)
+run_wide_exact_wide := -DRUN_EXACT
 run_wide_times_wide := -DRUN_TIMES
 run_wide_boxes_wide := -DRUN_BOXES
 run_wide_wide := -ffp-contract=fast
-run_wide_wide_planted := -ffp-contract=fast -DSLABS_ROUNDING=0x1p-56
+run_wide_wide_planted := -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
 $(B)/tests/test_kernels: $(run_wide)
 $(run_wide): $(O)/run/%.o: service/fmb/run.c $(O)/settings
 	@mkdir -p $(@D)
@@ -710,32 +717,26 @@ $(O)/tests/logs/%.o: tests/logs/%.c $(O)/settings | $(message_headers)
 
 # The smaller and the larger of two numbers are one instruction each where there is no NaN to think
 # of: sat.c says why none is met. Nothing else changes.
-$(O)/service/fmb/sat.o $(O)/tests/bench/lean_sat.o: flags += -ffinite-math-only -fno-signed-zeros
+$(addprefix $(O)/,service/fmb/sat.o $(addprefix tests/bench/,gpr.o lean_sat.o seidel.o)): flags += -ffinite-math-only -fno-signed-zeros
 
-# libccd is raced too where it is installed: make deps-bench, then make bench.
-ccd := $(shell pkg-config --exists ccd 2> /dev/null && echo ccd)
-peers := $(O)/peers/$(or $(ccd),none).o
-# Gaps are raced beside those that are installed of libccd, FCL and Bullet.
-gap_libraries := $(foreach l,ccd fcl bullet,$(shell pkg-config --exists $l 2> /dev/null && echo $l))
-gap_peers := $(O)/gap_peers/$(if $(gap_libraries),with$(subst $() ,,$(gap_libraries:%=_%)),none).o
-bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/peers.c %/gap_none.c,$(wildcard tests/bench/*.c))) \
-	$(peers) $(gap_peers) $(O)/ordered/eliminate.o
+# Other libraries are raced too where they are installed: make deps-bench, then make bench.
+bullet := $(shell for p in bullet-float64 bullet; do pkg-config --exists $$p && echo $$p && break; \
+	done 2> /dev/null)
+peer_packages := $(shell for p in ccd fcl ode box2d; do pkg-config --exists $$p && echo $$p; \
+	done 2> /dev/null) $(bullet)
+peer_libraries := $(peer_packages:%-float64=%) \
+	$(and $(wildcard /usr/include/CGAL/version.h),$(wildcard /usr/include/mpfr.h),cgal)
+peer_objects := $(peer_libraries:%=$(O)/tests/bench/peers/%.o)
+peers := $(O)/peers/$(or $(subst $() ,_,$(strip $(peer_libraries))),none).o
+bench_objects := $(patsubst %.c,$(O)/%.o,$(filter-out %/peers.c,$(wildcard tests/bench/*.c))) \
+	$(peers) $(peer_objects) $(O)/ordered/eliminate.o
 
 $(B)/bench/bench: $(bench_objects) $(campaign_objects) $(lib_objects)
 	@[ ! -f $(@D) ] || rm $(@D) # it was a program once
 	@mkdir -p $(@D)
 	$(CC) $(link_flags) -pthread -o $@ $^ \
-		$(if $(gap_libraries),$$(pkg-config --libs $(gap_libraries)) -lstdc++) -lgmp -lm
-
-$(O)/gap_peers/none.o: tests/bench/gap_none.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile)
-
-$(filter-out %/none.o,$(gap_peers)): tests/bench/gap_peers.cc $(O)/settings
-	@mkdir -p $(@D)
-	$(CXX) $$(pkg-config --cflags $(gap_libraries)) -std=c++17 -O2 -MMD -MP \
-		$(subst bullet,-DBENCH_BULLET,$(subst fcl,-DBENCH_FCL,$(subst ccd,-DBENCH_CCD,$(gap_libraries)))) \
-		-c $< -o $@
+		$(if $(peer_packages),$$(pkg-config --libs $(peer_packages))) \
+		$(if $(peer_libraries),$(if $(filter cgal,$(peer_libraries)),-lmpfr) -lstdc++) -lgmp -lm
 
 $(O)/tests/bench/%.o: tests/bench/%.c $(O)/settings
 	@mkdir -p $(@D)
@@ -744,7 +745,15 @@ $(O)/tests/bench/%.o: tests/bench/%.c $(O)/settings
 $(peers): tests/bench/peers.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Iservice/fmb -Itests/oracle -Itests/campaign \
-		$(if $(ccd),-DBENCH_CCD $(shell pkg-config --cflags ccd))
+		-DPEER_LIBRARIES='$(patsubst %,X(%),$(peer_libraries))'
+
+# CGAL's intervals change the direction of rounding.
+peer_flags_bullet = $$(pkg-config --cflags $(bullet))
+peer_flags_cgal = -frounding-math
+$(O)/tests/bench/peers/%.o: tests/bench/peers/%.cc $(O)/settings
+	@mkdir -p $(@D)
+	$(CXX) $(or $(peer_flags_$*),$$(pkg-config --cflags $*)) -std=c++17 -O2 -DNDEBUG -MMD -MP \
+		-Itests/bench -c $< -o $@
 
 # The article's elimination once more, with rows in an order that the benchmark chooses.
 $(O)/ordered/eliminate.o: service/fmb/eliminate.c $(O)/settings
@@ -758,7 +767,8 @@ bench: $(B)/bench/bench $(B)/robot/robot
 	$(B)/robot/robot
 
 deps-bench:
-	$(call install_packages,libccd-dev libfcl-dev libbullet-dev pkg-config)
+	$(call install_packages,libccd-dev libfcl-dev libbullet-dev libode-dev \
+		libbox2d-dev libcgal-dev libmpfr-dev pkg-config)
 
 # States of a robot, beside FCL where it is installed.
 fcl := $(shell pkg-config --exists fcl 2> /dev/null && echo fcl)
