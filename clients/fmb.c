@@ -1,7 +1,7 @@
 /* fmb: the command. A table of commands, and what is said about them. */
 #include "args.h"
 #include "commands.h"
-#include "fmb/fmb.h"
+#include "fmb.h"
 
 #include <stdbool.h>
 #include <stdio.h>

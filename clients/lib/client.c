@@ -41,17 +41,6 @@ enum {
 
 static const double timeout_s = 0.5, timeout_max_s = 1e6, ns_per_s = 1e9;
 
-const char *fmb_client_status_text(int status)
-{
-    switch (status) {
-#define X(name, number, text) \
-    case number: return text;
-        FMB_CLIENT_STATUS_MAP(X)
-#undef X
-    }
-    return fmb_status_text(status);
-}
-
 bool fmb_client_prefix_ok(const char *prefix)
 {
     return bus_prefix_ok(prefix);
@@ -110,7 +99,7 @@ static void show_scene(const struct fmb_client *client, const struct scene_resul
 /* Results of other clients are read for the watcher alone. */
 static bool is_for(const struct fmb_client *client, const struct query_header *header, bool watched)
 {
-    return watched || header->client_id == client->client_id;
+    return watched || header->client_id == client->requests.client_id;
 }
 
 /* The result in a message, which is for this client or another one. */
@@ -120,8 +109,8 @@ static void take(struct fmb_client *client, const struct bus_message *message,
     result.bytes = message->bytes;
     result.size = message->size;
     result.number = header->sequence_number;
-    if (header->client_id == client->client_id)
-        requests_take(client, &result);
+    if (header->client_id == client->requests.client_id)
+        requests_take(&client->requests, &result);
 }
 
 static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
@@ -218,7 +207,7 @@ static void on_message(void *user, const struct bus_message *message)
     const char *error = channels[client->channel[message->listener]].read(client, message);
     if (!error)
         return;
-    client->counts.malformed++;
+    client->requests.counts.malformed++;
     if (client->watcher.malformed)
         client->watcher.malformed(client->watcher.user, error);
 }
@@ -249,13 +238,14 @@ bool fmb_client_raw_listen(struct fmb_client *client, bool every, bus_handler *t
     return good;
 }
 
-void client_wait(struct fmb_client *client, int other_fd, int timeout_ms)
+static void wait_for_datagram(void *user, int other_fd, int timeout_ms)
 {
+    struct fmb_client *client = user;
     if (bus_wait(client->bus, other_fd, timeout_ms) < 0)
         client->failed = true;
 }
 
-int client_receive(struct fmb_client *client)
+static int receive_pending(struct fmb_client *client)
 {
     int received = 0, count = BUS_BATCH;
     for (int i = 0; i < BATCHES_MAX && count == BUS_BATCH && !client->failed; i++) {
@@ -264,6 +254,19 @@ int client_receive(struct fmb_client *client)
         received += count > 0 ? count : 0;
     }
     return received;
+}
+
+static bool receive_results(void *user)
+{
+    struct fmb_client *client = user;
+    receive_pending(client);
+    return !client->failed;
+}
+
+static bool publish(void *user, enum fmb_client_kind kind, const unsigned char *query, size_t size)
+{
+    const struct fmb_client *client = user;
+    return bus_publish(client->bus, client->query_channel[kind], query, size);
 }
 
 int fmb_client_watch(struct fmb_client *client, const struct fmb_client_watcher *watcher)
@@ -288,15 +291,15 @@ int fmb_client_handle(struct fmb_client *client, double timeout)
         return FMB_CLIENT_INSIDE;
     const double most = timeout < HANDLE_MAX_S ? timeout : HANDLE_MAX_S;
     client->inside = true;
-    client_wait(client, -1, timeout < 0 ? -1 : (int) ceil(1000 * most));
-    const int received = client_receive(client);
+    wait_for_datagram(client, -1, timeout < 0 ? -1 : (int) ceil(1000 * most));
+    const int received = receive_pending(client);
     client->inside = false;
     return client->failed ? FMB_CLIENT_NO_BUS : received;
 }
 
 int64_t fmb_client_raw_id(const struct fmb_client *client)
 {
-    return client->client_id;
+    return client->requests.client_id;
 }
 
 struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client)
@@ -306,7 +309,7 @@ struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client)
 
 struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client)
 {
-    return client->counts;
+    return client->requests.counts;
 }
 
 /* ---- Opening and closing ---- */
@@ -343,8 +346,8 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
     bus_channel(client->query_channel[FMB_CLIENT_PAIR], prefix, WIRE_PAIR_QUERY);
     bus_channel(client->query_channel[FMB_CLIENT_SCENE], prefix, WIRE_SCENE_QUERY);
     bus_channel(client->query_channel[FMB_CLIENT_DEFINITION], prefix, WIRE_DEFINITION_QUERY);
-    client->timeout_ns = (int64_t) (timeout * ns_per_s);
-    client->tries = options->tries ? options->tries : TRIES;
+    client->requests.timeout_ns = (int64_t) (timeout * ns_per_s);
+    client->requests.tries = options->tries ? options->tries : TRIES;
     return true;
 }
 
@@ -353,7 +356,11 @@ static bool open_parts(struct fmb_client *client, const char *url, char why[BUS_
     client->bus = bus_open(url, why);
     client->hasher = client->bus ? hasher_create() : NULL;
     client->held.hasher = client->hasher;
-    client->client_id = random_id();
+    client->requests.transport =
+        (struct request_transport){client, publish, wait_for_datagram, receive_results};
+    client->requests.client_id = random_id();
+    client->run.requests = &client->requests;
+    client->run.held = &client->held;
     requests_forget_pace(&client->requests);
     return client->hasher != NULL;
 }

@@ -5,8 +5,6 @@
 #include "bus.h"
 #include "fmb_client.h"
 #include "held.h"
-#include "recent.h"
-#include "request.h"
 #include "scene_run.h"
 #include "wire.h"
 
@@ -23,13 +21,9 @@ struct fmb_client {
     int channel[CLIENT_CHANNELS]; /* [number of the bus_listen() call]: CLIENT_STATUS or a kind */
     bus_handler *tap;             /* NULL: none */
     void *tap_user;
-    int64_t client_id, timeout_ns;
-    int tries;
     struct fmb_client_watcher watcher;
-    struct fmb_client_counts counts;
     struct hasher *hasher;
     struct held held;
-    struct recent recent;
     struct requests requests;
     struct scene_run run;
     struct fmb_client_answer answer; /* of the last single pair, with its texts */
@@ -43,13 +37,5 @@ struct fmb_client {
 
 /* Receives the channel from now on. False: the bus cannot, and client->why is the reason. */
 bool client_listen(struct fmb_client *client, int channel);
-
-/* Waits until a datagram is pending or other_fd (-1: none) is readable, up to timeout_ms (negative:
- * no limit). Sets failed on error. */
-void client_wait(struct fmb_client *client, int other_fd, int timeout_ms);
-
-/* Handles pending datagrams, up to a limit greater than a receive buffer holds. Returns their
- * number; sets failed on error. */
-int client_receive(struct fmb_client *client);
 
 #endif

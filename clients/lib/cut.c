@@ -18,13 +18,13 @@ static void set_body(struct cut *cut, size_t i, struct held *held, unsigned char
 {
     struct cut_body *out = &cut->body[i];
     struct placement placement;
-    question_placement(&cut->scene->placements[i], scratch, &placement);
+    client_scene_placement(&cut->scene->placements[i], scratch, &placement);
     out->bytes = (uint32_t) wire_placement_bytes(&placement);
     if (placement.body_id != 0) {
         out->held = held_find(held, &placement.geometry);
         out->serial = out->held->serial;
         if (out->held->held)
-            question_use_handle(&placement, &out->held->handle, scratch);
+            client_scene_use_handle(&placement, &out->held->handle, scratch);
     }
     out->least = (uint32_t) wire_placement_bytes(&placement);
 }
@@ -202,11 +202,11 @@ static void add_pair(struct cut *cut, const unsigned pair[2], struct part *out)
 
 static bool next_list(struct cut *cut, int32_t pairs_max, struct part *out)
 {
-    struct question_cursor ahead = cut->at;
+    struct client_scene_cursor ahead = cut->at;
     unsigned pair[2];
     out->which = QUERY_PAIRS_LISTED;
     cut->part++;
-    while (out->total < pairs_max && question_next_pair(cut->scene, &ahead, pair)) {
+    while (out->total < pairs_max && client_scene_next_pair(cut->scene, &ahead, pair)) {
         if (cut_ignores(cut, pair)) {
             cut->at = ahead;
             continue;

@@ -29,9 +29,9 @@ struct cut {
     unsigned (*ignored)[2]; /* owned, [ignored_count]: a < b, in the order of (a, b), each once */
     size_t ignored_count;
     bool single, blocks;
-    bool by_handle;            /* one part, too large for bodies that are sent whole */
-    struct question_cursor at; /* without blocks: after the parts so far */
-    uint64_t part;             /* number of the last part */
+    bool by_handle;                /* one part, too large for bodies that are sent whole */
+    struct client_scene_cursor at; /* without blocks: after the parts so far */
+    uint64_t part;                 /* number of the last part */
     struct cut_place
         *place; /* owned, [placement_count]: the last part with this placement, and its index */
     /* Block i has the placements start[i] to start[i + 1] - 1. The first row_count begin rows. */

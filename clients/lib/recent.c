@@ -2,7 +2,7 @@
 
 #include "big_endian.h"
 #include "digest.h"
-#include "request.h"
+#include "query.h"
 
 /* Where parts of messages stand. */
 enum {

@@ -1,13 +1,27 @@
-/* The results of recent queries, to detect second results that contradict them. */
+/* Results, and those of recent queries kept to detect second results that contradict them. */
 #ifndef RECENT_H
 #define RECENT_H
+
+#include "fmb_client_raw.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 enum { RECENT_MAX = 256 };
 
-struct request_result;
+/* A well-formed result; or none, if status is negative (enum fmb_client_status). */
+struct request_result {
+    enum fmb_client_kind kind;
+    int status;
+    const char *detail; /* "" if OK, or if there is no result */
+    union {
+        const struct pair_result *pair;
+        const struct scene_result *scene;
+    };
+    const unsigned char *bytes; /* of the message; NULL: there is no result */
+    size_t size;
+    int64_t number;
+};
 
 /* All 0: none. */
 struct recent {

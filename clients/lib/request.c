@@ -1,7 +1,6 @@
 #include "request.h"
 
 #include "big_endian.h"
-#include "client.h"
 #include "clock.h"
 
 #include <string.h>
@@ -63,13 +62,12 @@ static void end(struct requests *requests, struct request *request)
 
 /* ---- Sending ---- */
 
-struct request *request_begin(struct fmb_client *client, enum fmb_client_kind kind, size_t bytes,
+struct request *request_begin(struct requests *requests, enum fmb_client_kind kind, size_t bytes,
                               request_handler *handler, void *user)
 {
-    struct requests *requests = &client->requests;
     struct request *request = requests->request;
     if (requests->count == 0)
-        client_receive(client);
+        requests->transport.receive(requests->transport.user);
     while (request->under_way)
         request++;
     request->under_way = true;
@@ -84,26 +82,26 @@ struct request *request_begin(struct fmb_client *client, enum fmb_client_kind ki
     return request;
 }
 
-static void publish(struct fmb_client *client, struct request *request)
+static void publish(struct requests *requests, struct request *request)
 {
-    if (!bus_publish(client->bus, client->query_channel[request->kind], request->query,
-                     request->size))
-        client->counts.unsent++;
-    client->counts.bytes += request->size;
+    const struct request_transport *transport = &requests->transport;
+    if (!transport->publish(transport->user, request->kind, request->query, request->size))
+        requests->counts.unsent++;
+    requests->counts.bytes += request->size;
     request->pausing = false;
     request->sent_at = clock_ns();
     request->deadline = request->sent_at + request->interval;
 }
 
 /* How long a request waits for its result, in all. */
-static int64_t patience(const struct fmb_client *client)
+static int64_t patience(const struct requests *requests)
 {
-    return client->requests.silent ? client->timeout_ns : client->timeout_ns * client->tries;
+    return requests->silent ? requests->timeout_ns : requests->timeout_ns * requests->tries;
 }
 
-void request_cancel(struct fmb_client *client, struct request *request)
+void request_cancel(struct requests *requests, struct request *request)
 {
-    end(&client->requests, request);
+    end(requests, request);
 }
 
 /* A query that follows another of the same request may be larger than that. */
@@ -116,38 +114,38 @@ static void raise_charge(struct requests *requests, struct request *request)
     request->charge = charge;
 }
 
-void request_send(struct fmb_client *client, struct request *request)
+void request_send(struct requests *requests, struct request *request)
 {
-    const int64_t retry = client->requests.pace[request->kind].retry;
-    raise_charge(&client->requests, request);
-    request->number = client->requests.next_number++;
-    big_endian_put_64(request->query + CLIENT_ID_AT, (uint64_t) client->client_id);
+    const int64_t retry = requests->pace[request->kind].retry;
+    raise_charge(requests, request);
+    request->number = requests->next_number++;
+    big_endian_put_64(request->query + CLIENT_ID_AT, (uint64_t) requests->client_id);
     big_endian_put_64(request->query + NUMBER_AT, (uint64_t) request->number);
-    request->interval = retry < client->timeout_ns ? retry : client->timeout_ns;
+    request->interval = retry < requests->timeout_ns ? retry : requests->timeout_ns;
     request->repeated = false;
-    client->counts.queries++;
-    publish(client, request);
+    requests->counts.queries++;
+    publish(requests, request);
     request->first_at = request->sent_at;
-    request->give_up_at = request->sent_at + patience(client);
+    request->give_up_at = request->sent_at + patience(requests);
 }
 
 /* The next queries begin with the interval that this one has come to, until one is answered without
  * being repeated. */
-static void repeat(struct fmb_client *client, struct request *request)
+static void repeat(struct requests *requests, struct request *request)
 {
-    struct request_pace *pace = &client->requests.pace[request->kind];
+    struct request_pace *pace = &requests->pace[request->kind];
     if (!request->pausing) {
         request->interval *= 2;
-        if (request->interval > client->timeout_ns)
-            request->interval = client->timeout_ns;
+        if (request->interval > requests->timeout_ns)
+            request->interval = requests->timeout_ns;
         if (request->interval > pace->retry)
             pace->retry = request->interval;
     } else {
-        request->give_up_at = clock_ns() + patience(client);
+        request->give_up_at = clock_ns() + patience(requests);
     }
     request->repeated = true;
-    client->counts.repeated++;
-    publish(client, request);
+    requests->counts.repeated++;
+    publish(requests, request);
 }
 
 /* ---- Results ---- */
@@ -202,21 +200,20 @@ static void pause_request(struct request *request)
 }
 
 /* The handler has said what comes next. */
-static void proceed(struct fmb_client *client, struct request *request, enum request_taken taken)
+static void proceed(struct requests *requests, struct request *request, enum request_taken taken)
 {
     request->earlier = taken == REQUEST_WHOLE ? request->number : -1;
     if (taken == REQUEST_COMPLETE)
-        end(&client->requests, request);
+        end(requests, request);
     else
-        request_send(client, request);
+        request_send(requests, request);
 }
 
-void requests_take(struct fmb_client *client, const struct request_result *result)
+void requests_take(struct requests *requests, const struct request_result *result)
 {
-    struct requests *requests = &client->requests;
     struct request *request = find(requests, result);
     if (!request) {
-        client->counts.contradicting += recent_contradicts(&client->recent, result);
+        requests->counts.contradicting += recent_contradicts(&requests->recent, result);
         note_heard(requests, result->kind);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_heard(requests, result->kind);
@@ -225,43 +222,42 @@ void requests_take(struct fmb_client *client, const struct request_result *resul
         const int64_t number = request->number;
         const enum request_taken taken = request->handler(request->user, request, result);
         if (taken == REQUEST_MALFORMED) {
-            client->counts.malformed++;
+            requests->counts.malformed++;
             return;
         }
         measure(&requests->pace[request->kind], request);
         note_heard(requests, request->kind);
-        client->counts.answered++;
-        recent_note(&client->recent, result, result->number);
+        requests->counts.answered++;
+        recent_note(&requests->recent, result, result->number);
         if (number != result->number)
-            recent_note(&client->recent, result, number);
-        proceed(client, request, taken);
+            recent_note(&requests->recent, result, number);
+        proceed(requests, request, taken);
     }
 }
 
 /* ---- Time ---- */
 
-void requests_give_up(struct fmb_client *client, int status)
+void requests_give_up(struct requests *requests, int status)
 {
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
-        struct request *request = &client->requests.request[i];
+        struct request *request = &requests->request[i];
         const struct request_result none = {.kind = request->kind, .status = status, .detail = ""};
         if (!request->under_way)
             continue;
-        end(&client->requests, request);
+        end(requests, request);
         request->handler(request->user, request, &none);
     }
 }
 
-static void give_up(struct fmb_client *client, struct request *request)
+static void give_up(struct requests *requests, struct request *request)
 {
-    struct requests *requests = &client->requests;
     const struct request_result none = {
         .kind = request->kind, .status = FMB_CLIENT_NO_ANSWER, .detail = ""};
     if (requests->heard_at < request->first_at) {
-        client->counts.outages += !requests->silent;
+        requests->counts.outages += !requests->silent;
         requests->silent = true;
         requests_forget_pace(requests);
-        requests_give_up(client, FMB_CLIENT_NO_SERVICE);
+        requests_give_up(requests, FMB_CLIENT_NO_SERVICE);
         return;
     }
     end(requests, request);
@@ -279,29 +275,29 @@ static bool is_in_line(const struct request_pace *pace, const struct request *re
 }
 
 /* A caller that was away for long has not repeated the query: it is given another timeout. */
-static bool is_given_up(const struct fmb_client *client, struct request *request, int64_t time)
+static bool is_given_up(const struct requests *requests, struct request *request, int64_t time)
 {
     if (request->pausing || time < request->give_up_at)
         return false;
-    if (request->sent_at >= request->give_up_at - client->timeout_ns)
+    if (request->sent_at >= request->give_up_at - requests->timeout_ns)
         return true;
-    request->give_up_at = time + client->timeout_ns;
+    request->give_up_at = time + requests->timeout_ns;
     return false;
 }
 
-static void look_after(struct fmb_client *client, struct request *request, int64_t time)
+static void look_after(struct requests *requests, struct request *request, int64_t time)
 {
-    const struct request_pace *pace = &client->requests.pace[request->kind];
+    const struct request_pace *pace = &requests->pace[request->kind];
     const int64_t heard_at = pace->heard_at;
     if (!request->under_way || time < request->deadline)
         return;
-    if (is_given_up(client, request, time))
-        give_up(client, request);
+    if (is_given_up(requests, request, time))
+        give_up(requests, request);
     else if (!request->pausing && is_in_line(pace, request, time))
         request->deadline =
             request->interval + (heard_at + request->interval > time ? heard_at : time);
     else
-        repeat(client, request);
+        repeat(requests, request);
     if (!request->pausing && request->deadline > request->give_up_at)
         request->deadline = request->give_up_at;
 }
@@ -333,63 +329,16 @@ static int wait_ms(const struct requests *requests, int64_t until)
 }
 
 /* Results that wait are read before queries are repeated: the caller may have been away. */
-void requests_step(struct fmb_client *client, int other_fd, int64_t until)
+void requests_step(struct requests *requests, int other_fd, int64_t until)
 {
-    client_wait(client, other_fd, wait_ms(&client->requests, until));
-    client_receive(client);
-    if (client->failed)
-        requests_give_up(client, FMB_CLIENT_NO_BUS);
-    if (client->requests.count == 0)
+    const struct request_transport *transport = &requests->transport;
+    transport->wait(transport->user, other_fd, wait_ms(requests, until));
+    if (!transport->receive(transport->user))
+        requests_give_up(requests, FMB_CLIENT_NO_BUS);
+    if (requests->count == 0)
         return;
     const int64_t time = clock_ns();
-    note_oldest(&client->requests);
+    note_oldest(requests);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
-        look_after(client, &client->requests.request[i], time);
-}
-
-/* ---- Encoded queries (fmb_client_raw.h) ---- */
-
-bool fmb_client_raw_ready(const struct fmb_client *client, size_t bytes)
-{
-    return requests_ready(&client->requests, bytes);
-}
-
-static enum request_taken give_raw(void *user, struct request *request,
-                                   const struct request_result *result)
-{
-    const struct fmb_client_raw_result out = {result->status, result->bytes, result->size};
-    request->raw_sink(user, &out);
-    return REQUEST_COMPLETE;
-}
-
-int fmb_client_raw_send(struct fmb_client *client, enum fmb_client_kind kind,
-                        const unsigned char *message, size_t size, size_t bytes,
-                        fmb_client_raw_sink *sink, void *user)
-{
-    if (client->inside)
-        return FMB_CLIENT_INSIDE;
-    if (size > QUERY_BYTES_MAX)
-        return FMB_OVER_LIMIT;
-    if (size < NUMBER_AT + sizeof(int64_t))
-        return FMB_WRONG_COUNT;
-    if (client->failed || !client_listen(client, (int) kind))
-        return FMB_CLIENT_NO_BUS;
-    client->inside = true;
-    struct request *request = request_begin(client, kind, bytes, give_raw, user);
-    request->raw_sink = sink;
-    request->size = size;
-    memcpy(request->query, message, size);
-    request_send(client, request);
-    client->inside = false;
-    return FMB_OK;
-}
-
-int fmb_client_raw_step(struct fmb_client *client, int other_fd, double timeout)
-{
-    if (client->inside)
-        return FMB_CLIENT_INSIDE;
-    client->inside = true;
-    requests_step(client, other_fd, clock_ns() + (int64_t) (1e9 * timeout));
-    client->inside = false;
-    return client->failed ? FMB_CLIENT_NO_BUS : client->requests.count;
+        look_after(requests, &requests->request[i], time);
 }

@@ -12,24 +12,10 @@
 #ifndef REQUEST_H
 #define REQUEST_H
 
-#include "fmb_client_raw.h"
 #include "query.h"
+#include "recent.h"
 
 #include <stdint.h>
-
-/* A well-formed result; or none, if status is negative (enum fmb_client_status). */
-struct request_result {
-    enum fmb_client_kind kind;
-    int status;
-    const char *detail; /* "" if OK, or if there is no result */
-    union {
-        const struct pair_result *pair;
-        const struct scene_result *scene;
-    };
-    const unsigned char *bytes; /* of the message; NULL: there is no result */
-    size_t size;
-    int64_t number;
-};
 
 /* What a handler decided about a result. */
 enum request_taken {
@@ -40,6 +26,9 @@ enum request_taken {
      * of the first query with status OK, from another service, is accepted too. */
     REQUEST_WHOLE
 };
+
+/* A query begins with fingerprint, utime and the ids that the engine writes: so many bytes. */
+enum { REQUEST_IDS_END = 32 };
 
 struct request;
 
@@ -79,7 +68,26 @@ struct request_pace {
     int64_t oldest;          /* number of the oldest request under way */
 };
 
+/* How requests reach the bus. The owner of the requests supplies it. */
+struct request_transport {
+    void *user;
+    /* Returns false if the query could not be sent. */
+    bool (*publish)(void *user, enum fmb_client_kind kind, const unsigned char *query, size_t size);
+    /* Waits until a datagram is pending or other_fd (-1: none) is readable, up to timeout_ms. */
+    void (*wait)(void *user, int other_fd, int timeout_ms);
+    /* Passes the results in pending datagrams to requests_take(). Returns false if the bus has
+     * failed. */
+    bool (*receive)(void *user);
+};
+
+/* transport to tries are set by the owner; then requests_forget_pace() completes the start. */
 struct requests {
+    struct request_transport transport;
+    int64_t client_id;
+    int64_t timeout_ns; /* of one try */
+    int tries;
+    struct fmb_client_counts counts;
+    struct recent recent;
     struct request request[FMB_CLIENT_RAW_WINDOW];
     int count;           /* under way */
     size_t charge;       /* of all of them */
@@ -89,8 +97,6 @@ struct requests {
     struct request_pace pace[FMB_CLIENT_KINDS];
 };
 
-struct fmb_client;
-
 /* Resets the estimates: at the start, and when the service has stopped answering. */
 void requests_forget_pace(struct requests *requests);
 
@@ -98,21 +104,21 @@ void requests_forget_pace(struct requests *requests);
 bool requests_ready(const struct requests *requests, size_t bytes);
 
 /* Begins a request. The caller writes request->query and size, then calls request_send(). */
-struct request *request_begin(struct fmb_client *client, enum fmb_client_kind kind, size_t bytes,
+struct request *request_begin(struct requests *requests, enum fmb_client_kind kind, size_t bytes,
                               request_handler *handler, void *user);
-void request_send(struct fmb_client *client, struct request *request);
+void request_send(struct requests *requests, struct request *request);
 
 /* Ends a request that was begun and not sent. The handler is not called. */
-void request_cancel(struct fmb_client *client, struct request *request);
+void request_cancel(struct requests *requests, struct request *request);
 
 /* Waits until a datagram comes, a deadline or the time until (clock_ns()) is reached, or other_fd
  * (-1: none) is readable. Receives pending datagrams, then repeats or gives up what is due. */
-void requests_step(struct fmb_client *client, int other_fd, int64_t until);
+void requests_step(struct requests *requests, int other_fd, int64_t until);
 
 /* Ends all requests without a result. */
-void requests_give_up(struct fmb_client *client, int status);
+void requests_give_up(struct requests *requests, int status);
 
 /* Processes a result for this client. */
-void requests_take(struct fmb_client *client, const struct request_result *result);
+void requests_take(struct requests *requests, const struct request_result *result);
 
 #endif

@@ -3,7 +3,7 @@
 #define SCENE_PART_H
 
 #include "fmb_client.h"
-#include "question.h"
+#include "client_scene.h"
 
 struct part {
     bool single;   /* a pair query */

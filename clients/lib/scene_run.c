@@ -1,11 +1,9 @@
 #include "scene_run.h"
 
-#include "client.h"
 #include "clock.h"
 #include "order.h"
 #include "wire.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -28,7 +26,7 @@ static struct part_run *part_of(struct scene_run *run, uint64_t part)
 static void whole_placement(const struct part_run *part, int32_t i, unsigned char *geometry,
                             struct placement *out)
 {
-    question_placement(&part->run->scene->placements[part->part.placement[i]], geometry, out);
+    client_scene_placement(&part->run->scene->placements[part->part.placement[i]], geometry, out);
 }
 
 /* The entry of the i-th placement of the part in the table of held bodies; NULL: it is anonymous.
@@ -42,7 +40,7 @@ static struct held_body *held_of(const struct part_run *part, int32_t i)
         return body->held;
     unsigned char *scratch = run->geometry + QUERY_BYTES_MAX;
     whole_placement(part, i, scratch, &placement);
-    return held_find(&run->client->held, &placement.geometry);
+    return held_find(run->held, &placement.geometry);
 }
 
 /* A body that the service holds is written by handle; others whole, with their frames in geometry.
@@ -54,7 +52,7 @@ static void write_placement(struct part_run *part, int32_t i, unsigned char *geo
     part->whole[i] = !body || !body->held;
     whole_placement(part, i, geometry, out);
     if (!part->whole[i])
-        question_use_handle(out, &body->handle, part->run->none);
+        client_scene_use_handle(out, &body->handle, part->run->none);
 }
 
 /* Writes the placements. Returns their bytes; or more than max, and not all of them are written. */
@@ -167,7 +165,7 @@ static bool write_query(struct part_run *part, struct request *request)
     const size_t size = (part->part.single ? write_pair : write_scene)(part, request->query);
     if (size > 0) {
         request->size = size;
-        count_placements(&part->run->client->counts, part);
+        count_placements(&part->run->requests->counts, part);
     }
     return size > 0;
 }
@@ -234,7 +232,7 @@ static enum request_taken refuse(struct part_run *part, int status, const char *
  * within half a timeout. */
 static void adapt_pairs(struct scene_run *run, int32_t pairs, int64_t compute_ns)
 {
-    const double share = (double) run->client->timeout_ns / (2 * FMB_CLIENT_RAW_WINDOW);
+    const double share = (double) run->requests->timeout_ns / (2 * FMB_CLIENT_RAW_WINDOW);
     const double each = (double) (compute_ns > 0 ? compute_ns : 1) / pairs;
     int32_t most = PAIRS_GROWTH * run->pairs_max;
     most = most < QUERY_PAIRS_MAX ? most : QUERY_PAIRS_MAX;
@@ -319,7 +317,6 @@ static size_t bytes_of(const struct scene_run *run, const struct part *part)
 
 static void begin_part(struct scene_run *run, struct part_run *part, size_t bytes)
 {
-    struct fmb_client *client = run->client;
     const enum fmb_client_kind kind = part->part.single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE;
     part->run = run;
     part->unknown = part->definitions = 0;
@@ -331,23 +328,22 @@ static void begin_part(struct scene_run *run, struct part_run *part, size_t byte
         refuse(part, run->status, NULL);
         return;
     }
-    struct request *request = request_begin(client, kind, bytes, take_result, part);
+    struct request *request = request_begin(run->requests, kind, bytes, take_result, part);
     if (write_next(part, request, REQUEST_NEXT) == REQUEST_NEXT)
-        request_send(client, request);
+        request_send(run->requests, request);
     else
-        request_cancel(client, request);
+        request_cancel(run->requests, request);
 }
 
 /* On output: false once there are no more parts. */
 static bool fill_window(struct scene_run *run, struct cut *cut)
 {
-    const struct requests *requests = &run->client->requests;
     while (run->next - run->oldest < FMB_CLIENT_RAW_WINDOW) {
         struct part_run *part = part_of(run, run->next);
         if (!run->is_cut && !cut_next(cut, run->pairs_max, &part->part))
             return false;
         const size_t bytes = bytes_of(run, &part->part);
-        run->is_cut = run->status == FMB_OK && !requests_ready(requests, bytes);
+        run->is_cut = run->status == FMB_OK && !requests_ready(run->requests, bytes);
         if (run->is_cut)
             return true;
         begin_part(run, part, bytes);
@@ -368,20 +364,22 @@ static void deliver(struct scene_run *run, struct order *order)
 
 static void wait_for_results(struct scene_run *run)
 {
-    requests_step(run->client, -1, run->until);
+    requests_step(run->requests, -1, run->until);
     if (run->status == FMB_OK && run->until < clock_ns())
         run->status = FMB_CLIENT_LATE;
     if (run->status == FMB_CLIENT_LATE)
-        requests_give_up(run->client, FMB_CLIENT_LATE);
+        requests_give_up(run->requests, FMB_CLIENT_LATE);
 }
 
-static void begin(struct scene_run *run, const struct fmb_client_scene *scene)
+static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
+                  const struct cut *cut)
 {
     const double most = 1e9; /* seconds: some 30 years are no limit */
     const double within = scene->within > 0 && scene->within < most ? scene->within : most;
     if (run->pairs_max == 0 || run->method != scene->method || run->want != scene->want)
         run->pairs_max = PAIRS_FIRST;
     run->recut = false;
+    run->cut = cut;
     run->scene = scene;
     run->method = scene->method;
     run->want = scene->want;
@@ -396,99 +394,33 @@ static void run_parts(struct scene_run *run, struct cut *cut, struct order *orde
     while (more || run->oldest < run->next) {
         more = more && fill_window(run, cut);
         deliver(run, order);
-        if (run->client->requests.count > 0)
+        if (run->requests->count > 0)
             wait_for_results(run);
     }
 }
 
-/* ---- The calls ---- */
-
-const char *fmb_client_why(const struct fmb_client *client)
-{
-    return client->why;
-}
-
-/* A status of the whole scene. */
-static int fail(struct fmb_client *client, int status)
-{
-    snprintf(client->why, sizeof client->why, "%s", fmb_client_status_text(status));
-    return status;
-}
-
-static int query_parts(struct fmb_client *client, const struct fmb_client_scene *scene,
-                       struct cut *cut, fmb_client_sink *sink, void *user)
+static int run_cut(struct scene_run *run, const struct fmb_client_scene *scene, struct cut *cut,
+                   fmb_client_sink *sink, void *user)
 {
     struct order order;
     if (!order_begin(cut, sink, user, &order))
-        return fail(client, FMB_CLIENT_NO_MEMORY);
-    client->inside = true;
-    client->run.client = client;
-    client->run.cut = cut;
-    begin(&client->run, scene);
-    run_parts(&client->run, cut, &order);
-    client->inside = false;
+        return FMB_CLIENT_NO_MEMORY;
+    begin(run, scene, cut);
+    run_parts(run, cut, &order);
     order_end(&order);
     return FMB_OK;
 }
 
-/* single: each pair is a query of its own. */
-static int query(struct fmb_client *client, const struct fmb_client_scene *scene, bool single,
-                 fmb_client_sink *sink, void *user)
+int scene_run(struct scene_run *run, const struct fmb_client_scene *scene, bool single,
+              fmb_client_sink *sink, void *user)
 {
-    struct cut cut;
-    if (client->inside)
-        return FMB_CLIENT_INSIDE;
-    const int status = question_check(scene, client->why);
-    if (status != FMB_OK)
-        return status;
-    if (client->failed || !client_listen(client, single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE))
-        return fail(client, FMB_CLIENT_NO_BUS);
-    int done = FMB_OK;
-    client->run.recut = false;
+    int status;
+    run->recut = false;
     do {
-        const bool whole = client->run.recut;
-        const bool begun =
-            cut_begin(scene, single, whole, &client->held, client->run.geometry, &cut);
-        done = begun ? query_parts(client, scene, &cut, sink, user)
-                     : fail(client, FMB_CLIENT_NO_MEMORY);
+        struct cut cut;
+        const bool begun = cut_begin(scene, single, run->recut, run->held, run->geometry, &cut);
+        status = begun ? run_cut(run, scene, &cut, sink, user) : FMB_CLIENT_NO_MEMORY;
         cut_end(&cut);
-    } while (client->run.recut && done == FMB_OK);
-    return done;
-}
-
-int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *scene,
-                     fmb_client_sink *sink, void *user)
-{
-    return query(client, scene, scene->want & FMB_CLIENT_WANT_CERTIFICATE, sink, user);
-}
-
-static void keep_answer(void *user, const struct fmb_client_answer *answer)
-{
-    struct fmb_client *client = user;
-    client->answer = *answer;
-    snprintf(client->text, sizeof client->text, "%s", answer->text);
-    client->answer.text = client->text;
-    if (answer->certificate)
-        client->answer.certificate = strcpy(client->certificate, answer->certificate);
-}
-
-int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
-                          double duration, unsigned want, struct fmb_client_answer *out)
-{
-    static const unsigned both[1][2] = {{0, 1}};
-    const struct fmb_client_scene scene = {.placements = pair,
-                                           .placement_count = 2,
-                                           .which = FMB_CLIENT_LISTED,
-                                           .pairs = both,
-                                           .pair_count = 1,
-                                           .duration = duration,
-                                           .want = want};
-    *out = (struct fmb_client_answer){.b = 1, .text = ""};
-    out->status = query(client, &scene, true, keep_answer, client);
-    if (out->status == FMB_OK)
-        *out = client->answer;
-    else
-        out->text =
-            out->status == FMB_CLIENT_INSIDE ? fmb_client_status_text(out->status) : client->why;
-    return out->status;
+    } while (run->recut && status == FMB_OK);
+    return status;
 }

@@ -22,8 +22,10 @@ struct part_run {
     bool whole[QUERY_PLACEMENTS_MAX], whole_earlier[QUERY_PLACEMENTS_MAX];
 };
 
+/* requests and held are set by the owner, the others are 0 at first. */
 struct scene_run {
-    struct fmb_client *client;
+    struct requests *requests;
+    struct held *held;
     const struct fmb_client_scene *scene;
     const struct cut *cut;
     int status;            /* not 0: the remaining pairs are given up with it */
@@ -41,5 +43,10 @@ struct scene_run {
     /* The frames of its placements, and of one more; and those of a handle. */
     unsigned char geometry[2 * QUERY_BYTES_MAX], none[GEOMETRY_NONE_BYTES];
 };
+
+/* Queries the pairs of a checked scene and passes the answers to sink, in their order. single: each
+ * pair is a query of its own. Returns FMB_OK or FMB_CLIENT_NO_MEMORY. */
+int scene_run(struct scene_run *run, const struct fmb_client_scene *scene, bool single,
+              fmb_client_sink *sink, void *user);
 
 #endif

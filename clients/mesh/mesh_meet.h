@@ -3,7 +3,7 @@
 #ifndef MESH_MEET_H
 #define MESH_MEET_H
 
-#include "fmb/fmb.h"
+#include "fmb.h"
 #include "mesh.h"
 
 /* What a face is. */

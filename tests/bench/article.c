@@ -96,10 +96,10 @@ static struct means means_of(const struct bench *bench, const struct cell *cell,
     return means;
 }
 
-static void put(struct json *json, const struct cell *cell, bool in_contact, double article,
+static void put(struct json_writer *json, const struct cell *cell, bool in_contact, double article,
                 const struct means *means)
 {
-    json_open(json, NULL, '{');
+    json_begin(json, NULL, '{');
     bench_put_cell(json, cell);
     json_bool(json, "contact", in_contact);
     json_number(json, "article_ratio", article);
@@ -108,7 +108,7 @@ static void put(struct json *json, const struct cell *cell, bool in_contact, dou
     json_number(json, "fmb_to_sat", means->fmb_to_sat);
     json_number(json, "fmb_to_sat_query", means->fmb_to_sat_query);
     json_number(json, "certified_to_sat", means->certified_to_sat);
-    json_close(json, '}');
+    json_end(json, '}');
 }
 
 static void cell_run(struct bench *bench, const struct cell *cell)
@@ -145,9 +145,9 @@ void article_run(struct bench *bench)
         "%-24s %9s %9s %9s %9s %9s %9s %9s %9s %9s %9s\n",
         "", "article", "fmb/query", "fmb/sat", "cert/sat", "fmb", "cached", "sat", "sat query",
         "certified", "query");
-    json_open(&bench->json, "article", '[');
+    json_begin(&bench->json, "article", '[');
     for (int i = 0; i < count; i++)
         if (cells[i].shape[0] <= cells[i].shape[1]) /* CT stands for TC, asked as B-A */
             cell_run(bench, &cells[i]);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }

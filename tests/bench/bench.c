@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "machine.h"
-#include "options.h"
+#include "bench_options.h"
 
 /* Of the loop that is always the same: more than this, and no time is to be believed to the last
  * few per cent. */
@@ -26,12 +26,12 @@ void bench_progress(const char *text)
     fflush(stdout);
 }
 
-void bench_put_cell(struct json *json, const struct cell *cell)
+void bench_put_cell(struct json_writer *json, const struct cell *cell)
 {
     char text[CELL_TEXT_MAX];
     json_number(json, "dim", cell->dim);
     json_bool(json, "moving", cell->moving);
-    json_text(json, "shapes", cell_shapes_text(cell, text));
+    json_string(json, "shapes", cell_shapes_text(cell, text));
 }
 
 void arena_of(const struct bench *bench, struct scene scene, struct pairs pairs, struct arena *out)
@@ -70,43 +70,43 @@ static const char *instructions_of(const struct bench *bench)
     return fmb_instructions_name(best);
 }
 
-static void put_machine(const struct bench *bench, struct json *json, bool pinned)
+static void put_machine(const struct bench *bench, struct json_writer *json, bool pinned)
 {
     char cpu[MACHINE_TEXT_MAX];
     const double noise = stopwatch_noise();
-    json_open(json, "machine", '{');
-    json_text(json, "cpu", machine_cpu(cpu));
+    json_begin(json, "machine", '{');
+    json_string(json, "cpu", machine_cpu(cpu));
     json_number(json, "cores", machine_cores());
-    json_text(json, "compiler", machine_compiler());
-    json_text(json, "instructions", instructions_of(bench));
+    json_string(json, "compiler", machine_compiler());
+    json_string(json, "instructions", instructions_of(bench));
     json_number(json, "last_level_cache_bytes", (double) machine_last_cache());
     json_bool(json, "pinned", pinned);
     json_number(json, "noise", noise);
     json_bool(json, "noisy", noise > much_noise);
-    json_close(json, '}');
+    json_end(json, '}');
 }
 
-static void put_settings(const struct bench *bench, struct json *json)
+static void put_settings(const struct bench *bench, struct json_writer *json)
 {
-    json_open(json, "settings", '{');
+    json_begin(json, "settings", '{');
     json_number(json, "bodies", (double) bench->bodies);
     json_number(json, "pairs", (double) bench->pairs);
     json_number(json, "blocks", bench->race.blocks);
     json_number(json, "seed", (double) bench->seed);
     json_bool(json, "quick", bench->quick);
-    json_close(json, '}');
+    json_end(json, '}');
 }
 
 /* The sections have been written to text; what is said of the machine comes before them, and is
  * known after. */
 static bool write_json(const struct bench *bench, bool pinned, const char *text, const char *path)
 {
-    struct json json = {fopen(path, "w"), false};
+    struct json_writer json = {fopen(path, "w"), false};
     if (!json.out)
         return false;
     fputc('{', json.out);
     json_number(&json, "bench", 1);
-    json_text(&json, "version", fmb_version());
+    json_string(&json, "version", fmb_version());
     put_machine(bench, &json, pinned);
     put_settings(bench, &json);
     fputs(text, json.out);
@@ -147,7 +147,7 @@ int main(int argc, char **argv)
     if (outcome != OPTIONS_RUN)
         return outcome;
     const bool pinned = stopwatch_pin();
-    bench.json = (struct json){open_memstream(&text, &length), true};
+    bench.json = (struct json_writer){open_memstream(&text, &length), true};
     if (!bench.json.out) {
         perror("bench");
         return EXIT_FAILURE;

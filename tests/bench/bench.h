@@ -3,7 +3,7 @@
 #define BENCH_H
 
 #include "contender.h"
-#include "json.h"
+#include "json_write.h"
 
 struct bench {
     size_t bodies; /* of a scene */
@@ -13,7 +13,7 @@ struct bench {
     bool quick;
     enum fmb_instructions instructions;
     const char *section; /* NULL: all */
-    struct json json;
+    struct json_writer json;
 };
 
 bool bench_wants(const struct bench *bench, const char *section);
@@ -22,7 +22,7 @@ bool bench_wants(const struct bench *bench, const char *section);
 void bench_progress(const char *text);
 
 /* "dim", "moving", "shapes" of an open object. */
-void bench_put_cell(struct json *json, const struct cell *cell);
+void bench_put_cell(struct json_writer *json, const struct cell *cell);
 
 /* A scene, and pairs of it. Not to be copied: the work points to the scene. */
 struct arena {

@@ -184,8 +184,8 @@ static void put(struct bench *bench, const char *name, const struct broad *broad
     const double count = (double) broad->scene->count;
     bench_progress(NULL);
     printf("%-16s %7.0f %8.2f", name, count, (double) broad->candidates / count);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", name);
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", name);
     json_number(&bench->json, "frames", count);
     json_number(&bench->json, "bytes", (double) fmb_tree_bytes(broad->scene->count));
     json_number(&bench->json, "candidates", (double) broad->candidates);
@@ -197,7 +197,7 @@ static void put(struct bench *bench, const char *name, const struct broad *broad
             printf(" %9.1f", times[k].median);
         json_number(&bench->json, runs[k].key, times[k].median);
     }
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     putchar('\n');
 }
 
@@ -239,12 +239,12 @@ void broad_run(struct bench *bench)
     for (int k = 0; k < RUNS; k++)
         printf(" %9s", runs[k].name);
     putchar('\n');
-    json_open(&bench->json, "broad", '[');
+    json_begin(&bench->json, "broad", '[');
     for (size_t count = 100; count <= most; count *= 10) {
         broad_of(bench, "cuboids", FMB_CUBOID, false, count);
         broad_of(bench, "moving cuboids", FMB_CUBOID, true, count);
         broad_of(bench, "faces", FMB_FACE, false, count);
         broad_of(bench, "moving faces", FMB_FACE, true, count);
     }
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }

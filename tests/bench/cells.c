@@ -21,7 +21,7 @@ struct view {
     /* What stands beside the columns. */
     void (*print_title)(void);
     void (*print)(const struct spread *times);
-    void (*put)(struct json *json, const struct spread *times);
+    void (*put)(struct json_writer *json, const struct spread *times);
 };
 
 /* ---- cells ---- */
@@ -38,20 +38,20 @@ static void print_ratios(const struct spread *times)
            times[CONTENDER_SINGLE].median / yardstick);
 }
 
-static void put_methods(struct json *json, const struct spread *times)
+static void put_methods(struct json_writer *json, const struct spread *times)
 {
-    json_open(json, "methods", '[');
+    json_begin(json, "methods", '[');
     for (int i = 0; i < CONTENDERS; i++) {
         if (isnan(times[i].median))
             continue;
-        json_open(json, NULL, '{');
-        json_text(json, "name", contender_name((enum contender) i));
+        json_begin(json, NULL, '{');
+        json_string(json, "name", contender_name((enum contender) i));
         json_number(json, "ns", times[i].median);
         json_number(json, "low", times[i].low);
         json_number(json, "high", times[i].high);
-        json_close(json, '}');
+        json_end(json, '}');
     }
-    json_close(json, ']');
+    json_end(json, ']');
 }
 
 /* ---- hybrid ---- */
@@ -71,7 +71,7 @@ static void print_hybrid(const struct spread *times)
     printf(" %9.1f %9.2f", hybrid_of(times), times[CONTENDER_SINGLE].median / hybrid_of(times));
 }
 
-static void put_hybrid(struct json *json, const struct spread *times)
+static void put_hybrid(struct json_writer *json, const struct spread *times)
 {
     json_number(json, "hybrid_ns", hybrid_of(times));
 }
@@ -219,10 +219,10 @@ static void print_row(const struct view *view, const struct cell *cell, bool in_
     putchar('\n');
 }
 
-static void put_row(struct json *json, const struct view *view, const struct cell *cell,
+static void put_row(struct json_writer *json, const struct view *view, const struct cell *cell,
                     bool in_contact, const struct result *result)
 {
-    json_open(json, NULL, '{');
+    json_begin(json, NULL, '{');
     bench_put_cell(json, cell);
     json_bool(json, "contact", in_contact);
     json_number(json, "pairs", (double) result->pairs);
@@ -233,7 +233,7 @@ static void put_row(struct json *json, const struct view *view, const struct cel
         view->put(json, result->times);
     if (view->contact_only)
         json_number(json, "volume_ratio", result->volume_ratio);
-    json_close(json, '}');
+    json_end(json, '}');
 }
 
 static void show(struct bench *bench, const struct view *view, const struct cell *cells, int count,
@@ -245,13 +245,13 @@ static void show(struct bench *bench, const struct view *view, const struct cell
     if (view->print_title)
         view->print_title();
     printf("%s\n", view->contact_only ? "  volumes, fmb to certified" : "");
-    json_open(&bench->json, view->section, '[');
+    json_begin(&bench->json, view->section, '[');
     for (int i = 0; i < count; i++)
         for (int contact = 1; contact >= view->contact_only; contact--) {
             print_row(view, &cells[i], contact, &results[i][contact]);
             put_row(&bench->json, view, &cells[i], contact, &results[i][contact]);
         }
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }
 
 void cells_run(struct bench *bench)

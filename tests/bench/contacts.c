@@ -197,13 +197,13 @@ static void put_method(struct bench *bench, enum contender contender, const stru
 {
     if (may_be_wrong(contender))
         printf(" %5.1f", 100 * wrong);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", contender_name(contender));
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", contender_name(contender));
     json_number(&bench->json, "ns", ns->median);
     json_number(&bench->json, "low", ns->low);
     json_number(&bench->json, "high", ns->high);
     json_number(&bench->json, "wrong", wrong);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
 }
 
 static void race(struct bench *bench, const struct work *work, const enum contender *raced,
@@ -216,7 +216,7 @@ static void race(struct bench *bench, const struct work *work, const enum conten
     race_run(&race, work, raced, count, times);
     contender_run(CONTENDER_QUERY, work);
     memcpy(certified, work->verdicts, work->count);
-    json_open(&bench->json, "methods", '[');
+    json_begin(&bench->json, "methods", '[');
     for (int i = 0; i < count; i++) {
         if (raced[i] != CONTENDER_BATCH_BOX)
             printf(" %8.1f", times[i].median);
@@ -226,7 +226,7 @@ static void race(struct bench *bench, const struct work *work, const enum conten
             printf(" %8s", "");
         put_method(bench, raced[i], &times[i], wrong_of(raced[i], work, certified));
     }
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
     free(certified);
 }
 
@@ -242,12 +242,12 @@ static void row(struct bench *bench, const struct cell *cell, const struct scena
     arena.work.peers = peers_open(solids, arena.scene.count);
     bench_progress(NULL);
     printf("%-15s", scenario->name);
-    json_open(&bench->json, NULL, '{');
+    json_begin(&bench->json, NULL, '{');
     bench_put_cell(&bench->json, cell);
-    json_text(&bench->json, "pairs_are", scenario->name);
+    json_string(&bench->json, "pairs_are", scenario->name);
     json_number(&bench->json, "pairs", (double) bench->pairs);
     race(bench, &arena.work, raced, count);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     putchar('\n');
     peers_close(arena.work.peers);
     free(solids);
@@ -283,10 +283,10 @@ void contacts_run(struct bench *bench)
         "are;\n"
         "touching is contact.\n");
     peers_help();
-    json_open(&bench->json, "contacts", '[');
+    json_begin(&bench->json, "contacts", '[');
     for (int dim = 3; dim >= 2; dim--)
         for (int moving = 0; moving < 2; moving++)
             for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
                 table(bench, &(struct cell){dim, moving, {shapes[i][0], shapes[i][1]}});
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }

@@ -2,7 +2,7 @@
 #ifndef CONTENDER_H
 #define CONTENDER_H
 
-#include "scene.h"
+#include "bench_scene.h"
 #include "stopwatch.h"
 
 /* Pairs to be asked, T = 1, and room for the answers of the batch. */

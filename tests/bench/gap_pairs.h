@@ -2,7 +2,7 @@
 #ifndef GAP_PAIRS_H
 #define GAP_PAIRS_H
 
-#include "scene.h"
+#include "bench_scene.h"
 
 struct gap_pairs {
     size_t count;             /* pair i is body i and body count + i */

@@ -160,8 +160,8 @@ static const struct kind {
 
 static void put_run(struct bench *bench, struct gaps *gaps, int k, double ns)
 {
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", run_name(k));
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", run_name(k));
     json_number(&bench->json, "ns", ns);
     printf(" %7.0f", ns);
     if (k >= OWN_RUNS) {
@@ -171,7 +171,7 @@ static void put_run(struct bench *bench, struct gaps *gaps, int k, double ns)
         json_number(&bench->json, "wrong", errors.wrong);
         printf(" %5.1f %5.1f", 100 * errors.off, 100 * errors.wrong);
     }
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
 }
 
 static void row(struct bench *bench, const struct kind *kind, double target)
@@ -185,14 +185,14 @@ static void row(struct bench *bench, const struct kind *kind, double target)
     time_runs(bench, &gaps, runs, count, ns);
     bench_progress(NULL);
     printf("%-10s %6.0e", kind->name, target);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "kind", kind->name);
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "kind", kind->name);
     json_number(&bench->json, "gap", target);
-    json_open(&bench->json, "runs", '[');
+    json_begin(&bench->json, "runs", '[');
     for (int k = 0; k < count; k++)
         put_run(bench, &gaps, runs[k], ns[k]);
-    json_close(&bench->json, ']');
-    json_close(&bench->json, '}');
+    json_end(&bench->json, ']');
+    json_end(&bench->json, '}');
     for (int k = 0; k < OWN_RUNS && count > OWN_RUNS; k++)
         printf(" %6.2f", ns[k] / ns[OWN_RUNS]);
     putchar('\n');
@@ -227,9 +227,9 @@ void gaps_run(struct bench *bench)
         "more than 1e-9 of the size of the larger body, then that of its wrong verdicts. Last:\n"
         "ratios of batch, single and query to the first of the others.\n");
     peers_help();
-    json_open(&bench->json, "gaps", '[');
+    json_begin(&bench->json, "gaps", '[');
     table(bench, true);
     table(bench, false);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
     margins_run(bench);
 }

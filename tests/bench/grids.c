@@ -29,14 +29,14 @@ static void grid_run(struct bench *bench, const char *name, double pitch, int si
     race_run(&race, &work, asked, ASKED, times);
     bench_progress(NULL);
     printf("%-28s %7zu", name, pairs.count);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", name);
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", name);
     json_number(&bench->json, "pairs", (double) pairs.count);
     for (int i = 0; i < ASKED; i++) {
         printf(" %10.1f", times[i].median);
         json_number(&bench->json, keys[i], times[i].median);
     }
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     putchar('\n');
     work_free(&work);
     pairs_free(&pairs);
@@ -97,12 +97,12 @@ static void touching_kind_run(struct bench *bench, const char *kind, size_t coun
     struct work work = work_of(&scene, &pairs);
     work.instructions = bench->instructions;
     race_run(&race, &work, touching_asked, TOUCHING, times);
-    json_open(&bench->json, kind, '{');
+    json_begin(&bench->json, kind, '{');
     for (int i = 0; i < TOUCHING; i++) {
         printf(" %8.1f", times[i].median);
         json_number(&bench->json, touching_keys[i], times[i].median);
     }
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     work_free(&work);
     pairs_free(&pairs);
     scene_free(&scene);
@@ -118,13 +118,13 @@ static void touching_cell_run(struct bench *bench, const struct cell *cell)
     draw_touching(bench, cell, count, questions);
     bench_progress(cell_text(cell, text));
     printf("%-14s", cell_text(cell, text));
-    json_open(&bench->json, NULL, '{');
+    json_begin(&bench->json, NULL, '{');
     bench_put_cell(&bench->json, cell);
     for (int kind = 0; kind < KINDS; kind++) {
         touching_kind_run(bench, kinds[kind], count, questions[kind]);
         free(questions[kind]);
     }
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     bench_progress(NULL);
     putchar('\n');
 }
@@ -138,10 +138,10 @@ static void touching_run(struct bench *bench)
         for (int i = 0; i < TOUCHING; i++)
             printf(" %8s", contender_name(touching_asked[i]));
     putchar('\n');
-    json_open(&bench->json, "touching", '[');
+    json_begin(&bench->json, "touching", '[');
     for (int i = 0; i < count; i++)
         touching_cell_run(bench, &cells[i]);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }
 
 void grids_run(struct bench *bench)
@@ -153,9 +153,9 @@ void grids_run(struct bench *bench)
            side * side * side);
     printf("%-28s %7s %10s %10s %10s %10s %10s %10s\n", "", "pairs", "query", "batch", "exact",
            "query+box", "single", "sat");
-    json_open(&bench->json, "grids", '[');
+    json_begin(&bench->json, "grids", '[');
     grid_run(bench, "pitch 1, all touch", 1, side);
     grid_run(bench, "pitch 0.1, an ulp either way", 0.1, side);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
     touching_run(bench);
 }

@@ -21,14 +21,14 @@ static void instructions_of_cell(struct bench *bench, const struct cell *cell)
         arena.work.instructions = (enum fmb_instructions) set;
         race_run(&bench->race, &arena.work, &batch, 1, &times);
         printf("   %s %.1f", fmb_instructions_name(set), times.median);
-        json_open(&bench->json, NULL, '{');
-        json_text(&bench->json, "name", fmb_instructions_name(set));
-        json_text(&bench->json, "cell", text);
+        json_begin(&bench->json, NULL, '{');
+        json_string(&bench->json, "name", fmb_instructions_name(set));
+        json_string(&bench->json, "cell", text);
         json_bool(&bench->json, "contact", true);
         json_number(&bench->json, "ns", times.median);
         json_number(&bench->json, "low", times.low);
         json_number(&bench->json, "high", times.high);
-        json_close(&bench->json, '}');
+        json_end(&bench->json, '}');
     }
     putchar('\n');
     arena_close(&arena);
@@ -45,10 +45,10 @@ void instructions_run(struct bench *bench)
     printf(
         "\nThe batch with each set of instructions that this machine and this build have,\n"
         "nanoseconds a pair.\n\n");
-    json_open(&bench->json, "instructions", '[');
+    json_begin(&bench->json, "instructions", '[');
     for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
         instructions_of_cell(bench, &cells[i]);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }
 
 /* ---- Growth ---- */
@@ -87,14 +87,14 @@ static const struct cell growing = {3, false, {FMB_CUBOID, FMB_CUBOID}};
 
 static void put(struct bench *bench, size_t bodies, size_t pairs, struct spread times)
 {
-    json_open(&bench->json, NULL, '{');
+    json_begin(&bench->json, NULL, '{');
     json_number(&bench->json, "bodies", (double) bodies);
     json_number(&bench->json, "pairs", (double) pairs);
     json_number(&bench->json, "bytes", (double) (bodies * sizeof(struct fmb_prepared)));
     json_number(&bench->json, "ns", times.median);
     json_number(&bench->json, "low", times.low);
     json_number(&bench->json, "high", times.high);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     bench_progress(NULL);
     printf("%10zu bodies (%.3g MB), %9zu pairs: %8.1f ns a pair\n", bodies,
            (double) (bodies * sizeof(struct fmb_prepared)) / 1e6, pairs, times.median);
@@ -143,12 +143,12 @@ void growth_run(struct bench *bench)
     if (!bench_wants(bench, "growth"))
         return;
     printf("\nThe batch as scenes grow, and as calls do: 3D static cuboids, random pairs.\n\n");
-    json_open(&bench->json, "growth", '{');
-    json_open(&bench->json, "bodies", '[');
+    json_begin(&bench->json, "growth", '{');
+    json_begin(&bench->json, "bodies", '[');
     grow_bodies(bench);
-    json_close(&bench->json, ']');
-    json_open(&bench->json, "pairs", '[');
+    json_end(&bench->json, ']');
+    json_begin(&bench->json, "pairs", '[');
     grow_pairs(bench);
-    json_close(&bench->json, ']');
-    json_close(&bench->json, '}');
+    json_end(&bench->json, ']');
+    json_end(&bench->json, '}');
 }

@@ -69,8 +69,8 @@ static void row(struct bench *bench, const char *name, enum fmb_shape shape, boo
     bench_progress("margins");
     time_runs(bench, &margins, margin, times);
     bench_progress(NULL);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", name);
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", name);
     json_number(&bench->json, "bodies", (double) count);
     json_number(&bench->json, "neighbours", neighbours);
     json_number(&bench->json, "margin", margin);
@@ -82,7 +82,7 @@ static void row(struct bench *bench, const char *name, enum fmb_shape shape, boo
         printf(" %8.0f", times[k]);
     }
     printf(" %8.2f %8.2f\n", times[GAPS] / times[PLAIN], times[MARGIN] / times[PLAIN]);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     free(margins.memory);
     scene_free(&scene);
 }
@@ -96,12 +96,12 @@ void margins_run(struct bench *bench)
         "many others the box of a body meets; meet, near: pairs. Ratios to verdicts alone.\n\n"
         "%-18s %6s %6s %8s %6s %8s %8s %8s %8s %8s\n",
         "", "boxes", "meet", "margin", "near", "verdicts", "gaps", "margin", "gaps", "margin");
-    json_open(&bench->json, "margins", '[');
+    json_begin(&bench->json, "margins", '[');
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++) {
             row(bench, "cuboids", FMB_CUBOID, false, neighbours[i], margins[k]);
             row(bench, "tetrahedra", FMB_TETRAHEDRON, false, neighbours[i], margins[k]);
             row(bench, "moving cuboids", FMB_CUBOID, true, neighbours[i], margins[k]);
         }
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }

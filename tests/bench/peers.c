@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "scene.h"
+#include "bench_scene.h"
 
 /* PEER_LIBRARIES: X(name) for each library of this build. */
 #define X(name) &peer_library_##name,

@@ -80,7 +80,7 @@ static void cell_run(struct bench *bench, const struct cell *cell, bool in_conta
     const double single = times[RUN_SINGLE].median / times[RUN_SAT].median;
     const double query = times[RUN_QUERY].median / times[RUN_SAT].median;
     printf("%-13s %-10s", text, in_contact ? "in contact" : "separated");
-    json_open(&bench->json, NULL, '{');
+    json_begin(&bench->json, NULL, '{');
     bench_put_cell(&bench->json, cell);
     json_bool(&bench->json, "contact", in_contact);
     for (int k = 0; k < RUNS; k++) {
@@ -88,7 +88,7 @@ static void cell_run(struct bench *bench, const struct cell *cell, bool in_conta
         json_number(&bench->json, runs[k].key, times[k].median);
     }
     printf(" %9.2f %9.2f %9.2f\n", batch, single, query);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     arena_close(&sides.posed);
     arena_close(&sides.corners);
 }
@@ -107,12 +107,12 @@ static void random_run(struct bench *bench)
     for (int k = 0; k < RUNS; k++)
         printf(" %9s", runs[k].title);
     printf(" %9s %9s %9s\n", "batch", "single", "query");
-    json_open(&bench->json, "poses", '[');
+    json_begin(&bench->json, "poses", '[');
     for (int i = 0; i < count; i++)
         for (int contact = 1; contact >= 0; contact--)
             if (cells[i].shape[0] != FMB_FACE && cells[i].shape[1] != FMB_FACE)
                 cell_run(bench, &cells[i], contact);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }
 
 /* ---- How many the filter leaves open ---- */
@@ -142,10 +142,10 @@ static void unsure_run(struct bench *bench)
         "\nRandom posed pairs of all shapes, %zu, %zu in contact: the filter leaves %zu open "
         "(%.2g).\n",
         all, contacts, unsure, (double) unsure / (double) all);
-    json_open(&bench->json, "unsure", '{');
+    json_begin(&bench->json, "unsure", '{');
     json_number(&bench->json, "pairs", (double) all);
     json_number(&bench->json, "unsure", (double) unsure);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
 }
 
 /* ---- At rest ---- */
@@ -190,14 +190,14 @@ static void rest_of_family(struct bench *bench, const char *name, const char *fa
     race_run(&race, &work, raced, RACED, times);
     bench_progress(NULL);
     printf("%-44s %5.1f %%", name, 100 * (double) touching / (double) pairs);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", family);
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", family);
     json_number(&bench->json, "touching", (double) touching / (double) pairs);
     for (int k = 0; k < RACED; k++) {
         printf(" %9.1f", times[k].median);
         json_number(&bench->json, keys[k], times[k].median);
     }
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     putchar('\n');
     work_free(&work);
     pairs_free(&both);
@@ -211,7 +211,7 @@ static void rest_run(struct bench *bench)
         "%9s "
         "%9s %9s %9s %9s\n",
         "", "touch", "batch", "single", "query", "query+box", "exact");
-    json_open(&bench->json, "rest", '[');
+    json_begin(&bench->json, "rest", '[');
     rest_of_family(bench, "cubes on a table, by yaw, rolled or not", "pose-yaw");
     rest_of_family(bench, "quarter, half and third turns, touching", "pose-turns");
     rest_of_family(bench, "quarter turns of libm", "pose-turns-libm");
@@ -220,7 +220,7 @@ static void rest_run(struct bench *bench)
     rest_of_family(bench, "any pose for both, touching", "pose-shared");
     rest_of_family(bench, "equal orientations, touching or nearly", "pose-stacked");
     rest_of_family(bench, "any poses, touching or nearly", "pose-near");
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }
 
 void poses_run(struct bench *bench)

@@ -89,13 +89,13 @@ static void family_run(struct bench *bench, const char *name, size_t pairs)
         bench_progress(NULL);
         printf("%-16s %-20s %10.1f %10.1f %10.1f\n", i == 0 ? name : "", asked[i].name, cost.mean,
                cost.kind, cost.worst);
-        json_open(&bench->json, NULL, '{');
-        json_text(&bench->json, "name", name);
-        json_text(&bench->json, "asked", asked[i].key);
+        json_begin(&bench->json, NULL, '{');
+        json_string(&bench->json, "name", name);
+        json_string(&bench->json, "asked", asked[i].key);
         json_number(&bench->json, "mean_us", cost.mean);
         json_number(&bench->json, "kind_us", cost.kind);
         json_number(&bench->json, "worst_us", cost.worst);
-        json_close(&bench->json, '}');
+        json_end(&bench->json, '}');
     }
 }
 
@@ -168,12 +168,12 @@ static void search_run(struct bench *bench, const char *name, const char *key, c
     }
     bench_progress(NULL);
     printf("%-16s %-20s %10s %10s %10.1f\n", "", name, "", "", worst);
-    json_open(&bench->json, NULL, '{');
-    json_text(&bench->json, "name", "search");
-    json_text(&bench->json, "asked", key);
+    json_begin(&bench->json, NULL, '{');
+    json_string(&bench->json, "name", "search");
+    json_string(&bench->json, "asked", key);
     json_bool(&bench->json, "posed", posed);
     json_number(&bench->json, "worst_us", worst);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
 }
 
 void worst_run(struct bench *bench)
@@ -184,12 +184,12 @@ void worst_run(struct bench *bench)
         "\ncertified where exponents differ most, microseconds a call: mean of all, mean of the\n"
         "kind of pair that costs most, worst pair. Below: the worst pair that a search found.\n\n");
     printf("%-16s %-20s %10s %10s %10s\n", "", "", "mean", "kind", "worst");
-    json_open(&bench->json, "worst", '[');
+    json_begin(&bench->json, "worst", '[');
     family_run(bench, "exponents-200", bench->quick ? 20 : 2000);
     family_run(bench, "exponents-all", bench->quick ? 5 : 300);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
     printf("search\n");
-    json_open(&bench->json, "searched", '[');
+    json_begin(&bench->json, "searched", '[');
     search_run(bench, "two bodies", "bodies", time_of_body, 10, false);
     search_run(bench, "verdict", "verdict", time_of_verdict, 30, false);
     search_run(bench, "interval and box", "box", time_of_box, 30, false);
@@ -197,5 +197,5 @@ void worst_run(struct bench *bench)
     search_run(bench, "posed verdict", "verdict", time_of_verdict, 30, true);
     search_run(bench, "posed, all of it", "box", time_of_box, 30, true);
     search_run(bench, "with certificate", "certificate", time_of_certificate, 15, true);
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
 }

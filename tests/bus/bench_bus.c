@@ -10,7 +10,7 @@
 #include "duel.h"
 #include "fmb.h"
 #include "machine.h"
-#include "options.h"
+#include "bus_options.h"
 
 bool bus_bench_wants(const struct bus_bench *bench, const char *section)
 {
@@ -47,13 +47,13 @@ void bus_bench_end(struct bus_bench *bench)
     parties_stop(&bench->parties);
 }
 
-void bus_bench_put(struct json *json, const char *key, struct spread spread)
+void bus_bench_put(struct json_writer *json, const char *key, struct spread spread)
 {
-    json_open(json, key, '{');
+    json_begin(json, key, '{');
     json_number(json, "median", spread.median);
     json_number(json, "low", spread.low);
     json_number(json, "high", spread.high);
-    json_close(json, '}');
+    json_end(json, '}');
 }
 
 /* ---- Sections ---- */
@@ -79,14 +79,14 @@ static bool run_trips(struct bus_bench *bench, const char *section, void (*run)(
     bool good = true;
     if (!bus_bench_wants(bench, section))
         return true;
-    json_open(&bench->json, section, '[');
+    json_begin(&bench->json, section, '[');
     for (int cores = 1; cores <= most_cores() && good; cores++) {
         printf("\nRound trips of %s, client and service on %s; microseconds.\n\n", section,
                cores == 1 ? "one core" : "two cores");
         duel_print_head();
         good = run_on(bench, cores, run);
     }
-    json_close(&bench->json, ']');
+    json_end(&bench->json, ']');
     return good;
 }
 
@@ -96,9 +96,9 @@ static bool run_section(struct bus_bench *bench, const char *section, char brack
     if (!bus_bench_wants(bench, section))
         return true;
     printf("\n%s\n\n", title);
-    json_open(&bench->json, section, bracket);
+    json_begin(&bench->json, section, bracket);
     const bool good = run_on(bench, most_cores(), run);
-    json_close(&bench->json, bracket == '[' ? ']' : '}');
+    json_end(&bench->json, bracket == '[' ? ']' : '}');
     return good;
 }
 
@@ -126,31 +126,31 @@ static const char *network(void)
 }
 
 /* The receive buffer is that of a client of fmbd, which is granted as much as fmbd itself. */
-static void put_head(const struct bus_bench *bench, struct json *json)
+static void put_head(const struct bus_bench *bench, struct json_writer *json)
 {
     char cpu[MACHINE_TEXT_MAX];
     json_number(json, "bus", 1);
-    json_text(json, "version", fmb_version());
-    json_open(json, "machine", '{');
-    json_text(json, "cpu", machine_cpu(cpu));
+    json_string(json, "version", fmb_version());
+    json_begin(json, "machine", '{');
+    json_string(json, "cpu", machine_cpu(cpu));
     json_number(json, "cores", machine_cores());
-    json_text(json, "compiler", machine_compiler());
-    json_text(json, "network", network());
+    json_string(json, "compiler", machine_compiler());
+    json_string(json, "network", network());
     json_number(json, "receive_buffer", (double) bench->service.receive_buffer);
-    json_close(json, '}');
-    json_open(json, "settings", '{');
+    json_end(json, '}');
+    json_begin(json, "settings", '{');
     json_number(json, "blocks", bench->blocks);
     json_number(json, "trips", bench->trips);
     json_number(json, "scene_trips", bench->scene_trips);
     json_number(json, "seed", (double) bench->seed);
     json_bool(json, "quick", bench->quick);
-    json_close(json, '}');
+    json_end(json, '}');
     json_number(json, "lost", bench->lost);
 }
 
 static bool write_json(const struct bus_bench *bench, const char *text, const char *path)
 {
-    struct json json = {fopen(path, "w"), false};
+    struct json_writer json = {fopen(path, "w"), false};
     if (!json.out)
         return false;
     fputc('{', json.out);
@@ -190,7 +190,7 @@ int main(int argc, char **argv)
     const int outcome = bus_options(argc, argv, &bench, &path);
     if (outcome != OPTIONS_RUN)
         return outcome;
-    bench.json = (struct json){open_memstream(&text, &length), true};
+    bench.json = (struct json_writer){open_memstream(&text, &length), true};
     if (!bench.json.out) {
         perror("bench-bus");
         return EXIT_FAILURE;

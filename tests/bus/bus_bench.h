@@ -3,7 +3,7 @@
 #ifndef BUS_BENCH_H
 #define BUS_BENCH_H
 
-#include "json.h"
+#include "json_write.h"
 #include "line.h"
 #include "parties.h"
 #include "stopwatch.h"
@@ -16,7 +16,7 @@ struct bus_bench {
     uint64_t seed;
     bool quick;
     const char *section; /* NULL: all */
-    struct json json;
+    struct json_writer json;
     int lost; /* round trips that did not come back, in all */
     /* Meanwhile: */
     struct cpus cpus;
@@ -42,6 +42,6 @@ void oneway_run(struct bus_bench *bench);
 void heartbeat_run(struct bus_bench *bench);
 
 /* "key": {median, low, high}. */
-void bus_bench_put(struct json *json, const char *key, struct spread spread);
+void bus_bench_put(struct json_writer *json, const char *key, struct spread spread);
 
 #endif

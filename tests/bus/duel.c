@@ -122,16 +122,16 @@ struct duel duel_run(struct bus_bench *bench, struct datagram *query, int blocks
     return duel;
 }
 
-static void put_side(struct json *json, const char *key, const struct duel_side *side)
+static void put_side(struct json_writer *json, const char *key, const struct duel_side *side)
 {
-    json_open(json, key, '{');
+    json_begin(json, key, '{');
     bus_bench_put(json, "p50_us", side->p50);
     bus_bench_put(json, "p99_us", side->p99);
     bus_bench_put(json, "max_us", side->max);
-    json_close(json, '}');
+    json_end(json, '}');
 }
 
-void duel_put(struct json *json, const struct duel *duel)
+void duel_put(struct json_writer *json, const struct duel *duel)
 {
     json_number(json, "query_bytes", (double) duel->query_bytes);
     json_number(json, "result_bytes", (double) duel->result_bytes);

@@ -24,7 +24,7 @@ struct duel {
 struct duel duel_run(struct bus_bench *bench, struct datagram *query, int blocks, int trips);
 
 /* The fields of an open object, and the line of a table. */
-void duel_put(struct json *json, const struct duel *duel);
+void duel_put(struct json_writer *json, const struct duel *duel);
 void duel_print_head(void);
 void duel_print(const char *name, const struct duel *duel);
 

@@ -152,11 +152,11 @@ static struct spread times(struct spread spread, double factor)
 static void put(struct bus_bench *bench, const struct load *load, const struct flow *flow,
                 size_t query_bytes)
 {
-    struct json *json = &bench->json;
+    struct json_writer *json = &bench->json;
     const double pairs = (double) flow->pairs;
     const double bytes = (double) (query_bytes + bench->service.size);
-    json_open(json, NULL, '{');
-    json_text(json, "name", load->name);
+    json_begin(json, NULL, '{');
+    json_string(json, "name", load->name);
     json_number(json, "bodies", load->bodies);
     json_number(json, "pairs", pairs);
     json_number(json, "contacts", flow->contacts);
@@ -170,7 +170,7 @@ static void put(struct bus_bench *bench, const struct load *load, const struct f
         bus_bench_put(json, "engine_pairs_per_second", flow->engine);
     bus_bench_put(json, "compute_us", flow->compute);
     json_number(json, "lost", flow->lost);
-    json_close(json, '}');
+    json_end(json, '}');
     printf("%-28s %6d %7zu %7zu %7zu %8.2f (%.2f-%.2f)", load->name, flow->window, flow->pairs,
            query_bytes, bench->service.size, flow->service.median * pairs / 1e6,
            flow->service.low * pairs / 1e6, flow->service.high * pairs / 1e6);

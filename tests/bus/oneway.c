@@ -91,18 +91,18 @@ static struct rating rate_of(const struct bus_bench *bench, const struct shots *
 static void put(struct bus_bench *bench, const char *what, enum receiver receiver, size_t bytes,
                 const struct rating *rating)
 {
-    struct json *json = &bench->json;
+    struct json_writer *json = &bench->json;
     const double most = rating->reached < rating->rate ? rating->reached : rating->rate;
-    json_open(json, NULL, '{');
-    json_text(json, "what", what);
-    json_text(json, "receiver", receiver_names[receiver]);
+    json_begin(json, NULL, '{');
+    json_string(json, "what", what);
+    json_string(json, "receiver", receiver_names[receiver]);
     json_number(json, "bytes", (double) bytes);
     json_number(json, "rate", most);
     json_number(json, "bytes_per_second", most * (double) bytes);
     json_number(json, "rate_that_lost", rating->lossy);
     json_number(json, "lost", (double) rating->lost);
     json_number(json, "sent", (double) rating->sent);
-    json_close(json, '}');
+    json_end(json, '}');
     printf("%-24s %-20s %6zu %9.0f /s %8.1f MB/s", what, receiver_names[receiver], bytes, most,
            most * (double) bytes / 1e6);
     if (rating->lossy > 0)

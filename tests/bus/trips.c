@@ -8,7 +8,7 @@
 static void put_form(struct bus_bench *bench, enum form form)
 {
     json_number(&bench->json, "cores", bench->cpus.cores);
-    json_text(&bench->json, "form", form_name(form));
+    json_string(&bench->json, "form", form_name(form));
 }
 
 void trips_pairs(struct bus_bench *bench)
@@ -20,10 +20,10 @@ void trips_pairs(struct bus_bench *bench)
         const struct duel duel = duel_run(bench, &query, bench->blocks, bench->trips);
         snprintf(name, sizeof name, "pair %s", form_name((enum form) form));
         duel_print(name, &duel);
-        json_open(&bench->json, NULL, '{');
+        json_begin(&bench->json, NULL, '{');
         put_form(bench, (enum form) form);
         duel_put(&bench->json, &duel);
-        json_close(&bench->json, '}');
+        json_end(&bench->json, '}');
     }
 }
 
@@ -37,12 +37,12 @@ static void trips_of_scene(struct bus_bench *bench, int bodies, enum form form)
     const struct duel duel = duel_run(bench, &query, bench->blocks / 3 + 1, bench->scene_trips);
     snprintf(name, sizeof name, "scene of %d %s", bodies, form_name(form));
     duel_print(name, &duel);
-    json_open(&bench->json, NULL, '{');
+    json_begin(&bench->json, NULL, '{');
     put_form(bench, form);
     json_number(&bench->json, "bodies", bodies);
     json_number(&bench->json, "pairs", (double) pairs);
     duel_put(&bench->json, &duel);
-    json_close(&bench->json, '}');
+    json_end(&bench->json, '}');
     workload_scene_free(&scene);
 }
 

@@ -3,7 +3,7 @@
 #define WORKLOAD_H
 
 #include "bus_bench.h"
-#include "scene.h"
+#include "bench_scene.h"
 
 /* The pair of clients/demo/cube.json: a cuboid at rest, a tetrahedron that moves; verdict and
  * interval. */

@@ -8,9 +8,9 @@
 
 #include "family.h"
 #include "measure.h"
-#include "options.h"
+#include "campaign_options.h"
 #include "posed.h"
-#include "report.h"
+#include "campaign_report.h"
 #include "workers.h"
 
 static const long usual_pairs = 20000;

@@ -7,7 +7,7 @@
 #include "cell.h"
 #include "certified.h"
 #include "family.h"
-#include "tally.h"
+#include "campaign_tally.h"
 
 /* By enum certified_path: which step of the certified method decided the verdict. */
 enum { MEASURE_PATHS = CERTIFIED_EXACT + 1 };

@@ -9,10 +9,10 @@
 
 #include "cell.h"
 #include "family.h"
-#include "options.h"
+#include "campaign_options.h"
 #include "posed.h"
 #include "table.h"
-#include "tally.h"
+#include "campaign_tally.h"
 #include "trial.h"
 #include "workers.h"
 

@@ -9,7 +9,7 @@
  * each query got its answers, and each answer was that of libfmb, bit for bit. */
 #include "clock.h"
 #include "fmb_client.h"
-#include "same.h"
+#include "same_answer.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "bus.h"
 #include "clock.h"
 #include "random_id.h"
-#include "same.h"
+#include "same_answer.h"
 #include "wire.h"
 
 #include <inttypes.h>

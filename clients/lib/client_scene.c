@@ -1,4 +1,4 @@
-#include "question.h"
+#include "client_scene.h"
 
 #include "writer.h"
 
@@ -69,7 +69,8 @@ static bool check_frames(struct place *place, const struct fmb_client_placement 
     for (size_t k = 0; k < placement->frame_count; k++)
         if (!check_frame(place, i, k, placement->dim, &placement->frames[k]))
             return false;
-    return question_geometry_bytes(placement) <= GEOMETRY_NONE_BYTES + FMB_CLIENT_BODY_BYTES_MAX ||
+    return client_scene_geometry_bytes(placement) <=
+               GEOMETRY_NONE_BYTES + FMB_CLIENT_BODY_BYTES_MAX ||
            refuse(place, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
 }
 
@@ -161,7 +162,7 @@ static bool check_rest(struct place *place, const struct fmb_client_scene *scene
     return (scene->want & ~wants) == 0 || refuse(place, FMB_UNKNOWN_WANT, "want");
 }
 
-int question_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY_MAX])
+int client_scene_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY_MAX])
 {
     struct place place = {.why = why};
     why[0] = '\0';
@@ -170,7 +171,7 @@ int question_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY
     return place.status;
 }
 
-size_t question_geometry_bytes(const struct fmb_client_placement *placement)
+size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement)
 {
     size_t bytes = GEOMETRY_NONE_BYTES;
     for (size_t i = 0; i < placement->frame_count; i++)
@@ -182,7 +183,7 @@ size_t question_geometry_bytes(const struct fmb_client_placement *placement)
 /* As geometry_write_frames(). */
 static size_t write_frames(const struct fmb_client_placement *of, unsigned char *out)
 {
-    const size_t size = question_geometry_bytes(of);
+    const size_t size = client_scene_geometry_bytes(of);
     const int dim = of->dim;
     struct writer writer = {.at = out, .end = out + size};
     writer_int32(&writer, dim);
@@ -208,8 +209,8 @@ static bool is_zero(const double *numbers, int count)
     return true;
 }
 
-void question_placement(const struct fmb_client_placement *of, unsigned char *geometry,
-                        struct placement *out)
+void client_scene_placement(const struct fmb_client_placement *of, unsigned char *geometry,
+                            struct placement *out)
 {
     const size_t axes = (size_t) of->dim * sizeof(double);
     *out = (struct placement){.body_id = of->body_id,
@@ -225,8 +226,8 @@ void question_placement(const struct fmb_client_placement *of, unsigned char *ge
     memcpy(out->velocity, of->velocity, axes);
 }
 
-void question_use_handle(struct placement *placement, const struct handle *handle,
-                         unsigned char geometry[GEOMETRY_NONE_BYTES])
+void client_scene_use_handle(struct placement *placement, const struct handle *handle,
+                             unsigned char geometry[GEOMETRY_NONE_BYTES])
 {
     geometry_write_none(placement->dim, geometry);
     placement->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
@@ -240,8 +241,8 @@ static size_t partners(const struct fmb_client_scene *scene, size_t a)
     return scene->which == FMB_CLIENT_ACROSS ? scene->split : a + 1;
 }
 
-bool question_next_pair(const struct fmb_client_scene *scene, struct question_cursor *cursor,
-                        unsigned out[2])
+bool client_scene_next_pair(const struct fmb_client_scene *scene,
+                            struct client_scene_cursor *cursor, unsigned out[2])
 {
     if (scene->which == FMB_CLIENT_LISTED) {
         if (cursor->next == scene->pair_count)

@@ -182,7 +182,7 @@ void exact_box(const struct frame_pair *pair, double box[2][FMB_DIM_MAX]);
  * last], in seconds, rounded outward. */
 enum fmb_verdict exact_verdict(struct exact_pair *exact, double duration, double contact[2]);
 
-/* The method. */
+/* The method `exact`, but for the gap. */
 enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
                              struct fmb_answer *answer);
 

@@ -1,4 +1,4 @@
-#include "tally.h"
+#include "campaign_tally.h"
 
 #include <math.h>
 #include <stdio.h>

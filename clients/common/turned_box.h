@@ -3,7 +3,7 @@
 #ifndef TURNED_BOX_H
 #define TURNED_BOX_H
 
-#include "fmb/fmb.h"
+#include "fmb.h"
 
 /* In: dim, 2 or 3; centre and size [dim], finite; an orientation of dim (fmb.h), not all 0.
  * Out: the numbers of a cuboid as fmb_frame_make() takes them, dim + dim * dim; one beyond the

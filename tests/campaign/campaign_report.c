@@ -1,4 +1,4 @@
-#include "report.h"
+#include "campaign_report.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "svg.h"
 
 #include "allocate.h"
-#include "draw.h"
+#include "svg_panel.h"
 #include "number.h"
 
 #include <inttypes.h>
@@ -178,7 +178,7 @@ static double legend_frame(double x, double y, enum fmb_verdict verdict, FILE *o
     fprintf(out,
             "<rect class=\"front\" x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"12\" fill=\"%s\" "
             "stroke=\"%s\"/>\n",
-            x, y - 6, draw_colour(verdict, 0.8, fill), draw_colour(verdict, 0, stroke));
+            x, y - 6, svg_panel_colour(verdict, 0.8, fill), svg_panel_colour(verdict, 0, stroke));
     return legend_text(x + 20, y, verdict ? fmb_verdict_name((int) verdict) : "not asked", out);
 }
 
@@ -219,7 +219,7 @@ void svg_write(const struct svg *svg, FILE *out)
         struct view_bounds bounds = bounds_of(svg, i);
         struct paper paper = panel_paper(&sheet, i);
         draw_caption(&svg->panel[i], i + 1, paper, out);
-        draw_panel(&svg->panel[i], &bounds, paper, out);
+        svg_panel_draw(&svg->panel[i], &bounds, paper, out);
     }
     if (svg->panels_left_out > 0)
         fprintf(out,

@@ -3,7 +3,7 @@
 #ifndef SCENE_H
 #define SCENE_H
 
-#include "fmb/fmb.h"
+#include "fmb.h"
 
 #include <stdbool.h>
 #include <stddef.h>

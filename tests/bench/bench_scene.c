@@ -1,5 +1,5 @@
 #define _DEFAULT_SOURCE
-#include "scene.h"
+#include "bench_scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,5 @@
 #include "exact.h"
 
-#include "gap.h"
 #include "integer.h"
 
 #include <string.h>
@@ -529,9 +528,6 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
             exact_pair_box(&exact, answer->box);
     }
     exact_pair_clear(&exact);
-    answer->has_gap = want & FMB_WANT_GAP;
-    if (answer->has_gap)
-        gap_exactly(pair, answer->verdict, &answer->gap);
     return FMB_OK;
 }
 

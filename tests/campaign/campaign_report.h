@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "measure.h"
-#include "options.h"
+#include "campaign_options.h"
 
 struct report {
     const struct options *options;

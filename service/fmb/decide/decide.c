@@ -8,10 +8,20 @@
 
 #include <string.h>
 
+static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned want,
+                                      struct fmb_answer *answer)
+{
+    const enum fmb_status status = exact_decide(pair, want, answer);
+    answer->has_gap = want & FMB_WANT_GAP;
+    if (answer->has_gap)
+        gap_exactly(pair, answer->verdict, &answer->gap);
+    return status;
+}
+
 static const struct fmb_method methods[] = {
     {"certified", 4, "never wrong: doubles with bounds, exact arithmetic where these are unsure",
      true, true, certified_decide},
-    {"exact", 1, "right for every input, flat frames included (GMP)", true, true, exact_decide},
+    {"exact", 1, "right for every input, flat frames included (GMP)", true, true, decide_exactly},
     {"fmb", 2, "the article's elimination in doubles, with its loose box; inexact", false, true,
      eliminate_decide},
     {"sat", 3, "separating axes in doubles, no box; inexact", false, false, sat_decide},

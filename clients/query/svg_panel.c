@@ -1,4 +1,4 @@
-#include "draw.h"
+#include "svg_panel.h"
 
 #include "allocate.h"
 #include "escape.h"
@@ -236,14 +236,14 @@ static void draw_facet(const struct drawing *drawing, const struct facet *facet)
     enum fmb_verdict verdict = drawing->panel->verdict[facet->body];
     char fill[8], stroke[8];
     draw_polygon(drawing, facet->point, facet->count);
-    draw_colour(verdict, 0, stroke);
+    svg_panel_colour(verdict, 0, stroke);
     if (!facet->front) {
         fprintf(drawing->out, " class=\"back\" stroke=\"%s\"/>\n", stroke);
         return;
     }
     fprintf(drawing->out, " class=\"%s\" fill=\"%s\" stroke=\"%s\"><title>",
-            drawing->panel->dim == 2 ? "flat" : "front", draw_colour(verdict, facet->light, fill),
-            stroke);
+            drawing->panel->dim == 2 ? "flat" : "front",
+            svg_panel_colour(verdict, facet->light, fill), stroke);
     write_label(drawing, &drawing->panel->body[facet->body]);
     fprintf(drawing->out, ": %s</title></path>\n", verdict_text(verdict));
 }
@@ -275,7 +275,7 @@ static void draw_ghost(const struct drawing *drawing, size_t body, unsigned fram
     char stroke[8];
     const struct panel *panel = drawing->panel;
     struct outline end = outline_make(&panel->body[body], frame, panel->duration);
-    draw_colour(panel->verdict[body], 0, stroke);
+    svg_panel_colour(panel->verdict[body], 0, stroke);
     for (int face = 0; face < end.face_count; face++) {
         struct facet facet = make_facet(&drawing->view, &end, face);
         if (!facet.front)
@@ -407,8 +407,8 @@ static void draw_bodies(const struct drawing *drawing)
     draw_labels(drawing);
 }
 
-void draw_panel(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
-                FILE *out)
+void svg_panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
+                    FILE *out)
 {
     struct drawing drawing = {panel, view_make(panel->dim, bounds, inner_paper(panel, paper)),
                               paper, out};
@@ -418,7 +418,7 @@ void draw_panel(const struct panel *panel, const struct view_bounds *bounds, str
     draw_bodies(&drawing);
 }
 
-const char *draw_colour(enum fmb_verdict verdict, double light, char out[8])
+const char *svg_panel_colour(enum fmb_verdict verdict, double light, char out[8])
 {
     /* Lit and dark, for each verdict; those of no pair are grey. */
     static const unsigned char colour[FMB_OVERLAPPING + 1][2][3] = {

@@ -1,6 +1,6 @@
 /* Whether two answers are the same, number by number: the bytes between them mean nothing. */
-#ifndef SAME_H
-#define SAME_H
+#ifndef SAME_ANSWER_H
+#define SAME_ANSWER_H
 
 #include "query.h"
 

@@ -1,0 +1,71 @@
+#include "client.h"
+#include "client_scene.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const char *fmb_client_why(const struct fmb_client *client)
+{
+    return client->why;
+}
+
+/* A status of the whole scene. */
+static int fail(struct fmb_client *client, int status)
+{
+    snprintf(client->why, sizeof client->why, "%s", fmb_client_status_text(status));
+    return status;
+}
+
+/* single: each pair is a query of its own. */
+static int query(struct fmb_client *client, const struct fmb_client_scene *scene, bool single,
+                 fmb_client_sink *sink, void *user)
+{
+    if (client->inside)
+        return FMB_CLIENT_INSIDE;
+    int status = client_scene_check(scene, client->why);
+    if (status != FMB_OK)
+        return status;
+    if (client->failed || !client_listen(client, single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE))
+        return fail(client, FMB_CLIENT_NO_BUS);
+    client->inside = true;
+    status = scene_run(&client->run, scene, single, sink, user);
+    client->inside = false;
+    return status == FMB_OK ? status : fail(client, status);
+}
+
+int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *scene,
+                     fmb_client_sink *sink, void *user)
+{
+    return query(client, scene, scene->want & FMB_CLIENT_WANT_CERTIFICATE, sink, user);
+}
+
+static void keep_answer(void *user, const struct fmb_client_answer *answer)
+{
+    struct fmb_client *client = user;
+    client->answer = *answer;
+    snprintf(client->text, sizeof client->text, "%s", answer->text);
+    client->answer.text = client->text;
+    if (answer->certificate)
+        client->answer.certificate = strcpy(client->certificate, answer->certificate);
+}
+
+int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
+                          double duration, unsigned want, struct fmb_client_answer *out)
+{
+    static const unsigned both[1][2] = {{0, 1}};
+    const struct fmb_client_scene scene = {.placements = pair,
+                                           .placement_count = 2,
+                                           .which = FMB_CLIENT_LISTED,
+                                           .pairs = both,
+                                           .pair_count = 1,
+                                           .duration = duration,
+                                           .want = want};
+    *out = (struct fmb_client_answer){.b = 1, .text = ""};
+    out->status = query(client, &scene, true, keep_answer, client);
+    if (out->status == FMB_OK)
+        *out = client->answer;
+    else
+        out->text =
+            out->status == FMB_CLIENT_INSIDE ? fmb_client_status_text(out->status) : client->why;
+    return out->status;
+}

@@ -1,0 +1,16 @@
+/* One scene of a picture (svg.h): how it is drawn. */
+#ifndef SVG_PANEL_H
+#define SVG_PANEL_H
+
+#include "panel.h"
+
+#include <stdio.h>
+
+/* Draws into an SVG group. bounds: what is to be seen, the panel's own or more. */
+void svg_panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
+                    FILE *out);
+
+/* The fill of a face as "#rrggbb". light from 0 to 1. */
+const char *svg_panel_colour(enum fmb_verdict verdict, double light, char out[8]);
+
+#endif
