@@ -32,7 +32,8 @@
  * fork(): the child may only close its copy of a client; the parent's keeps working.
  *
  * The library prints nothing and never ends the process; liblcm and GLib, which it uses, abort when
- * they are out of memory. Any program on the bus can send results; see "Trust" in README.md. */
+ * they are out of memory. Any program on the bus can send results; see "Trust" in
+ * service/README.md. */
 #ifndef FMB_CLIENT_H
 #define FMB_CLIENT_H
 

@@ -1,23 +1,27 @@
-# The README's commands print what the README says.
+# The commands in the pages of documentation print what the pages say, and the README's example is
+# a program that works.
 
 load service
 
-# The commands of the console blocks, one after the other in one shell, each followed by a line
-# that ends what it prints.
-readme_script() {
+# The pages with commands that are run: blocks of "console".
+pages='README.md service/README.md clients/README.md'
+
+# script PAGE: its commands, one after the other in one shell, each followed by a line that ends what
+# it prints.
+script() {
     awk '
         /^```/ { inside = ($0 == "```console"); next }
         inside && /^\$ / { print substr($0, 3); print "echo \"--- end\"" }
-    ' README.md
+    ' "$1"
 }
 
-# What is to be expected of them, in the same form; "..." stands for any lines.
-readme_expected() {
+# expected PAGE: what is to be expected of them, in the same form; "..." stands for any lines.
+expected() {
     awk '
         /^```/ { if (inside) print "--- end"; inside = ($0 == "```console"); first = 1; next }
         inside && /^\$ / { if (!first) print "--- end"; first = 0; next }
         inside { print }
-    ' README.md
+    ' "$1"
 }
 
 # matches ACTUAL EXPECTED: line by line; "..." matches as few lines as it can.
@@ -39,14 +43,57 @@ matches() {
     ' "$1" "$2"
 }
 
-@test "the README's commands print what it shows" {
-    readme_script | sed "s|build/|$FMB_BUILD/|g" > "$BATS_TEST_TMPDIR/script"
-    [ "$(grep -c 'fmb query' "$BATS_TEST_TMPDIR/script")" -ge 4 ]
-    # The daemon that the README starts is stopped at the end; queries wait until it is there.
-    echo 'kill %1; wait' >> "$BATS_TEST_TMPDIR/script"
-    bash -m "$BATS_TEST_TMPDIR/script" > "$BATS_TEST_TMPDIR/actual" 2>&1 3>&-
-    readme_expected > "$BATS_TEST_TMPDIR/expected"
+# prints_what_it_shows PAGE COMMANDS: that many commands at least.
+prints_what_it_shows() {
+    script "$1" | sed "s|build/|$FMB_BUILD/|g" > "$BATS_TEST_TMPDIR/script"
+    [ "$(grep -c 'echo "--- end"' "$BATS_TEST_TMPDIR/script")" -ge "$2" ]
+    # The daemon that the page starts is stopped at the end; queries wait until it is there.
+    echo 'for job in $(jobs -p); do kill $job; done; wait' >> "$BATS_TEST_TMPDIR/script"
+    timeout 120 bash "$BATS_TEST_TMPDIR/script" > "$BATS_TEST_TMPDIR/actual" 2>&1 3>&-
+    expected "$1" | sed "s|build/|$FMB_BUILD/|g" > "$BATS_TEST_TMPDIR/expected"
     matches "$BATS_TEST_TMPDIR/actual" "$BATS_TEST_TMPDIR/expected"
+}
+
+@test "the README's commands print what it shows, and draw its picture" {
+    prints_what_it_shows README.md 6
+    grep -q '](clients/demo/table.svg)' README.md
+    grep -q '^\$ cmp build/table.svg clients/demo/table.svg$' README.md
+}
+
+@test "so do those of the service's page" {
+    prints_what_it_shows service/README.md 3
+}
+
+@test "so do those of the clients' page" {
+    prints_what_it_shows clients/README.md 8
+}
+
+@test "no other page has commands that would not be run" {
+    found=$(find . -name '*.md' -not -path './build/*' -not -path './.git/*' \
+        -exec grep -l '^```console' {} + | sed 's|^\./||' | sort)
+    [ "$found" = "$(tr ' ' '\n' <<< "$pages" | sort)" ]
+}
+
+@test "the README's lines of C are those of an example, which prints what it says" {
+    example=clients/examples/in_process.c
+    sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | tr -s ' \n' ' ' > "$BATS_TEST_TMPDIR/shown"
+    [ -s "$BATS_TEST_TMPDIR/shown" ]
+    [[ "$(tr -s ' \n' ' ' < $example)" == *"$(cat "$BATS_TEST_TMPDIR/shown")"* ]]
+    gcc -std=c99 -Wall -Wextra -Werror -Iservice/fmb $example "$FMB_BUILD/libfmb.a" -lgmp -lm \
+        -o "$BATS_TEST_TMPDIR/in_process"
+    ! command -v g++ || g++ -std=c++20 -x c++ -Wall -Werror -fsyntax-only -Iservice/fmb $example
+    printed=$("$BATS_TEST_TMPDIR/in_process")
+    [[ "$(head -n 8 $example)" == *" prints \"$printed\". "* ]]
+}
+
+# As its section on licences says.
+@test "the libraries whose licences the README names are linked dynamically" {
+    for library in lcm glib-2.0 gmp seccomp; do
+        readelf -d "$FMB_BUILD/fmbd" | grep -q "NEEDED.*\[lib$library\.so"
+    done
+    for library in lcm glib-2.0 gmp cjson; do
+        readelf -d "$FMB_BUILD/fmb" | grep -q "NEEDED.*\[lib$library\.so"
+    done
 }
 
 @test "the demo runs, shows a table, draws a picture and ends" {
