@@ -25,7 +25,7 @@ ifeq ($(origin CC),default)
 CC := $(if $(filter fuzz,$(MODE)),clang,gcc)
 endif
 PREFIX ?= /usr/local
-override PREFIX := $(if $(filter /%,$(firstword $(PREFIX))),$(PREFIX),$(CURDIR)/$(PREFIX))
+override PREFIX := $(if $(filter /%,$(firstword $(PREFIX))),$(PREFIX),$(shell realpath -m '$(PREFIX)'))
 LIBDIR ?= $(PREFIX)/lib
 INSTALL ?= install
 OBJCOPY ?= objcopy
@@ -64,20 +64,22 @@ endif
 mode_link_asan := -fsanitize=address,undefined
 mode_link_fuzz := $(mode_link_asan)
 
-# -ffp-contract=off: the same bits on every machine.
+# -ffp-contract=off: the same bits on every machine. -fPIC: archives fit into shared objects too;
+# without interposition it costs the programs nothing.
 flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off \
+	-fPIC -fno-semantic-interposition \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
 	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(CPPFLAGS) $(CFLAGS)
 # Release builds are hardened. The engine is compiled without stack protector and _FORTIFY_SOURCE:
 # its loops write into arrays of known size, and every instruction of them counts. A user's own
 # _FORTIFY_SOURCE is kept.
-hardened_release := -fstack-protector-strong -fPIE
+hardened_release := -fstack-protector-strong
 hardened_link_release := -pie -Wl,-z,relro,-z,now
 ifeq ($(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),)
 hardened_release += -D_FORTIFY_SOURCE=2
 endif
 hardened := $(hardened_$(MODE))
-$(O)/service/fmb/%.o $(O)/kernels/%.o: hardened := -fPIE
+$(O)/service/fmb/%.o $(O)/kernels/%.o: hardened :=
 compile = $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
 link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
 
@@ -253,11 +255,21 @@ $(B)/libfmb.a: $(engine_objects)
 $(B)/libfmb-client.a: $(client_objects) $(wire_objects) $(names)
 	$(call library,fmb_client_*)
 
+# The same as shared libraries, with the names of their headers alone.
+shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0
+$(B)/libfmb.so.0: shared_needs := $(openmp_flag) -lgmp -lm
+$(B)/libfmb-client.so.0: shared_needs := -llcm -lglib-2.0 -lm
+$(shared_libraries): $(B)/%.so.0: $(B)/%.a
+	echo '{ local: fmb_client_raw_*; };' > $@.map
+	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
+		-Wl,--whole-archive $< -Wl,--no-whole-archive $(shared_needs)
+
 # ---- Programs ----
 
 define link
 	@mkdir -p $(@D)
-	$(CC) $(linking) $(wraps_$(@F)) -o $@ $(filter %.o %.a,$^) -Wl,--as-needed $(libraries)
+	$(CC) $(linking) $(wraps_$(@F)) -o $@ $(filter %.o,$^) \
+		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group -Wl,--as-needed $(libraries)
 endef
 linking = $(link_flags)
 libraries := -lcjson -llcm -lglib-2.0 -lseccomp -lgmp -lm
@@ -266,7 +278,7 @@ libraries := -lcjson -llcm -lglib-2.0 -lseccomp -lgmp -lm
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns $(B)/arm
 .PHONY: programs
-programs: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(demo_programs)
+programs: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(shared_libraries) $(demo_programs)
 $(programs): linking = $(link_whole)
 $(B)/fmbd: $(O)/service/main.o $(product) $(B)/libfmb.a
 $(B)/fmb: $(O)/clients/fmb.o $(B)/libfmb-client.a $(product) $(B)/libfmb.a
@@ -416,9 +428,9 @@ $(B)/tests/test_kernels: $(wide_kernels) $(O)/kernels/wide_planted.o
 $(internal_tests): $(V)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a
+$(unit_tests): libraries += -lcmocka
 $(unit_tests): $(B)/tests/%: $(V)/tests/unit/%.o | $(B)/netns
-	@mkdir -p $(@D)
-	$(CC) $(link_flags) $(wraps_$*) -o $@ $< $(filter-out $<,$^) -Wl,--as-needed -lcmocka $(libraries)
+	$(link)
 
 # ---- Fuzz targets: each a program that replays its corpus and, with MODE=fuzz, a fuzzer ----
 
@@ -622,7 +634,9 @@ demo: # builds on all cores, also where packages are installed first
 	+$(MAKE) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) all
 	clients/demo/run.sh $(B)
 
-fill_in = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|'
+sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
+fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
+	-e 's|@VERSION@|$(VERSION)|'
 .PHONY: install install-strip uninstall
 install: all
 	$(INSTALL) -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(LIBDIR)/pkgconfig" \
@@ -630,13 +644,17 @@ install: all
 		"$(DESTDIR)$(PREFIX)/share/doc/fmb" "$(DESTDIR)$(PREFIX)/lib/systemd/system"
 	$(INSTALL) $(strip_option) $(programs) "$(DESTDIR)$(PREFIX)/bin"
 	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(LIBDIR)"
+	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
+	for name in $(basename $(notdir $(shared_libraries))); do \
+		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
+	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h "$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_files) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(DESTDIR)$(PREFIX)/share/doc/fmb"
-	$(fill_in) $(if $(openmp_flag),-e 's|^Libs:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
+	$(fill_in) $(if $(openmp_flag),-e 's|^Libs.private:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
 		> "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
 	$(fill_in) clients/lib/fmb-client.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc"
-	$(fill_in) service/fmbd.service.in > "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
+	$(subst %,%%,$(fill_in)) service/fmbd.service.in > "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
 
 install-strip: strip_option := -s
 install-strip: install
@@ -644,7 +662,8 @@ install-strip: install
 uninstall:
 	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_client.h \
 		share/fmb share/doc/fmb lib/systemd/system/fmbd.service
-	cd "$(DESTDIR)$(LIBDIR)" && rm -f libfmb.a libfmb-client.a pkgconfig/fmb.pc \
+	cd "$(DESTDIR)$(LIBDIR)" && rm -f libfmb.a libfmb-client.a \
+		libfmb.so libfmb.so.0 libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc \
 		pkgconfig/fmb-client.pc
 
 .PHONY: clean

@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "complain.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -59,6 +60,8 @@ int cmd_log(int argc, char **argv)
     for (int i = 0; i < COMMAND_COUNT; i++)
         if (strcmp(commands[i].name, argv[1]) == 0)
             return commands[i].run(argc - 1, argv + 1);
-    fprintf(stderr, "fmb log: unknown command '%s'\nTry 'fmb log --help'.\n", argv[1]);
+    fputs("fmb log: unknown command '", stderr);
+    complain_text(argv[1]);
+    fputs("'\nTry 'fmb log --help'.\n", stderr);
     return ARGS_USAGE;
 }

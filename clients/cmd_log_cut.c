@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "complain.h"
 #include "json_write.h"
 #include "log_cut.h"
 #include "number.h"
@@ -80,8 +81,8 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
     struct run *run = user;
     progress_end(&run->progress);
     if (run->complaints++ < COMPLAINTS_MAX)
-        fprintf(stderr, "fmb: %s: offset %" PRId64 ": %" PRId64 " bytes: %s; left out\n",
-                run->options->cut.log[log], damage->offset, damage->length, damage->what);
+        complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s; left out",
+                 run->options->cut.log[log], damage->offset, damage->length, damage->what);
 }
 
 static void on_progress(void *user, int64_t bytes, int64_t of)
@@ -145,10 +146,9 @@ static void print_json(const struct log_cut_counts *counts, int code)
 static int code_of(const struct run *run, const struct log_cut_counts *counts)
 {
     if (run->complaints > COMPLAINTS_MAX)
-        fprintf(stderr, "fmb: and %" PRId64 " more damaged places\n",
-                run->complaints - COMPLAINTS_MAX);
+        complain("and %" PRId64 " more damaged places", run->complaints - COMPLAINTS_MAX);
     if (counts->kept_events == 0)
-        fprintf(stderr, "fmb: nothing was chosen: %s has no events\n", run->options->cut.output);
+        complain("nothing was chosen: %s has no events", run->options->cut.output);
     return counts->damages > 0 || counts->kept_events == 0 ? ARGS_FAILED : ARGS_ANSWERED;
 }
 

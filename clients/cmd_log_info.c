@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "complain.h"
 #include "log_info.h"
 #include "log_info_report.h"
 #include "output.h"
@@ -52,7 +53,7 @@ static const char *read_all(struct log_reader *reader, struct log_info *info)
 static int complain_of(const char *path, const char *why)
 {
     fflush(stdout);
-    fprintf(stderr, "fmb: %s: %s\n", path, why);
+    complain("%s: %s", path, why);
     return ARGS_USAGE;
 }
 

@@ -1,9 +1,10 @@
 /* fmb log scene: a query of a log, as a scene that can be queried again. */
 #include "commands.h"
 
-#include "answer.h"
 #include "allocate.h"
+#include "answer.h"
 #include "args.h"
+#include "complain.h"
 #include "log_query.h"
 #include "output.h"
 #include "progress.h"
@@ -157,7 +158,7 @@ static bool check_query(struct log_query *query)
         snprintf(detail, sizeof detail, "longer than %d bytes", QUERY_BYTES_MAX);
     else if (takes(query, detail))
         return true;
-    fprintf(stderr, "fmb: event %" PRId64 ": the service refuses it: %s\n", query->number, detail);
+    complain("event %" PRId64 ": the service refuses it: %s", query->number, detail);
     return false;
 }
 
@@ -171,12 +172,11 @@ static void report_ids(struct any_query *query, const struct scene *scene)
         if (placement[i].body_id == scene->body[i].id)
             continue;
         if (placement[i].body_id == 0)
-            fprintf(stderr, "fmb: placement %d, which has no id, is body %" PRId64 "\n", (int) i,
-                    scene->body[i].id);
+            complain("placement %d, which has no id, is body %" PRId64 "", (int) i,
+                     scene->body[i].id);
         else
-            fprintf(stderr,
-                    "fmb: placement %d, one more of body %" PRId64 ", is body %" PRId64 "\n",
-                    (int) i, placement[i].body_id, scene->body[i].id);
+            complain("placement %d, one more of body %" PRId64 ", is body %" PRId64 "", (int) i,
+                     placement[i].body_id, scene->body[i].id);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "complain.h"
 #include "mesh_meet.h"
 #include "mesh_page.h"
 #include "mesh_report.h"
@@ -230,14 +231,13 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
     const bool good = mesh_read(path, &watch, out, error);
     progress_end(&progress);
     if (!good) {
-        fprintf(stderr, "fmb: %s: %s\n", path, error);
+        complain("%s: %s", path, error);
         return false;
     }
     const size_t far = mesh_transform(&placed->transform, out);
     if (far == SIZE_MAX)
         return true;
-    fprintf(stderr, "fmb: %s: vertex %zu is farther out than edges in doubles go: scale the mesh\n",
-            path, far);
+    complain("%s: vertex %zu is farther out than edges in doubles go: scale the mesh", path, far);
     mesh_free(out);
     return false;
 }
@@ -286,10 +286,9 @@ static int meet(const struct options *options, const struct mesh *a, const struc
     const enum fmb_status status = mesh_meet(&question, &meeting);
     progress_end(&progress);
     if (status != FMB_OK) {
-        fprintf(stderr, "fmb: %s\n",
-                status == FMB_NOT_FINITE
-                    ? "the normal of a face is beyond the doubles: scale the meshes"
-                    : fmb_status_text((int) status));
+        complain("%s", status == FMB_NOT_FINITE
+                           ? "the normal of a face is beyond the doubles: scale the meshes"
+                           : fmb_status_text((int) status));
         return ARGS_FAILED;
     }
     const struct mesh_report report = {.question = &question,

@@ -3,6 +3,7 @@
 
 #include "answers.h"
 #include "args.h"
+#include "complain.h"
 #include "json.h"
 #include "output.h"
 #include "progress.h"
@@ -160,7 +161,7 @@ static int answer_scenes(struct run *run, int fd)
         scene_clear(&scene);
     }
     if (outcome != JSON_END)
-        fprintf(stderr, "fmb: %s: %s\n", run->input_name, json_error(reader));
+        complain("%s: %s", run->input_name, json_error(reader));
     json_close(reader);
     if (outcome != JSON_END)
         return ARGS_USAGE;
@@ -224,7 +225,7 @@ int cmd_query(int argc, char **argv)
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;
     if (fd < 0) {
-        fprintf(stderr, "fmb: %s: %s\n", file, strerror(errno));
+        complain("%s: %s", file, strerror(errno));
         return ARGS_USAGE;
     }
     code = run_query(&options, &args.bus, file, fd);

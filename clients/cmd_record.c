@@ -4,6 +4,7 @@
 #include "args.h"
 #include "bus_client.h"
 #include "clock.h"
+#include "complain.h"
 #include "fmb_client_raw.h"
 #include "log_choice.h"
 #include "log_write.h"
@@ -173,7 +174,7 @@ static bool bus_failed(struct recording *recording)
 {
     const int error = errno;
     record_line_end(&recording->line);
-    fprintf(stderr, "fmb: the bus has failed: %s\n", strerror(error));
+    complain("the bus has failed: %s", strerror(error));
     return false;
 }
 
@@ -282,8 +283,8 @@ static int record(struct recording *recording, int signals)
     recording->bodies = record_bodies_open(fmb_client_raw_id(recording->client));
     recording->begin_ns = clock_ns();
     recording->line = record_line_begin(recording->begin_ns);
-    fprintf(stderr, "fmb: recording to %s, with a receive buffer of %ld bytes\n",
-            recording->parts.name, fmb_client_raw_bus_counts(recording->client).receive_buffer);
+    complain("recording to %s, with a receive buffer of %ld bytes", recording->parts.name,
+             fmb_client_raw_bus_counts(recording->client).receive_buffer);
     const bool good = run(recording, signals) && receive_rest(recording);
     const int code = end_of_recording(recording, good);
     record_bodies_close(recording->bodies);
@@ -320,7 +321,7 @@ static bool open_bus(struct recording *recording, const struct args_bus *args)
         return false;
     const bool good = fmb_client_raw_listen(recording->client, others, on_message, recording);
     if (!good)
-        complain(fmb_client_why(recording->client));
+        complain("%s", fmb_client_why(recording->client));
     return good;
 }
 

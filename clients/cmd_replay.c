@@ -4,6 +4,8 @@
 #include "allocate.h"
 #include "args.h"
 #include "cache.h"
+#include "complain.h"
+#include "escape.h"
 #include "input.h"
 #include "listing.h"
 #include "number.h"
@@ -127,16 +129,16 @@ static void on_unreadable(void *user, const struct match_place *place, const cha
 {
     struct run *run = user;
     if (complains(run))
-        fprintf(stderr, "fmb: %s: event %" PRId64 " (offset %" PRId64 "): %s: %s\n",
-                log_name(run, place->log), place->number, place->offset, channel, what);
+        complain("%s: event %" PRId64 " (offset %" PRId64 "): %s: %s", log_name(run, place->log),
+                 place->number, place->offset, channel, what);
 }
 
 static void on_damage(void *user, int log, const struct log_damage *damage)
 {
     struct run *run = user;
     if (complains(run))
-        fprintf(stderr, "fmb: %s: offset %" PRId64 ": %" PRId64 " bytes: %s\n", log_name(run, log),
-                damage->offset, damage->length, damage->what);
+        complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s", log_name(run, log),
+                 damage->offset, damage->length, damage->what);
 }
 
 static void on_progress(void *user, int64_t bytes)
@@ -194,10 +196,10 @@ static int code_of(const struct options *options, const struct tally *all)
     if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) > 0)
         return ARGS_FAILED;
     if (nothing)
-        fprintf(stderr,
-                "fmb: %s: neither the same nor different; --prefix chooses the service, --golden\n"
-                "FILE the results, --write-golden FILE writes some\n",
-                nothing);
+        complain(
+            "%s: neither the same nor different; --prefix chooses the service,\n"
+            "--golden FILE the results, --write-golden FILE writes some",
+            nothing);
     return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
 }
 
@@ -212,7 +214,8 @@ static void report_one(void *user, const struct found *found)
         return;
     }
     replay_line(found, several ? log : NULL, run->first_utime, line);
-    puts(line);
+    escape(stdout, ESCAPE_TERMINAL, line, strlen(line));
+    putchar('\n');
 }
 
 /* Without a bus, or a service on it, counts say nothing. */
@@ -226,7 +229,7 @@ static void report_all(struct run *run, const struct tally *all, int code)
 {
     const int64_t beyond = listing_beyond(run->differences);
     if (run->complaints > COMPLAINTS_MAX)
-        fprintf(stderr, "fmb: and %" PRId64 " more of these\n", run->complaints - COMPLAINTS_MAX);
+        complain("and %" PRId64 " more of these", run->complaints - COMPLAINTS_MAX);
     if (run->options->json)
         run->json = replay_json_begin(stdout);
     listing_each(run->differences, report_one, run);
@@ -245,18 +248,17 @@ static void report_all(struct run *run, const struct tally *all, int code)
 static void report_never(const struct answer_bus_options *options, double patience)
 {
     const struct args_bus where = {options->url, options->prefix};
-    fprintf(stderr, "fmb: no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s",
-            options->prefix, options->prefix, args_bus_name(&where));
-    fprintf(stderr, " within %g s\n", patience);
+    complain("no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s within %g s",
+             options->prefix, options->prefix, args_bus_name(&where), patience);
 }
 
 static void report_no_more(const struct tally_bus *bus, double patience, char *const *log)
 {
     char answered[NUMBER_TEXT_MAX];
-    fprintf(stderr, "fmb: fmbd answered %s queries, and then nothing for %g s; ",
-            number_grouped(bus->answered, answered), patience);
-    fprintf(stderr, "the next one is event %" PRId64 " (offset %" PRId64 ") of %s\n", bus->number,
-            bus->offset, log[bus->log]);
+    complain("fmbd answered %s queries, and then nothing for %g s; the next one is event %" PRId64
+             " (offset %" PRId64 ") of %s",
+             number_grouped(bus->answered, answered), patience, bus->number, bus->offset,
+             log[bus->log]);
 }
 
 /* No service has answered at all, or none does any more. */
@@ -269,18 +271,16 @@ static void report_no_service(const struct tally_bus *bus, const struct answer_b
     else
         report_no_more(bus, patience, log);
     if (bus->nonsense > 0)
-        fprintf(stderr, "fmb: %" PRId64 " results could not be read: another version of fmbd?\n",
-                bus->nonsense);
-    fprintf(stderr,
-            "fmb: start one with 'fmbd%s%s &', or replay in this process: leave out --bus\n",
-            *options->prefix ? " --prefix " : "", options->prefix);
+        complain("%" PRId64 " results could not be read: another version of fmbd?", bus->nonsense);
+    complain("start one with 'fmbd%s%s &', or replay in this process: leave out --bus",
+             *options->prefix ? " --prefix " : "", options->prefix);
 }
 
 static void report_signal(const struct tally_bus *bus)
 {
     char answered[NUMBER_TEXT_MAX];
-    fprintf(stderr, "fmb: ended by a signal; counts are of %s queries, answered so far\n",
-            number_grouped(bus->answered, answered));
+    complain("ended by a signal; counts are of %s queries, answered so far",
+             number_grouped(bus->answered, answered));
 }
 
 /* Reports why not all queries were answered, if so, and what to do. */

@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "complain.h"
 #include "json_write.h"
 #include "listen.h"
 #include "number.h"
@@ -131,14 +132,13 @@ static void print_text(const struct fmb_client_heartbeat *status)
 static void advise(const struct options *options, const struct args_bus *bus,
                    const struct heartbeat *heartbeat)
 {
-    fprintf(stderr, "fmb: no heartbeat on channel %sFMB_STATUS of %s within %g s\n", bus->prefix,
-            args_bus_name(bus), options->timeout);
+    complain("no heartbeat on channel %sFMB_STATUS of %s within %g s", bus->prefix,
+             args_bus_name(bus), options->timeout);
     if (heartbeat->malformed)
-        fprintf(stderr, "fmb: but one that could not be read (%s): another version of fmbd?\n",
-                heartbeat->malformed);
+        complain("but one that could not be read (%s): another version of fmbd?",
+                 heartbeat->malformed);
     else
-        fprintf(stderr, "fmb: start one with 'fmbd%s%s &'\n", *bus->prefix ? " --prefix " : "",
-                bus->prefix);
+        complain("start one with 'fmbd%s%s &'", *bus->prefix ? " --prefix " : "", bus->prefix);
 }
 
 static int print_heartbeat(const struct options *options, const struct fmb_client_heartbeat *status)

@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "args.h"
+#include "complain.h"
 #include "listen.h"
 #include "report.h"
 
@@ -18,7 +19,9 @@ static const char usage[] =
     "are near are counted; all others are separated.\n"
     "\n"
     "  --json               one line of JSON for each result, exact, with its\n"
-    "                       certificate where it has one\n"
+    "                       certificate where it has one; of a scene with its pairs:\n"
+    "                       \"placements\" are their two places in the query, or \"pair\"\n"
+    "                       is their place in its list, from 0\n"
     "  --count N            end after N results\n" ARGS_COMMON_USAGE
     "\n"
     "Exit codes: 0 ended by a signal or --count, 1 no bus, or the output failed, 2\n"
@@ -94,6 +97,31 @@ static void print_pair_text(const struct fmb_client_pair_result *result,
 
 /* ---- Results of scenes ---- */
 
+/* The pairs of a result, which names them by their places in the query: it holds no ids. */
+static void write_scene_pairs(struct json_writer *json,
+                              const struct fmb_client_scene_result *result)
+{
+    struct fmb_client_cursor cursor = {0};
+    struct fmb_client_answer answer;
+    json_begin(json, "pairs", '[');
+    while (fmb_client_next_answer(result, &cursor, &answer)) {
+        const struct outcome outcome = {.error = answer.status == FMB_OK ? NULL : answer.text,
+                                        .answer = answer.answer};
+        json_begin(json, NULL, '{');
+        if (result->names_pairs) {
+            json_begin(json, "placements", '[');
+            json_integer(json, NULL, answer.a);
+            json_integer(json, NULL, answer.b);
+            json_end(json, ']');
+        } else {
+            json_integer(json, "pair", answer.a);
+        }
+        report_answer_json(json, result->dim, &outcome);
+        json_end(json, '}');
+    }
+    json_end(json, ']');
+}
+
 static void print_scene_json(const struct fmb_client_scene_result *result)
 {
     struct json_writer json = {.out = stdout};
@@ -114,6 +142,7 @@ static void print_scene_json(const struct fmb_client_scene_result *result)
         json_integer(&json, "separated", result->separated);
         json_integer(&json, "undecided", result->undecided);
     }
+    write_scene_pairs(&json, result);
     end_json(&json);
 }
 
@@ -176,7 +205,7 @@ static void on_malformed(void *user, const char *what)
 static int end_of_watch(const struct watch *watch, enum listen_end end)
 {
     if (watch->malformed > 0)
-        fprintf(stderr, "fmb: %" PRIu64 " messages could not be read\n", watch->malformed);
+        complain("%" PRIu64 " messages could not be read", watch->malformed);
     if (ferror(stdout))
         perror("fmb: standard output");
     return end == LISTEN_FAILED || ferror(stdout) ? ARGS_FAILED : ARGS_ANSWERED;

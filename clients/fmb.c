@@ -1,6 +1,7 @@
 /* fmb: the command. A table of commands, and what is said about them. */
 #include "args.h"
 #include "commands.h"
+#include "complain.h"
 #include "fmb.h"
 
 #include <stdbool.h>
@@ -57,14 +58,16 @@ static void print_help(FILE *out)
 
 static int unknown_command(const char *name)
 {
-    fprintf(stderr, "fmb: unknown command '%s'\nTry 'fmb --help'.\n", name);
+    complain("unknown command '%s'", name);
+    fputs("Try 'fmb --help'.\n", stderr);
     return ARGS_USAGE;
 }
 
 /* For options and commands that take nothing behind the first arguments. */
 static int too_many(const char *word)
 {
-    fprintf(stderr, "fmb: unknown argument '%s'\nTry 'fmb --help'.\n", word);
+    complain("unknown argument '%s'", word);
+    fputs("Try 'fmb --help'.\n", stderr);
     return ARGS_USAGE;
 }
 

@@ -1,5 +1,6 @@
 #include "args.h"
 
+#include "complain.h"
 #include "fmb_client.h"
 
 #include <errno.h>
@@ -8,14 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { ARGS_WHO_MAX = 64 };
+
 bool args_error(const struct args *args, const char *format, ...)
 {
     va_list list;
-    fprintf(stderr, "fmb %s: ", args->command);
+    char who[ARGS_WHO_MAX];
+    snprintf(who, sizeof who, "fmb %s", args->command);
     va_start(list, format);
-    vfprintf(stderr, format, list);
+    complain_as(who, format, list);
     va_end(list);
-    fprintf(stderr, "\nTry 'fmb %s --help'.\n", args->command);
+    fprintf(stderr, "Try 'fmb %s --help'.\n", args->command);
     return false;
 }
 

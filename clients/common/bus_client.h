@@ -5,9 +5,6 @@
 #include "args.h"
 #include "fmb_client.h"
 
-/* Prints each line of the text on stderr, after "fmb: ". */
-void complain(const char *text);
-
 /* On input: options, with url and prefix ignored. NULL: the reason was reported on stderr. */
 struct fmb_client *bus_client_open(const struct args_bus *bus, struct fmb_client_options options);
 

@@ -68,6 +68,26 @@ static const char *xml_of(uint32_t code)
     return is_control(code) || (code >= replacement && code <= 0xffff) ? "\xef\xbf\xbd" : NULL;
 }
 
+static const char *terminal_of(uint32_t code, char text[16])
+{
+    if (code == replacement)
+        return "\xef\xbf\xbd";
+    if (!is_control(code))
+        return NULL;
+    snprintf(text, 16, "\\x%02x", (unsigned) code);
+    return text;
+}
+
+static const char *escaped_of(enum escape form, uint32_t code, char text[16])
+{
+    switch (form) {
+    case ESCAPE_JSON: return json_of(code, text);
+    case ESCAPE_XML: return xml_of(code);
+    case ESCAPE_TERMINAL: return terminal_of(code, text);
+    }
+    return NULL;
+}
+
 void escape(FILE *out, enum escape form, const char *text, size_t size)
 {
     const unsigned char *at = (const unsigned char *) text, *end = at + size, *kept = at;
@@ -75,7 +95,7 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
         char room[16];
         uint32_t code;
         const size_t length = decode(at, (size_t) (end - at), &code);
-        const char *escaped = form == ESCAPE_JSON ? json_of(code, room) : xml_of(code);
+        const char *escaped = escaped_of(form, code, room);
         if (escaped) {
             fwrite(kept, 1, (size_t) (at - kept), out);
             fputs(escaped, out);

@@ -7,8 +7,9 @@
 #include <stdio.h>
 
 /* ESCAPE_JSON: the inside of a JSON string, also where the JSON stands in a <script> of a page.
- * ESCAPE_XML: the text of an element, or of an attribute in double quotes; of XML, HTML and SVG. */
-enum escape { ESCAPE_JSON, ESCAPE_XML };
+ * ESCAPE_XML: the text of an element, or of an attribute in double quotes; of XML, HTML and SVG.
+ * ESCAPE_TERMINAL: a line for people; control characters become \xNN. */
+enum escape { ESCAPE_JSON, ESCAPE_XML, ESCAPE_TERMINAL };
 
 /* Writes `size` bytes of UTF-8; each byte that is not part of valid UTF-8 becomes U+FFFD. JSON is
  * written in printable ASCII. In XML, control characters other than the line feed become U+FFFD

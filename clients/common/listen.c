@@ -2,6 +2,7 @@
 
 #include "bus_client.h"
 #include "clock.h"
+#include "complain.h"
 #include "signals.h"
 
 #include <errno.h>
@@ -17,7 +18,7 @@ bool listen_open(const struct args_bus *bus, const struct fmb_client_watcher *wa
     out->signals = -1;
     out->client = bus_client_open(bus, (struct fmb_client_options){0});
     if (out->client && fmb_client_watch(out->client, watcher) != FMB_OK) {
-        fprintf(stderr, "fmb: cannot listen on %s\n", args_bus_name(bus));
+        complain("cannot listen on %s", args_bus_name(bus));
     } else if (out->client) {
         out->signals = signals_open();
         if (out->signals >= 0)
@@ -56,7 +57,7 @@ enum listen_end listen_until(struct listener *listener, const bool *enough, doub
         if (ready > 0 && source[1].revents)
             return LISTEN_SIGNAL;
         if (ready < 0 || fmb_client_handle(listener->client, 0) < 0) {
-            fprintf(stderr, "fmb: the bus has failed: %s\n", strerror(errno));
+            complain("the bus has failed: %s", strerror(errno));
             return LISTEN_FAILED;
         }
     }

@@ -1,3 +1,4 @@
+#include "complain.h"
 #include "output.h"
 
 #include <errno.h>
@@ -5,7 +6,7 @@
 
 static bool failed(const char *name)
 {
-    fprintf(stderr, "fmb: %s: %s\n", name, strerror(errno));
+    complain("%s: %s", name, strerror(errno));
     return false;
 }
 

@@ -92,8 +92,29 @@ static void show_scene(const struct fmb_client *client, const struct scene_resul
         .separated = count[FMB_SEPARATED],
         .undecided = count[0],
         .compute_ns = result->compute_ns,
+        .dim = result->dim,
+        .internal = result,
     };
     client->watcher.scene(client->watcher.user, &out);
+}
+
+bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
+                            struct fmb_client_cursor *cursor, struct fmb_client_answer *out)
+{
+    const struct scene_result *of = result->internal;
+    const int32_t k = cursor->answers;
+    if (k >= of->verdict_count)
+        return false;
+    const bool decided = of->verdict[k] != 0;
+    const unsigned number = (unsigned) (of->end_pair - of->verdict_count + k);
+    *out = (struct fmb_client_answer){.a = of->names_pairs ? of->pair[k][0] : number,
+                                      .b = of->names_pairs ? of->pair[k][1] : number,
+                                      .status = decided ? FMB_OK : FMB_CANNOT_DECIDE,
+                                      .text = decided ? "" : fmb_status_text(FMB_CANNOT_DECIDE)};
+    part_read_answer(of, k, &cursor->contacts, &out->answer);
+    out->answer.has_gap = out->answer.has_gap && query_has_gap(&of->gap[k]);
+    cursor->answers++;
+    return true;
 }
 
 /* Results of other clients are read for the watcher alone. */

@@ -245,7 +245,23 @@ struct fmb_client_scene_result {
     int64_t separated; /* where names_pairs, the near ones */
     int64_t undecided; /* 0 where names_pairs */
     int64_t compute_ns;
+    int dim;              /* of boxes and gaps; 0: there is neither */
+    const void *internal; /* for fmb_client_next_answer() */
 };
+
+/* How far the answers of a result have been read; {0}: none. */
+struct fmb_client_cursor {
+    int32_t answers, contacts;
+};
+
+/* Reads the answers that a scene's result holds, one a call, in the order of the pairs; within the
+ * callback that got the result.
+ * On input: *cursor is {0} before the first call.
+ * On output: true and *out; or false, after the last answer. Where names_pairs, a and b are the
+ * indices of the placements in the query; otherwise both are the number of the pair in the query's
+ * list. The status is FMB_OK, or CANNOT_DECIDE for a pair without verdict. */
+bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
+                            struct fmb_client_cursor *cursor, struct fmb_client_answer *out);
 
 /* Counters of a heartbeat, in the order of status_t.lcm, which defines them. */
 #define FMB_CLIENT_COUNTERS(X) \

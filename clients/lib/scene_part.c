@@ -150,6 +150,17 @@ static void fill_contact(const struct scene_result *result, int32_t contact, str
         out->box[i / dim][i % dim] = result->boxes[2 * dim * contact + i];
 }
 
+void part_read_answer(const struct scene_result *result, int32_t k, int32_t *contact,
+                      struct fmb_answer *out)
+{
+    *out = (struct fmb_answer){.verdict = (enum fmb_verdict) result->verdict[k]};
+    if (is_contact(result->verdict[k]))
+        fill_contact(result, (*contact)++, out);
+    out->has_gap = result->has_gaps;
+    if (result->has_gaps)
+        out->gap = result->gap[k];
+}
+
 /* Whether the pair is not merely separated. */
 static bool says_more(const struct scene_result *result, int32_t k)
 {
@@ -173,13 +184,8 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
         if (!says_more(result, k))
             continue;
         struct part_answer *out = &answers->answer[answers->count++];
-        *out = (struct part_answer){.number = number_of(&taking, k),
-                                    .answer.verdict = (enum fmb_verdict) result->verdict[k]};
-        if (is_contact(result->verdict[k]))
-            fill_contact(result, contact++, &out->answer);
-        out->answer.has_gap = result->has_gaps;
-        if (result->has_gaps)
-            out->answer.gap = result->gap[k];
+        *out = (struct part_answer){.number = number_of(&taking, k)};
+        part_read_answer(result, k, &contact, &out->answer);
     }
     answers->answered = result->end_pair;
     return PART_TAKEN;

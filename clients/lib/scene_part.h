@@ -58,4 +58,8 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
 enum part_taken part_take_pair(const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers);
 
+/* The answer number k of a result, whose contacts before it number *contact, which is kept up. */
+void part_read_answer(const struct scene_result *result, int32_t k, int32_t *contact,
+                      struct fmb_answer *out);
+
 #endif

@@ -1,6 +1,7 @@
 #include "log_cut.h"
 
 #include "allocate.h"
+#include "complain.h"
 #include "definitions.h"
 #include "log_survey.h"
 #include "log_write.h"
@@ -28,7 +29,7 @@ struct cut {
 static void fail(struct cut *cut, const char *what, int error)
 {
     if (!cut->failed)
-        fprintf(stderr, "fmb: %s: %s\n", what, strerror(error));
+        complain("%s: %s", what, strerror(error));
     cut->failed = true;
 }
 
@@ -165,11 +166,11 @@ static bool open_cut(struct cut *cut)
     const struct log_cut_options *options = cut->options;
     char why[LOG_WHY_MAX];
     if (!input_open(&cut->input, options->log, options->log_count, why)) {
-        fprintf(stderr, "fmb: %s\n", why);
+        complain("%s", why);
         return false;
     }
     if (writes_into_log(options)) {
-        fprintf(stderr, "fmb: %s: is one of the logs that are cut\n", options->output);
+        complain("%s: is one of the logs that are cut", options->output);
         return false;
     }
     cut->channels = log_channels(options->prefix);

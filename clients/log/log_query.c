@@ -1,6 +1,7 @@
 #include "log_query.h"
 
 #include "allocate.h"
+#include "complain.h"
 #include "input.h"
 #include "log_kind.h"
 
@@ -33,7 +34,7 @@ static const char *last_log(const struct search *search)
 static void fail(struct search *search, const char *what, int error)
 {
     if (search->outcome == LOG_QUERY_FOUND)
-        fprintf(stderr, "fmb: %s: %s\n", what, strerror(error));
+        complain("%s: %s", what, strerror(error));
     search->outcome = LOG_QUERY_FAILED;
 }
 
@@ -123,7 +124,9 @@ static bool take_match(struct search *search, const struct log_event *event)
 static void begin_line(const struct search *search)
 {
     const struct log_query_options *options = search->options;
-    fprintf(stderr, "fmb: %s: ", last_log(search));
+    fputs("fmb: ", stderr);
+    complain_text(last_log(search));
+    fputs(": ", stderr);
     if (options->by == LOG_QUERY_NUMBER)
         fprintf(stderr, "event %" PRId64, options->number);
     else if (options->by == LOG_QUERY_OFFSET)
@@ -267,7 +270,7 @@ enum log_query_outcome log_query(const struct log_query_options *options, struct
     if (input_open(&search.input, options->log, options->log_count, why)) {
         run(&search);
     } else {
-        fprintf(stderr, "fmb: %s\n", why);
+        complain("%s", why);
         search.outcome = LOG_QUERY_FAILED;
     }
     input_close(&search.input);

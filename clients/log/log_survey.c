@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 #include "any_query.h"
+#include "complain.h"
 #include "definitions.h"
 #include "match.h"
 
@@ -207,7 +208,7 @@ static bool take_events(struct survey *survey)
         options->progress(options->user);
     }
     if (outcome == LOG_FAILED)
-        fprintf(stderr, "fmb: %s: %s\n", options->log[options->input->log], strerror(errno));
+        complain("%s: %s", options->log[options->input->log], strerror(errno));
     return outcome == LOG_END;
 }
 

@@ -1,6 +1,7 @@
 #include "log_write.h"
 
 #include "big_endian.h"
+#include "complain.h"
 #include "log_read.h"
 
 #include <assert.h>
@@ -222,10 +223,18 @@ static const char *remedy(int error)
     }
 }
 
+static bool is_folder(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
 void log_write_complain(const char *path, int error)
 {
+    if (error == EEXIST && is_folder(path))
+        error = EISDIR;
     if (error == ESTALE)
-        fprintf(stderr, "fmb: %s: deleted or truncated by another program\n", path);
+        complain("%s: deleted or truncated by another program", path);
     else
-        fprintf(stderr, "fmb: %s: %s%s\n", path, strerror(error), remedy(error));
+        complain("%s: %s%s", path, strerror(error), remedy(error));
 }

@@ -1,10 +1,12 @@
 #include "mesh_report.h"
 
 #include "allocate.h"
+#include "escape.h"
 #include "json_write.h"
 #include "mesh_write.h"
 #include "number.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,12 +23,54 @@ static void put_count(FILE *out, uint64_t count, const char *what)
     fprintf(out, "%14s  %s\n", number_grouped((int64_t) count, text), what);
 }
 
+static void put_name(FILE *out, const struct mesh_report *report, int which)
+{
+    escape(out, ESCAPE_TERMINAL, report->name[which], strlen(report->name[which]));
+}
+
 static void put_faces(FILE *out, const struct mesh_report *report, int which)
 {
     char in_pairs[NUMBER_TEXT_MAX], all[NUMBER_TEXT_MAX];
-    fprintf(out, "%14s  of %s faces of %s\n",
+    fprintf(out, "%14s  of %s faces of ",
             number_grouped((int64_t) report->meeting->faces[which], in_pairs),
-            number_grouped((int64_t) report->mesh[which]->face_count, all), report->name[which]);
+            number_grouped((int64_t) report->mesh[which]->face_count, all));
+    put_name(out, report, which);
+    putc('\n', out);
+}
+
+/* The least box around the faces: [lower, upper][axis]. */
+static void find_bounds(const struct mesh *mesh, double out[2][3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        out[0][axis] = INFINITY;
+        out[1][axis] = -INFINITY;
+        for (size_t i = 0; i < 3 * mesh->face_count; i++) {
+            const double x = mesh->vertex[mesh->face[i / 3][i % 3]][axis];
+            out[0][axis] = fmin(out[0][axis], x);
+            out[1][axis] = fmax(out[1][axis], x);
+        }
+    }
+}
+
+/* Surfaces that do not meet may still enclose one another, if the box of one lies in the other's.
+ * Moving ones too: where no faces meet, what is inside stays there. */
+static void put_hint(FILE *out, const struct mesh_report *report)
+{
+    double bounds[2][2][3];
+    for (int which = 0; which < 2; which++)
+        find_bounds(report->mesh[which], bounds[which]);
+    for (int inner = 0; inner < 2; inner++) {
+        bool within = report->mesh[inner]->face_count > 0;
+        for (int axis = 0; axis < 3; axis++)
+            within = within && bounds[inner][0][axis] > bounds[!inner][0][axis] &&
+                     bounds[inner][1][axis] < bounds[!inner][1][axis];
+        if (!within)
+            continue;
+        put_name(out, report, inner);
+        fputs(" may lie inside ", out);
+        put_name(out, report, !inner);
+        fputs(", within whose bounds it is: only surfaces are compared\n", out);
+    }
 }
 
 /* From the first to the last time at which any two faces meet. */
@@ -73,6 +117,8 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
     }
     if (meeting->moving && meeting->count > 0)
         put_times(out, meeting);
+    if (meeting->count == 0 && !is_self(report))
+        put_hint(out, report);
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------ */

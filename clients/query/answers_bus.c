@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 #include "bus_client.h"
+#include "complain.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -44,11 +45,10 @@ static void report_contradictions(const struct fmb_client *client)
 {
     const uint64_t count = client ? fmb_client_get_counts(client).contradicting : 0;
     if (count > 0)
-        fprintf(stderr,
-                "fmb: %" PRIu64
-                " queries got a second result that contradicts the first: another "
-                "program on the bus is wrong, or forges results\n",
-                count);
+        complain("%" PRIu64
+                 " queries got a second result that contradicts the first: another "
+                 "program on the bus is wrong, or forges results",
+                 count);
 }
 
 void answers_bus_close(struct answers_bus *answers)
@@ -193,14 +193,14 @@ static void advise(struct answers_bus *answers)
     if (answers->advised == counts.outages)
         return;
     answers->advised = counts.outages;
-    fprintf(stderr, "fmb: no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s\n", prefix,
-            answers->question.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
-            answers->patience);
+    complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s", prefix,
+             answers->question.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
+             answers->patience);
     if (counts.malformed > 0)
-        fprintf(stderr, "fmb: %" PRIu64 " results could not be read: another version of fmbd?\n",
-                counts.malformed);
-    fprintf(stderr, "fmb: start one with 'fmbd%s%s &', or decide without it: fmb query --local\n",
-            *prefix ? " --prefix " : "", prefix);
+        complain("%" PRIu64 " results could not be read: another version of fmbd?",
+                 counts.malformed);
+    complain("start one with 'fmbd%s%s &', or decide without it: fmb query --local",
+             *prefix ? " --prefix " : "", prefix);
 }
 
 static void query(struct answers_bus *answers, struct run *run)

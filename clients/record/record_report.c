@@ -1,11 +1,14 @@
 #include "record_report.h"
 
+#include "complain.h"
+#include "escape.h"
 #include "json_write.h"
 #include "number.h"
 #include "say.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -77,12 +80,13 @@ static void print_count(const char *name, int64_t count)
 static void print_where(const struct log_parts *parts)
 {
     const char *path = parts->options.path;
+    escape(stdout, ESCAPE_TERMINAL, path, strlen(path));
     if (parts->options.part_bytes == 0)
-        printf("%s: ", path);
+        printf(": ");
     else if (parts->first == parts->number)
-        printf("%s.%03ld: ", path, parts->number);
+        printf(".%03ld: ", parts->number);
     else
-        printf("%s.%03ld to .%03ld: ", path, parts->first, parts->number);
+        printf(".%03ld to .%03ld: ", parts->first, parts->number);
 }
 
 void record_report_text(const struct recorded *recorded, const struct log_parts *parts)
@@ -107,17 +111,17 @@ static void warn_count(int64_t count, const char *what)
 {
     char text[NUMBER_TEXT_MAX];
     if (count > 0)
-        fprintf(stderr, "fmb: %s %s\n", number_grouped(count, text), what);
+        complain("%s %s", number_grouped(count, text), what);
 }
 
 static void suggest(long receive_buffer)
 {
     char text[NUMBER_TEXT_MAX];
     if (receive_buffer < RECEIVE_BUFFER_ENOUGH)
-        fprintf(stderr,
-                "fmb: the receive buffer has only %s bytes; to grant more, run:\n"
-                "fmb:   sudo sysctl net.core.rmem_max=%d\n",
-                number_grouped(receive_buffer, text), RECEIVE_BUFFER_TO_SET);
+        complain(
+            "the receive buffer has only %s bytes; to grant more, run:\n"
+            "  sudo sysctl net.core.rmem_max=%d",
+            number_grouped(receive_buffer, text), RECEIVE_BUFFER_TO_SET);
     else
         fputs(
             "fmb: this machine or its disk was too busy; to be scheduled before others, run:\n"
@@ -173,7 +177,7 @@ void record_line_show(struct record_line *line, int64_t now_ns, const char *path
              number_grouped(events, number[0]),
              number_grouped((int64_t) ((double) (events - line->events) / seconds), number[1]),
              1e-6 * (double) (bytes - line->bytes) / seconds, number_grouped(lost, number[2]),
-             number_grouped(bytes / 1000000, number[3]), path);
+             number_grouped(bytes / 1000000, number[3]), escape_is_text(path) ? path : "?");
     show(text);
     *line = (struct record_line){true, true, now_ns, events, bytes};
 }

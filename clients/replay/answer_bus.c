@@ -3,6 +3,7 @@
 #include "allocate.h"
 #include "big_endian.h"
 #include "clock.h"
+#include "complain.h"
 #include "fmb_client_raw.h"
 #include "signals.h"
 #include "wire.h"
@@ -288,7 +289,7 @@ struct answer_bus *answer_bus_open(const struct answer_bus_options *options, ans
     bus->counts.used = 1;
     bus->client = fmb_client_open(&client, why, sizeof why);
     if (!bus->client)
-        fprintf(stderr, "fmb: %s\n", why);
+        complain("%s", why);
     else if ((bus->signals = signals_open()) < 0)
         perror("fmb: signals");
     if (bus->signals >= 0)

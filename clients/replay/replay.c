@@ -1,6 +1,7 @@
 #include "replay_parts.h"
 
 #include "allocate.h"
+#include "complain.h"
 #include "wire.h"
 
 #include <errno.h>
@@ -12,7 +13,7 @@
 void replay_fail(struct replay *replay, const char *what)
 {
     if (!replay->failed)
-        fprintf(stderr, "fmb: %s: %s\n", what, strerror(errno));
+        complain("%s: %s", what, strerror(errno));
     replay->failed = true;
 }
 
@@ -54,7 +55,7 @@ bool replay_read_again(struct replay *replay, const struct match_key *key,
 
 static void fail_golden(struct replay *replay, int64_t offset, const char *what)
 {
-    fprintf(stderr, "fmb: %s: offset %" PRId64 ": %s\n", replay->options->golden, offset, what);
+    complain("%s: offset %" PRId64 ": %s", replay->options->golden, offset, what);
     replay->failed = true;
 }
 
@@ -191,11 +192,11 @@ static bool open_goldens(struct replay *replay)
     const struct replay_options *options = replay->options;
     char why[LOG_WHY_MAX];
     if (options->golden && !(replay->golden = log_open(options->golden, why))) {
-        fprintf(stderr, "fmb: %s: %s\n", options->golden, why);
+        complain("%s: %s", options->golden, why);
         return false;
     }
     if (options->write_golden && is_read(options, options->write_golden)) {
-        fprintf(stderr, "fmb: %s: it is read: write elsewhere\n", options->write_golden);
+        complain("%s: it is read: write elsewhere", options->write_golden);
         return false;
     }
     if (options->write_golden &&
@@ -222,7 +223,7 @@ static bool open_replay(struct replay *replay)
     const struct replay_options *options = replay->options;
     char why[LOG_WHY_MAX];
     if (!input_open(&replay->input, options->log, options->log_count, why)) {
-        fprintf(stderr, "fmb: %s\n", why);
+        complain("%s", why);
         return false;
     }
     replay->definitions = definitions_open();
@@ -269,9 +270,8 @@ static void close_replay(struct replay *replay)
 
 static void fail_version_1(struct replay *replay)
 {
-    fprintf(stderr,
-            "fmb: %s: recorded by version 1, whose messages are others: replay it with that\n",
-            replay->options->log[replay->input.log]);
+    complain("%s: recorded by version 1, whose messages are others: replay it with that",
+             replay->options->log[replay->input.log]);
     replay->failed = true;
 }
 
@@ -338,7 +338,7 @@ bool replay_extent(const struct replay_options *options, int64_t *size, int64_t 
     struct log_damage damage;
     enum log_outcome outcome;
     if (!input_open(&input, options->log, options->log_count, why)) {
-        fprintf(stderr, "fmb: %s\n", why);
+        complain("%s", why);
         return false;
     }
     while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)

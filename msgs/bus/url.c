@@ -76,9 +76,11 @@ static bool parse_address(struct text text, struct sockaddr_in *out, char why[BU
     const struct text group = {text.at, length};
     int port;
     if (!parse_group(group, &out->sin_addr)) {
-        snprintf(why, BUS_WHY_MAX,
-                 "'%.*s' is not a multicast group (224.0.0.0 to 239.255.255.255): write %s%s:%d",
-                 shown(group), group.at, scheme, DEFAULT_GROUP, DEFAULT_PORT);
+        snprintf(
+            why, BUS_WHY_MAX,
+            "'%.*s' is not a multicast group (224.0.0.0 to 239.255.255.255), and LCM sends to no "
+            "single host: write %s%s:%d, with ?ttl=1 after it to reach other hosts",
+            shown(group), group.at, scheme, DEFAULT_GROUP, DEFAULT_PORT);
         return false;
     }
     if (!colon) {

@@ -101,7 +101,7 @@ static void put_settings(const struct bench *bench, struct json_writer *json)
  * known after. */
 static bool write_json(const struct bench *bench, bool pinned, const char *text, const char *path)
 {
-    struct json_writer json = {fopen(path, "w"), false};
+    struct json_writer json = {.out = fopen(path, "w")};
     if (!json.out)
         return false;
     fputc('{', json.out);
@@ -147,7 +147,7 @@ int main(int argc, char **argv)
     if (outcome != OPTIONS_RUN)
         return outcome;
     const bool pinned = stopwatch_pin();
-    bench.json = (struct json_writer){open_memstream(&text, &length), true};
+    bench.json = (struct json_writer){.out = open_memstream(&text, &length), .comma = true};
     if (!bench.json.out) {
         perror("bench");
         return EXIT_FAILURE;

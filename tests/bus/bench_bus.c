@@ -150,7 +150,7 @@ static void put_head(const struct bus_bench *bench, struct json_writer *json)
 
 static bool write_json(const struct bus_bench *bench, const char *text, const char *path)
 {
-    struct json_writer json = {fopen(path, "w"), false};
+    struct json_writer json = {.out = fopen(path, "w")};
     if (!json.out)
         return false;
     fputc('{', json.out);
@@ -190,7 +190,7 @@ int main(int argc, char **argv)
     const int outcome = bus_options(argc, argv, &bench, &path);
     if (outcome != OPTIONS_RUN)
         return outcome;
-    bench.json = (struct json_writer){open_memstream(&text, &length), true};
+    bench.json = (struct json_writer){.out = open_memstream(&text, &length), .comma = true};
     if (!bench.json.out) {
         perror("bench-bus");
         return EXIT_FAILURE;

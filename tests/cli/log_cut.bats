@@ -249,6 +249,8 @@ split_at() {
     cuts 2 "$log" -o "$cut"
     [ "$(cat "$cut")" = precious ]
     [[ "$stderr" == *"cut.log: File exists; --force overwrites it" ]]
+    cuts 2 "$log" -o "$T"
+    [ "$stderr" = "fmb: $T: Is a directory" ]
     cuts 0 "$log" -o "$cut" --force
     cmp "$log" "$cut"
     ln -s whole.log "$T/link.log"

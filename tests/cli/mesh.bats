@@ -64,6 +64,23 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 
 # ---- Answers ---------------------------------------------------------------------------------
 
+@test "a mesh within the bounds of another one that it does not meet: a hint, for people alone" {
+    obj out.obj '-1 -1 -1' '3 -1 -1' '-1 3 -1' '-1 -1 3' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
+    obj in.obj '0 0 0' '0.1 0 0' '0 0.1 0' '0 0 0.1' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
+    hint='in.obj may lie inside out.obj, within whose bounds it is: only surfaces are compared'
+    for meshes in 'in.obj out.obj' 'out.obj in.obj'; do
+        mesh $meshes
+        ended 0
+        [ "${lines[-1]}" = "$hint" ]
+    done
+    mesh in.obj --translate 9,0,0 out.obj
+    [[ $output != *inside* ]]
+    mesh in.obj --translate 0,0,-1 out.obj # they meet
+    [[ $output != *inside* ]]
+    mesh --json in.obj out.obj
+    [[ $output != *inside* ]]
+}
+
 @test "one line of JSON: counts, and the pairs in order" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping"], [0, 1, "touching"]]}' a.obj b.obj
     answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 1, "pairs": [[0, 0, "overlapping"], [1, 0, "touching"]]}' b.obj a.obj

@@ -7,7 +7,7 @@ load ../page/chromium
 
 setup_file() {
     cd "$BATS_TEST_DIRNAME/../.." || return
-    for page in mixed arm many crowd empty; do
+    for page in mixed arm many crowd uneven empty; do
         "${FMB_BUILD:-build}/make-page" $page > "$BATS_FILE_TMPDIR/$page.html"
     done
     cp tests/page/drive.html tests/page/drive.js tests/page/tools.js "$BATS_FILE_TMPDIR"
@@ -32,7 +32,7 @@ setup() {
 # ---- Contents --------------------------------------------------------------------------------
 
 @test "one file that refers to nothing else" {
-    for page in mixed arm many crowd empty; do
+    for page in mixed arm many crowd uneven empty; do
         data $page.html | jq -e '.events | type == "array"' > /dev/null
         is_alone $page.html
     done
@@ -165,6 +165,18 @@ setup() {
     found light '.crowd | .drawn > 50000 and .rows == 30
         and (.notes | contains("The answers are those of the pairs 0 to"))'
     found light '.crowdMore == 230 and .empty == {said: "No query was replayed.", hidden: true}'
+}
+
+@test "bars have no holes where steps are uneven, and end where results stop coming" {
+    found light '.uneven.titles | .[0] == "overlapping, 334 queries from 0.000 s" and length == 6'
+}
+
+@test "texts on the axis do not overprint each other" {
+    found light '.uneven | .texts > 0 and (.overprints | length == 41 and all(. == 0))'
+}
+
+@test "the scene and what plays it are in view at 1400 x 900" {
+    found light '.foldHidden == false and (.fold | length == 3 and all(. <= 900))'
 }
 
 @test "the dark color scheme is followed" {

@@ -695,3 +695,20 @@ Try 'fmb $1 --help'."
     wrong "unknown argument 'a'" watch a
     wrong "unknown argument 'a'" status a
 }
+
+@test "names with control characters are escaped on the terminal, by every command" {
+    name=$(printf '%s/\033[31mred\302\233' "$BATS_TEST_TMPDIR")
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$name.obj"
+    printf x > "$name"
+    cp "$BATS_TEST_DIRNAME/../logs/stack.log" "$name.log"
+    for arguments in "query --local @" "query @/none" "query --local --svg @/none" "mesh --self @" \
+        "mesh @.obj @.obj" "mesh @.obj @.obj --ply @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
+        "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
+        "record @/none" "record --@" "watch @" "log @" "@" "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do
+        words=()
+        for word in $arguments; do words+=("${word/@/$name}"); done
+        "$FMB" "${words[@]}" > "$BATS_TEST_TMPDIR/said" 2>&1 < /dev/null || true
+        grep -qaF '\x1b[31mred' "$BATS_TEST_TMPDIR/said" || { echo "does not name it: $arguments"; cat -v "$BATS_TEST_TMPDIR/said"; false; }
+        ! LC_ALL=C grep -qa -e $'\033' -e $'\302\233' "$BATS_TEST_TMPDIR/said" || { echo "raw: $arguments"; false; }
+    done
+}

@@ -187,6 +187,35 @@ async function large() {
     found.empty = { said: text("#span"), hidden: one("#timeline").hidden };
 }
 
+/* Pairs of texts on the axis that overprint each other. */
+function overprints() {
+    const boxes = all("#plot .tick text, #plot .fold text, #plot .cursor text")
+        .map((element) => element.getBoundingClientRect());
+    return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.left < b.right
+        && b.left < a.right)).length;
+}
+
+/* A log of uneven steps, of pauses; after each step of a wheel over the axis. */
+async function uneven() {
+    await open("uneven.html");
+    const titles = marks("1 2", ".run").map((run) => run.textContent);
+    found.uneven = { titles, texts: texts("#plot .fold text").length, overprints: [overprints()] };
+    for (let i = 0; i < 40; i++) {
+        await press(i < 25 ? "ArrowRight" : i < 32 ? "+" : "-");
+        found.uneven.overprints.push(overprints());
+    }
+}
+
+/* All that plays the window is in view, where the page is as large as a laptop's. */
+async function fold() {
+    frame.style.width = "1400px";
+    frame.style.height = "900px";
+    await open("arm.html");
+    found.fold = ["#play", "#moment", "#stage"].map((selector) =>
+        one(selector).getBoundingClientRect().bottom);
+    found.foldHidden = one("#window").hidden;
+}
+
 /* Attempts to fetch, from within the page, are refused. */
 async function network() {
     await open("mixed.html");
@@ -215,5 +244,5 @@ async function broken() {
     await open("cut.html");
 }
 
-const light = [mixed, difference, space, sizes, filter, zoom, scene, large];
+const light = [mixed, difference, space, sizes, filter, zoom, scene, large, uneven, fold];
 drive(location.hash === "#dark" ? [network, dark, broken] : light);

@@ -5,6 +5,7 @@
  *     arm     an arm that swings over a table of parts, all pairs of them at 20 Hz
  *     many    more queries than a page keeps, of many pairs, with a long pause
  *     crowd   one scene of nearly as many bodies, by handle, as a 3D query may have
+ *     uneven  one pair at uneven times, a stretch of another one, bursts with long pauses
  *     empty   no query */
 #include "sample_log.h"
 
@@ -300,6 +301,34 @@ static void add_many(struct sample_log *log)
     }
 }
 
+static void add_uneven_pair(struct sample_log *log, int64_t id)
+{
+    static const double at[] = {0, 0};
+    const struct pair_query query = pair_of(sample_solid(id, 2, FMB_CUBOID, 1, at),
+                                            sample_solid(id + 1, 2, FMB_CUBOID, 1, at), 1);
+    sample_pair(log, &query);
+}
+
+/* Bodies 1 and 2 overlap always: asked 200 times at steps of 0.01 to 10.24 s, with the pair of 3
+ * and 4 in between; not while that is asked 300 times; then in five bursts an hour apart. */
+static void add_uneven(struct sample_log *log)
+{
+    sample_begin(log, "uneven.log");
+    for (int i = 0; i < 200; i++) {
+        add_uneven_pair(log, i % 3 == 2 ? 3 : 1);
+        add_uneven_pair(log, 1);
+        sample_wait(log, 0.01 * (1 << i * 7 % 11));
+    }
+    for (int i = 0; i < 300; i++) {
+        add_uneven_pair(log, 3);
+        sample_wait(log, 0.1);
+    }
+    for (int i = 0; i < 5 * 15; i++) {
+        add_uneven_pair(log, 1);
+        sample_wait(log, i % 15 == 14 ? 3600 : 0.1);
+    }
+}
+
 /* A placement by handle takes 68 bytes. */
 static void add_crowd(struct sample_log *log)
 {
@@ -329,11 +358,8 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         void (*add)(struct sample_log *log);
-    } pages[] = {{"mixed", add_mixed},
-                 {"arm", add_arm},
-                 {"many", add_many},
-                 {"crowd", add_crowd},
-                 {"empty", add_empty}};
+    } pages[] = {{"mixed", add_mixed}, {"arm", add_arm},       {"many", add_many},
+                 {"crowd", add_crowd}, {"uneven", add_uneven}, {"empty", add_empty}};
     for (size_t i = 0; argc == 2 && i < sizeof pages / sizeof *pages; i++) {
         struct sample_log log;
         if (strcmp(argv[1], pages[i].name) != 0)
@@ -341,6 +367,6 @@ int main(int argc, char **argv)
         pages[i].add(&log);
         return sample_end(&log, stdout) ? EXIT_SUCCESS : EXIT_FAILURE;
     }
-    fprintf(stderr, "usage: make-page mixed|arm|many|crowd|empty > FILE\n");
+    fprintf(stderr, "usage: make-page mixed|arm|many|crowd|uneven|empty > FILE\n");
     return 2;
 }

@@ -13,7 +13,7 @@ setup() {
     compiler=$(case $FMB_BUILD in *-clang) echo clang ;; *) echo gcc ;; esac)
     # What was built is installed as it is.
     make -s -o all "${options[@]}" install PREFIX="$root"
-    export PKG_CONFIG_PATH=$root/lib/pkgconfig
+    export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
 }
 
 @test "the example queries a scene: compiled against what is installed, with neither libfmb nor GMP" {
@@ -73,13 +73,55 @@ END
     [ -z "$(grep fmb_msgs "$BATS_TEST_TMPDIR/names")" ]
 }
 
+@test "shared libraries have a soname, and show the names of their headers alone" {
+    for name in fmb fmb-client; do
+        file=$root/lib/lib$name.so
+        [ "$(readlink "$file")" = lib$name.so.0 ]
+        objdump -p "$file" | grep -q "SONAME *lib$name.so.0\$"
+        header=$root/include/${name/-/_}.h
+        nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
+        grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
+        for shown in $(cat "$BATS_TEST_TMPDIR/names"); do
+            grep -q "[ *]$shown(" "$header" "$root/include/fmb.h"
+        done
+    done
+}
+
+@test "a program runs with the shared libraries, and a shared object holds the archives" {
+    cat > "$BATS_TEST_TMPDIR/plugin.c" << 'END'
+#include <fmb_client.h>
+#include <string.h>
+int plugin(void);
+int plugin(void)
+{
+    struct fmb_body body;
+    const double edges[] = {1, 0, 0, 1};
+    return fmb_body_make(2, FMB_CUBOID, edges, 4, &body) == FMB_OK && fmb_client_prefix_ok("a");
+}
+END
+    printf 'int plugin(void);\nint main(void) { return !plugin(); }\n' > "$BATS_TEST_TMPDIR/main.c"
+    cd "$BATS_TEST_TMPDIR"
+    $compiler $flags plugin.c main.c $(pkg-config --cflags --libs fmb fmb-client) -o with_shared
+    ./with_shared
+    for name in fmb fmb-client; do ldd with_shared | grep -q "lib$name.so.0 => $root/"; done
+    $compiler $flags -shared -fPIC plugin.c $(pkg-config --cflags fmb-client) -o libplugin.so \
+        "$root/lib/libfmb-client.a" "$root/lib/libfmb.a" -llcm -lglib-2.0 -lgmp -lm
+    $compiler $flags main.c -L. -lplugin -o with_plugin
+    rm "$root"/lib/libfmb*
+    LD_LIBRARY_PATH=. ./with_plugin
+}
+
 # Options of make are those of setup().
-@test "a prefix may hold a space, or be relative; uninstall removes all that was installed" {
+@test "a prefix may hold a space, % and &, or be relative; uninstall removes all that was installed" {
     printf '#include <fmb_client.h>\nint main(void) { return !fmb_client_prefix_ok("a"); }\n' \
         > "$BATS_TEST_TMPDIR/small.c"
-    for prefix in "$BATS_TEST_TMPDIR/a prefix" "$(realpath --relative-to=. "$BATS_TEST_TMPDIR")/relative"; do
+    for prefix in "$BATS_TEST_TMPDIR/a %n & prefix" "$(realpath --relative-to=. "$BATS_TEST_TMPDIR")/relative"; do
         make -s -o all "${options[@]}" install-strip PREFIX="$prefix" LIBDIR="$(realpath -m "$prefix")/lib64"
         PKG_CONFIG_PATH="$(realpath "$prefix")/lib64/pkgconfig"
+        export LD_LIBRARY_PATH=$(realpath "$prefix")/lib64
+        # systemd splits words at spaces, and takes % for a specifier.
+        grep -qxF "ExecStart=\"$(realpath "$prefix" | sed 's/%/%%/g')/bin/fmbd\"" \
+            "$prefix/lib/systemd/system/fmbd.service"
         cd "$BATS_TEST_TMPDIR"
         eval "$compiler $flags small.c $(pkg-config --static --cflags --libs fmb-client) -o small"
         ./small

@@ -162,6 +162,30 @@ grid_scene() {
     stop_fmbd
 }
 
+@test "watch shows the pairs of scenes with times, boxes and gaps, in JSON" {
+    start_fmbd
+    grid_scene 3 1 | sed 's/{/{"margin":0.75,"duration":2,/' | jq -c '.bodies[0].velocity = [0.1, 0, 0.25]' > "$BATS_TEST_TMPDIR/all"
+    jq -c '.pairs = [[2, 1], [1, 2], [1, 6], [3, 7]] | del(.margin)' "$BATS_TEST_TMPDIR/all" > "$BATS_TEST_TMPDIR/listed"
+    for scene in all listed; do
+        "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+        watch=$!
+        started="$started $watch"
+        asked() {
+            "$FMB" query --box --json "$BATS_TEST_TMPDIR/$scene" > "$BATS_TEST_TMPDIR/bus"
+            ! kill -0 $watch 2> /dev/null
+        }
+        wait_until asked
+        # By their places in the query, which ids 1, 2, ... follow, or in its list.
+        jq -e --slurpfile bus "$BATS_TEST_TMPDIR/bus" '
+            [$bus[0].pairs | to_entries[] | select(.value | .verdict != "separated" or .gap or (has("contact")) or $scene == "listed")
+                | (if $scene == "listed" then {pair: .key} else {placements: [.value.a - 1, .value.b - 1]} end)
+                    + (.value | del(.a, .b))] as $wanted
+            | .pairs == $wanted and (.pairs | length) > 3 and any(.pairs[]; .contact and .box)' \
+            --arg scene $scene "$BATS_TEST_TMPDIR/watch"
+    done
+    stop_fmbd
+}
+
 @test "watch shows the status of errors, in JSON" {
     start_fmbd
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"

@@ -169,7 +169,7 @@ static void test_bad_urls_are_refused_in_one_line(void **state)
         {"file:///p.log?mode=w", "write udpm://" GROUP ":7667"},
         {"udpm", "write udpm://" GROUP ":7667"},
         {"udpm:/" GROUP ":7667", "write udpm://" GROUP ":7667"},
-        {"udpm://127.0.0.1:7667", "'127.0.0.1' is not a multicast group"},
+        {"udpm://127.0.0.1:7667", "with ?ttl=1 after it to reach other hosts"},
         {"udpm://240.0.0.1:7667", "not a multicast group"},
         {"udpm://223.255.255.255:7667", "not a multicast group"},
         {"udpm://239.255.76:7667", "not a multicast group"},

@@ -14,31 +14,36 @@ function median(numbers) {
     return sorted.length ? sorted[sorted.length >> 1] : 0;
 }
 
-/* The steps that are pauses; none where folding them is not worth it. */
+/* The steps in which nothing was asked for unusually long. */
 function findPauses(times) {
     const steps = times.slice(1).map((time, i) => ({ from: times[i], seconds: time - times[i] }));
     const span = times.length ? times[times.length - 1] - times[0] : 0;
     const usual = median(steps.map((step) => step.seconds));
-    const pauses = steps.filter((step) => step.seconds > span * PAUSE_PART
+    return steps.filter((step) => step.seconds > span * PAUSE_PART
         && step.seconds > usual * PAUSE_TIMES);
+}
+
+/* Those to fold; none where that is not worth it. */
+function findFolds(pauses, span) {
     const idle = pauses.reduce((sum, pause) => sum + pause.seconds, 0);
     return idle > PAUSES_PART * span && idle < span ? pauses : [];
 }
 
-/* times: ascending. breaks: {from, seconds, place, width}; at: from time to place; time: back. */
+/* times: ascending. pauses: {from, seconds}; breaks: those that are folded, {from, seconds, place,
+ * width}; at: from time to place; time: back. */
 function makeClock(times) {
-    const pauses = findPauses(times);
     const first = times.length ? times[0] : 0, last = times.length ? times[times.length - 1] : 0;
-    const busy = last - first - pauses.reduce((sum, pause) => sum + pause.seconds, 0);
+    const pauses = findPauses(times), folds = findFolds(pauses, last - first);
+    const busy = last - first - folds.reduce((sum, pause) => sum + pause.seconds, 0);
     const width = busy * BREAK_PART;
     let saved = 0;
-    const breaks = pauses.map((pause) => {
+    const breaks = folds.map((pause) => {
         const place = pause.from - first - saved;
         saved += pause.seconds - width;
         return { ...pause, place, width, saved };
     });
     return {
-        breaks, length: last - first - saved,
+        pauses, breaks, length: last - first - saved,
         at(time) {
             let place = time - first;
             for (const fold of breaks) {

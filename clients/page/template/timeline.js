@@ -1,13 +1,13 @@
 /* The timeline: an overview of the whole, an axis, a row for each pair of bodies.
  *
- * In a row the verdict of a query holds until the next query of the row; where that is long in
- * coming, the bar ends. The verdicts differ in height, not in colour alone. */
+ * In a row the verdict of a query holds until the next query of the row; where results stop
+ * coming before, the bar ends. The verdicts differ in height, not in colour alone. */
 
 const ROW = 26, OVERVIEW = 20, AXIS_TOP = 34, ROWS_TOP = 62; /* pixels */
 const EDGE = 12;                 /* left and right of the first and the last query */
 const BAR_HEIGHT = { [-1]: 4, 0: 4, 1: 8, 2: 14, 3: 20 };
 const SHORTEST_BAR = 3, DOT_ROOM = 9, FLAG_ROOM = 13;
-const PAUSE_OF_ROW = 6;          /* the median step of the row: a longer one ends a bar */
+const PAUSE_OF_ROW = 10;         /* mean steps of the row, in queries: a longer one ends a bar */
 const ROWS_FIRST = 8, ROWS_MORE = 40;
 const SHORTEST_VIEW = 2e-5;      /* seconds */
 
@@ -68,11 +68,22 @@ function matches(row) {
 
 /* ---- Bars ---- */
 
-/* How long the last bar before a pause is, and what is a pause. */
+/* Of a row, the mean of its steps: in queries of the log, and on the clock's line. */
 function rowSteps(row) {
-    if (row.usual === undefined)
-        row.usual = median(row.at.slice(1).map((at, i) => places[at] - places[row.at[i]]));
-    return row.usual;
+    const last = row.at.length - 1;
+    const mean = (numbers) => last > 0 ? (numbers(last) - numbers(0)) / last : 0;
+    row.steps ??= { queries: mean((i) => row.at[i]), place: mean((i) => places[row.at[i]]) };
+    return row.steps;
+}
+
+/* Whether results stop coming after the row's query number i: nothing is asked for long, or much
+ * else is before this pair. Uneven steps alone are no pause. */
+function isPauseAfter(row, i) {
+    if (i + 1 === row.at.length)
+        return true;
+    const [at, next] = [row.at[i], row.at[i + 1]];
+    return next - at > PAUSE_OF_ROW * rowSteps(row).queries || clock.pauses.some(
+        ({ from }) => from >= events[at].seconds && from < events[next].seconds);
 }
 
 /* From where on differences alone were kept. */
@@ -81,11 +92,9 @@ const leftOutPlace = data.left_out.every((count) => count === 0)
 
 /* The place where the bar of the row's query number i ends: not in what was left out. */
 function barEnd(row, i) {
-    const usual = rowSteps(row), begin = places[row.at[i]];
-    const cut = begin < leftOutPlace ? leftOutPlace : Infinity;
-    if (i + 1 < row.at.length && places[row.at[i + 1]] - begin <= PAUSE_OF_ROW * usual)
-        return Math.min(places[row.at[i + 1]], cut);
-    return Math.min(begin + Math.min(usual, clock.length / 100), cut);
+    const begin = places[row.at[i]], cut = begin < leftOutPlace ? leftOutPlace : Infinity;
+    return Math.min(cut, isPauseAfter(row, i)
+        ? begin + Math.min(rowSteps(row).place, clock.length / 100) : places[row.at[i + 1]]);
 }
 
 /* The first and the last query of the row that may be seen. */
@@ -204,32 +213,52 @@ function ticks() {
         for (let k = first; k * step <= clock.time(to) + step * 1e-9 && k < first + 100; k++)
             list.push({ x: toX(clock.at(k * step)), text: secondsText(k * step, step) });
     }
-    return list.filter((tick) => tick.x > 4 && tick.x < timeline.width - 4);
+    const seen = list.filter((tick) => tick.x > 4 && tick.x < timeline.width - 4);
+    seen.slice(-1).forEach((tick) => {
+        tick.text += " s";
+    });
+    return seen;
 }
 
-/* Where its text would stand, that of the cursor or of a break does; or it would be cut. */
-function hasNoText(tick) {
-    return tick.x > timeline.width - 22
-        || (chosen.at >= 0 && Math.abs(toX(places[chosen.at]) - tick.x) < 55)
-        || clock.breaks.some((fold) => Math.abs(toX(fold.place + fold.width / 2) - tick.x) < 48);
+/* Half the width of a text on the axis, in pixels, and a little. */
+function halfOf(text) {
+    return 4.2 * text.length + 3;
 }
 
-function drawTick(tick, bottom, last) {
+function breakText(fold) {
+    return `⋯ ${durationText(fold.seconds)}`;
+}
+
+/* The texts of the axis that do not overprint each other: that of the cursor is first, those of
+ * breaks come before those of ticks. {x, text} of each; a text that would be cut is left out. */
+function fitTexts(marks) {
+    const at = cursorText(), kept = at ? [at] : [];
+    const breaks = clock.breaks.map((fold) =>
+        ({ fold, x: toX(fold.place + fold.width / 2), text: breakText(fold) }));
+    for (const one of [...breaks, ...marks]) {
+        const half = halfOf(one.text);
+        if (one.x >= half && one.x <= timeline.width - half
+            && kept.every((other) => Math.abs(other.x - one.x) >= halfOf(other.text) + half))
+            kept.push(one);
+    }
+    return new Set(kept.map((one) => one.fold ?? one));
+}
+
+function drawTick(tick, bottom, fits) {
     const x = tick.x.toFixed(1);
     return draw("g", { class: "tick" },
         draw("path", { d: `M${x} ${AXIS_TOP + 18}V${bottom}` }),
-        hasNoText(tick) ? null
-            : draw("text", { x, y: AXIS_TOP + 12 }, tick.text + (last ? " s" : "")));
+        fits ? draw("text", { x, y: AXIS_TOP + 12 }, tick.text) : null);
 }
 
-function drawBreak(fold, bottom) {
+function drawBreak(fold, bottom, fits) {
     const x = toX(fold.place), width = toX(fold.place + fold.width) - x;
     if (x > timeline.width || x + width < 0)
         return null;
     return draw("g", { class: "fold" },
-        draw("rect", { x: x.toFixed(1), y: AXIS_TOP + 2, width, height: bottom - AXIS_TOP - 2 }),
-        draw("text", { x: (x + width / 2).toFixed(1), y: AXIS_TOP + 12 },
-            `⋯ ${durationText(fold.seconds)}`),
+        draw("rect", { x: x.toFixed(1), y: AXIS_TOP + 18, width, height: bottom - AXIS_TOP - 18 }),
+        fits ? draw("text", { x: (x + width / 2).toFixed(1), y: AXIS_TOP + 12 }, breakText(fold))
+            : null,
         draw("title", {}, `${durationText(fold.seconds)} without queries`));
 }
 
@@ -274,18 +303,24 @@ function drawOverview() {
         ...overviewColumns(xOf), brush, ...flags);
 }
 
-function drawCursor(bottom) {
-    if (chosen.at < 0)
-        return null;
-    const x = toX(places[chosen.at]);
+/* {x, text} within the width, and the cursor's own x; or null. */
+function cursorText() {
+    const x = chosen.at < 0 ? -1 : toX(places[chosen.at]);
     if (x < 0 || x > timeline.width)
         return null;
-    const text = `${timeText(events[chosen.at].seconds)} s`, half = 3.6 * text.length + 5;
-    const middle = clamp(x, half, timeline.width - half);
+    const text = `${timeText(events[chosen.at].seconds)} s`, half = halfOf(text);
+    return { x: clamp(x, half, timeline.width - half), text, line: x };
+}
+
+function drawCursor(bottom) {
+    const at = cursorText();
+    if (!at)
+        return null;
+    const half = halfOf(at.text);
     return draw("g", { class: "cursor" },
-        draw("path", { d: `M${x.toFixed(2)} ${AXIS_TOP + 17}V${bottom}` }),
-        draw("rect", { x: middle - half, y: AXIS_TOP - 1, width: 2 * half, height: 18, rx: 4 }),
-        draw("text", { x: middle.toFixed(1), y: AXIS_TOP + 12 }, text));
+        draw("path", { d: `M${at.line.toFixed(2)} ${AXIS_TOP + 17}V${bottom}` }),
+        draw("rect", { x: at.x - half, y: AXIS_TOP - 1, width: 2 * half, height: 18, rx: 4 }),
+        draw("text", { x: at.x.toFixed(1), y: AXIS_TOP + 12 }, at.text));
 }
 
 /* ---- Labels ---- */
@@ -353,11 +388,12 @@ function drawTimeline() {
     const bottom = ROWS_TOP + timeline.rows.length * ROW;
     plot.setAttribute("width", timeline.width);
     plot.setAttribute("height", bottom + 2);
-    const marks = ticks();
+    const marks = ticks(), fit = fitTexts(marks);
     show(plot, drawOverview(),
-        ...marks.map((tick, i) => drawTick(tick, bottom, i === marks.length - 1)),
+        ...marks.map((tick) => drawTick(tick, bottom, fit.has(tick))),
         draw("g", { id: "lanes" }, ...timeline.rows.map(drawRow)), drawLeftOut(bottom),
-        ...clock.breaks.map((fold) => drawBreak(fold, bottom)), drawCursor(bottom));
+        ...clock.breaks.map((fold) => drawBreak(fold, bottom, fit.has(fold))),
+        drawCursor(bottom));
     markLabels();
     find("plot").querySelector(focused)?.focus();
 }
