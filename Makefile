@@ -14,6 +14,7 @@
 #   MODE=release|debug|asan|fuzz   optimised, for a debugger, with sanitizers, with fuzzers (clang)
 #   OPENMP=1                       batches may run on several threads (fmb_batch.threads)
 #   INSTRUCTIONS=sse2              leaves out the AVX2 and AVX-512 kernels, which compile slowly
+#   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual
 
@@ -392,6 +393,7 @@ wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
 	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize))
 wraps_test_log_read := $(call wraps,pread64)
+wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_open page_take)
 wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
@@ -545,12 +547,12 @@ goldens: $(B)/fmb
 
 # ---- Benchmarks ----
 
-# Other libraries are measured too where they are installed.
-installed = $(shell for p in $1; do pkg-config --exists $$p && echo $$p; done 2> /dev/null)
+# Other libraries are measured too where they are installed, unless PEERS=none.
+installed = $(if $(PEERS),,$(shell for p in $1; do pkg-config --exists $$p && echo $$p; done 2> /dev/null))
 bullet := $(firstword $(call installed,bullet-float64 bullet))
 peer_packages := $(call installed,ccd fcl ode box2d) $(bullet)
 peer_libraries := $(peer_packages:%-float64=%) \
-	$(and $(wildcard /usr/include/CGAL/version.h),$(wildcard /usr/include/mpfr.h),cgal)
+	$(and $(if $(PEERS),,yes),$(wildcard /usr/include/CGAL/version.h),$(wildcard /usr/include/mpfr.h),cgal)
 peers := $(O)/peers/$(or $(subst $() ,_,$(strip $(peer_libraries))),none).o
 $(peers): tests/bench/peers.c $(O)/settings
 	@mkdir -p $(@D)

@@ -276,7 +276,8 @@ split_at() {
     cuts 1 "$log" -o "$cut" --from 1000
     has '.kept_events == 0'
     [ "$stderr" = "fmb: nothing was chosen: $cut has no events" ]
-    [ -f "$cut" ] && [ ! -s "$cut" ]
+    [ -f "$cut" ]
+    [ ! -s "$cut" ]
     : > "$T/empty.log"
     cuts 1 "$T/empty.log" -o "$cut" --force
 }

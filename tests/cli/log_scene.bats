@@ -135,7 +135,8 @@ split_at() {
     for ((event = 60; event < 120; event += 2)); do
         run --separate-stderr "$FMB" log scene "$T/second.log" --event "$event"
         [ "$status" != 0 ] || continue
-        [ "$status" = 1 ] && [ -z "$output" ]
+        [ "$status" = 1 ]
+        [ -z "$output" ]
         said 'came by a handle that no log here defines'
         unknown=$((unknown + 1))
     done

@@ -517,7 +517,8 @@ resolves() {
     [ "${lines[6]}" = '  lost                           0' ]
     [ "${#lines[@]}" = 7 ]
     [[ $stderr = "fmb: recording to $log"* ]]
-    [ -f "$log" ] && [ ! -s "$log" ]
+    [ -f "$log" ]
+    [ ! -s "$log" ]
     "$FMB" record --json --duration 0.01 --prefix quiet- --split-mb 1 "$log" > "$report"
     [ "$(jq -c '[.files, .events, .bytes, .lost, .receive_buffer > 0]' "$report")" = \
         "[[\"$log.000\"],0,0,0,true]" ]

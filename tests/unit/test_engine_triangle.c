@@ -558,7 +558,7 @@ static void batches_decide_rounded_faces(void **state)
     struct draw draw;
     long rounded = 0;
     draw_begin(&draw, "batches_decide_rounded_faces");
-    for (long n = draw_sample(160); n > 0; n--) {
+    for (long n = draw_sample(40); n > 0; n--) {
         draw_crowd(&draw, &crowd);
         rounded += assert_crowd(&crowd);
     }

@@ -158,6 +158,28 @@ static int read_events(const char *name, int first)
 
 /* ---- One file -------------------------------------------------------------------------------- */
 
+/* fsync() by the linker's --wrap: counted. */
+static int synced;
+int __wrap_fsync(int file);
+int __real_fsync(int file);
+
+int __wrap_fsync(int file)
+{
+    synced++;
+    return __real_fsync(file);
+}
+
+static void test_a_finished_log_is_on_the_disk(void **state)
+{
+    (void) state;
+    struct log_writer *writer = log_create(in_folder("synced"), false);
+    assert_non_null(writer);
+    assert_true(append_event(to_writer, writer, 0));
+    synced = 0;
+    assert_int_equal(log_finish(writer), 0);
+    assert_int_equal(synced, 1);
+}
+
 static void test_what_is_written_is_read(void **state)
 {
     (void) state;
@@ -482,6 +504,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_is_written_is_read),
         cmocka_unit_test(test_a_log_of_nothing),
+        cmocka_unit_test(test_a_finished_log_is_on_the_disk),
         cmocka_unit_test(test_what_was_flushed_is_there),
         cmocka_unit_test(test_nothing_is_overwritten_without_force),
         cmocka_unit_test(test_what_cannot_be_created),

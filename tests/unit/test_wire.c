@@ -619,6 +619,34 @@ static void test_answers_are_consistent(void **state)
     }
 }
 
+/* A contact interval is finite, ordered and not negative; a box may be infinite, but has an order.
+ */
+static void test_intervals_and_boxes_are_such(void **state)
+{
+    (void) state;
+    static const struct {
+        double contact[2], box[2];
+        bool accepted;
+    } cases[] = {
+        {{0, 1}, {0, 1}, true},         {{0, 1}, {-HUGE_VAL, HUGE_VAL}, true},
+        {{0, HUGE_VAL}, {0, 1}, false}, {{HUGE_VAL, HUGE_VAL}, {0, 1}, false},
+        {{1, 0}, {0, 1}, false},        {{-1, 0}, {0, 1}, false},
+        {{NAN, 1}, {0, 1}, false},      {{0, NAN}, {0, 1}, false},
+        {{0, 1}, {1, 0}, false},        {{0, 1}, {NAN, 1}, false},
+        {{0, 1}, {0, NAN}, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct pair_result result = {.dim = 3};
+        result.answer.verdict = FMB_TOUCHING;
+        result.answer.has_contact = result.answer.has_box = true;
+        for (int end = 0; end < 2; end++) {
+            result.answer.contact[end] = cases[i].contact[end];
+            result.answer.box[end][i % 3] = cases[i].box[end];
+        }
+        assert_int_equal(is_accepted(&result), cases[i].accepted);
+    }
+}
+
 static void test_status_round_trip(void **state)
 {
     (void) state;
@@ -696,6 +724,7 @@ int main(void)
         cmocka_unit_test(test_refusal_round_trip),
         cmocka_unit_test(test_gaps_are_consistent),
         cmocka_unit_test(test_answers_are_consistent),
+        cmocka_unit_test(test_intervals_and_boxes_are_such),
         cmocka_unit_test(test_status_round_trip),
         cmocka_unit_test(test_status_of_a_newer_service),
     };
