@@ -176,9 +176,9 @@ set_plain := -DLANES=1
 set_sse2 := -DLANES=2
 set_avx2 := -DLANES=4 -mavx2 -mfma
 set_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
-set_alone_plain := -DLANES=1 -DRUN_ALONE
-set_alone_sse2 := -DLANES=2 -DRUN_ALONE
-set_alone_avx2 := -DLANES=2 -DRUN_ALONE -mavx2 -mfma
+set_alone_plain := -DLANES=1
+set_alone_sse2 := -DLANES=2
+set_alone_avx2 := -DLANES=2 -mavx2 -mfma
 kernel_of = $(addprefix $(O)/kernels/,$(addsuffix .o,$1))
 many_kernels := $(call kernel_of,$(foreach s,$(sets),$s exact_$s times_$s boxes_$s))
 alone_kernels_of = $(call kernel_of,$(foreach s,$1,alone_$s exact_alone_$s times_alone_$s))

@@ -32,6 +32,7 @@ struct block {
     /* Sorted by kind, with room for what a run reads and writes beyond. */
     const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
     unsigned char start[RUN_REFUSED + 2]; /* of each kind */
+    int kinds[2];                         /* [first, end): no pair is of another kind */
     unsigned char sorted[BLOCK];
     const unsigned char *slot; /* whose pair it is, after first: sorted, or in_order */
     unsigned char outcome[BLOCK + RUN_LANES];
@@ -85,6 +86,10 @@ static void replace_unprepared(struct block *block)
 /* So many frames and more do not stay in the second cache. */
 enum { MANY_FRAMES = 4096 };
 
+/* Pairs from the one whose frames are fetched to the one that is read. Frames start at every other
+ * line, so that half of the first cache holds their first halves: those of a block fill it. */
+enum { AHEAD = 32 };
+
 /* Fetches the first halves of the frames of pair i, whatever the indices are. */
 static inline void fetch_heads(const struct fmb_batch *batch, size_t i)
 {
@@ -96,7 +101,7 @@ static inline void fetch_heads(const struct fmb_batch *batch, size_t i)
 /* Of the loop over pairs, known when it is compiled. */
 struct fetching {
     bool whole; /* the second halves of the frames are read next */
-    bool ahead; /* the frames of the next block are fetched */
+    bool ahead; /* the first halves of frames are fetched before they are read */
 };
 
 INLINE void put_pairs(struct block *block, const struct fetching fetching, struct heads heads[2])
@@ -106,8 +111,8 @@ INLINE void put_pairs(struct block *block, const struct fetching fetching, struc
     for (size_t i = 0; i < block->count; i++) {
         const struct fmb_prepared *a = frame_at(batch, pairs[i][0]);
         const struct fmb_prepared *b = frame_at(batch, pairs[i][1]);
-        if (fetching.ahead && block->first + i + BLOCK < batch->pair_count)
-            fetch_heads(batch, block->first + i + BLOCK);
+        if (fetching.ahead && block->first + i + AHEAD < batch->pair_count)
+            fetch_heads(batch, block->first + i + AHEAD);
         if (fetching.whole) {
             __builtin_prefetch((const char *) a + sizeof *a / 2);
             __builtin_prefetch((const char *) b + sizeof *b / 2);
@@ -122,8 +127,7 @@ INLINE void put_pairs(struct block *block, const struct fetching fetching, struc
 }
 
 /* Puts the pairs into the block, in the order of the batch. Returns whether all are prepared, and
- * their heads of the same kinds. In 3D the frames of the next block are not fetched: those of this
- * one fill the first cache. */
+ * their heads of the same kinds. In 3D nothing is fetched ahead: it does not help there. */
 static bool set_pairs(struct block *block)
 {
     const struct fmb_batch *batch = block->batch;
@@ -226,12 +230,16 @@ static void set_block(const struct job *job, size_t first, struct block *block)
     block->status = FMB_OK;
     block->slot = job->in_order;
     const bool like_first = set_pairs(block);
+    block->kinds[0] = 0;
+    block->kinds[1] = RUN_KINDS;
     if (!set_kinds(block, like_first, kind)) {
         sort(block, kind);
         return;
     }
-    for (int k = 0; k < RUN_REFUSED + 2; k++)
-        block->start[k] = (unsigned char) (k <= kind[0] ? 0 : block->count);
+    memset(block->start, (int) block->count, sizeof block->start);
+    memset(block->start, 0, kind[0] + 1u);
+    block->kinds[0] = kind[0];
+    block->kinds[1] = kind[0] < RUN_KINDS ? kind[0] + 1 : kind[0];
 }
 
 /* ---- Answers ---- */
@@ -557,14 +565,14 @@ static enum fmb_status decide_block(const struct job *job, size_t first)
 {
     struct block block;
     set_block(job, first, &block);
-    for (int kind = 0; kind < RUN_KINDS; kind++)
+    for (int kind = block.kinds[0]; kind < block.kinds[1]; kind++)
         if (block.start[kind] < block.start[kind + 1])
             run_kind(&block, job, (enum run_kind) kind);
     answer_odd(&block);
     if (!job->batch->gaps)
         return block.status;
     memset(block.far, 0, sizeof block.far);
-    for (int kind = 0; kind < RUN_KINDS && job->farthest < INFINITY; kind++)
+    for (int kind = block.kinds[0]; kind < block.kinds[1] && job->farthest < INFINITY; kind++)
         find_far(&block, job, (enum run_kind) kind);
     for (size_t i = 0; i < block.count; i++)
         put_gap(job, &block, i);

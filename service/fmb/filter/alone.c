@@ -20,6 +20,12 @@ INLINE lanes side_by_side(double x, double y)
 #endif
 }
 
+INLINE const double *velocity_of(const struct walk_kind kind, const struct fmb_prepared *frame)
+{
+    return kind.dim == 3 ? frame->placement->velocity
+                         : (const double *) frame + PREPARED_VELOCITY_2D;
+}
+
 INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepared *a,
                             const struct fmb_prepared *b, struct run_frame *of_a,
                             struct run_frame *of_b)
@@ -37,18 +43,35 @@ INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepar
         return;
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        of_a->velocity[axis] = side_by_side(prepared_velocity(a)[axis], prepared_velocity(b)[axis]);
+        of_a->velocity[axis] = side_by_side(velocity_of(kind, a)[axis], velocity_of(kind, b)[axis]);
         of_b->velocity[axis] = lanes_exchanged(of_a->velocity[axis]);
     }
 }
 
-INLINE void gather_both(const struct walk_kind kind, const struct fmb_prepared *a,
-                        const struct fmb_prepared *b, struct run_frame *of_a,
-                        struct run_frame *of_b)
+/* The compiler must not see that the lanes are equal: gcc would then compute in scalars, and copy
+ * each of them into a vector where a minimum or a maximum follows. */
+INLINE lanes in_all_lanes(double x)
 {
-    const double *const frame[2][LANES] = {{(const double *) a}, {(const double *) b}};
-    gather(kind, frame[0], of_a);
-    gather(kind, frame[1], of_b);
+    lanes out = side_by_side(x, x);
+#if LANES == 2
+    __asm__("" : "+x"(out));
+#endif
+    return out;
+}
+
+INLINE void gather_frame(const struct walk_kind kind, const struct fmb_prepared *frame,
+                         struct run_frame *out)
+{
+    lanes words[WORDS];
+    UNROLL(16)
+    for (int w = 0; w < word_count(kind); w++)
+        words[w] = in_all_lanes(((const double *) frame)[w]);
+    set_run_frame(kind, words, out);
+    if (!kind.drifts)
+        return;
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        out->velocity[axis] = in_all_lanes(velocity_of(kind, frame)[axis]);
 }
 
 #ifdef RUN_TIMES
@@ -80,10 +103,12 @@ INLINE enum slabs_outcome run_one(struct walk_kind kind, const struct fmb_prepar
     struct run_frame frame[2];
     struct walk_pair pair;
     kind.mirrored = is_mirrored(kind);
-    if (kind.mirrored)
+    if (kind.mirrored) {
         gather_mirrored(kind, a, b, &frame[0], &frame[1]);
-    else
-        gather_both(kind, a, b, &frame[0], &frame[1]);
+    } else {
+        gather_frame(kind, a, &frame[0]);
+        gather_frame(kind, b, &frame[1]);
+    }
     set_pair(kind, &frame[0], &frame[1], duration, &pair);
 #ifdef RUN_EXACT
     (void) out;

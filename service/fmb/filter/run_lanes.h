@@ -1,8 +1,8 @@
 /* What run.c and alone.c have in common: prepared frames into lanes, and what a walk found into
  * outcomes and times; and the table of functions, one for each kind of pair, that each of them
  * makes. RUN_NAME names the table; RUN_EXACT: the second pass; RUN_TIMES: outcomes with the times
- * of contact; RUN_BOXES: boxes, of pairs at rest; the bits of these three are promised. RUN_ALONE:
- * one pair, in all lanes. */
+ * of contact; RUN_BOXES: boxes, of pairs at rest and moving ones. The bits of these three are
+ * promised. */
 #ifndef FMB_RUN_LANES_H
 #define FMB_RUN_LANES_H
 
@@ -30,7 +30,7 @@ enum { ROUGH = !TIMES && !EXACT && !BOXES };
 
 enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
 
-#if LANES == 1 || defined(RUN_ALONE)
+#if LANES == 1
 
 enum { GATHERED = 1 }; /* frames */
 
@@ -151,7 +151,7 @@ INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
 /* A word by itself. */
 INLINE lanes gather_one(const double *const frame[LANES], int word)
 {
-#if LANES == 1 || defined(RUN_ALONE)
+#if LANES == 1
     return lanes_of(frame[0][word]);
 #elif LANES == 2
     return (lanes){frame[0][word], frame[1][word]};
