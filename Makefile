@@ -150,10 +150,10 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) 
 see_clients/demo :=
 see_clients/examples := clients/lib service/fmb
 
-glib_flags := $(shell pkg-config --cflags glib-2.0 2> /dev/null)
-$(O)/msgs/codec/%.o $(O)/tests/hostile/%.o $(O)/tests/fuzz/%.o: flags += $(glib_flags)
-
-sees = $(addprefix -I,$(see_$(<D)))
+# Evaluated when it is needed: 'make deps' may just have installed GLib.
+glib_flags = $(shell pkg-config --cflags glib-2.0)
+sees = $(addprefix -I,$(see_$(<D))) \
+	$(if $(filter msgs/codec tests/hostile tests/fuzz%,$(<D)),$(glib_flags))
 $(O)/%.o: %.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(sees)
@@ -172,11 +172,12 @@ objects_in = $(patsubst %.c,$(O)/%.o,$(wildcard $(addsuffix /*.c,$1)))
 x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 sets := plain $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2 avx512))
 alone_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
-set_plain := -DLANES=1
+# Where there are others, plain C is there to be compared with: it is not worth what inlining takes.
+set_plain := -DLANES=1 $(if $(x86),-DINLINED_NOT -Wno-unknown-warning-option -Wno-maybe-uninitialized)
 set_sse2 := -DLANES=2
 set_avx2 := -DLANES=4 -mavx2 -mfma
 set_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
-set_alone_plain := -DLANES=1
+set_alone_plain := $(set_plain)
 set_alone_sse2 := -DLANES=2
 set_alone_avx2 := -DLANES=2 -mavx2 -mfma
 kernel_of = $(addprefix $(O)/kernels/,$(addsuffix .o,$1))
@@ -387,7 +388,8 @@ $(E)/java/PosedPair.class: clients/examples/PosedPair.java tests/system/Largest.
 
 unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
 unit_tests := $(unit_names:%=$(B)/tests/%)
-internal_tests := $(addprefix $(B)/tests/,test_bounds test_limbs test_outward test_kernels test_placing)
+internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_limbs test_outward \
+	test_kernels test_placing)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
@@ -426,6 +428,15 @@ $(O)/kernels/wide_planted.o: service/fmb/filter/run.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DRUN_NAME=wide_planted $(set_wide) -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
 $(B)/tests/test_kernels: $(wide_kernels) $(O)/kernels/wide_planted.o
+
+# Kernels of boxes with bounds that are a sixteenth of theirs, and with none.
+box_kernels := $(call kernel_of,boxes_planted boxes_bare)
+box_unit_planted := 0x1p-57
+box_unit_bare := 0.0
+$(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/run.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile_bare) -DLANES=1 -DRUN_BOXES -DRUN_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
+$(B)/tests/test_box_bounds: $(box_kernels)
 
 $(internal_tests): $(V)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)

@@ -44,7 +44,8 @@ static struct scene scene_of_size(size_t count, size_t bodies)
                           .prepared = allocate_frames(count, sizeof(struct fmb_prepared)),
                           .placement = scene_allocate(count, sizeof(struct fmb_placement)),
                           .body = scene_allocate(bodies, sizeof(struct fmb_body)),
-                          .lean = allocate_frames(count, sizeof(struct lean_frame))};
+                          .lean = allocate_frames(count, sizeof(struct lean_frame)),
+                          .oriented = allocate_frames(count, sizeof(struct oriented))};
 }
 
 void scene_free(struct scene *scene)
@@ -53,6 +54,7 @@ void scene_free(struct scene *scene)
     free(scene->placement);
     free(scene->body);
     free(scene->lean);
+    free(scene->oriented);
     *scene = (struct scene){.count = 0};
 }
 
@@ -63,7 +65,10 @@ static void prepare(const struct scene *scene, size_t at)
         exit(EXIT_FAILURE);
     }
     const struct fmb_placement *placement = &scene->placement[at];
-    lean_place(fmb_body_frame(placement->body, 0), placement, &scene->lean[at]);
+    const struct fmb_frame *frame = fmb_body_frame(placement->body, 0);
+    lean_place(frame, placement, &scene->lean[at]);
+    if (frame->shape == FMB_BOX && frame->dim == 3)
+        oriented_place(frame, placement, &scene->oriented[at]);
 }
 
 static void add(const struct solid *solid, struct scene *scene, size_t at)

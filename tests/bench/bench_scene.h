@@ -9,6 +9,7 @@
 #include "cell.h"
 #include "fmb.h"
 #include "lean_sat.h"
+#include "oriented.h"
 #include "peers.h"
 #include "question.h"
 
@@ -18,6 +19,7 @@ struct scene {
     struct fmb_placement *placement; /* [count] */
     struct fmb_body *body;           /* the placements' */
     struct lean_frame *lean;         /* [count], placed; faces are no cuboids or tetrahedra */
+    struct oriented *oriented;       /* [count], boxes in 3D alone */
 };
 
 struct pairs {

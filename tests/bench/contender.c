@@ -128,6 +128,27 @@ static void sat_placed(const struct work *work)
     }
 }
 
+static void obb(const struct work *work)
+{
+    const struct oriented *oriented = work->scene->oriented;
+    for (size_t i = 0; i < work->count; i++)
+        work->verdicts[i] =
+            verdict_of(oriented_meet(&oriented[work->pair[i][0]], &oriented[work->pair[i][1]]));
+}
+
+static void obb_placed(const struct work *work)
+{
+    const struct fmb_placement *placement = work->scene->placement;
+    for (size_t i = 0; i < work->count; i++) {
+        const struct fmb_placement *a = &placement[work->pair[i][0]],
+                                   *b = &placement[work->pair[i][1]];
+        struct oriented oriented[2];
+        oriented_place(fmb_body_frame(a->body, 0), a, &oriented[0]);
+        oriented_place(fmb_body_frame(b->body, 0), b, &oriented[1]);
+        work->verdicts[i] = verdict_of(oriented_meet(&oriented[0], &oriented[1]));
+    }
+}
+
 /* A frame for a pair: those of the scene, one after the other. */
 static void placing(const struct work *work)
 {
@@ -260,6 +281,9 @@ bool contender_runs(enum contender contender, const struct cell *cell)
     case ONLY_TETRAHEDRA_AT_REST:
         return cell->dim == 3 && !cell->moving && cell->shape[0] == FMB_TETRAHEDRON &&
                cell->shape[1] == FMB_TETRAHEDRON;
+    case ONLY_BOXES_AT_REST:
+        return cell->dim == 3 && !cell->moving && cell->shape[0] == FMB_BOX &&
+               cell->shape[1] == FMB_BOX;
     default: return true;
     }
 }
@@ -281,8 +305,9 @@ void contender_help(void)
         "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
         "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
         "doubles,\n"
-        "verdict alone, of placed frames: the yardstick; placed: in the call. seidel, gpr:\n"
-        "methods that the article names, in doubles, of placed frames.\n");
+        "verdict alone, of placed frames: the yardstick; placed: in the call. obb: oriented "
+        "boxes,\n"
+        "likewise. seidel, gpr: methods that the article names, in doubles, of placed frames.\n");
 }
 
 /* ---- Races ---- */

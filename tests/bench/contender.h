@@ -24,7 +24,7 @@ struct work {
 struct work work_of(const struct scene *scene, const struct pairs *pairs);
 void work_free(struct work *work);
 
-enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_TETRAHEDRA_AT_REST = 2 };
+enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_TETRAHEDRA_AT_REST = 2, ONLY_BOXES_AT_REST = 3 };
 
 /* What each of them is, contender_help() says. */
 #define CONTENDER_MAP(X)                                             \
@@ -43,6 +43,8 @@ enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_TETRAHEDRA_AT_REST = 2 };
     X(FMB_REVERSED, "fmb reversed", fmb_reversed, ANYWHERE)          \
     X(SAT, "sat", sat, ANYWHERE)                                     \
     X(SAT_PLACED, "sat placed", sat_placed, ANYWHERE)                \
+    X(OBB, "obb", obb, ONLY_BOXES_AT_REST)                           \
+    X(OBB_PLACED, "obb placed", obb_placed, ONLY_BOXES_AT_REST)      \
     X(PLACING, "placing", placing, ANYWHERE)                         \
     X(SAT_QUERY, "sat query", sat_query, ANYWHERE)                   \
     X(EXACT, "exact", exact, ANYWHERE)                               \

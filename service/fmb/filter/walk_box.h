@@ -27,6 +27,11 @@
  * Which of them are corners of the polytope in space and time does not matter: c(y) is a bound for
  * all y. With -y the same vertices bound -x_k.
  *
+ * Along a normal of a simplex with a volume, h bends at the outward one alone: opposite to it the
+ * maximum is at one corner. So l n, n outward, is a vertex for the end above if l > 0, and for the
+ * end below if l < 0 (set_reach()). A volume that may be 0 has no outward side; the pair is left to
+ * the exact method (turn_outward()).
+ *
  * Accuracy: outer ends. What is computed is c for the l, or for the two factors of the third kind,
  * at hand, and so a bound. Let W be n with the magnitudes of its monomials. A monomial of a triple
  * product is rounded 5 times, twice more in a sum of three normals; the wall itself is left out of
@@ -34,11 +39,13 @@
  * two edges, which is rounded once more. 17 u (8 u without a simplex) times W . (the magnitudes of
  * the vectors at hand) covers these. The offset is rounded 4 times before: 5 u times |n| . (the
  * magnitudes of what it is made of). The products, the largest being slope in all, are rounded 8
- * times on their way into c: 9 u. All of this is multiplied with |l| (value_error()). Coordinates
- * that are not multiplied with l (origin, components, way) round at most 15 times: 2^-49 of the sum
- * of their magnitudes, the slack. The errors of frames, e in all, widen h by at most |y| e and
- * |e_k - y| e, |y| being at most |l| S for the scale S of n. In the third kind m (H x a) and
- * n (a x b) take the place of l n, one after the other.
+ * times on their way into c: 9 u. All of this is multiplied with |l| (value_error()), and so is
+ * part of what is: own, in struct box_line. Of the coordinates that are not
+ * multiplied with l, those of the frame from whose centre c is seen, none is rounded more than 8
+ * times (its way, and components at a vertex of the third kind): 9 u times the sum of their
+ * magnitudes, the slack. The errors of frames, e in all, widen h by at most |y| e and |e_k - y| e,
+ * |y| being at most |l| S for the scale S of n. In the third kind m (H x a) and n (a x b) take the
+ * place of l n, one after the other.
  *
  * Inner ends. For each true vertex c is at least the value at hand less its error. The determinant
  * d of a vertex (n . b, n . H, [a b H]) is off by at most 8 u W . |b|, or 10 u where a frame is a
@@ -46,11 +53,14 @@
  * and by 3.1 t times its scale, the product of the lengths, for components that are off by t. If d
  * is more than 16 times its error the vertex is certain. The true l is then l / (1 + r), |r| at
  * most 1.1 times the relative error of d and 5 u. With f - l d for the terms of c (f coordinates, d
- * products with n), those of the true vertex are (f - l d + r f) / (1 + r): what c has besides the
- * base changes by at most 1.1 r times the sum of the |f| and of itself. Coordinates of the wall's
- * edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by the slope times as much.
- * Components that are off move the products with n by at most 3.1 t S times all lengths at hand
- * (placing).
+ * products with n), those of the true vertex are V = (f - l d + r f) / (1 + r). The sum of the |f|
+ * is at most R, the reach of the frame from its centre. If V > R the bound is no less than that of
+ * y = 0 or y = e_k. Else |V| <= R, since the pair is in contact and the bound that of a point of
+ * the frame; what is at hand is V (1 + r) - r f, off by at most |r| (R + |V|). Or, from
+ * what is at hand, by 1.1 |r| (R + its magnitude); the lesser of these counts (add_reach()).
+ * Coordinates of the wall's edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by the
+ * slope times as much. Components that are off move the products with n by at most 3.1 t S times
+ * all lengths at hand (placing).
  *
  * A vertex that is not certain may be left out if c surely grows along a line through it, the line
  * of the other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
@@ -60,6 +70,12 @@
  * bends. Where gap(N) is below minus twice that, what is left grows at both ends, and is least at a
  * vertex that is certain, or at 0. A determinant that is exactly 0, each of its monomials having a
  * factor 0, is no vertex at all.
+ *
+ * Widths, the sums of these errors, are bounded once for all axes. Within the tolerance they are
+ * allowed for at the end; few vertices need them one by one.
+ *
+ * On the line of an outward normal all of this holds of its half l >= 0, which ends in y = 0 or
+ * e_k.
  *
  * Something certain makes the normals span the space. Where nothing rounds (walk_exact.h),
  * determinants are exact. NAN bounds nothing, and stands for what is not certain. Underflow: as in
@@ -71,7 +87,10 @@
 #include "walk.h"
 #include "walk_exact.h"
 
-#define BOX_POINT_ROUNDING 0x1p-49
+/* u; tests plant a smaller one. */
+#ifndef BOX_UNIT
+#define BOX_UNIT 0x1p-53
+#endif
 
 /* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
 #define BOX_LIMIT 0.9e-12
@@ -82,12 +101,12 @@
 /* Roundings of a monomial of a triple product, those of the wall that is left out included. */
 INLINE double product_rounding(const struct walk_kind kind)
 {
-    return (kind.simplex[0] || kind.simplex[1] ? 17 : 8) * 0x1p-53;
+    return (kind.simplex[0] || kind.simplex[1] ? 17 : 8) * BOX_UNIT;
 }
 
 INLINE double determinant_rounding(const struct walk_kind kind)
 {
-    return (kind.simplex[0] || kind.simplex[1] ? 10 : 8) * 0x1p-53;
+    return (kind.simplex[0] || kind.simplex[1] ? 10 : 8) * BOX_UNIT;
 }
 
 /* What the boxes need of the frames besides struct walk_pair: as they stand in prepared frames. */
@@ -102,12 +121,13 @@ struct box_places {
 /* A frame; lengths are those of walk_pair. Edges by number (slabs.h). */
 struct box_frame {
     lanes edge[6][3];
-    lanes length[6][3];    /* magnitudes of the components that an edge is made of */
-    lanes_mask some[6][3]; /* where the coordinate of an edge may not be 0 */
-    lanes centre[3];       /* of the reference point, in the middle of the window */
-    lanes way[3];          /* half of the displacement */
-    lanes sum[3];          /* of the magnitudes of all that a coordinate is made of */
-    lanes own_sum[3];      /* of those of the components and way */
+    lanes length[6][3];       /* magnitudes of the components that an edge is made of */
+    lanes_mask some[6][3];    /* where the coordinate of an edge may not be 0 */
+    lanes centre[3];          /* of the reference point, in the middle of the window */
+    lanes way[3];             /* half of the displacement */
+    lanes sum[3];             /* of the magnitudes of all that a coordinate is made of */
+    lanes own_sum[3];         /* of those of the components and way */
+    lanes own_most, way_most; /* the largest of own_sum, of the magnitudes of way */
 };
 
 /* A normal n of a frame, and what it makes of the pair. */
@@ -124,14 +144,21 @@ struct box_ray {
 /* The determinant of a vertex. */
 struct box_vertex {
     lanes inverse;   /* NAN where it may be 0 */
-    lanes error;     /* relative */
-    lanes_mask open; /* nor is it surely 0 */
+    lanes error;     /* relative, no less than fine */
+    lanes fine;      /* relative, from the monomials of the determinant */
+    lanes_mask open; /* it may be 0, and is not surely 0 */
 };
 
-/* What c is off by at a vertex. */
-struct box_errors {
-    lanes outer; /* what is computed, and what the errors of frames add */
-    lanes inner; /* that, and how far the true vertex is from the one at hand, but for theta */
+/* What c gives at a vertex: how far the intersection reaches from the centre of a frame at most,
+ * and how much less it may be that c gives at the true vertex. */
+struct box_reach {
+    lanes at[2][3];           /* [below, above][axis] */
+    lanes width[3], relative; /* relative: to at, no more than own_sum of the frame */
+};
+
+/* The least of these. inner: less the width, where that is beyond the tolerance. */
+struct box_bounds {
+    lanes outer[2][3], inner[2][3];
 };
 
 struct box_walk {
@@ -143,8 +170,11 @@ struct box_walk {
     lanes placing;         /* 3.1 t times all lengths */
     lanes bends;           /* 68 (18 u + 4 t) T */
     lanes size[3], way[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
-    lanes slack[3];        /* of coordinates; errors of frames included */
-    lanes outer[2][3], inner[2][3]; /* [lower, upper][axis] */
+    lanes slack[2][3];     /* of what is seen from the centre of each frame */
+    lanes determinant;     /* error of a determinant of scale 1 */
+    lanes largest;         /* coordinate, or a little less */
+    lanes tolerance;       /* for the width of a bound */
+    struct box_bounds bounds[2]; /* about the centre of each frame */
     lanes_mask spans, good;
     lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
     lanes_mask bent; /* where errors are to allow for that */
@@ -216,6 +246,9 @@ INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind k
         for (int i = 0; i < component_count(kind, which); i++)
             out->own_sum[axis] += lanes_magnitude(c[i][axis]);
         out->sum[axis] = lanes_magnitude(at) + 2 * out->own_sum[axis];
+        out->own_most = axis ? lanes_greatest(out->own_sum[axis], out->own_most) : out->own_sum[0];
+        const lanes way = lanes_magnitude(out->way[axis]);
+        out->way_most = axis ? lanes_greatest(way, out->way_most) : way;
         UNROLL(6)
         for (int index = 0; index < edge_count(kind, which); index++) {
             const int e = edge_at(kind, which, index);
@@ -250,88 +283,89 @@ INLINE lanes largest_place(const struct walk_pair *pair, const struct walk_kind 
 
 /* ---- Candidates ---- */
 
-/* Bounds of the box along an axis by c at a vertex, which is low or high. What is not a number
- * bounds nothing. */
-INLINE void add_bounds(int axis, lanes low, lanes high, lanes outer_error, lanes low_error,
-                       lanes high_error, struct box_walk *walk)
+/* Takes what c gives at a vertex; what is not a number bounds nothing. width: no less than that
+ * along any axis. The same for a lane whatever the others hold. */
+INLINE void add_reach(const struct walk_kind kind, const struct box_reach *reach, lanes width,
+                      int which, struct box_walk *walk)
 {
-    walk->outer[0][axis] = lanes_greatest(low - outer_error, walk->outer[0][axis]);
-    walk->outer[1][axis] = lanes_least(high + outer_error, walk->outer[1][axis]);
-    walk->inner[0][axis] = lanes_greatest(low + low_error, walk->inner[0][axis]);
-    walk->inner[1][axis] = lanes_least(high - high_error, walk->inner[1][axis]);
+    struct box_bounds *bounds = &walk->bounds[which];
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        UNROLL(2)
+    for (int end = 0; end < 2; end++)
+        bounds->outer[end][axis] = lanes_least(reach->at[end][axis], bounds->outer[end][axis]);
+    if (!lanes_bits_above(width, walk->tolerance))
+        return;
+    const lanes_mask wide = width > walk->tolerance;
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        UNROLL(2)
+    for (int end = 0; end < 2; end++) {
+        const lanes at = reach->at[end][axis], sum = walk->frame[which].own_sum[axis];
+        const lanes inner = at - (reach->width[axis] +
+                                  reach->relative * (sum + lanes_least(lanes_magnitude(at), sum)));
+        bounds->inner[end][axis] =
+            lanes_least(lanes_choose(wide, inner, lanes_of(INFINITY)), bounds->inner[end][axis]);
+    }
 }
 
-INLINE lanes extent_low(const struct walk_kind kind, struct walk_extent d)
+INLINE lanes dot_of(const struct walk_kind kind, const lanes u[3], const lanes v[3])
 {
-    const bool none = !kind.simplex[0] && !kind.simplex[1];
-    const bool both = kind.simplex[0] && kind.simplex[1] && !kind.drifts;
-    return none ? -d.radius : both ? d.low : d.low - d.radius;
+    return kind.dim == 2 ? u[0] * v[0] + u[1] * v[1] : dot(u, v);
 }
 
-INLINE lanes extent_high(const struct walk_kind kind, struct walk_extent d)
+INLINE lanes weight_of(const struct walk_kind kind, const lanes weight[3], const lanes v[3])
 {
-    const bool none = !kind.simplex[0] && !kind.simplex[1];
-    const bool both = kind.simplex[0] && kind.simplex[1] && !kind.drifts;
-    return none ? d.radius : both ? d.high : d.high + d.radius;
+    const lanes plane = weight[0] * lanes_magnitude(v[0]) + weight[1] * lanes_magnitude(v[1]);
+    return kind.dim == 2 ? plane : plane + weight[2] * lanes_magnitude(v[2]);
 }
 
-/* With the term of the drift. */
-INLINE struct walk_extent widened(struct walk_extent d, lanes swing)
+/* weight: of the vector whose product with v is the determinant, some of both as of edges; scale:
+ * the product of the lengths. */
+INLINE struct box_vertex vertex_of(const struct walk_kind kind, lanes det, lanes scale,
+                                   const lanes weight[3], const lanes v[3],
+                                   const lanes_mask some_weight[3], const lanes_mask some_v[3],
+                                   struct box_walk *walk)
 {
-    d.radius += lanes_magnitude(swing);
-    return d;
-}
-
-/* weight: the sum of the magnitudes of the monomials; scale: the product of the lengths. */
-INLINE struct box_vertex vertex_of(const struct walk_kind kind, lanes det, lanes weight,
-                                   lanes scale, lanes_mask some, struct box_walk *walk)
-{
-    const lanes error = lanes_choose(
-        walk->exact, lanes_of(0), determinant_rounding(kind) * weight + (3.1 * walk->turn) * scale);
-    const lanes_mask certain = lanes_magnitude(det) > 16 * error;
     struct box_vertex out;
-    out.inverse = 1 / lanes_choose(certain, det, lanes_of(NAN));
-    out.error = (1.2 * error) * lanes_magnitude(out.inverse) + 0x1p-50;
-    out.open = is_not(certain) & some & is_not(walk->exact);
+    const lanes_mask none = {0};
+    out.open = none;
+    const lanes error = walk->determinant * scale;
+    const lanes fine = lanes_choose(
+        walk->exact, lanes_of(0),
+        determinant_rounding(kind) * weight_of(kind, weight, v) + (3.1 * walk->turn) * scale);
+    lanes_mask certain = lanes_magnitude(det) > 16 * error;
+    if (!lanes_all(certain)) {
+        certain = lanes_magnitude(det) > 16 * fine;
+        det = lanes_choose(certain, det, lanes_of(NAN));
+        out.open = is_not(certain) & dot_some(kind, some_weight, some_v) & is_not(walk->exact);
+    }
+    out.inverse = 1 / det;
+    const lanes size = lanes_magnitude(out.inverse);
+    out.error = (1.2 * error) * size + 0x1p-50;
+    out.fine = (1.2 * fine) * size + 0x1p-50;
     walk->spans |= certain;
     return out;
 }
 
-/* c goes from the extents of d about base - along. sum: of the magnitudes of the coordinates. Slack
- * is added at the end. */
-INLINE void add_vertex(const struct walk_kind kind, int axis, lanes base, lanes along,
-                       struct walk_extent d, lanes sum, struct box_errors errors,
-                       const struct box_vertex *vertex, struct box_walk *walk)
-{
-    const bool none = !kind.simplex[0] && !kind.simplex[1];
-    const lanes inner = errors.inner + vertex->error * sum;
-    const lanes above = extent_high(kind, d) - along;
-    const lanes below = none ? d.radius + along : along - extent_low(kind, d);
-    add_bounds(axis, base - below, base + above, errors.outer,
-               inner + vertex->error * lanes_magnitude(below),
-               inner + vertex->error * lanes_magnitude(above), walk);
-}
-
 /* ---- Vertices y = 0 and y = e_k: extents ---- */
 
-INLINE void add_extents(const struct walk_kind kind, const struct walk_pair *pair,
+/* The bounds to begin with. */
+INLINE void set_extents(const struct walk_kind kind, const struct walk_pair *pair, int which,
                         struct box_walk *walk)
 {
-    UNROLL(2)
-    for (int which = 0; which < 2; which++)
-        UNROLL(3)
+    UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         lanes at[3];
         UNROLL(3)
         for (int i = 0; i < component_count(kind, which); i++)
             at[i] = pair->component[which][i][axis];
         const struct walk_extent own = extent_of_frame(kind, which, at);
-        const struct walk_extent none = {lanes_of(0), lanes_of(0), lanes_of(0)};
-        const struct walk_extent d = widened(
-            extent_sum(kind, which ? none : own, which ? own : none), walk->frame[which].way[axis]);
-        const lanes centre = walk->frame[which].centre[axis], none_error = lanes_of(0);
-        add_bounds(axis, centre + extent_low(kind, d), centre + extent_high(kind, d), none_error,
-                   none_error, none_error, walk);
+        const lanes way = lanes_magnitude(walk->frame[which].way[axis]);
+        walk->bounds[which].outer[0][axis] = (own.radius - own.low) + way;
+        walk->bounds[which].outer[1][axis] = (own.radius + own.high) + way;
+        walk->bounds[which].inner[0][axis] = walk->bounds[which].inner[1][axis] =
+            lanes_of(INFINITY);
     }
 }
 
@@ -355,27 +389,28 @@ INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
 
 /* ---- Vertices on the line of a normal ---- */
 
-/* h of both, the other frame seen along what is at[] on its components. */
-INLINE struct walk_extent extent_of_ray(const struct walk_kind kind, int which, lanes own,
-                                        struct walk_extent other)
+/* Which components of a frame, besides 0, differ along what is 0 on its edge e: those that e does
+ * not come from, or one end of e, and the component across from it. */
+INLINE int across_first(const struct walk_kind kind, int which, int e)
 {
-    const struct walk_extent of_own = extent_of_one(kind.simplex[which], own);
-    return extent_sum(kind, which ? other : of_own, which ? of_own : other);
+    if (component_count(kind, which) == 2)
+        return e == 0;
+    return e < 3 ? next(e) : e - 3;
+}
+
+INLINE int across_second(int e)
+{
+    return e < 3 ? next(next(e)) : next(e - 3);
 }
 
 /* The extent of a frame along what is 0 on its edge e, and at[] on its components. */
 INLINE struct walk_extent extent_across(const struct walk_kind kind, int which, int e,
                                         const lanes at[3])
 {
-    const int p = kind.dim == 2 ? 1 - e % 2 : next(e % 3), q = next(p);
-    if (e >= kind.dim) { /* as much at the ends of both components */
-        const int r = e % 3, from = edge_from(kind, e);
-        return kind.dim == 2 || component_count(kind, which) == 2
-                   ? extent_of_one(true, at[from])
-                   : extent_of_two(true, at[r], at[from]);
-    }
-    return component_count(kind, which) == 2 ? extent_of_one(kind.simplex[which], at[e == 0])
-                                             : extent_of_two(kind.simplex[which], at[p], at[q]);
+    const lanes first = at[across_first(kind, which, e)];
+    return component_count(kind, which) == 2
+               ? extent_of_one(kind.simplex[which], first)
+               : extent_of_two(kind.simplex[which], first, at[across_second(e)]);
 }
 
 /* Whether the offset surely is so far inside a slab that c grows at both ends of its line. */
@@ -386,80 +421,170 @@ INLINE lanes_mask is_inside(const struct walk_kind kind, struct walk_extent d, l
     return gap_of(kind, d, middle, swing) + scale * (2 * walk->bends + 2 * pair->unit) < 0;
 }
 
-INLINE lanes dot_of(const struct walk_kind kind, const lanes u[3], const lanes v[3])
-{
-    return kind.dim == 2 ? u[0] * v[0] + u[1] * v[1] : dot(u, v);
-}
-
-INLINE lanes weight_of(const struct walk_kind kind, const lanes weight[3], const lanes v[3])
-{
-    const lanes plane = weight[0] * lanes_magnitude(v[0]) + weight[1] * lanes_magnitude(v[1]);
-    return kind.dim == 2 ? plane : plane + weight[2] * lanes_magnitude(v[2]);
-}
-
 /* What c is off by on the line of a vector n, for the parameter 1: products with n, those of the
  * offset, and what is made of them; sum: of the magnitudes of these products. */
 INLINE lanes value_error(const struct walk_kind kind, const lanes weight[3], const lanes normal[3],
                          lanes sum, const struct box_walk *walk)
 {
     return product_rounding(kind) * dot_of(kind, weight, walk->size) +
-           (5 * 0x1p-53) * dot_of(kind, normal, walk->way) + (9 * 0x1p-53) * sum;
+           (5 * BOX_UNIT) * dot_of(kind, normal, walk->way) + (9 * BOX_UNIT) * sum;
 }
 
 /* A line and what is the same for all of its vertices. */
 struct box_line {
     const struct box_ray *ray;
-    lanes outer, inner; /* errors for l = 1 */
-    lanes slope;        /* no less than that of c */
+    lanes middle;       /* what the offset takes from the end above for l = 1, adds to that below */
+    lanes own;          /* what the frame of the ray adds to both, its error included */
+    lanes width, slope; /* of what c gives, for l = 1; no less than the slope of c */
 };
 
-/* The vertex of a line on a wall; l det = numerator[axis], known within error. e: the wall's edge,
- * or -1. */
-INLINE void add_ray_vertex(const struct walk_kind kind, int which, const struct box_line *line,
-                           const struct box_vertex *vertex, int e, const lanes numerator[3],
-                           lanes error, struct box_walk *walk)
+/* Whether only one of n and -n is the normal of a face with points of its frame behind it: that of
+ * a simplex with a volume. */
+INLINE bool is_one_sided(const struct walk_kind kind, int which)
 {
-    const int other = !which;
+    return kind.simplex[which] && component_count(kind, which) == kind.dim;
+}
+
+/* Where the sign of x is minus one, else the other; of -0 too. */
+INLINE lanes choose_by_sign(lanes x, lanes negative, lanes other)
+{
+#if LANES == 8 && defined(__AVX512DQ__)
+    return (lanes) _mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i) x), (__m512d) other,
+                                        (__m512d) negative);
+#elif LANES == 4 && defined(__AVX__)
+    return (lanes) _mm256_blendv_pd((__m256d) other, (__m256d) negative, (__m256d) x);
+#elif LANES == 1
+    return signbit(x) ? negative : other;
+#else
+    return lanes_choose((lanes_mask) x >> 63, negative, other);
+#endif
+}
+
+INLINE lanes with_sign_of(lanes x, lanes sign)
+{
+#if LANES == 1
+    return signbit(sign) ? -x : x;
+#else
+    return (lanes) ((lanes_mask) x ^ ((lanes_mask) sign & INT64_MIN));
+#endif
+}
+
+/* What c gives along an axis at the vertex l of a line; other: the extent of the other frame along
+ * e_k - l n, turned over with it where the ray is one-sided, and what its way adds to both ends. */
+INLINE void set_reach(const struct walk_kind kind, int which, const struct box_line *line, lanes l,
+                      struct walk_extent other, lanes way, int axis, struct box_reach *out)
+{
+    const lanes both = lanes_magnitude(l) * line->own + way;
+    if (is_one_sided(kind, which)) {
+        const lanes reach = (other.high + other.radius) + both;
+        out->at[0][axis] = choose_by_sign(l, reach, lanes_of(INFINITY));
+        out->at[1][axis] = choose_by_sign(l, lanes_of(INFINITY), reach);
+        return;
+    }
+    const lanes along = l * line->middle;
+    out->at[0][axis] = ((other.radius - other.low) + both) + along;
+    out->at[1][axis] = ((other.radius + other.high) + both) - along;
+}
+
+/* What e_k - l n makes of component i of the other frame. */
+INLINE lanes product_at(const struct walk_kind kind, int which, const struct box_frame *other,
+                        const struct box_ray *ray, int i, int axis, lanes l)
+{
+    const lanes at = other->edge[i][axis] - l * ray->at[i];
+    return is_one_sided(kind, which) && kind.simplex[!which] ? with_sign_of(at, l) : at;
+}
+
+/* The vertex of a line on the wall of an edge of the other frame. */
+INLINE void add_wall(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                     const struct box_line *line, int index, const struct box_vertex *vertex,
+                     struct box_walk *walk)
+{
+    const int other = !which, e = edge_at(kind, other, index);
+    const int p = across_first(kind, other, e), q = across_second(e);
+    const bool two = component_count(kind, other) == 3;
     const struct box_ray *ray = line->ray;
     const struct box_frame *frame = &walk->frame[other];
-    const lanes apart = (1.2 * error) * (line->slope * lanes_magnitude(vertex->inverse));
+    const lanes most = pair->size[other][e] * lanes_magnitude(vertex->inverse);
+    const lanes apart = (1.2 * walk->turn) * (line->slope * most);
+    struct box_reach reach = {.relative = vertex->fine};
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
-        const lanes l = numerator[axis] * vertex->inverse, length = lanes_magnitude(l);
+        const lanes l = frame->edge[e][axis] * vertex->inverse;
+        const lanes x = product_at(kind, which, frame, ray, p, axis, l);
+        const struct walk_extent d =
+            two ? extent_of_two(kind.simplex[other], x,
+                                product_at(kind, which, frame, ray, q, axis, l))
+                : extent_of_one(kind.simplex[other], x);
+        const lanes way =
+            kind.drifts ? lanes_magnitude(frame->way[axis] - l * ray->swing) : lanes_of(0);
+        set_reach(kind, which, line, l, d, way, axis, &reach);
+        reach.width[axis] = lanes_magnitude(l) * line->width + apart;
+    }
+    add_reach(kind, &reach, (most * line->width + apart) + (2 * vertex->error) * frame->own_most,
+              other, walk);
+}
+
+/* The vertex of a line on the wall of the drift. */
+INLINE void add_drift_vertex(const struct walk_kind kind, int which, const struct box_line *line,
+                             const struct box_vertex *vertex, struct box_walk *walk)
+{
+    const int other = !which;
+    const struct box_frame *frame = &walk->frame[other];
+    const lanes most = frame->way_most * lanes_magnitude(vertex->inverse);
+    struct box_reach reach = {.relative = vertex->fine};
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++) {
+        const lanes l = frame->way[axis] * vertex->inverse;
         lanes at[3];
         UNROLL(3)
         for (int i = 0; i < component_count(kind, other); i++)
-            at[i] = frame->edge[i][axis] - l * ray->at[i];
-        struct walk_extent d = extent_of_ray(
-            kind, which, l * ray->own,
-            e < 0 ? extent_of_frame(kind, other, at) : extent_across(kind, other, e, at));
-        if (kind.drifts && e >= 0)
-            d = widened(d, frame->way[axis] - l * ray->swing);
-        const struct box_errors errors = {length * line->outer, length * line->inner + apart};
-        add_vertex(kind, axis, frame->centre[axis], l * ray->middle, d, frame->own_sum[axis],
-                   errors, vertex, walk);
+            at[i] = product_at(kind, which, frame, line->ray, i, axis, l);
+        set_reach(kind, which, line, l, extent_of_frame(kind, other, at), lanes_of(0), axis,
+                  &reach);
+        reach.width[axis] = lanes_magnitude(l) * line->width;
     }
+    add_reach(kind, &reach, most * line->width + (2 * vertex->error) * frame->own_most, other,
+              walk);
 }
 
+/* Turns the ray of a simplex outward: its frame does not reach beyond 0 along it, or is as far as
+ * all of own. */
+INLINE void turn_outward(const struct walk_pair *pair, const struct walk_kind kind, int which,
+                         bool across, struct box_ray *ray, struct box_walk *walk)
+{
+    const lanes *size = pair->size[which];
+    const lanes scale = kind.dim == 2 ? size[0] * size[1] : (size[0] * size[1]) * size[2];
+    const lanes sign = across ? ray->own : -ray->own;
+    walk->good &= lanes_magnitude(ray->own) > walk->determinant * scale;
+    ray->middle = with_sign_of(ray->middle, sign);
+    ray->swing = with_sign_of(ray->swing, sign);
+    ray->own = across ? lanes_magnitude(ray->own) : -lanes_magnitude(ray->own);
+    UNROLL(6)
+    for (int e = 0; e < 6; e++)
+        if (e < 3 || has_edge(kind, !which, e))
+            ray->at[e] = with_sign_of(ray->at[e], sign);
+}
+
+/* across: the face does not hold the origin of its frame. */
 INLINE void add_ray(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                    const struct box_ray *ray, struct box_walk *walk)
+                    bool across, struct box_ray *ray, struct box_walk *walk)
 {
     const int other = !which, walls = kind.dim == 2 && which ? 0 : edge_count(kind, other);
     const struct box_frame *frame = &walk->frame[other];
     struct box_vertex vertex[7];
     lanes_mask open = {0};
+    if (is_one_sided(kind, which))
+        turn_outward(pair, kind, which, across, ray, walk);
     UNROLL(6)
     for (int index = 0; index < walls; index++) {
         const int e = edge_at(kind, other, index);
-        vertex[index] = vertex_of(kind, ray->at[e], weight_of(kind, ray->weight, frame->length[e]),
-                                  ray->scale * pair->size[other][e],
-                                  dot_some(kind, ray->some, frame->some[e]), walk);
+        vertex[index] = vertex_of(kind, ray->at[e], ray->scale * pair->size[other][e], ray->weight,
+                                  frame->length[e], ray->some, frame->some[e], walk);
         open |= vertex[index].open;
     }
     if (kind.drifts) {
-        vertex[walls] =
-            vertex_of(kind, ray->swing, weight_of(kind, ray->weight, pair->half),
-                      ray->scale * pair->half_size, dot_some(kind, ray->some, walk->drift), walk);
+        vertex[walls] = vertex_of(kind, ray->swing, ray->scale * pair->half_size, ray->weight,
+                                  pair->half, ray->some, walk->drift, walk);
         open |= vertex[walls].open;
     }
     const struct walk_extent own = extent_of_one(kind.simplex[which], ray->own);
@@ -468,23 +593,29 @@ INLINE void add_ray(const struct walk_pair *pair, const struct walk_kind kind, i
         extent_difference(kind, which ? of_other : own, which ? own : of_other);
     if (kind.dim == 2)
         walk->open |= open;
-    walk->good &= is_not(open) | is_inside(kind, d, which ? -ray->middle : ray->middle, ray->swing,
-                                           ray->scale, pair, walk);
+    if (lanes_mask_bits(open))
+        walk->good &= is_not(open) | is_inside(kind, d, which ? -ray->middle : ray->middle,
+                                               ray->swing, ray->scale, pair, walk);
     struct box_line line = {.ray = ray};
     line.slope = ((d.high - d.low) + d.radius) +
                  (lanes_magnitude(ray->middle) + lanes_magnitude(ray->swing));
-    line.outer =
+    const lanes error =
         value_error(kind, ray->weight, ray->normal, line.slope, walk) + ray->scale * pair->error;
-    line.inner = line.outer + ray->scale * walk->placing;
-    line.inner += lanes_choose(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
-    UNROLL(6)
-    for (int index = 0; index < walls; index++) {
-        const int e = edge_at(kind, other, index);
-        add_ray_vertex(kind, which, &line, &vertex[index], e, frame->edge[e],
-                       walk->turn * pair->size[other][e], walk);
+    line.width = (error + error) + ray->scale * walk->placing;
+    line.width += lanes_choose(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
+    line.middle = ray->middle;
+    line.own = error + (kind.simplex[which] ? own.high : own.radius);
+    if (is_one_sided(kind, which))
+        line.own -= ray->middle;
+    if (kind.drifts) { /* many vertices: unrolled they gain nothing */
+        for (int index = 0; index < walls; index++)
+            add_wall(pair, kind, which, &line, index, &vertex[index], walk);
+        add_drift_vertex(kind, which, &line, &vertex[walls], walk);
+        return;
     }
-    if (kind.drifts)
-        add_ray_vertex(kind, which, &line, &vertex[walls], -1, frame->way, lanes_of(0), walk);
+    UNROLL(6)
+    for (int index = 0; index < walls; index++)
+        add_wall(pair, kind, which, &line, index, &vertex[index], walk);
 }
 
 INLINE void add_plane_rays(const struct walk_pair *pair, const struct walk_kind kind,
@@ -508,7 +639,7 @@ INLINE void add_plane_rays(const struct walk_pair *pair, const struct walk_kind 
                                   .middle = which ? -edges.middle[e] : edges.middle[e],
                                   .swing = which ? -edges.swing[e] : edges.swing[e]};
             ray.at[2] = ray.at[1] - ray.at[0];
-            add_ray(pair, kind, which, &ray, walk);
+            add_ray(pair, kind, which, e == 2, &ray, walk);
         }
     }
 }
@@ -556,8 +687,10 @@ INLINE void add_space_rays(const struct walk_pair *pair, const struct walk_kind 
     }
     if (across)
         add_sums(rays, &rays[3]);
-    for (int k = first; k < (across ? 4 : 3); k++)
-        add_ray(pair, kind, which, &rays[k], walk);
+    for (int k = first; k < 3; k++)
+        add_ray(pair, kind, which, false, &rays[k], walk);
+    if (across)
+        add_ray(pair, kind, which, true, &rays[3], walk);
 }
 
 /* ---- Vertices on a wall of each frame and that of the drift ---- */
@@ -649,15 +782,16 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
     cross_weight(a->length[i], b->length[j], weight);
     cross_some(a->some[i], b->some[j], some);
     const struct box_vertex vertex =
-        vertex_of(kind, products->edges.swing[i][j], weight_of(kind, weight, pair->half),
-                  scale * pair->half_size, dot_some(kind, some, walk->drift), walk);
+        vertex_of(kind, products->edges.swing[i][j], scale * pair->half_size, weight, pair->half,
+                  some, walk->drift, walk);
     const struct walk_extent d = extent_sum(
         kind,
         extent_at_edge(kind, 0, i, side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]),
         extent_at_edge(kind, 1, j, side[1].other[0][i], side[1].other[1][i], side[1].other[2][i]));
-    walk->good &= is_not(vertex.open) | products->inside[0][i] | products->inside[1][j] |
-                  is_inside(kind, d, products->edges.middle[i][j], products->edges.swing[i][j],
-                            scale, pair, walk);
+    if (lanes_mask_bits(vertex.open))
+        walk->good &= is_not(vertex.open) | products->inside[0][i] | products->inside[1][j] |
+                      is_inside(kind, d, products->edges.middle[i][j], products->edges.swing[i][j],
+                                scale, pair, walk);
     walk->open |= vertex.open;
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_size;
@@ -668,8 +802,11 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
     const lanes of_m = products->error[i] + drift_scale * pair->error;
     const lanes of_n =
         value_error(kind, weight, magnitudes(normal, normal), sum, walk) + scale * pair->error;
-    const lanes apart = ((1.2 * walk->turn) * length_b) *
-                        ((drift_scale * pair->reach) * lanes_magnitude(vertex.inverse));
+    const lanes size = lanes_magnitude(vertex.inverse);
+    const lanes apart = ((1.2 * walk->turn) * length_b) * ((drift_scale * pair->reach) * size);
+    const lanes width_of_m = (of_m + of_m) + drift_scale * placing;
+    const lanes width_of_n = (of_n + of_n) + scale * placing;
+    struct box_reach reach;
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
         const lanes m = b->edge[j][axis] * vertex.inverse, n = b->way[axis] * vertex.inverse;
@@ -678,14 +815,18 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
         UNROLL(3)
         for (int k = 0; k < component_count(kind, 1); k++)
             component[k] = pair->component[1][k][axis];
-        const lanes outer = m_size * of_m + n_size * of_n;
-        const struct box_errors errors = {
-            outer, (outer + (m_size * drift_scale + n_size * scale) * placing) + apart};
-        add_vertex(kind, axis, b->centre[axis],
-                   n * products->edges.middle[i][j] - m * products->drift_middle[i],
-                   extent_of_crossing(kind, i, j, m, n, side, products, component),
-                   b->own_sum[axis], errors, &vertex, walk);
+        const struct walk_extent at =
+            extent_of_crossing(kind, i, j, m, n, side, products, component);
+        const lanes along = n * products->edges.middle[i][j] - m * products->drift_middle[i];
+        const lanes error = m_size * of_m + n_size * of_n;
+        reach.at[0][axis] = ((at.radius - at.low) + error) + along;
+        reach.at[1][axis] = ((at.radius + at.high) + error) - along;
+        reach.width[axis] = (m_size * width_of_m + n_size * width_of_n) + apart;
     }
+    reach.relative = vertex.fine;
+    const lanes width = ((length_b * size) * width_of_m + (b->way_most * size) * width_of_n) +
+                        (apart + (2 * vertex.error) * b->own_most);
+    add_reach(kind, &reach, width, 1, walk);
 }
 
 INLINE void add_crossings(const struct walk_pair *pair, const struct walk_kind kind,
@@ -706,21 +847,22 @@ INLINE void add_crossings(const struct walk_pair *pair, const struct walk_kind k
 /* ---- Ends that are exact ----
  *
  * Where the ends of an extent are those of the box (boxes along the axes, a frame within the other)
- * they are as near as doubles go: a sum or product is rounded outward, if it rounds. The error of a
- * sum is a double (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B), that of a
- * product above 2^-900 too, found from halves of the factors (Dekker); 2^-52 of a normal number is
- * between one and two units in its last place; sums that are not normal are exact. */
+ * they are as near as doubles go: a sum or product is rounded outward, if it rounds. Subtracting
+ * the term of larger magnitude from a sum is exact, and shows which way it was rounded (Dekker).
+ * The error of a product above 2^-900 is found from halves of the factors (Dekker); 2^-52 of a
+ * normal number is between one and two units in its last place; sums that are not normal are exact.
+ */
 
 INLINE lanes sum_below(lanes x, lanes y)
 {
     const lanes sum = x + y;
-    return lanes_choose(error_of_sum(x, y, sum) < 0, sum - 0x1p-52 * lanes_magnitude(sum), sum);
+    const lanes_mask above = (sum - x > y) | (sum - y > x);
+    return lanes_choose(above, sum - 0x1p-52 * lanes_magnitude(sum), sum);
 }
 
 INLINE lanes sum_above(lanes x, lanes y)
 {
-    const lanes sum = x + y;
-    return lanes_choose(error_of_sum(x, y, sum) > 0, sum + 0x1p-52 * lanes_magnitude(sum), sum);
+    return -sum_below(-x, -y);
 }
 
 INLINE lanes upper_half(lanes x)
@@ -766,11 +908,15 @@ INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind k
         low = sum_below(low, lanes_least(way - slack, lanes_of(0)));
         high = sum_above(high, lanes_greatest(way + slack, lanes_of(0)));
     }
-    const lanes error =
-        lanes_choose(has_bit(places->head[which], (unsigned) PREPARED_EXACT_X << axis), lanes_of(0),
-                     places->error[which]);
-    box[0][axis] = lanes_greatest(sum_below(low, -error), box[0][axis]);
-    box[1][axis] = lanes_least(sum_above(high, error), box[1][axis]);
+    const lanes_mask inexact =
+        is_not(has_bit(places->head[which], (unsigned) PREPARED_EXACT_X << axis));
+    if (lanes_mask_bits(inexact)) {
+        const lanes error = lanes_choose(inexact, places->error[which], lanes_of(0));
+        low = sum_below(low, -error);
+        high = sum_above(high, error);
+    }
+    box[0][axis] = lanes_greatest(low, box[0][axis]);
+    box[1][axis] = lanes_least(high, box[1][axis]);
 }
 
 /* ---- All of it ---- */
@@ -849,20 +995,27 @@ INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         set_sizes(pair, kind, places, axis, walk);
-        walk->slack[axis] =
-            BOX_POINT_ROUNDING * (walk->frame[0].sum[axis] + walk->frame[1].sum[axis]) +
-            pair->error;
-        walk->outer[0][axis] = lanes_of(-INFINITY);
-        walk->outer[1][axis] = lanes_of(INFINITY);
+        UNROLL(2)
+        for (int which = 0; which < 2; which++)
+            walk->slack[which][axis] = (9 * BOX_UNIT) * walk->frame[which].sum[axis] + pair->error;
         if (!kind.drifts)
             continue;
         walk->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
         lost |= walk->drift[axis] & (pair->half[axis] == 0);
     }
     walk->exact = places->exact;
+    walk->determinant =
+        lanes_choose(walk->exact, lanes_of(0), 1.2 * determinant_rounding(kind) + 3.1 * walk->turn);
+    walk->largest = largest;
     const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
     walk->unit = lanes_choose(are_multiples(pair, kind, places, walk, 0x1p45 * power),
                               0x1p-7 * power, lanes_of(0));
+    lanes slack = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < kind.dim; axis++)
+        slack = lanes_greatest(lanes_greatest(walk->slack[0][axis], walk->slack[1][axis]), slack);
+    const lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
+    walk->tolerance = lanes_choose((walk->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
     walk->spans = walk->open = walk->bent = (lanes_mask){0};
     walk->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
@@ -883,19 +1036,12 @@ INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
     return lanes_choose(is_end, snap, outer);
 }
 
-INLINE void begin_inner(const struct walk_kind kind, struct box_walk *walk)
-{
-    UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        walk->inner[0][axis] = lanes_of(-INFINITY);
-        walk->inner[1][axis] = lanes_of(INFINITY);
-    }
-}
-
 INLINE void add_all(const struct walk_pair *pair, const struct walk_kind kind,
                     struct box_walk *walk)
 {
-    add_extents(kind, pair, walk);
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        set_extents(kind, pair, which, walk);
     if (kind.dim == 2) {
         add_plane_rays(pair, kind, walk);
         return;
@@ -917,24 +1063,30 @@ INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind 
     struct box_walk walk;
     begin_box(pair, kind, places, &walk);
     for (int pass = 0; pass < 2; pass++) { /* one is enough unless a vertex is left out */
-        begin_inner(kind, &walk);
         add_all(pair, kind, &walk);
         if (lanes_mask_bits(walk.open) == 0)
             break;
         walk.bent = walk.open;
     }
     lanes_mask good = walk.good & walk.spans;
-    const lanes largest = lanes_greatest(largest_place(pair, kind, 0, &walk.frame[0]),
-                                         largest_place(pair, kind, 1, &walk.frame[1]));
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         UNROLL(2)
         for (int end = 0; end < 2; end++) {
-            const lanes slack = end ? walk.slack[axis] : -walk.slack[axis];
-            const lanes outer = walk.outer[end][axis] + slack;
-            const lanes inner = walk.inner[end][axis] - slack;
-            good &= lanes_magnitude(outer - inner) <= BOX_LIMIT * largest;
-            box[end][axis] = (is_doubled(kind) ? 0.5 : 1.0) * snapped(outer, inner, walk.unit);
+            lanes outer = lanes_of(INFINITY), inner = lanes_of(INFINITY);
+            UNROLL(2)
+            for (int which = 0; which < 2; which++) {
+                const lanes centre =
+                    end ? walk.frame[which].centre[axis] : -walk.frame[which].centre[axis];
+                const lanes slack = walk.slack[which][axis];
+                const lanes at = centre + walk.bounds[which].outer[end][axis];
+                const lanes least = centre + walk.bounds[which].inner[end][axis];
+                outer = lanes_least(at + slack, outer);
+                inner = lanes_least(lanes_least(at - walk.tolerance, least) - slack, inner);
+            }
+            good &= outer - inner <= BOX_LIMIT * walk.largest;
+            const lanes snap = (is_doubled(kind) ? 0.5 : 1.0) * snapped(outer, inner, walk.unit);
+            box[end][axis] = end ? snap : -snap;
         }
         UNROLL(2)
         for (int which = 0; which < 2; which++)

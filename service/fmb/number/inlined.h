@@ -4,12 +4,14 @@
 #ifndef FMB_INLINED_H
 #define FMB_INLINED_H
 
+#ifndef INLINED_NOT
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define INLINED_NOT
 #endif
 #elif defined(__SANITIZE_ADDRESS__)
 #define INLINED_NOT
+#endif
 #endif
 
 #ifdef INLINED_NOT

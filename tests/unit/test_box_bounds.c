@@ -1,0 +1,232 @@
+/* The bounds on the errors of boxes, attacked: a search for pairs whose boxes, as doubles have them
+ * without any bound, miss most of the exact box, relative to the bound. The kernels are there three
+ * times: as they are, with bounds that are too small, and with none (Makefile).
+ *
+ * The search climbs: it changes a number at a time, and keeps what makes the error of one end
+ * larger relative to its bound. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "draw.h"
+#include "exact.h"
+#include "question.h"
+#include "referee.h"
+#include "run.h"
+
+extern run_function *const run_boxes_bare[RUN_KINDS], *const run_boxes_planted[RUN_KINDS];
+
+/* ---- Boxes of one pair ---- */
+
+typedef double box_ends[2][FMB_DIM_MAX];
+
+enum { REAL, PLANTED, BARE, KERNELS };
+
+/* False where doubles give none. */
+static bool box_of(run_function *const *kernels, const struct fmb_prepared frame[2],
+                   double duration, box_ends out)
+{
+    const struct fmb_prepared *pairs[RUN_LANES][2];
+    double boxes[RUN_LANES][2][FMB_DIM_MAX];
+    bool swapped;
+    const enum run_kind kind = run_box_kind(&frame[0], &frame[1], duration, &swapped);
+    const struct run run = {.pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
+    for (int lane = 0; lane < RUN_LANES; lane++) {
+        pairs[lane][0] = &frame[swapped];
+        pairs[lane][1] = &frame[!swapped];
+    }
+    if (kind >= RUN_KINDS)
+        return false;
+    kernels[kind](&run);
+    memcpy(out, boxes[0], sizeof(box_ends));
+    return !isnan(out[0][0]);
+}
+
+/* An end of each box, as an upper one. An end that an extent decides is that whatever the bounds
+ * are; of others, the planted bound is its share of the real one. Returns by how much of the
+ * planted bound the bare end is below the exact one. */
+static double ratio_of_end(const double end[KERNELS], double exact)
+{
+    const double planted = end[PLANTED] - end[BARE], real = end[REAL] - end[BARE];
+    return planted > 0 && real > 4 * planted ? (exact - end[BARE]) / planted : -1;
+}
+
+/* The largest of these over all ends; -1 where there is no box. */
+static double ratio_of(const struct question *question)
+{
+    struct run_set set;
+    struct ready ready;
+    struct fmb_prepared frame[2];
+    box_ends box[KERNELS], exact;
+    enum fmb_verdict verdict;
+    referee_ready(question, &ready);
+    const struct frame_pair frames = pair_frames(&ready.pair);
+    prepared_set(frames.a, &frame[0]);
+    prepared_set(frames.b, &frame[1]);
+    assert_true(run_set_of(FMB_PLAIN, &set));
+    run_function *const *kernels[] = {set.boxes, run_boxes_planted, run_boxes_bare};
+    if (fmb_meet(&frame[0], &frame[1], question->duration, &verdict) != FMB_OK ||
+        verdict == FMB_SEPARATED)
+        return -1;
+    for (int i = 0; i < KERNELS; i++)
+        if (!box_of(kernels[i], frame, question->duration, box[i]))
+            return -1;
+    exact_box(&frames, exact);
+    double worst = -1;
+    for (int axis = 0; axis < question->a.dim; axis++)
+        for (int end = 0; end < 2; end++) {
+            const double sign = end ? 1 : -1;
+            double ends[KERNELS];
+            for (int i = 0; i < KERNELS; i++)
+                ends[i] = sign * box[i][end][axis];
+            if (ends[REAL] < sign * exact[end][axis])
+                referee_fail(question, "an error beyond its bound");
+            worst = fmax(worst, ratio_of_end(ends, sign * exact[end][axis]));
+        }
+    return worst;
+}
+
+/* ---- The search ---- */
+
+struct kind {
+    int dim;
+    enum fmb_shape a, b;
+    bool moving;
+};
+
+static double draw_number(struct draw *draw)
+{
+    double x = draw_uniform(draw, 1, 2);
+    switch (draw_int(draw, 0, 3)) {
+    case 0: x = 2 - draw_int(draw, 1, 3) * 0x1p-52; break;
+    case 1: x = 1 + draw_int(draw, 1, 3) * 0x1p-52; break;
+    default: break;
+    }
+    x = ldexp(x, draw_int(draw, -2, 1));
+    return draw_coin(draw) ? x : -x;
+}
+
+enum { NUMBERS_MAX = 2 * (FMB_DIM_MAX + 2) * FMB_DIM_MAX };
+
+/* Where the numbers of a question are; returns how many. */
+static int numbers_of(struct question *question, double *out[NUMBERS_MAX])
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    int count = 0;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < solids[f]->dim; axis++) {
+            for (int i = 0; i < solid_count(solids[f]); i++)
+                out[count++] = &solids[f]->component[i][axis];
+            out[count++] = &solids[f]->origin[axis];
+            if (solids[f]->moving)
+                out[count++] = &solids[f]->velocity[axis];
+        }
+    return count;
+}
+
+static struct question draw_question(struct draw *draw, struct kind kind)
+{
+    struct question question = {{.dim = kind.dim, .shape = kind.a, .moving = kind.moving},
+                                {.dim = kind.dim, .shape = kind.b, .moving = kind.moving},
+                                1};
+    double *number[NUMBERS_MAX];
+    for (int i = numbers_of(&question, number) - 1; i >= 0; i--)
+        *number[i] = draw_number(draw);
+    return question;
+}
+
+/* Ends near 0 have finer units in the last place than the coordinates they are made of. */
+static void move_both(struct question *question, int axis, double by)
+{
+    double *a = &question->a.origin[axis], *b = &question->b.origin[axis];
+    if (fabs(*a - by) > 8 || fabs(*b - by) > 8)
+        return;
+    *a -= by;
+    *b -= by;
+}
+
+static void mutate(struct draw *draw, struct question *question)
+{
+    double *number[NUMBERS_MAX];
+    const int count = numbers_of(question, number);
+    double *x = number[draw_int(draw, 0, count - 1)];
+    if (draw_int(draw, 0, 4) == 0) {
+        move_both(question, draw_int(draw, 0, question->a.dim - 1), *x);
+        return;
+    }
+    switch (draw_int(draw, 0, 4)) {
+    case 0: *x *= 1 + draw_int(draw, -4, 4) * 0x1p-52; break;
+    case 1: *x += ldexp(*x, -draw_int(draw, 1, 52)); break;
+    case 2: *x -= ldexp(*x, -draw_int(draw, 2, 53)); break;
+    case 3: *x = draw_number(draw); break;
+    default: *x = *number[draw_int(draw, 0, count - 1)]; break;
+    }
+    if (!(fabs(*x) < 8))
+        *x = draw_number(draw);
+}
+
+/* The worst that some climbs find; one that comes to enough is the last. */
+static double search(struct draw *draw, struct kind kind, long climbs, double enough)
+{
+    double worst = -1;
+    for (; climbs > 0 && worst < enough; climbs--) {
+        struct question best = draw_question(draw, kind);
+        double most = ratio_of(&best);
+        for (int n = 0; n < 300 && most < enough; n++) {
+            struct question changed = best;
+            for (int times = draw_int(draw, 1, 2); times > 0; times--)
+                mutate(draw, &changed);
+            const double ratio = ratio_of(&changed);
+            if (ratio < most)
+                continue;
+            most = ratio;
+            best = changed;
+        }
+        worst = fmax(worst, most);
+    }
+    return worst;
+}
+
+static const struct kind kinds[] = {
+    {2, FMB_CUBOID, FMB_CUBOID, false},
+    {2, FMB_CUBOID, FMB_TETRAHEDRON, false},
+    {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false},
+    {2, FMB_CUBOID, FMB_CUBOID, true},
+    {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
+    {3, FMB_CUBOID, FMB_CUBOID, false},
+    {3, FMB_CUBOID, FMB_TETRAHEDRON, false},
+    {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false},
+    {3, FMB_CUBOID, FMB_FACE, false},
+    {3, FMB_TETRAHEDRON, FMB_FACE, false},
+    {3, FMB_CUBOID, FMB_CUBOID, true},
+    {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
+};
+
+/* No end is beyond the real bound, and one of each kind is beyond the planted one. */
+static void bounds_hold_and_smaller_ones_do_not(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "bounds of boxes");
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        const struct kind kind = kinds[i];
+        const double worst = search(&draw, kind, kind.moving ? 200 : 1000, 1.01);
+        printf("# %dD %s %s %s: an error %.3g of the planted bound\n", kind.dim,
+               kind.moving ? "moving" : "static", fmb_shape_name((int) kind.a),
+               fmb_shape_name((int) kind.b), worst);
+        assert_true(worst > 1);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_hold_and_smaller_ones_do_not)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
