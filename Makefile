@@ -190,6 +190,10 @@ kernel_job = $(or $(if $(findstring exact_,$*),-DRUN_EXACT),$(if $(findstring ti
 $(many_kernels): $(O)/kernels/%.o: service/fmb/filter/run.c $(O)/settings
 $(sort $(alone_kernels) $(call alone_kernels_of,plain)): \
 	$(O)/kernels/%.o: service/fmb/filter/alone.c $(O)/settings
+# gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
+ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
+$(O)/kernels/%.o: flags += -fno-tree-dominator-opts
+endif
 $(sort $(many_kernels) $(alone_kernels) $(call alone_kernels_of,plain)): $(O)/kernels/%.o:
 	@mkdir -p $(@D)
 	$(compile) $(sees) -DRUN_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
