@@ -327,11 +327,11 @@ template := clients/page/template/
 page_shared := $(addprefix $(template),page.html stage.html)
 page_styles_replay := $(addprefix $(template),page.css timeline.css)
 page_scripts_replay := $(addprefix $(template),numbers.js verdict.js data.js dom.js clock.js timeline.js \
-	world.js camera.js canvas.js raster.js picture.js scene.js stage.js play.js hands.js window.js panel.js \
+	world.js camera.js canvas.js raster.js picture.js scene.js stage.js play.js input.js window.js panel.js \
 	main.js)
 page_styles_mesh := $(addprefix $(template),page.css mesh.css)
 page_scripts_mesh := $(addprefix $(template),numbers.js verdict.js mesh_data.js dom.js world.js camera.js \
-	canvas.js raster.js picture.js mesh_shade.js mesh_stage.js play.js hands.js mesh_panel.js mesh_main.js)
+	canvas.js raster.js picture.js mesh_shade.js mesh_stage.js play.js input.js mesh_panel.js mesh_main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
 .SECONDEXPANSION:

@@ -44,7 +44,7 @@ static const char usage[] =
     "was chosen; 2 wrong usage, or a file cannot be read or written: FILE is then\n"
     "incomplete.\n";
 
-struct options {
+struct log_cut_arguments {
     struct log_cut_options cut;
     bool json;
 };
@@ -71,7 +71,7 @@ static bool take_body(const struct args *args, void *choice)
 enum { COMPLAINTS_MAX = 20 };
 
 struct run {
-    const struct options *options;
+    const struct log_cut_arguments *options;
     struct progress progress;
     int64_t complaints;
 };
@@ -154,7 +154,7 @@ static int code_of(const struct run *run, const struct log_cut_counts *counts)
 
 /* ---- The command ---- */
 
-static int run_cut(const struct options *options)
+static int run_cut(const struct log_cut_arguments *options)
 {
     struct run run = {.options = options, .progress = progress_begin_of("bytes", 0)};
     const struct log_cut_sink sink = {on_damage, on_progress, &run};
@@ -169,7 +169,7 @@ static int run_cut(const struct options *options)
     return output_flush() ? code : ARGS_USAGE;
 }
 
-static bool check_options(const struct args *args, const struct options *options)
+static bool check_options(const struct args *args, const struct log_cut_arguments *options)
 {
     if (args->operand_count == 0)
         return args_error(args, "expected a LOG");
@@ -180,7 +180,7 @@ static bool check_options(const struct args *args, const struct options *options
 
 int cmd_log_cut(int argc, char **argv)
 {
-    struct options options = {.cut = {.choice = log_choice_all()}};
+    struct log_cut_arguments options = {.cut = {.choice = log_choice_all()}};
     struct log_choice *choice = &options.cut.choice;
     const struct args_option own[] = {
         {"output", ARGS_TEXT, &options.cut.output, .letter = 'o'},

@@ -43,7 +43,7 @@ static const char usage[] =
     "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
     "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
-struct options {
+struct log_scene_options {
     struct log_query_options query;
     bool has_event, has_offset, has_client, has_sequence;
 };
@@ -65,7 +65,7 @@ static bool take_number(const struct args *args, void *out)
     return true;
 }
 
-static bool check_options(const struct args *args, struct options *options)
+static bool check_options(const struct args *args, struct log_scene_options *options)
 {
     const bool ids = options->has_client || options->has_sequence;
     if (args->operand_count == 0)
@@ -83,16 +83,16 @@ static bool check_options(const struct args *args, struct options *options)
 /* ---- Whether the service takes it ---- */
 
 /* Bodies that the query names by handle: the service holds those that it takes. */
-static void keep_bodies(struct answerer *answerer, struct any_query *query)
+static void keep_bodies(struct answerer *answerer, struct logged_query *query)
 {
     int32_t count;
-    const struct placement *placement = any_query_placements(query, &count);
+    const struct placement *placement = logged_query_placements(query, &count);
     struct cache *cache = answerer_cache(answerer);
     struct handle handle;
     for (int32_t i = 0; i < count; i++) {
         if (!placement_by_handle(&placement[i]) || !scene_takes(&placement[i].geometry))
             continue;
-        const struct cached *kept = cache_keep(cache, 0, &placement[i].geometry, &handle);
+        const struct cached *kept = cache_intern(cache, 0, &placement[i].geometry, &handle);
         if (kept)
             cache_release(cache, kept);
     }
@@ -143,7 +143,7 @@ static bool takes(struct log_query *query, char detail[QUERY_TEXT_MAX])
     struct answerer *answerer = answerer_create(&options);
     if (!answerer)
         allocate_failed();
-    struct any_query *any = &query->query;
+    struct logged_query *any = &query->query;
     keep_bodies(answerer, any);
     const bool taken = any->kind == LOG_PAIR_QUERY ? takes_pair(answerer, query, detail)
                                                    : takes_scene(answerer, query, detail);
@@ -164,10 +164,10 @@ static bool check_query(struct log_query *query)
 
 /* ---- What is reported besides the scene ---- */
 
-static void report_ids(struct any_query *query, const struct scene *scene)
+static void report_ids(struct logged_query *query, const struct scene *scene)
 {
     int32_t count;
-    const struct placement *placement = any_query_placements(query, &count);
+    const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
         if (placement[i].body_id == scene->body[i].id)
             continue;
@@ -182,7 +182,7 @@ static void report_ids(struct any_query *query, const struct scene *scene)
 
 static void report_command(const struct log_query *query)
 {
-    const struct any_query *any = &query->query;
+    const struct logged_query *any = &query->query;
     const bool is_pair = any->kind == LOG_PAIR_QUERY;
     const int32_t method = is_pair ? any->pair.method : any->scene.method;
     const int32_t want = is_pair ? any->pair.want : any->scene.want;
@@ -215,7 +215,7 @@ static int print_scene(struct log_query *query)
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
-static int run_scene(struct options *options)
+static int run_scene(struct log_scene_options *options)
 {
     static const int code_of[] = {[LOG_QUERY_FOUND] = ARGS_ANSWERED,
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
@@ -236,7 +236,7 @@ static int run_scene(struct options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    struct options options = {.query = {.log = NULL}};
+    struct log_scene_options options = {.query = {.log = NULL}};
     struct log_query_options *query = &options.query;
     struct number event = {&query->number, &options.has_event, INT64_MIN};
     struct number offset = {&query->offset, &options.has_offset, 0};

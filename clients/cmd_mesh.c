@@ -3,7 +3,7 @@
 
 #include "args.h"
 #include "complain.h"
-#include "mesh_meet.h"
+#include "mesh_intersect.h"
 #include "mesh_page.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
@@ -74,7 +74,7 @@ struct placed {
     double velocity[3];
 };
 
-struct options {
+struct mesh_options {
     struct placed placed[2];
     double duration;
     bool self, json, list;
@@ -201,7 +201,7 @@ static bool take_method(const struct args *args, void *out)
 }
 
 /* What goes together, and how many files. */
-static bool check(const struct args *args, const struct options *options)
+static bool check(const struct args *args, const struct mesh_options *options)
 {
     const int wanted = options->self ? 1 : 2;
     if (args->operand_count != wanted)
@@ -227,7 +227,7 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 {
     char error[MESH_ERROR_MAX];
     struct progress progress = progress_begin_of("bytes", 0);
-    const struct mesh_watch watch = {on_progress, &progress};
+    const struct mesh_progress watch = {on_progress, &progress};
     const bool good = mesh_read(path, &watch, out, error);
     progress_end(&progress);
     if (!good) {
@@ -256,7 +256,7 @@ static bool write_file(const char *name, write_function *write, const struct mes
     return output_close(out, name);
 }
 
-static int tell(const struct options *options, const struct mesh_report *report)
+static int tell(const struct mesh_options *options, const struct mesh_report *report)
 {
     if (options->json)
         mesh_report_json(stdout, report);
@@ -268,11 +268,11 @@ static int tell(const struct options *options, const struct mesh_report *report)
     return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
-static int meet(const struct options *options, const struct mesh *a, const struct mesh *b,
+static int meet(const struct mesh_options *options, const struct mesh *a, const struct mesh *b,
                 char **names)
 {
     struct progress progress = progress_begin_of("faces", 0);
-    const struct mesh_question question = {
+    const struct mesh_query question = {
         .a = a,
         .b = b,
         .as = options->as,
@@ -280,10 +280,10 @@ static int meet(const struct options *options, const struct mesh *a, const struc
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration,
         .method = options->method,
-        .told = on_progress,
+        .report = on_progress,
         .context = &progress};
-    struct mesh_meeting meeting;
-    const enum fmb_status status = mesh_meet(&question, &meeting);
+    struct mesh_intersection meeting;
+    const enum fmb_status status = mesh_intersect(&question, &meeting);
     progress_end(&progress);
     if (status != FMB_OK) {
         complain("%s", status == FMB_NOT_FINITE
@@ -291,18 +291,18 @@ static int meet(const struct options *options, const struct mesh *a, const struc
                            : fmb_status_text((int) status));
         return ARGS_FAILED;
     }
-    const struct mesh_report report = {.question = &question,
+    const struct mesh_report report = {.query = &question,
                                        .mesh = {a, b},
                                        .name = {names[0], names[a != b]},
-                                       .meeting = &meeting};
+                                       .intersection = &meeting};
     const int code = tell(options, &report);
-    mesh_meeting_free(&meeting);
+    mesh_intersection_free(&meeting);
     return code;
 }
 
 int cmd_mesh(int argc, char **argv)
 {
-    struct options options = {.duration = 1};
+    struct mesh_options options = {.duration = 1};
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},

@@ -66,7 +66,7 @@ static const char usage[] =
     "Exit codes: 0 answered; 1 a pair could not be decided, or no service answered; 2\n"
     "wrong usage, or input that cannot be read or is not a scene.\n";
 
-struct options {
+struct query_options {
     bool local, json;
     struct answers_question question;
     const char *svg; /* NULL: no picture */
@@ -102,7 +102,7 @@ static bool take_method(const struct args *args, void *out)
 /* ---- The run --------------------------------------------------------------------------------- */
 
 struct run {
-    const struct options *options;
+    const struct query_options *options;
     const struct args_bus *bus_options;
     const char *input_name;
     struct report *report[2]; /* the printed one, and the picture or NULL */
@@ -128,7 +128,7 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
 /* The bus is opened for the first scene: a bad one is reported without a bus. */
 static void answer_on_bus(struct run *run, const struct scene *scene)
 {
-    const struct options *options = run->options;
+    const struct query_options *options = run->options;
     if (!run->bus)
         run->bus = answers_bus_open(run->bus_options, &options->question, options->timeout,
                                     (int) options->retries);
@@ -180,8 +180,8 @@ static bool write_picture(const struct svg *svg, const char *name)
 }
 
 /* file: NULL for standard input. */
-static int run_query(const struct options *options, const struct args_bus *bus, const char *file,
-                     int fd)
+static int run_query(const struct query_options *options, const struct args_bus *bus,
+                     const char *file, int fd)
 {
     struct report_json json = report_json(stdout);
     struct report_text text = report_text(stdout, options->question.box, options->question.gap);
@@ -202,7 +202,7 @@ static int run_query(const struct options *options, const struct args_bus *bus, 
 
 int cmd_query(int argc, char **argv)
 {
-    struct options options = {.timeout = 0.5, .retries = 5};
+    struct query_options options = {.timeout = 0.5, .retries = 5};
     struct answers_question *question = &options.question;
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &options.local},

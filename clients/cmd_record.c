@@ -53,7 +53,7 @@ static const char usage[] =
     "(the disk is full, FILE was deleted), and what was recorded before is valid; 2\n"
     "wrong usage, or FILE exists or cannot be created.\n";
 
-struct options {
+struct record_options {
     bool json, all;
     double duration; /* seconds; 0: no end */
     long count;      /* 0: no end */
@@ -63,7 +63,7 @@ struct options {
 };
 
 struct recording {
-    const struct options *options;
+    const struct record_options *options;
     struct fmb_client *client;
     struct log_channels channels;
     struct log_choice others; /* channels of no service that are recorded too */
@@ -81,7 +81,7 @@ struct recording {
 /* ---- Options --------------------------------------------------------------------------------- */
 
 /* Checks what depends on several options. */
-static int complete(const struct args *args, struct options *options)
+static int complete(const struct args *args, struct record_options *options)
 {
     if (args->operand_count == 0)
         args_error(args, "expected a FILE to write");
@@ -337,7 +337,7 @@ static bool choose_others(const struct args *args, struct recording *recording)
 int cmd_record(int argc, char **argv)
 {
     static struct recording recording;
-    struct options options = {.json = false};
+    struct record_options options = {.json = false};
     const struct args_option own[] = {
         {"force", ARGS_FLAG, .out = &options.parts.force},
         {"json", ARGS_FLAG, .out = &options.json},

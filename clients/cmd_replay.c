@@ -83,7 +83,7 @@ static const char usage[] =
     "version 1, a message on the service's channels cannot be read, there is nothing\n"
     "to compare, or the service on the bus does not answer all queries.\n";
 
-struct options {
+struct replay_arguments {
     struct replay_options replay;
     struct answer_bus_options bus;
     struct args_bus where;
@@ -98,7 +98,7 @@ struct options {
 enum { COMPLAINTS_MAX = 20 };
 
 struct run {
-    const struct options *options;
+    const struct replay_arguments *options;
     struct progress progress;
     int64_t first_utime;
     struct listing *differences;
@@ -111,7 +111,7 @@ static const char *log_name(const struct run *run, int log)
     return run->options->replay.log[log];
 }
 
-static void on_found(void *user, const struct found *found)
+static void on_found(void *user, const struct located_difference *found)
 {
     struct run *run = user;
     listing_put(run->differences, found);
@@ -161,7 +161,7 @@ static void open_many(void)
 
 static bool write_junit(const struct run *run, const struct tally *tally)
 {
-    const struct options *options = run->options;
+    const struct replay_arguments *options = run->options;
     FILE *file = output_open(options->junit);
     if (!file)
         return false;
@@ -169,7 +169,7 @@ static bool write_junit(const struct run *run, const struct tally *tally)
     return output_close(file, options->junit);
 }
 
-static bool write_page(const struct options *options)
+static bool write_page(const struct replay_arguments *options)
 {
     FILE *file = output_open(options->html);
     if (!file)
@@ -179,7 +179,7 @@ static bool write_page(const struct options *options)
 }
 
 /* Why nothing was compared, for people; NULL: something was, or nothing had to be. */
-static const char *why_nothing(const struct options *options, const struct tally *all)
+static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
     if (tally_queries(all) == 0)
@@ -190,7 +190,7 @@ static const char *why_nothing(const struct options *options, const struct tally
 }
 
 /* The exit code, of a replay that went well as such. */
-static int code_of(const struct options *options, const struct tally *all)
+static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
     const char *nothing = why_nothing(options, all);
     if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) > 0)
@@ -203,7 +203,7 @@ static int code_of(const struct options *options, const struct tally *all)
     return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
 }
 
-static void report_one(void *user, const struct found *found)
+static void report_one(void *user, const struct located_difference *found)
 {
     struct run *run = user;
     const bool several = run->options->replay.log_count > 1;
@@ -270,8 +270,8 @@ static void report_no_service(const struct tally_bus *bus, const struct answer_b
         report_never(options, patience);
     else
         report_no_more(bus, patience, log);
-    if (bus->nonsense > 0)
-        complain("%" PRId64 " results could not be read: another version of fmbd?", bus->nonsense);
+    if (bus->malformed > 0)
+        complain("%" PRId64 " results could not be read: another version of fmbd?", bus->malformed);
     complain("start one with 'fmbd%s%s &', or replay in this process: leave out --bus",
              *options->prefix ? " --prefix " : "", options->prefix);
 }
@@ -290,7 +290,7 @@ static void report_end(const struct tally_bus *bus, const struct answer_bus_opti
     switch ((enum answer_bus_end) bus->end) {
     case ANSWER_BUS_NO_END: break;
     case ANSWER_BUS_SIGNAL: report_signal(bus); break;
-    case ANSWER_BUS_NOBODY: report_no_service(bus, options, log); break;
+    case ANSWER_BUS_NO_SERVICE: report_no_service(bus, options, log); break;
     case ANSWER_BUS_FAILED: fputs("fmb: the bus has failed\n", stderr); break;
     }
 }
@@ -299,7 +299,7 @@ static void report_end(const struct tally_bus *bus, const struct answer_bus_opti
 
 static int replay(struct run *run, int64_t size, struct tally *tally)
 {
-    const struct options *options = run->options;
+    const struct replay_arguments *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
     run->progress = progress_begin_of("bytes", (uint64_t) size);
@@ -318,7 +318,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
     return output_flush() ? code : ARGS_USAGE;
 }
 
-static int run_replay(struct options *options)
+static int run_replay(struct replay_arguments *options)
 {
     struct run run = {.options = options};
     open_many();
@@ -350,7 +350,7 @@ static bool check_report(const struct args *args, const char *option, const char
     return !is_log || args_error(args, "--%s: %s is an event log", option, path);
 }
 
-static bool check_options(const struct args *args, const struct options *options)
+static bool check_options(const struct args *args, const struct replay_arguments *options)
 {
     if (args->operand_count == 0)
         return args_error(args, "expected a LOG");
@@ -358,7 +358,7 @@ static bool check_options(const struct args *args, const struct options *options
 }
 
 /* Options of answers in this process, and of those of a service. */
-static bool check_bus(const struct args *args, const struct options *options)
+static bool check_bus(const struct args *args, const struct replay_arguments *options)
 {
     if (options->live && options->frames > 0)
         return args_error(args, "--frames does not go with --bus");
@@ -369,7 +369,7 @@ static bool check_bus(const struct args *args, const struct options *options)
 }
 
 /* Those that were not given. */
-static void complete(struct options *options)
+static void complete(struct replay_arguments *options)
 {
     struct answer_bus_options *bus = &options->bus;
     options->frames = options->frames > 0 ? options->frames : 65536;
@@ -386,10 +386,10 @@ static void complete(struct options *options)
 
 int cmd_replay(int argc, char **argv)
 {
-    struct options options = {.replay = {.from = -INFINITY, .to = INFINITY},
-                              .bus = {.speed = -1},
-                              .limit = 1000,
-                              .retries = -1};
+    struct replay_arguments options = {.replay = {.from = -INFINITY, .to = INFINITY},
+                                       .bus = {.speed = -1},
+                                       .limit = 1000,
+                                       .retries = -1};
     struct replay_options *replay = &options.replay;
     const struct args_option own[] = {
         {"golden", ARGS_TEXT, .out = &replay->golden},

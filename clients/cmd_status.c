@@ -22,7 +22,7 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 printed, 1 no heartbeat came, 2 wrong usage.\n";
 
-struct options {
+struct status_options {
     bool json;
     double timeout;
 };
@@ -129,7 +129,7 @@ static void print_text(const struct fmb_client_heartbeat *status)
     print_count("foreign", status->foreign);
 }
 
-static void advise(const struct options *options, const struct args_bus *bus,
+static void advise(const struct status_options *options, const struct args_bus *bus,
                    const struct heartbeat *heartbeat)
 {
     complain("no heartbeat on channel %sFMB_STATUS of %s within %g s", bus->prefix,
@@ -141,7 +141,8 @@ static void advise(const struct options *options, const struct args_bus *bus,
         complain("start one with 'fmbd%s%s &'", *bus->prefix ? " --prefix " : "", bus->prefix);
 }
 
-static int print_heartbeat(const struct options *options, const struct fmb_client_heartbeat *status)
+static int print_heartbeat(const struct status_options *options,
+                           const struct fmb_client_heartbeat *status)
 {
     if (options->json)
         print_json(status);
@@ -152,7 +153,7 @@ static int print_heartbeat(const struct options *options, const struct fmb_clien
 
 int cmd_status(int argc, char **argv)
 {
-    struct options options = {.timeout = 3};
+    struct status_options options = {.timeout = 3};
     const struct args_option own[] = {
         {"json", ARGS_FLAG, .out = &options.json},
         {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},

@@ -27,13 +27,13 @@ static const char usage[] =
     "Exit codes: 0 ended by a signal or --count, 1 no bus, or the output failed, 2\n"
     "wrong usage.\n";
 
-struct options {
+struct watch_options {
     bool json;
     long count; /* 0: no end */
 };
 
 struct watch {
-    const struct options *options;
+    const struct watch_options *options;
     struct report_columns columns;
     long seen;
     uint64_t malformed;
@@ -213,7 +213,7 @@ static int end_of_watch(const struct watch *watch, enum listen_end end)
 
 int cmd_watch(int argc, char **argv)
 {
-    struct options options = {.count = 0};
+    struct watch_options options = {.count = 0};
     const struct args_option own[] = {
         {"json", ARGS_FLAG, .out = &options.json},
         {"count", ARGS_INTEGER, &options.count, .low = 1, .high = INT32_MAX},

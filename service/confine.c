@@ -14,7 +14,7 @@ static const char default_user[] = "nobody";
 
 /* ---- User ---- */
 
-/* Groups first: the user may not change them. */
+/* Changes the groups first: afterwards the process has no right to. */
 static bool become(const struct passwd *user)
 {
     return setgid(user->pw_gid) == 0 && setgroups(1, &user->pw_gid) == 0 &&
@@ -54,7 +54,7 @@ enum { SANITIZED = __has_feature(address_sanitizer) };
 enum { SANITIZED = 0 };
 #endif
 
-/* Receiving, publishing (liblcm), waiting, memory, lines on stderr, and the end. */
+/* For receiving, publishing (liblcm), waiting, memory, lines on stderr, and exiting. */
 static const int allowed[] = {
     SCMP_SYS(recvmmsg),
     SCMP_SYS(sendmsg),

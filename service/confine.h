@@ -10,7 +10,8 @@
 bool confine_user(const char *user);
 
 /* Forbids new privileges, and all system calls except those that answering needs: they fail with
- * EPERM. If the kernel has no filter, that is reported on stderr, and calls stay allowed. */
+ * EPERM. If the kernel accepts no filter, prints a warning on stderr, and all calls stay allowed.
+ */
 void confine_calls(void);
 
 #endif

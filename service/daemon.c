@@ -7,7 +7,7 @@
 #include "fmb.h"
 #include "notify.h"
 #include "random_id.h"
-#include "say.h"
+#include "stderr_ready.h"
 #include "server.h"
 #include "signals.h"
 
@@ -20,13 +20,14 @@
 #include <sys/random.h>
 #include <time.h>
 
-/* Batches read before something is answered, so that a flood does not keep the service from it. */
+/* Most batches read in a row, so that a flood of datagrams does not prevent answers. */
 enum { BATCHES_MAX = 4 };
 
-/* While queries wait, signals and the watchdog are looked at so often. */
-static const int64_t look_ns = 10000000;
+/* Interval at which signals and the watchdog are polled while queries are pending. */
+static const int64_t poll_ns = 10000000;
 
-/* A yield of the core that lasts so long is answered by a pause, in which naps take its place. */
+/* After sched_yield() has taken longer than long_yield_ns, short sleeps of nap_ns replace it for
+ * yield_pause_ns. */
 static const int64_t long_yield_ns = 1000000, yield_pause_ns = 1000000000, nap_ns = 100000;
 
 struct daemon {
@@ -34,8 +35,8 @@ struct daemon {
     struct server *server;
     struct notify notify;
     int signals;
-    int64_t look_at_ns, yield_at_ns;
-    bool failed; /* the bus did; the reason is on stderr */
+    int64_t poll_at_ns, yield_at_ns;
+    bool failed; /* the bus failed; the reason is on stderr */
 };
 
 static bool publish(void *user, const char *channel, const unsigned char *bytes, size_t size)
@@ -63,51 +64,53 @@ static void drain(struct daemon *daemon)
     for (int i = 0; i < BATCHES_MAX && datagrams == BUS_BATCH; i++) {
         datagrams = bus_receive(daemon->bus, on_message, daemon->server);
         if (datagrams >= 0)
-            server_received(daemon->server, datagrams);
+            server_end_batch(daemon->server, datagrams);
         else
             fail(daemon);
     }
 }
 
-static void beat_if_due(struct daemon *daemon)
+static void heartbeat_if_due(struct daemon *daemon)
 {
-    if (server_beat_due_ms(daemon->server) > 0)
+    if (server_heartbeat_due_ms(daemon->server) > 0)
         return;
     const struct bus_counts counts = bus_counts(daemon->bus);
-    server_beat(daemon->server, &counts);
+    server_heartbeat(daemon->server, &counts);
 }
 
-static bool signal_came(const struct daemon *daemon)
+static bool signal_pending(const struct daemon *daemon)
 {
     struct pollfd signals = {.fd = daemon->signals, .events = POLLIN};
     return poll(&signals, 1, 0) > 0;
 }
 
-/* What is due besides queries. Returns whether to go on. */
-static bool look_around(struct daemon *daemon)
+/* Sends the heartbeat and polls signals and the watchdog, if they are due. Returns false if a
+ * signal arrived. */
+static bool poll_events(struct daemon *daemon)
 {
-    beat_if_due(daemon);
+    heartbeat_if_due(daemon);
     const int64_t now_ns = clock_ns();
-    if (now_ns < daemon->look_at_ns)
+    if (now_ns < daemon->poll_at_ns)
         return true;
-    daemon->look_at_ns = now_ns + look_ns;
+    daemon->poll_at_ns = now_ns + poll_ns;
     notify_alive(&daemon->notify, 0);
-    return !signal_came(daemon);
+    return !signal_pending(daemon);
 }
 
-/* Waits for the bus. Returns whether to go on. */
+/* Sleeps until a datagram, a signal, or the heartbeat or watchdog message is due. Returns false if
+ * a signal arrived. */
 static bool sleep_until_due(struct daemon *daemon)
 {
-    const int due_ms = notify_alive(&daemon->notify, server_beat_due_ms(daemon->server));
+    const int due_ms = notify_alive(&daemon->notify, server_heartbeat_due_ms(daemon->server));
     const int ready = bus_wait(daemon->bus, daemon->signals, due_ms);
     if (ready < 0)
         fail(daemon);
     return !(ready & 2);
 }
 
-/* Lets other programs run for a moment. Where one of them keeps the core busy, a yield lasts until
- * its time slice ends, while a process that sleeps is woken up by a datagram. */
-static void give_way(struct daemon *daemon)
+/* Lets other programs run for a moment. If one of them keeps the core busy, sched_yield() returns
+ * only when that program's time slice ends, whereas a datagram wakes up a process that sleeps. */
+static void yield_core(struct daemon *daemon)
 {
     const int64_t begin_ns = clock_ns();
     if (begin_ns < daemon->yield_at_ns) {
@@ -126,11 +129,11 @@ static void serve(struct daemon *daemon)
     while (more && !daemon->failed) {
         drain(daemon);
         const enum server_state state = server_work(daemon->server);
-        more = look_around(daemon);
+        more = poll_events(daemon);
         if (!more || state == SERVER_WORKING)
             continue;
-        if (state == SERVER_EXPECTING)
-            give_way(daemon);
+        if (state == SERVER_ANTICIPATING)
+            yield_core(daemon);
         else
             more = sleep_until_due(daemon);
         server_resume(daemon->server);
@@ -143,7 +146,7 @@ static void report_ready(const struct daemon *daemon, const struct daemon_option
                          int64_t server_id)
 {
     const struct server *server = daemon->server;
-    if (!say_now())
+    if (!stderr_ready())
         return;
     fprintf(stderr,
             "fmbd %s ready: answers %s on %s, %s on %s, %s on %s, heartbeat on %s; %zu frames; "

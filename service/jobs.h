@@ -1,10 +1,10 @@
-/* The work in progress: a scene, or a pair of bodies of several frames; at most one per client,
- * JOBS in total. */
+/* Queries in progress: scenes, and pairs of bodies of several frames. At most one job per client,
+ * JOBS in total. All memory is allocated by jobs_init(). No shared state. */
 #ifndef JOBS_H
 #define JOBS_H
 
 #include "answer.h"
-#include "turns.h"
+#include "scheduler.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,29 +12,35 @@
 enum { JOBS = 16 };
 
 struct job {
-    struct scene_job *scene; /* in progress, unless is_pair */
-    struct pair_job *pair;
+    struct scene_job *scene; /* owned; in progress unless is_pair */
+    struct pair_job *pair;   /* owned; in progress if is_pair */
     bool is_pair;
-    int client; /* -1: free */
-    int64_t used_ns;
+    int client;      /* -1: the job is free */
+    int64_t used_ns; /* time spent on it so far */
 };
 
 struct jobs {
     struct job job[JOBS];
-    int free;
-    struct job *of_client[TURNS_CLIENTS + 1]; /* NULL: none */
+    int free;                                     /* number of free jobs */
+    struct job *of_client[SCHEDULER_CLIENTS + 1]; /* [client] NULL: none */
 };
 
-/* Allocates all memory. False: out of memory; jobs_release() must still be called. */
+/* Allocates the memory of all jobs; all are free. Returns false if out of memory; jobs_release()
+ * must still be called. */
 bool jobs_init(struct jobs *jobs);
+
+/* Frees the memory. */
 void jobs_release(struct jobs *jobs);
 
-/* Assigns a free job to a client. On input: jobs->free > 0; the client has no job. */
+/* Assigns a free job to a client; the caller sets is_pair and begins it. On input: jobs->free > 0;
+ * the client has no job. */
 struct job *jobs_take(struct jobs *jobs, int client);
+
+/* Makes a job free. On input: a job that was taken, and has ended. */
 void jobs_give_back(struct jobs *jobs, struct job *job);
 
-/* Of the jobs that can be stopped, the one that has used most time; NULL: there is none. Those are
- * scenes with an answer, and jobs without one that have used more than JOBS_PATIENCE_NS. */
+/* The job that has used most time, among those that can be stopped: scenes with at least one pair
+ * answered, and any job that has used more than JOBS_PATIENCE_NS. NULL: there is none. */
 #define JOBS_PATIENCE_NS INT64_C(1000000000)
 struct job *jobs_longest(struct jobs *jobs);
 

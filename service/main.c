@@ -101,8 +101,8 @@ static int parse_options(int argc, char **argv, struct daemon_options *out)
     return -1;
 }
 
-/* A standard descriptor that is closed would be the number of what is opened next, and messages on
- * stderr would go there: to /dev/null instead. */
+/* Opens /dev/null for each standard descriptor that is closed. Otherwise the next file or socket
+ * opened would get its number, and messages on stderr would be written to it. */
 static void open_standard_descriptors(void)
 {
     int fd;

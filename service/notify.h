@@ -7,18 +7,21 @@
 struct notify {
     int fd;              /* -1: there is no manager */
     int64_t watchdog_ns; /* interval of watchdog messages, half of the limit; 0: none */
-    int64_t due_ns;      /* time of the next one; clock_ns() */
+    int64_t due_ns;      /* when the next one is due (clock_ns()) */
 };
 
-/* Reads the environment: NOTIFY_SOCKET, WATCHDOG_USEC, WATCHDOG_PID. */
+/* Opens the socket that the environment names (NOTIFY_SOCKET), and reads the watchdog's interval
+ * (WATCHDOG_USEC, WATCHDOG_PID). Without a manager the functions below have no effect. None of them
+ * blocks. */
 void notify_open(struct notify *notify);
 void notify_close(struct notify *notify);
 
+/* Report that the service is ready, or that it is stopping. */
 void notify_ready(struct notify *notify);
 void notify_stopping(struct notify *notify);
 
 /* Sends the watchdog message, if it is due. Returns the milliseconds until the next one, rounded
- * down, and at most most_ms. */
+ * down, or most_ms if that is less or there is no watchdog. */
 int notify_alive(struct notify *notify, int most_ms);
 
 #endif

@@ -4,57 +4,58 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Why the promises of queue.h hold.
+/* Proof of the two guarantees in queue.h.
  *
  * Let C be the capacity, F the free chunks, h[c] what client c holds, and m the number of clients
  * that hold any, the sender s counted among them: C = F + sum of h[c]. A datagram of n chunks
- * arrives; with it the sender would hold L = h[s] + n. It is refused where
+ * arrives; with it the sender would hold L = h[s] + n. It is refused if
  *
  *     F + sum over c of max(h[c] - L, 0) < n                                               (1)
  *
  * and otherwise, while F < n, the newest datagram of a client that holds most is evicted.
  *
- * No eviction is in vain: each, of k chunks, raises F by k and lowers the sum in (1) by at most k,
- * so what was not refused is not refused afterwards. While F < n, the sum is positive: the client
- * that holds most holds more than L, and so is not the sender.
+ * Evictions succeed. Evicting k chunks raises F by k and lowers the sum in (1) by at most k, so
+ * that (1) does not become true: a datagram that was not refused at first is not refused later.
+ * While F < n, the sum is positive; hence the client that holds most holds more than L, and is not
+ * the sender.
  *
- * A client that is refused wants more than a share, m * L > C: with h[c] <= L + max(h[c] - L, 0)
- * for the m - 1 others, and (1) in whole numbers,
+ * Refused datagrams exceed the share: m * L > C. With h[c] <= L + max(h[c] - L, 0) for the m - 1
+ * others, and (1) in whole numbers (its left side is at most n - 1),
  *
  *     C <= F + h[s] + (m - 1) * L + (n - 1 - F) = m * L - 1.
  *
- * A client that has a datagram evicted holds more than a share, m * h > C: it holds most,
- * h >= L + 1, and F <= n - 1, so that
+ * Evicted datagrams exceed the share: m * h > C for the h of their client. It holds most, so that
+ * h >= L + 1 and no h[c] exceeds h; and F <= n - 1. Therefore
  *
  *     C <= (n - 1) + h[s] + (m - 1) * h = L - 1 + (m - 1) * h <= m * h - 2.
  *
- * And its newest is evicted: h counts that datagram and all older ones. What is left may be less
- * than a share, by less than the size of what was evicted. */
+ * The newest datagram is evicted, so h counts that datagram and all older ones. What the client has
+ * left may be less than the share, by less than the size of the evicted datagram. */
 
-/* Chunks and clients are linked by index. They count from 1: 0 is none, and what starts as 0 is
- * linked to nothing. A datagram is named by its first chunk. */
-struct chunk {
-    int32_t next; /* of the datagram, or of those that are free again */
-    /* Of the first chunk: */
-    int32_t older, newer; /* datagram of the line */
+/* Chunks and clients are linked by index, counted from 1. Index 0 means none, so that memory of
+ * zeros has no links. A datagram is identified by the index of its first chunk. */
+struct queue_chunk {
+    int32_t next; /* chunk of the same datagram, or next in the list of freed chunks */
+    /* Set in the first chunk of a datagram only: */
+    int32_t older, newer; /* neighbours in the FIFO: datagrams */
     int32_t size;         /* bytes of the datagram */
     int kind;
-    uint64_t arrival; /* ascending */
+    uint64_t arrival; /* number of the queue_put() call that added it */
 };
 
-struct client {
+struct queue_client {
     int32_t chunks;                                   /* held */
-    int32_t oldest[QUEUE_LINES], newest[QUEUE_LINES]; /* datagrams */
-    int32_t equal_before, equal_after;                /* in the list of those that hold as many */
+    int32_t oldest[QUEUE_FIFOS], newest[QUEUE_FIFOS]; /* datagrams */
+    int32_t equal_before, equal_after; /* neighbours among the clients that hold as many chunks */
 };
 
 struct queue {
     unsigned char (*bytes)[QUEUE_CHUNK]; /* of each chunk, from 0 */
-    struct chunk *chunk;
-    int32_t free_chunk; /* freed last */
-    struct client *client;
-    int32_t *level; /* by number of chunks: first client that holds so many */
-    int32_t top;    /* the most that any client holds */
+    struct queue_chunk *chunk;
+    int32_t free_chunk; /* the chunk freed last, first in the list of freed chunks */
+    struct queue_client *client;
+    int32_t *level; /* [number of chunks, from 0]: first client that holds exactly so many */
+    int32_t top;    /* most chunks that any client holds */
     uint64_t arrivals;
     struct queue_counts counts;
 };
@@ -65,7 +66,7 @@ struct queue *queue_create(size_t chunks, int clients)
     struct queue *queue = calloc(1, sizeof *queue);
     if (!queue)
         return NULL;
-    /* Large blocks of 0 take no memory before they are written to. */
+    /* Large zeroed blocks take no memory before they are written to. */
     *queue = (struct queue){.bytes = aligned_alloc(QUEUE_CHUNK, chunks * QUEUE_CHUNK),
                             .chunk = calloc(chunks + 1, sizeof *queue->chunk),
                             .client = calloc((size_t) clients + 1, sizeof *queue->client),
@@ -96,7 +97,7 @@ static int32_t chunks_of(size_t size)
     return (int32_t) ((size + QUEUE_CHUNK - 1) / QUEUE_CHUNK);
 }
 
-/* Bytes in the chunk of a datagram that starts at this place. */
+/* Bytes in the chunk that begins at byte `start` of a datagram of `size` bytes. */
 static size_t piece(size_t size, size_t start)
 {
     return size - start < QUEUE_CHUNK ? size - start : QUEUE_CHUNK;
@@ -112,7 +113,8 @@ static int32_t take_chunk(struct queue *queue)
     return chunk;
 }
 
-/* The datagram, in no line yet. Enough chunks are free. */
+/* Copies a datagram into free chunks and returns its index. It is in no FIFO yet. On input: enough
+ * chunks are free. */
 static int32_t write_datagram(struct queue *queue, int kind, const unsigned char *bytes,
                               size_t size)
 {
@@ -129,7 +131,7 @@ static int32_t write_datagram(struct queue *queue, int kind, const unsigned char
     return first;
 }
 
-/* Frees its chunks. */
+/* Copies a datagram out, and frees its chunks. */
 static void read_datagram(struct queue *queue, int32_t datagram, unsigned char *bytes)
 {
     size_t size = (size_t) queue->chunk[datagram].size;
@@ -143,7 +145,7 @@ static void read_datagram(struct queue *queue, int32_t datagram, unsigned char *
     }
 }
 
-/* ---- Clients by what they hold -------------------------------------------------------------- */
+/* ---- Clients by number of chunks ------------------------------------------------------------- */
 
 static void leave_level(struct queue *queue, int32_t c)
 {
@@ -166,11 +168,12 @@ static void join_level(struct queue *queue, int32_t c)
     *first = c;
 }
 
-/* Where the top falls, it falls no farther than to what this client still holds: by the chunks of
- * one datagram. */
+/* Adds more_chunks, which may be negative, to what the client holds. If top decreases, it stops at
+ * the latest at what this client still holds: the loop takes at most as many steps as one datagram
+ * has chunks. */
 static void hold(struct queue *queue, int32_t c, int32_t more_chunks)
 {
-    struct client *client = &queue->client[c];
+    struct queue_client *client = &queue->client[c];
     if (client->chunks)
         leave_level(queue, c);
     else
@@ -187,10 +190,11 @@ static void hold(struct queue *queue, int32_t c, int32_t more_chunks)
         queue->top--;
 }
 
-/* Free chunks, and what clients hold beyond the limit; counted as far as wanted. The first client
- * adds as many as there are levels above the limit, and each other one at least one: so neither
- * more levels nor more clients are visited than chunks are wanted. */
-static int32_t obtainable(const struct queue *queue, int32_t limit, int32_t wanted)
+/* Free chunks plus what clients hold above the limit: the left side of (1) with L = limit. Stops
+ * counting at `wanted` or more. The first client visited adds as many chunks as there are levels
+ * above the limit, and each further client at least one. So neither more levels nor more clients
+ * are visited than chunks are wanted. */
+static int32_t reclaimable(const struct queue *queue, int32_t limit, int32_t wanted)
 {
     int32_t found = (int32_t) (queue->counts.capacity - queue->counts.chunks);
     for (int32_t level = queue->top; level > limit && found < wanted; level--)
@@ -199,52 +203,52 @@ static int32_t obtainable(const struct queue *queue, int32_t limit, int32_t want
     return found;
 }
 
-/* ---- Lines ----------------------------------------------------------------------------------- */
+/* ---- FIFOs ----------------------------------------------------------------------------------- */
 
-static void append(struct queue *queue, int32_t c, enum queue_line line, int32_t datagram)
+static void append(struct queue *queue, int32_t c, enum queue_fifo fifo, int32_t datagram)
 {
-    struct client *client = &queue->client[c];
-    queue->chunk[datagram].older = client->newest[line];
+    struct queue_client *client = &queue->client[c];
+    queue->chunk[datagram].older = client->newest[fifo];
     queue->chunk[datagram].newer = 0;
-    if (client->newest[line])
-        queue->chunk[client->newest[line]].newer = datagram;
+    if (client->newest[fifo])
+        queue->chunk[client->newest[fifo]].newer = datagram;
     else
-        client->oldest[line] = datagram;
-    client->newest[line] = datagram;
+        client->oldest[fifo] = datagram;
+    client->newest[fifo] = datagram;
 }
 
-/* A datagram at either end of its line. */
-static void unlink_datagram(struct queue *queue, int32_t c, enum queue_line line, int32_t datagram)
+/* Removes a datagram from its FIFO. On input: its oldest or its newest. */
+static void unlink_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo, int32_t datagram)
 {
-    struct client *client = &queue->client[c];
+    struct queue_client *client = &queue->client[c];
     int32_t older = queue->chunk[datagram].older, newer = queue->chunk[datagram].newer;
     if (older)
         queue->chunk[older].newer = newer;
     else
-        client->oldest[line] = newer;
+        client->oldest[fifo] = newer;
     if (newer)
         queue->chunk[newer].older = older;
     else
-        client->newest[line] = older;
+        client->newest[fifo] = older;
 }
 
-static void take(struct queue *queue, int32_t c, enum queue_line line, int32_t datagram,
-                 struct queue_datagram *out, unsigned char *bytes)
+static void remove_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo, int32_t datagram,
+                            struct queue_datagram *out, unsigned char *bytes)
 {
     out->client = c - 1;
     out->kind = queue->chunk[datagram].kind;
     out->size = (size_t) queue->chunk[datagram].size;
-    unlink_datagram(queue, c, line, datagram);
+    unlink_datagram(queue, c, fifo, datagram);
     read_datagram(queue, datagram, bytes);
     hold(queue, c, -chunks_of(out->size));
     queue->counts.datagrams--;
 }
 
-/* The line of the newest datagram of a client that holds any. */
-static enum queue_line newest_line(const struct queue *queue, int32_t c)
+/* The FIFO that has the client's newest datagram. On input: a client that holds one. */
+static enum queue_fifo newest_fifo(const struct queue *queue, int32_t c)
 {
     const int32_t *newest = queue->client[c].newest;
-    const struct chunk *chunk = queue->chunk;
+    const struct queue_chunk *chunk = queue->chunk;
     if (!newest[QUEUE_SHORT])
         return QUEUE_SCENES;
     if (!newest[QUEUE_SCENES])
@@ -253,38 +257,38 @@ static enum queue_line newest_line(const struct queue *queue, int32_t c)
                                                                                     : QUEUE_SCENES;
 }
 
-/* ---- The whole ------------------------------------------------------------------------------- */
+/* ---- Interface ------------------------------------------------------------------------------- */
 
-enum queue_put_result queue_put(struct queue *queue, int client, enum queue_line line, int kind,
+enum queue_put_result queue_put(struct queue *queue, int client, enum queue_fifo fifo, int kind,
                                 const unsigned char *bytes, size_t size)
 {
     assert(size >= 1 && size <= QUEUE_DATAGRAM_MAX);
     const int32_t chunks = chunks_of(size), c = client + 1;
-    if (obtainable(queue, queue->client[c].chunks + chunks, chunks) < chunks)
+    if (reclaimable(queue, queue->client[c].chunks + chunks, chunks) < chunks)
         return QUEUE_REFUSED;
     if (queue->counts.capacity - queue->counts.chunks < chunks)
         return QUEUE_FULL;
     const int32_t datagram = write_datagram(queue, kind, bytes, size);
     queue->chunk[datagram].arrival = ++queue->arrivals;
-    append(queue, c, line, datagram);
+    append(queue, c, fifo, datagram);
     hold(queue, c, chunks);
     if (++queue->counts.datagrams > queue->counts.datagrams_most)
         queue->counts.datagrams_most = queue->counts.datagrams;
-    return QUEUE_KEPT;
+    return QUEUE_ADDED;
 }
 
-bool queue_has(const struct queue *queue, int client, enum queue_line line)
+bool queue_has(const struct queue *queue, int client, enum queue_fifo fifo)
 {
-    return queue->client[client + 1].oldest[line] != 0;
+    return queue->client[client + 1].oldest[fifo] != 0;
 }
 
-bool queue_pop(struct queue *queue, int client, enum queue_line line, struct queue_datagram *out,
+bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
     const int32_t c = client + 1;
-    if (!queue_has(queue, client, line))
+    if (!queue_has(queue, client, fifo))
         return false;
-    take(queue, c, line, queue->client[c].oldest[line], out, bytes);
+    remove_datagram(queue, c, fifo, queue->client[c].oldest[fifo], out, bytes);
     return true;
 }
 
@@ -294,8 +298,8 @@ bool queue_evict(struct queue *queue, struct queue_datagram *out,
     if (!queue->top)
         return false;
     const int32_t c = queue->level[queue->top];
-    const enum queue_line line = newest_line(queue, c);
-    take(queue, c, line, queue->client[c].newest[line], out, bytes);
+    const enum queue_fifo fifo = newest_fifo(queue, c);
+    remove_datagram(queue, c, fifo, queue->client[c].newest[fifo], out, bytes);
     return true;
 }
 

@@ -1,24 +1,29 @@
+/* The path of a query: server_receive() puts it into the queue; server_work() takes it from there
+ * when the scheduler chooses its client, answers it at once (one pair of frames, or a definition)
+ * or in steps (a job), and publishes the result. All time that this takes is measured (meter.h) and
+ * charged to the client. */
 #include "server.h"
 
 #include "answer.h"
 #include "clock.h"
-#include "expect.h"
+#include "anticipation.h"
 #include "histogram.h"
 #include "jobs.h"
 #include "malformed.h"
 #include "queue.h"
-#include "say.h"
-#include "turns.h"
+#include "stderr_ready.h"
+#include "scheduler.h"
 #include "wire.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+/* [kind] Channel names without prefix, header reader (NULL: not queued), and FIFO of the queue. */
 static const struct {
     const char *query, *result;
     const char *(*read_header)(const void *bytes, uint32_t size, struct query_header *out);
-    enum queue_line line;
+    enum queue_fifo fifo;
 } kinds[SERVER_KINDS] = {
     [SERVER_PAIRS] = {WIRE_PAIR_QUERY, WIRE_PAIR_RESULT, wire_read_pair_header, QUEUE_SHORT},
     [SERVER_SCENES] = {WIRE_SCENE_QUERY, WIRE_SCENE_RESULT, wire_read_scene_header, QUEUE_SCENES},
@@ -28,18 +33,20 @@ static const struct {
 };
 
 enum {
-    QUEUE_CHUNKS = 8192, /* 32 MB: so many pairs, or 500 of the largest scenes */
+    QUEUE_CHUNKS = 8192, /* 32 MB: 8192 pair queries, or 500 of the largest scenes */
     BATCH_MAX = 64
 };
 
-/* The bus is looked at so often. */
-static const int64_t look_ns = 250000;
+/* How long server_work() serves clients before the bus is read again. */
+static const int64_t work_ns = 250000;
 
-/* A scene that has used so much is stopped if others wait. One datagram can request a million pairs
- * that take milliseconds each; most scenes take less than one altogether. */
-static const int64_t scene_ns = 100000000;
+/* A scene that has used more time than this is stopped if other work is pending. One datagram can
+ * request a million pairs that take milliseconds each; most scenes take less than one millisecond
+ * altogether. */
+static const int64_t scene_limit_ns = 100000000;
 
-static const int64_t beat_ns = 1000000000;
+/* Interval between heartbeats. */
+static const int64_t heartbeat_ns = 1000000000;
 
 struct server {
     bool (*publish)(void *user, const char *channel, const unsigned char *bytes, size_t size);
@@ -49,35 +56,37 @@ struct server {
     char result_channel[SERVER_KINDS][BUS_CHANNEL_MAX];
     struct answerer *answerer;
     struct queue *queue;
-    struct turns *turns;
+    struct scheduler *scheduler;
     struct jobs jobs;
-    struct expect expect;
+    struct anticipation anticipation;
     struct meter meter;
-    /* Clients whose messages were read since the last charge, and the time that they took. */
+    /* Clients whose messages were read since the last charge, one entry for each message, and the
+     * time that reading took. */
     int batch[BATCH_MAX], batch_count;
     int64_t batch_ns;
-    int64_t empty_ns;                   /* when the bus was last found empty */
-    int64_t unit_ns[TURNS_CLIENTS + 1]; /* average of what serving a client once takes */
-    int served;                         /* the last client */
-    struct histogram compute_ns;
-    struct wire_status status; /* counts so far; the remainder is set when it is published */
-    int64_t ready_ns, beat_at_ns;
+    int64_t bus_empty_ns;                    /* when the bus was last empty */
+    int64_t serve_ns[SCHEDULER_CLIENTS + 1]; /* [client] average duration of serve() */
+    int last_client;                         /* the client served last; -1: none */
+    struct histogram compute_ns;             /* of all queries answered with FMB_OK */
+    struct wire_status status; /* counts so far; complete_status() sets the other fields */
+    int64_t ready_ns, heartbeat_due_ns;
     struct malformed malformed;
-    /* The other service last heard from on the same channels (0: none), and when it was reported.
-     */
+    /* The other service on the same channels that was reported last (0: none), and when. */
     int64_t other_id, other_reported_ns;
+    /* Buffers of the query being answered or refused, and of its result. */
     struct pair_query pair;
     struct pair_result pair_result;
     struct definition_query definition;
     struct definition definition_result;
     struct scene_result refused;
-    unsigned char datagram[QUEUE_DATAGRAM_MAX]; /* that is being answered */
-    unsigned char evicted[QUEUE_DATAGRAM_MAX];
-    unsigned char out[QUERY_BYTES_MAX];
+    unsigned char datagram[QUEUE_DATAGRAM_MAX]; /* the query being answered */
+    unsigned char evicted[QUEUE_DATAGRAM_MAX];  /* the query being refused after its eviction */
+    unsigned char out[QUERY_BYTES_MAX];         /* the result, encoded */
 };
 
 /* ---- Results ---- */
 
+/* Publishes server->out, size bytes, and counts it. */
 static void publish_result(struct server *server, enum server_kind kind, size_t size,
                            int32_t status)
 {
@@ -105,8 +114,8 @@ static void publish_definition(struct server *server, const struct definition *r
                    result->status);
 }
 
-/* Pairs that the broad phase separated are decided too; those that a method cannot decide are not.
- */
+/* Number of pairs decided. Pairs that the broad phase separated count, though they have no verdict
+ * in the result; pairs that the method cannot decide (verdict 0) do not. */
 static int64_t decided(const struct scene_result *result, int32_t first_pair)
 {
     int64_t pairs = result->end_pair - first_pair;
@@ -132,38 +141,40 @@ static void note_malformed(struct server *server, enum server_kind kind, size_t 
 
 /* ---- Activity ---- */
 
+/* Whether the client has a job or a query in the queue. */
 static bool has_work(const struct server *server, int client)
 {
     return server->jobs.of_client[client] || queue_has(server->queue, client, QUEUE_SHORT) ||
            queue_has(server->queue, client, QUEUE_SCENES);
 }
 
-/* A client that got its last answer is idle from now on. */
+/* Makes a client that has work active, and any other idle. */
 static void update_activity(struct server *server, int client)
 {
     if (has_work(server, client)) {
-        turns_activate(server->turns, client);
+        scheduler_activate(server->scheduler, client);
     } else {
-        turns_deactivate(server->turns, client);
-        expect_answered(&server->expect, client, server->meter.wall_ns);
+        scheduler_deactivate(server->scheduler, client);
+        anticipation_answered(&server->anticipation, client, server->meter.wall_ns);
     }
 }
 
 /* ---- Pairs and definitions ---- */
 
-/* The line of scenes, since it needs a job. There is space: it has just been taken from the queue.
- */
+/* Moves a pair query of bodies of several frames to the FIFO of scenes, since it needs a job. The
+ * queue has capacity for it, from which it has just been popped; if it refuses the query all the
+ * same, the client gets FMB_BUSY. */
 static void defer_pair(struct server *server, int client, size_t size)
 {
     const enum queue_put_result result =
         queue_put(server->queue, client, QUEUE_SCENES, SERVER_PAIRS, server->datagram, size);
-    if (result == QUEUE_KEPT)
+    if (result == QUEUE_ADDED)
         return;
     answer_pair_refused(server->answerer, &server->pair, FMB_BUSY, &server->pair_result);
     publish_pair(server, &server->pair_result);
 }
 
-static void answer_a_pair(struct server *server, int client, size_t size)
+static void process_pair(struct server *server, int client, size_t size)
 {
     struct pair_result *result = &server->pair_result;
     const char *error = wire_read_pair_query(server->datagram, (uint32_t) size, &server->pair);
@@ -182,7 +193,7 @@ static void answer_a_pair(struct server *server, int client, size_t size)
     publish_pair(server, result);
 }
 
-static void answer_a_definition(struct server *server, size_t size)
+static void process_definition(struct server *server, size_t size)
 {
     const char *error =
         wire_read_definition_query(server->datagram, (uint32_t) size, &server->definition);
@@ -223,7 +234,8 @@ static void finish_job(struct server *server, struct job *job)
     jobs_give_back(&server->jobs, job);
 }
 
-/* A pair is refused as busy, and so is a scene without an answer. */
+/* Ends a job early. A pair, or a scene in which no pair has been answered, gets FMB_BUSY; any other
+ * scene, the pairs answered so far. */
 static void stop_job(struct server *server, struct job *job)
 {
     if (!job->is_pair)
@@ -231,23 +243,25 @@ static void stop_job(struct server *server, struct job *job)
     finish_job(server, job);
 }
 
-/* Stops the longest job, at the expense of its client. */
-static void free_a_job(struct server *server, int for_client)
+/* Stops the job that has used most time, so that for_client can have one. The time spent so far is
+ * charged to for_client; publishing the result, to the client of the job. */
+static void stop_longest_job(struct server *server, int for_client)
 {
     struct job *job = jobs_longest(&server->jobs);
     const int client = job->client;
-    turns_charge(server->turns, for_client, meter_read(&server->meter));
+    scheduler_charge(server->scheduler, for_client, meter_read(&server->meter));
     stop_job(server, job);
-    turns_charge(server->turns, client, meter_read(&server->meter));
+    scheduler_charge(server->scheduler, client, meter_read(&server->meter));
     update_activity(server, client);
 }
 
-/* The next scene or pair of a client. NULL: its bytes are malformed. */
+/* Begins the job for the oldest datagram in the client's FIFO of scenes. NULL: the datagram is
+ * malformed. */
 static struct job *begin_job(struct server *server, int client)
 {
     struct queue_datagram next;
     if (server->jobs.free == 0)
-        free_a_job(server, client);
+        stop_longest_job(server, client);
     queue_pop(server->queue, client, QUEUE_SCENES, &next, server->datagram);
     struct job *job = jobs_take(&server->jobs, client);
     job->is_pair = next.kind == SERVER_PAIRS;
@@ -261,7 +275,8 @@ static struct job *begin_job(struct server *server, int client)
     return NULL;
 }
 
-static bool other_scenes_wait(const struct server *server)
+/* Whether there is work besides one job: another job, or a query in the queue. */
+static bool other_work_pending(const struct server *server)
 {
     return server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0;
 }
@@ -271,8 +286,9 @@ static bool step(struct server *server, struct job *job)
     return job->is_pair ? pair_job_step(job->pair) : scene_job_step(job->scene, server->answerer);
 }
 
-/* A turn of at most so many nanoseconds. */
-static void advance_job(struct server *server, int client, int64_t most_ns)
+/* Steps the client's job, or begins its next one, for about max_ns nanoseconds: it ends with the
+ * first step that reaches them. */
+static void advance_job(struct server *server, int client, int64_t max_ns)
 {
     const int64_t begin_ns = server->meter.wall_ns;
     struct job *job = server->jobs.of_client[client];
@@ -281,21 +297,23 @@ static void advance_job(struct server *server, int client, int64_t most_ns)
     if (!job)
         return;
     bool complete = false;
-    int64_t turn = 0;
-    while (!complete && turn < most_ns) {
+    int64_t turn_ns = 0;
+    while (!complete && turn_ns < max_ns) {
         complete = step(server, job);
-        turn = server->clocks->wall_ns() - begin_ns;
+        turn_ns = server->clocks->wall_ns() - begin_ns;
     }
-    job->used_ns += turn;
+    job->used_ns += turn_ns;
     if (complete)
         finish_job(server, job);
-    else if (job->used_ns > scene_ns && !job->is_pair && other_scenes_wait(server) &&
+    else if (job->used_ns > scene_limit_ns && !job->is_pair && other_work_pending(server) &&
              scene_job_has_answers(job->scene))
         stop_job(server, job);
 }
 
-/* ---- Turns ---- */
+/* ---- Scheduling ---- */
 
+/* Whether the client can be served now: its next query needs no job, it has one, or one is free or
+ * can be stopped. */
 static bool may_serve(const void *user, int client)
 {
     const struct server *server = user;
@@ -303,31 +321,33 @@ static bool may_serve(const void *user, int client)
            server->jobs.free > 0 || jobs_longest((struct jobs *) &server->jobs);
 }
 
-/* What a client is charged for being served once. A long unit of work delays every other client,
- * puts their cores to sleep and empties the caches, all of which they pay for: so what it takes
+/* Nanoseconds charged for one call of serve() that took used_ns. A long call delays every other
+ * client, lets their cores go to sleep and evicts their data from the CPU caches. So the time
  * beyond short_ns counts twice. */
-static int64_t price(int64_t used_ns)
+static int64_t charge_of(int64_t used_ns)
 {
     static const int64_t short_ns = 50000;
     return used_ns > short_ns ? 2 * used_ns - short_ns : used_ns;
 }
 
-static void serve(struct server *server, int client, int64_t job_most_ns)
+/* Does one unit of work for the client and charges it: answers its oldest short query or, if it has
+ * none, advances its job. */
+static void serve(struct server *server, int client, int64_t job_max_ns)
 {
     struct queue_datagram next;
-    if (client != server->served)
+    if (client != server->last_client)
         meter_base(&server->meter);
-    server->served = client;
-    turns_begin(server->turns);
+    server->last_client = client;
+    scheduler_advance(server->scheduler);
     if (!queue_pop(server->queue, client, QUEUE_SHORT, &next, server->datagram))
-        advance_job(server, client, job_most_ns);
+        advance_job(server, client, job_max_ns);
     else if (next.kind == SERVER_PAIRS)
-        answer_a_pair(server, client, next.size);
+        process_pair(server, client, next.size);
     else
-        answer_a_definition(server, next.size);
+        process_definition(server, next.size);
     const int64_t used_ns = meter_read(&server->meter);
-    server->unit_ns[client] += (used_ns - server->unit_ns[client]) / 4;
-    turns_charge(server->turns, client, price(used_ns));
+    server->serve_ns[client] += (used_ns - server->serve_ns[client]) / 4;
+    scheduler_charge(server->scheduler, client, charge_of(used_ns));
     update_activity(server, client);
 }
 
@@ -336,50 +356,58 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Only while others wait, for a client that would be served before them; and only where it is far
- * behind them, or the work that would begin instead usually takes longer than the waiting. */
-static bool begin_expecting(struct server *server, int client)
+/* Begins to anticipate the next query of the client just served. Requires that the client is idle,
+ * that other clients have work, and that this client would be served before them. Besides, its lead
+ * must exceed a slice, or the work that would begin instead must usually take longer than the next
+ * query takes to arrive. */
+static bool begin_anticipating(struct server *server, int client)
 {
-    const int next = has_work(server, client) ? -1 : turns_least(server->turns);
+    const int next = has_work(server, client) ? -1 : scheduler_least(server->scheduler);
     if (next < 0)
         return false;
-    const int64_t lead_ns = turns_lead(server->turns, client);
-    return expect_begin(&server->expect, client, server->meter.wall_ns, lead_ns + TURNS_SLICE_NS,
-                        lead_ns > TURNS_SLICE_NS ? INT64_MAX : server->unit_ns[next]);
+    const int64_t lead_ns = scheduler_lead(server->scheduler, client);
+    return anticipation_begin(&server->anticipation, client, server->meter.wall_ns,
+                              lead_ns + SCHEDULER_SLICE_NS,
+                              lead_ns > SCHEDULER_SLICE_NS ? INT64_MAX : server->serve_ns[next]);
 }
 
-static bool goes_on_expecting(struct server *server)
+/* Returns whether to keep waiting for the anticipated client: its query has not arrived, the time
+ * is not over, and its virtual time is less than a slice above that of every other client.
+ * Otherwise charges it for the wait. */
+static bool keep_anticipating(struct server *server)
 {
-    struct expect *expect = &server->expect;
+    struct anticipation *anticipation = &server->anticipation;
     const int64_t now_ns = server->clocks->wall_ns();
-    const int client = expect->client;
+    const int client = anticipation->client;
     if (client < 0)
         return false;
-    if (expect_poll(expect, now_ns) && !has_work(server, client) &&
-        turns_lead(server->turns, client) > -TURNS_SLICE_NS)
+    if (anticipation_poll(anticipation, now_ns) && !has_work(server, client) &&
+        scheduler_lead(server->scheduler, client) > -SCHEDULER_SLICE_NS)
         return true;
-    turns_charge(server->turns, client, expect_end(expect, now_ns));
+    scheduler_charge(server->scheduler, client, anticipation_end(anticipation, now_ns));
     return false;
 }
 
+/* A job may run until the client's slice is used up, but no longer than the remaining time. */
 enum server_state server_work(struct server *server)
 {
-    if (goes_on_expecting(server))
-        return SERVER_EXPECTING;
-    const int64_t until_ns = server->clocks->wall_ns() + look_ns;
-    int64_t left_ns = look_ns;
+    if (keep_anticipating(server))
+        return SERVER_ANTICIPATING;
+    const int64_t until_ns = server->clocks->wall_ns() + work_ns;
+    int64_t left_ns = work_ns;
     while (left_ns > 0) {
         int64_t lead_ns;
-        const int client = turns_next(server->turns, may_serve, server, server->served, &lead_ns);
+        const int client =
+            scheduler_next(server->scheduler, may_serve, server, server->last_client, &lead_ns);
         if (client < 0)
             return SERVER_IDLE;
         serve(server, client,
-              lead_ns < look_ns ? smaller(left_ns, lead_ns + TURNS_SLICE_NS) : left_ns);
-        if (begin_expecting(server, client))
-            return SERVER_EXPECTING;
+              lead_ns < work_ns ? smaller(left_ns, lead_ns + SCHEDULER_SLICE_NS) : left_ns);
+        if (begin_anticipating(server, client))
+            return SERVER_ANTICIPATING;
         left_ns = until_ns - server->meter.wall_ns;
     }
-    return turns_active(server->turns) > 0 ? SERVER_WORKING : SERVER_IDLE;
+    return scheduler_active(server->scheduler) > 0 ? SERVER_WORKING : SERVER_IDLE;
 }
 
 void server_resume(struct server *server)
@@ -401,7 +429,8 @@ static void refuse_pair(struct server *server, const unsigned char *bytes, size_
     publish_pair(server, &server->pair_result);
 }
 
-/* The header is enough, and has been read once. */
+/* Refuses a scene or definition query. Needs only its header, which server_receive() has found to
+ * be valid. */
 static void refuse_other(struct server *server, enum server_kind kind, const unsigned char *bytes,
                          size_t size, enum fmb_status status)
 {
@@ -416,7 +445,7 @@ static void refuse_other(struct server *server, enum server_kind kind, const uns
     }
 }
 
-/* At the expense of its client, not of the batch. */
+/* Refuses a query. The time is charged to its client, not to the batch. */
 static void refuse(struct server *server, const struct queue_datagram *datagram,
                    const unsigned char *bytes, enum fmb_status status)
 {
@@ -425,14 +454,16 @@ static void refuse(struct server *server, const struct queue_datagram *datagram,
         refuse_pair(server, bytes, datagram->size, status);
     else
         refuse_other(server, (enum server_kind) datagram->kind, bytes, datagram->size, status);
-    turns_charge(server->turns, datagram->client, meter_read(&server->meter));
+    scheduler_charge(server->scheduler, datagram->client, meter_read(&server->meter));
 }
 
-static void put(struct server *server, const struct queue_datagram *datagram,
-                const unsigned char *bytes)
+/* Puts a query into the queue, and refuses the queries that are evicted for it; or refuses the
+ * query itself. */
+static void enqueue(struct server *server, const struct queue_datagram *datagram,
+                    const unsigned char *bytes)
 {
     enum queue_put_result result;
-    while ((result = queue_put(server->queue, datagram->client, kinds[datagram->kind].line,
+    while ((result = queue_put(server->queue, datagram->client, kinds[datagram->kind].fifo,
                                datagram->kind, bytes, datagram->size)) == QUEUE_FULL) {
         struct queue_datagram evicted;
         if (!queue_evict(server->queue, &evicted, server->evicted))
@@ -444,11 +475,13 @@ static void put(struct server *server, const struct queue_datagram *datagram,
         refuse(server, datagram, bytes, FMB_BUSY);
 }
 
+/* Divides the time of a batch by the number of its datagrams, and charges each to its client. The
+ * share of datagrams that are no queries is charged to none. */
 static void charge_batch(struct server *server, int datagrams)
 {
     server->batch_ns += meter_read(&server->meter);
     for (int i = 0; i < server->batch_count; i++)
-        turns_charge(server->turns, server->batch[i], server->batch_ns / datagrams);
+        scheduler_charge(server->scheduler, server->batch[i], server->batch_ns / datagrams);
     server->batch_count = 0;
     server->batch_ns = 0;
 }
@@ -462,27 +495,27 @@ static void receive_query(struct server *server, enum server_kind kind, const un
         note_malformed(server, kind, size, error);
         return;
     }
-    const int client = turns_client(server->turns, header.client_id);
+    const int client = scheduler_client(server->scheduler, header.client_id);
     const struct queue_datagram datagram = {.client = client, .kind = kind, .size = size};
     if (server->batch_count == BATCH_MAX)
         charge_batch(server, BATCH_MAX);
     server->batch[server->batch_count++] = client;
-    expect_arrived(&server->expect, client, server->empty_ns);
+    anticipation_arrived(&server->anticipation, client, server->bus_empty_ns);
     if (size > QUERY_BYTES_MAX)
         refuse(server, &datagram, bytes, FMB_OVER_LIMIT);
     else
-        put(server, &datagram, bytes);
+        enqueue(server, &datagram, bytes);
     update_activity(server, client);
 }
 
-/* The heartbeat of another service on the same channels: both answer every query. Each that is new
- * is reported, at most one a second. */
+/* Handles the heartbeat of another service. One on the same channels is an error, since both answer
+ * every query. It is reported unless it is the one reported last; at most one report a second. */
 static void receive_status(struct server *server, const unsigned char *bytes, size_t size)
 {
     struct wire_status other;
     if (wire_read_status(bytes, (uint32_t) size, &other) ||
         other.server_id == server->status.server_id || other.server_id == server->other_id ||
-        !say_again(server->other_reported_ns))
+        !stderr_report_due(server->other_reported_ns))
         return;
     server->other_id = other.server_id;
     server->other_reported_ns = clock_ns();
@@ -501,11 +534,11 @@ void server_receive(struct server *server, enum server_kind kind, const unsigned
         receive_query(server, kind, bytes, size);
 }
 
-void server_received(struct server *server, int datagrams)
+void server_end_batch(struct server *server, int datagrams)
 {
     if (datagrams > 0)
         charge_batch(server, datagrams);
-    server->empty_ns = server->meter.wall_ns;
+    server->bus_empty_ns = server->meter.wall_ns;
 }
 
 /* ---- Heartbeat ---- */
@@ -536,21 +569,21 @@ static void complete_status(const struct server *server, const struct bus_counts
     status->compute_max_ns = server->compute_ns.max;
 }
 
-int server_beat_due_ms(const struct server *server)
+int server_heartbeat_due_ms(const struct server *server)
 {
-    const int64_t left_ns = server->beat_at_ns - clock_ns();
+    const int64_t left_ns = server->heartbeat_due_ns - clock_ns();
     return left_ns > 0 ? (int) ((left_ns + 999999) / 1000000) : 0;
 }
 
-void server_beat(struct server *server, const struct bus_counts *bus)
+void server_heartbeat(struct server *server, const struct bus_counts *bus)
 {
     struct wire_status status;
     unsigned char bytes[WIRE_STATUS_BYTES_MAX];
     complete_status(server, bus, &status);
     const size_t size = wire_write_status(&status, bytes);
     server->publish(server->user, server->result_channel[SERVER_STATUS], bytes, size);
-    malformed_say(&server->malformed);
-    server->beat_at_ns = clock_ns() + beat_ns;
+    malformed_report(&server->malformed);
+    server->heartbeat_due_ns = clock_ns() + heartbeat_ns;
 }
 
 /* ---- Life ---- */
@@ -561,16 +594,16 @@ static bool open_server(struct server *server, const struct server_options *opti
                                               .server_id = options->server_id,
                                               .secret = {options->secret[0], options->secret[1]}};
     server->answerer = answerer_create(&answerer);
-    server->queue = queue_create(QUEUE_CHUNKS, TURNS_CLIENTS + 1);
-    server->turns = turns_create(options->secret[2]);
+    server->queue = queue_create(QUEUE_CHUNKS, SCHEDULER_CLIENTS + 1);
+    server->scheduler = scheduler_create(options->secret[2]);
     const bool jobs = jobs_init(&server->jobs);
-    if (!server->answerer || !server->queue || !server->turns || !jobs)
+    if (!server->answerer || !server->queue || !server->scheduler || !jobs)
         return false;
-    cache_take_memory(answerer_cache(server->answerer));
+    cache_prefault(answerer_cache(server->answerer));
     server->status.server_id = options->server_id;
     snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
-    server->served = -1;
-    expect_init(&server->expect);
+    server->last_client = -1;
+    anticipation_init(&server->anticipation);
     meter_init(&server->meter, server->clocks);
     server->ready_ns = clock_ns();
     return true;
@@ -599,7 +632,7 @@ void server_destroy(struct server *server)
     if (!server)
         return;
     jobs_release(&server->jobs);
-    turns_destroy(server->turns);
+    scheduler_destroy(server->scheduler);
     queue_destroy(server->queue);
     answerer_destroy(server->answerer);
     free(server);

@@ -1,19 +1,19 @@
 /* The service: accepts queries from any source, and publishes results through a callback.
  *
- * Queries are put into a queue (queue.h), so that the bus is empty before anything is computed.
- * Clients share compute time (turns.h): of the clients with a query, the one that has used least is
- * served next. A client's pair and definition queries do not wait for its own scenes. Scenes are
- * answered in steps; between them other clients are served and the bus is read. If the queue is
- * full, the client that holds most of it gets FMB_BUSY for its newest query. If all jobs are taken
- * (jobs.h) and another client needs one, the longest ends: with the pairs answered so far, or as
- * busy.
+ * Queries are put into a queue (queue.h), so that the bus is read before anything is computed.
+ * Clients share compute time (scheduler.h): of the clients with a query, the one that has used
+ * least is served next. A client's pair and definition queries do not wait for its own scenes;
+ * pairs of bodies of several frames do. Scenes are answered in steps; between them other clients
+ * are served and the bus is read. If the queue is full, the client that holds most of it gets
+ * FMB_BUSY for its newest query. If all jobs (jobs.h) are in use and another client needs one, the
+ * job that has used most time ends: with the pairs answered so far, or as FMB_BUSY.
  *
- * For one thread. The caller's loop:
+ * One server may be used by one thread at a time; servers share no state. The caller's loop:
  *
- *     read the bus: server_receive() for each message, then server_received();
+ *     read the bus: server_receive() for each message, then server_end_batch();
  *     server_work();
  *     if that returned SERVER_IDLE: wait for the bus, then server_resume();
- *     if it returned SERVER_EXPECTING: yield to other programs, then server_resume(). */
+ *     if it returned SERVER_ANTICIPATING: yield to other programs, then server_resume(). */
 #ifndef SERVER_H
 #define SERVER_H
 
@@ -40,7 +40,8 @@ struct server_options {
     const struct meter_clocks *clocks; /* NULL: the system's clocks */
 };
 
-/* NULL: out of memory. After this only GMP and the publisher allocate. server_destroy() accepts
+/* Allocates all memory; after this only GMP and the publisher allocate. The options are copied;
+ * user and clocks must outlive the server. Returns NULL if out of memory. server_destroy() accepts
  * NULL. */
 struct server *server_create(const struct server_options *options);
 void server_destroy(struct server *server);
@@ -50,33 +51,37 @@ void server_destroy(struct server *server);
 const char *server_query_channel(const struct server *server, enum server_kind kind);
 const char *server_result_channel(const struct server *server, enum server_kind kind);
 
-/* Processes a message from the query channel of a kind: a query is queued, or refused if the queue
- * is full. The bytes are not trusted and may have any alignment. */
+/* Processes a message from the query channel of a kind. A query is queued; it is refused if it is
+ * too long or the queue is full. A message that is malformed is counted and reported. A heartbeat
+ * is checked for another service. On input: size bytes, untrusted, of any alignment; they are not
+ * used after the call. */
 void server_receive(struct server *server, enum server_kind kind, const unsigned char *bytes,
                     size_t size);
 
-/* Call this after each batch of datagrams, empty ones included. On input: the number of datagrams
- * read, including those not passed to server_receive(). The time spent reading is charged to the
- * clients that sent them. */
-void server_received(struct server *server, int datagrams);
+/* To be called after each batch of datagrams, empty batches included. On input: the number of
+ * datagrams read, including those not passed to server_receive(). The time spent reading is charged
+ * to the clients that sent them. */
+void server_end_batch(struct server *server, int datagrams);
 
 enum server_state {
-    SERVER_IDLE,      /* no query is pending */
-    SERVER_WORKING,   /* queries are pending */
-    SERVER_EXPECTING, /* queries are pending, but a more urgent one is expected (expect.h) */
+    SERVER_IDLE,         /* no query is pending */
+    SERVER_WORKING,      /* queries are pending */
+    SERVER_ANTICIPATING, /* queries are pending, but a more urgent one is expected (anticipation.h)
+                          */
 };
 
-/* Answers queries for about 0.3 ms at most, or one pair of frames if that takes longer. */
+/* Answers pending queries for about 0.3 ms; or longer, if one step (at most a block of pairs in
+ * doubles, or one pair of frames in exact arithmetic) takes longer. Returns what to do next. */
 enum server_state server_work(struct server *server);
 
 /* Discards the time since the last call: the caller has waited. */
 void server_resume(struct server *server);
 
 /* Milliseconds until the heartbeat is due, rounded up; 0: now. */
-int server_beat_due_ms(const struct server *server);
+int server_heartbeat_due_ms(const struct server *server);
 
 /* Publishes the heartbeat, and reports malformed messages that have not been reported yet on
  * stderr. On input: counts of the bus. */
-void server_beat(struct server *server, const struct bus_counts *bus);
+void server_heartbeat(struct server *server, const struct bus_counts *bus);
 
 #endif

@@ -1,5 +1,4 @@
-/* Memory, or the end of the program: a command that runs out of memory has nothing better to do
- * than to say so and to exit with 1. */
+/* Allocation that reports a failure on stderr and exits with status 1. */
 #ifndef ALLOCATE_H
 #define ALLOCATE_H
 

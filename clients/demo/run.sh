@@ -16,7 +16,7 @@ say() {
 explain() {
     # A scene of one's own, to begin with.
     cp "$(dirname "$0")/cube.json" "$out/mine.json"
-    say "your own scene: change $out/mine.json, then ask in process, without any network"
+    say "your own scene: change $out/mine.json, then query it in process, without a network"
     echo "$build/fmb query --local --box $out/mine.json"
     "$build/fmb" query --local --box "$out/mine.json"
     say "or the service on the bus"

@@ -1,29 +1,29 @@
 #include "definitions.h"
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "big_endian.h"
 #include "keyed_hash.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-struct body {
+struct defined_body {
     UT_hash_handle by_bytes, by_handle;
-    struct body *next; /* whose handle is not computed yet */
+    struct defined_body *next; /* the next body whose handle is not computed yet */
     struct handle handle;
     struct geometry geometry;
     unsigned char bytes[];
 };
 
-/* What the two tables and the allocator take of a body, about. */
+/* Approximate overhead of the two tables and the allocator for each body. */
 enum { TABLE_BYTES = 48 };
 
 struct definitions {
-    struct body *by_bytes, *by_handle; /* heads of the tables */
-    struct body *unhashed;
+    struct defined_body *by_bytes, *by_handle; /* heads of the tables */
+    struct defined_body *unhashed;
     size_t bytes; /* of all bodies */
     struct hasher *hasher;
-    struct any_query query;
+    struct logged_query query;
     struct definition definition;
 };
 
@@ -43,11 +43,11 @@ void definitions_close(struct definitions *definitions)
 {
     if (!definitions)
         return;
-    struct body *first = definitions->by_bytes;
+    struct defined_body *first = definitions->by_bytes;
     HASH_CLEAR(by_handle, definitions->by_handle);
     HASH_CLEAR(by_bytes, definitions->by_bytes);
     while (first) {
-        struct body *next = first->by_bytes.next;
+        struct defined_body *next = first->by_bytes.next;
         free(first);
         first = next;
     }
@@ -65,7 +65,7 @@ static bool has_frames(const struct geometry *geometry)
 
 bool definitions_add(struct definitions *definitions, const struct geometry *geometry)
 {
-    struct body *body;
+    struct defined_body *body;
     if (!has_frames(geometry))
         return false;
     HASH_FIND(by_bytes, definitions->by_bytes, geometry->bytes, geometry->size, body);
@@ -90,14 +90,15 @@ static const char too_long[] = "longer than any message of this type";
 
 const char *definitions_add_query(struct definitions *definitions, const void *bytes, uint32_t size)
 {
-    struct any_query *query = &definitions->query;
+    struct logged_query *query = &definitions->query;
     struct query_header header;
     int32_t count;
     if (size > QUERY_BYTES_MAX)
         return too_long;
     const bool pair = !wire_read_pair_header(bytes, size, &header);
-    const char *error = any_query_read(query, pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, bytes, size);
-    const struct placement *placement = any_query_placements(query, &count);
+    const char *error =
+        logged_query_read(query, pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, bytes, size);
+    const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; !error && i < count; i++)
         definitions_add_placement(definitions, &placement[i]);
     return error;
@@ -120,7 +121,7 @@ const char *definitions_add_message(struct definitions *definitions, const void 
 
 static void compute_handles(struct definitions *definitions)
 {
-    for (struct body *body; (body = definitions->unhashed) != NULL;) {
+    for (struct defined_body *body; (body = definitions->unhashed) != NULL;) {
         definitions->unhashed = body->next;
         body->handle = hasher_handle(definitions->hasher, body->bytes, body->geometry.size);
         HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
@@ -130,7 +131,7 @@ static void compute_handles(struct definitions *definitions)
 const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle)
 {
-    const struct body *body;
+    const struct defined_body *body;
     compute_handles(definitions);
     HASH_FIND(by_handle, definitions->by_handle, handle, sizeof *handle, body);
     return body ? &body->geometry : NULL;
@@ -180,7 +181,7 @@ bool definition_writer_flush(struct definition_writer *writer)
     return writer->sink(writer->user, writer->bytes, size);
 }
 
-/* One geometry fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
+/* One geometry always fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
  * shorter. */
 bool definition_writer_add(struct definition_writer *writer, const struct handle *handle,
                            const struct geometry *geometry)

@@ -17,16 +17,16 @@ struct definitions;
 struct definitions *definitions_open(void);
 void definitions_close(struct definitions *definitions); /* may be NULL */
 
-/* Adds a body. On input: its geometry, which is copied; one without frames (of a placement by
- * handle) is ignored. Returns whether the body is new. */
+/* Adds a body. In: its geometry, which is copied; one without frames (of a placement by handle) is
+ * ignored. Returns whether the body is new. */
 bool definitions_add(struct definitions *definitions, const struct geometry *geometry);
 
-/* The same for the body of a placement, if it is whole and has an id: services keep no others. */
+/* Adds the body of a placement if it has frames and an id: services cache no others. */
 bool definitions_add_placement(struct definitions *definitions, const struct placement *placement);
 
-/* Adds the whole bodies of a message of at most QUERY_BYTES_MAX bytes: of a pair_query_t or
+/* Adds the bodies with frames of a message of at most QUERY_BYTES_MAX bytes: of a pair_query_t or
  * scene_query_t (_query), or of a definition_t (_message). Returns NULL; or a static text: why the
- * message cannot be decoded, and nothing of it was added. */
+ * message cannot be decoded. Then nothing of it was added. */
 const char *definitions_add_query(struct definitions *definitions, const void *bytes,
                                   uint32_t size);
 const char *definitions_add_message(struct definitions *definitions, const void *bytes,
@@ -40,10 +40,10 @@ const struct geometry *definitions_find(struct definitions *definitions,
 int32_t definitions_missing(struct definitions *definitions, const struct placement *placement,
                             int32_t count);
 
-/* Puts the geometries of bodies that were added into placements by handle. */
+/* Sets the geometry of each placement by handle whose body was added. */
 void definitions_fill(struct definitions *definitions, struct placement *placement, int32_t count);
 
-/* Number of bodies, and the bytes of memory that they take, tables included. */
+/* The number of bodies, and the memory they take, tables included, bytes. */
 size_t definitions_count(const struct definitions *definitions);
 size_t definitions_bytes(const struct definitions *definitions);
 
@@ -55,7 +55,7 @@ enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
 /* Writes a message. Returns false if it failed. */
 typedef bool definition_sink(void *user, const void *bytes, size_t size);
 
-/* Packs bodies into such messages. Set sink and user; the remainder is 0 at first. */
+/* Packs bodies into such messages. The caller sets sink and user, and all other members to 0. */
 struct definition_writer {
     definition_sink *sink;
     void *user;
@@ -64,7 +64,7 @@ struct definition_writer {
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-/* Adds a body, whose geometry must stay valid until it is written: at the latest by
+/* Adds a body. Its geometry must stay valid until it is written, at the latest by
  * definition_writer_flush(). Return false if the sink does. */
 bool definition_writer_add(struct definition_writer *writer, const struct handle *handle,
                            const struct geometry *geometry);

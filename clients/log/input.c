@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void say_which(const char *path, char why[LOG_WHY_MAX])
+static void prepend_path(const char *path, char why[LOG_WHY_MAX])
 {
     char reason[LOG_WHY_MAX];
     memcpy(reason, why, sizeof reason);
@@ -21,7 +21,7 @@ bool input_open(struct input *input, char *const *path, int count, char why[LOG_
     for (; input->count < count; input->count++) {
         struct log_reader *reader = log_open(path[input->count], why);
         if (!reader) {
-            say_which(path[input->count], why);
+            prepend_path(path[input->count], why);
             input_close(input);
             return false;
         }
@@ -62,53 +62,55 @@ void input_rewind(struct input *input)
     log_rewind(input->reader[0]);
 }
 
-/* ---- A second time ---- */
+/* ---- Reading events again ---- */
 
-struct again {
+struct event_reader {
     char *const *path;
     int count;
     const char *golden;
-    struct log_reader *reader; /* of the log that was read last; NULL: none */
+    struct log_reader *reader; /* of the current log; NULL: none */
     int log;
 };
 
-struct again *again_open(char *const *path, int count, const char *golden)
+struct event_reader *event_reader_open(char *const *path, int count, const char *golden)
 {
-    struct again *again = allocate(1, sizeof *again);
-    *again = (struct again){.path = path, .count = count, .golden = golden};
-    return again;
+    struct event_reader *rereader = allocate(1, sizeof *rereader);
+    *rereader = (struct event_reader){.path = path, .count = count, .golden = golden};
+    return rereader;
 }
 
-void again_close(struct again *again)
+void event_reader_close(struct event_reader *rereader)
 {
-    if (!again)
+    if (!rereader)
         return;
-    log_close(again->reader);
-    free(again);
+    log_close(rereader->reader);
+    free(rereader);
 }
 
-static bool choose(struct again *again, int log)
+static bool choose(struct event_reader *rereader, int log)
 {
     char why[LOG_WHY_MAX];
-    if (again->reader && again->log == log)
+    if (rereader->reader && rereader->log == log)
         return true;
-    log_close(again->reader);
-    again->log = log;
-    again->reader = log_open(log < again->count ? again->path[log] : again->golden, why);
-    return again->reader;
+    log_close(rereader->reader);
+    rereader->log = log;
+    rereader->reader =
+        log_open(log < rereader->count ? rereader->path[log] : rereader->golden, why);
+    return rereader->reader;
 }
 
-bool again_read(struct again *again, int log, int64_t offset, unsigned char out[LOG_DATA_MAX],
-                uint32_t *size)
+bool event_reader_read(struct event_reader *rereader, int log, int64_t offset,
+                       unsigned char out[LOG_DATA_MAX], uint32_t *size)
 {
     struct log_event event;
     struct log_damage damage;
     errno = 0;
-    if (!choose(again, log))
+    if (!choose(rereader, log))
         return false;
-    log_seek(again->reader, offset < log_size(again->reader) ? offset : log_size(again->reader));
-    if (log_next(again->reader, &event, &damage) != LOG_EVENT || event.offset != offset) {
-        errno = errno ? errno : EIO; /* it was there before */
+    log_seek(rereader->reader,
+             offset < log_size(rereader->reader) ? offset : log_size(rereader->reader));
+    if (log_next(rereader->reader, &event, &damage) != LOG_EVENT || event.offset != offset) {
+        errno = errno ? errno : EIO; /* it could be read before */
         return false;
     }
     memcpy(out, event.data, event.kept);

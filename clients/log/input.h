@@ -1,4 +1,4 @@
-/* Reads several logs as one, in the order given, as rotation wrote them. */
+/* Reads several logs as one, in the order given, for example the parts of a rotated log. */
 #ifndef INPUT_H
 #define INPUT_H
 
@@ -6,13 +6,14 @@
 
 struct input {
     struct log_reader **reader; /* owned; [count] */
-    int64_t *begin;             /* owned; [count + 1]: total bytes of the logs before */
+    int64_t *begin; /* owned; [count + 1]: total size of the logs before this one, bytes */
     int count;
     int log;        /* index of the current log */
-    int64_t passed; /* bytes that input_next() has read */
+    int64_t passed; /* bytes read by input_next() */
 };
 
-/* Opens all logs. False: one cannot be opened; why names it and the reason. */
+/* Opens all logs. Returns false if one cannot be opened; why names it and the reason. The caller
+ * calls input_close() after success. */
 bool input_open(struct input *input, char *const *path, int count, char why[LOG_WHY_MAX]);
 void input_close(struct input *input);
 
@@ -26,18 +27,18 @@ enum log_outcome input_next(struct input *input, struct log_event *event,
 /* Returns to the beginning of the first log. */
 void input_rewind(struct input *input);
 
-/* Reads events of logs a second time, since unmatched queries and results only keep their offset.
- */
-struct again;
+/* Reads events a second time, by offset: unmatched queries and results keep only their position. */
+struct event_reader;
 
-/* On input: paths of logs, not copied; golden: path of another log, with index count, or NULL.
+/* In: path[count]: logs, not copied; golden: path of another log, which has index count, or NULL.
  * Exits with status 1 if memory is exhausted. */
-struct again *again_open(char *const *path, int count, const char *golden);
-void again_close(struct again *again); /* may be NULL */
+struct event_reader *event_reader_open(char *const *path, int count, const char *golden);
+void event_reader_close(struct event_reader *rereader); /* may be NULL */
 
-/* Reads the data of an event at an offset where one was read before: *size bytes, as many as
- * log_next() keeps. False: errno. Fast for events of one log in the order of their offsets. */
-bool again_read(struct again *again, int log, int64_t offset, unsigned char out[LOG_DATA_MAX],
-                uint32_t *size);
+/* Reads the data of an event that was read before: *size bytes, as many as log_next() keeps.
+ * Returns false on error: errno. Fast if the events of one log are read in the order of their
+ * offsets. */
+bool event_reader_read(struct event_reader *rereader, int log, int64_t offset,
+                       unsigned char out[LOG_DATA_MAX], uint32_t *size);
 
 #endif

@@ -11,7 +11,7 @@
 struct log_channel_choice {
     char *text; /* owned */
     size_t length;
-    bool plain;    /* nothing in it means anything but itself */
+    bool plain;    /* without metacharacters */
     regex_t regex; /* unless plain */
 };
 
@@ -69,8 +69,8 @@ bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, i
     return seconds >= choice->from && seconds < choice->to;
 }
 
-/* Of all matches that begin first POSIX takes the longest: if one is the whole name, that. Names
- * with a 0 in them, which LCM has not, are matched by nothing. */
+/* POSIX takes the longest of the leftmost matches, so a match of the whole name is found if there
+ * is one. Names that contain a 0, which LCM does not send, match nothing. */
 static bool matches(const struct log_channel_choice *channel, const struct log_event *event)
 {
     regmatch_t match;

@@ -1,5 +1,5 @@
-/* A choice of events of a log, by time, channel and body. An event must meet all conditions given.
- * log_choice_all() is the choice without conditions. */
+/* Selects events of a log by time, channel and body. An event must meet all conditions given.
+ * log_choice_all() has no conditions. */
 #ifndef LOG_CHOICE_H
 #define LOG_CHOICE_H
 
@@ -11,7 +11,7 @@ struct log_channel_choice;
 struct log_choice {
     /* from <= t < to, log time in seconds since the first event; -INFINITY, INFINITY: no limit. */
     double from, to;
-    /* Owned. No channels: all of them; no bodies: any query. */
+    /* Owned. Without channels all of them are chosen; without bodies any query. */
     struct log_channel_choice *channel;
     size_t channel_count, channel_capacity;
     int64_t *body; /* ids, from 1 */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct cut {
+struct cutter {
     const struct log_cut_options *options;
     const struct log_cut_sink *sink;
     struct log_cut_counts *counts;
@@ -20,48 +20,48 @@ struct cut {
     struct log_writer *output; /* NULL: not opened */
     struct log_survey survey;
     int64_t event;      /* number of the event that is being copied, over all logs */
-    bool failed, begun; /* begun: the definitions are written */
+    bool failed, begun; /* begun: the definitions have been written */
     int64_t utime;      /* of the first event that is copied */
     struct definition_writer definitions;
 };
 
-/* Reports what cannot be read or written, once. */
-static void fail(struct cut *cut, const char *what, int error)
+/* Reports a file that cannot be read or written; only the first time. */
+static void fail(struct cutter *cut, const char *what, int error)
 {
     if (!cut->failed)
         complain("%s: %s", what, strerror(error));
     cut->failed = true;
 }
 
-static void fail_output(struct cut *cut, int error)
+static void fail_output(struct cutter *cut, int error)
 {
     if (!cut->failed)
         log_write_complain(cut->options->output, error);
     cut->failed = true;
 }
 
-/* Of the file that is being read. */
-static void fail_input(struct cut *cut, int error)
+/* Reports an error of the current input. */
+static void fail_input(struct cutter *cut, int error)
 {
     fail(cut, cut->options->log[cut->input.log], error);
 }
 
-/* All is read twice. */
+/* The logs are read twice, so that progress counts half of the bytes read. */
 static void on_progress(void *user)
 {
-    struct cut *cut = user;
+    struct cutter *cut = user;
     cut->sink->progress(cut->sink->user, cut->input.passed / 2, input_size(&cut->input));
 }
 
 /* ---- Writing ---- */
 
-static void append(struct cut *cut, const struct log_event *event, const void *data, size_t size)
+static void append(struct cutter *cut, const struct log_event *event, const void *data, size_t size)
 {
     if (!log_append(cut->output, event->utime, event->channel, event->channel_length, data, size))
         fail_output(cut, errno);
 }
 
-static void copy(struct cut *cut, const struct log_event *event)
+static void copy(struct cutter *cut, const struct log_event *event)
 {
     if (event->kept == event->size) {
         append(cut, event, event->data, event->size);
@@ -80,7 +80,7 @@ static void copy(struct cut *cut, const struct log_event *event)
 
 static bool write_definition(void *user, const void *bytes, size_t size)
 {
-    struct cut *cut = user;
+    struct cutter *cut = user;
     const struct log_event event = {.utime = cut->utime,
                                     .channel = cut->channels.name[LOG_DEFINITION],
                                     .channel_length = cut->channels.length[LOG_DEFINITION]};
@@ -89,7 +89,7 @@ static bool write_definition(void *user, const void *bytes, size_t size)
     return true;
 }
 
-static void define(struct cut *cut)
+static void define(struct cutter *cut)
 {
     const struct log_survey *survey = &cut->survey;
     for (size_t i = 0; i < survey->wanted_count; i++) {
@@ -104,7 +104,7 @@ static void define(struct cut *cut)
 
 /* ---- Copying ---- */
 
-static void take_event(struct cut *cut, const struct log_event *event)
+static void take_event(struct cutter *cut, const struct log_event *event)
 {
     struct log_cut_counts *counts = cut->counts;
     const int64_t number = cut->event++;
@@ -124,7 +124,7 @@ static void take_event(struct cut *cut, const struct log_event *event)
     copy(cut, event);
 }
 
-static void take_damage(struct cut *cut, const struct log_damage *damage)
+static void take_damage(struct cutter *cut, const struct log_damage *damage)
 {
     cut->counts->damages++;
     cut->counts->damaged_bytes += damage->length;
@@ -132,7 +132,7 @@ static void take_damage(struct cut *cut, const struct log_damage *damage)
     cut->sink->damage(cut->sink->user, cut->input.log, damage);
 }
 
-static void copy_all(struct cut *cut)
+static void copy_all(struct cutter *cut)
 {
     struct log_event event;
     struct log_damage damage;
@@ -150,9 +150,9 @@ static void copy_all(struct cut *cut)
     cut->counts->kept_bytes = log_written(cut->output);
 }
 
-/* ---- All of it ---- */
+/* ---- The cut ---- */
 
-/* Also by another name: it would be emptied before it is read. */
+/* Whether the output is one of the logs, by any name: it would be truncated before it is read. */
 static bool writes_into_log(const struct log_cut_options *options)
 {
     for (int i = 0; i < options->log_count; i++)
@@ -161,7 +161,7 @@ static bool writes_into_log(const struct log_cut_options *options)
     return false;
 }
 
-static bool open_cut(struct cut *cut)
+static bool open_cut(struct cutter *cut)
 {
     const struct log_cut_options *options = cut->options;
     char why[LOG_WHY_MAX];
@@ -180,7 +180,7 @@ static bool open_cut(struct cut *cut)
     return cut->output != NULL;
 }
 
-static void run(struct cut *cut)
+static void run(struct cutter *cut)
 {
     const struct log_survey_options options = {.input = &cut->input,
                                                .log = cut->options->log,
@@ -198,7 +198,7 @@ static void run(struct cut *cut)
 bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *sink,
              struct log_cut_counts *counts)
 {
-    struct cut *cut = allocate(1, sizeof *cut);
+    struct cutter *cut = allocate(1, sizeof *cut);
     *counts = (struct log_cut_counts){.events = 0};
     cut->options = options;
     cut->sink = sink;

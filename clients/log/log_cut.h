@@ -37,7 +37,7 @@ struct log_cut_counts {
     int64_t damages, damaged_bytes;
 };
 
-/* Callbacks during the cut. */
+/* Callbacks during the cut. None may be NULL. */
 struct log_cut_sink {
     void (*damage)(void *user, int log, const struct log_damage *damage);
     /* So many bytes out of so many have been read. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a key, before the channel: fingerprint, known. */
+/* Bytes of a key before the channel: fingerprint, known. */
 enum { TYPE_BYTES = sizeof(int64_t) + 1 };
 
 struct log_info *log_info_open(void)
@@ -76,7 +76,7 @@ static size_t key_of(const struct log_event *event, struct log_type type,
     return TYPE_BYTES + event->channel_length;
 }
 
-/* NULL: there is none, and no space for one. */
+/* Returns NULL if there is no row, and no space for a new one. */
 static struct log_row *find_row(struct log_info *info, const unsigned char *key, size_t size,
                                 struct log_type type)
 {
@@ -94,7 +94,8 @@ static struct log_row *find_row(struct log_info *info, const unsigned char *key,
     return row;
 }
 
-/* Messages alternate: mostly the row is the one that came after the last row before. */
+/* Messages alternate in a pattern. The first guess is the row that followed the last event's row
+ * the time before. */
 static struct log_tally *tally_of(struct log_info *info, const struct log_event *event)
 {
     unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX];
@@ -110,7 +111,7 @@ static struct log_tally *tally_of(struct log_info *info, const struct log_event 
     return &row->tally;
 }
 
-/* ---- One after the other --------------------------------------------------------------------- */
+/* ---- Events ---------------------------------------------------------------------------------- */
 
 void log_info_event(struct log_info *info, const struct log_event *event)
 {

@@ -1,4 +1,4 @@
-/* A summary of an event log, built event by event in bounded memory, whatever the log holds. */
+/* A summary of an event log, built event by event in bounded memory. For one thread at a time. */
 #ifndef LOG_INFO_H
 #define LOG_INFO_H
 
@@ -19,7 +19,7 @@ struct log_tally {
 /* The type of a message: its first 8 bytes, big-endian; shorter messages have none. */
 struct log_type {
     bool known;
-    int64_t fingerprint; /* 0 where it is not known */
+    int64_t fingerprint; /* 0 if not known */
 };
 
 struct log_row {
@@ -47,14 +47,14 @@ struct log_info {
     struct log_row *table; /* of the rows, by key */
 };
 
-/* The caller closes it. */
+/* Opens an empty summary, which the caller closes. Exits with status 1 if memory is exhausted. */
 struct log_info *log_info_open(void);
 void log_info_close(struct log_info *info);
 
 void log_info_event(struct log_info *info, const struct log_event *event);
 void log_info_damage(struct log_info *info, const struct log_damage *damage);
 
-/* Completes the summary; no more events may follow. */
+/* Completes the summary. No events may be added after that. */
 void log_info_end(struct log_info *info);
 
 #endif

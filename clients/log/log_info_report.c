@@ -12,13 +12,13 @@
 
 enum { MICROSECONDS = 1000000 };
 
-/* Without overflow, whatever the times. */
+/* From the first to the last event, microseconds; does not overflow. */
 static uint64_t span_of(const struct log_tally *tally)
 {
     return (uint64_t) tally->end - (uint64_t) tally->begin;
 }
 
-/* Events a second; the first one is there when time begins. */
+/* Events a second. The first event does not count: time begins with it. */
 static double rate_of(const struct log_tally *tally)
 {
     return (double) (tally->events - 1) / (1e-6 * (double) span_of(tally));
@@ -26,7 +26,7 @@ static double rate_of(const struct log_tally *tally)
 
 enum { TYPE_TEXT_MAX = 32 };
 
-/* NULL: there is none. */
+/* The name of the type, or its fingerprint; NULL: none. */
 static const char *type_text(struct log_type type, char text[TYPE_TEXT_MAX])
 {
     const char *name = type.known ? wire_type_name(type.fingerprint) : NULL;
@@ -40,14 +40,14 @@ static const char *type_text(struct log_type type, char text[TYPE_TEXT_MAX])
 
 enum { CHANNEL, TYPE, EVENTS, BYTES, LEAST, MOST, FIRST, LAST, COLUMNS };
 
-/* Names of channels that take more are cut; LCM's own, of at most 63 characters, are not. */
+/* Longer channel names are truncated. LCM publishes names of at most 63 characters. */
 enum { CELL_MAX = 63 + sizeof "\\x00..." };
 
-struct line {
+struct table_line {
     char cell[COLUMNS][CELL_MAX];
 };
 
-/* What is not printable as \xNN, and so a backslash too. */
+/* Writes bytes that are not printable, and backslashes, as \xNN. */
 static void write_channel(const struct log_row *row, char out[CELL_MAX])
 {
     size_t used = 0, i = 0;
@@ -59,7 +59,7 @@ static void write_channel(const struct log_row *row, char out[CELL_MAX])
     strcpy(out + used, i < row->channel_length ? "..." : "");
 }
 
-/* "956.022 s" behind the beginning of the log. */
+/* Seconds since the beginning of the log: "956.022 s". */
 static void write_seconds(int64_t begin, int64_t utime, char out[CELL_MAX])
 {
     const uint64_t span = (uint64_t) utime - (uint64_t) begin;
@@ -67,7 +67,7 @@ static void write_seconds(int64_t begin, int64_t utime, char out[CELL_MAX])
              span % MICROSECONDS / 1000);
 }
 
-static void write_tally(const struct log_tally *tally, int64_t begin, struct line *out)
+static void write_tally(const struct log_tally *tally, int64_t begin, struct table_line *out)
 {
     number_grouped(tally->events, out->cell[EVENTS]);
     number_grouped(tally->bytes, out->cell[BYTES]);
@@ -79,10 +79,11 @@ static void write_tally(const struct log_tally *tally, int64_t begin, struct lin
 
 enum { HEADING = -1 };
 
-/* HEADING, then the rows, then the others. On output: false behind the last one. */
-static bool make_line(const struct log_info *info, int number, struct line *out)
+/* In: HEADING, the index of a row, or the number of rows for all others. Returns false after the
+ * last line. */
+static bool make_line(const struct log_info *info, int number, struct table_line *out)
 {
-    static const struct line heading = {
+    static const struct table_line heading = {
         {"channel", "type", "events", "bytes", "least", "most", "first", "last"}};
     char text[TYPE_TEXT_MAX];
     if (number == HEADING) {
@@ -104,7 +105,7 @@ static bool make_line(const struct log_info *info, int number, struct line *out)
 
 static void print_channels(FILE *out, const struct log_info *info)
 {
-    struct line line;
+    struct table_line line;
     int width[COLUMNS] = {0};
     for (int i = HEADING; make_line(info, i, &line); i++)
         for (int column = 0; column < COLUMNS; column++)
@@ -188,7 +189,7 @@ static bool has_version_1(const struct log_info *info)
     return false;
 }
 
-/* Names with control characters, or not in UTF-8, are written like channels. */
+/* Writes a name with control characters, or not in UTF-8, as channels are written. */
 static void print_path(FILE *out, const char *path)
 {
     const bool plain = escape_is_text(path);

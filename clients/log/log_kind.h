@@ -1,4 +1,5 @@
-/* The service's channel that an event of a log is on, and the ids of its message. */
+/* Classifies the events of a log by the service's channels, and reads the ids of messages. No
+ * shared state. */
 #ifndef LOG_KIND_H
 #define LOG_KIND_H
 
@@ -52,9 +53,9 @@ static inline enum log_kind log_kind_result_of(enum log_kind query)
     return query == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
 }
 
-/* Reads the ids of a query or result, and nothing else of it. Returns NULL; or a static text: why
- * they cannot be read. A query may be longer than the kept data of the event: the service answers
- * it with a refusal. */
+/* Reads the ids of a query or result, and nothing else. Returns NULL; or a static text: why they
+ * cannot be read. A query may be longer than the kept data of the event: the service refuses such
+ * queries. */
 const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
                          struct query_header *out);
 

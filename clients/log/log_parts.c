@@ -20,7 +20,7 @@ char *log_parts_name(const char *path, long number)
 
 /* ---- Files of an earlier recording ----------------------------------------------------------- */
 
-/* Whether a name is that of a part: base, a point, and as many digits or more. */
+/* Whether a name is that of a part: base, a point, and at least DIGITS digits. */
 static bool is_part(const char *name, const char *base)
 {
     const size_t length = strlen(base);
@@ -31,8 +31,8 @@ static bool is_part(const char *name, const char *base)
     return count >= DIGITS && digits[count] == '\0';
 }
 
-/* A file in the folder of path; to be freed by the caller. */
-static char *beside(const char *path, const char *name)
+/* The path of a file in the folder of path. The caller frees it. NULL: out of memory. */
+static char *in_folder_of(const char *path, const char *name)
 {
     const char *slash = strrchr(path, '/');
     const size_t folder = slash ? (size_t) (slash - path) + 1 : 0;
@@ -44,11 +44,11 @@ static char *beside(const char *path, const char *name)
     return out;
 }
 
-/* Of what is there already: removed, or an error. */
+/* Removes an existing part. Without force that is an error. */
 static bool clear(struct log_parts *parts, const char *name)
 {
     free(parts->name);
-    parts->name = beside(parts->options.path, name);
+    parts->name = in_folder_of(parts->options.path, name);
     if (!parts->name)
         return false;
     errno = EEXIST;
@@ -58,7 +58,7 @@ static bool clear(struct log_parts *parts, const char *name)
 static bool clear_all(struct log_parts *parts)
 {
     const char *path = parts->options.path, *slash = strrchr(path, '/');
-    char *folder = beside(path, ".");
+    char *folder = in_folder_of(path, ".");
     DIR *dir = folder ? opendir(folder) : NULL;
     bool ok = dir != NULL;
     free(folder);
@@ -104,12 +104,13 @@ static bool drop_oldest(struct log_parts *parts)
     return ok;
 }
 
-/* Closes the file, and is done with the one before it. */
-static int leave_file(struct log_parts *parts)
+/* Closes the current file, and waits until the one before it is on disk. Returns 0 or the first
+ * error. */
+static int close_file(struct log_parts *parts)
 {
     int disk;
     if (parts->writer)
-        log_flush(parts->writer); /* so that it is known how much the file has */
+        log_flush(parts->writer); /* so that the size is known */
     parts->finished = log_parts_written(parts);
     const int error = log_finish_soon(parts->writer, &disk);
     const int late = log_reach_disk(parts->previous);
@@ -118,10 +119,10 @@ static int leave_file(struct log_parts *parts)
     return error ? error : late;
 }
 
-/* On to the next file. An old one that cannot be removed is tried again with the next. */
-static bool turn_over(struct log_parts *parts)
+/* Opens the next file. A file that cannot be removed is tried again with the next one. */
+static bool next_file(struct log_parts *parts)
 {
-    const int error = leave_file(parts);
+    const int error = close_file(parts);
     if (error) {
         errno = error;
         return false;
@@ -141,7 +142,7 @@ static bool is_full(const struct log_parts *parts, int64_t more)
 
 bool log_parts_prepare(struct log_parts *parts, int64_t bytes)
 {
-    return !is_full(parts, bytes) || turn_over(parts);
+    return !is_full(parts, bytes) || next_file(parts);
 }
 
 bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
@@ -167,7 +168,7 @@ int64_t log_parts_written(const struct log_parts *parts)
 
 int log_parts_finish(struct log_parts *parts)
 {
-    const int error = leave_file(parts), late = log_reach_disk(parts->previous);
+    const int error = close_file(parts), late = log_reach_disk(parts->previous);
     parts->previous = -1;
     return error ? error : late;
 }

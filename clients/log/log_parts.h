@@ -34,7 +34,8 @@ bool log_parts_open(const struct log_parts_options *options, struct log_parts *o
  * is full, or at the end. */
 bool log_parts_prepare(struct log_parts *parts, int64_t bytes);
 
-/* As log_append(), log_flush() and log_check(). After false, call none of these again. */
+/* As log_append(), log_flush() and log_check(). After one returned false, none of these may be
+ * called. */
 bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
                       size_t channel_length, const void *data, size_t size);
 bool log_parts_flush(struct log_parts *parts);
@@ -46,7 +47,7 @@ int64_t log_parts_written(const struct log_parts *parts);
 /* Closes the last file. Returns as log_finish(). The names stay valid. */
 int log_parts_finish(struct log_parts *parts);
 
-/* Frees all. */
+/* Closes the last file if it is open, and frees all memory. */
 void log_parts_close(struct log_parts *parts);
 
 /* The name of one of several files. The caller frees it. NULL: out of memory. */

@@ -11,27 +11,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of several events that match, so many are listed. */
+/* Limit on the matching events that an error lists. */
 enum { LISTED_MAX = 8 };
 
-struct search {
+struct query_search {
     const struct log_query_options *options;
     struct log_query *out;
     struct log_channels channels;
     struct input input;
-    enum log_query_outcome outcome; /* once it is not FOUND, the search ends */
-    /* The events that match; of the first its kind, its number in out->number and so on. */
+    enum log_query_outcome outcome; /* the search ends if this is not FOUND */
+    /* Matching events: their number, and the offsets of the first ones. `kind` and the event in
+     * `out` are those of the first match. */
     int64_t count;
     int64_t listed[LISTED_MAX]; /* offsets */
     enum log_kind kind;
 };
 
-static const char *last_log(const struct search *search)
+static const char *last_log(const struct query_search *search)
 {
     return search->options->log[search->options->log_count - 1];
 }
 
-static void fail(struct search *search, const char *what, int error)
+static void fail(struct query_search *search, const char *what, int error)
 {
     if (search->outcome == LOG_QUERY_FOUND)
         complain("%s: %s", what, strerror(error));
@@ -40,16 +41,16 @@ static void fail(struct search *search, const char *what, int error)
 
 /* ---- Reading the logs ---- */
 
-/* The last log is read three times at most, the others once. */
-static void report_progress(struct search *search)
+/* The last log is read at most three times, the others once. */
+static void report_progress(struct query_search *search)
 {
     const int64_t of = input_size(&search->input), half = search->input.passed / 2;
     search->options->progress(search->options->user, half < of ? half : of, of);
 }
 
-/* Calls for each event from where the input stands, until the function returns false. */
-static void for_each_event(struct search *search,
-                           bool (*take)(struct search *search, const struct log_event *event))
+/* Calls take() for each event from the current position of the input on, until it returns false. */
+static void for_each_event(struct query_search *search,
+                           bool (*take)(struct query_search *search, const struct log_event *event))
 {
     struct log_event event;
     struct log_damage damage;
@@ -63,7 +64,7 @@ static void for_each_event(struct search *search,
         fail(search, search->options->log[search->input.log], errno);
 }
 
-static void rewind_last(struct search *search)
+static void rewind_last(struct query_search *search)
 {
     search->input.log = search->options->log_count - 1;
     log_rewind(search->input.reader[search->input.log]);
@@ -71,7 +72,7 @@ static void rewind_last(struct search *search)
 
 /* ---- The event ---- */
 
-static bool has_ids(const struct search *search, const struct log_event *event)
+static bool has_ids(const struct query_search *search, const struct log_event *event)
 {
     const struct log_query_options *options = search->options;
     const enum log_kind kind = log_kind_of(&search->channels, event);
@@ -80,7 +81,7 @@ static bool has_ids(const struct search *search, const struct log_event *event)
            ids.client_id == options->client_id && ids.sequence_number == options->sequence_number;
 }
 
-static bool matches(const struct search *search, const struct log_event *event)
+static bool matches(const struct query_search *search, const struct log_event *event)
 {
     switch (search->options->by) {
     case LOG_QUERY_NUMBER: return event->number == search->options->number;
@@ -89,7 +90,7 @@ static bool matches(const struct search *search, const struct log_event *event)
     }
 }
 
-static void keep_event(struct search *search, const struct log_event *event)
+static void keep_event(struct query_search *search, const struct log_event *event)
 {
     struct log_query *out = search->out;
     search->kind = log_kind_of(&search->channels, event);
@@ -99,8 +100,9 @@ static void keep_event(struct search *search, const struct log_event *event)
     memcpy(out->bytes, event->data, event->kept);
 }
 
-/* A client that gets no result sends the same query again: the first stands for all of them. */
-static bool is_repeated(const struct search *search, const struct log_event *event)
+/* A client without a result repeats its query. The first of identical queries represents all of
+ * them. */
+static bool is_repeated(const struct query_search *search, const struct log_event *event)
 {
     const struct log_query *out = search->out;
     return search->count > 0 && search->options->by == LOG_QUERY_IDS &&
@@ -108,7 +110,7 @@ static bool is_repeated(const struct search *search, const struct log_event *eve
            event->kept == event->size && memcmp(event->data, out->bytes, event->size) == 0;
 }
 
-static bool take_match(struct search *search, const struct log_event *event)
+static bool take_match(struct query_search *search, const struct log_event *event)
 {
     if (!matches(search, event) || is_repeated(search, event))
         return true;
@@ -120,8 +122,8 @@ static bool take_match(struct search *search, const struct log_event *event)
     return search->options->by != LOG_QUERY_OFFSET;
 }
 
-/* Begins a line of stderr: which query was requested. */
-static void begin_line(const struct search *search)
+/* Begins a line on stderr with the query that was requested. */
+static void begin_line(const struct query_search *search)
 {
     const struct log_query_options *options = search->options;
     fputs("fmb: ", stderr);
@@ -136,14 +138,14 @@ static void begin_line(const struct search *search)
                 options->sequence_number);
 }
 
-static void refuse(struct search *search, const char *why)
+static void refuse(struct query_search *search, const char *why)
 {
     begin_line(search);
     fprintf(stderr, ": %s\n", why);
     search->outcome = LOG_QUERY_NONE;
 }
 
-static void refuse_several(struct search *search)
+static void refuse_several(struct query_search *search)
 {
     begin_line(search);
     fprintf(stderr, " is there %" PRId64 " times:", search->count);
@@ -153,7 +155,7 @@ static void refuse_several(struct search *search)
     search->outcome = LOG_QUERY_NONE;
 }
 
-static void find_event(struct search *search)
+static void find_event(struct query_search *search)
 {
     struct log_reader *last = search->input.reader[search->options->log_count - 1];
     rewind_last(search);
@@ -170,8 +172,8 @@ static void find_event(struct search *search)
         refuse(search, "neither a query nor a result of this service (--prefix chooses it)");
 }
 
-/* Reads the ids of the event that was kept. */
-static bool read_ids(struct search *search)
+/* Reads the ids of the first matching event. */
+static bool read_ids(struct query_search *search)
 {
     struct log_query *out = search->out;
     const struct log_event event = {
@@ -189,7 +191,7 @@ static bool read_ids(struct search *search)
 
 /* ---- The query of a result ---- */
 
-static bool take_query_of_result(struct search *search, const struct log_event *event)
+static bool take_query_of_result(struct query_search *search, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&search->channels, event);
     const struct query_header *result = &search->out->ids;
@@ -202,7 +204,7 @@ static bool take_query_of_result(struct search *search, const struct log_event *
     return false;
 }
 
-static void find_query_of_result(struct search *search)
+static void find_query_of_result(struct query_search *search)
 {
     rewind_last(search);
     for_each_event(search, take_query_of_result);
@@ -212,7 +214,7 @@ static void find_query_of_result(struct search *search)
 
 /* ---- Its bodies ---- */
 
-static bool take_definitions(struct search *search, const struct log_event *event)
+static bool take_definitions(struct query_search *search, const struct log_event *event)
 {
     struct definitions *definitions = search->out->definitions;
     const enum log_kind kind = log_kind_of(&search->channels, event);
@@ -223,19 +225,19 @@ static bool take_definitions(struct search *search, const struct log_event *even
     return true;
 }
 
-static void find_bodies(struct search *search)
+static void find_bodies(struct query_search *search)
 {
     struct log_query *out = search->out;
     int32_t count;
     const uint32_t size = (uint32_t) (out->size < LOG_DATA_MAX ? out->size : LOG_DATA_MAX);
-    const char *error = any_query_read(&out->query, search->kind, out->bytes, size);
+    const char *error = logged_query_read(&out->query, search->kind, out->bytes, size);
     if (error) {
         refuse(search, error);
         return;
     }
-    struct placement *placement = any_query_placements(&out->query, &count);
+    struct placement *placement = logged_query_placements(&out->query, &count);
     if (definitions_missing(out->definitions, placement, count) < 0)
-        return; /* all came whole */
+        return; /* no placement is by handle */
     input_rewind(&search->input);
     for_each_event(search, take_definitions);
     definitions_fill(out->definitions, placement, count);
@@ -248,9 +250,9 @@ static void find_bodies(struct search *search)
     search->outcome = LOG_QUERY_NONE;
 }
 
-/* ---- All of it ---- */
+/* ---- The search ---- */
 
-static void run(struct search *search)
+static void run(struct query_search *search)
 {
     find_event(search);
     if (search->outcome != LOG_QUERY_FOUND || !read_ids(search))
@@ -263,7 +265,7 @@ static void run(struct search *search)
 
 enum log_query_outcome log_query(const struct log_query_options *options, struct log_query *out)
 {
-    struct search search = {
+    struct query_search search = {
         .options = options, .out = out, .channels = log_channels(options->prefix)};
     char why[LOG_WHY_MAX];
     out->definitions = definitions_open();

@@ -2,7 +2,7 @@
 #ifndef LOG_QUERY_H
 #define LOG_QUERY_H
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "definitions.h"
 #include "log_read.h"
 
@@ -29,7 +29,7 @@ struct log_query {
     unsigned char bytes[LOG_DATA_MAX];
     /* A placement by handle also has the geometry of its body, from anywhere in the logs. The
      * counts of its frames and numbers stay 0. */
-    struct any_query query;
+    struct logged_query query;
     struct definitions *definitions; /* owned */
 };
 

@@ -1,32 +1,33 @@
-/* What is an event. An event is possible where a sync word stands with a whole header, whose
- * lengths can be and end within the file. It is believed where the file ends just there too, or a
- * sync word stands there, as much of one as the file has: of bytes that are there by chance that is
- * true once in 2^32 times. Else it is believed where no other event is possible inside of it: then
- * its lengths may be right, and what follows it is damaged; if one is, they are wrong, and jump
- * over what is good.
+/* Which bytes are an event. A candidate is a position with a sync word and a complete header whose
+ * lengths are valid and end within the file. A candidate is accepted if the file ends where it
+ * ends, or another sync word begins there (at the end of the file, as much of a sync word as fits).
+ * Random bytes pass this test once in 2^32 times. Otherwise a candidate is accepted if no other
+ * candidate lies inside it: its lengths may then be right, and the bytes after it are damaged. If
+ * another candidate lies inside it, its lengths are wrong and would skip good data.
  *
- * From `at`, the end of what was told last, the next to be told is the event there, if it is
- * believed; if not, damage up to the next one that is, or to the end of the file. `at` goes to the
- * end of what was told: so each byte is in one event or one damage, and no byte is in neither.
+ * Order. `at` is the end of the last reported item. The next item is the event at `at`, if it is
+ * accepted; otherwise damage up to the next accepted candidate or the end of the file. `at` then
+ * advances to the end of the item. So each byte is in exactly one event or damage.
  *
- * What is lost. An event all of whose bytes are good is told, unless it lies in another that ends
- * at a sync word or with the file, or another is possible inside of it and the sync word behind it
- * is damaged. All this is said of places, not of how the reader came there: so seeking finds what
- * reading finds.
+ * Loss. An intact event is reported, with two exceptions: it lies inside another one that ends at a
+ * sync word or at the end of the file; or a candidate lies inside it and the sync word after it is
+ * damaged. Both depend on positions only, not on the way the reader got there. So seeking finds the
+ * same events as reading.
  *
- * Time. Only the search for the next possible event looks at bytes one by one. What it finds is
- * kept, and is the answer for all places before it; the next search begins behind it: so each byte
- * is looked at once. For each possible event, 28 bytes are looked at there and 4 where it ends,
- * whatever its lengths say.
+ * Time. Only the search for the next candidate examines bytes one by one. Its result is cached, and
+ * holds for all positions from its start to the candidate; the next search begins after the
+ * candidate. So each byte is examined once. A candidate costs 28 bytes at its position and 4 at its
+ * end, whatever its lengths.
  *
- * Bytes are read by the buffer, from a place on that is asked for; only those 4 alone, where they
- * are not in it. Going forward, it is filled again where less than 28 bytes are left of it in a
- * search, or less than what is kept of an event, 67 kB of 256: each filling is mostly new. A search
- * may leave behind an event that is to be told, for which the buffer is filled again: but of two
- * searches that do so, one after the other, the second ends a buffer behind the beginning of the
- * first. So what is read in all is a small multiple of the file, hostile files included.
+ * Reading. The file is read by whole buffers, from a requested position on; only the 4 bytes after
+ * an event are read separately if they are not in the buffer. Reading forward, the buffer is
+ * refilled when fewer than 28 bytes are left in it during a search, or less than the kept bytes of
+ * an event (67 kB of 256 kB), so most of each refill is new. A search may run past an event that is
+ * still to be reported, for which the buffer is refilled. But of two consecutive searches that do
+ * so, the second ends a buffer after the beginning of the first. So the total number of bytes read
+ * is a small multiple of the file size, for hostile files too.
  *
- * Holes of sparse files hold no sync word: searches jump over them. */
+ * Holes of sparse files contain no sync word, and searches skip them. */
 #define _GNU_SOURCE /* SEEK_DATA */
 #define _FILE_OFFSET_BITS 64
 #include "log_read.h"
@@ -42,7 +43,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* With 128 KiB to 1 MiB reading is as quick. */
+/* Reading is as fast with 128 KiB to 1 MiB. */
 #ifndef LOG_BUFFER_BYTES
 #define LOG_BUFFER_BYTES (256 * 1024)
 #endif
@@ -55,13 +56,14 @@ static const unsigned char sync_word[SYNC_BYTES] = {0xed, 0xa1, 0xda, 0x01};
 
 struct log_reader {
     int fd;
-    int error; /* errno of a read that failed; 0: none did */
+    int error; /* errno of the failed read; 0: none */
     int64_t size;
-    int64_t at;  /* what comes next begins here */
-    bool sought; /* no damage is to be told before it */
-    /* No event is possible from none_begin to before none_end; there one is, or the file ends. */
+    int64_t at;  /* position of the next event or damage */
+    bool sought; /* after log_seek(): damage before the next event is not reported */
+    /* There is no candidate from none_begin up to, not including, none_end. none_end is a candidate
+     * or the end of the file. */
     int64_t none_begin, none_end;
-    int64_t begin; /* where in the file the buffer's bytes are */
+    int64_t begin; /* position of the buffer in the file */
     size_t used;
     char channel[LOG_CHANNEL_MAX];
     unsigned char bytes[LOG_BUFFER_BYTES];
@@ -74,7 +76,7 @@ static inline int64_t least(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* All of what is asked for, which is in the file unless that has become shorter. */
+/* Reads count bytes, which are in the file unless it was truncated. Returns false on error. */
 static bool read_at(struct log_reader *reader, int64_t offset, unsigned char *out, size_t count)
 {
     while (count > 0) {
@@ -92,13 +94,13 @@ static bool read_at(struct log_reader *reader, int64_t offset, unsigned char *ou
     return true;
 }
 
-static inline bool is_held(const struct log_reader *reader, int64_t offset, size_t count)
+static inline bool is_buffered(const struct log_reader *reader, int64_t offset, size_t count)
 {
     return offset >= reader->begin && count <= reader->used &&
            offset - reader->begin <= (int64_t) (reader->used - count);
 }
 
-static inline const unsigned char *held(const struct log_reader *reader, int64_t offset)
+static inline const unsigned char *buffered(const struct log_reader *reader, int64_t offset)
 {
     return reader->bytes + (offset - reader->begin);
 }
@@ -114,14 +116,14 @@ static bool fill(struct log_reader *reader, int64_t offset)
     return true;
 }
 
-/* On input: bytes that are in the file, no more than a buffer. On output: they are in the buffer;
- * or false, and error. */
-static bool hold(struct log_reader *reader, int64_t offset, size_t count)
+/* Makes bytes of the file available in the buffer. In: at most LOG_BUFFER_BYTES. Returns false on
+ * error. */
+static bool buffer(struct log_reader *reader, int64_t offset, size_t count)
 {
-    return is_held(reader, offset, count) || fill(reader, offset);
+    return is_buffered(reader, offset, count) || fill(reader, offset);
 }
 
-/* ---- Events, as headers have them ------------------------------------------------------------ */
+/* ---- Candidates ------------------------------------------------------------------------------ */
 
 struct lengths {
     uint32_t channel, data;
@@ -132,8 +134,8 @@ static inline struct lengths lengths_at(const unsigned char *header)
     return (struct lengths){big_endian_32(header + 20), big_endian_32(header + 24)};
 }
 
-/* Negative ones are beyond the limits too. */
-static inline bool lengths_can_be(struct lengths lengths)
+/* As unsigned numbers, negative lengths exceed the limits. */
+static inline bool lengths_are_valid(struct lengths lengths)
 {
     return lengths.channel - 1 < LOG_CHANNEL_MAX - 1 && lengths.data <= INT32_MAX;
 }
@@ -153,40 +155,42 @@ static inline bool is_sync(const unsigned char *bytes)
     return memcmp(bytes, sync_word, SYNC_BYTES) == 0;
 }
 
-/* On input: a whole header, in the buffer. Where its event would end; 0: it can be none. */
-static int64_t end_of(const struct log_reader *reader, int64_t offset)
+/* In: the offset of a complete header in the buffer. Returns the end of its event; 0: not a
+ * candidate. */
+static int64_t candidate_end(const struct log_reader *reader, int64_t offset)
 {
-    const unsigned char *header = held(reader, offset);
+    const unsigned char *header = buffered(reader, offset);
     const struct lengths lengths = lengths_at(header);
-    if (!is_sync(header) || !lengths_can_be(lengths) ||
+    if (!is_sync(header) || !lengths_are_valid(lengths) ||
         whole_length(lengths) > reader->size - offset)
         return 0;
     return offset + whole_length(lengths);
 }
 
-/* Whether the file ends at the offset, or a sync word begins there. */
+/* Whether the file ends at the offset, or a sync word, or the beginning of one, is there. */
 static bool is_followed(struct log_reader *reader, int64_t end)
 {
     unsigned char bytes[SYNC_BYTES];
     const size_t count = (size_t) least(SYNC_BYTES, reader->size - end);
-    if (is_held(reader, end, SYNC_BYTES))
-        return is_sync(held(reader, end));
+    if (is_buffered(reader, end, SYNC_BYTES))
+        return is_sync(buffered(reader, end));
     return read_at(reader, end, bytes, count) && memcmp(bytes, sync_word, count) == 0;
 }
 
-/* ---- Searches. They end at once, and find nothing, after an error ---------------------------- */
+/* ---- Searches. After an error they end at once, without a result ----------------------------- */
 
-/* The first place from the offset on that is no hole, or the last one: that is read in any case,
- * and tells whether the file has become shorter. */
+/* The first position from offset on that is not in a hole, or last. The caller reads there in any
+ * case, which detects truncation. */
 static int64_t skip_hole(const struct log_reader *reader, int64_t offset, int64_t last)
 {
     const off_t data = lseek(reader->fd, (off_t) offset, SEEK_DATA);
     if (data >= 0)
         return least(data, last);
-    return errno == ENXIO ? last : offset; /* only holes; or it is not known */
+    return errno == ENXIO ? last : offset; /* only holes follow; or the file system does not know */
 }
 
-/* The first sync word that begins before the end, or the end; there are bytes to read behind it. */
+/* The first sync word that begins before end, or end. In: at least SYNC_BYTES - 1 bytes after end
+ * are readable. */
 static const unsigned char *find_sync(const unsigned char *bytes, const unsigned char *end)
 {
     while (bytes < end && (bytes = memchr(bytes, sync_word[0], (size_t) (end - bytes)))) {
@@ -197,68 +201,68 @@ static const unsigned char *find_sync(const unsigned char *bytes, const unsigned
     return end;
 }
 
-/* The first event that is possible from the offset on, or the size. */
-static int64_t search(struct log_reader *reader, int64_t offset)
+/* The first candidate at or after the offset, or the size of the file. */
+static int64_t find_candidate(struct log_reader *reader, int64_t offset)
 {
     const int64_t last = reader->size - LOG_HEADER_BYTES;
     while (offset <= last) {
-        if (!is_held(reader, offset, LOG_HEADER_BYTES)) {
+        if (!is_buffered(reader, offset, LOG_HEADER_BYTES)) {
             offset = skip_hole(reader, offset, last);
             if (!fill(reader, offset))
                 break;
         }
-        const unsigned char *bytes = held(reader, offset);
+        const unsigned char *bytes = buffered(reader, offset);
         const unsigned char *end = reader->bytes + reader->used - LOG_HEADER_BYTES + 1;
-        const unsigned char *found = find_sync(bytes, end);
-        offset += found - bytes;
-        if (found < end && end_of(reader, offset) > 0)
+        const unsigned char *sync = find_sync(bytes, end);
+        offset += sync - bytes;
+        if (sync < end && candidate_end(reader, offset) > 0)
             return offset;
-        offset += found < end;
+        offset += sync < end;
     }
     return reader->size;
 }
 
-/* The first event that is possible behind the offset, or the size. */
-static int64_t next_possible(struct log_reader *reader, int64_t offset)
+/* The first candidate after the offset, or the size of the file. Cached. */
+static int64_t next_candidate(struct log_reader *reader, int64_t offset)
 {
     const int64_t from = offset + 1;
     if (from < reader->none_begin || from > reader->none_end) {
-        reader->none_end = search(reader, from);
+        reader->none_end = find_candidate(reader, from);
         reader->none_begin = from;
     }
     return reader->none_end;
 }
 
-static bool is_believed(struct log_reader *reader, int64_t offset)
+static bool is_accepted(struct log_reader *reader, int64_t offset)
 {
-    if (reader->size - offset < LOG_HEADER_BYTES || !hold(reader, offset, LOG_HEADER_BYTES))
+    if (reader->size - offset < LOG_HEADER_BYTES || !buffer(reader, offset, LOG_HEADER_BYTES))
         return false;
-    const int64_t end = end_of(reader, offset);
+    const int64_t end = candidate_end(reader, offset);
     if (end == 0)
         return false;
-    return is_followed(reader, end) || (!reader->error && end <= next_possible(reader, offset));
+    return is_followed(reader, end) || (!reader->error && end <= next_candidate(reader, offset));
 }
 
-/* The first event that is believed behind the offset, or the size. */
-static int64_t next_believed(struct log_reader *reader, int64_t offset)
+/* The first accepted candidate after the offset, or the size of the file. */
+static int64_t next_accepted(struct log_reader *reader, int64_t offset)
 {
     do
-        offset = next_possible(reader, offset);
-    while (offset < reader->size && !is_believed(reader, offset) && !reader->error);
+        offset = next_candidate(reader, offset);
+    while (offset < reader->size && !is_accepted(reader, offset) && !reader->error);
     return offset;
 }
 
-/* ---- One after the other --------------------------------------------------------------------- */
+/* ---- Events and damage ---------------------------------------------------------------------- */
 
 static const char cut_off[] = "the last event is cut off";
 
-/* Of what is no event that is believed. On input: count bytes, a header, or less at the end of the
- * file. */
+/* What is wrong at a position that is not an accepted event. In: count bytes, a header, or fewer at
+ * the end of the file. */
 static const char *what_is_wrong(const unsigned char *header, size_t count)
 {
     if (memcmp(header, sync_word, count < SYNC_BYTES ? count : SYNC_BYTES) != 0)
         return "no event";
-    if (count == LOG_HEADER_BYTES && !lengths_can_be(lengths_at(header)))
+    if (count == LOG_HEADER_BYTES && !lengths_are_valid(lengths_at(header)))
         return "an event with impossible lengths";
     return cut_off;
 }
@@ -277,8 +281,8 @@ static enum log_outcome failed(const struct log_reader *reader)
     return LOG_FAILED;
 }
 
-/* Nearly all names are short: then it is quicker to copy a number of bytes that is always the same.
- * On input: the name is in the buffer. */
+/* Copies the name. Nearly all names are short, and a copy of constant size is faster. In: the name
+ * is in the buffer. */
 static void take_channel(struct log_reader *reader, const unsigned char *name, size_t length)
 {
     enum { SHORT = LOG_CHANNEL_MAX < 64 ? LOG_CHANNEL_MAX : 64 };
@@ -289,11 +293,11 @@ static void take_channel(struct log_reader *reader, const unsigned char *name, s
     reader->channel[length] = '\0';
 }
 
-/* On input: all that is kept of the event is in the buffer. */
+/* In: all kept bytes of the event are in the buffer. */
 static enum log_outcome take_event(struct log_reader *reader, struct lengths lengths,
                                    struct log_event *event)
 {
-    const unsigned char *header = held(reader, reader->at);
+    const unsigned char *header = buffered(reader, reader->at);
     take_channel(reader, header + LOG_HEADER_BYTES, lengths.channel);
     event->offset = reader->at;
     event->length = whole_length(lengths);
@@ -312,11 +316,11 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
 {
     const int64_t offset = reader->at;
     const size_t count = (size_t) least(LOG_HEADER_BYTES, reader->size - offset);
-    if (!hold(reader, offset, count))
+    if (!buffer(reader, offset, count))
         return failed(reader);
-    damage->what = what_is_wrong(held(reader, offset), count);
-    const int64_t zeros = count_zeros(held(reader, offset), count);
-    reader->at = next_believed(reader, offset);
+    damage->what = what_is_wrong(buffered(reader, offset), count);
+    const int64_t zeros = count_zeros(buffered(reader, offset), count);
+    reader->at = next_accepted(reader, offset);
     if (reader->error)
         return failed(reader);
     damage->offset = offset;
@@ -328,26 +332,26 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
     return LOG_DAMAGE;
 }
 
-/* Whether an event is there that is believed; then what is kept of it is in the buffer. */
+/* Whether an accepted event is at the position. On output: its kept bytes are in the buffer. */
 static bool is_event(struct log_reader *reader, struct lengths *out)
 {
     const int64_t at = reader->at;
-    if (!is_believed(reader, at) || reader->error || !hold(reader, at, LOG_HEADER_BYTES))
+    if (!is_accepted(reader, at) || reader->error || !buffer(reader, at, LOG_HEADER_BYTES))
         return false;
-    *out = lengths_at(held(reader, at));
-    return hold(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
+    *out = lengths_at(buffered(reader, at));
+    return buffer(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
 }
 
-/* What nearly every event is: all in the buffer, and followed by a sync word there. This decides
- * nothing that is_event() does not decide alike, and is quick. */
-static bool is_plain_event(const struct log_reader *reader, struct lengths *out)
+/* Fast path of is_event(): the whole event and a sync word after it are in the buffer. Gives the
+ * same result where it returns true. */
+static bool is_buffered_event(const struct log_reader *reader, struct lengths *out)
 {
     const int64_t left = reader->begin + (int64_t) reader->used - reader->at;
     if (reader->at < reader->begin || left < LOG_HEADER_BYTES)
         return false;
-    const unsigned char *header = held(reader, reader->at);
+    const unsigned char *header = buffered(reader, reader->at);
     *out = lengths_at(header);
-    return is_sync(header) && lengths_can_be(*out) && whole_length(*out) <= left - SYNC_BYTES &&
+    return is_sync(header) && lengths_are_valid(*out) && whole_length(*out) <= left - SYNC_BYTES &&
            is_sync(header + whole_length(*out));
 }
 
@@ -361,13 +365,13 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
     reader->sought = false;
     if (reader->at == reader->size)
         return LOG_END;
-    if (is_plain_event(reader, &lengths) || is_event(reader, &lengths))
+    if (is_buffered_event(reader, &lengths) || is_event(reader, &lengths))
         return take_event(reader, lengths, event);
     if (reader->error)
         return failed(reader);
     if (!sought)
         return take_damage(reader, damage);
-    reader->at = next_believed(reader, reader->at);
+    reader->at = next_accepted(reader, reader->at);
     return log_next(reader, event, damage);
 }
 
@@ -385,8 +389,8 @@ void log_rewind(struct log_reader *reader)
 
 /* ---- All data of an event -------------------------------------------------------------------- */
 
-/* How far behind the beginning of a page an event's data begin: files are mapped from there on. */
-static size_t behind_page(const struct log_event *event)
+/* Offset of the event's data in its page. Files are mapped from the beginning of a page on. */
+static size_t offset_in_page(const struct log_event *event)
 {
     const int64_t page = sysconf(_SC_PAGESIZE);
     return (size_t) ((event->offset + event->length - (int64_t) event->size) % page);
@@ -395,7 +399,7 @@ static size_t behind_page(const struct log_event *event)
 const void *log_map(const struct log_reader *reader, const struct log_event *event)
 {
     struct stat about;
-    const size_t before = behind_page(event);
+    const size_t before = offset_in_page(event);
     const int64_t begin = event->offset + event->length - (int64_t) event->size - (int64_t) before;
     if (fstat(reader->fd, &about) != 0)
         return NULL;
@@ -410,7 +414,7 @@ const void *log_map(const struct log_reader *reader, const struct log_event *eve
 
 void log_unmap(const void *data, const struct log_event *event)
 {
-    const size_t before = behind_page(event);
+    const size_t before = offset_in_page(event);
     munmap((unsigned char *) (uintptr_t) data - before, before + event->size);
 }
 
@@ -429,7 +433,7 @@ static struct log_reader *refuse(int fd, const char *reason, char why[LOG_WHY_MA
     return NULL;
 }
 
-/* O_NONBLOCK: a pipe is refused, not waited for. */
+/* O_NONBLOCK: a pipe is an error, and does not block. */
 struct log_reader *log_open(const char *path, char why[LOG_WHY_MAX])
 {
     struct stat about;

@@ -38,7 +38,7 @@ enum { LOG_HEADER_BYTES = 28 };
 struct log_event {
     int64_t offset;      /* of the header, bytes from the beginning of the file */
     int64_t length;      /* of header, name and data, bytes */
-    int64_t number;      /* as in the header; most logs count from 0 */
+    int64_t number;      /* as in the header; most logs count events from 0 */
     int64_t utime;       /* as in the header: time of logging, microseconds since 1970 */
     const char *channel; /* any bytes, even 0; followed by a 0 */
     size_t channel_length;

@@ -1,7 +1,7 @@
 #include "log_survey.h"
 
 #include "allocate.h"
-#include "any_query.h"
+#include "logged_query.h"
 #include "complain.h"
 #include "definitions.h"
 #include "match.h"
@@ -17,9 +17,9 @@ struct survey {
     struct match *match;
     struct definitions *chosen; /* of the chosen events so far */
     bool has[LOG_STATUS];       /* [kind]: whether the channel is chosen */
-    int64_t event;              /* number of the event that is being looked at */
+    int64_t event;              /* number of the current event */
     int64_t first_utime;        /* of the first event */
-    struct any_query query;
+    struct logged_query query;
 };
 
 /* ---- Which events are chosen ------------------------------------------------------------------
@@ -42,33 +42,35 @@ bool log_survey_is_chosen(const struct log_survey *survey, int64_t event)
     return byte < survey->chosen_size && (survey->chosen[byte] >> event % 8 & 1);
 }
 
-/* An event that is chosen by itself: any but a query, and a result whose query is there. */
-static bool is_chosen_alone(const struct survey *survey, int64_t utime)
+/* Whether an event is chosen by its own time: any event except queries, and results with a query.
+ */
+static bool is_chosen_by_time(const struct survey *survey, int64_t utime)
 {
     const struct log_choice *choice = survey->options->choice;
     return choice->body_count == 0 && log_choice_has_time(choice, survey->first_utime, utime);
 }
 
-/* By time and bodies: then its result is chosen too, each of them if its channel is. */
+/* Whether a query is chosen by time and bodies. Each result of a chosen query is chosen too, if its
+ * channel is. */
 static bool is_chosen_query(struct survey *survey, int64_t utime)
 {
     const struct log_choice *choice = survey->options->choice;
     int32_t count;
-    const struct placement *placement = any_query_placements(&survey->query, &count);
+    const struct placement *placement = logged_query_placements(&survey->query, &count);
     return log_choice_has_time(choice, survey->first_utime, utime) &&
            log_choice_has_body(choice, placement, count);
 }
 
-/* In: query->mine: is_chosen_query(). */
-static void settle_result(struct survey *survey, enum log_kind kind,
+/* Chooses a result. In: query->in_range: whether the query is chosen; query: NULL without one. */
+static void choose_result(struct survey *survey, enum log_kind kind,
                           const struct match_place *query, const struct match_place *result)
 {
-    const bool chosen = query ? query->mine : is_chosen_alone(survey, result->utime);
+    const bool chosen = query ? query->in_range : is_chosen_by_time(survey, result->utime);
     if (chosen && survey->has[kind])
         choose(survey, result->number);
 }
 
-/* ---- Which bodies it has to define ------------------------------------------------------------
+/* ---- Bodies that the cut must define ------------------------------------------------------------
  */
 
 static int compare(const void *a, const void *b)
@@ -87,7 +89,8 @@ static void sort_wanted(struct log_survey *out)
     out->wanted_count = count;
 }
 
-/* Repeats go when the list is full: it takes twice as many as there are different ones at most. */
+/* Adds a handle. Duplicates are removed when the list is full, so it has at most twice the capacity
+ * of the distinct ones. */
 static void want(struct log_survey *out, const struct handle *handle)
 {
     if (out->wanted_count == out->wanted_capacity) {
@@ -99,12 +102,12 @@ static void want(struct log_survey *out, const struct handle *handle)
     out->wanted[out->wanted_count++] = *handle;
 }
 
-/* A query does not define the handles that it names itself: a service that does not hold one keeps
- * none of its bodies. */
+/* A query does not define the handles that it names: a service that lacks one of its bodies keeps
+ * none of them. */
 static void define_from_query(struct survey *survey, bool chosen)
 {
     int32_t count;
-    const struct placement *placement = any_query_placements(&survey->query, &count);
+    const struct placement *placement = logged_query_placements(&survey->query, &count);
     for (int32_t i = 0; chosen && i < count; i++)
         if (placement_by_handle(&placement[i]) &&
             !definitions_find(survey->chosen, &placement[i].handle))
@@ -132,15 +135,15 @@ static void take_query(struct survey *survey, const struct match_key *key,
 {
     struct match_item *result = match_find(survey->match, key);
     const enum log_kind kind = (enum log_kind) key->kind;
-    place->mine = is_chosen_query(survey, place->utime);
-    if (place->mine && survey->has[kind])
+    place->in_range = is_chosen_query(survey, place->utime);
+    if (place->in_range && survey->has[kind])
         choose(survey, place->number);
-    define_from_query(survey, place->mine && survey->has[kind]);
+    define_from_query(survey, place->in_range && survey->has[kind]);
     if (!result || !result->is_result) {
         match_add(survey->match, key, place, false);
         return;
     }
-    settle_result(survey, log_kind_result_of(kind), place, &result->place);
+    choose_result(survey, log_kind_result_of(kind), place, &result->place);
     match_remove(survey->match, result);
     match_free(result);
 }
@@ -153,12 +156,12 @@ static void take_result(struct survey *survey, const struct match_key *key,
         match_add(survey->match, key, place, true);
         return;
     }
-    settle_result(survey, log_kind_result_of((enum log_kind) key->kind), &query->place, place);
+    choose_result(survey, log_kind_result_of((enum log_kind) key->kind), &query->place, place);
     match_remove(survey->match, query);
     match_free(query);
 }
 
-/* False: it is no query and no result, or cannot be read as such. */
+/* Returns false if the event is not a query or result, or cannot be decoded. */
 static bool take_message(struct survey *survey, const struct log_event *event, enum log_kind kind)
 {
     struct query_header ids;
@@ -174,20 +177,20 @@ static bool take_message(struct survey *survey, const struct log_event *event, e
         take_result(survey, &key, &place);
         return true;
     }
-    if (any_query_read(&survey->query, kind, event->data, (uint32_t) event->kept))
+    if (logged_query_read(&survey->query, kind, event->data, (uint32_t) event->kept))
         return false;
     take_query(survey, &key, &place);
     return true;
 }
 
-static void take_event(struct survey *survey, const struct log_event *event)
+static void survey_event(struct survey *survey, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(survey->options->channels, event);
     if (survey->event == 0)
         survey->first_utime = event->utime;
     if (!take_message(survey, event, kind)) {
         const bool chosen = log_choice_has_channel(survey->options->choice, event) &&
-                            is_chosen_alone(survey, event->utime);
+                            is_chosen_by_time(survey, event->utime);
         if (chosen)
             choose(survey, survey->event);
         if (kind == LOG_DEFINITION)
@@ -196,7 +199,7 @@ static void take_event(struct survey *survey, const struct log_event *event)
     survey->event++;
 }
 
-static bool take_events(struct survey *survey)
+static bool survey_events(struct survey *survey)
 {
     const struct log_survey_options *options = survey->options;
     struct log_event event;
@@ -204,7 +207,7 @@ static bool take_events(struct survey *survey)
     enum log_outcome outcome;
     while ((outcome = input_next(options->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
-            take_event(survey, &event);
+            survey_event(survey, &event);
         options->progress(options->user);
     }
     if (outcome == LOG_FAILED)
@@ -212,10 +215,10 @@ static bool take_events(struct survey *survey)
     return outcome == LOG_END;
 }
 
-static void on_rest(void *user, struct match_item *query, struct match_item *result)
+static void on_unmatched(void *user, struct match_item *query, struct match_item *result)
 {
     struct survey *survey = user;
-    settle_result(survey, log_kind_result_of((enum log_kind) result->key.kind),
+    choose_result(survey, log_kind_result_of((enum log_kind) result->key.kind),
                   query ? &query->place : NULL, &result->place);
     if (query)
         match_free(query);
@@ -241,9 +244,9 @@ bool log_survey(const struct log_survey_options *options, struct log_survey *out
     survey->match = match_open();
     survey->chosen = log_choice_is_all(options->choice) ? out->definitions : definitions_open();
     choose_channels(survey);
-    const bool good = take_events(survey);
+    const bool good = survey_events(survey);
     if (good)
-        match_finish(survey->match, on_rest, survey);
+        match_finish(survey->match, on_unmatched, survey);
     sort_wanted(out);
     if (survey->chosen != out->definitions)
         definitions_close(survey->chosen);

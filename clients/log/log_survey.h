@@ -1,5 +1,5 @@
 /* Reads logs once, and determines the contents of a cut (log_cut.h): its events, and the bodies
- * that it has to define. Memory: a bit for each event, the unmatched queries and results, and each
+ * that it must define. Memory: a bit for each event, the unmatched queries and results, and each
  * distinct body. */
 #ifndef LOG_SURVEY_H
 #define LOG_SURVEY_H
@@ -13,7 +13,7 @@ struct log_survey_options {
     char *const *log;    /* paths */
     const struct log_channels *channels;
     const struct log_choice *choice;
-    /* input->passed has grown. */
+    /* Called after input->passed has grown. */
     void (*progress)(void *user);
     void *user;
 };

@@ -13,15 +13,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Events are collected in a buffer; one that is larger is written by itself. */
+/* Events are collected in a buffer. An event larger than the buffer is written directly. */
 enum { BUFFER_BYTES = 256 << 10 };
 
 struct log_writer {
     int fd;
-    int error;      /* the first; 0: none so far */
+    int error;      /* the first error, errno; 0: none */
     int64_t number; /* of the next event */
-    int64_t whole;  /* bytes that the file has, all of them whole events */
-    size_t used;    /* of the buffer: whole events too */
+    int64_t whole;  /* size of the file, bytes: complete events only */
+    size_t used;    /* bytes used of the buffer: complete events only */
     unsigned char buffer[BUFFER_BYTES];
 };
 
@@ -80,7 +80,7 @@ static size_t write_all(int fd, const unsigned char *bytes, size_t size)
     return done;
 }
 
-/* Bytes of the first events of the buffer that are whole in its first `done` bytes. */
+/* The length of the complete events in the first `done` bytes of the buffer. */
 static size_t whole_events(const struct log_writer *writer, size_t done)
 {
     size_t at = 0;
@@ -96,7 +96,8 @@ static size_t whole_events(const struct log_writer *writer, size_t done)
     }
 }
 
-/* The file ends with its last whole event. What is no regular file cannot be cut, and need not. */
+/* Truncates the file to its last complete event. Files that are not regular cannot be truncated,
+ * and stay as they are. */
 static bool cut_back(struct log_writer *writer, int error)
 {
     if (ftruncate(writer->fd, (off_t) writer->whole) == 0)
@@ -129,7 +130,7 @@ static void put_header(struct log_writer *writer, int64_t utime, const char *cha
     writer->used += LOG_HEADER_BYTES + channel_length;
 }
 
-/* In: an empty buffer. */
+/* In: the buffer is empty. */
 static bool write_large(struct log_writer *writer, int64_t utime, const char *channel,
                         size_t channel_length, const void *data, size_t size)
 {
@@ -194,7 +195,7 @@ int log_finish_soon(struct log_writer *writer, int *disk)
     return error;
 }
 
-/* EINVAL: it is nothing that a disk keeps, such as a pipe. */
+/* EINVAL: not a file on a disk, for example a pipe. */
 int log_reach_disk(int disk)
 {
     if (disk < 0)

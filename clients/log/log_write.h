@@ -13,14 +13,15 @@
 struct log_writer;
 
 /* Creates an empty log, which the caller closes with log_finish(). An existing file is overwritten
- * with force, and an error (EEXIST) without. NULL: errno. */
+ * if force is true; otherwise it is an error (EEXIST). Returns NULL on error: errno. */
 struct log_writer *log_create(const char *path, bool force);
 
 /* Whether both exist and are one file: a log must not be written over one that is read. */
 bool log_is_same_file(const char *path, const char *other);
 
-/* Appends an event. Events are numbered from 0. On input: utime: time of receipt, microseconds
- * since 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. False: errno. */
+/* Appends an event. Events are numbered from 0. In: utime: time of receipt, microseconds since
+ * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. Returns false on error:
+ * errno. */
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size);
 
@@ -41,9 +42,10 @@ int64_t log_event_bytes(size_t channel_length, size_t size);
  * first error, even if it was returned before. writer may be NULL. */
 int log_finish(struct log_writer *writer);
 
-/* The same without waiting for the disk. Call log_reach_disk() later with *disk, which waits. */
+/* As log_finish(), without waiting for the disk. Call log_reach_disk() later with *disk, which
+ * waits. */
 int log_finish_soon(struct log_writer *writer, int *disk);
-int log_reach_disk(int disk); /* disk may be -1: returns at once */
+int log_reach_disk(int disk); /* disk may be -1: returns 0 at once */
 
 /* Reports on stderr why a log cannot be written, and what to do. */
 void log_write_complain(const char *path, int error);

@@ -3,12 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of notes, which consecutive sequence numbers of a client fill one after the other. */
+/* Number of notes: a hash table without chains, which consecutive sequence numbers of a client fill
+ * in order. */
 enum { NOTES = 4096 };
 
 struct match {
-    /* The first of each key, after `always`, which is never removed: uthash frees the table with
-     * its last item, and most logs have one query at a time that waits. */
+    /* Hash table of the first item of each key. `always` is never removed: uthash frees its table
+     * with the last item, and most logs have one query without a result at a time. */
     struct match_item *items, always;
     struct match_note note[NOTES];
 };
@@ -46,7 +47,7 @@ struct match_item *match_find(const struct match *match, const struct match_key 
 static void put(struct match *match, struct match_item *item)
 {
     struct match_item *first = match_find(match, &item->key);
-    item->waits = true;
+    item->in_table = true;
     item->next = NULL;
     item->last = item;
     if (first) {
@@ -77,7 +78,7 @@ void match_remove(struct match *match, struct match_item *item)
 {
     struct match_item *next = item->next;
     HASH_DELETE(hh, match->items, item);
-    item->waits = false;
+    item->in_table = false;
     if (!next)
         return;
     next->last = item->last;
@@ -97,7 +98,8 @@ struct match_item *match_any(const struct match *match)
 
 /* ---- The end ---- */
 
-/* Takes all items of one kind out of the table, in the order in which their keys came. */
+/* Removes all queries or all results from the table, in the order in which their keys were added.
+ */
 static struct match_item *take_all(struct match *match, bool results)
 {
     struct match_item *first = NULL, **end = &first, *item, *next;

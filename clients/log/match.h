@@ -1,10 +1,10 @@
 /* Matches queries and results of a log.
  *
  * A result belongs to the query with the same client id, sequence number, time of sending and kind;
- * of several such queries, to the first without a result. Unmatched queries and results are kept in
- * memory: an item takes some 250 bytes, and the answer that its user keeps with it. Matched ones
- * are removed, except for a note of the places of the last few thousand, by which second results
- * are recognised. */
+ * if there are several, to the first without a result. Unmatched queries and results are kept in
+ * memory, at some 250 bytes an item plus the result that the user attaches. Matched items are
+ * removed. The positions of the last few thousand matches are noted, so that second results are
+ * recognised. For one thread at a time. */
 #ifndef MATCH_H
 #define MATCH_H
 
@@ -17,25 +17,25 @@ struct match_key {
     int64_t utime; /* of the query, microseconds since 1970, which results echo */
 };
 
-/* The place of an event. */
+/* The position of an event. */
 struct match_place {
-    int32_t log; /* index of the log */
-    bool mine;   /* counted: it is in the range of time that is replayed */
+    int32_t log;   /* index of the log */
+    bool in_range; /* the event is in the replayed range of time */
     int64_t number, offset, utime;
 };
 
 struct match_item {
     struct match_key key;
     struct match_place place;
-    bool is_result; /* otherwise a query; the fields below are for the user */
+    bool is_result; /* otherwise a query; the members below are for the user */
     bool unreadable;
-    bool waits;      /* it is in the table */
-    bool has_then;   /* a result was recorded, at then */
-    bool sent_whole; /* sent with frames, after UNKNOWN_BODY */
+    bool in_table;     /* the item is in the table */
+    bool has_recorded; /* the log has a result, at then */
+    bool sent_whole;   /* sent with frames, after UNKNOWN_BODY */
     struct match_place then;
     unsigned char *now; /* owned; the new result; NULL: none yet */
     uint32_t now_size;
-    struct match_item *pending; /* the next item that waits for the same definition */
+    struct match_item *pending; /* the next item that needs the same definition */
     /* Private: */
     struct match_item *next, *last; /* items with the same key; last: only of the first item */
     UT_hash_handle hh;
@@ -62,7 +62,7 @@ struct match_item *match_new(const struct match_key *key, const struct match_pla
 void match_remove(struct match *match, struct match_item *item);
 void match_free(struct match_item *item);
 
-/* Any item in the table that is the first with its key; NULL: the table is empty. */
+/* Some item in the table that is the first with its key; NULL: the table is empty. */
 struct match_item *match_any(const struct match *match);
 
 /* At the end: matches the remaining items without the time of sending, for results that do not echo
@@ -83,7 +83,7 @@ struct match_note {
 void match_note(struct match *match, const struct match_item *query,
                 const struct match_place *result);
 
-/* The note of a key; NULL: there is none, or it was replaced by later ones. */
+/* The note of a key; NULL: none, or overwritten by a later one. */
 const struct match_note *match_noted(const struct match *match, const struct match_key *key);
 
 #endif

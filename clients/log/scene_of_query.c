@@ -8,7 +8,7 @@
 
 /* ---- Bodies ---- */
 
-/* On output: the caller frees what *out owns, even if it returns false. */
+/* The caller frees what *out owns, even if this returns false. */
 static bool read_body(const struct geometry *geometry, struct scene_body *out)
 {
     struct geometry_reader reader = geometry_begin(geometry);
@@ -62,8 +62,8 @@ static int compare(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* The lowest id from *id on that is not among the sorted ones, of which *next is the first that is
- * not below *id. */
+/* The lowest free id from *id on. In: sorted[count], of which *next is the first that is not below
+ * *id. On output: *id and *next for the next call. */
 static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_t *id)
 {
     for (; *next < count && sorted[*next] <= *id; ++*next)
@@ -72,7 +72,7 @@ static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_
     return (*id)++;
 }
 
-/* Whether a placement before this one has its id. Scenes are small: this is quick enough. */
+/* Whether an earlier placement has the same id. Quadratic, but scenes are small. */
 static bool is_repeated(const struct placement *placement, size_t i)
 {
     for (size_t before = 0; before < i; before++)
@@ -109,8 +109,8 @@ static void set_bodies(const struct placement *placement, size_t count, struct s
 
 struct list {
     struct scene *scene;
-    size_t room;
-    int32_t skip; /* so many more */
+    size_t capacity;
+    int32_t skip; /* number of pairs still to skip */
 };
 
 static void add(struct list *list, size_t a, size_t b)
@@ -123,7 +123,7 @@ static void add(struct list *list, size_t a, size_t b)
     if (scene_ignores(scene, (struct scene_pair){a, b}))
         return;
     scene->pair =
-        allocate_room(scene->pair, &list->room, scene->pair_count + 1, sizeof *scene->pair);
+        allocate_room(scene->pair, &list->capacity, scene->pair_count + 1, sizeof *scene->pair);
     scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
 }
 
@@ -165,7 +165,7 @@ static void set_pairs(const struct scene_query *query, struct scene *scene)
     scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
 }
 
-void scene_of_query(const struct any_query *query, struct scene *out)
+void scene_of_query(const struct logged_query *query, struct scene *out)
 {
     *out = (struct scene){.all_pairs = true};
     if (query->kind == LOG_PAIR_QUERY) {

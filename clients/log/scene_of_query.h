@@ -1,18 +1,19 @@
 /* Converts a query to a scene (scene.h) with the same bodies, and the same pairs in the same order.
- * A scene has no method and no wants. */
+ * The scene has no method and no wanted results. No shared state. */
 #ifndef SCENE_OF_QUERY_H
 #define SCENE_OF_QUERY_H
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "scene.h"
 
-/* On input: a query that the service accepts, all of whose placements have a geometry. On output:
- * *out, which the caller clears, with the pairs from first_pair on: all pairs of a PAIRS_ALL query
- * as such, others listed. Body i is placement i, and keeps its id, unless it has none or an earlier
- * placement has the same: then it gets the lowest free id. */
-void scene_of_query(const struct any_query *query, struct scene *out);
+/* In: a query that the service accepts, with a geometry for each placement. On output: *out, which
+ * the caller clears, with the pairs from first_pair on: all pairs of a PAIRS_ALL query as such,
+ * others listed. Body i is placement i, and keeps its id, unless it has none or an earlier
+ * placement has the same id: then it gets the lowest free id. Exits with status 1 if memory is
+ * exhausted. */
+void scene_of_query(const struct logged_query *query, struct scene *out);
 
-/* Whether a scene can have this body: frames that the engine takes. */
+/* Whether the engine accepts the frames of this body, so that a scene can contain it. */
 bool scene_takes(const struct geometry *geometry);
 
 #endif

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* ---- Kinds of files -------------------------------------------------------------------------- */
+/* ---- Formats --------------------------------------------------------------------------------- */
 
 static bool begins_with(const struct mesh_source *source, const char *text)
 {
@@ -26,7 +26,7 @@ static bool ends_with(const char *name, const char *ending)
     return length >= wanted && strcasecmp(name + length - wanted, ending) == 0;
 }
 
-/* Text has no byte that is 0; the count of a binary STL file has one, unless there are more than
+/* Text contains no 0 byte. The facet count of a binary STL file does, unless there are more than
  * sixteen million facets. */
 static bool has_zero(const struct mesh_source *source)
 {
@@ -34,7 +34,7 @@ static bool has_zero(const struct mesh_source *source)
     return memchr(source->at, 0, size < some ? size : some) != NULL;
 }
 
-/* The first thing that is no comment. */
+/* Position of the first statement, after comments. */
 static const unsigned char *first_statement(const struct mesh_source *source)
 {
     const unsigned char *at = mesh_skip_spaces(source->at);
@@ -54,7 +54,7 @@ static bool read_unknown(struct mesh_source *source)
 
 static bool read_any(struct mesh_source *source, const char *name, struct mesh *out)
 {
-    static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8 */
+    static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
     if (source->at == source->end)
         return mesh_refuse_byte(source, source->begin, NULL, 0, "the file is empty");
     if (begins_with(source, "ply") && mesh_is_space(source->at[3]))
@@ -77,11 +77,11 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
                                                           : read_unknown(source);
 }
 
-bool mesh_parse(const void *bytes, size_t size, const char *name, const struct mesh_watch *watch,
+bool mesh_parse(const void *bytes, size_t size, const char *name, const struct mesh_progress *watch,
                 struct mesh *out, char error[MESH_ERROR_MAX])
 {
     struct mesh_source source = {.begin = bytes, .watch = watch, .error = error};
-    source.at = source.told = source.begin;
+    source.at = source.reported = source.begin;
     source.end = source.begin + size;
     error[0] = '\0';
     *out = (struct mesh){0};
@@ -100,25 +100,24 @@ void mesh_free(struct mesh *mesh)
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-/* What is read at once, so that a watch hears of it. */
+/* Bytes read at a time, between progress reports. */
 enum { PIECE = 1 << 24 };
 
-/* Reading is one half of what is done, and parsing the other: then the bytes of the file are done
- * once in all. */
+/* Progress of reading and parsing, which count as one half of the file's bytes each. */
 struct half {
-    const struct mesh_watch *watch; /* may be NULL */
+    const struct mesh_progress *watch; /* may be NULL */
     uint64_t done;
 };
 
-static void tell(const struct half *half, uint64_t done, uint64_t total)
+static void report_progress(const struct half *half, uint64_t done, uint64_t total)
 {
     if (half->watch)
-        half->watch->told(half->watch->context, half->done + (done + 1) / 2, total);
+        half->watch->report(half->watch->context, half->done + (done + 1) / 2, total);
 }
 
-static void told_by_parser(void *context, uint64_t done, uint64_t total)
+static void report_from_parser(void *context, uint64_t done, uint64_t total)
 {
-    tell(context, done, total);
+    report_progress(context, done, total);
 }
 
 static bool refuse(char error[MESH_ERROR_MAX], const char *why)
@@ -144,12 +143,12 @@ static bool read_bytes(int fd, unsigned char *bytes, size_t size, const struct h
             return false;
         }
         done += (size_t) got;
-        tell(half, done, size);
+        report_progress(half, done, size);
     }
     return true;
 }
 
-/* On output: the bytes, which the caller frees; or NULL and the error. */
+/* Returns the bytes, which the caller frees; or NULL, and the error. */
 static unsigned char *read_open(int fd, size_t size, const struct half *half,
                                 char error[MESH_ERROR_MAX])
 {
@@ -165,7 +164,7 @@ static unsigned char *read_open(int fd, size_t size, const struct half *half,
     return NULL;
 }
 
-/* O_NONBLOCK: a pipe is refused, not waited for. */
+/* O_NONBLOCK: a pipe is an error, and does not block. */
 static unsigned char *read_file(const char *path, size_t *size, const struct half *half,
                                 char error[MESH_ERROR_MAX])
 {
@@ -187,12 +186,12 @@ static unsigned char *read_file(const char *path, size_t *size, const struct hal
     return bytes;
 }
 
-bool mesh_read(const char *path, const struct mesh_watch *watch, struct mesh *out,
+bool mesh_read(const char *path, const struct mesh_progress *watch, struct mesh *out,
                char error[MESH_ERROR_MAX])
 {
     size_t size = 0;
     struct half half = {.watch = watch};
-    const struct mesh_watch parser = {.told = told_by_parser, .context = &half};
+    const struct mesh_progress parser = {.report = report_from_parser, .context = &half};
     *out = (struct mesh){0};
     unsigned char *bytes = read_file(path, &size, &half, error);
     if (!bytes)
@@ -200,7 +199,7 @@ bool mesh_read(const char *path, const struct mesh_watch *watch, struct mesh *ou
     half.done = size / 2;
     const bool good = mesh_parse(bytes, size, path, &parser, out, error);
     if (good)
-        tell(&half, size, size);
+        report_progress(&half, size, size);
     free(bytes);
     return good;
 }

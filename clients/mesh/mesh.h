@@ -1,29 +1,29 @@
-/* Meshes of triangles, and reading them from files of three kinds:
+/* Triangle meshes, read from files of three formats:
  *
  *     PLY 1.0  ASCII, and binary of both byte orders; any elements and properties besides those
  *              that are needed, in any order
  *     STL      ASCII and binary
- *     OBJ      v and f; what defines no surface is passed over
+ *     OBJ      v and f; statements that define no surface are skipped
  *
- * Of which kind a file is, is told by its contents: "ply" and the end of a line; a size of 84 + 50
- * n bytes where binary STL has its number n of facets; "solid"; and else by the end of its name, or
- * by its first statement.
+ * The format is detected from the contents, in this order: "ply" and the end of a line; a size of
+ * 84 + 50 n bytes where binary STL stores its facet count n; "solid". If none of these apply, the
+ * extension of the file name decides, then the first statement.
  *
- * Numbers. Of text each coordinate is the double that is nearest to what is written, whatever type
- * a PLY header declares for it: "0.1" of a float is 0.1, not the float nearest to it. Of binary
- * files it is what is there, which every double can be. Coordinates are finite; what is not is
- * refused.
+ * Numbers. A coordinate in text is the double nearest to the decimal number, whatever type a PLY
+ * header declares for it: "0.1" of a float is 0.1, not the float nearest to it. A coordinate in a
+ * binary file is its exact value; every value of each type is a double. Coordinates that are not
+ * finite are an error.
  *
- * Faces are triangles: another face is refused. One whose vertices coincide or lie on a line is
- * kept, so is a vertex of no face. A mesh may be empty.
+ * Faces are triangles; any other face is an error. A face whose vertices coincide or are collinear
+ * is kept, and so is a vertex without a face. A mesh may be empty.
  *
- * Vertices have the order of the file in PLY and OBJ. STL has no indices: there, vertices of equal
- * coordinates are one, 0 and -0 being equal, in the order of their first appearance; normals and
- * attributes are passed over.
+ * Vertices are in the order of the file in PLY and OBJ. STL has no indices: vertices with equal
+ * coordinates (0 equals -0) become one, in the order of their first appearance. Normals and
+ * attributes of STL are ignored.
  *
- * Nothing that a file promises is believed: what has no room in the bytes that are there is refused
- * before memory is asked for. Behind the last element of a PLY file white space may follow, and
- * nothing else; a binary STL file has just the bytes of its facets. */
+ * Counts in a file are not trusted: a count that the remaining bytes cannot hold is an error, found
+ * before memory is allocated. After the last element of a PLY file only white space may follow; a
+ * binary STL file holds exactly the bytes of its facets. */
 #ifndef MESH_H
 #define MESH_H
 
@@ -33,33 +33,34 @@
 
 struct mesh {
     size_t vertex_count, face_count; /* both below 2^32 - 1 */
-    double (*vertex)[3];             /* owned; [vertex][x, y, z]; NULL where there are none */
-    unsigned (*face)[3];             /* owned; [face][corner], indices of vertices; likewise */
+    double (*vertex)[3];             /* owned; [vertex][x, y, z]; NULL if there are none */
+    unsigned (*face)[3]; /* owned; [face][corner], indices of vertices; NULL if there are none */
 };
 
-/* Room for one line that says what is wrong, and where: "line 17: ...", from 1, of text; "byte 1234
- * (face 17): ..." of what is binary. Bytes, vertices and faces count from 0. */
+/* Most bytes of an error text, final 0 included: one line that states what is wrong and where.
+ * "line 17: ..." in text, counted from 1; "byte 1234 (face 17): ..." in binary files. Bytes,
+ * vertices and faces count from 0. */
 enum { MESH_ERROR_MAX = 256 };
 
-/* Who wants to know how far it is: called now and then with how many bytes are done, of all that
- * the file has. */
-struct mesh_watch {
-    void (*told)(void *context, uint64_t done, uint64_t total);
+/* A progress callback. It is called from time to time with the number of bytes processed and the
+ * size of the file. */
+struct mesh_progress {
+    void (*report)(void *context, uint64_t done, uint64_t total);
     void *context;
 };
 
-/* On output: true and a mesh, which the caller gives to mesh_free(); or false, an empty mesh, and
- * what is wrong. The file is in memory while it is read, and no longer; what is no regular file is
- * refused, and never waited for. watch: may be NULL. */
-bool mesh_read(const char *path, const struct mesh_watch *watch, struct mesh *out,
+/* Reads a mesh from a regular file. The whole file is in memory during the call. progress: may be
+ * NULL. Returns true and a mesh, which the caller passes to mesh_free(); or false, an empty mesh
+ * and the error. A path that is not a regular file is an error, and never blocks. */
+bool mesh_read(const char *path, const struct mesh_progress *watch, struct mesh *out,
                char error[MESH_ERROR_MAX]);
 
-/* Likewise of bytes that are in memory, of a file of that name, which may be "". A 0 stands behind
- * them, at bytes[size]. */
-bool mesh_parse(const void *bytes, size_t size, const char *name, const struct mesh_watch *watch,
+/* As mesh_read(), from a file in memory. In: bytes[size] must be readable and 0; name: of the file,
+ * may be ""; only its extension is used. */
+bool mesh_parse(const void *bytes, size_t size, const char *name, const struct mesh_progress *watch,
                 struct mesh *out, char error[MESH_ERROR_MAX]);
 
-/* Leaves an empty mesh. */
+/* Frees the arrays. On output: an empty mesh. */
 void mesh_free(struct mesh *mesh);
 
 #endif

@@ -1,4 +1,5 @@
-/* Numbers of binary files, in either byte order. Inline: meshes have millions. */
+/* Decodes the numbers of binary files, in either byte order. Inline: meshes have millions of them.
+ */
 #ifndef MESH_BITS_H
 #define MESH_BITS_H
 
@@ -7,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* In: size, 1 to 8 bytes. */
+/* An unsigned integer of size bytes, 1 to 8. */
 static inline uint64_t mesh_bits(const unsigned char *bytes, size_t size, bool big_endian)
 {
     uint64_t bits = 0;
@@ -16,7 +17,7 @@ static inline uint64_t mesh_bits(const unsigned char *bytes, size_t size, bool b
     return bits;
 }
 
-/* Of 32 and of 64 bits (IEEE 754). */
+/* The IEEE 754 number with these bits. */
 static inline float mesh_float(uint32_t bits)
 {
     float value;

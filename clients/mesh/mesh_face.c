@@ -9,7 +9,7 @@ void mesh_face_vertices(const struct mesh *mesh, unsigned face, double vertex[3]
         memcpy(vertex[corner], mesh->vertex[mesh->face[face][corner]], sizeof vertex[corner]);
 }
 
-/* c1 x c0, divided by its length. */
+/* c1 x c0, divided by its length; 0 if that is 0. */
 static void unit_normal(const double c0[3], const double c1[3], double out[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -32,14 +32,15 @@ static void set_components(const double vertex[3][3], double out[3][3])
 
 static enum fmb_status make_tetrahedron(const double vertex[3][3], struct fmb_body *out)
 {
-    double number[4][3]; /* the origin and the components */
+    double number[4][3]; /* origin, then components */
     memcpy(number[0], vertex[0], sizeof number[0]);
     set_components(vertex, number + 1);
     return fmb_body_make(3, FMB_TETRAHEDRON, number[0], 12, out);
 }
 
-/* A sum is off by at most 2^-53 of itself; where it overflows it is an end of all. A normal that is
- * no number is taken for one that goes everywhere: the face is to be asked then, and refused. */
+/* A sum is off by at most 2^-53 of itself; a sum that overflows gives an infinite end. If a
+ * component of the normal is not finite, the interval of its axis is unbounded, so that the face
+ * becomes a candidate and is then refused. */
 void mesh_face_tetrahedron_box(const struct mesh *mesh, unsigned face, double box[2][3])
 {
     double vertex[3][3], component[3][3];

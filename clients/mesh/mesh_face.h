@@ -1,23 +1,24 @@
-/* A face of a mesh, as the engine takes it. */
+/* Converts a face of a mesh to a body of the engine. */
 #ifndef MESH_FACE_H
 #define MESH_FACE_H
 
-#include "mesh_meet.h"
+#include "mesh_intersect.h"
 
-/* The vertices, [corner][axis]. */
+/* On output: the coordinates of the vertices, [corner][axis]. */
 void mesh_face_vertices(const struct mesh *mesh, unsigned face, double vertex[3][3]);
 
-/* The box of the article's tetrahedron of a face, [lower, upper][axis]: it holds all of it, and is
- * a few units in the last place larger. */
+/* On output: the AABB of the article's tetrahedron of a face, [lower, upper][axis]. It contains the
+ * tetrahedron, and is larger by a few units in the last place. */
 void mesh_face_tetrahedron_box(const struct mesh *mesh, unsigned face, double box[2][3]);
 
-/* A face as a body at a place. Not to be copied or moved: the placement refers to the body. */
+/* A face as a placed body. Must not be copied or moved: the placement points to the body. */
 struct mesh_placed_face {
     struct fmb_body body;
     struct fmb_placement placement;
 };
 
-/* velocity: NULL or [3]. Returns false if an edge is longer than the largest double. */
+/* velocity: [3], or NULL for a face at rest. Returns false if an edge is longer than the largest
+ * double. */
 bool mesh_face_place(const struct mesh *mesh, enum mesh_as as, unsigned face,
                      const double *velocity, struct mesh_placed_face *out);
 

@@ -1,18 +1,19 @@
-/* Triangles with vertices in common, seen along an axis: in a plane, where it costs little to know
- * exactly on which side of a line a point lies. What is known of the pictures is known of the
- * triangles too: where those of F and G have no more than one point or edge in common, and that of
- * F has an area, so that no two points of F are one in it, F and G have no more in common. */
+/* Adjacent triangles, projected along a coordinate axis: in a plane, the exact side of a line on
+ * which a point lies is cheap to compute. If the projections of F and G intersect in nothing but
+ * one point or edge, and the projection of F has an area, so that no two points of F project to
+ * one, then F and G intersect in nothing else either. */
 #ifndef MESH_FLAT_H
 #define MESH_FLAT_H
 
 #include <stdbool.h>
 
-/* Whether F = conv(a, b, c) and G = conv(a, d, e) surely have no point but a in common, [axis]. */
+/* Whether F = conv(a, b, c) and G = conv(a, d, e) certainly have no common point but a. False: not
+ * known. Points are [axis]. */
 bool mesh_flat_share_vertex(const double *a, const double *b, const double *c, const double *d,
                             const double *e);
 
-/* Whether conv(p, q, r) and conv(p, q, s) surely have no point in common but those between p and q.
- */
+/* Whether conv(p, q, r) and conv(p, q, s) certainly have no common point outside the segment pq.
+ * False: not known. Points are [axis]. */
 bool mesh_flat_share_edge(const double *p, const double *q, const double *r, const double *s);
 
 #endif

@@ -1,6 +1,6 @@
-/* The kinds of files that meshes are read from. Each function reads from the beginning of the
- * source to its end into an empty mesh; on output true, or false and the error, and whatever the
- * mesh holds then is for the caller to free. */
+/* One parser for each file format. Each reads from the beginning of the source to its end into an
+ * empty mesh. Returns true; or false, with the error in the source and a partial mesh that the
+ * caller frees. */
 #ifndef MESH_FORMATS_H
 #define MESH_FORMATS_H
 
@@ -11,10 +11,10 @@ bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out);
 bool mesh_stl_binary(struct mesh_source *source, struct mesh *out);
 bool mesh_obj(struct mesh_source *source, struct mesh *out);
 
-/* Whether it is of a size that binary STL has. */
+/* Whether the file has the size that its facet count requires as binary STL. */
 bool mesh_is_stl_binary(const struct mesh_source *source);
 
-/* Whether the word there begins a statement of OBJ. */
+/* Whether the word at this position is one of the common keywords of OBJ. */
 bool mesh_is_obj_statement(const unsigned char *at);
 
 #endif

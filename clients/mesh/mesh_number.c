@@ -1,12 +1,11 @@
-/* Method. The digits, read as one integer w, times 10^e. Where w <= 2^53 and |e| <= 22, both w and
- * 10^|e| = 2^|e| 5^|e| are doubles, since 5^22 < 2^53: w * 10^e or w / 10^-e is then one operation
- * of two doubles, which IEEE 754 rounds to the double nearest to the true product or quotient, of
- * two the even one. That is the number asked for, and no other rounding takes place; the result is
- * 0 or between 1e-22 and 2^53 1e22, so it is neither subnormal nor infinite. All other numbers are
- * left to strtod(), which rounds as well.
+/* Method. Let w be the digits as an integer, and w * 10^e the value. If w <= 2^53 and |e| <= 22,
+ * both w and 10^|e| = 2^|e| 5^|e| are doubles, since 5^22 < 2^53. Then w * 10^e or w / 10^-e is one
+ * operation on two doubles, which IEEE 754 rounds to the double nearest to the exact product or
+ * quotient, ties to even. This is the correctly rounded value, as no other rounding takes place.
+ * The result is 0 or between 1e-22 and 2^53 * 1e22, so it is neither subnormal nor infinite. All
+ * other numbers are passed to strtod(), which also rounds correctly.
  *
- * w is right while no more than 19 digits go into it, as 10^19 < 2^64. What more digits make of it
- * is not looked at. */
+ * w is exact for up to 19 digits, as 10^19 < 2^64. With more digits w is not used. */
 #include "mesh_number.h"
 
 #include <float.h>
@@ -18,11 +17,10 @@
 #include <string.h>
 #include <strings.h>
 
-/* The operation is one of doubles only where no wider type is used for it. */
+/* The operation is rounded once only if doubles are not evaluated in a wider type. */
 enum { IS_ROUNDED_ONCE = FLT_EVAL_METHOD == 0, DIGITS_MAX = 19, POWER_MAX = 22 };
 
-/* An exponent beyond all that doubles have, which digits cannot make up for as far as they are
- * looked at here. */
+/* A larger exponent than any double has. The digits that are used cannot compensate for it. */
 enum { EXPONENT_MAX = 100000 };
 
 static const double ten_to[POWER_MAX + 1] = {
@@ -30,10 +28,10 @@ static const double ten_to[POWER_MAX + 1] = {
     1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 };
 
-/* What is written. */
+/* A parsed number: digits, and a decimal exponent. */
 struct decimal {
     uint64_t digits; /* as an integer, modulo 2^64 */
-    ptrdiff_t count; /* how many, zeros in front too */
+    ptrdiff_t count; /* number of digits, leading zeros included */
     ptrdiff_t decimals;
     int exponent;
 };
@@ -50,7 +48,8 @@ static inline const unsigned char *read_digits(const unsigned char *at, uint64_t
     return at;
 }
 
-/* Behind the e. An e without digits behind it is no part of the number. */
+/* In: e: the letter e. Returns the position after the exponent. An e without digits after it is not
+ * part of the number. */
 static const unsigned char *read_exponent(const unsigned char *e, int *exponent)
 {
     const unsigned char *at = e + 1;
@@ -65,7 +64,7 @@ static const unsigned char *read_exponent(const unsigned char *e, int *exponent)
     return at;
 }
 
-/* Behind the sign. NULL: no digits. */
+/* In: at: the position after the sign. Returns NULL if there are no digits. */
 static inline const unsigned char *read_decimal(const unsigned char *at, struct decimal *out)
 {
     const unsigned char *begin = at;
@@ -98,7 +97,7 @@ static const unsigned char *read_word(const unsigned char *at, double *value)
     return NULL;
 }
 
-static inline bool is_easy(const struct decimal *decimal, ptrdiff_t power)
+static inline bool is_exact_in_doubles(const struct decimal *decimal, ptrdiff_t power)
 {
     return IS_ROUNDED_ONCE && decimal->count <= DIGITS_MAX &&
            decimal->digits <= UINT64_C(1) << DBL_MANT_DIG && power >= -POWER_MAX &&
@@ -115,7 +114,7 @@ const unsigned char *mesh_number(const unsigned char *at, double *value)
         end = read_word(begin, value);
     } else {
         const ptrdiff_t power = decimal.exponent - decimal.decimals;
-        if (!is_easy(&decimal, power))
+        if (!is_exact_in_doubles(&decimal, power))
             *value = strtod((const char *) begin, NULL);
         else if (power < 0)
             *value = (double) decimal.digits / ten_to[-power];

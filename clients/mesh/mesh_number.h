@@ -1,16 +1,16 @@
-/* Decimal numbers of text, as doubles. */
+/* Parses decimal numbers to the nearest double. */
 #ifndef MESH_NUMBER_H
 #define MESH_NUMBER_H
 
-/* On input: text that a 0 ends somewhere, and no white space before the number. On output: *value
- * and the place behind the number; NULL if there is none.
+/* In: text terminated by a 0, without white space before the number. Returns the position after the
+ * number, and *value; or NULL if there is no number.
  *
- * A number is digits with or without a sign, a point among them, or an exponent behind: "-1.5e-3",
- * ".5", "5."; or nan, inf, infinity in letters of any size, which become just that. Its value is
- * the double nearest to what is written, of two that are as near the one whose last bit is 0;
- * infinite from where the largest double is no longer the nearest one. As many digits as one likes.
- * What follows the number is for the caller to judge. The program is in the C locale, as it begins
- * in: it never calls setlocale(). */
+ * A number consists of digits, with an optional sign, decimal point and exponent: "-1.5e-3", ".5",
+ * "5."; or it is nan, inf or infinity in any case. Its value is the nearest double (ties to even),
+ * or infinity from where the largest double is no longer the nearest. The number of digits is not
+ * limited. The caller checks what follows the number.
+ *
+ * Requires the C locale, in which a program starts: it must not call setlocale(). */
 const unsigned char *mesh_number(const unsigned char *at, double *value);
 
 #endif

@@ -1,5 +1,6 @@
-/* A statement a line, or more lines where a backslash ends all but the last. Vertices are v, faces
- * are f; what defines no surface of its own is passed over, and what would is refused. */
+/* OBJ parser. A statement is a line, continued on the next one by a backslash at its end. v defines
+ * a vertex, f a face. Statements that define no surface are skipped; those that define a surface
+ * other than f are an error. */
 #include "mesh_formats.h"
 #include "mesh_number.h"
 
@@ -7,42 +8,42 @@
 #include <math.h>
 #include <string.h>
 
-enum what { VERTEX, FACE, PASSED, SURFACE, UNKNOWN };
+enum what { VERTEX, FACE, SKIPPED, SURFACE, UNKNOWN };
 
-/* Those that files have most of come first; by the first ones a file may be told that has no name.
+/* The most frequent statements come first. The first DETECTED identify a file without an extension.
  */
-enum { TELLING = 10 };
+enum { DETECTED = 10 };
 static const struct {
     const char *word;
     enum what what;
 } statements[] = {
-    {"v", VERTEX},         {"f", FACE},          {"vn", PASSED},       {"vt", PASSED},
-    {"o", PASSED},         {"g", PASSED},        {"s", PASSED},        {"usemtl", PASSED},
-    {"mtllib", PASSED},    {"vp", PASSED},       {"l", PASSED},        {"p", PASSED},
-    {"mg", PASSED},        {"maplib", PASSED},   {"usemap", PASSED},   {"bevel", PASSED},
-    {"lod", PASSED},       {"c_interp", PASSED}, {"d_interp", PASSED}, {"shadow_obj", PASSED},
-    {"trace_obj", PASSED}, {"ctech", PASSED},    {"stech", PASSED},    {"cstype", PASSED},
-    {"deg", PASSED},       {"bmat", PASSED},     {"step", PASSED},     {"parm", PASSED},
-    {"trim", PASSED},      {"hole", PASSED},     {"scrv", PASSED},     {"sp", PASSED},
-    {"end", PASSED},       {"con", PASSED},      {"fo", FACE},         {"surf", SURFACE},
-    {"curv", SURFACE},     {"curv2", SURFACE},   {"bzp", SURFACE},     {"bsp", SURFACE},
-    {"cdc", SURFACE},      {"cdp", SURFACE},     {"res", SURFACE},     {"call", SURFACE},
+    {"v", VERTEX},          {"f", FACE},           {"vn", SKIPPED},       {"vt", SKIPPED},
+    {"o", SKIPPED},         {"g", SKIPPED},        {"s", SKIPPED},        {"usemtl", SKIPPED},
+    {"mtllib", SKIPPED},    {"vp", SKIPPED},       {"l", SKIPPED},        {"p", SKIPPED},
+    {"mg", SKIPPED},        {"maplib", SKIPPED},   {"usemap", SKIPPED},   {"bevel", SKIPPED},
+    {"lod", SKIPPED},       {"c_interp", SKIPPED}, {"d_interp", SKIPPED}, {"shadow_obj", SKIPPED},
+    {"trace_obj", SKIPPED}, {"ctech", SKIPPED},    {"stech", SKIPPED},    {"cstype", SKIPPED},
+    {"deg", SKIPPED},       {"bmat", SKIPPED},     {"step", SKIPPED},     {"parm", SKIPPED},
+    {"trim", SKIPPED},      {"hole", SKIPPED},     {"scrv", SKIPPED},     {"sp", SKIPPED},
+    {"end", SKIPPED},       {"con", SKIPPED},      {"fo", FACE},          {"surf", SURFACE},
+    {"curv", SURFACE},      {"curv2", SURFACE},    {"bzp", SURFACE},      {"bsp", SURFACE},
+    {"cdc", SURFACE},       {"cdp", SURFACE},      {"res", SURFACE},      {"call", SURFACE},
     {"csh", SURFACE},
 };
 
-/* Larger than an index can be. */
+/* Exceeds any valid index. */
 #define INDEX_MAX INT64_C(10000000000)
 
 struct obj {
     struct mesh_build build;
-    /* The largest index, from 1, and where it stands: the vertex may follow. */
+    /* The largest index used, from 1, and its position: the vertex may follow its first use. */
     uint64_t largest;
     const unsigned char *largest_at;
 };
 
 /* ---- Words of a statement -------------------------------------------------------------------- */
 
-/* Bytes of a backslash and the end of its line; 0: none is there. */
+/* Length of a line continuation, a backslash and the end of its line; 0: none. */
 static size_t continuation(const unsigned char *at)
 {
     if (*at != '\\')
@@ -64,14 +65,14 @@ static bool ends_word(const struct mesh_source *source, const unsigned char *at)
     return mesh_ends_word(source, at) || continuation(at) > 0;
 }
 
-/* Whether a word is next, to which it goes. */
+/* Advances to the next word of the statement. Returns false at its end. */
 static bool has_word(struct mesh_source *source)
 {
     source->at = skip(source->at);
     return source->at < source->end && *source->at != '\n' && *source->at != '#';
 }
 
-/* All lines of the statement. */
+/* Skips the statement with its continuation lines. */
 static void skip_statement(struct mesh_source *source)
 {
     while (has_word(source))
@@ -92,7 +93,7 @@ static enum what what_is(const struct mesh_source *source, const unsigned char *
 
 bool mesh_is_obj_statement(const unsigned char *at)
 {
-    for (size_t i = 0; i < TELLING; i++) {
+    for (size_t i = 0; i < DETECTED; i++) {
         const size_t length = strlen(statements[i].word);
         if (strncmp((const char *) at, statements[i].word, length) == 0 &&
             mesh_is_space(at[length]))
@@ -115,7 +116,8 @@ static bool read_number(struct mesh_source *source, size_t axis, double *out)
     return true;
 }
 
-/* Three coordinates, and what some programs add: a weight, a colour, both, or a colour of four. */
+/* Reads three coordinates, and skips what some programs add: a weight, a colour, both, or a colour
+ * of four numbers. */
 static bool read_vertex(struct obj *obj)
 {
     struct mesh_source *source = obj->build.source;
@@ -135,7 +137,7 @@ static bool read_vertex(struct obj *obj)
 
 /* ---- Faces ----------------------------------------------------------------------------------- */
 
-/* NULL: there is none. */
+/* Returns the position after the integer; NULL: there is none. */
 static const unsigned char *read_integer(const unsigned char *at, int64_t *out)
 {
     const bool negative = *at == '-';
@@ -148,7 +150,7 @@ static const unsigned char *read_integer(const unsigned char *at, int64_t *out)
     return at > begin ? at : NULL;
 }
 
-/* V, V/T, V/T/N or V//N; only V is asked for. NULL: it is none of these. */
+/* Reads V, V/T, V/T/N or V//N, and returns V. NULL: none of these. */
 static const unsigned char *read_corner(const unsigned char *at, int64_t *out)
 {
     int64_t ignored;
@@ -160,8 +162,8 @@ static const unsigned char *read_corner(const unsigned char *at, int64_t *out)
     return *at == '/' ? read_integer(at + 1, &ignored) : at;
 }
 
-/* An index from 0, of what counts from 1, or back from the last vertex so far. Whether a vertex
- * follows that it may be of is seen at the end. */
+/* Converts an index of the file, from 1 or relative to the last vertex so far, to an index from 0.
+ * Whether the vertex exists is checked at the end. */
 static bool take_index(struct obj *obj, int64_t index, unsigned *out)
 {
     struct mesh_source *source = obj->build.source;
@@ -205,7 +207,7 @@ static bool read_face(struct obj *obj)
     return mesh_add_face(&obj->build, corner);
 }
 
-/* ---- All of it ------------------------------------------------------------------------------- */
+/* ---- The file -------------------------------------------------------------------------------- */
 
 static bool read_statement(struct obj *obj)
 {
@@ -222,9 +224,9 @@ static bool read_statement(struct obj *obj)
                                 "%s defines what is no triangle: make triangles of it first",
                                 mesh_word(source, begin, text));
     source->at += length;
-    if (what == PASSED)
+    if (what == SKIPPED)
         skip_statement(source);
-    return what == PASSED || (what == VERTEX ? read_vertex(obj) : read_face(obj));
+    return what == SKIPPED || (what == VERTEX ? read_vertex(obj) : read_face(obj));
 }
 
 static bool read_statements(struct obj *obj)
@@ -233,8 +235,8 @@ static bool read_statements(struct obj *obj)
     while ((source->at = mesh_skip_spaces(skip(source->at))) < source->end) {
         if (*source->at != '#' && !read_statement(obj))
             return false;
-        mesh_skip_line(source); /* what is left of it is a comment */
-        mesh_tell(source);
+        mesh_skip_line(source); /* the remainder of the line is a comment */
+        mesh_report_progress(source);
     }
     return true;
 }

@@ -6,23 +6,22 @@
 #include <math.h>
 #include <string.h>
 
-/* The picture's coordinates: those of the meshes are centre + 2^exponent times these, which are
- * between -1 and 1. */
+/* Maps picture coordinates p, between -1 and 1, to those of the meshes: centre + 2^exponent * p. */
 struct units {
     double centre[3];
     int exponent;
 };
 
-struct page {
+struct mesh_page {
     const struct mesh_report *report;
     int count;    /* of meshes */
-    size_t pairs; /* that it holds */
+    size_t pairs; /* pairs in the page */
     struct units units;
 };
 
 /* ---- Base64, for large arrays ---------------------------------------------------------------- */
 
-/* The start of a text: all 0 but out. */
+/* A base64 encoder. Initially all members but out are 0. */
 struct base64 {
     FILE *out; /* ferror() is set if writing failed */
     int count; /* of buffered bytes: fewer than three */
@@ -31,7 +30,7 @@ struct base64 {
 
 static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/* Three bytes are four digits; of one or two, digits of nothing but padding are written as '='. */
+/* Encodes three bytes as four digits. Digits that contain only padding are written as '='. */
 static void put_group(const struct base64 *text)
 {
     const unsigned bits =
@@ -72,9 +71,9 @@ static void base64_float(struct base64 *text, float value)
 
 /* ---- Units ----------------------------------------------------------------------------------- */
 
-/* Halves are taken before sums, and ends before differences: of finite coordinates nothing becomes
- * infinite. */
-static struct units units_of(const struct page *page)
+/* Halves before adding and scales before subtracting, so that finite coordinates do not overflow.
+ */
+static struct units units_of(const struct mesh_page *page)
 {
     struct units units = {{0}, 0};
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -98,32 +97,33 @@ static struct units units_of(const struct page *page)
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
-static void put_head(struct json_writer *json, const struct page *page)
+static void put_head(struct json_writer *json, const struct mesh_page *page)
 {
-    const struct mesh_meeting *meeting = page->report->meeting;
-    const struct mesh_question *question = page->report->question;
-    json_string(json, "as", question->as == MESH_FACES ? "faces" : "tetrahedra");
-    json_integer(json, "count", (int64_t) meeting->count);
-    json_integer(json, "overlapping", (int64_t) meeting->overlapping);
-    json_integer(json, "touching", (int64_t) meeting->touching);
+    const struct mesh_intersection *intersection = page->report->intersection;
+    const struct mesh_query *query = page->report->query;
+    json_string(json, "as", query->as == MESH_FACES ? "faces" : "tetrahedra");
+    json_integer(json, "count", (int64_t) intersection->count);
+    json_integer(json, "overlapping", (int64_t) intersection->overlapping);
+    json_integer(json, "touching", (int64_t) intersection->touching);
     if (page->count == 1) {
-        json_integer(json, "sharing_edge", (int64_t) meeting->sharing_edge);
-        json_integer(json, "sharing_vertex", (int64_t) meeting->sharing_vertex);
+        json_integer(json, "sharing_edge", (int64_t) intersection->sharing_edge);
+        json_integer(json, "sharing_vertex", (int64_t) intersection->sharing_vertex);
     }
-    json_bool(json, "moving", meeting->moving);
-    json_number(json, "T", question->duration);
+    json_bool(json, "moving", intersection->moving);
+    json_number(json, "T", query->duration);
     json_numbers(json, "centre", page->units.centre, 3);
     json_integer(json, "exponent", page->units.exponent);
 }
 
-/* How far it gets in the window, in units of the picture; what is beyond any picture is cut. */
-static void shift_of(const struct page *page, int which, double shift[3])
+/* The displacement of a mesh during the window, in units of the picture, clamped to a value outside
+ * any picture. */
+static void shift_of(const struct mesh_page *page, int which, double shift[3])
 {
     static const double beyond = 1e9;
-    const struct mesh_question *question = page->report->question;
-    const double *velocity = question->velocity[which];
+    const struct mesh_query *query = page->report->query;
+    const double *velocity = query->velocity[which];
     for (int axis = 0; axis < 3; axis++) {
-        const double way = velocity ? velocity[axis] * question->duration : 0;
+        const double way = velocity ? velocity[axis] * query->duration : 0;
         shift[axis] = fmax(-beyond, fmin(ldexp(way, -page->units.exponent), beyond));
     }
 }
@@ -155,7 +155,7 @@ static void put_colours(FILE *out, const unsigned char *worst, size_t count)
     base64_end(&text);
 }
 
-static void put_mesh(struct json_writer *json, const struct page *page, int which)
+static void put_mesh(struct json_writer *json, const struct mesh_page *page, int which)
 {
     const struct mesh_report *report = page->report;
     const struct mesh *mesh = report->mesh[which];
@@ -165,7 +165,7 @@ static void put_mesh(struct json_writer *json, const struct page *page, int whic
     json_begin(json, NULL, '{');
     json_string(json, "name", report->name[which]);
     json_integer(json, "faces", (int64_t) mesh->face_count);
-    json_integer(json, "met", (int64_t) report->meeting->faces[which]);
+    json_integer(json, "met", (int64_t) report->intersection->faces[which]);
     json_numbers(json, "shift", shift, 3);
     json_begin(json, "corner", '"');
     put_coordinates(json->out, mesh, &page->units);
@@ -174,7 +174,7 @@ static void put_mesh(struct json_writer *json, const struct page *page, int whic
     put_faces(json->out, mesh);
     json_end(json, '"');
     json_begin(json, "colour", '"');
-    put_colours(json->out, report->meeting->worst[which], mesh->face_count);
+    put_colours(json->out, report->intersection->worst[which], mesh->face_count);
     json_end(json, '"');
     json_end(json, '}');
 }
@@ -191,9 +191,9 @@ static void put_pair(struct json_writer *json, const struct mesh_pair *pair, boo
     json_end(json, ']');
 }
 
-static void put_data(FILE *out, const struct page *page)
+static void put_data(FILE *out, const struct mesh_page *page)
 {
-    const struct mesh_meeting *meeting = page->report->meeting;
+    const struct mesh_intersection *intersection = page->report->intersection;
     struct json_writer json = {.out = out, .page = true};
     json_begin(&json, NULL, '{');
     put_head(&json, page);
@@ -203,17 +203,17 @@ static void put_data(FILE *out, const struct page *page)
     json_end(&json, ']');
     json_begin(&json, "pairs", '[');
     for (size_t i = 0; i < page->pairs; i++)
-        put_pair(&json, &meeting->pair[i], meeting->moving);
+        put_pair(&json, &intersection->pair[i], intersection->moving);
     json_end(&json, ']');
     json_end(&json, '}');
 }
 
 void mesh_page_write(FILE *out, const struct mesh_report *report)
 {
-    const size_t pairs = report->meeting->count;
-    struct page page = {.report = report,
-                        .count = report->mesh[0] == report->mesh[1] ? 1 : 2,
-                        .pairs = pairs < MESH_PAGE_PAIRS_MAX ? pairs : MESH_PAGE_PAIRS_MAX};
+    const size_t pairs = report->intersection->count;
+    struct mesh_page page = {.report = report,
+                             .count = report->mesh[0] == report->mesh[1] ? 1 : 2,
+                             .pairs = pairs < MESH_PAGE_PAIRS_MAX ? pairs : MESH_PAGE_PAIRS_MAX};
     page.units = units_of(&page);
     page_template_begin(&page_template_mesh, out);
     put_data(out, &page);

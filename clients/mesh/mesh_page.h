@@ -1,7 +1,7 @@
-/* What met, as one page that shows it: both meshes in a picture that can be turned, faces that
- * overlap and touch in colours, a list of the pairs. The page holds all that it shows, and fetches
- * nothing; a picture has rounded coordinates, in single precision, from the middle of what is
- * drawn. */
+/* Writes an intersection as an HTML page: a picture of both meshes that can be rotated, with
+ * overlapping and touching faces in colours, and a list of the pairs. The page contains all its
+ * data and fetches nothing. The coordinates of the picture are rounded to single precision,
+ * relative to the centre. */
 #ifndef MESH_PAGE_H
 #define MESH_PAGE_H
 
@@ -9,10 +9,10 @@
 
 #include <stdio.h>
 
-/* Limit on the pairs that a page lists; it has all faces, some 26 bytes each. */
+/* Limit on the pairs that a page lists. All faces are included, some 26 bytes each. */
 enum { MESH_PAGE_PAIRS_MAX = 20000 };
 
-/* Where out fails, ferror() tells. */
+/* On output: ferror(out) is set if writing failed. */
 void mesh_page_write(FILE *out, const struct mesh_report *report);
 
 #endif

@@ -1,5 +1,5 @@
-/* What stands behind the header: elements of each kind, one kind after the other, and of each one
- * its values in the order of its properties. */
+/* Reads the body of a PLY file: the elements of each kind, one kind after the other, each with its
+ * values in the order of its properties. */
 #include "mesh_ply.h"
 
 #include "mesh_formats.h"
@@ -15,7 +15,7 @@ static bool read_coordinate(struct ply *ply, const struct ply_property *property
     return isfinite(*out) || ply_refuse(ply, where, "%c is not finite", "xyz"[property->role]);
 }
 
-/* How long a list is. */
+/* Reads the length of a list. */
 static bool read_length(struct ply *ply, const struct ply_property *property, uint32_t *out)
 {
     const unsigned char *where = ply_place(ply);
@@ -54,7 +54,7 @@ static bool read_triangle(struct ply *ply, const struct ply_property *property, 
     return true;
 }
 
-/* Of each value a byte is taken at least: a list that lies ends with the file. */
+/* Each value takes at least a byte, so a false length ends with the file. */
 static bool skip_list(struct ply *ply, const struct ply_property *property)
 {
     uint32_t length;
@@ -88,33 +88,33 @@ static bool read_record(struct ply *ply, struct mesh *out)
     return ply_end_record(ply);
 }
 
-/* Elements without properties take no bytes, however many there are said to be. */
+/* Elements without properties take no bytes, whatever their count. */
 static bool read_element(struct ply *ply, const struct ply_element *element, struct mesh *out)
 {
     ply->within = element;
     for (ply->index = 0; element->property_count > 0 && ply->index < element->count; ply->index++) {
         if (!read_record(ply, out))
             return false;
-        mesh_tell(ply->source);
+        mesh_report_progress(ply->source);
     }
     return true;
 }
 
-static bool make_room(struct ply *ply, const struct ply_element *element, struct mesh *out)
+static bool allocate_element(struct ply *ply, const struct ply_element *element, struct mesh *out)
 {
     if (element->kind == PLY_OTHERS || element->count == 0)
         return true;
     if (element->kind == PLY_VERTICES) {
-        out->vertex = mesh_room(element->count, sizeof *out->vertex);
+        out->vertex = mesh_allocate(element->count, sizeof *out->vertex);
         out->vertex_count = element->count;
     } else {
-        out->face = mesh_room(element->count, sizeof *out->face);
+        out->face = mesh_allocate(element->count, sizeof *out->face);
         out->face_count = element->count;
     }
     if (element->kind == PLY_VERTICES ? !!out->vertex : !!out->face)
         return true;
-    return mesh_refuse_room(ply->source, element->count,
-                            element->kind == PLY_VERTICES ? "vertices" : "faces");
+    return mesh_refuse_memory(ply->source, element->count,
+                              element->kind == PLY_VERTICES ? "vertices" : "faces");
 }
 
 static bool read_end(struct ply *ply)
@@ -141,7 +141,7 @@ bool mesh_ply(struct mesh_source *source, struct mesh *out)
     if (!ply_header(&ply))
         return false;
     for (size_t i = 0; i < ply.element_count; i++)
-        if (!make_room(&ply, &ply.element[i], out))
+        if (!allocate_element(&ply, &ply.element[i], out))
             return false;
     for (size_t i = 0; i < ply.element_count; i++)
         if (!read_element(&ply, &ply.element[i], out))

@@ -1,4 +1,4 @@
-/* PLY: what a header says, and the values behind it. */
+/* PLY: the parsed header, and the values after it. */
 #ifndef MESH_PLY_H
 #define MESH_PLY_H
 
@@ -20,12 +20,12 @@ enum ply_type {
     PLY_FLOAT64
 };
 
-/* What a property is to a mesh. X, Y, Z are 0, 1, 2. */
+/* The meaning of a property. X, Y, Z are 0, 1, 2. */
 enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_INDICES, PLY_UNUSED };
 
 struct ply_property {
-    enum ply_type type;  /* of the value, or of each of the list */
-    enum ply_type count; /* of the list's length; NONE: no list */
+    enum ply_type type;  /* of the value, or of a list's elements */
+    enum ply_type count; /* of a list's length; NONE: not a list */
     enum ply_role role;
 };
 
@@ -33,11 +33,11 @@ enum ply_kind { PLY_VERTICES, PLY_FACES, PLY_OTHERS };
 
 struct ply_element {
     enum ply_kind kind;
-    const char *name;          /* of one: "vertex", "face", "element" */
-    const unsigned char *line; /* of the header, where it is said */
+    const char *name;          /* singular: "vertex", "face", "element" */
+    const unsigned char *line; /* its line in the header */
     size_t count;
-    size_t first, property_count; /* of the properties, those that are its own */
-    unsigned roles;               /* a bit for each that one of them has */
+    size_t first, property_count; /* its range of ply.property */
+    unsigned roles;               /* set of enum ply_role, one bit each */
 };
 
 struct ply {
@@ -46,30 +46,32 @@ struct ply {
     size_t element_count, property_count;
     struct ply_element element[PLY_ELEMENTS_MAX];
     struct ply_property property[PLY_PROPERTIES_MAX];
-    size_t vertex_count;              /* as promised */
-    const struct ply_element *within; /* of what is read, for errors */
+    size_t vertex_count;              /* as the header states */
+    const struct ply_element *within; /* the element being read and the index in it, for errors */
     size_t index;
 };
 
-/* Bytes; 0 of NONE. */
+/* Size of a value, bytes; 0 for NONE. */
 size_t ply_size(enum ply_type type);
 
-/* Reads the header, behind which the source is then. Each element has what a mesh needs of it. */
+/* Reads the header, and advances the source past it. On output: each element has the properties
+ * that a mesh needs. Returns false on error. */
 bool ply_header(struct ply *ply);
 
-/* Of the value that is there, or was. Returns false. */
+/* Reports an error at a value. Returns false. */
 bool ply_refuse(struct ply *ply, const unsigned char *where, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The next value. The second one is only looked for, and may be any number, NaN too. */
+/* Reads the next value; ply_skip() accepts any number, NaN included. Return false on error. */
 bool ply_value(struct ply *ply, enum ply_type type, double *value);
 bool ply_skip(struct ply *ply, enum ply_type type);
 
-/* Before and behind the values of each vertex, face or other element: of text it is a line. */
+/* Call before and after the values of each vertex, face or other element. In ASCII files a record
+ * is a line. */
 bool ply_begin_record(struct ply *ply);
 bool ply_end_record(struct ply *ply);
 
-/* Where the next value begins; of text there may be none. */
+/* Position of the next value. In ASCII files there may be none. */
 const unsigned char *ply_place(const struct ply *ply);
 
 #endif

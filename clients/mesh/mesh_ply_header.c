@@ -2,11 +2,11 @@
 
 #include <string.h>
 
-/* A line of the header, in words. */
-struct line {
+/* A line of the header, divided into words. */
+struct header_line {
     const unsigned char *begin;
-    const unsigned char *word[6]; /* the first ones; behind them, the end of the line */
-    size_t count;                 /* all of them */
+    const unsigned char *word[6]; /* the first ones; after them, the end of the line */
+    size_t count;                 /* total number */
 };
 
 static bool is_word(const struct mesh_source *source, const unsigned char *at, const char *text)
@@ -15,8 +15,8 @@ static bool is_word(const struct mesh_source *source, const unsigned char *at, c
     return strncmp((const char *) at, text, length) == 0 && mesh_ends_word(source, at + length);
 }
 
-/* Takes the next line. */
-static bool take_line(struct mesh_source *source, struct line *out)
+/* Reads the next line. */
+static bool take_line(struct mesh_source *source, struct header_line *out)
 {
     const unsigned char *at = source->at;
     const unsigned char *end = memchr(at, '\n', mesh_left(source));
@@ -77,7 +77,7 @@ static bool read_count(struct mesh_source *source, const unsigned char *word, si
 
 /* ---- Lines ----------------------------------------------------------------------------------- */
 
-static bool read_format(struct ply *ply, const struct line *line)
+static bool read_format(struct ply *ply, const struct header_line *line)
 {
     static const char *const names[] = {
         [PLY_ASCII] = "ascii",
@@ -101,7 +101,7 @@ static bool is_there(const struct ply *ply, enum ply_kind kind)
     return false;
 }
 
-static bool read_element(struct ply *ply, const struct line *line)
+static bool read_element(struct ply *ply, const struct header_line *line)
 {
     struct mesh_source *source = ply->source;
     if (line->count != 3)
@@ -144,8 +144,8 @@ static enum ply_role role_of(const struct mesh_source *source, enum ply_kind kin
     return PLY_UNUSED;
 }
 
-/* property TYPE NAME, or property list TYPE TYPE NAME. */
-static bool read_property(struct ply *ply, const struct line *line)
+/* Reads "property TYPE NAME" or "property list TYPE TYPE NAME". */
+static bool read_property(struct ply *ply, const struct header_line *line)
 {
     struct mesh_source *source = ply->source;
     char text[MESH_WORD_MAX];
@@ -179,7 +179,7 @@ static bool read_property(struct ply *ply, const struct line *line)
     return true;
 }
 
-/* ---- All of it ------------------------------------------------------------------------------- */
+/* ---- The header ------------------------------------------------------------------------------ */
 
 static bool check_element(struct ply *ply, const struct ply_element *element)
 {
@@ -195,8 +195,8 @@ static bool check_element(struct ply *ply, const struct ply_element *element)
     return true;
 }
 
-/* The least that an element takes: of text, a digit and what stands before the next for each value.
- * A triangle has a count and three indices. */
+/* Least bytes of an element. In ASCII files each value takes a digit and a separator. A triangle
+ * has a count and three indices. */
 static size_t least_size(const struct ply *ply, const struct ply_element *element)
 {
     size_t values = 0, bytes = 0;
@@ -209,7 +209,8 @@ static size_t least_size(const struct ply *ply, const struct ply_element *elemen
     return ply->format == PLY_ASCII ? 2 * values : bytes;
 }
 
-/* That what is promised has room behind the header. The last line may have no end. */
+/* Checks that the file is large enough for the counts of the header. The last line may lack its
+ * end. */
 static bool check_promises(struct ply *ply)
 {
     size_t left = mesh_left(ply->source) + (ply->format == PLY_ASCII);
@@ -228,7 +229,7 @@ static bool check_promises(struct ply *ply)
     return true;
 }
 
-static bool read_line(struct ply *ply, const struct line *line, bool *has_format)
+static bool read_line(struct ply *ply, const struct header_line *line, bool *has_format)
 {
     struct mesh_source *source = ply->source;
     char text[MESH_WORD_MAX];
@@ -249,7 +250,7 @@ static bool read_line(struct ply *ply, const struct line *line, bool *has_format
     return read_format(ply, line);
 }
 
-static bool is_magic(const struct mesh_source *source, const struct line *line)
+static bool is_magic(const struct mesh_source *source, const struct header_line *line)
 {
     return line->count == 1 && line->word[0] == line->begin && is_word(source, line->begin, "ply");
 }
@@ -262,7 +263,7 @@ static bool ends_lines_with_returns(const struct mesh_source *source)
 
 bool ply_header(struct ply *ply)
 {
-    struct line line;
+    struct header_line line;
     bool has_format = false;
     if (ends_lines_with_returns(ply->source))
         return mesh_refuse_line(ply->source, ply->source->at,

@@ -26,7 +26,7 @@ const unsigned char *ply_place(const struct ply *ply)
 
 /* ---- Text ------------------------------------------------------------------------------------ */
 
-/* On input: the end of a number, or NULL; where it begins, or should. */
+/* In: the position of a number, and the position after it, or NULL if it cannot be parsed. */
 static bool is_number(struct ply *ply, const unsigned char *begin, const unsigned char *end)
 {
     char text[MESH_WORD_MAX];
@@ -81,7 +81,7 @@ bool ply_end_record(struct ply *ply)
 
 /* ---- Binary ---------------------------------------------------------------------------------- */
 
-/* A double has every value of each type. */
+/* Every value of each type is a double. */
 static double value_of(uint64_t bits, enum ply_type type)
 {
     switch (type) {

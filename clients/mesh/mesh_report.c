@@ -32,13 +32,13 @@ static void put_faces(FILE *out, const struct mesh_report *report, int which)
 {
     char in_pairs[NUMBER_TEXT_MAX], all[NUMBER_TEXT_MAX];
     fprintf(out, "%14s  of %s faces of ",
-            number_grouped((int64_t) report->meeting->faces[which], in_pairs),
+            number_grouped((int64_t) report->intersection->faces[which], in_pairs),
             number_grouped((int64_t) report->mesh[which]->face_count, all));
     put_name(out, report, which);
     putc('\n', out);
 }
 
-/* The least box around the faces: [lower, upper][axis]. */
+/* The AABB of the faces: [lower, upper][axis]. */
 static void find_bounds(const struct mesh *mesh, double out[2][3])
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -52,8 +52,9 @@ static void find_bounds(const struct mesh *mesh, double out[2][3])
     }
 }
 
-/* Surfaces that do not meet may still enclose one another, if the box of one lies in the other's.
- * Moving ones too: where no faces meet, what is inside stays there. */
+/* Surfaces that do not intersect may enclose one another, if the AABB of one lies inside the
+ * other's. This holds for moving meshes too: without an intersection, a surface inside the other
+ * stays there. */
 static void put_hint(FILE *out, const struct mesh_report *report)
 {
     double bounds[2][2][3];
@@ -73,13 +74,13 @@ static void put_hint(FILE *out, const struct mesh_report *report)
     }
 }
 
-/* From the first to the last time at which any two faces meet. */
-static void put_times(FILE *out, const struct mesh_meeting *meeting)
+/* The first and the last time at which any two faces are in contact. */
+static void put_times(FILE *out, const struct mesh_intersection *intersection)
 {
-    double first = meeting->pair[0].contact[0], last = meeting->pair[0].contact[1];
+    double first = intersection->pair[0].contact[0], last = intersection->pair[0].contact[1];
     char first_text[NUMBER_TEXT_MAX], last_text[NUMBER_TEXT_MAX];
-    for (size_t i = 1; i < meeting->count; i++) {
-        const double *contact = meeting->pair[i].contact;
+    for (size_t i = 1; i < intersection->count; i++) {
+        const double *contact = intersection->pair[i].contact;
         first = contact[0] < first ? contact[0] : first;
         last = contact[1] > last ? contact[1] : last;
     }
@@ -99,25 +100,25 @@ static void put_pair(FILE *out, const struct mesh_pair *pair, bool moving)
 
 void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
 {
-    const struct mesh_meeting *meeting = report->meeting;
-    for (size_t i = 0; i < meeting->count && list; i++)
-        put_pair(out, &meeting->pair[i], meeting->moving);
-    put_count(out, meeting->count,
-              meeting->count == 1 ? "pair of faces meets:" : "pairs of faces meet:");
-    put_count(out, meeting->overlapping, "overlap");
-    put_count(out, meeting->touching, "touch");
+    const struct mesh_intersection *intersection = report->intersection;
+    for (size_t i = 0; i < intersection->count && list; i++)
+        put_pair(out, &intersection->pair[i], intersection->moving);
+    put_count(out, intersection->count,
+              intersection->count == 1 ? "pair of faces meets:" : "pairs of faces meet:");
+    put_count(out, intersection->overlapping, "overlap");
+    put_count(out, intersection->touching, "touch");
     fputs("in them are\n", out);
     put_faces(out, report, 0);
     if (is_self(report)) {
         fputs("and beside each other, with nothing else in common, are\n", out);
-        put_count(out, meeting->sharing_edge, "pairs that share an edge");
-        put_count(out, meeting->sharing_vertex, "pairs that share a vertex");
+        put_count(out, intersection->sharing_edge, "pairs that share an edge");
+        put_count(out, intersection->sharing_vertex, "pairs that share a vertex");
     } else {
         put_faces(out, report, 1);
     }
-    if (meeting->moving && meeting->count > 0)
-        put_times(out, meeting);
-    if (meeting->count == 0 && !is_self(report))
+    if (intersection->moving && intersection->count > 0)
+        put_times(out, intersection);
+    if (intersection->count == 0 && !is_self(report))
         put_hint(out, report);
 }
 
@@ -140,20 +141,20 @@ static void put_pair_json(struct json_writer *json, const struct mesh_pair *pair
 
 void mesh_report_json(FILE *out, const struct mesh_report *report)
 {
-    const struct mesh_meeting *meeting = report->meeting;
+    const struct mesh_intersection *intersection = report->intersection;
     struct json_writer json = {.out = out};
     json_begin(&json, NULL, '{');
-    json_integer(&json, "overlapping", (int64_t) meeting->overlapping);
-    json_integer(&json, "touching", (int64_t) meeting->touching);
-    json_integer(&json, "faces_a", (int64_t) meeting->faces[0]);
-    json_integer(&json, "faces_b", (int64_t) meeting->faces[1]);
+    json_integer(&json, "overlapping", (int64_t) intersection->overlapping);
+    json_integer(&json, "touching", (int64_t) intersection->touching);
+    json_integer(&json, "faces_a", (int64_t) intersection->faces[0]);
+    json_integer(&json, "faces_b", (int64_t) intersection->faces[1]);
     if (is_self(report)) {
-        json_integer(&json, "sharing_edge", (int64_t) meeting->sharing_edge);
-        json_integer(&json, "sharing_vertex", (int64_t) meeting->sharing_vertex);
+        json_integer(&json, "sharing_edge", (int64_t) intersection->sharing_edge);
+        json_integer(&json, "sharing_vertex", (int64_t) intersection->sharing_vertex);
     }
     json_begin(&json, "pairs", '[');
-    for (size_t i = 0; i < meeting->count; i++)
-        put_pair_json(&json, &meeting->pair[i], meeting->moving);
+    for (size_t i = 0; i < intersection->count; i++)
+        put_pair_json(&json, &intersection->pair[i], intersection->moving);
     json_end(&json, ']');
     json_end(&json, '}');
     json_line_end(&json);
@@ -167,15 +168,15 @@ static const unsigned char *colour_of(const struct mesh_report *report, int whic
 {
     static const colour of_mesh[2] = {{190, 190, 190}, {120, 160, 220}};
     static const colour of_touching = {240, 200, 40}, of_overlapping = {220, 40, 40};
-    switch (report->meeting->worst[which][face]) {
+    switch (report->intersection->worst[which][face]) {
     case FMB_OVERLAPPING: return of_overlapping;
     case FMB_TOUCHING: return of_touching;
     default: return of_mesh[which];
     }
 }
 
-/* Owned by the caller. */
-static struct mesh join(const struct mesh_report *report, colour **face_colour)
+/* Concatenates both meshes. The caller frees the mesh and *face_colour. */
+static struct mesh concatenate(const struct mesh_report *report, colour **face_colour)
 {
     const int meshes = is_self(report) ? 1 : 2;
     struct mesh out = {0};
@@ -204,7 +205,7 @@ static struct mesh join(const struct mesh_report *report, colour **face_colour)
 void mesh_report_ply(FILE *out, const struct mesh_report *report)
 {
     colour *face_colour;
-    struct mesh both = join(report, &face_colour);
+    struct mesh both = concatenate(report, &face_colour);
     mesh_write_ply(out, &both, (const unsigned char(*)[3]) face_colour);
     free(face_colour);
     mesh_free(&both);

@@ -1,32 +1,31 @@
-/* What is told of a meeting of meshes. */
+/* Reports of an intersection of meshes: text, JSON and PLY. */
 #ifndef MESH_REPORT_H
 #define MESH_REPORT_H
 
-#include "mesh_meet.h"
+#include "mesh_intersect.h"
 
 #include <stdio.h>
 
 struct mesh_report {
-    const struct mesh_question *question; /* what was asked */
-    const struct mesh *mesh[2];           /* the same: one with itself */
+    const struct mesh_query *query; /* not owned, as all members */
+    const struct mesh *mesh[2];     /* equal pointers: one mesh with itself */
     const char *name[2];
-    const struct mesh_meeting *meeting;
+    const struct mesh_intersection *intersection;
 };
 
-/* For people; list: every pair too. */
+/* Prints the counts as text. list: prints every pair too. */
 void mesh_report_text(FILE *out, const struct mesh_report *report, bool list);
 
-/* One line, one object:
+/* Prints one line with one JSON object:
  *
- *     {"overlapping": N, "touching": N, "faces_a": N, "faces_b": N, "pairs": [[i, j,
- * "overlapping"],
- *      ...]}
+ *     {"overlapping": N, "touching": N, "faces_a": N, "faces_b": N,
+ *      "pairs": [[i, j, "overlapping"], ...]}
  *
- * with the times of contact behind the verdict where a mesh moves, and with "sharing_edge" and
- * "sharing_vertex" before the pairs of one mesh with itself. */
+ * If a mesh moves, the interval of contact follows the verdict. For one mesh with itself,
+ * "sharing_edge" and "sharing_vertex" precede the pairs. */
 void mesh_report_json(FILE *out, const struct mesh_report *report);
 
-/* Both meshes as one, in colours. */
+/* Writes both meshes as one PLY file, with colours by verdict. */
 void mesh_report_ply(FILE *out, const struct mesh_report *report);
 
 #endif

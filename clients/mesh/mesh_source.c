@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Counted only now: lines need not be counted while they are read. */
+/* Counted only for an error, not while parsing. */
 static uint64_t line_of(const struct mesh_source *source, const unsigned char *where)
 {
     uint64_t line = 1;
@@ -47,7 +47,7 @@ bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, co
     return false;
 }
 
-bool mesh_refuse_room(struct mesh_source *source, uint64_t count, const char *what)
+bool mesh_refuse_memory(struct mesh_source *source, uint64_t count, const char *what)
 {
     snprintf(source->error, MESH_ERROR_MAX, "there is no memory for %" PRIu64 " %s", count, what);
     return false;
@@ -67,7 +67,7 @@ const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
     return text;
 }
 
-void *mesh_room(size_t count, size_t size)
+void *mesh_allocate(size_t count, size_t size)
 {
     return count > SIZE_MAX / size ? NULL : malloc(count * size);
 }
@@ -78,16 +78,16 @@ void mesh_skip_line(struct mesh_source *source)
     source->at = end ? end : source->end;
 }
 
-void mesh_tell_now(struct mesh_source *source)
+void mesh_report_progress_now(struct mesh_source *source)
 {
-    const struct mesh_watch *watch = source->watch;
-    source->told = source->at;
+    const struct mesh_progress *watch = source->watch;
+    source->reported = source->at;
     if (watch)
-        watch->told(watch->context, (uint64_t) (source->at - source->begin),
-                    (uint64_t) (source->end - source->begin));
+        watch->report(watch->context, (uint64_t) (source->at - source->begin),
+                      (uint64_t) (source->end - source->begin));
 }
 
-/* ---- A mesh that grows ----------------------------------------------------------------------- */
+/* ---- A mesh under construction --------------------------------------------------------------- */
 
 static bool has_count(struct mesh_source *source, size_t count, const char *what)
 {
@@ -100,7 +100,7 @@ bool mesh_add_vertex(struct mesh_build *build, const double position[3])
     struct mesh *mesh = build->mesh;
     if (!has_count(build->source, mesh->vertex_count, "vertices"))
         return false;
-    mesh->vertex = allocate_room(mesh->vertex, &build->vertex_room, mesh->vertex_count + 1,
+    mesh->vertex = allocate_room(mesh->vertex, &build->vertex_capacity, mesh->vertex_count + 1,
                                  sizeof *mesh->vertex);
     memcpy(mesh->vertex[mesh->vertex_count++], position, sizeof *mesh->vertex);
     return true;
@@ -112,12 +112,12 @@ bool mesh_add_face(struct mesh_build *build, const unsigned corner[3])
     if (!has_count(build->source, mesh->face_count, "faces"))
         return false;
     mesh->face =
-        allocate_room(mesh->face, &build->face_room, mesh->face_count + 1, sizeof *mesh->face);
+        allocate_room(mesh->face, &build->face_capacity, mesh->face_count + 1, sizeof *mesh->face);
     memcpy(mesh->face[mesh->face_count++], corner, sizeof *mesh->face);
     return true;
 }
 
-/* Where it cannot be moved, it stays. */
+/* Shrinks the memory to its contents. If realloc() fails, it stays as it is. */
 static void *fit(void *memory, size_t count, size_t size)
 {
     void *fitting = count > 0 ? realloc(memory, count * size) : NULL;
@@ -129,6 +129,6 @@ void mesh_fit(struct mesh_build *build)
     struct mesh *mesh = build->mesh;
     mesh->vertex = fit(mesh->vertex, mesh->vertex_count, sizeof *mesh->vertex);
     mesh->face = fit(mesh->face, mesh->face_count, sizeof *mesh->face);
-    build->vertex_room = mesh->vertex_count;
-    build->face_room = mesh->face_count;
+    build->vertex_capacity = mesh->vertex_count;
+    build->face_capacity = mesh->face_count;
 }

@@ -1,4 +1,4 @@
-/* ASCII: solid NAME, then for each facet
+/* STL parser. ASCII: solid NAME, then for each facet
  *
  *     facet normal NX NY NZ
  *       outer loop
@@ -6,8 +6,8 @@
  *       endloop
  *     endfacet
  *
- * and endsolid NAME; words in letters of any size, with any white space between them. There may be
- * several solids, one behind the other: they become one mesh. */
+ * and endsolid NAME; in any case, with any white space between words. Several solids in one file
+ * become one mesh. */
 #include "keyed_hash.h"
 #include "mesh_bits.h"
 #include "mesh_formats.h"
@@ -21,42 +21,42 @@
 
 /* ---- Vertices of equal coordinates are one --------------------------------------------------- */
 
-struct joined {
+struct welded {
     double position[3];
     unsigned index;
     UT_hash_handle hh;
 };
 
-struct join {
-    struct mesh_build *build; /* all its vertices are added by join_vertex() */
-    struct joined *vertex;    /* owned: a table by coordinates; NULL: empty */
+struct weld {
+    struct mesh_build *build; /* all vertices are added by weld_vertex() */
+    struct welded *vertex;    /* owned: hash table by coordinates; NULL: empty */
 };
 
-static void join_close(struct join *join)
+static void weld_close(struct weld *weld)
 {
-    struct joined *at = join->vertex, *next;
-    HASH_CLEAR(hh, join->vertex);
+    struct welded *at = weld->vertex, *next;
+    HASH_CLEAR(hh, weld->vertex);
     for (; at; at = next) {
         next = at->hh.next;
         free(at);
     }
 }
 
-static bool join_vertex(struct join *join, const double position[3], unsigned *index)
+static bool weld_vertex(struct weld *weld, const double position[3], unsigned *index)
 {
-    /* -0 + 0 is 0; all else plus 0 is what it was. */
+    /* -0 + 0 is 0; every other number plus 0 is unchanged */
     const double clean[3] = {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0};
-    struct joined *joined;
-    HASH_FIND(hh, join->vertex, clean, sizeof clean, joined);
-    if (!joined) {
-        if (!mesh_add_vertex(join->build, clean))
+    struct welded *welded;
+    HASH_FIND(hh, weld->vertex, clean, sizeof clean, welded);
+    if (!welded) {
+        if (!mesh_add_vertex(weld->build, clean))
             return false;
-        joined = allocate(1, sizeof *joined);
-        memcpy(joined->position, clean, sizeof clean);
-        joined->index = (unsigned) join->build->mesh->vertex_count - 1;
-        HASH_ADD(hh, join->vertex, position, sizeof clean, joined);
+        welded = allocate(1, sizeof *welded);
+        memcpy(welded->position, clean, sizeof clean);
+        welded->index = (unsigned) weld->build->mesh->vertex_count - 1;
+        HASH_ADD(hh, weld->vertex, position, sizeof clean, welded);
     }
-    *index = joined->index;
+    *index = welded->index;
     return true;
 }
 
@@ -89,7 +89,7 @@ static bool take(struct mesh_source *source, const char *word)
     return true;
 }
 
-/* Any numbers: some programs write normals that are not. */
+/* Skips three numbers of any value: some programs write normals that are NaN. */
 static bool skip_normal(struct mesh_source *source)
 {
     double value;
@@ -117,9 +117,9 @@ static bool read_position(struct mesh_source *source, double out[3])
     return true;
 }
 
-static bool read_loop(struct join *join)
+static bool read_loop(struct weld *weld)
 {
-    struct mesh_source *source = join->build->source;
+    struct mesh_source *source = weld->build->source;
     unsigned corner[3];
     for (int i = 0; i < 3; i++) {
         double position[3];
@@ -127,35 +127,35 @@ static bool read_loop(struct join *join)
             return mesh_refuse_line(source, source->at, "a facet of %d vertices: remove it first",
                                     i);
         if (!take(source, "vertex") || !read_position(source, position) ||
-            !join_vertex(join, position, &corner[i]))
+            !weld_vertex(weld, position, &corner[i]))
             return false;
     }
     if (is_next(source, "vertex"))
         return mesh_refuse_line(source, source->at,
                                 "a facet of more than 3 vertices: triangulate it first");
-    return mesh_add_face(join->build, corner);
+    return mesh_add_face(weld->build, corner);
 }
 
-static bool read_facet(struct join *join)
+static bool read_facet(struct weld *weld)
 {
-    struct mesh_source *source = join->build->source;
+    struct mesh_source *source = weld->build->source;
     return take(source, "facet") && take(source, "normal") && skip_normal(source) &&
-           take(source, "outer") && take(source, "loop") && read_loop(join) &&
+           take(source, "outer") && take(source, "loop") && read_loop(weld) &&
            take(source, "endloop") && take(source, "endfacet");
 }
 
-static bool read_solid(struct join *join)
+static bool read_solid(struct weld *weld)
 {
-    struct mesh_source *source = join->build->source;
+    struct mesh_source *source = weld->build->source;
     if (!take(source, "solid"))
         return false;
     mesh_skip_line(source);
     while (!is_next(source, "endsolid")) {
         if (!is_next(source, "facet"))
             return refuse_next(source, "facet or endsolid");
-        if (!read_facet(join))
+        if (!read_facet(weld))
             return false;
-        mesh_tell(source);
+        mesh_report_progress(source);
     }
     mesh_skip_line(source);
     return true;
@@ -164,22 +164,22 @@ static bool read_solid(struct join *join)
 bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
 {
     struct mesh_build build = {.source = source, .mesh = out};
-    struct join join = {.build = &build};
+    struct weld weld = {.build = &build};
     bool good;
     do {
-        good = read_solid(&join);
+        good = read_solid(&weld);
         source->at = mesh_skip_spaces(source->at);
     } while (good && source->at < source->end);
-    join_close(&join);
+    weld_close(&weld);
     mesh_fit(&build);
     return good;
 }
 
 /* ---- Binary ---------------------------------------------------------------------------------- */
 
-/* 80 bytes of anything, the number of facets as 32 bits, then 50 bytes for each facet: its normal
- * and three vertices, each of three floats of 32 bits, and 16 bits of anything. All little-endian.
- */
+/* Binary, little-endian: 80 bytes of any content, the number of facets (32 bits), then 50 bytes for
+ * each facet: its normal and three vertices, three floats (32 bits) each, and 16 bits of any
+ * content. */
 enum { COUNT_AT = 80, HEADER_BYTES = 84, FACET_BYTES = 50, NORMAL_BYTES = 12, FLOAT_BYTES = 4 };
 
 static uint32_t word_at(const unsigned char *bytes)
@@ -213,9 +213,9 @@ static bool refuse_size(struct mesh_source *source)
                             facets, size_of(facets), size);
 }
 
-static bool read_vertex(struct join *join, size_t facet, unsigned *index)
+static bool read_vertex(struct weld *weld, size_t facet, unsigned *index)
 {
-    struct mesh_source *source = join->build->source;
+    struct mesh_source *source = weld->build->source;
     double position[3];
     for (int axis = 0; axis < 3; axis++) {
         position[axis] = mesh_float(word_at(source->at));
@@ -224,24 +224,24 @@ static bool read_vertex(struct join *join, size_t facet, unsigned *index)
                                     "xyz"[axis]);
         source->at += FLOAT_BYTES;
     }
-    return join_vertex(join, position, index);
+    return weld_vertex(weld, position, index);
 }
 
-static bool read_facets(struct join *join)
+static bool read_facets(struct weld *weld)
 {
-    struct mesh_source *source = join->build->source;
+    struct mesh_source *source = weld->build->source;
     source->at = source->begin + HEADER_BYTES;
     for (size_t facet = 0; source->at < source->end; facet++) {
         const unsigned char *begin = source->at;
         unsigned corner[3];
         source->at += NORMAL_BYTES;
         for (int i = 0; i < 3; i++)
-            if (!read_vertex(join, facet, &corner[i]))
+            if (!read_vertex(weld, facet, &corner[i]))
                 return false;
-        if (!mesh_add_face(join->build, corner))
+        if (!mesh_add_face(weld->build, corner))
             return false;
         source->at = begin + FACET_BYTES;
-        mesh_tell(source);
+        mesh_report_progress(source);
     }
     return true;
 }
@@ -249,11 +249,11 @@ static bool read_facets(struct join *join)
 bool mesh_stl_binary(struct mesh_source *source, struct mesh *out)
 {
     struct mesh_build build = {.source = source, .mesh = out};
-    struct join join = {.build = &build};
+    struct weld weld = {.build = &build};
     if (!mesh_is_stl_binary(source))
         return refuse_size(source);
-    const bool good = read_facets(&join);
-    join_close(&join);
+    const bool good = read_facets(&weld);
+    weld_close(&weld);
     mesh_fit(&build);
     return good;
 }

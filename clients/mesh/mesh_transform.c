@@ -3,8 +3,9 @@
 #include <float.h>
 #include <math.h>
 
-/* sin x and cos x by their power series, |x| <= pi / 4: what is left out is below 2^-60. The same
- * operations everywhere, which libraries do not promise. */
+/* sin x (first = 1) or cos x (first = 0) by the power series, for |x| <= pi / 4. The truncation
+ * error is below 2^-60. The operations are fixed, so the result does not depend on the math
+ * library. */
 static double series(double x, int first)
 {
     double term = first ? x : 1, sum = term;
@@ -18,9 +19,9 @@ static double series(double x, int first)
 /* Cosine and sine of an angle in degrees. */
 static void turn_of(double degrees, double turn[2])
 {
-    const double per_degree = 0.017453292519943295; /* the double next to pi / 180 */
+    const double per_degree = 0.017453292519943295; /* the double nearest to pi / 180 */
     const double full = fmod(degrees, 360), quarters = rint(full / 90);
-    const double x = (full - 90 * quarters) * per_degree; /* exact but for the product */
+    const double x = (full - 90 * quarters) * per_degree; /* exact except for the product */
     const double cosine = series(x, 0), sine = series(x, 1);
     switch ((int) quarters & 3) {
     case 0: turn[0] = cosine, turn[1] = sine; break;

@@ -1,6 +1,6 @@
-/* Where a mesh is put: steps, each applied to what the ones before it left. Every coordinate is
- * rounded as it is computed, in one fixed order of operations, so that the mesh that comes out is
- * the same bits on every machine. What is asked of it afterwards is exact for these bits. */
+/* Transforms a mesh by a sequence of steps. Every coordinate is rounded in a fixed order of
+ * operations, so the result has the same bits on every machine. Queries are exact for these bits.
+ */
 #ifndef MESH_TRANSFORM_H
 #define MESH_TRANSFORM_H
 
@@ -10,8 +10,8 @@ enum mesh_step_kind { MESH_SCALE, MESH_ROTATE, MESH_TRANSLATE, MESH_MIRROR };
 
 struct mesh_step {
     enum mesh_step_kind kind;
-    int axis;         /* of ROTATE and MIRROR: 0, 1, 2 */
-    double number[3]; /* SCALE: factors; TRANSLATE: the way; ROTATE: [0], degrees */
+    int axis;         /* of ROTATE and MIRROR: 0 (x), 1 (y), 2 (z) */
+    double number[3]; /* SCALE: factors; TRANSLATE: displacement; ROTATE: [0], degrees */
 };
 
 enum { MESH_STEPS_MAX = 32 };
@@ -21,10 +21,10 @@ struct mesh_transform {
     struct mesh_step step[MESH_STEPS_MAX];
 };
 
-/* About an axis, by the rule of the right hand; by multiples of 90 degrees exactly. About the
- * origin, as mirrors (x becomes -x) and scales are.
- * On output: the index of the first vertex with a coordinate beyond half of the largest double, so
- * that edges might be longer than doubles go; SIZE_MAX if there is none. */
+/* Applies the steps in order. Rotations follow the right-hand rule; multiples of 90 degrees are
+ * exact. Rotations, mirrors (x becomes -x) and scales are about the origin. Returns SIZE_MAX; or
+ * the index of the first vertex with a coordinate beyond half of the largest double, with which the
+ * length of an edge might overflow. */
 size_t mesh_transform(const struct mesh_transform *transform, struct mesh *mesh);
 
 #endif

@@ -37,7 +37,7 @@ static void write_vertex(FILE *out, const double position[3])
     fwrite(bytes, 1, (size_t) (at - bytes), out);
 }
 
-/* colour: may be NULL. */
+/* colour: red, green, blue; may be NULL. */
 static void write_face(FILE *out, const unsigned corner[3], const unsigned char *colour)
 {
     enum { INDEX_BYTES = 4 };

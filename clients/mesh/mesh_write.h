@@ -1,4 +1,4 @@
-/* Writing a mesh as PLY. */
+/* Writes a mesh as PLY. */
 #ifndef MESH_WRITE_H
 #define MESH_WRITE_H
 
@@ -6,9 +6,9 @@
 
 #include <stdio.h>
 
-/* Binary, little-endian on every machine; coordinates are doubles, so that reading it gives the
- * same bits. face_colour: red, green and blue of each face, or NULL. Whether all was written is
- * for the caller to ask, with ferror() and what closing says. */
+/* Writes binary little-endian PLY with double coordinates, so that reading it gives the same bits.
+ * face_colour: red, green, blue of each face; NULL: none. On output: ferror(out) is set if writing
+ * failed; the caller also checks fclose(). */
 void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*face_colour)[3]);
 
 #endif

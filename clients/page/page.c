@@ -56,7 +56,7 @@ void page_close(struct page *page)
     free(page);
 }
 
-/* Logs are read in turn: the latest is searched first. */
+/* Logs are read one after the other: the latest is searched first. */
 static size_t log_index(struct page *page, const char *path)
 {
     for (size_t i = page->log_count; i > 0; i--)
@@ -75,7 +75,7 @@ static int64_t total(const int64_t count[OUTCOMES])
     return sum;
 }
 
-static void stretch(int64_t *first, int64_t *last, int64_t utime, bool is_first)
+static void extend(int64_t *first, int64_t *last, int64_t utime, bool is_first)
 {
     *first = is_first || utime < *first ? utime : *first;
     *last = is_first || utime > *last ? utime : *last;
@@ -86,7 +86,7 @@ static size_t bytes(const struct page *page)
     return page->events.used + page->shapes.json.used;
 }
 
-/* Once false, it stays false. */
+/* Whether the next query is within the limits. Once false, it stays false. */
 static bool is_within(const struct page *page)
 {
     return page->kept < PAGE_EVENTS_MAX && bytes(page) < PAGE_BYTES_MAX;
@@ -99,9 +99,9 @@ static bool may_keep(const struct page *page, enum replay_outcome outcome)
             bytes(page) - page->bytes_within < PAGE_DIFFERENCES_BYTES_MAX);
 }
 
-static void leave_out(struct page *page, const struct replayed *replayed)
+static void omit(struct page *page, const struct replayed *replayed)
 {
-    stretch(&page->left_first, &page->left_last, replayed->utime, total(page->left_out) == 0);
+    extend(&page->left_first, &page->left_last, replayed->utime, total(page->left_out) == 0);
     page->left_out[replayed->outcome]++;
 }
 
@@ -121,12 +121,12 @@ static void keep(struct page *page, const struct replayed *replayed)
 void page_take(struct page *page, const struct replayed *replayed)
 {
     assert((int) replayed->outcome >= 0 && (int) replayed->outcome < OUTCOMES);
-    stretch(&page->first, &page->last, replayed->utime, total(page->count) == 0);
+    extend(&page->first, &page->last, replayed->utime, total(page->count) == 0);
     page->count[replayed->outcome]++;
     if (may_keep(page, replayed->outcome))
         keep(page, replayed);
     else
-        leave_out(page, replayed);
+        omit(page, replayed);
 }
 
 /* ---- Writing --------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 #include "page_event.h"
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "page_pairs.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static bool is_orientation(const double *orientation, int count)
     return count == 0 || (largest > 0 && are_finite(orientation, count));
 }
 
-/* Whether there are frames and all are valid: logs hold refused queries too. */
+/* Whether there are frames and all are valid: logs also contain queries that were refused. */
 static bool has_frames(const struct geometry *geometry, int dim)
 {
     struct geometry_reader reader = geometry_begin(geometry);
@@ -101,7 +101,7 @@ static void write_placements(const struct replayed *replayed, struct page_shapes
 
 /* ---- Results --------------------------------------------------------------------------------- */
 
-/* Without the end of the object. */
+/* Begins the object of a result; the caller ends it. */
 static void begin_result(struct json_writer *out, const char *key, int32_t status,
                          const char *detail, int32_t method, int64_t compute_ns)
 {
@@ -156,7 +156,8 @@ static bool certificates_differ(const struct pair_result *a, const struct pair_r
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
-/* null: infinite, outward; a string: a value that only inexact methods give. */
+/* Writes an end of a box as a number, as null if it is infinite and outward, or as a string for
+ * other values, which only inexact methods give. */
 static void write_end(struct json_writer *out, double value, int end)
 {
     if (isfinite(value) || value == (end ? INFINITY : -INFINITY))
@@ -256,7 +257,7 @@ static void write_query(const struct replayed *replayed, struct json_writer *out
             json_number(out, "margin", scene->margin);
         json_integer(out, "first", scene->first_pair);
         json_integer(out, "split", scene->split);
-        json_integer(out, "total", any_query_pairs(scene));
+        json_integer(out, "total", logged_query_pairs(scene));
     }
 }
 

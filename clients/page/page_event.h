@@ -5,7 +5,8 @@
 #include "page_shapes.h"
 #include "replayed.h"
 
-/* Of one query. Pairs that differ are kept first, then those in contact, then the others. */
+/* Limit on the pairs of one query. Pairs that differ are kept first, then those in contact, then
+ * the others. */
 enum { PAGE_PAIRS_MAX = 1000 };
 
 /* Writes an object. log: the index of its log. Members:

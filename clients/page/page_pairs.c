@@ -1,6 +1,6 @@
 #include "page_pairs.h"
 
-#include "any_query.h"
+#include "logged_query.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,7 +63,7 @@ static bool next_of_pair(struct page_pairs *pairs, struct page_pair *out)
 
 /* ---- A scene --------------------------------------------------------------------------------- */
 
-/* Of the pairs that are kept. */
+/* Number of listed pairs in the struct. */
 static int32_t listed_count(const struct scene_query *query)
 {
     const int32_t count = query->index_count / 2;
@@ -75,7 +75,8 @@ static bool has_verdict(const struct page_place *place)
     return place->result && place->verdict < place->result->verdict_count;
 }
 
-/* The next verdict of the result, with its times, its box and its gap. */
+/* Returns the next verdict of the result, with its times, box and gap, and advances the position.
+ */
 static struct page_side take(struct page_place *place)
 {
     const struct scene_result *result = place->result;
@@ -101,7 +102,7 @@ static struct page_side take(struct page_place *place)
     return side;
 }
 
-static struct page_side nothing(void)
+static struct page_side no_answer(void)
 {
     struct page_side side;
     memset(&side, 0, sizeof side);
@@ -118,12 +119,12 @@ static bool next_listed(struct page_pairs *pairs, struct page_pair *out)
         return false;
     out->a = query->pair[query->first_pair + done][0];
     out->b = query->pair[query->first_pair + done][1];
-    out->then = has_verdict(&pairs->then) ? take(&pairs->then) : nothing();
-    out->now = has_verdict(&pairs->now) ? take(&pairs->now) : nothing();
+    out->then = has_verdict(&pairs->then) ? take(&pairs->then) : no_answer();
+    out->now = has_verdict(&pairs->now) ? take(&pairs->now) : no_answer();
     return true;
 }
 
-/* Whether the pair that the result names next precedes (a, b), or none was found so far. */
+/* Whether the next pair that the result names precedes (a, b), or there is no (a, b) so far. */
 static bool comes_before(const struct page_place *place, bool found, unsigned a, unsigned b)
 {
     if (!has_verdict(place) || !place->result->names_pairs)
@@ -135,13 +136,13 @@ static bool comes_before(const struct page_place *place, bool found, unsigned a,
 static struct page_side side_of_named(const struct scene_query *query, struct page_place *place,
                                       unsigned a, unsigned b)
 {
-    struct page_side side = nothing();
+    struct page_side side = no_answer();
     if (!place->result)
         return side;
     if (has_verdict(place) && place->result->names_pairs &&
         place->result->pair[place->verdict][0] == a && place->result->pair[place->verdict][1] == b)
         return take(place);
-    const int64_t number = any_query_pair_number(query, a, b);
+    const int64_t number = logged_query_pair_number(query, a, b);
     side.answered = number >= query->first_pair && number < place->result->end_pair;
     side.verdict = side.answered ? FMB_SEPARATED : 0;
     return side;

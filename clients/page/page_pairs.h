@@ -1,6 +1,6 @@
-/* The pairs of a query with both results: the recorded one (then) and that of the replay (now). Of
- * a pair query, its pair; of listed pairs, those that a result answers; of all and across, those
- * that a result names: all others are separated. */
+/* Iterates over the pairs of a query with both results: the recorded one (then) and that of the
+ * replay (now). For a pair query: its pair. For listed pairs: those that a result answers. For all
+ * and across: those that a result names; all others are separated. */
 #ifndef PAGE_PAIRS_H
 #define PAGE_PAIRS_H
 
@@ -18,7 +18,7 @@ struct page_side {
 };
 
 struct page_pair {
-    unsigned a, b; /* placements; of a hostile log perhaps beyond those of the query */
+    unsigned a, b; /* indices of placements; in a hostile log perhaps out of range */
     struct page_side then, now;
     bool differs; /* both answer the pair, differently */
 };
@@ -37,7 +37,7 @@ struct page_pairs {
 
 void page_pairs_begin(const struct replayed *replayed, struct page_pairs *out);
 
-/* On output: true and *out, or false after the last one. */
+/* Returns true and the next pair, or false after the last one. */
 bool page_pairs_next(struct page_pairs *pairs, struct page_pair *out);
 
 /* Counts the pairs that the result answers with each verdict, including those it does not name. On

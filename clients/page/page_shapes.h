@@ -1,4 +1,4 @@
-/* Bodies in body coordinates, each kept once: a rigid body has the same frames wherever it goes. */
+/* Bodies in body coordinates, each stored once: a rigid body has the same frames in every query. */
 #ifndef PAGE_SHAPES_H
 #define PAGE_SHAPES_H
 
@@ -8,14 +8,14 @@
 struct page_shapes {
     struct page_json json; /* {"dim": ..., "frames": [[shape, numbers...], ...]}, ... */
     size_t count;
-    struct page_shape *shape; /* owned: a table by their encoding; NULL: empty */
+    struct page_shape *shape; /* owned: hash table by encoding; NULL: empty */
 };
 
-/* On output: no shapes. */
+/* Opens an empty set. Exits with status 1 if memory is exhausted, as page_shapes_index() does. */
 void page_shapes_open(struct page_shapes *out);
 void page_shapes_close(struct page_shapes *shapes);
 
-/* In: a geometry, all of whose frames can be read. Returns its index. */
+/* Adds a geometry if it is new. In: all its frames are valid. Returns its index. */
 size_t page_shapes_index(struct page_shapes *shapes, const struct geometry *geometry);
 
 #endif

@@ -2,11 +2,11 @@
 
 #include <string.h>
 
-/* Replaced by the data. */
+/* Position of the data in the page. */
 static const char mark[] = "@DATA@";
 enum { MARK_LENGTH = sizeof mark - 1 };
 
-/* The Makefile checks that the page has one mark. */
+/* The Makefile checks that the page contains the mark once. */
 static size_t find_mark(const struct page_template *page)
 {
     size_t at = 0;

@@ -9,10 +9,10 @@ enum replay_outcome {
     REPLAY_SAME,
     REPLAY_DIFFERENT,
     /* Nothing to compare: */
-    REPLAY_BUSY,      /* the service was busy */
-    REPLAY_UNKNOWN,   /* the service did not hold a body then */
-    REPLAY_UNDEFINED, /* a handle that the log does not define */
-    REPLAY_ALONE,     /* no result was recorded */
+    REPLAY_BUSY,       /* the service was busy */
+    REPLAY_UNKNOWN,    /* the service did not hold a body then */
+    REPLAY_UNDEFINED,  /* a handle that the log does not define */
+    REPLAY_UNRECORDED, /* no result was recorded */
     REPLAY_OUTCOMES
 };
 

@@ -179,7 +179,7 @@ static double legend_frame(double x, double y, enum fmb_verdict verdict, FILE *o
             "<rect class=\"front\" x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"12\" fill=\"%s\" "
             "stroke=\"%s\"/>\n",
             x, y - 6, svg_panel_colour(verdict, 0.8, fill), svg_panel_colour(verdict, 0, stroke));
-    return legend_text(x + 20, y, verdict ? fmb_verdict_name((int) verdict) : "not asked", out);
+    return legend_text(x + 20, y, verdict ? fmb_verdict_name((int) verdict) : "not tested", out);
 }
 
 static void draw_legend(const struct sheet *sheet, FILE *out)

@@ -228,7 +228,7 @@ static void write_label(const struct drawing *drawing, const struct scene_body *
 
 static const char *verdict_text(enum fmb_verdict verdict)
 {
-    return verdict ? fmb_verdict_name((int) verdict) : "not asked";
+    return verdict ? fmb_verdict_name((int) verdict) : "not tested";
 }
 
 static void draw_facet(const struct drawing *drawing, const struct facet *facet)

@@ -1,6 +1,6 @@
 #include "record_bodies.h"
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "clock.h"
 #include "keyed_hash.h"
 #include "log_write.h"
@@ -85,7 +85,7 @@ struct record_bodies {
     struct record_bodies_counts counts;
     struct hasher *hasher;
     union {
-        struct any_query query;
+        struct logged_query query;
         struct pair_result pair_result;
         struct scene_result scene_result;
         struct definition_query definition_query;
@@ -197,10 +197,10 @@ static void await_result(struct record_bodies *bodies, const struct query_header
     bodies->unknown_capacity = 0;
 }
 
-static void take_query(struct record_bodies *bodies, struct any_query *query)
+static void take_query(struct record_bodies *bodies, struct logged_query *query)
 {
     int32_t count;
-    const struct placement *placement = any_query_placements(query, &count);
+    const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
         if (placement_by_handle(&placement[i]))
             note_handle(bodies, &placement[i].handle);

@@ -4,7 +4,7 @@
 #include "escape.h"
 #include "json_write.h"
 #include "number.h"
-#include "say.h"
+#include "stderr_ready.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -169,7 +169,7 @@ void record_line_show(struct record_line *line, int64_t now_ns, const char *path
                       int64_t bytes, int64_t lost)
 {
     const int64_t passed = now_ns - line->at_ns;
-    if (!line->enabled || passed < every_ns || !say_now())
+    if (!line->enabled || passed < every_ns || !stderr_ready())
         return;
     char text[LINE_MAX_CHARACTERS], number[4][NUMBER_TEXT_MAX];
     const double seconds = 1e-9 * (double) passed;

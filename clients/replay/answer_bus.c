@@ -1,3 +1,29 @@
+/* Map.
+ *
+ * In: answer_bus_query() for each query of the log, in the order of the log, and
+ * answer_bus_supply() for bodies that the service has to hold before a query. Out: one call of the
+ * sink for each query, with the encoded result as a recorded one: with the ids of the query in the
+ * log.
+ *
+ * Steps of a query:
+ *   1. wait_for_turn() handles results until the query is due at the pace of the log (due_at()),
+ *      and the request engine has capacity for it and its expected result (bytes_of()).
+ *   2. send() takes a slot and passes the query to the engine (fmb_client_raw.h), which assigns
+ *      its own ids, repeats lost queries and pauses while the service is busy. A query that the
+ *      engine would not accept is answered here, with the status of a service (refuse()).
+ *   3. step() runs the engine, which calls on_result() for each result, or with a negative status
+ *      after the last timeout.
+ *   4. on_result() decodes the result, frees the slot and calls deliver(), which restores the ids
+ *      and calls the sink. The sink must not send: a query to be repeated is passed again later by
+ *      the caller.
+ *
+ * The end. stop() records the first reason: a signal, no service, or a failed bus. From then on no
+ * query is sent and the sink is not called; items under way that are no longer in the table of
+ * match.h are freed here.
+ *
+ * Not here: matching and comparison (replay_match.c), which bodies a service lacks
+ * (replay_answer.c), timeouts and repetition (client library). Tested by
+ * tests/system/replay_bus.bats and replay_set.bats. */
 #include "answer_bus.h"
 
 #include "allocate.h"
@@ -15,20 +41,21 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What is read is counted, and signals are looked for once in so many. */
-enum { LOOK_EVERY = 256 };
+/* Signals are checked once in so many calls of answer_bus_is_running(). */
+enum { POLL_EVERY = 256 };
 
-/* Where the ids stand in queries and results, and the service's id in results. */
+/* Offsets of the client id in queries and results, with the sequence number after it, and of the
+ * service's id in results. */
 enum { CLIENT_AT = 16, SERVER_AT = 32 };
 
-/* Some 30 years: for ever. */
-static const double most_ns = 1e18;
+/* The longest delay, some 30 years. */
+static const double delay_max_ns = 1e18;
 
 /* A query under way. */
 struct slot {
     struct answer_bus *bus;  /* NULL: the slot is free */
-    struct match_item *item; /* NULL: bodies are supplied */
-    int32_t first_pair;      /* of a scene */
+    struct match_item *item; /* NULL: a query of answer_bus_supply() */
+    int32_t first_pair;      /* of a scene query */
 };
 
 struct answer_bus {
@@ -40,9 +67,9 @@ struct answer_bus {
     struct slot slot[FMB_CLIENT_RAW_WINDOW];
     int under_way;
     int64_t begun_at, first_utime, server_id;
-    unsigned looked;
+    unsigned polls;
     struct tally_bus counts;
-    struct any_query query;
+    struct logged_query query;
     union {
         struct pair_result pair;
         struct scene_result scene;
@@ -50,22 +77,23 @@ struct answer_bus {
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-/* After the end: an item in the table is freed with it. NULL: bodies were supplied. */
-static void drop(struct match_item *item)
+/* Frees an item that will not be answered, unless the table owns it. NULL: none. */
+static void free_unowned(struct match_item *item)
 {
-    if (item && !item->waits)
+    if (item && !item->in_table)
         match_free(item);
 }
 
-static bool goes_on(const struct answer_bus *bus)
+static bool is_running(const struct answer_bus *bus)
 {
     return bus->counts.end == ANSWER_BUS_NO_END;
 }
 
-/* The first reason stays. place: of the query that was not answered; NULL: of any one under way. */
+/* Ends the replay; only the first call counts. place: of the query without an answer; NULL: of some
+ * query under way. */
 static void stop(struct answer_bus *bus, enum answer_bus_end end, const struct match_place *place)
 {
-    if (!goes_on(bus))
+    if (!is_running(bus))
         return;
     bus->counts.end = end;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW && !place; i++)
@@ -79,8 +107,9 @@ static void stop(struct answer_bus *bus, enum answer_bus_end end, const struct m
 
 /* ---- Results ---- */
 
-/* The result as the log would have it, with the ids of the query there. */
-static void give(struct answer_bus *bus, struct match_item *item, struct answered *answered)
+/* Passes a result to the sink. In: the result in bus->bytes. Restores the ids that the query has in
+ * the log. */
+static void deliver(struct answer_bus *bus, struct match_item *item, struct new_result *answered)
 {
     const int64_t id[] = {item->key.client_id, item->key.sequence_number};
     for (int i = 0; i < 2; i++)
@@ -90,18 +119,19 @@ static void give(struct answer_bus *bus, struct match_item *item, struct answere
     bus->counts.answered += bus->sink(bus->user, item, answered);
 }
 
-static void note_service(struct answer_bus *bus)
+static void count_service(struct answer_bus *bus)
 {
     const int64_t server_id = (int64_t) big_endian_64(bus->bytes + SERVER_AT);
     bus->counts.services += bus->counts.services == 0 || server_id != bus->server_id;
     bus->server_id = server_id;
 }
 
-static void read_answered(struct answer_bus *bus, const struct slot *slot, struct answered *out)
+static void decode_result(struct answer_bus *bus, const struct slot *slot, struct new_result *out)
 {
     const uint32_t size = (uint32_t) out->size;
     if (slot->item->key.kind == LOG_PAIR_QUERY) {
-        wire_read_pair_result(bus->bytes, size, &bus->result.pair); /* the library has checked it */
+        wire_read_pair_result(bus->bytes, size,
+                              &bus->result.pair); /* cannot fail: the library has decoded it */
         out->compute_ns = bus->result.pair.compute_ns;
         out->pairs = out->status == FMB_OK;
     } else {
@@ -116,52 +146,52 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     struct slot *slot = user;
     struct answer_bus *bus = slot->bus;
     struct match_item *item = slot->item;
-    struct answered answered = {.size = result->size, .status = result->status};
+    struct new_result answered = {.size = result->size, .status = result->status};
     bus->under_way--;
     if (result->status < 0) {
-        stop(bus, result->status == FMB_CLIENT_NO_BUS ? ANSWER_BUS_FAILED : ANSWER_BUS_NOBODY,
+        stop(bus, result->status == FMB_CLIENT_NO_BUS ? ANSWER_BUS_FAILED : ANSWER_BUS_NO_SERVICE,
              item ? &item->place : NULL);
     } else if (item) {
         memcpy(bus->bytes, result->bytes, result->size);
-        note_service(bus);
-        read_answered(bus, slot, &answered);
+        count_service(bus);
+        decode_result(bus, slot, &answered);
     }
     slot->bus = NULL;
-    if (!goes_on(bus))
-        drop(item);
+    if (!is_running(bus))
+        free_unowned(item);
     else if (item)
-        give(bus, item, &answered);
+        deliver(bus, item, &answered);
 }
 
 /* ---- Waiting ---- */
 
-/* Handles what comes, until then at most. */
+/* Runs the engine until something happens, or the time `until`, nanoseconds of clock_ns(). */
 static void step(struct answer_bus *bus, int64_t until)
 {
     const double seconds = 1e-9 * (double) (until - clock_ns());
     if (fmb_client_raw_step(bus->client, bus->signals, seconds > 0 ? seconds : 0) < 0)
         stop(bus, ANSWER_BUS_FAILED, NULL);
-    bus->looked = LOOK_EVERY - 1;
-    answer_bus_goes_on(bus);
+    bus->polls = POLL_EVERY - 1;
+    answer_bus_is_running(bus);
 }
 
 void answer_bus_finish(struct answer_bus *bus)
 {
-    while (goes_on(bus) && bus->under_way > 0)
+    while (is_running(bus) && bus->under_way > 0)
         step(bus, clock_ns() + 1000000000);
 }
 
-bool answer_bus_goes_on(struct answer_bus *bus)
+bool answer_bus_is_running(struct answer_bus *bus)
 {
     struct pollfd source = {.fd = bus->signals, .events = POLLIN};
-    if (++bus->looked % LOOK_EVERY == 0 && poll(&source, 1, 0) > 0)
+    if (++bus->polls % POLL_EVERY == 0 && poll(&source, 1, 0) > 0)
         stop(bus, ANSWER_BUS_SIGNAL, NULL);
-    return goes_on(bus);
+    return is_running(bus);
 }
 
 /* ---- Queries ---- */
 
-/* When a query is due. Times of a log may be anything. */
+/* When a query is due, nanoseconds of clock_ns(). Times of a log may have any value. */
 static int64_t due_at(struct answer_bus *bus, int64_t utime)
 {
     if (bus->begun_at == 0) {
@@ -171,20 +201,22 @@ static int64_t due_at(struct answer_bus *bus, int64_t utime)
     if (bus->options.speed == 0)
         return bus->begun_at;
     const double us = (double) utime - (double) bus->first_utime;
-    return bus->begun_at + (int64_t) fmin(fmax(0, 1000 * us / bus->options.speed), most_ns);
+    return bus->begun_at + (int64_t) fmin(fmax(0, 1000 * us / bus->options.speed), delay_max_ns);
 }
 
 static void wait_for_turn(struct answer_bus *bus, const struct match_place *place, size_t bytes)
 {
     const int64_t due = due_at(bus, place->utime);
     int64_t time;
-    while (goes_on(bus) && ((time = clock_ns()) < due || !fmb_client_raw_ready(bus->client, bytes)))
+    while (is_running(bus) &&
+           ((time = clock_ns()) < due || !fmb_client_raw_ready(bus->client, bytes)))
         step(bus, time < due ? due : time + 1000000000);
     if (bus->options.speed > 0 && clock_ns() - due > bus->counts.late_ns)
         bus->counts.late_ns = clock_ns() - due;
 }
 
-/* Bytes of the query or its result, as a rule: contacts are few. */
+/* The larger of the query and its expected result, bytes. A result with many contacts may be
+ * larger. */
 static size_t bytes_of(const struct answer_bus *bus, uint32_t size)
 {
     const struct scene_query *scene = &bus->query.scene;
@@ -202,7 +234,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
 {
     struct slot *slot = bus->slot;
     while (slot->bus)
-        slot++; /* the engine takes no more than there are slots */
+        slot++; /* there are as many slots as the engine has requests */
     *slot = (struct slot){bus, item,
                           bus->query.kind == LOG_SCENE_QUERY ? bus->query.scene.first_pair : 0};
     const int status = fmb_client_raw_send(
@@ -214,14 +246,14 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    drop(item);
+    free_unowned(item);
 }
 
-/* What a service says of a query that the engine does not send: it is too long, or its own ids,
- * which the engine replaces, are out of range. */
+/* Answers a query that the engine does not send, with the status of a service: it is too long, or
+ * its ids in the log, which the engine replaces, are out of range. */
 static void refuse(struct answer_bus *bus, struct match_item *item, enum fmb_status status)
 {
-    struct answered answered = {.status = status};
+    struct new_result answered = {.status = status};
     if (item->key.kind == LOG_PAIR_QUERY) {
         bus->result.pair = (struct pair_result){.utime = item->key.utime, .status = status};
         answered.size = wire_write_pair_result(&bus->result.pair, bus->bytes);
@@ -231,15 +263,15 @@ static void refuse(struct answer_bus *bus, struct match_item *item, enum fmb_sta
         bus->result.scene.status = status;
         answered.size = wire_write_scene_result(&bus->result.scene, bus->bytes);
     }
-    give(bus, item, &answered);
+    deliver(bus, item, &answered);
 }
 
 void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint32_t size)
 {
-    any_query_read(&bus->query, LOG_SCENE_QUERY, bytes, size);
-    while (goes_on(bus) && !fmb_client_raw_ready(bus->client, size))
+    logged_query_read(&bus->query, LOG_SCENE_QUERY, bytes, size);
+    while (is_running(bus) && !fmb_client_raw_ready(bus->client, size))
         step(bus, clock_ns() + 1000000000);
-    if (!goes_on(bus))
+    if (!is_running(bus))
         return;
     bus->counts.supplied++;
     send(bus, NULL, bytes, size, size);
@@ -250,11 +282,11 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
                       uint32_t size)
 {
     const bool ids_ok = query_id_ok(item->key.client_id) && query_id_ok(item->key.sequence_number);
-    any_query_read(&bus->query, (enum log_kind) item->key.kind, bytes, size);
+    logged_query_read(&bus->query, (enum log_kind) item->key.kind, bytes, size);
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
-    if (!goes_on(bus)) {
-        drop(item);
+    if (!is_running(bus)) {
+        free_unowned(item);
         return;
     }
     bus->counts.whole += item->sent_whole;
@@ -269,8 +301,8 @@ struct tally_bus answer_bus_counts(const struct answer_bus *bus)
 {
     const struct fmb_client_counts client = fmb_client_get_counts(bus->client);
     struct tally_bus counts = bus->counts;
-    counts.again = (int64_t) client.repeated;
-    counts.nonsense = (int64_t) client.malformed;
+    counts.resent = (int64_t) client.repeated;
+    counts.malformed = (int64_t) client.malformed;
     return counts;
 }
 
@@ -304,7 +336,7 @@ void answer_bus_close(struct answer_bus *bus)
         return;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         if (bus->slot[i].bus)
-            drop(bus->slot[i].item);
+            free_unowned(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

@@ -1,10 +1,11 @@
-/* Answers the queries of a log by a service on the bus; answer_now.h does so in this process. Uses
- * the request engine of the client library, which keeps many queries under way, repeats lost ones
- * and pauses when the service is busy. This module adds the pace, and translates the results. */
+/* Answers the queries of a log by a service on the bus; local_answerer.h does so in this process.
+ * Uses the request engine of the client library, which keeps many queries under way, repeats lost
+ * ones and pauses when the service is busy. This module adds the pace of the log, and restores the
+ * ids. For one thread at a time. */
 #ifndef ANSWER_BUS_H
 #define ANSWER_BUS_H
 
-#include "answer_now.h"
+#include "local_answerer.h"
 #include "match.h"
 #include "tally.h"
 
@@ -12,41 +13,47 @@ struct answer_bus_options {
     const char *url;    /* NULL: LCM_DEFAULT_URL, or this host */
     const char *prefix; /* of the channels; "": none */
     double speed;       /* factor on the pace of the log; 0: as fast as possible */
-    double timeout;     /* seconds, as in fmb_client_options */
-    int retries;        /* a query is given up after retries + 1 timeouts */
+    double timeout;     /* seconds; as in fmb_client_options */
+    int retries;        /* a query fails after retries + 1 timeouts */
 };
 
 /* Called when a query was answered. item: as passed to answer_bus_query(). Returns whether the
  * answer is final; false: the query will be passed again. */
-typedef bool answer_bus_sink(void *user, struct match_item *item, const struct answered *answered);
+typedef bool answer_bus_sink(void *user, struct match_item *item,
+                             const struct new_result *answered);
 
 struct answer_bus;
 
-/* NULL: the bus cannot be opened, which was reported on stderr. From then on SIGINT and SIGTERM are
- * blocked and end the replay. Exits with status 1 if memory is exhausted. */
+/* Returns NULL if the bus cannot be opened, which was reported on stderr. From then on SIGINT and
+ * SIGTERM are blocked and end the replay. Exits with status 1 if memory is exhausted. */
 struct answer_bus *answer_bus_open(const struct answer_bus_options *options, answer_bus_sink *sink,
                                    void *user);
 /* bus may be NULL. Frees the items under way that are no longer in the table of match.h. */
 void answer_bus_close(struct answer_bus *bus);
 
-/* These may call the sink for earlier queries. */
+/* The next three functions may call the sink for earlier queries. */
 
 /* Sends a query, whose bytes are copied, when it is due and another may be under way. The item must
  * stay valid until the sink is called. */
 void answer_bus_query(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
                       uint32_t size);
 
-/* Sends a scene query without pairs, so that the service keeps its bodies, and waits until all
+/* Sends a scene query without pairs, so that the service caches its bodies, and waits until all
  * queries under way are answered. */
 void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint32_t size);
 
 /* Waits until all queries are answered. */
 void answer_bus_finish(struct answer_bus *bus);
 
-/* Whether the replay may continue. After its end the sink is no longer called. NOBODY: no service
- * answers. */
-enum answer_bus_end { ANSWER_BUS_NO_END, ANSWER_BUS_SIGNAL, ANSWER_BUS_NOBODY, ANSWER_BUS_FAILED };
-bool answer_bus_goes_on(struct answer_bus *bus);
+/* Whether the replay may continue. After its end the sink is no longer called. NO_SERVICE: no
+ * service answers. */
+enum answer_bus_end {
+    ANSWER_BUS_NO_END,
+    ANSWER_BUS_SIGNAL,
+    ANSWER_BUS_NO_SERVICE,
+    ANSWER_BUS_FAILED
+};
+bool answer_bus_is_running(struct answer_bus *bus);
 
 struct tally_bus answer_bus_counts(const struct answer_bus *bus);
 

@@ -1,7 +1,7 @@
 #include "compare.h"
 
 #include "big_endian.h"
-#include "any_query.h"
+#include "logged_query.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,10 +23,11 @@ static bool same_bits(const double *a, const double *b, int count)
     return memcmp(a, b, (size_t) count * sizeof *a) == 0;
 }
 
-/* Where the difference of two numbers is infinite, or none since both are infinite or no numbers,
- * they are not near; without a tolerance nor are 0 and -0, whose bits are not the same. */
-static bool near(const struct compare_options *options, const double *a, const double *b, int count,
-                 double limit)
+/* Whether numbers differ by at most limit. If the difference is infinite or NaN, they do not,
+ * unless their bits are the same. Without a tolerance the bits are compared, so that 0 and -0
+ * differ. */
+static bool within(const struct compare_options *options, const double *a, const double *b,
+                   int count, double limit)
 {
     if (!(options->tolerance > 0))
         return same_bits(a, b, count);
@@ -36,7 +37,7 @@ static bool near(const struct compare_options *options, const double *a, const d
     return true;
 }
 
-/* The largest magnitude of those that are finite, or most. */
+/* The largest of `most` and the finite magnitudes. */
 static double largest(const double *number, int count, double most)
 {
     for (int i = 0; i < count; i++)
@@ -54,7 +55,7 @@ static bool same_intervals(const struct compare_options *options, double duratio
     if (a->has_contact != b->has_contact)
         return false;
     return !a->has_contact ||
-           near(options, a->contact, b->contact, 2, options->tolerance * duration);
+           within(options, a->contact, b->contact, 2, options->tolerance * duration);
 }
 
 static bool same_boxes(const struct compare_options *options, int dim, const struct fmb_answer *a,
@@ -62,11 +63,11 @@ static bool same_boxes(const struct compare_options *options, int dim, const str
 {
     if (a->has_box != b->has_box)
         return false;
-    const double most =
-        largest(a->box[0], BOX_NUMBERS, largest(b->box[0], BOX_NUMBERS, 0)); /* beyond dim all 0 */
+    const double most = largest(a->box[0], BOX_NUMBERS,
+                                largest(b->box[0], BOX_NUMBERS, 0)); /* numbers beyond dim are 0 */
     const double limit = options->tolerance > 0 ? options->tolerance * most : 0;
     for (int side = 0; side < 2 && a->has_box; side++)
-        if (!near(options, a->box[side], b->box[side], dim, limit))
+        if (!within(options, a->box[side], b->box[side], dim, limit))
             return false;
     return true;
 }
@@ -84,7 +85,7 @@ static bool same_gaps(const struct compare_options *options, const struct fmb_an
     if (!(options->tolerance > 0))
         return query_same_gap(&a->gap, &b->gap);
     const double most = largest_of_gap(&a->gap, largest_of_gap(&b->gap, 0));
-    return near(options, a->gap.bounds, b->gap.bounds, 2, options->tolerance * most);
+    return within(options, a->gap.bounds, b->gap.bounds, 2, options->tolerance * most);
 }
 
 static bool same_certificates(const struct compare_options *options, const char *a, const char *b)
@@ -94,7 +95,7 @@ static bool same_certificates(const struct compare_options *options, const char 
     return a && b && strcmp(a, b) == 0;
 }
 
-/* What the two sides differ in first. False: in nothing. */
+/* Finds the first difference of the two sides. Returns false if there is none. */
 static bool find_difference(const struct compare_options *options, double duration,
                             struct difference *out)
 {
@@ -116,13 +117,13 @@ static bool find_difference(const struct compare_options *options, double durati
     return true;
 }
 
-bool compare_is_of_the_moment(int32_t status)
+bool compare_status_is_transient(int32_t status)
 {
     return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
 }
 
-/* Of two statuses, one of which is of the moment. */
-static enum replay_outcome moment(int32_t then, int32_t now)
+/* The outcome for two statuses, at least one of which is transient. */
+static enum replay_outcome transient_outcome(int32_t then, int32_t now)
 {
     if (then == FMB_UNKNOWN_BODY)
         return REPLAY_UNKNOWN;
@@ -136,7 +137,7 @@ static int dim_of(const struct placement *placement)
 
 /* ---- Pairs ---- */
 
-/* A box or gap of another dimension than the query's is none. */
+/* A box or gap of another dimension than the query's is ignored. */
 static struct difference_side side_of_pair(const struct pair_result *result, int dim)
 {
     struct difference_side side = {
@@ -150,8 +151,8 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
                                   const struct pair_query *query, const struct pair_result *then,
                                   const struct pair_result *now, difference_sink *sink, void *user)
 {
-    if (compare_is_of_the_moment(then->status) || compare_is_of_the_moment(now->status))
-        return moment(then->status, now->status);
+    if (compare_status_is_transient(then->status) || compare_status_is_transient(now->status))
+        return transient_outcome(then->status, now->status);
     const int dim = dim_of(&query->placement[0]);
     struct difference difference = {
         .body_id = {query->placement[0].body_id, query->placement[1].body_id},
@@ -167,12 +168,12 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
 
 /* ---- Scenes ---- */
 
-/* The answers of a result, one after the other. */
+/* A cursor over the answers of a result. */
 struct answers {
     const struct scene_query *query;
     const struct scene_result *result;
-    int32_t next;    /* of verdicts */
-    int32_t contact; /* of times and boxes */
+    int32_t next;    /* index of the next verdict */
+    int32_t contact; /* index of the next contact, in times and boxes */
 };
 
 static bool is_contact(unsigned char verdict)
@@ -180,7 +181,7 @@ static bool is_contact(unsigned char verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* The number of the next pair among all that were requested; beyond all at the end. */
+/* The number of the next pair among all pairs of the query; INT32_MAX at the end. */
 static int32_t number_at(const struct answers *answers)
 {
     if (answers->next >= answers->result->verdict_count)
@@ -188,10 +189,10 @@ static int32_t number_at(const struct answers *answers)
     if (!answers->result->names_pairs)
         return answers->query->first_pair + answers->next;
     const unsigned *pair = answers->result->pair[answers->next];
-    return (int32_t) any_query_pair_number(answers->query, pair[0], pair[1]);
+    return (int32_t) logged_query_pair_number(answers->query, pair[0], pair[1]);
 }
 
-/* The box of a contact, if it is of the query's dimension. */
+/* Copies the box of a contact, if it has the query's dimension. */
 static void take_box(const struct answers *answers, int32_t contact, struct fmb_answer *out)
 {
     const int dim = answers->result->dim;
@@ -200,7 +201,7 @@ static void take_box(const struct answers *answers, int32_t contact, struct fmb_
         out->box[i / dim][i % dim] = answers->result->boxes[2 * dim * contact + i];
 }
 
-/* The same of its gap. */
+/* Copies the gap of a verdict, if it has the query's dimension. */
 static void take_gap(const struct answers *answers, int32_t verdict, struct fmb_answer *out)
 {
     const struct scene_result *result = answers->result;
@@ -210,7 +211,7 @@ static void take_gap(const struct answers *answers, int32_t verdict, struct fmb_
         out->gap = result->gap[verdict];
 }
 
-/* The answer there, and on to the next one. */
+/* Returns the next answer, and advances the cursor. */
 static struct fmb_answer take(struct answers *answers)
 {
     const struct scene_result *result = answers->result;
@@ -226,7 +227,8 @@ static struct fmb_answer take(struct answers *answers)
     return answer;
 }
 
-/* The answer to the pair of this number: what the result names, or separated. */
+/* The answer to the pair with this number: the one that the result names, or separated. Advances
+ * the cursor past it. */
 static struct fmb_answer answer_to(struct answers *answers, int32_t number)
 {
     if (number_at(answers) == number)
@@ -234,14 +236,14 @@ static struct fmb_answer answer_to(struct answers *answers, int32_t number)
     return (struct fmb_answer){.verdict = FMB_SEPARATED};
 }
 
-/* The placements of the pair where the cursor is. */
+/* The placements of the pair at the cursor. */
 static const unsigned *pair_at(const struct answers *answers)
 {
     return answers->result->names_pairs ? answers->result->pair[answers->next]
                                         : answers->query->pair[number_at(answers)];
 }
 
-static struct difference begin_difference(const struct scene_query *query, const unsigned pair[2])
+static struct difference difference_of(const struct scene_query *query, const unsigned pair[2])
 {
     struct difference difference = {.dim = dim_of(&query->placement[0])};
     for (int f = 0; f < 2; f++) {
@@ -262,7 +264,7 @@ static bool compare_answers(const struct compare_options *options, struct answer
         if (number >= end)
             return same;
         struct difference difference =
-            begin_difference(now->query, pair_at(next_then == number ? then : now));
+            difference_of(now->query, pair_at(next_then == number ? then : now));
         difference.then.answer = answer_to(then, number);
         difference.now.answer = answer_to(now, number);
         if (!find_difference(options, now->query->duration, &difference))
@@ -272,12 +274,12 @@ static bool compare_answers(const struct compare_options *options, struct answer
     }
 }
 
-/* Whether what is there of the result are answers to this query: only then may it be walked. Of a
- * result that was answered here, it is. */
-static bool goes_with(const struct scene_query *query, const struct scene_result *result)
+/* Whether the result is consistent with the query, so that its answers can be iterated. Always true
+ * for results of this process. */
+static bool is_consistent(const struct scene_query *query, const struct scene_result *result)
 {
     const bool names = query->which != QUERY_PAIRS_LISTED;
-    if (result->end_pair < query->first_pair || result->end_pair > any_query_pairs(query))
+    if (result->end_pair < query->first_pair || result->end_pair > logged_query_pairs(query))
         return false;
     if (!names)
         return (!result->names_pairs || result->verdict_count == 0) &&
@@ -290,7 +292,7 @@ static bool goes_with(const struct scene_query *query, const struct scene_result
         if (query->which == QUERY_PAIRS_ACROSS &&
             (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
             return false;
-        const int32_t number = (int32_t) any_query_pair_number(query, pair[0], pair[1]);
+        const int32_t number = (int32_t) logged_query_pair_number(query, pair[0], pair[1]);
         if (number <= before || number >= result->end_pair)
             return false;
         before = number;
@@ -298,9 +300,9 @@ static bool goes_with(const struct scene_query *query, const struct scene_result
     return true;
 }
 
-static enum replay_outcome differ_as_a_whole(const struct scene_result *then,
-                                             const struct scene_result *now, difference_sink *sink,
-                                             void *user)
+static enum replay_outcome report_scene_difference(const struct scene_result *then,
+                                                   const struct scene_result *now,
+                                                   difference_sink *sink, void *user)
 {
     const struct difference difference = {.kind = DIFFERENT_STATUS,
                                           .whole = true,
@@ -316,14 +318,14 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
                                    const struct scene_result *now, difference_sink *sink,
                                    void *user)
 {
-    if (compare_is_of_the_moment(then->status) || compare_is_of_the_moment(now->status))
-        return moment(then->status, now->status);
+    if (compare_status_is_transient(then->status) || compare_status_is_transient(now->status))
+        return transient_outcome(then->status, now->status);
     if (then->status != now->status)
-        return differ_as_a_whole(then, now, sink, user);
+        return report_scene_difference(then, now, sink, user);
     if (now->status != FMB_OK)
         return REPLAY_SAME;
-    if (!goes_with(query, then) || !goes_with(query, now))
-        return differ_as_a_whole(then, now, sink, user);
+    if (!is_consistent(query, then) || !is_consistent(query, now))
+        return report_scene_difference(then, now, sink, user);
     struct answers of_then = {.query = query, .result = then};
     struct answers of_now = {.query = query, .result = now};
     const int32_t end = then->end_pair < now->end_pair ? then->end_pair : now->end_pair;
@@ -331,18 +333,19 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
     return same ? REPLAY_SAME : REPLAY_DIFFERENT;
 }
 
-/* ---- Bytes ----
+/* ---- Encoded results ----
  *
- * Both types begin with the fingerprint, what is echoed (8 bytes each: utime, client id, sequence
- * number) and the server id, and end with compute_ns. */
+ * Both types begin with the fingerprint, the echoed utime, client id and sequence number (8 bytes
+ * each) and the server id, and end with compute_ns. */
 
 enum { SERVER_END = 40, COMPUTE_BYTES = 8 };
 
-/* Pairs: the ids of the bodies, their handles, and all that is compared, the status first. */
+/* Pair results: the ids of the bodies, their handles, and all that is compared, the status first.
+ */
 enum { BODIES_END = SERVER_END + 16, HANDLES_END = BODIES_END + 2 * HANDLE_BYTES };
 
-/* Scenes: status, an empty detail where that is OK, method, no unknown bodies; the bytes of the
- * handles; and all that is compared. */
+/* Scene results: status, an empty detail if the status is OK, method, number of unknown bodies (0);
+ * the size of the handles and the handles; and all that is compared. */
 enum { UNKNOWN_END = SERVER_END + 4 + 5 + 4 + 4, COUNT_END = UNKNOWN_END + 4 };
 
 static bool same_bytes(const unsigned char *a, const unsigned char *b, size_t begin, size_t end)
@@ -354,7 +357,7 @@ static bool same_pair_bytes(const unsigned char *then, const unsigned char *now,
 {
     return size >= HANDLES_END + 4 + COMPUTE_BYTES && same_bytes(then, now, 0, 8) &&
            same_bytes(then, now, SERVER_END, BODIES_END) &&
-           !compare_is_of_the_moment((int32_t) big_endian_32(now + HANDLES_END)) &&
+           !compare_status_is_transient((int32_t) big_endian_32(now + HANDLES_END)) &&
            same_bytes(then, now, HANDLES_END, size - COMPUTE_BYTES);
 }
 

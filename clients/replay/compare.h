@@ -1,9 +1,9 @@
 /* Compares two results of one query: the recorded one (then) and the new one (now).
  *
  * They are the same if their statuses are, and the verdicts, intervals, boxes, gaps and
- * certificates of all pairs answered by both: bit for bit, or within a tolerance. The service,
- * times and handles are not compared. A result of a scene may answer fewer pairs than requested
- * (end_pair): pairs that one of the two lacks are not compared. */
+ * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,
+ * times and handles are not compared. The result of a scene may answer fewer pairs than requested
+ * (end_pair): pairs that only one of the two answers are not compared. No shared state. */
 #ifndef COMPARE_H
 #define COMPARE_H
 
@@ -34,7 +34,7 @@ struct difference_side {
 
 struct difference {
     enum difference_kind kind;
-    bool whole; /* of a whole scene (its status), not of a pair */
+    bool whole; /* of the scene as a whole (its status), not of a pair */
     int64_t body_id[2];
     unsigned placement[2]; /* indices in the query */
     int dim;
@@ -42,15 +42,17 @@ struct difference {
 };
 
 struct compare_options {
-    /* 0: bit for bit. Otherwise ends of intervals may differ by tolerance * duration, ends of boxes
-     * by tolerance * (largest number of both boxes), bounds of gaps by tolerance * (largest number
-     * of both gaps), and directions, witness points and certificates are not compared. */
+    /* 0: bit for bit. Otherwise the ends of intervals may differ by tolerance * duration, the ends
+     * of boxes by tolerance * (largest number of both boxes), and the bounds of gaps by tolerance *
+     * (largest number of both gaps). Directions, witness points and certificates are then not
+     * compared. */
     double tolerance;
 };
 
 typedef void difference_sink(void *user, const struct difference *difference);
 
-/* Calls the sink for each difference. Never returns REPLAY_ALONE. */
+/* Call the sink for each difference. In: results that were decoded. Never return REPLAY_UNRECORDED.
+ */
 enum replay_outcome compare_pairs(const struct compare_options *options,
                                   const struct pair_query *query, const struct pair_result *then,
                                   const struct pair_result *now, difference_sink *sink, void *user);
@@ -59,12 +61,12 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
                                    const struct scene_result *now, difference_sink *sink,
                                    void *user);
 
-/* Whether the status depends on the moment, not the query: the service was busy, or did not hold a
- * body. */
-bool compare_is_of_the_moment(int32_t status);
+/* Whether the status depends on the state of the service, not on the query: it was busy, or did not
+ * hold a body. */
+bool compare_status_is_transient(int32_t status);
 
-/* Quick check: true if the compared bytes of two encoded results, the second by wire_write_*(), are
- * the same; false: not known. kind: of the query. */
+/* Quick check: returns true if the compared bytes of two encoded results are the same; false if not
+ * known. In: kind: of the query; now: encoded by wire_write_*(). */
 bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t then_size,
                         const unsigned char *now, size_t now_size);
 

@@ -5,15 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct entry {
-    struct found found;
-    int64_t number;       /* in the order in which they came */
+struct listing_entry {
+    struct located_difference located;
+    int64_t number;       /* order of arrival */
     char *certificate[2]; /* owned; NULL: none */
 };
 
-/* Up to twice the limit, in no order. */
+/* At most twice the limit, unsorted. */
 struct listing {
-    struct entry *entry;
+    struct listing_entry *entry;
     size_t count, capacity, limit;
     int64_t put;
 };
@@ -25,7 +25,7 @@ struct listing *listing_open(int64_t limit)
     return list;
 }
 
-static void free_entry(struct entry *entry)
+static void free_entry(struct listing_entry *entry)
 {
     free(entry->certificate[0]);
     free(entry->certificate[1]);
@@ -43,8 +43,8 @@ void listing_close(struct listing *list)
 
 static int compare_entries(const void *left, const void *right)
 {
-    const struct entry *a = left, *b = right;
-    const struct match_place *x = &a->found.place, *y = &b->found.place;
+    const struct listing_entry *a = left, *b = right;
+    const struct match_place *x = &a->located.place, *y = &b->located.place;
     if (x->log != y->log)
         return x->log < y->log ? -1 : 1;
     if (x->offset != y->offset)
@@ -56,23 +56,24 @@ static char *copy_of(const char *certificate)
 {
     if (!certificate)
         return NULL;
-    char *copy = allocate(FOUND_TEXT_MAX, 1);
-    strncpy(copy, certificate, FOUND_TEXT_MAX - 1);
+    char *copy = allocate(DIFFERENCE_TEXT_MAX, 1);
+    strncpy(copy, certificate, DIFFERENCE_TEXT_MAX - 1);
     return copy;
 }
 
-static void set(struct entry *entry, const struct found *found, int64_t number)
+static void set(struct listing_entry *entry, const struct located_difference *located,
+                int64_t number)
 {
-    struct difference *difference = &entry->found.difference;
-    entry->found = *found;
+    struct difference *difference = &entry->located.difference;
+    entry->located = *located;
     entry->number = number;
-    entry->certificate[0] = copy_of(found->difference.then.certificate);
-    entry->certificate[1] = copy_of(found->difference.now.certificate);
+    entry->certificate[0] = copy_of(located->difference.then.certificate);
+    entry->certificate[1] = copy_of(located->difference.now.certificate);
     difference->then.certificate = entry->certificate[0];
     difference->now.certificate = entry->certificate[1];
 }
 
-/* Sorts, and drops what is beyond the limit. */
+/* Sorts, and removes the differences beyond the limit. */
 static void shorten(struct listing *list)
 {
     if (list->count > 0)
@@ -81,7 +82,7 @@ static void shorten(struct listing *list)
         free_entry(&list->entry[--list->count]);
 }
 
-void listing_put(struct listing *list, const struct found *found)
+void listing_put(struct listing *list, const struct located_difference *located)
 {
     const int64_t number = list->put++;
     if (list->limit == 0)
@@ -89,7 +90,7 @@ void listing_put(struct listing *list, const struct found *found)
     if (list->count == 2 * list->limit)
         shorten(list);
     list->entry = allocate_room(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
-    set(&list->entry[list->count++], found, number);
+    set(&list->entry[list->count++], located, number);
 }
 
 int64_t listing_beyond(const struct listing *list)
@@ -97,9 +98,9 @@ int64_t listing_beyond(const struct listing *list)
     return list->put > (int64_t) list->limit ? list->put - (int64_t) list->limit : 0;
 }
 
-void listing_each(struct listing *list, found_sink *sink, void *user)
+void listing_each(struct listing *list, located_difference_sink *sink, void *user)
 {
     shorten(list);
     for (size_t i = 0; i < list->count; i++)
-        sink(user, &list->entry[i].found);
+        sink(user, &list->entry[i].located);
 }

@@ -2,66 +2,67 @@
 
 #include <stdlib.h>
 
-struct waiting {
+struct pending_handle {
     struct handle handle;
     struct match_item *first, **end;
     UT_hash_handle hh;
 };
 
-struct pending {
-    struct waiting *handles;
+struct pending_queries {
+    struct pending_handle *handles;
 };
 
-struct pending *pending_open(void)
+struct pending_queries *pending_open(void)
 {
-    return allocate(1, sizeof(struct pending));
+    return allocate(1, sizeof(struct pending_queries));
 }
 
 void pending_free_list(struct match_item *first)
 {
     for (struct match_item *item = first, *next; item; item = next) {
         next = item->pending;
-        if (!item->waits)
+        if (!item->in_table)
             match_free(item);
     }
 }
 
-void pending_close(struct pending *pending)
+void pending_close(struct pending_queries *pending)
 {
     while (pending && !pending_is_empty(pending))
         pending_free_list(pending_take(pending, NULL));
     free(pending);
 }
 
-bool pending_is_empty(const struct pending *pending)
+bool pending_is_empty(const struct pending_queries *pending)
 {
     return !pending->handles;
 }
 
-void pending_add(struct pending *pending, const struct handle *handle, struct match_item *item)
+void pending_add(struct pending_queries *pending, const struct handle *handle,
+                 struct match_item *item)
 {
-    struct waiting *waiting;
-    HASH_FIND(hh, pending->handles, handle, sizeof *handle, waiting);
-    if (!waiting) {
-        waiting = allocate(1, sizeof *waiting);
-        waiting->handle = *handle;
-        waiting->end = &waiting->first;
-        HASH_ADD(hh, pending->handles, handle, sizeof *handle, waiting);
+    struct pending_handle *entry;
+    HASH_FIND(hh, pending->handles, handle, sizeof *handle, entry);
+    if (!entry) {
+        entry = allocate(1, sizeof *entry);
+        entry->handle = *handle;
+        entry->end = &entry->first;
+        HASH_ADD(hh, pending->handles, handle, sizeof *handle, entry);
     }
     item->pending = NULL;
-    *waiting->end = item;
-    waiting->end = &item->pending;
+    *entry->end = item;
+    entry->end = &item->pending;
 }
 
-struct match_item *pending_take(struct pending *pending, const struct handle *handle)
+struct match_item *pending_take(struct pending_queries *pending, const struct handle *handle)
 {
-    struct waiting *waiting = pending->handles;
+    struct pending_handle *entry = pending->handles;
     if (handle)
-        HASH_FIND(hh, pending->handles, handle, sizeof *handle, waiting);
-    if (!waiting)
+        HASH_FIND(hh, pending->handles, handle, sizeof *handle, entry);
+    if (!entry)
         return NULL;
-    struct match_item *first = waiting->first;
-    HASH_DELETE(hh, pending->handles, waiting);
-    free(waiting);
+    struct match_item *first = entry->first;
+    HASH_DELETE(hh, pending->handles, entry);
+    free(entry);
     return first;
 }

@@ -26,7 +26,7 @@ void replay_fail_log(struct replay *replay, int log)
 struct tally_channel *replay_channel(struct replay *replay, const struct match_key *key,
                                      const struct match_place *place)
 {
-    /* What a golden holds is counted with the first log. */
+    /* results of the golden log are counted with the first log */
     const int log = place->log < replay->options->log_count ? place->log : 0;
     return &replay->tally[log].channel[tally_channel_of((enum log_kind) key->kind)];
 }
@@ -39,19 +39,19 @@ void replay_refuse(struct replay *replay, enum log_kind kind, const struct messa
                              error);
 }
 
-/* Reads a message once more, into one of the buffers for that. */
+/* Reads a message again into bytes. */
 bool replay_read_again(struct replay *replay, const struct match_key *key,
                        const struct match_place *place, unsigned char bytes[LOG_DATA_MAX],
                        struct message *out)
 {
     *out = (struct message){*key, *place, bytes, 0};
-    if (again_read(replay->again, place->log, place->offset, bytes, &out->size))
+    if (event_reader_read(replay->rereader, place->log, place->offset, bytes, &out->size))
         return true;
     replay_fail_log(replay, place->log);
     return false;
 }
 
-/* ---- The golden: results in the order of their queries ---- */
+/* ---- The golden log: results in the order of their queries ---- */
 
 static void fail_golden(struct replay *replay, int64_t offset, const char *what)
 {
@@ -73,14 +73,14 @@ static const char *read_key(enum log_kind kind, const struct log_event *event, s
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
     struct message result = {.place = {.log = replay->options->log_count,
-                                       .mine = true,
+                                       .in_range = true,
                                        .number = event->number,
                                        .offset = event->offset,
                                        .utime = event->utime}};
     const char *error = read_key(kind, event, &result);
     if (!error)
-        error =
-            judge_read(replay->judge, (enum log_kind) result.key.kind, result.bytes, result.size);
+        error = comparison_read(replay->comparison, (enum log_kind) result.key.kind, result.bytes,
+                                result.size);
     if (error) {
         fail_golden(replay, event->offset, error);
         return;
@@ -89,8 +89,8 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
     replay_take_result(replay, &result);
 }
 
-/* The next one. False: there is none. */
-static bool pull_golden(struct replay *replay)
+/* Processes the next result of the golden log. Returns false if there is none. */
+static bool take_next_golden(struct replay *replay)
 {
     struct log_event event;
     struct log_damage damage;
@@ -122,7 +122,7 @@ static bool in_time(const struct replay *replay, int64_t utime)
 static struct match_place place_of(const struct replay *replay, const struct log_event *event)
 {
     return (struct match_place){.log = replay->input.log,
-                                .mine = in_time(replay, event->utime),
+                                .in_range = in_time(replay, event->utime),
                                 .number = event->number,
                                 .offset = event->offset,
                                 .utime = event->utime};
@@ -133,16 +133,16 @@ static void take_message(struct replay *replay, enum log_kind kind, const struct
     struct message message;
     message.place = place_of(replay, event);
     const char *error = read_key(kind, event, &message);
-    if (error && message.place.mine)
+    if (error && message.place.in_range)
         replay_refuse(replay, kind, &message, error);
     if (error)
         return;
     if (log_kind_is_query(kind)) {
         replay_take_query(replay, &message);
         if (replay->golden)
-            pull_golden(replay);
+            take_next_golden(replay);
     } else if (!replay->golden) {
-        replay_channel(replay, &message.key, &message.place)->results += message.place.mine;
+        replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
         replay_take_result(replay, &message);
     }
 }
@@ -207,15 +207,15 @@ static bool open_goldens(struct replay *replay)
     return true;
 }
 
-/* Where the queries are answered. */
+/* Opens the service or the local answerer. */
 static bool open_answers(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
     if (options->bus)
         replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
     else
-        replay->now = answer_now_open(options->frames, replay->definitions);
-    return replay->bus || replay->now;
+        replay->local = local_answerer_open(options->frames, replay->definitions);
+    return replay->bus || replay->local;
 }
 
 static bool open_replay(struct replay *replay)
@@ -234,13 +234,13 @@ static bool open_replay(struct replay *replay)
         allocate_failed();
     replay->channels = log_channels(options->prefix);
     replay->defined_end = &replay->defined;
-    replay->again = again_open(options->log, options->log_count, options->golden);
+    replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
     replay->pending = pending_open();
-    const struct judge_options judging = {options->compare, options->log,  replay->sink,
-                                          replay->tally,    options->page, replay->definitions,
-                                          replay->again};
-    replay->judge = judge_open(&judging);
+    const struct comparison_options judging = {options->compare, options->log,  replay->sink,
+                                               replay->tally,    options->page, replay->definitions,
+                                               replay->rereader};
+    replay->comparison = comparison_open(&judging);
     return true;
 }
 
@@ -249,12 +249,12 @@ static void close_replay(struct replay *replay)
     if (replay->bus)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
-    answer_now_close(replay->now);
-    judge_close(replay->judge);
+    local_answerer_close(replay->local);
+    comparison_close(replay->comparison);
     pending_free_list(replay->defined);
     pending_close(replay->pending);
     match_close(replay->match);
-    again_close(replay->again);
+    event_reader_close(replay->rereader);
     hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);
     log_close(replay->golden);
@@ -295,10 +295,11 @@ static void read_logs(struct replay *replay)
         replay_fail(replay, replay->options->log[replay->input.log]);
 }
 
-/* After an early end what stands alone says nothing: its partner may be what was not read. */
+/* After an early end unmatched items are not reported: their counterparts may not have been read.
+ */
 static void finish(struct replay *replay)
 {
-    while (replay->golden && pull_golden(replay))
+    while (replay->golden && take_next_golden(replay))
         continue;
     replay_finish_answers(replay);
     if (!replay_has_ended(replay))

@@ -4,13 +4,13 @@
 #define REPLAY_H
 
 #include "answer_bus.h"
-#include "judge.h"
+#include "comparison.h"
 
 struct replay_options {
     char *const *log; /* [log_count] paths, read as one log */
     int log_count;
-    const char *prefix;       /* of the channels; "": none */
-    const char *golden;       /* path of results to compare with; NULL: the recorded ones */
+    const char *prefix; /* of the channels; "": none */
+    const char *golden; /* path of a log with results to compare with; NULL: the recorded ones */
     const char *write_golden; /* path to write the new results to; NULL: none */
     bool force;               /* write_golden may exist already */
     struct compare_options compare;
@@ -20,14 +20,14 @@ struct replay_options {
     const struct answer_bus_options *bus; /* the service that answers; NULL: this process */
 };
 
-/* On output: total bytes of the logs, and the time of their first event, 0 if there is none. False:
- * a log cannot be opened, which was reported on stderr. */
+/* Determines the total size of the logs, bytes, and the time of their first event, 0 if there is
+ * none. Returns false if a log cannot be opened, which was reported on stderr. */
 bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime);
 
-/* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written
- * or was recorded by version 1, or the bus cannot be opened, which was reported on stderr; or if
- * the service was given up or a signal came: see tally[0].bus.end; answers until then are counted.
- */
+/* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written,
+ * a log was recorded by version 1, or the bus cannot be opened; this was reported on stderr. Also
+ * returns false if no service answers or a signal arrived: see tally[0].bus.end. Answers until then
+ * are counted. For one thread at a time. */
 bool replay_run(const struct replay_options *options, const struct replay_sink *sink,
                 struct tally *tally);
 

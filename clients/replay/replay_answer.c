@@ -9,7 +9,7 @@
 /* ---- Answers ---- */
 
 static void count_answer(struct replay *replay, const struct match_item *query,
-                         const struct answered *answered)
+                         const struct new_result *answered)
 {
     struct tally *tally = &replay->tally[query->place.log];
     struct tally_channel *channel = replay_channel(replay, &query->key, &query->place);
@@ -19,9 +19,10 @@ static void count_answer(struct replay *replay, const struct match_item *query,
         histogram_add(&tally->now, answered->compute_ns);
 }
 
-/* Without compute_ns, with which results end: goldens are the same bytes on every machine. */
+/* Sets compute_ns, the last field of results, to 0, so that golden logs have the same bytes on
+ * every machine. */
 static void write_golden(struct replay *replay, const struct match_item *query,
-                         const struct answered *answered)
+                         const struct new_result *answered)
 {
     static const unsigned char no_time[sizeof(int64_t)];
     unsigned char bytes[QUERY_BYTES_MAX];
@@ -34,18 +35,18 @@ static void write_golden(struct replay *replay, const struct match_item *query,
 }
 
 static void take_answer(struct replay *replay, struct match_item *query,
-                        const struct answered *answered)
+                        const struct new_result *answered)
 {
     count_answer(replay, query, answered);
     if (replay->new_golden)
         write_golden(replay, query, answered);
     query->now = memcpy(allocate_unset(answered->size), answered->bytes, answered->size);
     query->now_size = (uint32_t) answered->size;
-    if (!query->waits)
-        replay_judge_recorded(replay, query);
+    if (!query->in_table)
+        replay_compare_recorded(replay, query);
 }
 
-static void answer_later(struct replay *replay, struct match_item *query)
+static void schedule(struct replay *replay, struct match_item *query)
 {
     query->pending = NULL;
     *replay->defined_end = query;
@@ -55,7 +56,7 @@ static void answer_later(struct replay *replay, struct match_item *query)
 /* ---- In this process ---- */
 
 static void answer_here(struct replay *replay, struct match_item *query,
-                        const struct answered *answered)
+                        const struct new_result *answered)
 {
     if (handle_is_none(&answered->undefined))
         take_answer(replay, query, answered);
@@ -63,14 +64,14 @@ static void answer_here(struct replay *replay, struct match_item *query,
         pending_add(replay->pending, &answered->undefined, query);
 }
 
-/* last: also where handles are not defined. */
+/* last: answers it even if handles are not defined. */
 static void answer_again_here(struct replay *replay, struct match_item *query,
                               const struct message *message, bool last)
 {
-    struct answered answered;
-    if (answer_now(replay->now, (enum log_kind) query->key.kind, message->bytes, message->size,
-                   &answered)) {
-        errno = EIO; /* it could be read before */
+    struct new_result answered;
+    if (local_answer(replay->local, (enum log_kind) query->key.kind, message->bytes, message->size,
+                     &answered)) {
+        errno = EIO; /* it could be decoded before */
         replay_fail_log(replay, query->place.log);
         return;
     }
@@ -82,20 +83,20 @@ static void answer_again_here(struct replay *replay, struct match_item *query,
 
 /* ---- By a service ---- */
 
-/* The library's sink, which may not send. */
-bool replay_on_answered(void *user, struct match_item *query, const struct answered *answered)
+/* The sink of answer_bus.h. It must not send queries. */
+bool replay_on_answered(void *user, struct match_item *query, const struct new_result *answered)
 {
     struct replay *replay = user;
     const bool is_last = answered->status != FMB_UNKNOWN_BODY || query->sent_whole;
     if (is_last)
         take_answer(replay, query, answered);
     else
-        answer_later(replay, query);
+        schedule(replay, query);
     return is_last;
 }
 
-/* Puts the frames of the bodies in place of their handles. */
-static void make_whole(struct replay *replay, struct placement *placement, int32_t count)
+/* Replaces handles by the frames of their bodies. */
+static void fill_frames(struct replay *replay, struct placement *placement, int32_t count)
 {
     definitions_fill(replay->definitions, placement, count);
     for (int32_t i = 0; i < count; i++)
@@ -104,8 +105,9 @@ static void make_whole(struct replay *replay, struct placement *placement, int32
             memset(&placement[i].handle, 0, sizeof placement[i].handle);
 }
 
-/* Bodies whose query has no space for their frames go ahead of it, as many in one scene query as
- * fit. The query after them names them by handle. A service keeps bodies with an id. */
+/* Sends the bodies of a query that has no space for their frames ahead of it, as many in one scene
+ * query as fit. The query itself then names them by handle. A service caches bodies with an id
+ * only. */
 static void supply_service(struct replay *replay, const struct placement *placement, int32_t count)
 {
     struct scene_query *supply = &replay->supply;
@@ -122,27 +124,28 @@ static void supply_service(struct replay *replay, const struct placement *placem
             supply->placement[supply->placement_count++] = whole;
         }
         if (supply->placement_count == 0)
-            return; /* none is left, or one alone is too long */
+            return; /* no body is left, or a single one is too long */
         answer_bus_supply(replay->bus, replay->whole,
                           (uint32_t) wire_write_scene_query(supply, replay->whole));
     }
 }
 
-/* Sends a query again whose bodies the service did not hold. last: handles that are not defined
- * stay as they are. */
+/* Sends a query again after the service lacked one of its bodies. last: handles without a
+ * definition are left unchanged. */
 static void answer_again_on_bus(struct replay *replay, struct match_item *query,
                                 const struct message *message, bool last)
 {
     int32_t count;
-    any_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes, message->size);
-    struct placement *placement = any_query_placements(&replay->query, &count);
+    logged_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes,
+                      message->size);
+    struct placement *placement = logged_query_placements(&replay->query, &count);
     const int32_t missing = definitions_missing(replay->definitions, placement, count);
     if (missing >= 0 && !last) {
         pending_add(replay->pending, &placement[missing].handle, query);
         return;
     }
-    make_whole(replay, placement, count);
-    const size_t size = any_query_write(&replay->query, replay->whole);
+    fill_frames(replay, placement, count);
+    const size_t size = logged_query_write(&replay->query, replay->whole);
     query->sent_whole = true;
     if (size > 0) {
         answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
@@ -154,17 +157,17 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
 
 /* ---- Definitions ---- */
 
-/* Queries that waited for this body can be answered. */
-static void on_defined(struct replay *replay, const struct handle *handle)
+/* Schedules the queries that needed this body. */
+static void schedule_defined(struct replay *replay, const struct handle *handle)
 {
     struct match_item *query = pending_take(replay->pending, handle), *next;
     for (; query; query = next) {
         next = query->pending;
-        answer_later(replay, query);
+        schedule(replay, query);
     }
 }
 
-/* A service keeps bodies that come whole with an id. */
+/* Registers the bodies that a service caches: those with frames and an id. */
 static void define(struct replay *replay, const struct placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++) {
@@ -173,7 +176,7 @@ static void define(struct replay *replay, const struct placement *placement, int
             pending_is_empty(replay->pending))
             continue;
         const struct handle handle = hasher_handle(replay->hasher, geometry->bytes, geometry->size);
-        on_defined(replay, &handle);
+        schedule_defined(replay, &handle);
     }
 }
 
@@ -214,34 +217,36 @@ void replay_take_definition(struct replay *replay, const struct log_event *event
     replay->tally[place->log].definitions++;
     for (int32_t i = 0; i < definition->body_count; i++)
         if (definitions_add(replay->definitions, &definition->body[i].geometry))
-            on_defined(replay, &definition->body[i].handle);
+            schedule_defined(replay, &definition->body[i].handle);
     answer_defined(replay, false);
 }
 
 /* ---- Queries ---- */
 
-/* A query that cannot be read, or is not of the range, has a result all the same, perhaps. */
+/* Registers a query that cannot be decoded, or is outside the range of time: it may have a result
+ * all the same. */
 static void skip_query(struct replay *replay, struct message *query, bool unreadable)
 {
-    query->place.mine = false;
+    query->place.in_range = false;
     struct match_item *item = replay_begin_query(replay, query, unreadable);
-    if (!item->waits)
+    if (!item->in_table)
         match_free(item);
 }
 
-/* Reads the query, answers it or has it answered. */
+/* Decodes the query, and answers it or sends it to the service. */
 void replay_take_query(struct replay *replay, struct message *query)
 {
     const enum log_kind kind = (enum log_kind) query->key.kind;
-    const bool here = replay->now && query->place.mine;
-    struct answered answered = {.placement = NULL};
-    const char *error = here ? answer_now(replay->now, kind, query->bytes, query->size, &answered)
-                             : any_query_read(&replay->query, kind, query->bytes, query->size);
+    const bool here = replay->local && query->place.in_range;
+    struct new_result answered = {.placement = NULL};
+    const char *error =
+        here ? local_answer(replay->local, kind, query->bytes, query->size, &answered)
+             : logged_query_read(&replay->query, kind, query->bytes, query->size);
     if (!here)
-        answered.placement = any_query_placements(&replay->query, &answered.placement_count);
-    if (error && query->place.mine)
+        answered.placement = logged_query_placements(&replay->query, &answered.placement_count);
+    if (error && query->place.in_range)
         replay_refuse(replay, kind, query, error);
-    if (error || !query->place.mine) {
+    if (error || !query->place.in_range) {
         skip_query(replay, query, error);
     } else {
         struct match_item *item = replay_begin_query(replay, query, false);
@@ -259,10 +264,10 @@ void replay_take_query(struct replay *replay, struct message *query)
 
 bool replay_has_ended(const struct replay *replay)
 {
-    return replay->bus && !answer_bus_goes_on(replay->bus);
+    return replay->bus && !answer_bus_is_running(replay->bus);
 }
 
-/* Until all queries have their answers but those whose handles are not defined. */
+/* Waits until all queries are answered, except those with handles that are not defined. */
 static void finish_answers(struct replay *replay, bool last)
 {
     do {
@@ -277,13 +282,13 @@ void replay_finish_answers(struct replay *replay)
     finish_answers(replay, false);
 }
 
-/* The handles that are not defined will not be. */
+/* Answers the queries that need handles without a definition: none will follow. */
 void replay_finish_pending(struct replay *replay)
 {
     for (struct match_item *query, *next; (query = pending_take(replay->pending, NULL));)
         for (; query; query = next) {
             next = query->pending;
-            answer_later(replay, query);
+            schedule(replay, query);
         }
     finish_answers(replay, true);
 }

@@ -53,19 +53,19 @@ static void write_difference(struct json_writer *json, const struct difference *
     }
 }
 
-void replay_json_found(struct json_writer *json, const struct found *found, const char *log,
-                       int64_t first_utime)
+void replay_json_found(struct json_writer *json, const struct located_difference *located,
+                       const char *log, int64_t first_utime)
 {
     json_begin(json, NULL, '{');
     json_string(json, "log", log);
-    json_integer(json, "event", found->place.number);
-    json_integer(json, "offset", found->place.offset);
-    json_integer(json, "utime", found->place.utime);
-    json_number(json, "time", ((double) found->place.utime - (double) first_utime) / 1e6);
-    json_string(json, "channel", channel_name[tally_channel_of(found->kind)]);
-    json_integer(json, "client_id", found->client_id);
-    json_integer(json, "sequence_number", found->sequence_number);
-    write_difference(json, &found->difference);
+    json_integer(json, "event", located->place.number);
+    json_integer(json, "offset", located->place.offset);
+    json_integer(json, "utime", located->place.utime);
+    json_number(json, "time", ((double) located->place.utime - (double) first_utime) / 1e6);
+    json_string(json, "channel", channel_name[tally_channel_of(located->kind)]);
+    json_integer(json, "client_id", located->client_id);
+    json_integer(json, "sequence_number", located->sequence_number);
+    write_difference(json, &located->difference);
     json_end(json, '}');
 }
 
@@ -103,18 +103,18 @@ static void write_times(struct json_writer *json, const char *key, const struct 
 static void write_bus(struct json_writer *json, const struct tally_bus *bus)
 {
     static const char *const end[] = {[ANSWER_BUS_SIGNAL] = "signal",
-                                      [ANSWER_BUS_NOBODY] = "no service answers",
+                                      [ANSWER_BUS_NO_SERVICE] = "no service answers",
                                       [ANSWER_BUS_FAILED] = "the bus has failed"};
     json_begin(json, "bus", '{');
     json_integer(json, "answered", bus->answered);
     json_integer(json, "ns", bus->ns);
     json_integer(json, "late_ns", bus->late_ns);
-    json_integer(json, "sent_again", bus->again);
+    json_integer(json, "sent_again", bus->resent);
     json_integer(json, "sent_whole", bus->whole);
     json_integer(json, "not_sent", bus->not_sent);
     json_integer(json, "supplied", bus->supplied);
     json_integer(json, "services", bus->services);
-    json_integer(json, "unreadable", bus->nonsense);
+    json_integer(json, "unreadable", bus->malformed);
     if (bus->end == ANSWER_BUS_NO_END)
         json_null(json, "end");
     else

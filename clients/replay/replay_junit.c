@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Lines that stand in a failed case. */
+/* Lines in a failed test case. */
 enum { LINES_MAX = 100 };
 
 static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
@@ -32,14 +32,14 @@ struct lines {
     int64_t first_utime;
 };
 
-static void write_line(void *user, const struct found *found)
+static void write_line(void *user, const struct located_difference *located)
 {
     struct lines *lines = user;
     char line[REPLAY_LINE_MAX];
-    if (found->place.log != lines->log || tally_channel_of(found->kind) != lines->channel ||
+    if (located->place.log != lines->log || tally_channel_of(located->kind) != lines->channel ||
         lines->count == LINES_MAX)
         return;
-    replay_line(found, NULL, lines->first_utime, line);
+    replay_line(located, NULL, lines->first_utime, line);
     write_xml(lines->out, line);
     putc('\n', lines->out);
     lines->count++;
@@ -73,7 +73,7 @@ static void write_channel(FILE *out, const char *log, int index, int channel_ind
             " not defined, %" PRId64 " without result</system-out>\n    </testcase>\n",
             channel->queries, channel->outcome[REPLAY_SAME], channel->outcome[REPLAY_DIFFERENT],
             channel->outcome[REPLAY_BUSY], channel->outcome[REPLAY_UNKNOWN],
-            channel->outcome[REPLAY_UNDEFINED], channel->outcome[REPLAY_ALONE]);
+            channel->outcome[REPLAY_UNDEFINED], channel->outcome[REPLAY_UNRECORDED]);
 }
 
 static bool is_whole(const struct tally *tally)
@@ -81,7 +81,7 @@ static bool is_whole(const struct tally *tally)
     return tally->damages == 0 && tally_unreadable(tally) == 0 && tally_contradictions(tally) == 0;
 }
 
-/* Of a live service. */
+/* Counts of a replay by a live service. */
 static bool ended_early(const struct tally *tally)
 {
     return tally->bus.used && tally->bus.end != ANSWER_BUS_NO_END;

@@ -21,10 +21,10 @@ void replay_side_text(const struct difference *difference, const struct differen
  * The time is log time, in seconds since first_utime. log: name of the log; NULL if there is only
  * one. */
 enum { REPLAY_LINE_MAX = 2 * REPLAY_SIDE_MAX + 512 };
-void replay_line(const struct found *found, const char *log, int64_t first_utime,
+void replay_line(const struct located_difference *located, const char *log, int64_t first_utime,
                  char line[REPLAY_LINE_MAX]);
 
-/* Prints the counts. */
+/* Prints the counts as text. */
 void replay_text_summary(FILE *out, const struct tally *tally);
 
 /* ---- As JSON ---- */
@@ -39,15 +39,15 @@ void replay_text_summary(FILE *out, const struct tally *tally);
  *
  * not_listed: number of differences beyond the limit. */
 struct json_writer replay_json_begin(FILE *out);
-void replay_json_found(struct json_writer *json, const struct found *found, const char *log,
-                       int64_t first_utime);
+void replay_json_found(struct json_writer *json, const struct located_difference *located,
+                       const char *log, int64_t first_utime);
 void replay_json_end(struct json_writer *json, const struct tally *tally, int64_t not_listed,
                      int exit_code);
 
 /* ---- As JUnit XML, for CI systems: a suite for each log, with a case for each channel, and one
  * for damage ---- */
 
-/* On input: tally[log_count]. Check ferror(out) for write errors. */
+/* In: tally[log_count]. On output: ferror(out) is set if writing failed. */
 void replay_junit(FILE *out, const struct replay_options *options, struct listing *list,
                   const struct tally *tally, int64_t first_utime);
 

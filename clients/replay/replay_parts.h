@@ -14,24 +14,25 @@ struct replay {
     struct tally *tally; /* [log_count] */
     struct log_channels channels;
     struct input input;
-    struct again *again;
+    struct event_reader *rereader;
     struct log_reader *golden;     /* NULL: none */
     struct log_writer *new_golden; /* NULL: none */
     struct definitions *definitions;
     struct hasher *hasher;
-    struct answer_now *now; /* NULL: the service on the bus answers */
-    struct answer_bus *bus; /* NULL: this process answers */
-    struct judge *judge;
+    struct local_answerer *local; /* NULL: the service on the bus answers */
+    struct answer_bus *bus;       /* NULL: this process answers */
+    struct comparison *comparison;
     struct match *match;
-    struct pending *pending;
+    struct pending_queries *pending;
     /* Queries to answer again, since their handles are now defined; linked by ->pending. */
     struct match_item *defined, **defined_end;
     int64_t first_utime;
     bool started, failed, version_1;
-    struct any_query query;
+    struct logged_query query;
     struct definition definition;
     struct scene_query supply; /* without pairs */
-    /* Read again: a query to be answered, and a result read by callbacks meanwhile. */
+    /* Buffers for messages read again: a query to be answered, and a result that a callback reads
+     * meanwhile. */
     unsigned char query_bytes[LOG_DATA_MAX], result_bytes[LOG_DATA_MAX];
     unsigned char whole[QUERY_BYTES_MAX];
 };
@@ -57,7 +58,7 @@ struct tally_channel *replay_channel(struct replay *replay, const struct match_k
 void replay_refuse(struct replay *replay, enum log_kind kind, const struct message *message,
                    const char *error);
 
-/* Reads a message again, into one of the buffers for that. False: after replay_fail_log(). */
+/* Reads a message again into bytes. Returns false after replay_fail_log(). */
 bool replay_read_again(struct replay *replay, const struct match_key *key,
                        const struct match_place *place, unsigned char bytes[LOG_DATA_MAX],
                        struct message *out);
@@ -65,7 +66,7 @@ bool replay_read_again(struct replay *replay, const struct match_key *key,
 /* ---- replay_answer.c ---- */
 
 /* The sink of the service's answers. */
-bool replay_on_answered(void *user, struct match_item *query, const struct answered *answered);
+bool replay_on_answered(void *user, struct match_item *query, const struct new_result *answered);
 
 /* Answers the query, in process or on the bus, unless it is outside the range of time. */
 void replay_take_query(struct replay *replay, struct message *query);
@@ -73,21 +74,21 @@ void replay_take_definition(struct replay *replay, const struct log_event *event
                             const struct match_place *place);
 
 /* At the end: the first waits until all queries are answered, except those with handles that are
- * not defined; the second completes these. */
+ * not defined; the second answers these. */
 void replay_finish_answers(struct replay *replay);
 void replay_finish_pending(struct replay *replay);
 
-/* Whether the service was given up or a signal came. */
+/* Whether the replay has ended: no service answers, or a signal arrived. */
 bool replay_has_ended(const struct replay *replay);
 
 /* ---- replay_match.c ---- */
 
-/* An item for a query, which waits for its result or has found it already. */
+/* Adds an item for a query. Its result may be known already; otherwise the item is in the table. */
 struct match_item *replay_begin_query(struct replay *replay, const struct message *query,
                                       bool unreadable);
 
-/* Judges a query that has been removed from the table, and frees it. */
-void replay_judge_recorded(struct replay *replay, struct match_item *query);
+/* Compares a query that was removed from the table with its recorded result, and frees it. */
+void replay_compare_recorded(struct replay *replay, struct match_item *query);
 
 void replay_take_result(struct replay *replay, const struct message *result);
 

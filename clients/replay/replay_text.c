@@ -79,10 +79,10 @@ void replay_side_text(const struct difference *difference, const struct differen
     }
 }
 
-void replay_line(const struct found *found, const char *log, int64_t first_utime,
+void replay_line(const struct located_difference *located, const char *log, int64_t first_utime,
                  char line[REPLAY_LINE_MAX])
 {
-    const struct difference *difference = &found->difference;
+    const struct difference *difference = &located->difference;
     char then[REPLAY_SIDE_MAX], now[REPLAY_SIDE_MAX], bodies[64] = "the scene";
     replay_side_text(difference, &difference->then, then);
     replay_side_text(difference, &difference->now, now);
@@ -90,8 +90,8 @@ void replay_line(const struct found *found, const char *log, int64_t first_utime
         snprintf(bodies, sizeof bodies, "bodies %" PRId64 " %" PRId64, difference->body_id[0],
                  difference->body_id[1]);
     snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
-             log ? log : "", log ? ": " : "", found->place.number,
-             ((double) found->place.utime - (double) first_utime) / 1e6, bodies,
+             log ? log : "", log ? ": " : "", located->place.number,
+             ((double) located->place.utime - (double) first_utime) / 1e6, bodies,
              difference_name(difference->kind), then, now);
 }
 
@@ -108,7 +108,7 @@ static void print_row(FILE *out, const char *name, const struct tally_channel *c
                              channel->outcome[REPLAY_BUSY],
                              channel->outcome[REPLAY_UNKNOWN],
                              channel->outcome[REPLAY_UNDEFINED],
-                             channel->outcome[REPLAY_ALONE],
+                             channel->outcome[REPLAY_UNRECORDED],
                              channel->unreadable[0] + channel->unreadable[1]};
     fprintf(out, "%-16s", name);
     for (size_t i = 0; i < sizeof count / sizeof *count; i++) {
@@ -176,12 +176,12 @@ static void print_bus(FILE *out, const struct tally_bus *bus)
     const struct {
         int64_t count;
         const char *what;
-    } more[] = {{bus->again, "sent again"},
+    } more[] = {{bus->resent, "sent again"},
                 {bus->whole, "sent once more with frames"},
                 {bus->not_sent, "that cannot be sent"},
                 {bus->supplied, "more that carried bodies"},
                 {bus->services > 1 ? bus->services - 1 : 0, "changes of the service"},
-                {bus->nonsense, "results that could not be read"}};
+                {bus->malformed, "results that could not be read"}};
     const double seconds = 1e-9 * (double) bus->ns;
     char text[NUMBER_TEXT_MAX];
     fprintf(out, "fmbd answered %s queries in %.3f s", number_grouped(bus->answered, text),

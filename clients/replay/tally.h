@@ -22,17 +22,17 @@ enum { TALLY_PAIRS, TALLY_SCENES, TALLY_CHANNELS };
 
 /* Counts of a replay through a service on the bus (answer_bus.h). */
 struct tally_bus {
-    int64_t used;     /* 1; 0: this process answered */
-    int64_t end;      /* enum answer_bus_end */
-    int64_t answered; /* queries of the log answered */
-    int64_t ns;       /* from the first query to the last answer */
-    int64_t late_ns;  /* largest delay of a query, if sent at the pace of the log */
-    int64_t again;    /* queries sent again for lack of an answer */
-    int64_t whole;    /* queries sent again with frames that the service did not hold */
-    int64_t not_sent; /* queries too long for a datagram, or with ids out of range */
-    int64_t supplied; /* extra queries, which only carried bodies to the service */
-    int64_t services; /* changes of the service that answers, the first one included */
-    int64_t nonsense; /* results that could not be decoded */
+    int64_t used;      /* 1; 0: this process answered */
+    int64_t end;       /* enum answer_bus_end */
+    int64_t answered;  /* queries of the log answered */
+    int64_t ns;        /* from the first query to the last answer, nanoseconds */
+    int64_t late_ns;   /* largest delay of a query at the pace of the log, nanoseconds */
+    int64_t resent;    /* queries sent again for lack of an answer */
+    int64_t whole;     /* queries sent again with frames that the service did not hold */
+    int64_t not_sent;  /* queries too long for a datagram, or with ids out of range */
+    int64_t supplied;  /* extra queries that only carried bodies to the service */
+    int64_t services;  /* changes of the service that answers, the first one included */
+    int64_t malformed; /* results that could not be decoded */
     /* Place of the first query without an answer, if that ended the replay. */
     int64_t log, number, offset;
 };
@@ -48,14 +48,14 @@ struct tally {
     struct tally_bus bus;       /* only in the tally of the first log, for all logs */
 };
 
-/* Which channel a kind of query or result is counted in; heartbeats and others have none. */
+/* The channel that a query or result is counted in. In: a kind of query or result. */
 int tally_channel_of(enum log_kind kind);
 
-/* Adds. */
+/* Adds from to to. */
 void tally_add_channel(struct tally_channel *to, const struct tally_channel *from);
 void tally_add(struct tally *to, const struct tally *from);
 
-/* Over both channels. */
+/* Sums over both channels. */
 int64_t tally_queries(const struct tally *tally);
 int64_t tally_outcome(const struct tally *tally, enum replay_outcome outcome);
 int64_t tally_unreadable(const struct tally *tally);

@@ -25,18 +25,18 @@ enum {
 
 static const char short_magic[MAGIC_SIZE] = {'L', 'C', '0', '2'};
 
-/* Values of bus.spin_until besides a time. */
+/* Values of bus.spin_until other than a time. */
 enum { SPIN_NOT = 0, SPIN_FROM_NEXT_WAIT = -1 };
 
-/* Where another program keeps the core busy, sched_yield() gives it the core for a whole time slice
- * (some milliseconds), while a process that sleeps in poll() is woken up at once. A yield that
- * takes YIELD_LONG_NS is such a slice: until SPIN_PAUSE_NS later no wait spins, so that at most one
- * wait a second is late. On an idle machine yields are that long less than once in 10,000 messages.
- */
+/* If another program keeps the core busy, sched_yield() gives it the core for a whole time slice
+ * (some milliseconds), whereas a process that sleeps in poll() is woken up at once. A yield longer
+ * than YIELD_LONG_NS is taken for such a slice: for SPIN_PAUSE_NS afterwards no wait spins, so that
+ * at most one wait a second is late. On an idle machine less than one yield in 10,000 messages is
+ * that long. */
 enum { YIELD_LONG_NS = 1000000, SPIN_PAUSE_NS = 1000000000 };
 
-struct listener {
-    bool every; /* any channel */
+struct bus_listener {
+    bool every; /* receives every channel */
     char channel[BUS_CHANNEL_MAX];
 };
 
@@ -45,14 +45,14 @@ struct bus {
     lcm_t *lcm;
     int fd; /* -1 before bus_listen() */
     int listener_count;
-    struct listener listeners[BUS_LISTENERS_MAX];
+    struct bus_listener listeners[BUS_LISTENERS_MAX];
     struct mmsghdr datagrams[BUS_BATCH];
     struct iovec buffers[BUS_BATCH];
-    unsigned char *memory; /* of the buffers */
+    unsigned char *memory; /* owned: [BUS_BATCH][BUFFER_SIZE], the buffers */
     int64_t spin_until;    /* CLOCK_MONOTONIC, ns, or SPIN_* */
     int64_t pause_until;   /* no spinning before this time */
     struct bus_counts counts;
-    uint32_t drops_read; /* the kernel's counter when it was last read */
+    uint32_t drops_read; /* the kernel's drop counter when it was last read */
 };
 
 bool bus_prefix_ok(const char *prefix)
@@ -70,7 +70,7 @@ void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name
 
 /* ---- Opening and closing ---- */
 
-/* liblcm's part: it opens a socket to send with, and pipes that stay unused. */
+/* Opens liblcm for publishing: a socket, and pipes that stay unused. */
 static lcm_t *open_publisher(const struct bus_url *url)
 {
     char group[INET_ADDRSTRLEN], full[64];
@@ -92,7 +92,7 @@ struct bus *bus_open(const char *url, char why[BUS_WHY_MAX])
         url = getenv("LCM_DEFAULT_URL");
     if (!url || !*url)
         url = "udpm://";
-    /* The route is checked first: without one liblcm would print advice of its own. */
+    /* The route is checked first, since without one liblcm prints advice of its own. */
     if (!bus_url_parse(url, &parsed, why) || !bus_socket_route(&parsed.group, why))
         return NULL;
     struct bus *bus = calloc(1, sizeof *bus);
@@ -119,7 +119,7 @@ void bus_close(struct bus *bus)
     free(bus);
 }
 
-/* Memory is touched when a datagram is first read into it. */
+/* Allocates the buffers. Their memory is touched when a datagram is first read into it. */
 static bool allocate_buffers(struct bus *bus)
 {
     if (!bus->memory)
@@ -150,7 +150,8 @@ static bool channel_ok(const char *channel)
     return *channel && memchr(channel, '\0', BUS_CHANNEL_MAX);
 }
 
-/* A listener to every channel needs all datagrams whole. */
+/* Truncates datagrams on channels without a listener; none, if a listener receives every channel.
+ */
 static void trim_others(const struct bus *bus)
 {
     const char *channels[BUS_LISTENERS_MAX];
@@ -161,7 +162,7 @@ static void trim_others(const struct bus *bus)
         }
         channels[i] = bus->listeners[i].channel;
     }
-    trim_attach(bus->fd, channels, bus->listener_count);
+    bus_socket_trim(bus->fd, channels, bus->listener_count);
 }
 
 bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
@@ -177,7 +178,7 @@ bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
     }
     if (!start_receiving(bus, why))
         return false;
-    struct listener *listener = &bus->listeners[bus->listener_count++];
+    struct bus_listener *listener = &bus->listeners[bus->listener_count++];
     listener->every = !channel;
     if (channel)
         strcpy(listener->channel, channel);
@@ -254,7 +255,7 @@ int bus_receive(struct bus *bus, bus_handler *handler, void *user)
 
 /* ---- Waiting ---- */
 
-/* poll() of both; the result as bus_wait() returns it. */
+/* Polls the bus and other_fd. Returns what bus_wait() returns. */
 static int poll_both(const struct bus *bus, int other_fd, int timeout_ms)
 {
     struct pollfd fds[] = {{.fd = bus->fd, .events = POLLIN}, {.fd = other_fd, .events = POLLIN}};
@@ -263,9 +264,10 @@ static int poll_both(const struct bus *bus, int other_fd, int timeout_ms)
     return (fds[0].revents ? 1 : 0) | (fds[1].revents ? 2 : 0);
 }
 
-/* Waits actively. The time is taken from the first wait after the message, since what the caller
- * did in between was no waiting. poll() costs no more than recv(MSG_PEEK) or recvmmsg() would, and
- * looks at both descriptors. */
+/* Waits actively. Returns what bus_wait() returns; 0 also if there is no time left to spin. The
+ * time starts at the first wait after the message, so that work of the caller in between does not
+ * count. poll() costs no more than recv(MSG_PEEK) or recvmmsg() would, and tests both descriptors.
+ */
 static int spin(struct bus *bus, int other_fd)
 {
     int64_t time = now(CLOCK_MONOTONIC, 1);
@@ -306,10 +308,10 @@ bool bus_publish(struct bus *bus, const char *channel, const void *bytes, size_t
     return lcm_publish(bus->lcm, channel, bytes, (unsigned) size) == 0;
 }
 
-/* The kernel's counter is read when it is needed (SO_MEMINFO): to have it with each datagram
- * (SO_RXQ_OVFL) would cost time there, and miss what was dropped after the last one. It also counts
- * what a socket filter drops. So none drops anything (socket.h), and own echoes are dropped by
- * channel. */
+/* The kernel's drop counter is read on demand (SO_MEMINFO). Receiving it with each datagram
+ * (SO_RXQ_OVFL) would cost time, and would miss what was dropped after the last one. The counter
+ * includes what a socket filter drops; so the filter drops nothing (socket.h), and this bus's own
+ * messages on other channels are dropped after they were received. */
 struct bus_counts bus_counts(struct bus *bus)
 {
     if (bus->fd >= 0) {

@@ -1,13 +1,13 @@
 /* The LCM bus: receives through its own socket, publishes through liblcm.
  *
- * liblcm's receiver costs a thread, a pipe and three context switches a message, and two malformed
- * datagrams crash it. So messages are received here: LCM's short datagrams ("LC02", sequence
- * number, channel, final 0, payload), each a whole message. Fragments, messages on other channels
- * and malformed datagrams are dropped and counted; none allocates memory. liblcm starts no thread
- * unless a program subscribes through it or takes its descriptor.
+ * liblcm's receiver costs a thread, a pipe and three context switches a message, and two kinds of
+ * malformed datagrams crash it. So this module receives messages itself: LCM's short datagrams
+ * ("LC02", sequence number, channel, final 0, payload), each a whole message. Fragments, messages
+ * on other channels and malformed datagrams are dropped and counted. Receiving allocates no memory.
+ * liblcm starts no thread unless a program subscribes through it or takes its descriptor.
  *
- * A bus may be used by one thread at a time. After fork() the child may only close it; the parent's
- * bus keeps working. */
+ * A bus may be used by one thread at a time; buses share no state. After fork() the child may only
+ * close it; the parent's bus keeps working. */
 #ifndef BUS_H
 #define BUS_H
 
@@ -43,16 +43,16 @@ void bus_channel(char out[BUS_CHANNEL_MAX], const char *prefix, const char *name
 struct bus *bus_open(const char *url, char why[BUS_WHY_MAX]);
 void bus_close(struct bus *bus); /* may be NULL */
 
-/* Receives a channel (NULL: every channel) from now on, this bus's own messages included. The name
- * is copied. At most BUS_LISTENERS_MAX calls. A call that fails changes nothing.
- * On output: true; or false: not a channel name, too many calls, or the socket cannot be opened or
- * bound; why is as for bus_open(). */
+/* Begins to receive a channel (NULL: every channel), including messages that this bus publishes.
+ * The name is copied. At most BUS_LISTENERS_MAX calls; each gets the next listener number, from 0.
+ * On output: true; or false, and why as for bus_open(): not a channel name, too many calls, or the
+ * socket cannot be opened or bound. A call that fails adds no listener. */
 bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX]);
 
 /* A message. Pointers are valid during the callback; bytes may have any alignment. */
 struct bus_message {
     const char *channel;        /* zero-terminated */
-    int listener;               /* number, from 0, of the first bus_listen() call for it */
+    int listener;               /* the lowest listener number that receives the channel */
     const unsigned char *bytes; /* [size] payload */
     size_t size;                /* 0 to BUS_PAYLOAD_MAX */
     int64_t utime;              /* time of reading the batch, microseconds since 1970 */
@@ -62,20 +62,20 @@ struct bus_message {
 typedef void bus_handler(void *user, const struct bus_message *message);
 
 /* Reads pending datagrams, at most BUS_BATCH, and calls the handler for each message on a channel
- * of bus_listen(). Never blocks. Returns the number of datagrams read, including those dropped; 0:
- * none were pending; -1: the socket failed (errno). */
+ * that is listened to. Never blocks. Returns the number of datagrams read, including those dropped;
+ * 0: none were pending; -1: the socket failed (errno). */
 int bus_receive(struct bus *bus, bus_handler *handler, void *user);
 
 /* Waits until a datagram is pending, other_fd (-1: none) is readable, or timeout_ms (-1: no limit)
- * have passed. For BUS_SPIN_NS after a message was received or published it waits actively, with
- * sched_yield(), since a core that sleeps takes long to wake up. Dropped datagrams do not extend
- * this time. There is no active waiting if timeout_ms is 0, or while other programs keep the core
- * busy.
+ * have passed. After a message was received or published, the first BUS_SPIN_NS of the wait are
+ * active, with sched_yield(), since a core that sleeps takes long to wake up. Dropped datagrams do
+ * not extend this time. There is no active waiting if timeout_ms is 0, or while other programs keep
+ * the core busy.
  * A signal that arrives before the wait does not end it: pass a signalfd as other_fd.
  * Returns bit 0: datagrams, bit 1: other_fd; 0: time-out or signal; -1: poll() failed. */
 int bus_wait(struct bus *bus, int other_fd, int timeout_ms);
 
-/* The receiving socket, for the caller's poll(); -1 before bus_listen(). */
+/* The receiving socket, for the caller's poll(); owned by the bus. -1 before bus_listen(). */
 int bus_fileno(const struct bus *bus);
 
 /* Publishes a message in one datagram. A channel name of n characters leaves

@@ -28,7 +28,8 @@ bool bus_socket_route(const struct sockaddr_in *group, char why[BUS_WHY_MAX])
     return false;
 }
 
-/* Beyond the system's limit where the process may, else up to it. What was granted is read back. */
+/* Requests a receive buffer: beyond the system's limit if the process is privileged, else up to it.
+ * Returns the bytes that were granted. */
 static long set_receive_buffer(int fd, int bytes)
 {
     int granted = 0;
@@ -39,8 +40,8 @@ static long set_receive_buffer(int fd, int bytes)
     return granted;
 }
 
-/* SO_REUSEADDR: every socket bound to the group receives each datagram. SO_REUSEPORT would let the
- * kernel choose one of them. */
+/* Binds the socket to the group and joins it. With SO_REUSEADDR every socket that is bound to the
+ * group receives each datagram; with SO_REUSEPORT the kernel could choose one of them. */
 static bool join(int fd, const struct sockaddr_in *group)
 {
     const int on = 1;
@@ -76,13 +77,22 @@ uint32_t bus_socket_drops(int fd)
     return getsockopt(fd, SOL_SOCKET, SO_MEMINFO, info, &size) == 0 ? info[SK_MEMINFO_DROPS] : 0;
 }
 
-/* ---- Truncating what is of others ---- */
+/* ---- Truncating datagrams on other channels ----
+ *
+ * A classic BPF program, which runs on the UDP header and payload of each datagram and returns the
+ * number of bytes to keep:
+ *
+ *     if the length is less than BUS_SOCKET_TRIM_FROM: return WHOLE
+ *     for each channel: if the channel name, final 0 included, is equal: return WHOLE
+ *     return TRIMMED
+ */
 
 enum {
-    NAME_AT = 8 + 8, /* UDP header, LCM header */
-    TRIMMED = NAME_AT + BUS_CHANNEL_MAX,
-    WHOLE = 1 << 20,
-    /* To compare a name: two for each word, two for each byte that remains, and a return. */
+    NAME_AT = 8 + 8, /* offset of the channel name, after UDP header and LCM header */
+    TRIMMED = NAME_AT + BUS_CHANNEL_MAX, /* bytes kept of datagrams on other channels */
+    WHOLE = 1 << 20,                     /* more bytes than any datagram has */
+    /* Instructions to compare a name: two for each word, two for each byte that remains, and a
+     * return. */
     PER_CHANNEL_MAX = 2 * (BUS_CHANNEL_MAX / 4 + 3) + 1,
     PROGRAM_MAX = 3 + BUS_LISTENERS_MAX * PER_CHANNEL_MAX + 1
 };
@@ -97,7 +107,7 @@ static void add(struct program *program, struct sock_filter instruction)
     program->code[program->length++] = instruction;
 }
 
-/* Goes on if the packet has this value there; else skips the rest of the channel's instructions. */
+/* Adds: load size bytes at an offset; if they differ from value, jump to instruction `end`. */
 static void add_comparison(struct program *program, int size, int at, uint32_t value, int end)
 {
     add(program, (struct sock_filter) BPF_STMT(BPF_LD | BPF_ABS | size, (uint32_t) at));
@@ -106,7 +116,7 @@ static void add_comparison(struct program *program, int size, int at, uint32_t v
                                                (unsigned char) skipped));
 }
 
-/* Returns all of a datagram on this channel. */
+/* Adds: if the datagram is on this channel, return WHOLE. */
 static void add_channel(struct program *program, const char *name)
 {
     const int size = (int) strlen(name) + 1, words = size / 4;
@@ -122,11 +132,12 @@ static void add_channel(struct program *program, const char *name)
     add(program, (struct sock_filter) BPF_STMT(BPF_RET | BPF_K, WHOLE));
 }
 
-void trim_attach(int fd, const char *const channels[], int count)
+void bus_socket_trim(int fd, const char *const channels[], int count)
 {
     struct program program = {.length = 0};
     add(&program, (struct sock_filter) BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0));
-    add(&program, (struct sock_filter) BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, TRIM_FROM, 1, 0));
+    add(&program,
+        (struct sock_filter) BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, BUS_SOCKET_TRIM_FROM, 1, 0));
     add(&program, (struct sock_filter) BPF_STMT(BPF_RET | BPF_K, WHOLE));
     for (int i = 0; i < count; i++)
         add_channel(&program, channels[i]);

@@ -17,33 +17,34 @@ enum {
     /* Holds about 120 of the largest datagrams, or thousands of pair queries. */
     DEFAULT_RECEIVE_BUFFER = 4 << 20,
     RECEIVE_BUFFER_MAX = INT_MAX / 2, /* the kernel doubles it */
-    SHOWN_MAX = 200                   /* bytes of a URL that a message repeats */
+    SHOWN_MAX = 200                   /* most bytes of a URL that an error text repeats */
 };
 
-/* A part of the URL, without a final 0. */
-struct text {
+/* A part of the URL: characters at..at + length - 1, without a final 0. */
+struct url_part {
     const char *at;
     size_t length;
 };
 
-static struct text text_until(const char *at, const char *ends)
+static struct url_part part_until(const char *at, const char *ends)
 {
-    return (struct text){at, strcspn(at, ends)};
+    return (struct url_part){at, strcspn(at, ends)};
 }
 
-static bool text_is(struct text text, const char *word)
+static bool part_is(struct url_part text, const char *word)
 {
     return text.length == strlen(word) && memcmp(text.at, word, text.length) == 0;
 }
 
-/* How much of the text a message repeats. */
-static int shown(struct text text)
+/* Number of characters of the text that an error text repeats. */
+static int shown(struct url_part text)
 {
     return text.length < SHOWN_MAX ? (int) text.length : SHOWN_MAX;
 }
 
-/* A whole number from min to max. Base 0, since liblcm accepts 0x10 and 010 for options. */
-static bool parse_number(struct text text, int base, int min, int max, int *out)
+/* Parses an integer from min to max. Options have base 0, since liblcm accepts 0x10 and 010 there.
+ */
+static bool parse_number(struct url_part text, int base, int min, int max, int *out)
 {
     char digits[16], *end;
     if (!text.length || text.length >= sizeof digits || text.at[0] < '0' || text.at[0] > '9')
@@ -58,7 +59,7 @@ static bool parse_number(struct text text, int base, int min, int max, int *out)
     return true;
 }
 
-static bool parse_group(struct text text, struct in_addr *out)
+static bool parse_group(struct url_part text, struct in_addr *out)
 {
     char address[INET_ADDRSTRLEN];
     if (text.length >= sizeof address)
@@ -69,11 +70,11 @@ static bool parse_group(struct text text, struct in_addr *out)
 }
 
 /* GROUP:PORT */
-static bool parse_address(struct text text, struct sockaddr_in *out, char why[BUS_WHY_MAX])
+static bool parse_address(struct url_part text, struct sockaddr_in *out, char why[BUS_WHY_MAX])
 {
     const char *colon = memchr(text.at, ':', text.length);
     const size_t length = colon ? (size_t) (colon - text.at) : text.length;
-    const struct text group = {text.at, length};
+    const struct url_part group = {text.at, length};
     int port;
     if (!parse_group(group, &out->sin_addr)) {
         snprintf(
@@ -88,7 +89,7 @@ static bool parse_address(struct text text, struct sockaddr_in *out, char why[BU
                  group.at, scheme, shown(group), group.at, DEFAULT_PORT);
         return false;
     }
-    const struct text number = {colon + 1, text.length - length - 1};
+    const struct url_part number = {colon + 1, text.length - length - 1};
     if (!parse_number(number, 10, 1, 65535, &port)) {
         snprintf(why, BUS_WHY_MAX, "'%.*s' is not a port of an LCM bus: write 1 to 65535",
                  shown(number), number.at);
@@ -99,18 +100,19 @@ static bool parse_address(struct text text, struct sockaddr_in *out, char why[BU
 }
 
 /* NAME=VALUE */
-static bool parse_option(struct text option, struct bus_url *out, char why[BUS_WHY_MAX])
+static bool parse_option(struct url_part option, struct bus_url *out, char why[BUS_WHY_MAX])
 {
     const char *equals = memchr(option.at, '=', option.length);
     const size_t length = equals ? (size_t) (equals - option.at) : option.length;
-    const struct text name = {option.at, length};
-    const struct text value = {option.at + length + !!equals, option.length - length - !!equals};
-    if (text_is(name, "ttl")) {
+    const struct url_part name = {option.at, length};
+    const struct url_part value = {option.at + length + !!equals,
+                                   option.length - length - !!equals};
+    if (part_is(name, "ttl")) {
         if (parse_number(value, 0, 0, 255, &out->ttl))
             return true;
         snprintf(why, BUS_WHY_MAX, "'%.*s' is not a ttl of an LCM bus: write ttl=0 to ttl=255",
                  shown(value), value.at);
-    } else if (text_is(name, "recv_buf_size")) {
+    } else if (part_is(name, "recv_buf_size")) {
         if (parse_number(value, 0, 1, RECEIVE_BUFFER_MAX, &out->receive_buffer))
             return true;
         snprintf(why, BUS_WHY_MAX,
@@ -127,7 +129,7 @@ static bool parse_option(struct text option, struct bus_url *out, char why[BUS_W
 static bool parse_options(const char *at, struct bus_url *out, char why[BUS_WHY_MAX])
 {
     for (;;) {
-        const struct text option = text_until(at, "&");
+        const struct url_part option = part_until(at, "&");
         if (!parse_option(option, out, why))
             return false;
         if (!option.at[option.length])
@@ -138,7 +140,7 @@ static bool parse_options(const char *at, struct bus_url *out, char why[BUS_WHY_
 
 static bool refuse_scheme(const char *url, char why[BUS_WHY_MAX])
 {
-    const struct text whole = text_until(url, "");
+    const struct url_part whole = part_until(url, "");
     snprintf(why, BUS_WHY_MAX,
              "'%.*s' is not an LCM bus over UDP multicast, the only kind that is supported: write "
              "%s%s:%d?ttl=0",
@@ -153,7 +155,7 @@ bool bus_url_parse(const char *url, struct bus_url *out, char why[BUS_WHY_MAX])
     inet_pton(AF_INET, DEFAULT_GROUP, &out->group.sin_addr);
     if (strncmp(url, scheme, sizeof scheme - 1) != 0)
         return refuse_scheme(url, why);
-    const struct text address = text_until(url + sizeof scheme - 1, "?");
+    const struct url_part address = part_until(url + sizeof scheme - 1, "?");
     if (address.length && !parse_address(address, &out->group, why))
         return false;
     const char *options = address.at + address.length;

@@ -1,4 +1,4 @@
-/* The URL of an LCM bus over UDP multicast. */
+/* The URL of an LCM bus over UDP multicast. No shared state. */
 #ifndef BUS_URL_H
 #define BUS_URL_H
 
@@ -8,9 +8,9 @@
 #include "bus.h"
 
 struct bus_url {
-    struct sockaddr_in group;
-    int ttl;            /* 0 to 255; 0: datagrams stay on this host */
-    int receive_buffer; /* bytes to request, as for SO_RCVBUF */
+    struct sockaddr_in group; /* address and port */
+    int ttl;                  /* 0 to 255; 0: datagrams stay on this host */
+    int receive_buffer;       /* bytes to request, as for SO_RCVBUF */
 };
 
 /* On input: url as for bus_open(), not NULL. Does not read the environment.

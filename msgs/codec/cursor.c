@@ -9,7 +9,7 @@ int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max)
     return count;
 }
 
-/* Read at a time, so that a compiler uses vectors: scenes have tens of thousands. */
+/* Indices read at a time, so that compilers vectorize: a scene can have tens of thousands. */
 enum { INDICES = 16 };
 
 static void read_indices(const unsigned char *restrict bytes, unsigned *restrict out)

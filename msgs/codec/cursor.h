@@ -1,9 +1,9 @@
 /* Reads untrusted bytes in LCM's encoding: big-endian, no padding. Sizes have 64 bits, so that no
  * count overflows them. After the first error no bytes are left, and everything read is 0.
  *
- * Numbers and lists of numbers are inline: a replay reads tens of millions of them a second. No
- * inline function stores the address of a cursor, so that compilers can keep a local cursor in
- * registers. */
+ * Functions for numbers and lists of numbers are inline: a replay reads tens of millions of them a
+ * second. No inline function stores the address of a cursor, so that compilers can keep a local
+ * cursor in registers. No shared state. */
 #ifndef CURSOR_H
 #define CURSOR_H
 
@@ -31,7 +31,7 @@ static inline void cursor_fail(struct cursor *cursor, const char *error)
     cursor->end = cursor->at;
 }
 
-/* The next size bytes. NULL: fewer are left, which is an error. */
+/* Takes the next size bytes and returns where they are. NULL, and an error: fewer are left. */
 static inline const unsigned char *cursor_take(struct cursor *cursor, uint64_t size)
 {
     const unsigned char *bytes = cursor->at;
@@ -55,6 +55,7 @@ static inline int32_t cursor_int32(struct cursor *cursor)
     return bytes ? (int32_t) big_endian_32(bytes) : 0;
 }
 
+/* Decodes 8 bytes, which may have any alignment. */
 static inline double cursor_double_at(const unsigned char *bytes)
 {
     const uint64_t bits = big_endian_64(bytes);
@@ -69,8 +70,8 @@ static inline double cursor_double(struct cursor *cursor)
     return bytes ? cursor_double_at(bytes) : 0;
 }
 
-/* Begins to read a message and checks the fingerprint of its type. On input: size bytes, which may
- * be NULL if size is 0. A size above INT32_MAX is an error. */
+/* Begins to read a message, and checks the fingerprint of its type. On input: size bytes, which
+ * must outlive the cursor; bytes may be NULL if size is 0. A size above INT32_MAX is an error. */
 static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64_t fingerprint)
 {
     struct cursor cursor = {.at = bytes ? bytes : (const void *) ""}; /* NULL + 0 is undefined */
@@ -82,14 +83,14 @@ static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64
     return cursor;
 }
 
-/* The first error, NULL for none. Bytes left over are an error too. */
+/* Ends reading. Returns the first error, or NULL. Bytes that are left are an error. */
 static inline const char *cursor_end(const struct cursor *cursor)
 {
     return cursor_left(cursor) ? "longer than its fields" : cursor->error;
 }
 
-/* A count of elements of at least size bytes each. It is an error if fewer bytes are left; the
- * count is then 0. */
+/* Reads a count of elements of at least size bytes each. Returns 0, and sets an error, if the count
+ * is negative or the message has fewer bytes left. */
 static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
 {
     const int32_t count = cursor_int32(cursor);
@@ -99,7 +100,8 @@ static inline int32_t cursor_count(struct cursor *cursor, uint64_t size)
     return 0;
 }
 
-/* A count, and that many elements of size bytes each. Returns the count; *bytes: the elements. */
+/* Reads a count, and takes that many elements of size bytes each. Returns the count; *bytes: the
+ * elements. */
 static inline int32_t cursor_list(struct cursor *cursor, uint64_t size, const unsigned char **bytes)
 {
     const int32_t count = cursor_count(cursor, size);
@@ -108,7 +110,8 @@ static inline int32_t cursor_list(struct cursor *cursor, uint64_t size, const un
     return count;
 }
 
-/* A count, and that many numbers: all are read, the first max are stored. Returns the count. */
+/* Reads a count, and that many numbers. The first max are stored. Returns the count of the message,
+ * which may exceed max. */
 static inline int32_t cursor_doubles(struct cursor *cursor, double *out, int max)
 {
     const unsigned char *bytes;
@@ -118,18 +121,20 @@ static inline int32_t cursor_doubles(struct cursor *cursor, double *out, int max
     return count;
 }
 
+/* The same for 64-bit integers, and for bytes. */
 int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max);
 int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max);
 
 /* The same for 16-bit integers; a negative one becomes a number above 2^31. */
 int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max);
 
-/* A string. Returns its length without the final 0, and in *bytes where it is in the message. After
- * an error returns 0, and *bytes is unchanged. */
+/* Takes a string. Returns its length without the final 0, and in *bytes where it is in the message.
+ * After an error returns 0, and *bytes is unchanged. A string without a final 0, or with a 0 before
+ * it, is an error. */
 size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes);
 
-/* A string, truncated to size > 0 bytes, final 0 included; bytes that are not printable become '?'.
- */
+/* Reads a string into out, truncated to size bytes (1 or more), final 0 included. Bytes that are
+ * not printable become '?'. */
 void cursor_string(struct cursor *cursor, char *out, size_t size);
 
 /* Whether the byte is printable ASCII. Other bytes could control a terminal. */

@@ -3,7 +3,7 @@
 #include "cursor.h"
 #include "writer.h"
 
-/* Where the parts of a geometry stand. */
+/* Offsets in an encoded geometry, in bytes. */
 enum { DIM_AT = 0, FRAMES_AT = 4, SHAPES_AT = 8 };
 
 /* Numbers after the origin. */

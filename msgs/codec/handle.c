@@ -14,7 +14,7 @@ struct hasher *hasher_create(void)
 {
     struct hasher *hasher = malloc(sizeof *hasher);
     if (hasher)
-        hasher->sha256 = g_checksum_new(G_CHECKSUM_SHA256); /* aborts where there is no memory */
+        hasher->sha256 = g_checksum_new(G_CHECKSUM_SHA256); /* aborts if out of memory */
     return hasher;
 }
 

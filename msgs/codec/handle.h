@@ -1,8 +1,8 @@
-/* Handles: fingerprints of bodies.
+/* Handles: content addresses of bodies.
  *
  * A handle is the first 16 bytes of the SHA-256 (FIPS 180-4) of the geometry as encoded on the
- * wire. It is the same in every service and in every log. Two geometries with the same handle are
- * not known, and cannot be found with feasible effort. */
+ * wire. It is the same in every service and in every log. No two geometries with the same handle
+ * are known; finding two takes some 2^64 hashes. */
 #ifndef HANDLE_H
 #define HANDLE_H
 
@@ -17,6 +17,7 @@ struct handle {
     unsigned char bytes[HANDLE_BYTES];
 };
 
+/* Whether all bytes are 0, which stands for no handle. */
 static inline bool handle_is_none(const struct handle *handle)
 {
     static const struct handle none;
@@ -28,15 +29,16 @@ static inline bool handle_equal(const struct handle *a, const struct handle *b)
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-/* Computes handles. For one thread at a time. */
+/* Computes handles. One hasher may be used by one thread at a time; hashers share no state. */
 struct hasher;
 
-/* NULL: out of memory. hasher_destroy() accepts NULL. */
+/* Returns NULL if out of memory (GLib may abort the process instead). hasher_destroy() accepts
+ * NULL. */
 struct hasher *hasher_create(void);
 void hasher_destroy(struct hasher *hasher);
 
-/* The handle of an encoded geometry. GLib allocates some 70 bytes in each call, and frees them in
- * the next one. */
+/* Returns the handle of an encoded geometry of size bytes. GLib allocates some 70 bytes in each
+ * call, and frees them in the next one. */
 struct handle hasher_handle(struct hasher *hasher, const unsigned char *bytes, size_t size);
 
 #endif

@@ -1,5 +1,6 @@
-/* Queries and results as plain structs: wire.h encodes and decodes them, and the code that answers
- * queries needs no LCM. Fields mean what the message types in msgs/ say. */
+/* Queries and results as plain structs. wire.h encodes and decodes them, so that the code that
+ * answers queries needs no LCM. Fields have the meaning, unit and axis order that the message types
+ * (*.lcm) state. No function has shared state. */
 #ifndef QUERY_H
 #define QUERY_H
 
@@ -38,7 +39,7 @@ struct query_header {
     int64_t client_id, sequence_number;
 };
 
-/* The same as the first fields of a message, by their names and as one. */
+/* Declares these fields in a struct, both by their names and as one struct `header`. */
 #define QUERY_HEADER                                   \
     union {                                            \
         struct query_header header;                    \
@@ -55,17 +56,17 @@ struct geometry {
     size_t size;
 };
 
-/* A body at a place. Counts are those of the message and may be anything from 0; of more numbers
- * than an array holds, the first are kept. */
+/* A body with its pose and velocity. Counts are those of the message, 0 or more and not checked; if
+ * there are more numbers than an array holds, the first are stored. */
 struct placement {
     int64_t body_id;      /* 0: anonymous */
     struct handle handle; /* all 0: none */
-    int32_t dim;          /* not checked: any number from 0 */
+    int32_t dim;          /* 0 or more; not checked */
     int32_t frame_count;  /* 0 with a handle */
     int32_t number_count; /* of all frames; 0 with a handle */
     int32_t orientation_count;
     int32_t velocity_count;
-    struct geometry geometry; /* in the message read, or of the caller that writes */
+    struct geometry geometry; /* points into the message read, or to memory of the writer */
     double position[FMB_DIM_MAX];
     double orientation[QUERY_ORIENTATION_MAX];
     double velocity[FMB_DIM_MAX];
@@ -78,35 +79,36 @@ static inline bool placement_by_handle(const struct placement *placement)
            !handle_is_none(&placement->handle);
 }
 
-/* One frame of a geometry. */
+/* One frame of a geometry, in body coordinates. */
 struct geometry_frame {
-    int shape;                  /* not checked */
+    int shape;                  /* enum fmb_shape; not checked */
     int count;                  /* of components */
-    double origin[FMB_DIM_MAX]; /* body coordinates; of a box its centre */
-    /* [component * dim + axis]; of a box [axis], its full size */
+    double origin[FMB_DIM_MAX]; /* for a box, its centre */
+    /* [component * dim + axis]; for a box [axis], its full size */
     double components[FMB_COMPONENTS_MAX];
 };
 
 enum {
+    /* Bytes of a geometry without frames: dim, count of frames, count of numbers. */
     GEOMETRY_NONE_BYTES = 12,
     /* Most numbers of a frame, and most bytes of a geometry of one frame. */
     GEOMETRY_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX,
     GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 8 * GEOMETRY_FRAME_NUMBERS_MAX,
-    /* No frame takes fewer bytes than a box in 2D, and no message has more frames. */
+    /* Least bytes of a frame, those of a box in 2D; and hence most frames of a message. */
     GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
     QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN
 };
 
-/* The numbers of a frame in a geometry, those of its origin or centre included. 0: dim and shape do
- * not go together, or one of them is unknown. */
+/* Number of numbers of a frame in a geometry, including its origin or centre. 0: there is no such
+ * shape in this dimension. */
 int geometry_number_count(int dim, int shape);
 
-/* Bytes of a geometry of these frames. On input: dim and shapes of that dimension; the counts of
- * components are not read. */
+/* Bytes of a geometry of these frames. On input: dim; shapes of that dimension. The other fields of
+ * the frames are not read. */
 size_t geometry_size(int dim, const struct geometry_frame *frames, int count);
 
-/* Encodes a body. On input: as for geometry_size(), whose result is the size of out. Returns the
- * bytes of out used. */
+/* Encodes a body. On input: frames as for geometry_size(), with their numbers; out has
+ * geometry_size() bytes. Returns this size. */
 size_t geometry_write_frames(int dim, const struct geometry_frame *frames, int count,
                              unsigned char *out);
 
@@ -117,22 +119,24 @@ size_t geometry_write(int dim, const struct geometry_frame *frame,
 /* Encodes the geometry of a placement that names its body by handle: dim, and no frames. */
 void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES]);
 
-/* Reads the frames of a geometry one after the other. */
+/* Iterator over the frames of a geometry. */
 struct geometry_reader {
-    int dim;             /* not checked */
-    int32_t frames_left; /* not checked: any number from 0 */
-    int32_t numbers_left;
-    const unsigned char *shape, *number; /* the next ones */
+    int dim;                             /* not checked */
+    int32_t frames_left;                 /* 0 or more; not checked */
+    int32_t numbers_left;                /* 0 or more; not checked */
+    const unsigned char *shape, *number; /* the next ones, encoded */
 };
 
-/* On input: a geometry that wire.h has decoded, or that was written by the functions above. */
+/* Begins at the first frame. On input: a geometry that wire.h has decoded, or that was written by
+ * the functions above. It must outlive the reader. */
 struct geometry_reader geometry_begin(const struct geometry *geometry);
 
-/* The next frame. False: there are no more; or dim, shape and numbers do not match. Numbers that
- * are left after the last frame belong to none. */
+/* Reads the next frame. Returns false if there are no more; or if there is no such shape in this
+ * dimension, or too few numbers are left. Numbers that are left after the last frame are ignored.
+ */
 bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out);
 
-/* Reads the first frame. Returns false where geometry_next() does. */
+/* Reads the first frame. *dim: its dimension. Returns false if geometry_next() does. */
 bool geometry_read(const struct geometry *geometry, int *dim, struct geometry_frame *out);
 
 /* Shape of the first frame; 0: there is none. */
@@ -150,13 +154,13 @@ struct pair_result {
     QUERY_HEADER;
     int64_t server_id;
     int64_t body_id[2];
-    struct handle handle[2];     /* of bodies that came whole with an id; else all 0 */
+    struct handle handle[2];     /* of bodies sent with frames and an id; else all 0 */
     int32_t status;              /* enum fmb_status */
-    char detail[QUERY_TEXT_MAX]; /* "" where OK */
-    int32_t method;              /* 0 where not OK */
-    int32_t dim;                 /* of box and gap, 2 or 3; 0 where there is neither */
-    struct fmb_answer answer;    /* all 0 where not OK */
-    const char *certificate;     /* NULL: none. Owned by the answerer or the message */
+    char detail[QUERY_TEXT_MAX]; /* "" if OK */
+    int32_t method;              /* 0 if not OK */
+    int32_t dim;                 /* of box and gap, 2 or 3; 0 if there is neither */
+    struct fmb_answer answer;    /* all 0 if not OK */
+    const char *certificate;     /* NULL: none. Points into the answerer or the message */
     int64_t compute_ns;
 };
 
@@ -164,8 +168,8 @@ struct pair_result {
 
 enum { QUERY_PAIRS_LISTED = 0, QUERY_PAIRS_ALL = 1, QUERY_PAIRS_ACROSS = 2 };
 
-/* No query of QUERY_BYTES_MAX has more placements that are valid, nor more pairs listed: a
- * placement takes 60 bytes (2D, by handle, at rest) or more, a pair 4. */
+/* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 60
+ * bytes (2D, by handle, at rest) or more, a pair 4. */
 enum {
     QUERY_PLACEMENT_BYTES_MIN = 60,
     QUERY_PLACEMENTS_MAX = QUERY_BYTES_MAX / QUERY_PLACEMENT_BYTES_MIN,
@@ -179,15 +183,15 @@ struct scene_query {
     double margin;
     int32_t which; /* QUERY_PAIRS_ */
     int32_t split, first_pair;
-    /* Counts of the message; of more elements than an array holds, the first are kept. */
+    /* Counts of the message; if they exceed the arrays, the first elements are stored. */
     int32_t placement_count, index_count, ignored_count;
     struct placement placement[QUERY_PLACEMENTS_MAX];
-    /* [pair][a, b], not checked; a negative index became a number beyond every count. */
+    /* [pair][a, b], not checked. A negative index is stored as a number above 2^31. */
     unsigned pair[QUERY_PAIRS_MAX][2];
     unsigned ignored[QUERY_PAIRS_MAX][2];
 };
 
-/* Capacity of a result: at least five bytes for each named pair, eight for each number. */
+/* Capacity of a result: a named pair takes at least five bytes, a number eight. */
 enum {
     QUERY_VERDICTS_MAX = QUERY_PAIRS_MAX,
     QUERY_NAMED_MAX = QUERY_BYTES_MAX / 5,
@@ -199,26 +203,27 @@ struct scene_result {
     QUERY_HEADER;
     int64_t server_id;
     int32_t status;              /* enum fmb_status */
-    char detail[QUERY_TEXT_MAX]; /* "" where OK */
-    int32_t method;              /* 0 where not OK */
+    char detail[QUERY_TEXT_MAX]; /* "" if OK */
+    int32_t method;              /* 0 if not OK */
     int32_t end_pair;
     int64_t compute_ns;
-    int dim;               /* of boxes and gaps, 2 or 3; 0 where there are none */
+    int dim;               /* of boxes and gaps, 2 or 3; 0 if there are none */
     int32_t unknown_count; /* placements whose handles are not held */
-    int32_t handle_count;  /* placements that came whole with an id */
-    int32_t verdict_count; /* of the named pairs, or of all pairs from first_pair on */
+    int32_t handle_count;  /* placements sent with frames and an id */
+    int32_t verdict_count; /* number of named pairs, or of answered pairs from first_pair on */
     int32_t contact_count; /* verdicts that touch or overlap */
     bool names_pairs, has_times, has_boxes, has_gaps;
     unsigned unknown[QUERY_PLACEMENTS_MAX];     /* [unknown_count] indices, ascending */
     struct handle handle[QUERY_PLACEMENTS_MAX]; /* [handle_count], in the order of placements */
     unsigned char verdict[QUERY_VERDICTS_MAX];
-    unsigned pair[QUERY_NAMED_MAX][2]; /* [verdict_count][a, b] where names_pairs */
-    double times[QUERY_NUMBERS_MAX];   /* [contact][first, last], seconds, where has_times */
-    double boxes[QUERY_NUMBERS_MAX];   /* [contact][lower, upper][dim], where has_boxes */
-    /* [verdict], where has_gaps; bounds of NAN and all else 0: none, the pair is separated. */
+    unsigned pair[QUERY_NAMED_MAX][2]; /* [verdict_count][a, b], if names_pairs */
+    double times[QUERY_NUMBERS_MAX];   /* [contact][first, last], seconds, if has_times */
+    double boxes[QUERY_NUMBERS_MAX];   /* [contact][lower, upper][dim], if has_boxes */
+    /* [verdict_count], if has_gaps. A separated pair may have no gap: bounds NaN, the rest 0. */
     struct fmb_gap gap[QUERY_GAPS_MAX];
 };
 
+/* Whether the pair has a gap, that is, bounds that are not NaN and ordered. */
 static inline bool query_has_gap(const struct fmb_gap *gap)
 {
     return gap->bounds[0] <= gap->bounds[1];
@@ -233,7 +238,7 @@ static inline void query_remove_far_gap(double margin, struct fmb_answer *answer
     memset(&answer->gap, 0, sizeof answer->gap);
 }
 
-/* Bit for bit. */
+/* Whether two gaps are equal bit for bit. */
 static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap *b)
 {
     return a->has_witness == b->has_witness &&
@@ -262,12 +267,12 @@ struct definition {
     QUERY_HEADER;
     int64_t server_id;
     int32_t status;
-    char detail[QUERY_TEXT_MAX]; /* "" where OK */
+    char detail[QUERY_TEXT_MAX]; /* "" if OK */
     int64_t next;                /* 0: complete */
     int32_t body_count;
     struct query_body {
         struct handle handle;
-        struct geometry geometry; /* in the message read, or of the caller that writes */
+        struct geometry geometry; /* points into the message read, or to memory of the writer */
     } body[QUERY_BODIES_MAX];
 };
 

@@ -1,22 +1,24 @@
 /* Converts messages between bytes and plain structs, and checks untrusted bytes.
  *
  * LCM's encoding is big-endian without padding: 8 bytes of fingerprint, then the fields in order.
- * An array is its elements; a string is its length with the final 0 (int32_t), then its bytes. The
- * readers compute sizes in 64 bits and write into memory of the caller: whatever a count says, they
- * never read beyond the message and never allocate. They accept exactly what lcm-gen's encoders
- * write: the fingerprint of the type, counts from 0, strings that end where they say, and not one
- * byte more or less. Results must be consistent besides:
+ * An array is encoded as its elements; a string as its length with the final 0 (int32_t), then its
+ * bytes. The readers compute sizes in 64 bits and write into memory of the caller: whatever a count
+ * says, they never read beyond the message and never allocate. They accept exactly what lcm-gen's
+ * encoders write: the fingerprint of the type, counts from 0, strings whose only 0 is the last
+ * byte, and no bytes more or less. Results must also be consistent:
  *
  * - A verdict is present if and only if the status is OK; an interval, if and only if the bodies
- *   meet. Boxes are only present for bodies that meet. Both are ordered. A certificate is only
- *   present with a verdict, is printable ASCII and shorter than QUERY_CERTIFICATE_MAX.
- * - Bounds of a gap are ordered, and 0 for bodies that touch; its direction is finite. Witness
- * points are present if and only if the bodies are separated. NaN, where the message types have it,
- * is that of Java: the bits 7ff8000000000000.
+ *   touch or overlap. A box is present only if they do. Both are ordered. A certificate is present
+ *   only with a verdict, is printable ASCII and shorter than QUERY_CERTIFICATE_MAX.
+ * - The bounds of a gap are ordered, and 0 for bodies that touch; its direction is finite. Witness
+ *   points are present if and only if the bodies are separated. A NaN, where the message types have
+ *   one, has the bits 7ff8000000000000 (Java's NaN).
  * - A scene has as many named pairs, times, boxes and gaps as its verdicts require. Named pairs are
  *   in order; those that are separated have a gap. Unknown bodies are present if and only if the
- * status is UNKNOWN_BODY, and nothing else where it is not OK.
- * - The bodies of a definition have frames, and match their handle. The frames are not checked. */
+ *   status is UNKNOWN_BODY. If the status is not OK, there are no answers.
+ * - The bodies of a definition have frames, and match their handle. The frames are not checked.
+ *
+ * No function has shared state. */
 #ifndef WIRE_H
 #define WIRE_H
 
@@ -78,9 +80,9 @@ struct wire_status {
 
 /* Readers. On input: size bytes of payload.
  * On output: NULL and *out; or a static text of what is wrong, and *out unspecified. Texts longer
- * than the struct holds are truncated; counts of statuses from FMB_STATUS_COUNT on are ignored; of
- * more placements, pairs or handles than the struct holds, the first are kept. Geometries and the
- * certificate of *out point into bytes. */
+ * than the struct holds are truncated; counts of statuses from FMB_STATUS_COUNT on are ignored; if
+ * a query has more placements, pairs or handles than the struct holds, the first are stored, and
+ * the count is that of the message. Geometries and the certificate of *out point into bytes. */
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out);
 const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out);
 const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene_query *out);
@@ -91,7 +93,8 @@ const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher
                                  struct definition *out);
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
 
-/* Read the header of a message of the type, and ignore the remainder. */
+/* Read the header of a message of the type only. On output: NULL, or what is wrong. The remainder
+ * of the message is not checked. */
 const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out);
 const char *wire_read_scene_header(const void *bytes, uint32_t size, struct query_header *out);
 const char *wire_read_definition_header(const void *bytes, uint32_t size, struct query_header *out);
@@ -126,9 +129,11 @@ enum {
     WIRE_DEFINITION_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 8 + 4,
     WIRE_PAIR_BYTES = 4
 };
+
+/* Bytes of an encoded placement. */
 size_t wire_placement_bytes(const struct placement *placement);
 
-/* Bounds, direction, time and points. */
+/* Bytes of an encoded gap in a scene: bounds, direction, time and points. */
 static inline int32_t wire_gap_bytes(int dim)
 {
     return 8 * (2 + dim + 1 + 2 * dim);

@@ -1,3 +1,4 @@
+/* Definition queries and definitions. */
 #include "wire.h"
 
 #include "wire_placement.h"
@@ -36,17 +37,17 @@ size_t wire_write_definition_query(const struct definition_query *query,
 static void read_body(struct cursor *cursor, struct hasher *hasher, struct query_body *out)
 {
     int32_t dim, frames, numbers;
-    struct cursor own = *cursor;
-    wire_read_handle(&own, &out->handle);
-    wire_read_geometry(&own, &out->geometry, &dim, &frames, &numbers);
-    if (!own.error) {
+    struct cursor local = *cursor;
+    wire_read_handle(&local, &out->handle);
+    wire_read_geometry(&local, &out->geometry, &dim, &frames, &numbers);
+    if (!local.error) {
         const struct handle handle = hasher_handle(hasher, out->geometry.bytes, out->geometry.size);
         if (frames == 0)
-            cursor_fail(&own, "a body without frames");
+            cursor_fail(&local, "a body without frames");
         if (!handle_equal(&handle, &out->handle))
-            cursor_fail(&own, "a body that does not match its handle");
+            cursor_fail(&local, "a body that does not match its handle");
     }
-    *cursor = own;
+    *cursor = local;
 }
 
 const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher *hasher,

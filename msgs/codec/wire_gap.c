@@ -1,10 +1,11 @@
+/* The lists of gaps in pair results and scene results. */
 #include "wire_placement.h"
 
 #include <math.h>
 
 /* ---- Reading ---- */
 
-/* Whether the numbers are NaN, with the bits that a message has for a number that is not there. */
+/* Whether all numbers are the NaN that stands for an absent number, bit for bit. */
 static bool are_none(const double *number, int count)
 {
     const double none = NAN;
@@ -20,6 +21,7 @@ static void take_numbers(const unsigned char *bytes, double *out, int count)
         out[i] = cursor_double_at(bytes + 8 * i);
 }
 
+/* Whether the time is finite and 0 or more, and the points are not NaN. */
 static bool is_witness(const double *witness, int count)
 {
     bool good = witness[0] >= 0 && isfinite(witness[0]);
@@ -36,7 +38,8 @@ static void set_witness(const double *witness, int dim, struct fmb_gap *out)
         memcpy(out->witness[side], witness + 1 + side * dim, (size_t) dim * sizeof *witness);
 }
 
-/* Whether they are numbers of one gap of a pair with this verdict. */
+/* Sets direction and witness of a gap whose bounds are set. Returns whether all its numbers are
+ * consistent with the verdict. */
 static bool set_gap(unsigned char verdict, const double *direction, const double *witness, int dim,
                     struct fmb_gap *out)
 {
@@ -71,14 +74,14 @@ int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t 
         directions != (int64_t) dim * count || numbers != (int64_t) points * witnesses)
         cursor_fail(cursor, "gaps that do not go with the verdicts");
     for (int32_t i = 0; i < count && dim > 0 && !cursor->error; i++) {
-        double way[FMB_DIM_MAX], at[1 + 2 * FMB_DIM_MAX];
+        double unit[FMB_DIM_MAX], point[1 + 2 * FMB_DIM_MAX];
         for (int k = 0; k < points; k++)
-            at[k] = NAN;
+            point[k] = NAN;
         memset(&out[i], 0, sizeof out[i]);
         take_numbers(bound + 16 * i, out[i].bounds, 2);
-        take_numbers(direction + 8 * dim * i, way, dim);
-        take_numbers(witness + 8 * points * i, at, witnesses > 0 ? points : 0);
-        if (!set_gap(verdict[i], way, at, dim, &out[i]))
+        take_numbers(direction + 8 * dim * i, unit, dim);
+        take_numbers(witness + 8 * points * i, point, witnesses > 0 ? points : 0);
+        if (!set_gap(verdict[i], unit, point, dim, &out[i]))
             cursor_fail(cursor, "a gap that is no gap");
     }
     return dim;
@@ -86,7 +89,7 @@ int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t 
 
 /* ---- Writing ---- */
 
-/* NaN where there are none. */
+/* Writes count numbers; NaN for each if they are absent. */
 static void write_numbers(struct writer *writer, bool some, const double *number, int count)
 {
     for (int i = 0; i < count; i++)

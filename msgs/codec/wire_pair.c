@@ -1,3 +1,4 @@
+/* Pair queries and pair results. */
 #include "wire.h"
 
 #include "wire_placement.h"
@@ -9,13 +10,13 @@
 #include <float.h>
 #include <string.h>
 
-/* Fixed fields of a result, the longest of its lists, and its texts. */
+/* The fixed fields of a result, the most numbers that its lists can have, and its texts. */
 static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (5 + 5 * FMB_DIM_MAX) + QUERY_TEXT_MAX +
                       QUERY_CERTIFICATE_MAX + 8 <=
                   QUERY_BYTES_MAX,
               "a result is one datagram");
 
-/* The numbers of the messages are those of the engine. */
+/* The constants of the message types are equal to those of the engine. */
 static_assert((int) FMB_CUBOID == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID &&
                   (int) FMB_TETRAHEDRON == FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON &&
                   (int) FMB_FACE == FMB_MSGS_PLACEMENT_T_SHAPE_FACE &&
@@ -56,7 +57,7 @@ const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_q
     return cursor_end(&cursor);
 }
 
-/* Lower ends of all axes, then the upper ends. */
+/* Reads a box: the lower ends of all axes, then the upper ends. */
 static void read_box(struct cursor *cursor, struct pair_result *out)
 {
     double ends[2 * FMB_DIM_MAX] = {0};
@@ -75,7 +76,7 @@ static void read_box(struct cursor *cursor, struct pair_result *out)
             cursor_fail(cursor, "a box that is no box");
 }
 
-/* Present if and only if there is contact. */
+/* Reads a contact interval, which is present if and only if the bodies touch or overlap. */
 static void read_contact(struct cursor *cursor, struct fmb_answer *out)
 {
     const int32_t count = cursor_doubles(cursor, out->contact, 2);

@@ -1,3 +1,4 @@
+/* Header, handles, geometry and placement, which several message types share. */
 #include "wire_placement.h"
 
 #include <string.h>
@@ -53,8 +54,7 @@ void wire_read_geometry(struct cursor *cursor, struct geometry *out, int32_t *di
     *out = (struct geometry){begin, (size_t) (cursor->at - begin)};
 }
 
-/* As many numbers as count, which has been read: the first max are kept, the remainder of out is 0.
- */
+/* Reads count numbers. The first max are stored; if there are fewer, the remainder of out is 0. */
 static void read_numbers(struct cursor *cursor, int32_t count, double *out, int max)
 {
     const unsigned char *bytes = count > 0 ? cursor_take(cursor, 8 * (uint64_t) count) : NULL;
@@ -68,18 +68,18 @@ static void read_numbers(struct cursor *cursor, int32_t count, double *out, int 
 
 void wire_read_placement(struct cursor *cursor, struct placement *out)
 {
-    struct cursor own = *cursor;
-    out->body_id = cursor_int64(&own);
-    wire_read_handle(&own, &out->handle);
-    wire_read_geometry(&own, &out->geometry, &out->dim, &out->frame_count, &out->number_count);
+    struct cursor local = *cursor;
+    out->body_id = cursor_int64(&local);
+    wire_read_handle(&local, &out->handle);
+    wire_read_geometry(&local, &out->geometry, &out->dim, &out->frame_count, &out->number_count);
     if (out->dim < 0)
-        cursor_fail(&own, "negative count");
-    read_numbers(&own, out->dim, out->position, FMB_DIM_MAX);
-    out->orientation_count = cursor_count(&own, 8);
-    read_numbers(&own, out->orientation_count, out->orientation, QUERY_ORIENTATION_MAX);
-    out->velocity_count = cursor_count(&own, 8);
-    read_numbers(&own, out->velocity_count, out->velocity, FMB_DIM_MAX);
-    *cursor = own;
+        cursor_fail(&local, "negative count");
+    read_numbers(&local, out->dim, out->position, FMB_DIM_MAX);
+    out->orientation_count = cursor_count(&local, 8);
+    read_numbers(&local, out->orientation_count, out->orientation, QUERY_ORIENTATION_MAX);
+    out->velocity_count = cursor_count(&local, 8);
+    read_numbers(&local, out->velocity_count, out->velocity, FMB_DIM_MAX);
+    *cursor = local;
 }
 
 void wire_write_placement(struct writer *writer, const struct placement *placement)

@@ -1,4 +1,5 @@
-/* Parts that messages share: header, placement, handles, geometry, gaps. Private to wire_*.c. */
+/* Parts that several message types share: header, placement, handles, geometry, gaps. Readers set
+ * the error of the cursor. Private to wire_*.c. */
 #ifndef WIRE_PLACEMENT_H
 #define WIRE_PLACEMENT_H
 
@@ -6,7 +7,7 @@
 #include "wire.h"
 #include "writer.h"
 
-/* The fields that all queries and results begin with, after the fingerprint. */
+/* The fields with which all queries and results begin, after the fingerprint. */
 static inline void wire_read_ids(struct cursor *cursor, struct query_header *out)
 {
     out->utime = cursor_int64(cursor);
@@ -21,7 +22,8 @@ static inline void wire_write_ids(struct writer *writer, const struct query_head
     writer_int64(writer, header->sequence_number);
 }
 
-/* Reads the same of a message, and ignores the remainder. */
+/* Reads the fingerprint and these fields of a message, and ignores the remainder. Returns NULL, or
+ * what is wrong. */
 const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
                              struct query_header *out);
 
@@ -33,23 +35,24 @@ void wire_read_handle(struct cursor *cursor, struct handle *out);
 
 void wire_write_handle(struct writer *writer, const struct handle *handle);
 
-/* A count of bytes and the handles in them: all are read, the first max are stored. Returns the
- * number of handles. */
+/* Reads a count of bytes, and the handles in them. The first max are stored. Returns the number of
+ * handles of the message, which may exceed max. */
 int32_t wire_read_handles(struct cursor *cursor, struct handle *out, int max);
 
 void wire_write_handles(struct writer *writer, const struct handle *handles, int32_t count);
 
-/* The fields dim to numbers. On output: *frames and *numbers are their counts. */
+/* Reads the fields dim to numbers of a geometry. On output: *out points into the message; *frames
+ * and *numbers are the counts. Neither is checked for consistency with dim. */
 void wire_read_geometry(struct cursor *cursor, struct geometry *out, int32_t *dim, int32_t *frames,
                         int32_t *numbers);
 
-/* The lists of gaps: bounds, directions, witnesses. There are gaps of all verdicts or of none, and
- * witnesses of as many as the message type has, whether they are separated or not. Returns the
- * dimension; 0: there are none. */
+/* Reads the lists of gaps: bounds, directions, witnesses. There is a gap for each of count
+ * verdicts, or for none; witnesses is the number of gaps with a witness in the encoding (it depends
+ * on the message type, and is 0 or count). Returns the dimension of the gaps; 0: there are none. */
 int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
                    int32_t witnesses, struct fmb_gap *out);
 
-/* dim is 0 where there are none. */
+/* Writes the lists of gaps. On input: as above; dim 0: there are none. */
 void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
                      int32_t witnesses, int dim);
 

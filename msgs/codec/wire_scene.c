@@ -1,3 +1,4 @@
+/* Scene queries and scene results. */
 #include "wire.h"
 
 #include "wire_placement.h"
@@ -20,7 +21,7 @@ static_assert((int) QUERY_WANT_BOX == FMB_MSGS_SCENE_QUERY_T_WANT_BOX &&
                   FMB_MSGS_SCENE_QUERY_T_WANT_TIMES != FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE,
               "wants");
 
-/* Bytes of a placement of dimension 0, the least that any takes. */
+/* Least bytes of a placement: one of dimension 0, which is read but not valid. */
 enum { PLACEMENT_BYTES_LEAST = 44 };
 
 /* ---- Queries ---- */
@@ -30,7 +31,8 @@ const char *wire_read_scene_header(const void *bytes, uint32_t size, struct quer
     return wire_read_header(bytes, size, __fmb_msgs_scene_query_t_get_hash(), out);
 }
 
-/* Placements beyond the capacity are read and dropped. */
+/* Reads placements. Those beyond the capacity of out are decoded and dropped. Returns the count of
+ * the message. */
 static int32_t read_placements(struct cursor *cursor, struct placement *out)
 {
     const int32_t count = cursor_count(cursor, PLACEMENT_BYTES_LEAST);
@@ -84,7 +86,8 @@ size_t wire_write_scene_query(const struct scene_query *query, unsigned char out
 
 /* ---- Results ---- */
 
-/* Ascending; some if and only if handles are not held. */
+/* Reads the indices of placements whose handles are not held: ascending, and present if and only if
+ * the status is UNKNOWN_BODY. */
 static void read_unknown(struct cursor *cursor, struct scene_result *out)
 {
     const int32_t count = cursor_indices(cursor, out->unknown, QUERY_PLACEMENTS_MAX);
@@ -97,7 +100,7 @@ static void read_unknown(struct cursor *cursor, struct scene_result *out)
     out->unknown_count = count;
 }
 
-/* Returns how many of the pairs are contacts. */
+/* Reads the verdicts. Returns the number of contacts among them. */
 static int32_t read_verdicts(struct cursor *cursor, struct scene_result *out)
 {
     const int32_t count = cursor_bytes(cursor, out->verdict, QUERY_VERDICTS_MAX);
@@ -113,7 +116,7 @@ static int32_t read_verdicts(struct cursor *cursor, struct scene_result *out)
     return contacts;
 }
 
-/* Two different placements, in the order of (a, b) after the pair before them. */
+/* Whether pair i has a < b, valid indices, and follows pair i - 1 in the order of (a, b). */
 static bool is_next_pair(const unsigned (*pair)[2], int32_t i)
 {
     const unsigned a = pair[i][0], b = pair[i][1];

@@ -5,12 +5,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* "fmb_msgs.pair_query_t", or "fmb_msgs.pair_query_t (version 1)"; NULL: the fingerprint belongs to
- * no type of this version or of version 1. */
+/* Returns a static text such as "fmb_msgs.pair_query_t" or "fmb_msgs.pair_query_t (version 1)".
+ * NULL: the fingerprint belongs to no type of this version or of version 1. */
 const char *wire_type_name(int64_t fingerprint);
 
-/* Whether the type is one of version 1, whose messages cannot be decoded: the types have the same
- * names and other fields. */
+/* Whether the fingerprint belongs to a type of version 1. Its types have the same names but other
+ * fields, and cannot be decoded. */
 bool wire_type_is_version_1(int64_t fingerprint);
 
 #endif

@@ -1,5 +1,5 @@
-/* Writes LCM's encoding, which cursor.h reads. The caller makes sure that the message fits;
- * otherwise the process is aborted. */
+/* Writes LCM's encoding, which cursor.h reads. The caller ensures that the message fits; otherwise
+ * the process is aborted. Functions are inline, as in cursor.h. No shared state. */
 #ifndef WRITER_H
 #define WRITER_H
 
@@ -14,6 +14,7 @@ struct writer {
     unsigned char *at, *end; /* the free bytes */
 };
 
+/* Returns the next size bytes, which the caller fills. */
 static inline unsigned char *writer_take(struct writer *writer, size_t size)
 {
     unsigned char *at = writer->at;
@@ -40,7 +41,7 @@ static inline void writer_double(struct writer *writer, double value)
     big_endian_put_64(writer_take(writer, 8), bits);
 }
 
-/* On input: capacity bytes; the fingerprint of the type. */
+/* Begins a message with the fingerprint of its type. On input: out has capacity bytes. */
 static inline struct writer writer_begin(unsigned char *out, size_t capacity, int64_t fingerprint)
 {
     struct writer writer = {.at = out, .end = out + capacity};
@@ -48,13 +49,13 @@ static inline struct writer writer_begin(unsigned char *out, size_t capacity, in
     return writer;
 }
 
-/* On input: out of writer_begin(). Returns the size of the message. */
+/* Returns the size of the message in bytes. On input: the out of writer_begin(). */
 static inline size_t writer_end(const struct writer *writer, const unsigned char *out)
 {
     return (size_t) (writer->at - out);
 }
 
-/* Lists: the count, then the elements. */
+/* Lists are written as the count, then the elements. */
 
 static inline void writer_doubles(struct writer *writer, const double *number, int32_t count)
 {
@@ -85,7 +86,7 @@ static inline void writer_bytes(struct writer *writer, const unsigned char *byte
     memcpy(writer_take(writer, (size_t) count), byte, (size_t) count);
 }
 
-/* The count includes the final 0. */
+/* Strings are written as a count that includes the final 0, then the bytes. */
 static inline void writer_string(struct writer *writer, const char *text)
 {
     writer_bytes(writer, (const unsigned char *) text, (int32_t) strlen(text) + 1);

@@ -1,3 +1,4 @@
+/* Answers definition queries: pages of bodies that the cache holds. */
 #include "answerer.h"
 
 #include "check.h"
@@ -6,19 +7,21 @@
 #include <assert.h>
 #include <stdio.h>
 
-static bool check_definition_query(struct checking *checking, const struct definition_query *query)
+static bool check_definition_query(struct check_context *context,
+                                   const struct definition_query *query)
 {
-    if (!check_ids(checking, query->client_id, query->sequence_number))
+    if (!check_ids(context, query->client_id, query->sequence_number))
         return false;
     if (query->handle_count > QUERY_HANDLES_MAX)
-        return check_refuse(checking, FMB_OVER_LIMIT, "num_handle_bytes",
+        return check_refuse(context, FMB_OVER_LIMIT, "num_handle_bytes",
                             "more than one datagram has");
     if (query->first < 0 || (query->handle_count > 0 && query->first > query->handle_count))
-        return check_refuse(checking, FMB_OVER_LIMIT, "first", "there are not so many");
+        return check_refuse(context, FMB_OVER_LIMIT, "first", "there are not so many");
     return true;
 }
 
-/* The next body that was requested; NULL: there are no more. *position is advanced beyond it. */
+/* Returns the next requested body that is held, at or after *position, and sets *position to the
+ * one after it; NULL: there are no more. */
 static const struct cached *next_body(const struct cache *cache,
                                       const struct definition_query *query, int64_t *position)
 {
@@ -32,10 +35,10 @@ static const struct cached *next_body(const struct cache *cache,
     return NULL;
 }
 
-/* Bytes of a page for bodies: where there are any, the detail is empty. */
+/* Bytes of a result that are available for bodies. The detail is then empty. */
 enum { PAGE_BYTES = QUERY_BYTES_MAX - WIRE_DEFINITION_BYTES + QUERY_TEXT_MAX - 1 };
 
-/* The largest body came as the only placement of a scene, in 2D at rest. */
+/* The largest body is one that was defined by the only placement of a scene, in 2D at rest. */
 static_assert(PAGE_BYTES - HANDLE_BYTES >= QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES -
                                                (QUERY_PLACEMENT_BYTES_MIN - GEOMETRY_NONE_BYTES),
               "a page has space for any body");
@@ -57,7 +60,7 @@ static void append_bodies(const struct cache *cache, const struct definition_que
     }
 }
 
-/* The array of the result stays as it is. */
+/* Sets all fields of the result except the contents of its array. */
 static void begin_result(const struct answerer *answerer, const struct query_header *query,
                          struct definition *result)
 {
@@ -72,9 +75,9 @@ static void begin_result(const struct answerer *answerer, const struct query_hea
 void answer_definition(struct answerer *answerer, const struct definition_query *query,
                        struct definition *result)
 {
-    struct checking checking = {.status = &result->status, .detail = result->detail};
+    struct check_context context = {.status = &result->status, .detail = result->detail};
     begin_result(answerer, &query->header, result);
-    if (check_definition_query(&checking, query))
+    if (check_definition_query(&context, query))
         append_bodies(answerer->cache, query, result);
 }
 

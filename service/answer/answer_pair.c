@@ -1,3 +1,5 @@
+/* Answers pair queries: at once for bodies of one frame, otherwise as a scene of one pair, in
+ * steps. */
 #include "answerer.h"
 
 #include "check.h"
@@ -8,71 +10,74 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void set_side(struct checking *checking, int side)
+static void set_side(struct check_context *context, int side)
 {
-    checking->part = side == 0 ? "a" : "b";
-    checking->index = -1;
+    context->part = side == 0 ? "a" : "b";
+    context->index = -1;
 }
 
-static bool check_pair(struct checking *checking, const struct pair_query *query)
+static bool check_pair(struct check_context *context, const struct pair_query *query)
 {
-    if (!check_ids(checking, query->client_id, query->sequence_number) ||
-        !check_request(checking, query->duration, query->method, query->want,
+    if (!check_ids(context, query->client_id, query->sequence_number) ||
+        !check_request(context, query->duration, query->method, query->want,
                        QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE | QUERY_WANT_GAP))
         return false;
     for (int f = 0; f < 2; f++) {
-        set_side(checking, f);
-        if (!check_placement(checking, &query->placement[f]))
+        set_side(context, f);
+        if (!check_placement(context, &query->placement[f]))
             return false;
     }
-    checking->part = NULL;
+    context->part = NULL;
     return query->placement[0].dim == query->placement[1].dim ||
-           check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
+           check_refuse(context, FMB_DIMENSIONS_DIFFER, "dim", NULL);
 }
 
-static bool find_body(struct cache *cache, struct checking *checking,
+static bool find_body(struct cache *cache, struct check_context *context,
                       const struct placement *placement, struct used_body *out)
 {
     const struct cached *cached = cache_find(cache, &placement->handle);
     if (!cached)
-        return check_refuse(checking, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
+        return check_refuse(context, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
     *out = (struct used_body){&cached->body, cached};
-    return check_body_dim(checking, placement, &cached->body);
+    return check_body_dim(context, placement, &cached->body);
 }
 
-/* Whether both bodies have one frame, where a certificate is wanted. */
-static bool check_certificate(struct checking *checking, const struct pair_query *query,
+/* If a certificate is wanted, both bodies must have one frame. On input: used: bodies found by
+ * handle. */
+static bool check_certificate(struct check_context *context, const struct pair_query *query,
                               const struct used_body used[2])
 {
-    checking->part = NULL;
+    context->part = NULL;
     for (int f = 0; f < 2 && query->want & QUERY_WANT_CERTIFICATE; f++)
         if (query->placement[f].frame_count > 1 || (used[f].body && used[f].body->frame_count > 1))
-            return check_refuse(checking, FMB_CANNOT_DECIDE, "want",
+            return check_refuse(context, FMB_CANNOT_DECIDE, "want",
                                 "a certificate is for bodies of one frame");
     return true;
 }
 
-/* Handles come first: a query that is refused leaves the cache as it was. */
-static bool find_bodies(struct answerer *answerer, struct checking *checking,
+/* Finds the bodies given by handle, then adds those that have frames, so that a query that is
+ * refused adds nothing to the cache. On output: out, and handle of the bodies with an id that have
+ * frames. */
+static bool find_bodies(struct answerer *answerer, struct check_context *context,
                         const struct pair_query *query, struct query_bodies *own,
                         struct used_body out[2], struct handle handle[2])
 {
     for (int f = 0; f < 2; f++) {
-        set_side(checking, f);
+        set_side(context, f);
         if (placement_by_handle(&query->placement[f]) &&
-            !find_body(answerer->cache, checking, &query->placement[f], &out[f]))
+            !find_body(answerer->cache, context, &query->placement[f], &out[f]))
             return false;
     }
-    if (!check_certificate(checking, query, out))
+    if (!check_certificate(context, query, out))
         return false;
     own->used = 0;
     for (int f = 0; f < 2; f++)
         if (!placement_by_handle(&query->placement[f]))
-            out[f] = answerer_keep(answerer, &query->placement[f], own, &handle[f]);
+            out[f] = answerer_intern(answerer, &query->placement[f], own, &handle[f]);
     return true;
 }
 
-/* A certificate that is too long is left out. */
+/* Adds the certificate to the result, unless it is too long. */
 static void certify(struct answerer *answerer, const struct fmb_placement placement[2],
                     double duration, struct pair_result *result)
 {
@@ -135,7 +140,7 @@ static void release_bodies(struct answerer *answerer, const struct used_body use
         answerer_release(answerer, &used[f]);
 }
 
-/* Whether a body has several frames, as far as it is known. */
+/* Whether a body has several frames: in the query, or in the cache if its handle is held. */
 static bool has_several_frames(const struct answerer *answerer, const struct pair_query *query)
 {
     for (int f = 0; f < 2; f++) {
@@ -151,16 +156,16 @@ static bool has_several_frames(const struct answerer *answerer, const struct pai
 bool answer_pair(struct answerer *answerer, const struct pair_query *query,
                  struct pair_result *result)
 {
-    for (int f = 0; f < 2; f++) /* arrives while the query is checked */
+    for (int f = 0; f < 2; f++) /* the memory arrives while the query is checked */
         cache_prefetch(answerer->cache, &query->placement[f]);
     begin_result(answerer, query, result);
-    struct checking checking = {.status = &result->status, .detail = result->detail};
+    struct check_context context = {.status = &result->status, .detail = result->detail};
     struct used_body used[2] = {0};
-    if (!check_pair(&checking, query))
+    if (!check_pair(&context, query))
         return true;
     if (has_several_frames(answerer, query))
         return false;
-    if (find_bodies(answerer, &checking, query, &answerer->bodies, used, result->handle))
+    if (find_bodies(answerer, &context, query, &answerer->bodies, used, result->handle))
         decide(answerer, result, query, used);
     release_bodies(answerer, used);
     return true;
@@ -182,13 +187,13 @@ struct pair_job {
     struct pair_result result;
     struct used_body used[2];
     struct fmb_placement placement[2];
-    void *memory; /* owned: of the scene */
+    void *memory; /* owned; contains the scene */
     struct fmb_scene_state *scene;
     struct query_bodies bodies;
-    unsigned char bytes[QUERY_BYTES_MAX]; /* the message, where the geometries are */
+    unsigned char bytes[QUERY_BYTES_MAX]; /* the message; the geometries point into it */
 };
 
-/* Both bodies came in one message each. */
+/* Each body was defined in one message. */
 static const struct fmb_scene_limits limits = {
     .placements = 2, .frames = 2 * QUERY_FRAMES_MAX, .slots = 2 * QUERY_FRAMES_MAX};
 
@@ -213,7 +218,7 @@ void pair_job_destroy(struct pair_job *job)
     free(job);
 }
 
-/* A scene of two placements. */
+/* Begins the engine's scene of the two placements, with one pair. */
 static void begin_scene(struct pair_job *job)
 {
     static const unsigned pair[1][2] = {{0, 1}};
@@ -247,10 +252,10 @@ const char *pair_job_begin(struct pair_job *job, struct answerer *answerer,
         return error;
     memset(job->used, 0, sizeof job->used);
     begin_result(answerer, &job->query, &job->result);
-    struct checking checking = {.status = &job->result.status, .detail = job->result.detail};
+    struct check_context context = {.status = &job->result.status, .detail = job->result.detail};
     job->complete =
-        !check_pair(&checking, &job->query) ||
-        !find_bodies(answerer, &checking, &job->query, &job->bodies, job->used, job->result.handle);
+        !check_pair(&context, &job->query) ||
+        !find_bodies(answerer, &context, &job->query, &job->bodies, job->used, job->result.handle);
     if (!job->complete)
         begin_scene(job);
     return NULL;

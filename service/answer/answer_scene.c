@@ -1,3 +1,6 @@
+/* A scene query is answered in stages: CHECKING its fields, FINDING bodies by handle, ADDING bodies
+ * that have frames, PREPARED for the engine, DECIDING, COMPLETE. scene_job_step() does a part of
+ * one stage; a refused query is COMPLETE at once. */
 #include "answerer.h"
 
 #include "check.h"
@@ -9,32 +12,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What one step does at most. */
+/* Limits of the work in one step. */
 enum {
-    STEP_PLACEMENTS = 32, /* found or kept: tens of microseconds */
-    STEP_FRAMES = 64      /* made, after the last body */
+    STEP_PLACEMENTS = 32, /* most bodies found or added: tens of microseconds */
+    STEP_FRAMES = 64      /* no further body is added after so many frames */
 };
 
-enum stage { IDLE, CHECKING, FINDING, KEEPING, PREPARED, DECIDING, COMPLETE };
+enum scene_stage { IDLE, CHECKING, FINDING, ADDING, PREPARED, DECIDING, COMPLETE };
 
 struct scene_job {
-    enum stage stage;
+    enum scene_stage stage;
     struct answerer *answerer; /* of the query in progress */
-    int32_t next;              /* placement to be found or kept */
-    int64_t frames;            /* of all bodies found, and of all that come whole */
-    long capacity;             /* bytes that are left for answers */
+    int32_t next;              /* the next placement in FINDING and ADDING */
+    int64_t frames;            /* of the placements before next in FINDING, then of all */
+    long capacity;             /* bytes of the result that are left for answers */
     struct fmb_scene scene;
     struct fmb_scene_state *state; /* in memory */
-    void *memory;                  /* owned: fmb_scene_bytes(&limits) */
+    void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
-    /* [lower * QUERY_PLACEMENTS_MAX + upper]: bits of the pairs that are ignored; meaningful for
-     * pairs that are listed. */
+    /* Bit bit_of(pair): the pair is ignored. Valid for listed pairs only; see check_ignored(). */
     unsigned char ignored[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
     struct scene_result result;
     struct scene_query query;
     struct query_bodies bodies;
-    unsigned char bytes[QUERY_BYTES_MAX]; /* the message, where the geometries are */
+    unsigned char bytes[QUERY_BYTES_MAX]; /* the message; the geometries point into it */
 };
 
 static const struct fmb_scene_limits limits = {.placements = QUERY_PLACEMENTS_MAX,
@@ -75,7 +77,7 @@ struct scene_result *scene_job_result(struct scene_job *job)
     return &job->result;
 }
 
-/* Ends a query in progress: the cache gets its bodies back. */
+/* Releases the bodies of a query in progress, which ends it. */
 static void release(struct scene_job *job)
 {
     for (int32_t i = 0; job->answerer && i < job->query.placement_count; i++)
@@ -83,7 +85,7 @@ static void release(struct scene_job *job)
     job->answerer = NULL;
 }
 
-/* The arrays of the result stay as they are. */
+/* Sets all fields of the result except the contents of its arrays. */
 static void begin_result(const struct answerer *answerer, const struct query_header *query,
                          struct scene_result *result)
 {
@@ -110,66 +112,70 @@ void answer_scene_refused(const struct answerer *answerer, const struct query_he
 
 /* ---- Checking ---- */
 
-static bool check_placements(struct checking *checking, const struct scene_query *query)
+static bool check_placements(struct check_context *context, const struct scene_query *query)
 {
-    checking->part = "placements";
+    context->part = "placements";
     for (int32_t i = 0; i < query->placement_count; i++) {
         const struct placement *placement = &query->placement[i];
-        checking->index = i;
-        if (!check_placement(checking, placement))
+        context->index = i;
+        if (!check_placement(context, placement))
             return false;
         if (placement->dim != query->placement[0].dim)
-            return check_refuse(checking, FMB_DIMENSIONS_DIFFER, "dim", NULL);
+            return check_refuse(context, FMB_DIMENSIONS_DIFFER, "dim", NULL);
     }
-    checking->part = NULL;
+    context->part = NULL;
     return true;
 }
 
-/* Whether all of so many pairs are good: a loop that compilers vectorize, where it is not inlined.
- */
-enum { GOOD_PAIRS = 16 };
+/* Number of pairs that are_valid_pairs() checks at once. */
+enum { PAIR_GROUP = 16 };
 
+/* Whether each of PAIR_GROUP pairs has two different indices below placements. Compilers vectorize
+ * the loop only if the function is not inlined. */
 static bool __attribute__((noinline))
-are_good(const unsigned (*restrict pair)[2], unsigned placements)
+are_valid_pairs(const unsigned (*restrict pair)[2], unsigned placements)
 {
     unsigned bad = 0;
-    for (int i = 0; i < GOOD_PAIRS; i++)
+    for (int i = 0; i < PAIR_GROUP; i++)
         bad |= (unsigned) (pair[i][0] >= placements) | (unsigned) (pair[i][1] >= placements) |
                (unsigned) (pair[i][0] == pair[i][1]);
     return !bad;
 }
 
-static bool refuse_pair(struct checking *checking, const char *field, int32_t index,
+static bool refuse_pair(struct check_context *context, const char *field, int32_t index,
                         const char *reason)
 {
     char place[32];
     snprintf(place, sizeof place, "%s[%d]", field, (int) index);
-    return check_refuse(checking, FMB_BAD_PAIR, place, reason);
+    return check_refuse(context, FMB_BAD_PAIR, place, reason);
 }
 
-static bool check_pair_at(struct checking *checking, const char *field, const unsigned pair[2],
+static bool check_pair_at(struct check_context *context, const char *field, const unsigned pair[2],
                           int32_t i, unsigned placements)
 {
     const bool inside = pair[0] < placements && pair[1] < placements;
     return (inside && pair[0] != pair[1]) ||
-           refuse_pair(checking, field, 2 * i + (pair[0] < placements),
+           refuse_pair(context, field, 2 * i + (pair[0] < placements),
                        inside ? "a placement against itself" : "no placement has this index");
 }
 
-static bool check_indices(struct checking *checking, const char *field, const unsigned (*pair)[2],
-                          int32_t count, int32_t placements)
+/* Checks count pairs: whole groups of PAIR_GROUP at once, the pairs of an invalid group and the
+ * remainder one by one. */
+static bool check_indices(struct check_context *context, const char *field,
+                          const unsigned (*pair)[2], int32_t count, int32_t placements)
 {
     const unsigned end = (unsigned) placements;
     for (int32_t i = 0; i < count; i++) {
-        const bool many = i % GOOD_PAIRS == 0 && i + GOOD_PAIRS <= count;
-        if (many && are_good(pair + i, end))
-            i += GOOD_PAIRS - 1;
-        else if (!check_pair_at(checking, field, pair[i], i, end))
+        const bool many = i % PAIR_GROUP == 0 && i + PAIR_GROUP <= count;
+        if (many && are_valid_pairs(pair + i, end))
+            i += PAIR_GROUP - 1;
+        else if (!check_pair_at(context, field, pair[i], i, end))
             return false;
     }
     return true;
 }
 
+/* Index of the bit of a pair, in either order, in scene_job.ignored. */
 static size_t bit_of(const unsigned pair[2])
 {
     const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
@@ -177,9 +183,9 @@ static size_t bit_of(const unsigned pair[2])
     return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
 }
 
-/* No listed pair is ignored. The bits of listed pairs are cleared first, so that no others matter.
- */
-static bool check_ignored(struct checking *checking, struct scene_job *job)
+/* No listed pair may be ignored. Only the bits of listed pairs are read: they are cleared first, so
+ * that the 1.1 million bits need no initialization. */
+static bool check_ignored(struct check_context *context, struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
     if (query->ignored_count == 0)
@@ -192,30 +198,31 @@ static bool check_ignored(struct checking *checking, struct scene_job *job)
             (unsigned char) (1u << bit_of(query->ignored[i]) % 8);
     for (int32_t i = 0; i < query->index_count / 2; i++)
         if (job->ignored[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
-            return refuse_pair(checking, "indices", 2 * i, "a pair to ignore");
+            return refuse_pair(context, "indices", 2 * i, "a pair to ignore");
     return true;
 }
 
-/* Any message of QUERY_BYTES_MAX has space for its pairs. Of placements it may have more than are
- * valid. */
-static bool check_counts(struct checking *checking, const struct scene_query *query)
+/* The arrays of scene_query hold all pairs that a message of QUERY_BYTES_MAX can have; but a
+ * message can have more placements, of dimension 0, than the array holds. */
+static bool check_counts(struct check_context *context, const struct scene_query *query)
 {
     char reason[32];
     assert(query->index_count <= 2 * QUERY_PAIRS_MAX);
     snprintf(reason, sizeof reason, "more than %d", (int) QUERY_PLACEMENTS_MAX);
     if (query->placement_count > QUERY_PLACEMENTS_MAX)
-        return check_refuse(checking, FMB_OVER_LIMIT, "num_placements", reason);
+        return check_refuse(context, FMB_OVER_LIMIT, "num_placements", reason);
     if (query->index_count % 2)
-        return check_refuse(checking, FMB_WRONG_COUNT, "num_indices", "not two for each pair");
+        return check_refuse(context, FMB_WRONG_COUNT, "num_indices", "not two for each pair");
     if (query->index_count > 0 && query->which != QUERY_PAIRS_LISTED)
-        return check_refuse(checking, FMB_WRONG_COUNT, "num_indices",
+        return check_refuse(context, FMB_WRONG_COUNT, "num_indices",
                             "indices without PAIRS_LISTED");
     if (query->ignored_count % 2)
-        return check_refuse(checking, FMB_WRONG_COUNT, "num_ignored", "not two for each pair");
+        return check_refuse(context, FMB_WRONG_COUNT, "num_ignored", "not two for each pair");
     return true;
 }
 
-/* The scene without its placements. On input: counts and which are checked. */
+/* The engine's scene, without its placements. On input: a query whose counts and method were
+ * checked. Ignored pairs of a listed scene are left out, since no listed pair may be ignored. */
 static struct fmb_scene scene_of(const struct scene_query *query)
 {
     const bool listed = query->which == QUERY_PAIRS_LISTED;
@@ -231,57 +238,58 @@ static struct fmb_scene scene_of(const struct scene_query *query)
                               .first_pair = (unsigned long long) query->first_pair};
 }
 
-static bool check_which(struct checking *checking, const struct scene_query *query)
+static bool check_which(struct check_context *context, const struct scene_query *query)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const bool across = query->which == QUERY_PAIRS_ACROSS;
     if (query->which < QUERY_PAIRS_LISTED || query->which > QUERY_PAIRS_ACROSS)
-        return check_refuse(checking, FMB_UNKNOWN_WANT, "which", NULL);
+        return check_refuse(context, FMB_UNKNOWN_WANT, "which", NULL);
     if (query->split < 0 || query->split > (across ? query->placement_count : 0))
-        return check_refuse(checking, FMB_BAD_PAIR, "split",
+        return check_refuse(context, FMB_BAD_PAIR, "split",
                             across ? "not from 0 to num_placements" : "not 0");
     const struct fmb_scene scene = scene_of(query);
     if (query->first_pair < 0 || scene.first_pair > fmb_scene_pair_count(&scene))
-        return check_refuse(checking, FMB_BAD_PAIR, "first_pair", "there are not so many");
+        return check_refuse(context, FMB_BAD_PAIR, "first_pair", "there are not so many");
     if (query->which != QUERY_PAIRS_LISTED && !method->certain)
-        return check_refuse(checking, FMB_CANNOT_DECIDE, "method", "listed pairs alone");
+        return check_refuse(context, FMB_CANNOT_DECIDE, "method", "listed pairs alone");
     return true;
 }
 
-static bool check_margin(struct checking *checking, const struct scene_query *query)
+static bool check_margin(struct check_context *context, const struct scene_query *query)
 {
     return (query->margin >= 0 && isfinite(query->margin)) ||
-           check_refuse(checking, FMB_BAD_MARGIN, "margin", "negative or not finite");
+           check_refuse(context, FMB_BAD_MARGIN, "margin", "negative or not finite");
 }
 
-static bool check_scene(struct checking *checking, struct scene_job *job)
+static bool check_scene(struct check_context *context, struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
     const int32_t want = query->want | (query->margin > 0 ? QUERY_WANT_GAP : 0);
-    return check_ids(checking, query->client_id, query->sequence_number) &&
-           check_margin(checking, query) &&
-           check_request(checking, query->duration, query->method, want,
+    return check_ids(context, query->client_id, query->sequence_number) &&
+           check_margin(context, query) &&
+           check_request(context, query->duration, query->method, want,
                          QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP) &&
-           check_counts(checking, query) && check_which(checking, query) &&
-           check_placements(checking, query) &&
-           check_indices(checking, "indices", query->pair, query->index_count / 2,
+           check_counts(context, query) && check_which(context, query) &&
+           check_placements(context, query) &&
+           check_indices(context, "indices", query->pair, query->index_count / 2,
                          query->placement_count) &&
-           check_indices(checking, "ignored", query->ignored, query->ignored_count / 2,
+           check_indices(context, "ignored", query->ignored, query->ignored_count / 2,
                          query->placement_count) &&
-           check_ignored(checking, job);
+           check_ignored(context, job);
 }
 
-static struct checking checking_of(struct scene_job *job)
+static struct check_context context_of(struct scene_job *job)
 {
-    return (struct checking){.status = &job->result.status, .detail = job->result.detail};
+    return (struct check_context){.status = &job->result.status, .detail = job->result.detail};
 }
 
-static enum stage check(struct scene_job *job)
+/* The stage CHECKING. No bodies are in use yet, so a refused query has none to release. */
+static enum scene_stage check(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
-    struct checking checking = checking_of(job);
+    struct check_context context = context_of(job);
     begin_result(job->answerer, &query->header, &job->result);
-    if (!check_scene(&checking, job)) {
+    if (!check_scene(&context, job)) {
         job->answerer = NULL;
         return COMPLETE;
     }
@@ -294,14 +302,14 @@ static enum stage check(struct scene_job *job)
 
 /* ---- Bodies ---- */
 
-static enum stage complete(struct scene_job *job)
+static enum scene_stage complete(struct scene_job *job)
 {
     release(job);
     return COMPLETE;
 }
 
-/* The end of the placements of this step, which will be looked up. */
-static int32_t expect_placements(const struct scene_job *job)
+/* Prefetches the bodies of the placements of this step. Returns the end of these placements. */
+static int32_t prefetch_placements(const struct scene_job *job)
 {
     const int32_t left = job->query.placement_count - job->next;
     const int32_t end = job->next + (left < STEP_PLACEMENTS ? left : STEP_PLACEMENTS);
@@ -310,40 +318,41 @@ static int32_t expect_placements(const struct scene_job *job)
     return end;
 }
 
-static enum stage refuse_unknown(struct scene_job *job)
+static enum scene_stage refuse_unknown(struct scene_job *job)
 {
-    struct checking checking = checking_of(job);
-    checking.part = "placements";
-    checking.index = (int32_t) job->result.unknown[0];
-    check_refuse(&checking, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
+    struct check_context context = context_of(job);
+    context.part = "placements";
+    context.index = (int32_t) job->result.unknown[0];
+    check_refuse(&context, FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
     return complete(job);
 }
 
-/* Finds the body of a placement by handle, and counts its frames, or those of one that comes whole.
- * False: the query is refused. */
+/* Finds the body of a placement by handle. Counts its frames, or those of a placement that has
+ * frames. Returns false if the query is refused. A handle that is not held is noted in the result.
+ */
 static bool find_one(struct scene_job *job, int32_t i)
 {
     const struct placement *placement = &job->query.placement[i];
-    struct checking checking = checking_of(job);
-    checking.part = "placements";
-    checking.index = i;
+    struct check_context context = context_of(job);
+    context.part = "placements";
+    context.index = i;
     if (!placement_by_handle(placement))
-        return check_frames(&checking, placement->frame_count, &job->frames);
+        return check_frames(&context, placement->frame_count, &job->frames);
     const struct cached *cached = cache_find(job->answerer->cache, &placement->handle);
     if (!cached) {
         job->result.unknown[job->result.unknown_count++] = (unsigned) i;
         return true;
     }
     job->used[i] = (struct used_body){&cached->body, cached};
-    return check_body_dim(&checking, placement, &cached->body) &&
-           check_frames(&checking, cached->body.frame_count, &job->frames);
+    return check_body_dim(&context, placement, &cached->body) &&
+           check_frames(&context, cached->body.frame_count, &job->frames);
 }
 
-/* Placements that name their body by handle. All of them come before any body is kept: a query with
- * one that is not held leaves the cache as it was. */
-static enum stage find(struct scene_job *job)
+/* Finds the bodies of all placements that name them by handle. This ends before any body is added,
+ * so that a query with a handle that is not held adds nothing to the cache. */
+static enum scene_stage find(struct scene_job *job)
 {
-    const int32_t end = expect_placements(job);
+    const int32_t end = prefetch_placements(job);
     for (; job->next < end; job->next++)
         if (!find_one(job, job->next)) {
             job->result.unknown_count = 0;
@@ -354,31 +363,32 @@ static enum stage find(struct scene_job *job)
     if (job->result.unknown_count > 0)
         return refuse_unknown(job);
     job->next = 0;
-    return KEEPING;
+    return ADDING;
 }
 
-/* Placements that come whole. */
-static enum stage keep(struct scene_job *job)
+/* Adds the bodies of placements that have frames, and fills in the engine's placements. */
+static enum scene_stage add(struct scene_job *job)
 {
-    const int32_t end = expect_placements(job);
+    const int32_t end = prefetch_placements(job);
     struct scene_result *result = &job->result;
     for (int32_t frames = 0; job->next < end && frames < STEP_FRAMES; job->next++) {
         const int32_t i = job->next;
         const struct placement *placement = &job->query.placement[i];
         if (!placement_by_handle(placement)) {
-            job->used[i] = answerer_keep(job->answerer, placement, &job->bodies,
-                                         &result->handle[result->handle_count]);
+            job->used[i] = answerer_intern(job->answerer, placement, &job->bodies,
+                                           &result->handle[result->handle_count]);
             result->handle_count += placement->body_id != 0;
             frames += placement->frame_count;
         }
         job->placement[i] = answerer_place(placement, job->used[i].body);
     }
-    return job->next < job->query.placement_count ? KEEPING : PREPARED;
+    return job->next < job->query.placement_count ? ADDING : PREPARED;
 }
 
 /* ---- Pairs ---- */
 
-static enum stage begin_pairs(struct scene_job *job)
+/* Begins the engine's scene, and sets the fields of the result that do not depend on the pairs. */
+static enum scene_stage begin_pairs(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
     struct scene_result *result = &job->result;
@@ -410,7 +420,7 @@ static bool is_contact(unsigned char verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* Bytes of the result that a pair takes. */
+/* Bytes of the result that a pair with this verdict takes. */
 static long size_of(const struct scene_result *result, unsigned char verdict)
 {
     long size = result->names_pairs ? 1 + WIRE_PAIR_BYTES : 1;
@@ -434,7 +444,7 @@ static void append_contact(struct scene_result *result, const struct fmb_scene_a
             answers->boxes[k][i / result->dim][i % result->dim];
 }
 
-/* False: there is no space. */
+/* Appends answer k to the result. Returns false, and changes nothing, if it does not fit. */
 static bool append(struct scene_job *job, const struct fmb_scene_answers *answers, size_t k)
 {
     struct scene_result *result = &job->result;
@@ -454,7 +464,7 @@ static bool append(struct scene_job *job, const struct fmb_scene_answers *answer
     return true;
 }
 
-/* Appends answers of one byte each: most scenes want verdicts alone. */
+/* append_all() for results that have verdicts only, one byte each, as most scenes request. */
 static size_t append_verdicts(struct scene_job *job, const struct fmb_scene_answers *answers)
 {
     struct scene_result *result = &job->result;
@@ -471,7 +481,7 @@ static size_t append_verdicts(struct scene_job *job, const struct fmb_scene_answ
     return count;
 }
 
-/* Returns how many of the answers there was space for. */
+/* Appends as many of the answers as fit. Returns their number. */
 static size_t append_all(struct scene_job *job, const struct fmb_scene_answers *answers)
 {
     const struct scene_result *result = &job->result;
@@ -483,13 +493,14 @@ static size_t append_all(struct scene_job *job, const struct fmb_scene_answers *
     return k;
 }
 
-static enum stage complete_at(struct scene_job *job, unsigned long long end_pair)
+static enum scene_stage complete_at(struct scene_job *job, unsigned long long end_pair)
 {
     job->result.end_pair = (int32_t) end_pair;
     return complete(job);
 }
 
-static enum stage decide(struct scene_job *job)
+/* Decides the next pairs. Complete after the last pair, or when the result is full. */
+static enum scene_stage decide(struct scene_job *job)
 {
     struct fmb_scene_answers answers;
     const bool done = fmb_scene_step(job->state, &answers);
@@ -525,7 +536,7 @@ bool scene_job_step(struct scene_job *job, struct answerer *answerer)
         job->stage = check(job);
         break;
     case FINDING: job->stage = find(job); break;
-    case KEEPING: job->stage = keep(job); break;
+    case ADDING: job->stage = add(job); break;
     case PREPARED: job->stage = begin_pairs(job); break;
     case DECIDING: job->stage = decide(job); break;
     case IDLE: assert(!"a job that was begun"); break;

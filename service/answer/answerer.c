@@ -39,12 +39,12 @@ struct fmb_placement answerer_place(const struct placement *placement, const str
     return out;
 }
 
-struct used_body answerer_keep(struct answerer *answerer, const struct placement *placement,
-                               struct query_bodies *own, struct handle *handle)
+struct used_body answerer_intern(struct answerer *answerer, const struct placement *placement,
+                                 struct query_bodies *own, struct handle *handle)
 {
     const struct geometry *geometry = &placement->geometry;
     const struct cached *cached =
-        placement->body_id ? cache_keep(answerer->cache, placement->body_id, geometry, handle)
+        placement->body_id ? cache_intern(answerer->cache, placement->body_id, geometry, handle)
                            : NULL;
     if (cached)
         return (struct used_body){&cached->body, cached};

@@ -1,4 +1,4 @@
-/* Shared by the answers to queries of all types. Private to answer_*.c. */
+/* State and functions shared by the answers to queries of all types. Private to answer*.c. */
 #ifndef ANSWERER_H
 #define ANSWERER_H
 
@@ -8,26 +8,28 @@
 struct answerer {
     struct cache *cache; /* owned */
     int64_t server_id;
-    struct query_bodies bodies;              /* of the pair query under way */
+    struct query_bodies bodies;              /* of the pair query being answered */
     char certificate[QUERY_CERTIFICATE_MAX]; /* of the last pair result that has one */
 };
 
-/* The body of a placement of a query under way. */
+/* The body of a placement of a query in progress. */
 struct used_body {
     const struct fmb_body *body;
-    const struct cached *cached; /* to be released; NULL: it was made for this query alone */
+    const struct cached *cached; /* pinned, to be released; NULL: made for this query only */
 };
 
-/* The body where the placement puts it. On input: a checked placement. */
+/* Returns the engine's placement of a body: its pose and velocity. On input: a checked placement,
+ * and its body, which must outlive the result. */
 struct fmb_placement answerer_place(const struct placement *placement, const struct fmb_body *body);
 
-/* The body of a placement that comes whole: in the cache; or in *own, if it is anonymous or the
- * cache has no memory for it. *handle: the handle of a body with an id; otherwise unchanged. */
-struct used_body answerer_keep(struct answerer *answerer, const struct placement *placement,
-                               struct query_bodies *own, struct handle *handle);
+/* The body of a checked placement that has frames. It is found in the cache or added to it; or it
+ * is made in *own, if it is anonymous or the cache has no memory for it. *handle: the handle of a
+ * body with an id; unchanged for an anonymous body. */
+struct used_body answerer_intern(struct answerer *answerer, const struct placement *placement,
+                                 struct query_bodies *own, struct handle *handle);
 
-/* Must be called once for each body of a query that was found or kept in the cache. On input: may
- * be all 0. */
+/* Releases the body, if it is in the cache. To be called once for each body of a query. On input:
+ * *used may be all 0. */
 void answerer_release(struct answerer *answerer, const struct used_body *used);
 
 #endif

@@ -8,70 +8,73 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A body takes a run of slots, one for each frame. Entry e belongs to the body that begins in slot
- * e - 1. Entries are linked by index: each into the chain of its bucket, and all that no query uses
- * into a ring in the order of use. Entry 0 holds no body. It closes the ring, with the newest entry
- * beyond it on one side and the oldest on the other, and it ends the chains: buckets start as the
- * zeros that calloc() provides without touching them. */
-enum { NONE = 0, ENDS = 0 };
+/* Data structure. A body takes a run of slots, one for each frame. Entry e belongs to the body that
+ * begins in slot e - 1. Entries are linked by index: each into the chain of its hash bucket, and
+ * all that are not pinned into the LRU list. Entry 0 has no body. It is the sentinel of the LRU
+ * list, a ring: its `older` is the newest entry and its `newer` the oldest. Index 0 also ends the
+ * chains, so that the buckets can be zeros from calloc(), which are not touched. */
+enum { NONE = 0, SENTINEL = 0 };
 
-/* Apart from the body: each use of a body changes its neighbours in the order of use, which may be
- * any entries. Two entries share a cache line. */
-struct entry {
+/* Entries are stored apart from the bodies, since each use of a body changes its neighbours in the
+ * LRU list, which may be any entries. Two entries share a cache line. */
+struct cache_entry {
     struct handle handle;
-    int32_t next;         /* in the bucket */
-    int32_t newer, older; /* in the order of use */
-    uint32_t generation;  /* how many bodies have begun here before */
+    int32_t next;         /* in the chain of the bucket */
+    int32_t newer, older; /* in the LRU list; unspecified while pinned */
+    uint32_t generation;  /* number of bodies evicted from this entry */
 };
 
-enum { LINE = 64 };
+enum { LINE = 64 }; /* bytes of a cache line */
 
-/* What is in the slots of a body: this, the frames but the first, the bytes of the geometry. */
-struct held {
-    int32_t ids;   /* that lead to this entry */
-    int32_t users; /* queries, or placements of them */
+/* The slots of a body contain this record, then the frames after the first, then the bytes of the
+ * geometry. */
+struct cache_record {
+    int32_t ids;  /* number of ids whose latest entry is this one */
+    int32_t pins; /* number of uses that are not released */
     struct cached cached;
 };
 
-static_assert(sizeof(struct held) == offsetof(struct held, cached.body) + BODY_BYTES(1),
+static_assert(sizeof(struct cache_record) ==
+                  offsetof(struct cache_record, cached.body) + BODY_BYTES(1),
               "the frames of a body follow each other");
 
-/* Enough for a body of one frame, and the more so for several. */
+/* Bytes of a slot: enough for a body of one frame. A body of n frames fits into n slots. */
 enum {
-    SLOT_BYTES = (sizeof(struct held) + GEOMETRY_FRAME_BYTES_MAX + LINE - 1) / LINE * LINE,
+    SLOT_BYTES = (sizeof(struct cache_record) + GEOMETRY_FRAME_BYTES_MAX + LINE - 1) / LINE * LINE,
 };
 
-/* The latest entry of an id. It is stale once the entry holds another body. */
+/* The latest entry of an id. It is stale if the generation of the entry has changed since. */
 struct latest {
     int64_t id;    /* 0: not used */
     int32_t entry; /* index */
     uint32_t generation;
 };
 
-/* An id has one set, and any place in it. The one that came first is replaced. */
+/* The table of ids is set-associative. An id belongs to one set, in any of its ways. A new id
+ * replaces the oldest of its set. */
 enum { WAYS = LINE / sizeof(struct latest) };
 
 struct id_set {
-    _Alignas(LINE) struct latest way[WAYS]; /* the newest first */
+    _Alignas(LINE) struct latest way[WAYS]; /* [age] the one set last comes first */
 };
 
 struct cache {
     uint64_t bucket_multiplier, set_multiplier; /* odd, secret */
     int bucket_shift, set_shift;
-    int32_t *bucket;    /* [2^(64 - bucket_shift)]: first entry of each */
+    int32_t *bucket;    /* [2^(64 - bucket_shift)]: first entry of each chain */
     struct id_set *set; /* [2^(64 - set_shift)], in set_memory */
     void *set_memory, *entry_memory;
-    struct entry *entry; /* [frame_capacity + 1] */
-    unsigned char *slot; /* [frame_capacity][SLOT_BYTES] */
-    struct runs runs;    /* of slots */
-    uint64_t *begins;    /* bit s: a body begins in slot s */
+    struct cache_entry *entry; /* [frame_capacity + 1], in entry_memory */
+    unsigned char *slot;       /* [frame_capacity][SLOT_BYTES] */
+    struct runs runs;          /* of slots */
+    uint64_t *begins;          /* bit s: a body begins in slot s */
     struct hasher *hasher;
     struct cache_counts counts;
 };
 
 /* ---- Memory ---- */
 
-/* The least number of bits, from 1, that count so many things. */
+/* The least number of bits, 1 or more, whose power of two is at least count. */
 static int bits_for(size_t count)
 {
     int bits = 1;
@@ -90,7 +93,8 @@ static size_t set_count(const struct cache *cache)
     return (size_t) 1 << (64 - cache->set_shift);
 }
 
-/* Untouched zeros at a multiple of a cache line. *memory: the address to free. */
+/* Allocates count elements of size bytes, aligned to a cache line, zero and not touched. *memory:
+ * the address to free. NULL: out of memory. */
 static void *allocate_zero_lines(size_t count, size_t size, void **memory)
 {
     *memory = calloc(count * size + LINE, 1);
@@ -102,7 +106,7 @@ static size_t begins_count(const struct cache *cache)
     return (size_t) cache->counts.frame_capacity / 64 + 1;
 }
 
-/* Allocates what cache->counts and the shifts say; sets and buckets are empty. */
+/* Allocates the tables, for the frame capacity and the shifts that are set. All are empty. */
 static bool allocate(struct cache *cache)
 {
     const size_t frames = (size_t) cache->counts.frame_capacity;
@@ -133,7 +137,7 @@ struct cache *cache_create(size_t frames, const uint64_t secret[2])
         return NULL;
     }
     runs_init(&cache->runs, cache->runs.slot, (int32_t) frames);
-    cache->entry[ENDS].newer = cache->entry[ENDS].older = ENDS;
+    cache->entry[SENTINEL].newer = cache->entry[SENTINEL].older = SENTINEL;
     return cache;
 }
 
@@ -151,7 +155,7 @@ void cache_destroy(struct cache *cache)
     free(cache);
 }
 
-/* A page is allocated when it is written to. */
+/* Writes to each page, since the system allocates a page when it is first written to. */
 static void touch_pages(void *memory, size_t size)
 {
     enum { PAGE = 4096 };
@@ -160,7 +164,7 @@ static void touch_pages(void *memory, size_t size)
         page[at] = page[at];
 }
 
-void cache_take_memory(struct cache *cache)
+void cache_prefault(struct cache *cache)
 {
     enum { TAKEN_MAX = 64 << 20 };
     const size_t frames = (size_t) cache->counts.frame_capacity;
@@ -180,17 +184,17 @@ void cache_take_memory(struct cache *cache)
 
 /* ---- Hashing ----
  *
- * Multiply-shift: the upper bits of x times a secret odd number, modulo 2^64. For any two different
- * x of 64 bits, whatever the client knows of this code, they are equal for at most one in
- * (buckets / 2) of all odd numbers (Dietzfelbinger, Hagerup, Katajainen, Penttonen, "A Reliable
- * Randomized Algorithm for the Closest-Pair Problem", 1997). No result and no counter depends on
- * the secret but through which ids are known, so that n bodies or ids that a client has chosen
- * are, in the mean, each compared with fewer than 1 + 2 n / buckets.
+ * Multiply-shift: the upper bits of x times a secret odd number, modulo 2^64. Any two different x
+ * of 64 bits collide for at most a fraction 2 / buckets of all odd numbers (Dietzfelbinger,
+ * Hagerup, Katajainen, Penttonen, "A Reliable Randomized Algorithm for the Closest-Pair Problem",
+ * 1997), whatever the client knows of this code. Results and counters depend on the secret only
+ * through which ids are known. Hence each of n bodies
+ * or ids that a client has chosen is, on average, compared with fewer than 1 + 2 n / buckets.
  *
- * Of a handle x is the first half. The handles of bodies are hashes themselves: two bodies with the
- * same first half take some 2^32 hashes to find, three some 2^43, and a set that would make a chain
- * long is out of reach. Both halves in one sum of products would be no better: differences of 2^63
- * in both would cancel for all odd numbers. */
+ * For a handle, x is its first half. Handles are hashes themselves: two bodies with the same first
+ * half take some 2^32 hashes to find, three some 2^43, and a set that would make a long chain is
+ * infeasible. A sum of products of both halves would be no better: differences of 2^63 in both
+ * halves would cancel for all odd numbers. */
 
 static int32_t *bucket_of(const struct cache *cache, const struct handle *handle)
 {
@@ -213,19 +217,19 @@ static int32_t find(const struct cache *cache, const struct handle *handle)
 
 /* ---- Entries ---- */
 
-static struct held *held_of(const struct cache *cache, int32_t e)
+static struct cache_record *record_of(const struct cache *cache, int32_t e)
 {
-    return (struct held *) (cache->slot + (size_t) (e - 1) * SLOT_BYTES);
+    return (struct cache_record *) (cache->slot + (size_t) (e - 1) * SLOT_BYTES);
 }
 
-static int32_t entry_of(const struct cache *cache, const struct held *held)
+static int32_t entry_of(const struct cache *cache, const struct cache_record *record)
 {
-    return (int32_t) (((const unsigned char *) held - cache->slot) / SLOT_BYTES) + 1;
+    return (int32_t) (((const unsigned char *) record - cache->slot) / SLOT_BYTES) + 1;
 }
 
-static struct held *held_with(const struct cached *cached)
+static struct cache_record *record_containing(const struct cached *cached)
 {
-    return (struct held *) ((char *) cached - offsetof(struct held, cached));
+    return (struct cache_record *) ((char *) cached - offsetof(struct cache_record, cached));
 }
 
 static void set_begin(struct cache *cache, int32_t e, bool begins)
@@ -235,38 +239,38 @@ static void set_begin(struct cache *cache, int32_t e, bool begins)
     *word = begins ? *word | bit : *word & ~bit;
 }
 
-/* ---- Order of use ---- */
+/* ---- LRU list ---- */
 
-static void unlink_use(struct cache *cache, int32_t e)
+static void lru_unlink(struct cache *cache, int32_t e)
 {
     int32_t newer = cache->entry[e].newer, older = cache->entry[e].older;
     cache->entry[newer].older = older;
     cache->entry[older].newer = newer;
 }
 
-static void link_newest(struct cache *cache, int32_t e)
+static void lru_append(struct cache *cache, int32_t e)
 {
-    int32_t newest = cache->entry[ENDS].older;
-    cache->entry[e].newer = ENDS;
+    int32_t newest = cache->entry[SENTINEL].older;
+    cache->entry[e].newer = SENTINEL;
     cache->entry[e].older = newest;
     cache->entry[newest].newer = e;
-    cache->entry[ENDS].older = e;
+    cache->entry[SENTINEL].older = e;
 }
 
-static const struct cached *use(struct cache *cache, int32_t e)
+static const struct cached *pin(struct cache *cache, int32_t e)
 {
-    struct held *held = held_of(cache, e);
-    if (held->users++ == 0)
-        unlink_use(cache, e);
-    return &held->cached;
+    struct cache_record *record = record_of(cache, e);
+    if (record->pins++ == 0)
+        lru_unlink(cache, e);
+    return &record->cached;
 }
 
 void cache_release(struct cache *cache, const struct cached *cached)
 {
-    struct held *held = held_with(cached);
-    assert(held->users > 0);
-    if (--held->users == 0)
-        link_newest(cache, entry_of(cache, held));
+    struct cache_record *record = record_containing(cached);
+    assert(record->pins > 0);
+    if (--record->pins == 0)
+        lru_append(cache, entry_of(cache, record));
 }
 
 /* ---- Ids ---- */
@@ -284,108 +288,112 @@ static int way_of(const struct latest *way, int64_t id)
     return w;
 }
 
-/* The latest entry of the id, if it has this geometry. A stale one cannot mislead: whatever body is
- * there now is the right one if its bytes are the same. */
+/* The latest entry of the id, if it is live and has this geometry; otherwise NONE. If the 32-bit
+ * generation has wrapped around and a stale entry seems live, comparing the bytes still finds the
+ * right body only. */
 static int32_t find_latest(const struct cache *cache, int64_t id, const struct geometry *geometry)
 {
     const struct latest *way = ways_of(cache, id);
     const int w = way_of(way, id);
     if (w == WAYS || !is_live(cache, &way[w]))
         return NONE;
-    const struct geometry *held = &held_of(cache, way[w].entry)->cached.geometry;
+    const struct geometry *held = &record_of(cache, way[w].entry)->cached.geometry;
     const bool same =
         held->size == geometry->size && memcmp(held->bytes, geometry->bytes, geometry->size) == 0;
     return same ? way[w].entry : NONE;
 }
 
-static void forget(struct cache *cache, const struct latest *latest)
+static void drop_latest(struct cache *cache, const struct latest *latest)
 {
     if (is_live(cache, latest)) {
-        held_of(cache, latest->entry)->ids--;
+        record_of(cache, latest->entry)->ids--;
         cache->counts.ids--;
     }
 }
 
-/* From now on the id leads to the entry. */
+/* Makes the entry the latest of the id. */
 static void set_latest(struct cache *cache, int64_t id, int32_t e)
 {
     struct latest *way = ways_of(cache, id);
     int w = way_of(way, id);
     if (w == WAYS)
         w = WAYS - 1;
-    forget(cache, &way[w]);
+    drop_latest(cache, &way[w]);
     memmove(&way[1], &way[0], (size_t) w * sizeof *way);
     way[0] = (struct latest){id, e, cache->entry[e].generation};
-    held_of(cache, e)->ids++;
+    record_of(cache, e)->ids++;
     cache->counts.ids++;
 }
 
 /* ---- Bodies ---- */
 
-/* Returns the first slot of the free run that the body leaves. */
+/* Evicts a body that is not pinned. Returns the first slot of the free run that contains its slots.
+ */
 static int32_t evict(struct cache *cache, int32_t e)
 {
-    const struct held *held = held_of(cache, e);
+    const struct cache_record *record = record_of(cache, e);
     int32_t *link = bucket_of(cache, &cache->entry[e].handle);
     while (*link != e)
         link = &cache->entry[*link].next;
     *link = cache->entry[e].next;
-    unlink_use(cache, e);
+    lru_unlink(cache, e);
     set_begin(cache, e, false);
     cache->entry[e].generation++;
-    cache->counts.ids -= held->ids;
+    cache->counts.ids -= record->ids;
     cache->counts.evictions++;
     cache->counts.bodies--;
-    cache->counts.frames -= held->cached.body.frame_count;
+    cache->counts.frames -= record->cached.body.frame_count;
     return runs_free(&cache->runs, e - 1);
 }
 
-/* Evicts the body that begins in a slot. Returns the first slot of the free run; -1: there is no
- * such slot, or the body is in use. */
+/* Evicts the body that begins in a slot, as evict() does. Returns -1, and does nothing, if slot is
+ * -1 or the body is pinned. */
 static int32_t evict_at(struct cache *cache, int32_t slot)
 {
-    const bool unused = slot >= 0 && held_of(cache, slot + 1)->users == 0;
-    return unused ? evict(cache, slot + 1) : -1;
+    const bool evictable = slot >= 0 && record_of(cache, slot + 1)->pins == 0;
+    return evictable ? evict(cache, slot + 1) : -1;
 }
 
-/* Evicts the oldest body and its neighbours, until there is a free run of so many slots or the
- * bodies on both sides are in use. */
+/* Evicts the least recently used body, then its neighbours in memory, until the free run has so
+ * many slots or the neighbours on both sides are pinned. */
 static void evict_around_oldest(struct cache *cache, int32_t slots)
 {
-    int32_t free = evict(cache, cache->entry[ENDS].newer);
+    int32_t free = evict(cache, cache->entry[SENTINEL].newer);
     while (free >= 0 && runs_length(&cache->runs, free) < slots) {
         const int32_t more = evict_at(cache, runs_after(&cache->runs, free));
         free = more >= 0 ? more : evict_at(cache, runs_before(&cache->runs, free));
     }
 }
 
-/* A free entry for a body of so many frames. NONE: there is no memory. */
+/* An entry for a body of so many frames, whose slots are taken; evicts bodies if necessary. NONE:
+ * there are not enough slots. */
 static int32_t take_entry(struct cache *cache, int32_t frames)
 {
     enum { ATTEMPTS = 4 };
     if (frames > cache->counts.frame_capacity)
         return NONE;
-    int32_t slot = runs_take(&cache->runs, frames);
-    for (int i = 0; slot < 0 && i < ATTEMPTS && cache->entry[ENDS].newer != ENDS; i++) {
+    int32_t slot = runs_allocate(&cache->runs, frames);
+    for (int i = 0; slot < 0 && i < ATTEMPTS && cache->entry[SENTINEL].newer != SENTINEL; i++) {
         evict_around_oldest(cache, frames);
-        slot = runs_take(&cache->runs, frames);
+        slot = runs_allocate(&cache->runs, frames);
     }
     return slot + 1;
 }
 
-static void set_held(struct held *held, const struct handle *handle,
-                     const struct geometry *geometry)
+static void fill_record(struct cache_record *record, const struct handle *handle,
+                        const struct geometry *geometry)
 {
     const size_t frames = (size_t) body_frame_count(geometry);
-    unsigned char *bytes = (unsigned char *) &held->cached.body + BODY_BYTES(frames);
-    body_make(geometry, &held->cached.body);
+    unsigned char *bytes = (unsigned char *) &record->cached.body + BODY_BYTES(frames);
+    body_make(geometry, &record->cached.body);
     memcpy(bytes, geometry->bytes, geometry->size);
-    held->cached.handle = *handle;
-    held->cached.geometry = (struct geometry){bytes, geometry->size};
-    held->ids = held->users = 0;
+    record->cached.handle = *handle;
+    record->cached.geometry = (struct geometry){bytes, geometry->size};
+    record->ids = record->pins = 0;
 }
 
-/* A new entry, linked everywhere. NONE: there is no memory. */
+/* Adds a body that is not held. Returns its entry, which is linked everywhere; NONE: there are not
+ * enough slots. */
 static int32_t insert(struct cache *cache, const struct handle *handle,
                       const struct geometry *geometry)
 {
@@ -393,25 +401,25 @@ static int32_t insert(struct cache *cache, const struct handle *handle,
     if (e == NONE)
         return NONE;
     int32_t *bucket = bucket_of(cache, handle);
-    set_held(held_of(cache, e), handle, geometry);
+    fill_record(record_of(cache, e), handle, geometry);
     cache->entry[e].handle = *handle;
     cache->entry[e].next = *bucket;
     *bucket = e;
-    link_newest(cache, e);
+    lru_append(cache, e);
     set_begin(cache, e, true);
     cache->counts.bodies++;
     cache->counts.frames += frames;
     return e;
 }
 
-const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry,
-                                struct handle *handle)
+const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
+                                  struct handle *handle)
 {
     int32_t e = id ? find_latest(cache, id, geometry) : NONE;
     if (e != NONE) {
         cache->counts.hits++;
         *handle = cache->entry[e].handle;
-        return use(cache, e);
+        return pin(cache, e);
     }
     *handle = hasher_handle(cache->hasher, geometry->bytes, geometry->size);
     e = find(cache, handle);
@@ -425,7 +433,7 @@ const struct cached *cache_keep(struct cache *cache, int64_t id, const struct ge
         return NULL;
     if (id)
         set_latest(cache, id, e);
-    return use(cache, e);
+    return pin(cache, e);
 }
 
 const struct cached *cache_find(struct cache *cache, const struct handle *handle)
@@ -434,13 +442,13 @@ const struct cached *cache_find(struct cache *cache, const struct handle *handle
     if (e == NONE)
         return NULL;
     cache->counts.hits++;
-    return use(cache, e);
+    return pin(cache, e);
 }
 
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle)
 {
     const int32_t e = find(cache, handle);
-    return e == NONE ? NULL : &held_of(cache, e)->cached;
+    return e == NONE ? NULL : &record_of(cache, e)->cached;
 }
 
 /* ---- Prefetching ---- */
@@ -449,7 +457,7 @@ static void prefetch_entry(const struct cache *cache, int32_t e)
 {
     if (e == NONE)
         return;
-    const char *body = (const char *) held_of(cache, e);
+    const char *body = (const char *) record_of(cache, e);
     __builtin_prefetch(&cache->entry[e]);
     __builtin_prefetch(body);
     __builtin_prefetch(body + LINE);
@@ -467,8 +475,8 @@ void cache_prefetch(const struct cache *cache, const struct placement *placement
         return;
     prefetch_entry(cache, way[w].entry);
     if (placement->frame_count == 1 && way[w].entry != NONE)
-        for (size_t at = sizeof(struct held); at < SLOT_BYTES; at += LINE)
-            __builtin_prefetch((const char *) held_of(cache, way[w].entry) + at);
+        for (size_t at = sizeof(struct cache_record); at < SLOT_BYTES; at += LINE)
+            __builtin_prefetch((const char *) record_of(cache, way[w].entry) + at);
 }
 
 /* ---- All bodies, and counts ---- */
@@ -488,7 +496,7 @@ const struct cached *cache_next(const struct cache *cache, int64_t *position)
     }
     slot += __builtin_ctzll(word);
     *position = slot + 1;
-    return &held_of(cache, (int32_t) slot + 1)->cached;
+    return &record_of(cache, (int32_t) slot + 1)->cached;
 }
 
 struct cache_counts cache_counts(const struct cache *cache)

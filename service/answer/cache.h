@@ -1,14 +1,14 @@
-/* The bodies that the service holds, by handle: geometry and struct fmb_body with its frames and
+/* Cache of bodies by handle: for each its geometry, and the struct fmb_body with its frames and
  * their inverses.
  *
  * The capacity is a fixed number of frames; a body takes as many as it has. The least recently used
- * body is evicted first, and for a body of several frames its neighbours in memory too. A body that
- * a query uses is not evicted until the query has released it. All memory is allocated by
- * cache_create(). Each geometry has one entry, whatever its ids: two clients that use the same id
- * for different bodies do not disturb each other. A second table maps an id to its latest entry, so
- * that a body that comes whole again under its id is found by comparing bytes, without SHA-256.
- * Both tables are hashed with a secret, so that no client can choose bodies or ids that collide.
- * For one thread at a time. */
+ * body is evicted first, and for a body of several frames its neighbours in memory too. A body in
+ * use by a query is pinned: it is not evicted until the query has released it. All memory is
+ * allocated by cache_create(). Each geometry has one entry, whatever its ids: two clients that use
+ * the same id for different bodies do not evict each other's. A second table maps an id to its
+ * latest entry, so that a body sent again with its frames under the same id is found by comparing
+ * bytes, without SHA-256. Both tables are hashed with a secret, so that no client can choose bodies
+ * or ids that collide. One cache may be used by one thread at a time; caches share no state. */
 #ifndef CACHE_H
 #define CACHE_H
 
@@ -21,58 +21,62 @@ enum { CACHE_FRAMES_MAX = 10000000 };
 struct cache;
 
 struct cache_counts {
-    int64_t bodies;
-    int64_t frames, frame_capacity;
-    int64_t ids; /* ids whose latest entry is known */
-    int64_t hits, misses, evictions;
+    int64_t bodies;                  /* held now */
+    int64_t frames, frame_capacity;  /* of these bodies; of the cache */
+    int64_t ids;                     /* ids whose latest body is held */
+    int64_t hits, misses, evictions; /* since cache_create() */
 };
 
-/* On input: frames from 1 to CACHE_FRAMES_MAX; secret: random. NULL: out of memory. cache_destroy()
- * accepts NULL. */
+/* On input: frames from 1 to CACHE_FRAMES_MAX; secret: random. Returns NULL if out of memory. The
+ * caller destroys it; cache_destroy() accepts NULL. */
 struct cache *cache_create(size_t frames, const uint64_t secret[2]);
 void cache_destroy(struct cache *cache);
 
-/* Touches the memory of a cache of up to 64 MB, so that the service's memory does not grow after it
- * is ready. Takes milliseconds. */
-void cache_take_memory(struct cache *cache);
+/* Touches all pages of a cache of up to 64 MB, so that the memory of the process does not grow
+ * after start. Larger caches are left to grow. Takes milliseconds. */
+void cache_prefault(struct cache *cache);
 
 /* A body in the cache. */
 struct cached {
     struct handle handle;
     struct geometry geometry; /* owned by the cache */
-    struct fmb_body body;     /* last: the frames of a body of several begin where body.one is */
+    struct fmb_body body;     /* last: all frames follow each other in memory from body.one on */
 };
 
-/* The body with this handle, which becomes the most recently used; counts a hit. It is valid until
- * the caller releases it, once for each time it was found or kept. NULL: not held; counts nothing.
- */
+/* Looks up a handle. Returns the body, pinned: it is valid until the caller releases it, once for
+ * each call of cache_find() or cache_intern() that returned it, and is then the most recently used.
+ * Counts a hit. Returns NULL, and counts nothing, if it is not held. */
 const struct cached *cache_find(struct cache *cache, const struct handle *handle);
 
-/* The same, without counting or marking it as used; valid until the next cache_keep(). */
+/* The same without counting or pinning; valid until the next cache_intern(). */
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle);
 
-/* The body with this geometry, as cache_find() returns it; it is added if it was not held. On
- * input: id, or 0 for none; a geometry whose frames fmb_frame_make() accepts. *handle: its handle.
- * NULL: it is not held and has more frames than the capacity, or than there is memory for among
- * bodies in use. */
-const struct cached *cache_keep(struct cache *cache, int64_t id, const struct geometry *geometry,
-                                struct handle *handle);
+/* Finds the body with this geometry, or adds it, which may evict others. On input: id, or 0 for
+ * none; a geometry whose frames fmb_frame_make() accepts, which is copied.
+ * Returns the body, pinned as by cache_find(), and in *handle its handle. Counts a hit or a miss.
+ * Returns NULL, with *handle and a miss, if the body is not held and cannot be added: it has more
+ * frames than the capacity, or pinned bodies leave no free memory of that length. */
+const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
+                                  struct handle *handle);
 
-/* On input: a body that was found or kept, and not released since. */
+/* Unpins a body. On input: a body that cache_find() or cache_intern() returned, and that was not
+ * released since. */
 void cache_release(struct cache *cache, const struct cached *cached);
 
-/* Prefetches the memory that a look-up will touch. On input: any placement. */
+/* Prefetches the memory that the look-up of a placement's body will touch. On input: any placement,
+ * checked or not. */
 void cache_prefetch(const struct cache *cache, const struct placement *placement);
 
-/* Iterates over all bodies: returns the first at *position (0 at first) or after it, and sets
- * *position to the next one; NULL: there are no more. Look-ups do not change the order. A body
- * added during the iteration may be missed if it takes the position of an evicted one. */
+/* Iterates over all bodies in the order of memory. On input: *position: 0 at the start; any value
+ * is safe. Returns the first body at or after *position, and sets *position to the next one; NULL:
+ * there are no more. Look-ups do not change the order. A body added during the iteration may be
+ * missed if it takes the memory of an evicted one. Valid until the next cache_intern(). */
 const struct cached *cache_next(const struct cache *cache, int64_t *position);
 
 struct cache_counts cache_counts(const struct cache *cache);
 
-/* The most bodies in one bucket of the table by handle: the most that a look-up compares. For
- * tests; takes time proportional to the capacity. */
+/* The most bodies in one bucket of the table by handle, which bounds the comparisons of a look-up.
+ * For tests; takes time proportional to the capacity. */
 int64_t cache_longest_chain(const struct cache *cache);
 
 #endif

@@ -6,37 +6,37 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Of a query. One message has no space for so many, but it may name bodies by handle. */
+/* Most frames of a query. One message cannot define so many, but it may name bodies by handle. */
 enum { FRAMES_MAX = 65536 };
 
-bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
+bool check_refuse(struct check_context *context, enum fmb_status status, const char *field,
                   const char *reason)
 {
     char place[32] = "";
-    if (checking->part && checking->index >= 0)
-        snprintf(place, sizeof place, "%s[%d].", checking->part, (int) checking->index);
-    else if (checking->part)
-        snprintf(place, sizeof place, "%s.", checking->part);
-    *checking->status = (int32_t) status;
-    snprintf(checking->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
+    if (context->part && context->index >= 0)
+        snprintf(place, sizeof place, "%s[%d].", context->part, (int) context->index);
+    else if (context->part)
+        snprintf(place, sizeof place, "%s.", context->part);
+    *context->status = (int32_t) status;
+    snprintf(context->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
              reason ? reason : fmb_status_text(status));
     return false;
 }
 
-static bool refuse_at(struct checking *checking, enum fmb_status status, const char *list, int i,
-                      const char *reason)
+static bool refuse_at(struct check_context *context, enum fmb_status status, const char *list,
+                      int i, const char *reason)
 {
     char field[32];
     snprintf(field, sizeof field, "%s[%d]", list, i);
-    return check_refuse(checking, status, field, reason);
+    return check_refuse(context, status, field, reason);
 }
 
-static bool check_id(struct checking *checking, const char *field, int64_t id)
+static bool check_id(struct check_context *context, const char *field, int64_t id)
 {
-    return query_id_ok(id) || check_refuse(checking, FMB_BAD_ID, field, "not from 0 to 2^53 - 1");
+    return query_id_ok(id) || check_refuse(context, FMB_BAD_ID, field, "not from 0 to 2^53 - 1");
 }
 
-static bool check_count(struct checking *checking, const char *field, int64_t expected,
+static bool check_count(struct check_context *context, const char *field, int64_t expected,
                         int32_t found)
 {
     char reason[64];
@@ -44,22 +44,22 @@ static bool check_count(struct checking *checking, const char *field, int64_t ex
         return true;
     snprintf(reason, sizeof reason, "expected %lld numbers, found %d", (long long) expected,
              (int) found);
-    return check_refuse(checking, FMB_WRONG_COUNT, field, reason);
+    return check_refuse(context, FMB_WRONG_COUNT, field, reason);
 }
 
-static bool check_finite(struct checking *checking, const char *list, const double *number,
+static bool check_finite(struct check_context *context, const char *list, const double *number,
                          int count)
 {
     for (int i = 0; i < count; i++)
         if (!isfinite(number[i]))
-            return refuse_at(checking, FMB_NOT_FINITE, list, i, NULL);
+            return refuse_at(context, FMB_NOT_FINITE, list, i, NULL);
     return true;
 }
 
 /* ---- Frames ---- */
 
-/* Where the lists of a geometry are (placement_t.lcm): dim and the count of shapes come before
- * them, the count of numbers between them. */
+/* The lists of a geometry in its encoding (placement_t.lcm): dim, count of shapes, shapes, count of
+ * numbers, numbers. Counts and dim have 4 bytes, a number 8. */
 static const unsigned char *shapes_of(const struct placement *placement)
 {
     return placement->geometry.bytes + 4 + 4;
@@ -70,7 +70,7 @@ static double number_at(const struct placement *placement, int32_t i)
     return cursor_double_at(shapes_of(placement) + placement->frame_count + 4 + 8 * (size_t) i);
 }
 
-static bool check_shapes(struct checking *checking, const struct placement *placement)
+static bool check_shapes(struct check_context *context, const struct placement *placement)
 {
     const unsigned char *shape = shapes_of(placement);
     int64_t numbers = 0;
@@ -78,23 +78,23 @@ static bool check_shapes(struct checking *checking, const struct placement *plac
         const int count = geometry_number_count(placement->dim, shape[i]);
         if (count == 0)
             return fmb_shape_name(shape[i])
-                       ? check_refuse(checking, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
-                       : refuse_at(checking, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+                       ? check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
+                       : refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
         numbers += count;
     }
-    return check_count(checking, "num_numbers", numbers, placement->number_count);
+    return check_count(context, "num_numbers", numbers, placement->number_count);
 }
 
-static bool check_numbers(struct checking *checking, const struct placement *placement)
+static bool check_numbers(struct check_context *context, const struct placement *placement)
 {
     for (int32_t i = 0; i < placement->number_count; i++)
         if (!isfinite(number_at(placement, i)))
-            return refuse_at(checking, FMB_NOT_FINITE, "numbers", i, NULL);
+            return refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
     return true;
 }
 
-/* On input: shapes and numbers have been checked. */
-static bool check_sizes(struct checking *checking, const struct placement *placement)
+/* Boxes must not have negative sizes. On input: shapes and numbers have been checked. */
+static bool check_sizes(struct check_context *context, const struct placement *placement)
 {
     const unsigned char *shape = shapes_of(placement);
     const int dim = placement->dim;
@@ -102,103 +102,103 @@ static bool check_sizes(struct checking *checking, const struct placement *place
     for (int32_t i = 0; i < placement->frame_count; i++) {
         for (int32_t k = number + dim; shape[i] == FMB_BOX && k < number + 2 * dim; k++)
             if (number_at(placement, k) < 0)
-                return refuse_at(checking, FMB_BAD_SIZE, "numbers", k, "a negative size");
+                return refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
         number += geometry_number_count(dim, shape[i]);
     }
     return true;
 }
 
-static bool check_geometry(struct checking *checking, const struct placement *placement)
+static bool check_geometry(struct check_context *context, const struct placement *placement)
 {
-    return check_shapes(checking, placement) && check_numbers(checking, placement) &&
-           check_sizes(checking, placement);
+    return check_shapes(context, placement) && check_numbers(context, placement) &&
+           check_sizes(context, placement);
 }
 
 /* ---- Placements ---- */
 
-/* A handle or frames. */
-static bool check_definition(struct checking *checking, const struct placement *placement)
+/* A placement has either a handle or frames. */
+static bool check_definition(struct check_context *context, const struct placement *placement)
 {
     const bool named = !handle_is_none(&placement->handle);
     if (named && placement->frame_count > 0)
-        return check_refuse(checking, FMB_WRONG_COUNT, "num_frames", "both a handle and frames");
+        return check_refuse(context, FMB_WRONG_COUNT, "num_frames", "both a handle and frames");
     if (named)
-        return check_count(checking, "num_numbers", 0, placement->number_count);
+        return check_count(context, "num_numbers", 0, placement->number_count);
     if (placement->frame_count == 0)
-        return check_refuse(checking, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
+        return check_refuse(context, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
     if (placement->frame_count > FRAMES_MAX)
-        return check_refuse(checking, FMB_OVER_LIMIT, "num_frames", "more than 65536");
+        return check_refuse(context, FMB_OVER_LIMIT, "num_frames", "more than 65536");
     return true;
 }
 
-/* The engine's rule, which depends on the dimension alone. */
-static bool check_orientation(struct checking *checking, const struct placement *placement)
+/* Applies the engine's rule for orientations, which depends on the dimension of the body only: any
+ * body of that dimension will do. */
+static bool check_orientation(struct check_context *context, const struct placement *placement)
 {
     static const struct fmb_body any[FMB_DIM_MAX + 1] = {
         [2] = {.dim = 2, .frame_count = 1}, [3] = {.dim = 3, .frame_count = 1}};
     const int32_t count = placement->orientation_count;
     if (count == 0)
         return true;
-    if (!check_count(checking, "num_orientation", placement->dim == 2 ? 2 : 4, count))
+    if (!check_count(context, "num_orientation", placement->dim == 2 ? 2 : 4, count))
         return false;
     struct fmb_placement placed = {.body = &any[placement->dim], .orientation_count = count};
     memcpy(placed.orientation, placement->orientation, sizeof placed.orientation);
     return fmb_placement_check(&placed) == FMB_OK ||
-           check_refuse(checking, FMB_BAD_ORIENTATION, "orientation",
+           check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
                         "zero, not finite, or components that differ by more than 2^200");
 }
 
-static bool check_velocity(struct checking *checking, const struct placement *placement)
+static bool check_velocity(struct check_context *context, const struct placement *placement)
 {
     const int32_t count = placement->velocity_count;
-    return count == 0 || (check_count(checking, "num_velocity", placement->dim, count) &&
-                          check_finite(checking, "velocity", placement->velocity, count));
+    return count == 0 || (check_count(context, "num_velocity", placement->dim, count) &&
+                          check_finite(context, "velocity", placement->velocity, count));
 }
 
-bool check_placement(struct checking *checking, const struct placement *placement)
+bool check_placement(struct check_context *context, const struct placement *placement)
 {
     const int dim = placement->dim;
-    if (!check_id(checking, "body_id", placement->body_id) ||
-        !check_definition(checking, placement))
+    if (!check_id(context, "body_id", placement->body_id) || !check_definition(context, placement))
         return false;
     if (dim != 2 && dim != 3)
-        return check_refuse(checking, FMB_WRONG_DIMENSION, "dim", "neither 2 nor 3");
-    return (placement_by_handle(placement) || check_geometry(checking, placement)) &&
-           check_finite(checking, "position", placement->position, dim) &&
-           check_orientation(checking, placement) && check_velocity(checking, placement);
+        return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "neither 2 nor 3");
+    return (placement_by_handle(placement) || check_geometry(context, placement)) &&
+           check_finite(context, "position", placement->position, dim) &&
+           check_orientation(context, placement) && check_velocity(context, placement);
 }
 
-bool check_body_dim(struct checking *checking, const struct placement *placement,
+bool check_body_dim(struct check_context *context, const struct placement *placement,
                     const struct fmb_body *body)
 {
-    return placement->dim == body->dim || check_refuse(checking, FMB_WRONG_DIMENSION, "dim",
+    return placement->dim == body->dim || check_refuse(context, FMB_WRONG_DIMENSION, "dim",
                                                        "not that of the body with this handle");
 }
 
-bool check_frames(struct checking *checking, int64_t frames, int64_t *total)
+bool check_frames(struct check_context *context, int64_t frames, int64_t *total)
 {
     *total += frames;
-    return *total <= FRAMES_MAX || check_refuse(checking, FMB_OVER_LIMIT, "num_frames",
+    return *total <= FRAMES_MAX || check_refuse(context, FMB_OVER_LIMIT, "num_frames",
                                                 "more than 65536 frames in the query");
 }
 
 /* ---- Queries ---- */
 
-bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number)
+bool check_ids(struct check_context *context, int64_t client_id, int64_t sequence_number)
 {
-    return check_id(checking, "client_id", client_id) &&
-           check_id(checking, "sequence_number", sequence_number);
+    return check_id(context, "client_id", client_id) &&
+           check_id(context, "sequence_number", sequence_number);
 }
 
-bool check_request(struct checking *checking, double duration, int32_t method, int32_t want,
+bool check_request(struct check_context *context, double duration, int32_t method, int32_t want,
                    int32_t wants)
 {
     if (!(duration >= 0 && isfinite(duration)))
-        return check_refuse(checking, FMB_BAD_DURATION, "duration", "negative or not finite");
+        return check_refuse(context, FMB_BAD_DURATION, "duration", "negative or not finite");
     if (!fmb_method_by_number(method))
-        return check_refuse(checking, FMB_UNKNOWN_METHOD, "method", NULL);
+        return check_refuse(context, FMB_UNKNOWN_METHOD, "method", NULL);
     if ((want & ~wants) != 0)
-        return check_refuse(checking, FMB_UNKNOWN_WANT, "want", NULL);
+        return check_refuse(context, FMB_UNKNOWN_WANT, "want", NULL);
     return !(want & QUERY_WANT_GAP) || fmb_method_by_number(method)->certain ||
-           check_refuse(checking, FMB_CANNOT_DECIDE, "method", "gives no gaps");
+           check_refuse(context, FMB_CANNOT_DECIDE, "method", "gives no gaps");
 }

@@ -1,38 +1,41 @@
-/* Checks queries field by field. The first field that is wrong ends the check and is named. */
+/* Checks queries field by field. The first field that is wrong ends the check; status and detail of
+ * the result name it. No shared state. */
 #ifndef CHECK_H
 #define CHECK_H
 
 #include "query.h"
 
-/* A check under way. The place is put into words only where something is wrong. */
-struct checking {
+/* Context of a check: the part of the query that is being checked, and where to report. The name of
+ * a field is formatted only if the field is wrong. */
+struct check_context {
     int32_t *status;  /* of the result */
     char *detail;     /* [QUERY_TEXT_MAX] of the result */
-    const char *part; /* "a", "placements"; NULL: the query itself */
-    int32_t index;    /* of several in the part, from 0; -1: there is one */
+    const char *part; /* list or struct in the query: "a", "placements"; NULL: the query itself */
+    int32_t index;    /* in the list, from 0; -1: the part is no list */
 };
 
-/* Refuses the query: sets status and detail, "b.numbers[4]: not a finite number". reason NULL: the
- * text of the status. Returns false. */
-bool check_refuse(struct checking *checking, enum fmb_status status, const char *field,
+/* Refuses the query: sets the status and a detail such as "b.numbers[4]: not a finite number". On
+ * input: field of the part; reason NULL: the text of the status. Returns false. */
+bool check_refuse(struct check_context *context, enum fmb_status status, const char *field,
                   const char *reason);
 
-/* All return whether the fields are right; if not, they have refused. */
+/* The functions below return true if the fields are valid; otherwise they refuse the query and
+ * return false. */
 
-bool check_ids(struct checking *checking, int64_t client_id, int64_t sequence_number);
+bool check_ids(struct check_context *context, int64_t client_id, int64_t sequence_number);
 
-/* wants: all bits that are allowed. */
-bool check_request(struct checking *checking, double duration, int32_t method, int32_t want,
+/* The fields duration, method and want. On input: wants: all bits that are allowed in want. */
+bool check_request(struct check_context *context, double duration, int32_t method, int32_t want,
                    int32_t wants);
 
-/* A placement that comes whole is accepted if fmb_frame_make() accepts all its frames. */
-bool check_placement(struct checking *checking, const struct placement *placement);
+/* All fields of a placement. Frames are valid if and only if fmb_frame_make() accepts them all. */
+bool check_placement(struct check_context *context, const struct placement *placement);
 
-/* The dimension of a placement that names its body by handle. */
-bool check_body_dim(struct checking *checking, const struct placement *placement,
+/* For a placement that names its body by handle: its dimension must be that of the body found. */
+bool check_body_dim(struct check_context *context, const struct placement *placement,
                     const struct fmb_body *body);
 
-/* Adds the frames of a body to *total, which counts those of the query. */
-bool check_frames(struct checking *checking, int64_t frames, int64_t *total);
+/* Adds the frames of a body to *total, the sum over the query so far; it must not exceed 65,536. */
+bool check_frames(struct check_context *context, int64_t frames, int64_t *total);
 
 #endif

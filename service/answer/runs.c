@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
-/* A run is searched for among so many of the list of its own length. Any run of a later list is
- * long enough. */
+/* Most runs that are examined in the list that contains the requested length. Any run of a later
+ * list is long enough. */
 enum { SEARCHES_MAX = 8 };
 
 static int list_of(int32_t length)
@@ -62,7 +62,7 @@ static int32_t find_free(const struct runs *runs, int32_t length)
     return -1;
 }
 
-int32_t runs_take(struct runs *runs, int32_t length)
+int32_t runs_allocate(struct runs *runs, int32_t length)
 {
     assert(length >= 1);
     const int32_t first = find_free(runs, length);

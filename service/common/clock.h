@@ -1,13 +1,13 @@
-/* The time. */
+/* Clocks of the system. No shared state. */
 #ifndef CLOCK_H
 #define CLOCK_H
 
 #include <stdint.h>
 
-/* Nanoseconds since some moment before the start: for spans. */
+/* Monotonic clock: nanoseconds since an arbitrary moment before the start of the process. */
 int64_t clock_ns(void);
 
-/* Microseconds since 1970, as messages carry it. */
+/* Wall clock: microseconds since 1970, the utime of messages. */
 int64_t clock_utime(void);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* With the highest bit of a value at place h >= 3, its three next bits choose one of the eight
- * buckets of that power of two. */
+/* If h >= 3 is the index of the highest bit that is set, the three bits below it choose one of the
+ * eight buckets of this power of two. */
 static int bucket_of(int64_t value)
 {
     if (value < HISTOGRAM_STEPS)

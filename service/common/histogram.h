@@ -1,4 +1,5 @@
-/* Times, counted in buckets: quantiles of any number of them in fixed memory. */
+/* Histogram of non-negative integers with logarithmic buckets: quantiles in fixed memory. No shared
+ * state. */
 #ifndef HISTOGRAM_H
 #define HISTOGRAM_H
 
@@ -14,11 +15,11 @@ struct histogram {
     int64_t count, max;
 };
 
-/* value >= 0. */
+/* On input: value >= 0. */
 void histogram_add(struct histogram *histogram, int64_t value);
 
-/* The least upper end of a bucket that share (in (0,1]) of the values are not above, at most the
- * maximum; 0 if there are none. */
+/* An upper bound of the quantile `share`, in (0,1]: the largest value of the bucket that contains
+ * it, but at most the largest value added. 0 if the histogram is empty. */
 int64_t histogram_quantile(const struct histogram *histogram, double share);
 
 #endif

@@ -1,10 +1,11 @@
-/* SIGINT and SIGTERM as something to poll. */
+/* SIGINT and SIGTERM as a descriptor that can be polled. */
 #ifndef SIGNALS_H
 #define SIGNALS_H
 
-/* Blocks both, and returns a descriptor that is readable once one has come; -1: errno. To be
- * called once the bus is open, which can take seconds: until then they simply end the process.
- * LCM's own thread blocks all signals itself. */
+/* Blocks both signals, and returns a descriptor that is readable after one has arrived; the caller
+ * closes it. Returns -1, and sets errno, on failure. To be called after the bus has been opened,
+ * which can take seconds: before the call the signals end the process. LCM's own thread blocks all
+ * signals itself. */
 int signals_open(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* libfmb: do two rigid bodies meet, when, and in which box?
+/* libfmb: decides whether two rigid bodies meet, when, and in which box.
  *
  * A frame is the set of points o + sum_i x_i c_i with an origin o and component vectors c_i
  * (article, equations 1 and 2), in body coordinates. The parameters x_i run over [0,1] for a
@@ -7,10 +7,10 @@
  *
  *     { p + R(q) (o + sum_i x_i c_i) + t v }
  *
- * of all its frames, over the reals, from the doubles given: position p, orientation q, velocity v.
- * The time t runs over the window [0, T], T the duration in seconds. Nothing is rounded before it
- * is compared: not the rotation matrix, not o + c, not v T. The quaternion q = (w, x, y, z) may
- * have any length but 0, and stands for the rotation of q / |q|:
+ * over all its frames, with position p, orientation q and velocity v. These doubles are taken as
+ * the real numbers they represent. The time t runs over the window [0, T], T the duration in
+ * seconds. The definition involves no rounding: not of the rotation matrix, of o + c or of v T. The
+ * quaternion q = (w, x, y, z) may have any length but 0, and stands for the rotation of q / |q|:
  *
  *            [ ww + xx - yy - zz   2 (xy - wz)         2 (xz + wy)       ]
  *     R(q) = [ 2 (xy + wz)         ww - xx + yy - zz   2 (yz - wx)       ] / (ww + xx + yy + zz)
@@ -23,10 +23,10 @@
  *
  * Verdicts. Two frames OVERLAP if at some time of the window (its ends included) their relative
  * interiors have a point in common; they TOUCH if the closed sets have a point in common at some
- * time, but the relative interiors never do; otherwise they are SEPARATED. So a plate through a box
- * overlaps it, coplanar plates that share area overlap, faces that share an edge touch. The verdict
- * of two bodies is the strongest of those of their frames. It does not depend on the order of the
- * pair (that of the inexact method fmb may).
+ * time, but the relative interiors never do; otherwise they are SEPARATED. Thus a plate through a
+ * box overlaps it, coplanar plates that share area overlap, and faces that share an edge touch. The
+ * verdict of two bodies is the strongest of those of their frames. It does not depend on the order
+ * of the pair, except that of the inexact method fmb, which may.
  *
  * Use:
  *
@@ -40,15 +40,17 @@
  *
  * Link with -lfmb -lgmp -lm (pkg-config fmb).
  *
- * All functions are reentrant and keep nothing between calls. No input is written to. Memory is
- * allocated where exact arithmetic is needed (by the method exact, by certified for the few pairs
- * that need it, by certificates, and by fmb_frame_make() for a frame that is nearly flat): through
- * GMP, which ends the process if there is none; it is freed before the function returns. The stack
- * holds up to 100 kB at a time.
+ * Thread safety: all functions are reentrant and keep no state between calls. Any number of threads
+ * may read the same input. Inputs are never modified.
  *
- * The answers are the same bits on every machine with 64-bit longs whose doubles are IEEE 754
- * binary64, rounded to nearest; the library is compiled without contraction. The caller must
- * not change the rounding mode or flush subnormals. */
+ * Memory: only exact arithmetic allocates: in the method exact, in certified for the few pairs that
+ * need it, in certificates, and in fmb_frame_make() for a frame that is nearly flat. It allocates
+ * through GMP, which ends the process if memory is exhausted, and frees the memory before the
+ * function returns. Functions use up to 100 kB of stack.
+ *
+ * Determinism: the answers are the same bits on every machine with 64-bit longs whose doubles are
+ * IEEE 754 binary64, rounded to nearest. The library is compiled without contraction. The caller
+ * must not change the rounding mode or flush subnormals to zero. */
 #ifndef FMB_H
 #define FMB_H
 
@@ -61,8 +63,7 @@ extern "C" {
 
 enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
 
-/* What can be said of a question; the numbers stand in messages and logs: a code is retired
- * rather than used again. */
+/* Status codes. Their numbers are used in messages and logs: a retired number is never reused. */
 #define FMB_STATUS_MAP(X)                                                                 \
     X(OK, 0, "ok")                                                                        \
     X(UNKNOWN_BODY, 1, "unknown body")                                                    \
@@ -92,176 +93,211 @@ enum fmb_status {
         FMB_STATUS_COUNT
 };
 
-/* The text of a status, or "unknown status"; static, for people. */
+/* Returns the text of a status, for people; "unknown status" for any other number. The string is
+ * static. */
 const char *fmb_status_text(int status);
 
-/* The numbers of shapes, verdicts and methods stand in messages and logs too. */
+/* The numbers of shapes and verdicts, and those of methods, are also used in messages and logs. */
 enum fmb_shape { FMB_CUBOID = 1, FMB_TETRAHEDRON = 2, FMB_FACE = 3, FMB_BOX = 4 };
 enum fmb_verdict { FMB_SEPARATED = 1, FMB_TOUCHING = 2, FMB_OVERLAPPING = 3 };
 
-/* "cuboid", "tetrahedron", "face", "box"; "separated", "touching", "overlapping"; NULL for another
- * number. Static. */
+/* Return "cuboid", "tetrahedron", "face" or "box", and "separated", "touching" or "overlapping";
+ * NULL for any other number. The strings are static. */
 const char *fmb_shape_name(int shape);
 const char *fmb_verdict_name(int verdict);
 
-/* The number of components of a frame of this shape and dimension (2 or 3): dim; 2 for a face.
- * 0 if the two do not go together (a face in 2D) or one of them is unknown. */
+/* Returns the number of components of a frame of this shape and dimension (2 or 3): 2 for a face,
+ * dim for the others. Returns 0 for a face in 2D, and if the shape or the dimension is unknown. */
 int fmb_component_count(int dim, int shape);
 
 /* ---- Bodies ---- */
 
-/* A frame in body coordinates, with what does not change while its body moves: the inverse of its
- * components among it. Fill it with fmb_frame_make() or fmb_frame_make_vertices(); the fields may
- * be read. Axes beyond dim and components beyond count hold 0. */
+/* A frame in body coordinates, and what is computed from it once, such as the inverse of its
+ * components. Filled by fmb_frame_make() or fmb_frame_make_vertices() only; the caller may read the
+ * fields, and copy the frame. Axes beyond dim and components beyond count are 0. */
 struct fmb_frame {
     int dim;                 /* 2 or 3 */
     enum fmb_shape shape;    /* FMB_BOX: components along the axes, component[i][i] the size */
-    int count;               /* of components */
-    bool flat;               /* exactly zero volume (every face is): no inverse */
-    bool inverted;           /* the inverse is present: not flat, and all its entries finite */
-    bool in_range;           /* doubles can decide pairs with it where it has no orientation, */
-    bool sturdy;             /* and with any orientation (frame.c) */
+    int count;               /* number of components */
+    bool flat;               /* the volume is exactly zero, as of every face; no inverse */
+    bool inverted;           /* the inverse is present: not flat, and all its entries are finite */
+    bool in_range;           /* doubles can decide pairs with it in a placement not rotated */
+    bool sturdy;             /* doubles can decide pairs with it in any placement (frame.c) */
     bool rounded;            /* not all of rest is 0 */
     int bits[2];             /* all components are multiples of 2^bits[0] below 2^bits[1] */
-    unsigned long long head; /* of its prepared frames, without orientation and at rest */
-    double radius;           /* no vertex is farther from the origin of the body; may be infinite */
-    double slack;      /* nor farther from where origin and component have it; 0: those are exact */
-    double turn_error; /* what an orientation that rounds adds to that */
-    /* Rounded for a box, whose origin is exactly centre - size / 2. */
+    unsigned long long head; /* fmb_prepared.head of this frame, not rotated and at rest */
+    double radius;     /* bounds the distance of each vertex from the origin of the body; may be
+                          infinite */
+    double slack;      /* bounds the distance of each vertex from the one that origin and component,
+                          which may be rounded, give; 0: those are exact */
+    double turn_error; /* what a rotation that rounds adds to slack */
+    /* Of a box it is rounded: the exact origin is centre - size / 2. */
     double origin[FMB_DIM_MAX];
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
     double size[FMB_DIM_MAX];                   /* largest magnitude in each component */
     /* [axis][component], rounded: x_i = sum_axis inverse[axis][i] p[axis] for p = sum x_i c_i. The
-     * article's invComp (Listing 1, PROJ). 0 where not inverted. */
+     * article's invComp (Listing 1, PROJ). All 0 if not inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
-    /* Of a frame given by its vertices: its components are component + rest, exactly. */
+    /* [component][axis]: the rounding errors of the components of a frame made from vertices. The
+     * exact components are component + rest. */
     double rest[FMB_DIM_MAX][FMB_DIM_MAX];
-    double centre[FMB_DIM_MAX]; /* of a box */
+    double centre[FMB_DIM_MAX]; /* of a box; otherwise 0 */
 };
 
-/* In: dim; shape; count numbers: the origin, then the components one after the other; of a box its
- * centre, then its full size along the axes (0: a flat frame). The first dim numbers may be left
- * out: the origin, or centre, is then 0. numbers may be NULL if count is 0.
- * Returns FMB_OK, or WRONG_DIMENSION, UNKNOWN_SHAPE, WRONG_COUNT, NOT_FINITE, BAD_SIZE (negative),
- * and *out is unspecified. */
+/* Makes a frame of numbers.
+ *
+ * In:  numbers  [count], finite: the origin, then the components one after the other; of a box the
+ *               centre, then the full sizes along the axes (a size of 0 makes a flat frame). The
+ *               first dim numbers may be omitted: the origin, or the centre, is then 0. May be NULL
+ *               if count is 0.
+ * Out: *out     unspecified if the status is not FMB_OK
+ * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE, FMB_WRONG_COUNT, FMB_NOT_FINITE, or
+ * FMB_BAD_SIZE for a negative size. */
 enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t count,
                                struct fmb_frame *out);
 
-/* A tetrahedron (2D: a triangle) from dim + 1 vertices, or a face from three vertices in 3D.
- * Vertices are exact: frames that share vertices share them exactly, although the differences of
- * doubles need not be doubles.
- * In: vertices [vertex][axis], count = vertices * dim numbers, finite.
- * Returns FMB_OK, or WRONG_DIMENSION, UNKNOWN_SHAPE (no tetrahedron or face), WRONG_COUNT,
- * NOT_FINITE (also where a difference is beyond the largest double), and *out is unspecified. */
+/* Makes a tetrahedron (in 2D a triangle) of dim + 1 vertices, or in 3D a face of three vertices.
+ * The vertices of the frame are exactly the given ones, although their differences, the components,
+ * need not be doubles. Frames that share vertices therefore share them exactly.
+ *
+ * In:  vertices  [vertex][axis], finite
+ *      count     the number of vertices times dim
+ * Out: *out      unspecified if the status is not FMB_OK
+ * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE (neither tetrahedron nor face),
+ * FMB_WRONG_COUNT, or FMB_NOT_FINITE (also if a difference exceeds the largest double). */
 enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                         struct fmb_frame *out);
 
-/* A rigid body: what does not change while it moves and turns. Fill it with one of the functions
- * below; it may be copied. A body of one frame holds it; the frames of others are the caller's. */
+/* A rigid body: one or more frames in body coordinates. Filled by one of the functions below only;
+ * it may be copied. A body of one frame may contain it; other frames belong to the caller. */
 struct fmb_body {
-    double radius; /* no vertex is farther from the origin of the body; may be infinite */
-    double box[2][FMB_DIM_MAX]; /* [0] lower, [1] upper: holds all frames, body coordinates */
+    double radius; /* bounds the distance of each vertex from the origin; may be infinite */
+    double box[2][FMB_DIM_MAX]; /* [lower, upper][axis]: contains all frames */
     int dim;
     unsigned frame_count;
-    const struct fmb_frame *frames; /* [frame_count]; NULL: the frame is one */
+    const struct fmb_frame *frames; /* [frame_count], not owned; NULL: the only frame is one */
     struct fmb_frame one;
 };
 
-/* Frame i of a body. */
+/* Returns frame i of a body. In: i < body->frame_count. */
 static inline const struct fmb_frame *fmb_body_frame(const struct fmb_body *body, unsigned i)
 {
     return body->frames ? &body->frames[i] : &body->one;
 }
 
-/* A body of one frame. In and Returns: as fmb_frame_make() and fmb_frame_make_vertices(). */
+/* Make a body of one frame, which the body contains. In, Out, Returns: as fmb_frame_make() and
+ * fmb_frame_make_vertices(). */
 enum fmb_status fmb_body_make(int dim, int shape, const double *numbers, size_t count,
                               struct fmb_body *out);
 enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                        struct fmb_body *out);
 
-/* A body of several frames, all of one dimension, which must outlive it and all its copies. They
- * may overlap: frames of one body are never tested against each other.
- * Returns FMB_OK, NO_FRAMES, DIMENSIONS_DIFFER or OVER_LIMIT (more than FMB_FRAMES_MAX), and *out
- * is unspecified. */
+/* Makes a body of several frames. They may overlap: frames of one body are never tested against
+ * each other.
+ *
+ * In:  frames  [count], of one dimension; not copied: they must outlive the body and all its copies
+ * Out: *out    unspecified if the status is not FMB_OK
+ * Returns FMB_OK, FMB_NO_FRAMES, FMB_DIMENSIONS_DIFFER, or FMB_OVER_LIMIT (more than
+ * FMB_FRAMES_MAX). */
 enum { FMB_FRAMES_MAX = 65536 };
 enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t count,
                                      struct fmb_body *out);
 
-/* A body at a place. All 0 but body: at the origin, not turned, at rest. Axes beyond the body's
- * dim are not read. */
+/* A body with a pose and a velocity. If all fields but body are 0, it is at the origin, not rotated
+ * and at rest. Axes beyond the dimension of the body are not read. */
 struct fmb_placement {
     const struct fmb_body *body;  /* not owned */
     double position[FMB_DIM_MAX]; /* world coordinates of the body's origin, at time 0 */
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
-    int orientation_count;        /* 0: not turned; 4 (2D: 2) */
+    int orientation_count;        /* 0: not rotated; 4 (2D: 2) */
 };
 
-/* Returns FMB_OK; NO_FRAMES (body is NULL or was not made), NOT_FINITE (position or velocity),
- * WRONG_COUNT (orientation_count is neither 0 nor that of the dimension; or it is 0, but
- * orientation is not), BAD_ORIENTATION: all 0, not finite, or a component other than 0 that is more
- * than 2^200 times smaller than the largest. Every function that takes a placement checks it so. */
+/* Checks a placement. Every function that takes placements applies this check.
+ *
+ * Returns one of:
+ *   FMB_OK
+ *   FMB_NO_FRAMES        body is NULL or was not made
+ *   FMB_NOT_FINITE       position or velocity
+ *   FMB_WRONG_COUNT      orientation_count is neither 0 nor that of the dimension; or it is 0 and
+ *                        orientation is not all 0
+ *   FMB_BAD_ORIENTATION  the orientation is all 0, is not finite, or has a component other than 0
+ *                        whose magnitude is less than 2^-200 of the largest */
 enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
 
 /* ---- Two bodies ---- */
 
 enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
 
-/* An enclosure of the gap, the signed distance of two bodies over the window: separated, their
- * least distance; touching, 0; overlapping, minus the depth: the length of the shortest translation
- * after which the bodies do not overlap at any time of the window. Of bodies of several frames: the
- * least of their frames' gaps, with its direction and points.
+/* An enclosure of the gap, the signed distance of two bodies over the window:
  *
- * The direction n proves the lower bound: for all points a of the first frame and b of the second
- * at the same time of the window, n . (b - a) >= bounds[0] |n|. The witness points prove the upper
- * bound of a separated pair: |b - a| plus the distances of the two from their frames at that time
- * is at most bounds[1]. bounds[1] of an overlapping pair is minus the smallest depth over all
- * facets of the swept difference of the two.
+ *   separated    their least distance
+ *   touching     0
+ *   overlapping  minus the depth, the length of the shortest translation after which the bodies do
+ *                not overlap at any time of the window
  *
- * bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any vertex of
- * either body over the window, or a few of the least doubles. (In a window shorter than 2^-1000 s
- * the time of the least distance may be no double: bounds[1] then has the way of the frames in as
- * long as time is off.) Touching: both are 0, and the direction proves 0 but for as much. A bound
- * beyond the largest double is infinite, with its sign. The pair the other way round has the same
- * bounds, the negated direction and the points exchanged; two placements that are equal in all
- * numbers are the same pair both ways. */
+ * Of bodies of several frames it is the least gap of a pair of their frames, with its direction and
+ * points.
+ *
+ * Lower bound. The direction n proves it: n . (b - a) >= bounds[0] |n| for all points a of the
+ * first frame and b of the second at the same time of the window.
+ *
+ * Upper bound. For a separated pair the witness points prove it: |b - a| plus the distances of the
+ * two points from their frames at that time is at most bounds[1]. For an overlapping pair,
+ * bounds[1] is minus the smallest depth over all facets of the Minkowski difference of the two,
+ * swept over the window.
+ *
+ * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
+ * vertex of either body over the window, or a few of the least doubles. (In a window shorter than
+ * 2^-1000 s the time of the least distance may not be a double. bounds[1] then includes the
+ * distance that the frames travel in the error of the time.) If the bodies touch, both bounds are
+ * 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds the largest
+ * double is infinite, with its sign.
+ *
+ * Order. The swapped pair has the same bounds, the negated direction and the points exchanged. If
+ * two placements are equal in all numbers, both orders are the same pair and have the same gap. */
 struct fmb_gap {
     double bounds[2];               /* lower and upper */
-    double direction[FMB_DIM_MAX];  /* from a to b, of unit length but for rounding */
-    bool has_witness;               /* separated */
+    double direction[FMB_DIM_MAX];  /* from a to b, a unit vector up to rounding */
+    bool has_witness;               /* the pair is separated: time and witness are set */
     double time;                    /* of the least distance, seconds, within [0, T] */
-    double witness[2][FMB_DIM_MAX]; /* [0] of a, [1] of b, world coordinates */
+    double witness[2][FMB_DIM_MAX]; /* [0] in a, [1] in b, world coordinates */
 };
 
-/* The answer. The contact is the interval from the first to the last time at which the closed sets
- * meet; of a pair with equal velocities the whole window. The box is that of the intersection, in
- * world coordinates, over the window. Of bodies of several frames both are the hulls of those of
- * their frames.
+/* An answer.
  *
- * Contacts and boxes of the methods certified and exact contain the exact ones. Those of exact are
- * the smallest of doubles that do: no end is farther off than the next double. Of those of
- * certified, an end of a contact is at most 1e-12 T too far out, and one of a box 1e-12 of the
- * largest magnitude of a coordinate of any vertex of either body over the window;
- * ends that are those of a frame, and small numbers in scenes of such numbers, are exact. Both are
- * the same bits for the pair the other way round and on every machine; another version of the
- * library may give other ones within these limits. An end of a box beyond the largest double is
- * infinite, with its sign. No number is -0. Those of fmb and sat are rounded as they come. */
+ * The contact is the interval from the first to the last time at which the closed sets meet; the
+ * whole window if the velocities are equal. The box is the axis-aligned bounding box of the
+ * intersection over the window, in world coordinates. Of bodies of several frames, both are the
+ * smallest that contain those of all pairs of frames.
+ *
+ * Contacts and boxes of the methods certified and exact contain the exact ones.
+ *
+ *   exact      They are the smallest with ends that are doubles.
+ *   certified  An end of a contact is at most 1e-12 T too far out. An end of a box is too far out
+ *              by at most 1e-12 of the largest magnitude of a coordinate of any vertex of either
+ *              body over the window. Ends that coincide with an end of a frame are exact, and so
+ *              are small numbers in scenes of such numbers.
+ *
+ * Both give the same bits for the swapped pair and on every machine; another version of the library
+ * may give different bits within these limits. An end of a box whose magnitude exceeds the largest
+ * double is infinite, with its sign. No number is -0. The methods fmb and sat round without such
+ * guarantees. */
 struct fmb_answer {
     enum fmb_verdict verdict;
     bool has_contact;           /* touching or overlapping */
     bool has_box;               /* wanted, touching or overlapping, and the method gives boxes */
     bool has_gap;               /* wanted, and the method is certain */
     double contact[2];          /* first and last time of contact, seconds, within [0, T] */
-    double box[2][FMB_DIM_MAX]; /* [0] lower and [1] upper ends, world coordinates; axes beyond
-                                   dim hold 0 */
-    struct fmb_gap gap;         /* all 0 without has_gap */
+    double box[2][FMB_DIM_MAX]; /* [lower, upper][axis], world coordinates; axes beyond dim are 0 */
+    struct fmb_gap gap;         /* all 0 if not has_gap */
 };
 
-/* A way to decide. One table holds them all, in the order of fmb_method_at(). */
+/* A method of deciding. All methods are in one table, in the order of fmb_method_at(). */
 struct frame_pair; /* internal */
 struct fmb_method {
     const char *name;
-    int number;          /* stands in messages; 0 is not used: it asks for the default */
+    int number;          /* used in messages; never 0, which selects the default */
     const char *summary; /* one line, for people */
     bool certain;        /* never wrong */
     bool boxes;          /* gives boxes of contacts */
@@ -270,35 +306,48 @@ struct fmb_method {
                               struct fmb_answer *answer);
 };
 
-/*   certified  the default: never wrong. Doubles with bounds on their errors decide nearly all
- *              pairs; exact arithmetic those that are too close for doubles, and flat frames that
- *              are no faces with an area
- *   exact      never wrong either, and all of it in exact arithmetic (GMP)
- *   fmb        the article's elimination in doubles: verdict, interval, the article's loose box
- *   sat        the separating axis theorem in doubles: verdict and interval, no box
+/* The methods:
+ *
+ *   certified  The default. Never wrong. Doubles with bounds on their errors decide nearly all
+ *              pairs. Exact arithmetic decides those that are too close for doubles, and flat
+ *              frames that are not faces with an area.
+ *   exact      Never wrong. Uses exact arithmetic (GMP) throughout.
+ *   fmb        The article's elimination in doubles: verdict, interval, the article's loose box.
+ *   sat        The separating axis theorem in doubles: verdict and interval, no box.
+ *
  * fmb and sat are inexact and cannot decide flat frames.
  *
- * exact takes tens of microseconds for numbers of like size, and a bounded time for any (exact.c
- * derives the bound): about 0.2 ms for a verdict and 1.5 ms with interval and box where the
- * exponents go from one end of the doubles to the other; a gap takes 0.1 ms more. That bounds the
- * time of certified too. */
-const struct fmb_method *fmb_method_default(void);
-const struct fmb_method *fmb_method_at(size_t index);          /* NULL past the last */
-const struct fmb_method *fmb_method_by_name(const char *name); /* NULL: none of that name */
-const struct fmb_method *fmb_method_by_number(int number);     /* 0: the default; NULL: none */
+ * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
+ * numbers (exact.c derives the bound): where the exponents span the whole range of doubles, about
+ * 0.2 ms for a verdict and 1.5 ms with interval and box; a gap adds 0.1 ms. The same bounds hold
+ * for certified. */
 
-/* Decides one pair of bodies over the window [0, duration], in seconds; 0 is a window too.
- * In: method is not NULL; want is a sum of FMB_WANT_ values.
- * Returns FMB_OK and *answer; or a status and *answer all 0: those of fmb_placement_check(),
- * DIMENSIONS_DIFFER, BAD_DURATION (negative or not finite), UNKNOWN_WANT, CANNOT_DECIDE (also a gap
- * by a method that is not certain). */
+/* Return a method from a static table, valid for the life of the program. Thread safe.
+ * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
+ * fmb_method_by_number() return NULL if there is no such method. Number 0 is the default. */
+const struct fmb_method *fmb_method_default(void);
+const struct fmb_method *fmb_method_at(size_t index);
+const struct fmb_method *fmb_method_by_name(const char *name);
+const struct fmb_method *fmb_method_by_number(int number);
+
+/* Decides one pair of bodies over a window.
+ *
+ * In:  method    not NULL
+ *      a, b      two placements of bodies of one dimension
+ *      duration  T of the window [0, T], seconds; finite, not negative; 0 is valid
+ *      want      a sum of FMB_WANT_ values
+ * Out: *answer   the answer; all 0 if the status is not FMB_OK
+ * Returns FMB_OK; a status of fmb_placement_check(); FMB_DIMENSIONS_DIFFER; FMB_BAD_DURATION
+ * (negative or not finite); FMB_UNKNOWN_WANT; FMB_CANNOT_DECIDE (the method cannot decide the pair,
+ * or a gap is wanted from a method that is not certain).
+ * Cost: see the methods above, per pair of frames. */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_placement *a,
                            const struct fmb_placement *b, double duration, unsigned want,
                            struct fmb_answer *answer);
 
 /* ---- Many pairs of frames at once ----
  *
- * Frames are prepared once for their placement, then pairs are decided by index, thousands at a
+ * Each frame is prepared once for its placement. Pairs are then decided by index, thousands at a
  * time:
  *
  *     struct fmb_prepared *frames = aligned_alloc(64, count * sizeof *frames);
@@ -308,89 +357,111 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
  *                               .pair_count = n, .duration = 1, .verdicts = verdicts};
  *     fmb_decide_batch(&batch);
  *
- * The answers are those of the method certified, bit for bit, whatever the instructions and the
- * number of threads. */
+ * The answers are those of the method certified, bit for bit. They do not depend on the
+ * instructions or on the number of threads. */
 
-/* A frame of a placed body: its world coordinates, rounded, with a bound on that error
- * (prepared.h), in two cache lines if it lies at a multiple of 64 bytes (any address that doubles
- * may have is good). Fill it with fmb_prepare() only. It refers to the frame and the placement,
- * which must not change or go while it is used. */
+/* A frame of a placed body: its rounded world coordinates and a bound on their error (prepared.h).
+ * Filled by fmb_prepare() only. It points to the frame and the placement, which must stay valid and
+ * unchanged while it is used. Any alignment that is valid for doubles will do; at a multiple of 64
+ * bytes it occupies exactly two cache lines. */
 struct fmb_prepared {
-    unsigned long long head; /* its kind and sizes */
-    /* 3D: origin, components one after the other, error; 2D the same with two numbers for three,
-     * then the velocity, and the rest 0. */
+    unsigned long long head; /* flags and sizes of the components */
+    /* 3D: origin, components in order, error. 2D: the same with two numbers for each vector, then
+     * the velocity, then zeros. */
     double number[13];
     const struct fmb_frame *frame; /* NULL: not prepared */
     const struct fmb_placement *placement;
 };
 
-/* Prepares frames first to first + count - 1 of a placed body. Less than 30 ns a frame.
- * Returns FMB_OK; a status of fmb_placement_check(), or BAD_PAIR where the body has no such frames:
- * all of out is then 0, and pairs with it are refused. */
+/* Prepares frames first to first + count - 1 of a placed body.
+ *
+ * In:  placement  must outlive the prepared frames
+ * Out: out        [count]; all 0 if the status is not FMB_OK, and pairs with such frames are
+ *                 refused
+ * Returns FMB_OK; a status of fmb_placement_check(); FMB_BAD_PAIR if the body has no such frames.
+ * Cost: less than 30 ns a frame. */
 enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned first, unsigned count,
                             struct fmb_prepared *out);
 
-/* The verdict of one pair of frames, certified.
- * Returns FMB_OK; or NOT_FINITE for a frame that was not prepared, DIMENSIONS_DIFFER, BAD_DURATION,
- * and *verdict is unchanged. */
+/* Decides the verdict of one pair of frames by the method certified.
+ *
+ * In:  a, b      prepared frames of one dimension
+ *      duration  T, seconds
+ * Out: *verdict  unchanged if the status is not FMB_OK
+ * Returns FMB_OK; FMB_NOT_FINITE for a frame that is not prepared; FMB_DIMENSIONS_DIFFER;
+ * FMB_BAD_DURATION. */
 enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
                          double duration, enum fmb_verdict *verdict);
 
-/* Instruction sets that the batch is compiled for. FMB_BEST: the best that this machine has, asked
- * at run time. */
+/* Instruction sets that the batch is compiled for. FMB_BEST is the best one that this machine
+ * supports, detected at run time. */
 enum fmb_instructions { FMB_BEST = 0, FMB_PLAIN = 1, FMB_SSE2 = 2, FMB_AVX2 = 3, FMB_AVX512 = 4 };
 
-/* "best", "plain", "sse2", "avx2", "avx512"; NULL for another number. Static. */
+/* Returns "best", "plain", "sse2", "avx2" or "avx512"; NULL for any other number. The string is
+ * static. */
 const char *fmb_instructions_name(int instructions);
 
-/* Whether this machine has them, and the library was compiled for them. */
+/* Returns whether the library is compiled for these instructions and this machine has them. */
 bool fmb_instructions_supported(int instructions);
 
-/* In verdicts of a batch: a pair that was refused, and one that is listed in open. */
+/* Further values in the verdicts of a batch: a pair that was refused, and a pair that was left open
+ * and is listed in fmb_batch.open. */
 enum { FMB_REFUSED = 0, FMB_LEFT_OPEN = 255 };
 
-/* Queries and answers of fmb_decide_batch(). Arrays are the caller's. */
+/* In and out of fmb_decide_batch(). The caller owns all arrays. Frames and pairs are read only; the
+ * others are written. */
 struct fmb_batch {
-    const struct fmb_prepared *frames; /* [frame_count]; huge pages help where there are many */
+    const struct fmb_prepared *frames; /* [frame_count]; huge pages help if there are many */
     size_t frame_count;
     const unsigned (*pairs)[2]; /* [pair_count][a, b], indices of frames */
     size_t pair_count;
     double duration; /* T of all pairs, seconds */
-    /* [pair_count]: enum fmb_verdict; or FMB_REFUSED, FMB_LEFT_OPEN. */
+    /* [pair_count]: enum fmb_verdict, FMB_REFUSED or FMB_LEFT_OPEN. */
     unsigned char *verdicts;
-    /* [pair_count][first, last], or NULL; as fmb_answer.contact. NAN for pairs that are separated,
-     * refused or left open. */
+    /* [pair_count][first, last], seconds, or NULL; as fmb_answer.contact. NAN for pairs that are
+     * separated, refused or left open. */
     double (*contacts)[2];
-    /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box; NAN for the same pairs. */
+    /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN for the same pairs. */
     double (*boxes)[2][FMB_DIM_MAX];
-    /* [pair_count], or NULL; as fmb_answer.gap; bounds of NAN for pairs refused or left open. */
+    /* [pair_count], or NULL; as fmb_answer.gap. Bounds of NAN for pairs refused or left open. */
     struct fmb_gap *gaps;
-    /* Both NULL, or a bound on the time of a call: [pair_count], and the count. Pairs whose verdict
-     * or contact (where wanted) needs integers of more than 512 bits, or whose box or gap needs
-     * integers, are then left open and listed: open[0] to open[*open_count - 1] are their positions
-     * in pairs, ascending. Each of them may take as long as fmb_decide() of a pair; any other takes
-     * tens of microseconds at most, and no memory is allocated. Pairs that need more than the
-     * filter in doubles are left open too if 32 of the same 128 pairs have been decided before.
-     * Which pairs are left open does not depend on the instructions. A batch of one such pair, with
-     * both NULL, gives its answer: the same bits as in a batch of all pairs with both NULL. */
+    /* Both NULL; or [pair_count] positions and their count, which bound the time of a call.
+     *
+     * Both NULL: every pair is decided.
+     *
+     * Otherwise a pair is left open if its verdict or contact (if wanted) needs integers of more
+     * than 512 bits, or if its box or gap needs integers of any width. A pair that the filter in
+     * doubles does not decide is also left open if 32 of the same 128 pairs have already been
+     * decided after the filter. Which pairs are left open does not depend on the instructions.
+     * open[0] to open[*open_count - 1] are the positions in pairs of those left open, ascending.
+     *
+     * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
+     * of microseconds at most and allocates no memory. A batch of that one pair with both NULL
+     * gives its answer: the same bits as in a batch of all pairs with both NULL. */
     size_t *open;
     size_t *open_count;
     enum fmb_instructions instructions; /* 0: the best */
-    /* 0 or 1: the calling one alone. More need a library built with OPENMP=1, and batches of some
-     * thousands of pairs to be of use. */
+    /* 0 or 1: the calling thread only. More threads require a library built with OPENMP=1, and pay
+     * off in batches of some thousands of pairs. */
     int threads;
 };
 
-/* On output: OK; or the status of the first pair that was refused (DIMENSIONS_DIFFER, NOT_FINITE
- * for a frame that is not prepared, OVER_LIMIT for an index beyond frame_count), all others having
- * been decided; or a status of the whole, and nothing written: BAD_DURATION, NOT_SUPPORTED for
- * instructions or threads that are not there. */
+/* Decides the pairs of a batch.
+ *
+ * Returns one of:
+ *   FMB_OK             every pair was decided or left open
+ *   status of a pair   the status of the first pair that was refused: FMB_DIMENSIONS_DIFFER,
+ *                      FMB_NOT_FINITE (a frame that is not prepared), FMB_OVER_LIMIT (an index of
+ *                      frame_count or more). All other pairs were decided or left open.
+ *   status of a batch  FMB_BAD_DURATION, or FMB_NOT_SUPPORTED for instructions or threads that are
+ *                      not available. Nothing was written.
+ * Thread safety: calls may run at the same time if they write to different arrays. */
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
 
 /* ---- Which pairs may meet ----
  *
- * Most pairs of a large scene are far from each other. A tree of boxes finds those that are not,
- * without asking every one:
+ * Most pairs of a large scene are far apart. A tree of axis-aligned bounding boxes finds the others
+ * without testing every pair:
  *
  *     struct fmb_tree tree;
  *     void *memory = malloc(fmb_tree_bytes(count));
@@ -400,101 +471,121 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
  *         ... decide the pairs of i and found[0] to found[n - 1] ...
  *     }
  *
- * or, several times faster and in an order of its own,
+ * or, several times faster and in an unspecified order that is the same in every run,
  *
  *     struct fmb_tree_place place = {0};
- *     while (fmb_tree_pairs(&tree, &tree, &place, pairs, room, &n) == FMB_OK && n > 0)
+ *     while (fmb_tree_pairs(&tree, &tree, &place, pairs, capacity, &n) == FMB_OK && n > 0)
  *         ... decide pairs[0] to pairs[n - 1] ...
  *
- * The box of a frame holds all its points at all times of the window. It is the smallest one where
- * no sum of its numbers rounds, and else larger by a few units in the last place of the largest of
- * them. A pair that touches or overlaps is never left out: the boxes have a point in common then;
- * those that merely touch have, too. What is found is the same on every machine. */
+ * The box of a frame contains all its points at all times of the window. It is the smallest such
+ * box if no sum of the frame's numbers rounds; otherwise it is larger by a few units in the last
+ * place of the largest of them. Boxes are closed: those that only touch overlap. A pair that
+ * touches or overlaps is therefore never left out. The results are the same on every machine.
+ *
+ * Thread safety: functions that take a const tree may run at the same time on one tree. */
 
-/* Where frames are, in memory of the caller's. Fill it with fmb_tree_build() only. */
+/* A tree over frames or boxes, in the caller's memory. Filled by fmb_tree_build() or
+ * fmb_tree_build_boxes() only. */
 struct fmb_tree {
     size_t frame_count;
     size_t node_count;
     int dim;
-    double duration;
+    double duration;             /* T, seconds */
     struct fmb_tree_node *nodes; /* [node_count] */
-    struct fmb_tree_box *boxes;  /* [frame_count], in the order below */
-    /* [frame_count]: the indices of the frames, neighbours in space near each other. */
-    unsigned *order;
+    struct fmb_tree_box *boxes;  /* [frame_count], in the order of the leaves */
+    unsigned *order;             /* [frame_count], in the same order: the indices of the frames */
 };
 
-/* How many bytes a tree of so many frames needs: 76 a frame, and 256 more. SIZE_MAX where
- * that is not a number of bytes, or fmb_tree_build() refuses so many. */
+/* Returns the number of bytes that a tree of count frames needs: 76 a frame, plus 256. Returns
+ * SIZE_MAX if that number is not representable, or if fmb_tree_build() refuses so many frames. */
 size_t fmb_tree_bytes(size_t count);
 
-/* On input: frames of one dimension, which need not outlive the call; T of all that will be asked;
- * fmb_tree_bytes(count) bytes at any address, which the tree uses from now on. count may be 0, and
- * frames and memory NULL then.
- * On output: OK and *out. Or BAD_DURATION, NOT_FINITE for a frame that is not prepared,
- * DIMENSIONS_DIFFER, OVER_LIMIT for UINT_MAX frames or more, and *out is a tree of no frames.
+/* Builds a tree of prepared frames.
  *
- * Takes a time that grows as n log n, whatever the frames are. */
+ * In:  frames    [count], of one dimension; they need not outlive the call; may be NULL if count is
+ *                0
+ *      duration  T of all queries, seconds
+ *      memory    fmb_tree_bytes(count) bytes at any address; the tree uses them until the caller
+ *                frees them; may be NULL if count is 0
+ * Out: *out      the tree; a tree of no frames if the status is not FMB_OK
+ * Returns FMB_OK; FMB_BAD_DURATION; FMB_NOT_FINITE for a frame that is not prepared;
+ * FMB_DIMENSIONS_DIFFER; FMB_OVER_LIMIT for UINT_MAX frames or more.
+ * Cost: O(n log n) for any frames. */
 enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, double duration,
                                void *memory, struct fmb_tree *out);
 
-/* Boxes of anything, for a tree of them. */
+/* A source of boxes for fmb_tree_build_boxes(). */
 struct fmb_boxes {
     int dim; /* 2 or 3 */
-    /* Puts box number index, where it is at the start of the window, into box: [lower,
-     * upper][axis], no NaN, lower <= upper. */
+    /* Writes box number index, at the start of the window, to box: [lower, upper][axis]. No end is
+     * NaN; lower <= upper. */
     void (*at)(const void *context, unsigned index, double box[2][FMB_DIM_MAX]);
-    const void *context;
-    const double *velocity; /* [dim], finite: of all of them; NULL: at rest */
+    const void *context;    /* passed to at() */
+    const double *velocity; /* [dim], finite, per second, of all boxes; NULL: at rest */
 };
 
-/* The same for boxes, which come one by one and need not be kept.
- * On output: OK, BAD_DURATION, OVER_LIMIT, or WRONG_DIMENSION. */
+/* Builds a tree of boxes. at() is called once for each index, in ascending order; the boxes need
+ * not be stored by the caller.
+ *
+ * In, Out: as fmb_tree_build().
+ * Returns FMB_OK; FMB_BAD_DURATION; FMB_OVER_LIMIT; FMB_WRONG_DIMENSION. */
 enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count, double duration,
                                      void *memory, struct fmb_tree *out);
 
-/* The box of a prepared frame over a window, as trees have it: [lower, upper][axis]. */
+/* Computes the box of a prepared frame over the window [0, duration], as trees use it.
+ * Out: box  [lower, upper][axis] */
 void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX]);
 
-/* The same tree for frames that have moved since, or changed. What is found is exactly what a new
- * tree finds; it takes longer to find as frames go far from where they were when the tree was
- * built.
- * On input: tree->frame_count frames.
- * On output: OK; or a status of fmb_tree_build(), and the tree is as it was. */
+/* Updates the boxes of a tree for frames that have moved or changed since. Queries then return
+ * exactly what those of a new tree return. They take longer the farther the frames are from their
+ * places when the tree was built.
+ *
+ * In:  frames    [tree->frame_count], of one dimension
+ *      duration  T of all later queries, seconds
+ * Returns FMB_OK; or a status of fmb_tree_build(), and the tree is unchanged.
+ * Cost: O(n). */
 enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared *frames,
                                double duration);
 
-/* On input: a frame, of the tree or not; out has room for all frames of the tree.
- * On output: OK, and in out[0] to out[*count - 1] the indices of all frames of the tree whose boxes
- * meet that of this one, it itself included, and that are at least from, in ascending order. Or
- * NOT_FINITE for a frame that is not prepared, DIMENSIONS_DIFFER, and *count is 0. The rest of out
- * may be written to. */
+/* Finds the frames of a tree whose boxes overlap that of a given frame.
+ *
+ * In:  frame   prepared; of the tree or not
+ *      from    only frames of this index or a higher one are returned
+ * Out: out     capacity for tree->frame_count indices. out[0] to out[*count - 1] are those found,
+ *              in ascending order, including the frame itself if it is one of the tree. The
+ *              elements after them are unspecified.
+ *      *count  0 if the status is not FMB_OK
+ * Returns FMB_OK; FMB_NOT_FINITE for a frame that is not prepared; FMB_DIMENSIONS_DIFFER. */
 enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepared *frame,
                              unsigned from, unsigned *out, size_t *count);
 
-/* How far fmb_tree_pairs() has come; all 0 to begin with. */
+/* The position of an enumeration by fmb_tree_pairs(). All 0: the beginning. */
 struct fmb_tree_place {
     unsigned leaf, node;
     bool inside;
 };
 
-/* The least room for pairs. */
+/* The least capacity that fmb_tree_pairs() accepts, in pairs. */
 enum { FMB_TREE_ROOM = 64 };
 
-/* All pairs of a frame of one tree and a frame of another whose boxes meet; or, of a tree with
- * itself (a == b), all pairs of two of its frames, each once and the smaller index first. Some at a
- * time: each call goes on from *place, and the trees must not change between.
- * On input: out has room for so many pairs.
- * On output: OK, and in out[0] to out[*count - 1] pairs [index in a, index in b], each once;
- * *count is 0 just if there are no more. Or DIMENSIONS_DIFFER, BAD_DURATION for trees of different
- * windows, OVER_LIMIT for less than FMB_TREE_ROOM, and *count is 0. The rest of out may be written
- * to. */
+/* Enumerates the pairs of a frame of a and a frame of b whose boxes overlap. If a == b, these are
+ * the pairs of two different frames of the tree, each once and with the smaller index first. Each
+ * call continues where the last one ended; the trees must not change in between.
+ *
+ * In:  capacity  pairs that out can hold, at least FMB_TREE_ROOM
+ *      *place    all 0 in the first call, then as the last call left it
+ * Out: out       out[0] to out[*count - 1] are pairs [index in a, index in b], each once. The
+ *                elements after them are unspecified.
+ *      *count    0 if and only if there are no more pairs or the status is not FMB_OK
+ * Returns FMB_OK; FMB_DIMENSIONS_DIFFER; FMB_BAD_DURATION for trees of different windows;
+ * FMB_OVER_LIMIT if capacity is less than FMB_TREE_ROOM. */
 enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
-                               struct fmb_tree_place *place, unsigned (*out)[2], size_t room,
+                               struct fmb_tree_place *place, unsigned (*out)[2], size_t capacity,
                                size_t *count);
 
 /* ---- Scenes ----
  *
- * Many placed bodies, of one or more frames: which of them meet, when, and in which boxes.
+ * A scene is a set of placed bodies of one or more frames. It is decided in short steps:
  *
  *     struct fmb_scene scene = {.placements = placements, .placement_count = n,
  *                               .duration = 1, .which = FMB_PAIRS_ALL,
@@ -510,155 +601,186 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
  *     }
  *
  * The answers are those of fmb_decide() for each pair, bit for bit. Frames of one body are never
- * tested against each other. Nothing is allocated except by exact arithmetic. */
+ * tested against each other. Only exact arithmetic allocates memory.
+ *
+ * Thread safety: one state must not be used by two threads at the same time. Different states share
+ * nothing. */
 
-/* Which pairs, and how they are numbered from 0: listed ones in their order; the others in the
- * order of (a, b), a < b, ignored ones included. */
+/* Which pairs are decided. Pairs are numbered from 0. Listed pairs have their positions in the
+ * list; the others are numbered in the order of (a, b), a < b, ignored pairs included. */
 enum fmb_pairs {
     FMB_PAIRS_LISTED = 0,
     FMB_PAIRS_ALL = 1,   /* each placement with each later one */
     FMB_PAIRS_ACROSS = 2 /* each of the first split placements with each of the others */
 };
 
-/* All arrays are the caller's, and are needed until the last step. */
+/* A query. The caller owns all arrays, which must stay valid and unchanged until the last step. */
 struct fmb_scene {
     const struct fmb_placement *placements; /* [placement_count], of one dimension */
     size_t placement_count;
-    double duration;                 /* T, seconds */
-    const struct fmb_method *method; /* NULL: the default; not certain: only FMB_PAIRS_LISTED */
-    bool contacts, boxes;            /* wanted, of pairs that meet */
-    bool gaps;                       /* wanted, of all pairs in the answers */
-    /* Separated pairs whose lower bound is at most the margin are near: they are among the answers.
-     * They and pairs that meet have their gaps. Not negative, finite; 0: no pair is near. */
+    double duration; /* T, seconds */
+    /* NULL: the default. A method that is not certain requires FMB_PAIRS_LISTED. */
+    const struct fmb_method *method;
+    bool contacts, boxes; /* wanted, of pairs that meet */
+    bool gaps;            /* wanted, of all pairs in the answers */
+    /* Separated pairs whose lower bound of the gap is at most the margin are near. They are
+     * included in the answers, and they and the pairs that meet have gaps. Finite, not negative; 0:
+     * no pair is near. */
     double margin;
     enum fmb_pairs which;
-    size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; else 0 */
-    const unsigned (
-        *pairs)[2]; /* FMB_PAIRS_LISTED: [pair_count][a, b], two placements; else none */
+    size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; otherwise 0 */
+    /* FMB_PAIRS_LISTED: [pair_count][a, b], indices of two different placements; otherwise none. */
+    const unsigned (*pairs)[2];
     size_t pair_count;
-    /* [ignored_count], two placements each, in any order, repeats allowed: bodies that may always
-     * meet. None with FMB_PAIRS_LISTED. */
+    /* [ignored_count][a, b], indices of two different placements in any order; repetitions are
+     * allowed. These pairs are not decided. None with FMB_PAIRS_LISTED. */
     const unsigned (*ignored)[2];
     size_t ignored_count;
-    unsigned long long first_pair; /* the answers begin with this pair; at most the total */
+    unsigned long long first_pair; /* the first pair to decide; at most the number of pairs */
 };
 
-/* What memory has to hold. */
+/* Capacities of the memory of a scene. */
 struct fmb_scene_limits {
     size_t placements;
     size_t frames; /* of the bodies of all placements together */
     size_t ignored;
-    /* Frames placed at a time, at least FMB_SCENE_SLOTS_MIN, 176 bytes each. Where a scene needs
-     * more, frames are placed again. */
+    /* Frames that are prepared at the same time, at least FMB_SCENE_SLOTS_MIN; 176 bytes each. If a
+     * scene needs more, frames are prepared repeatedly. */
     size_t slots;
 };
 
 enum { FMB_SCENE_SLOTS_MIN = 32, FMB_SCENE_SLOTS = 8192 };
 
-/* Those of a scene, with a slot for each frame but at most FMB_SCENE_SLOTS. */
+/* Returns the limits that hold a scene, with a slot for each frame but no more than
+ * FMB_SCENE_SLOTS. */
 struct fmb_scene_limits fmb_scene_limits_of(const struct fmb_scene *scene);
 
-/* Bytes of memory that a scene within limits needs; SIZE_MAX where that is not a number of bytes.
- */
+/* Returns the number of bytes that a scene within these limits needs; SIZE_MAX if the limits are
+ * too large. */
 size_t fmb_scene_bytes(const struct fmb_scene_limits *limits);
 
-/* Answers of one step. Arrays belong to the scene's memory or to the query, and are valid until
- * the next step. */
+/* The answers of one step. The arrays belong to the memory of the scene or to the query, and are
+ * valid until the next step. Arrays that were not wanted are unspecified. */
 struct fmb_scene_answers {
     size_t count;
     const unsigned (*pairs)[2];    /* [count][a, b] */
-    const unsigned char *verdicts; /* [count], enum fmb_verdict; FMB_REFUSED: CANNOT_DECIDE */
-    const double (*contacts)[2];   /* [count], where wanted; NAN: separated or refused */
-    const double (*boxes)[2][FMB_DIM_MAX]; /* [count], where wanted, likewise */
-    /* [count], where gaps are wanted or the margin is not 0; bounds of NAN: refused, or, with
+    const unsigned char *verdicts; /* [count], enum fmb_verdict; FMB_REFUSED: cannot decide */
+    const double (*contacts)[2];   /* [count][first, last], NAN: separated or refused */
+    const double (*boxes)[2][FMB_DIM_MAX]; /* [count][lower, upper][axis], NAN: the same pairs */
+    /* [count], if gaps are wanted or the margin is not 0. Bounds of NAN: refused; or, with
      * FMB_PAIRS_LISTED and gaps not wanted, separated and farther apart than the margin. */
     const struct fmb_gap *gaps;
 };
 
 struct fmb_scene_state;
 
-/* In: memory of fmb_scene_bytes(limits) bytes, at any address.
- * Returns FMB_OK and *out, in memory; or OVER_LIMIT (the scene is not within limits, or slots below
- * the minimum), a status of fmb_placement_check(), DIMENSIONS_DIFFER, BAD_DURATION, BAD_MARGIN,
- * BAD_PAIR (an index that is no placement, a placement with itself, split, first_pair), WRONG_COUNT
- * (pairs that are listed where none are, or ignored where they are listed), CANNOT_DECIDE (a method
- * that is not certain, with gaps, with a margin or without FMB_PAIRS_LISTED). */
+/* Checks a scene and begins it.
+ *
+ * In:  memory  fmb_scene_bytes(limits) bytes at any address; owned by the caller, in use until the
+ *              last step
+ * Out: *out    the state, in memory; unchanged if the status is not FMB_OK
+ * Returns one of:
+ *   FMB_OK
+ *   FMB_OVER_LIMIT         the scene is not within limits, or limits->slots is below the minimum
+ *   FMB_BAD_DURATION, FMB_BAD_MARGIN
+ *   a status of fmb_placement_check()
+ *   FMB_DIMENSIONS_DIFFER  placements of different dimensions
+ *   FMB_BAD_PAIR           which is unknown; a pair has an index out of range or the same index
+ *                          twice; split or first_pair is out of range
+ *   FMB_WRONG_COUNT        pairs without FMB_PAIRS_LISTED, or ignored pairs with it
+ *   FMB_CANNOT_DECIDE      a method that is not certain, with gaps, with a margin, or without
+ *                          FMB_PAIRS_LISTED
+ * Cost: O(placements + frames + pairs). */
 enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 const struct fmb_scene_limits *limits, void *memory,
                                 struct fmb_scene_state **out);
 
-/* Does the next part of the work: tens of microseconds, except a step that decides one pair of
- * frames in exact arithmetic, and the one that finds which placements may meet. The answers come
- * in the order of the pairs; of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS those that meet, and
- * near ones.
- * Returns whether the scene is complete. */
+/* Performs the next part of the work. Answers come in the order of the pairs. With FMB_PAIRS_ALL
+ * and FMB_PAIRS_ACROSS they are of the pairs that meet or are near only. A step may have none.
+ *
+ * Out: *answers  the answers of this step
+ * Returns whether the scene is complete.
+ * Cost: tens of microseconds, except for a step that decides one pair of frames in exact
+ * arithmetic, and for the step that finds which placements may meet. */
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers);
 
-/* The first pair that has not been answered. The total number of pairs: the scene is complete. */
+/* Returns the number of the first pair that has not been answered. It equals the number of pairs if
+ * the scene is complete. */
 unsigned long long fmb_scene_next_pair(const struct fmb_scene_state *state);
 
-/* The number of the pair of answer k of the last step. */
+/* Returns the number of the pair of answer k of the last step. In: k < answers.count. */
 unsigned long long fmb_scene_number(const struct fmb_scene_state *state, size_t k);
 
-/* How many pairs there are, whether they can meet or not. In: split at most placement_count. */
+/* Returns the number of pairs of a scene, those that cannot meet included. In: split is at most
+ * placement_count. */
 unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
 
 /* ---- Certificates ----
  *
- * What proves the verdict of a pair to one who does not believe the engine: a line of ASCII, in
- * one of the forms
+ * A certificate proves the verdict of a pair; checking it requires no trust in the engine. It is
+ * one line of ASCII, in one of the forms
  *
  *     separated NORMAL
  *     touching NORMAL at TIME (X Y Z)
  *     overlapping at TIME (X Y Z)
  *
  * TIME (seconds, in [0, T]; 0 for a static pair) and the world coordinates X Y Z (X Y in 2D) are
- * exact, in lowest terms: 3, -3, 0, 22/7. NORMAL is a sign and a direction: "+ " or "- ", then U,
- * U x V or (U x V) x W, cross products of vectors with these names:
+ * exact rational numbers in lowest terms: 3, -3, 0, 22/7. NORMAL is a sign and a direction: "+ " or
+ * "- ", then U, U x V or (U x V) x W, cross products of vectors with these names:
  *
  *     a0..a5, b0..b5   edges of the first frame and of the second: a0, a1, a2 the components c_0,
  *                      c_1, c_2; of a tetrahedron in 3D a3, a4, a5 = c_1 - c_0, c_2 - c_0,
  *                      c_2 - c_1; of a tetrahedron in 2D and of a face a2 = c_1 - c_0; all of
- *                      them turned by the orientation, R(q) c
- *     v                velocity of the second minus that of the first, a missing one being 0
+ *                      them rotated by the orientation, R(q) c
+ *     v                velocity of the second minus that of the first, 0 for a missing one
  *     d                origin of the second minus that of the first
  *     z                (0, 0, 1), in 2D only: such pairs lie in the plane z = 0
  *
- * With N the direction times the sign:
+ * Let N be the direction times the sign. The certificate states:
  *   separated    N . (b - a) > 0 for all points a of the first frame and b of the second, at all
- *                times of the window;
- *   touching     N . (b - a) >= 0 for them, and N is not constant on at least one of the frames,
- *                so that no point is ever in both relative interiors; and at TIME the point is in
- *                both frames;
- *   overlapping  at TIME the point is in the relative interiors of both frames. */
+ *                times of the window.
+ *   touching     N . (b - a) >= 0 for all those points and times, and N is not constant on at least
+ *                one of the frames, so that no point is ever in both relative interiors. At TIME
+ *                the point is in both frames.
+ *   overlapping  At TIME the point is in the relative interiors of both frames. */
 
-/* On input: both bodies have one frame; text has room for size bytes, and may be NULL if size is 0.
- * On output: OK, the certificate of the verdict of the exact method, ended by a 0, in text, and
- * its length without the 0 in *length. FMB_OVER_LIMIT if there is no room for it; *length then
- * tells its length. Or a status of fmb_decide(), CANNOT_DECIDE for bodies of several frames,
- * and *length is 0. Where it is not OK, the text is empty if size > 0.
+/* Writes the certificate of the verdict of the exact method.
  *
- * Most are shorter than 200 bytes. Coordinates of flat frames, and of frames that touch, can need
- * many digits where the numbers of the pair do: up to some 60,000 bytes where exponents go from one
- * end of the doubles to the other. The point is the simplest on its way where the numbers of the
- * pair span at most 512 bits; else it is whatever takes least time. A certificate takes 50
- * microseconds for numbers of like size, and 6 ms at most. Memory is allocated as by the exact
- * method. */
+ * In:  a, b      bodies of one frame each
+ *      duration  T, seconds
+ *      size      capacity of text in bytes
+ * Out: text      the certificate and a terminating 0; empty if the status is not FMB_OK and size >
+ *                0; may be NULL if size is 0
+ *      *length   the length of the certificate without the terminating 0, also if the status is
+ *                FMB_OVER_LIMIT; 0 for every other failure
+ * Returns FMB_OK; FMB_OVER_LIMIT if the certificate does not fit; a status of fmb_decide();
+ * FMB_CANNOT_DECIDE for bodies of several frames.
+ *
+ * Most certificates are shorter than 200 bytes. Coordinates of flat frames, and of frames that
+ * touch, can have as many digits as the numbers of the pair require: up to some 60,000 bytes if
+ * their exponents span the whole range of doubles. If the numbers of the pair span at most 512
+ * bits, its coordinates are chosen one after the other, each the simplest number on a line segment;
+ * otherwise the point is the one that takes the least time to find.
+ * Cost: 50 microseconds for numbers of similar size, 6 ms at most. Memory is allocated as by the
+ * exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
 
-/* On input: any placements that fmb_placement_check() accepts, any number for a verdict, any text
- * ended by a 0.
- * On output: whether the text proves that this is the verdict of this pair. It is checked in
- * rational numbers, by code that shares nothing with fmb_certificate(), nor with any method. If
- * not, why says in one line what is wrong; it has room for size bytes, and may be NULL if that
- * is 0. The certificate need not be the one that fmb_certificate() gives. Memory is allocated
- * through GMP; the time is bounded by a power of the length of the text. */
+/* Checks a certificate, in rational numbers, by code that shares nothing with fmb_certificate() or
+ * with any method. The certificate need not be the one that fmb_certificate() writes.
+ *
+ * In:  a, b      any placements that fmb_placement_check() accepts
+ *      verdict   any number
+ *      text      any text ended by a 0
+ *      size      capacity of why in bytes
+ * Out: why       if false is returned, one line that states what is wrong; may be NULL if size is 0
+ * Returns whether the text proves that this is the verdict of this pair.
+ * Cost: polynomial in the length of the text. Memory is allocated through GMP. */
 bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_placement *b,
                            double duration, enum fmb_verdict verdict, const char *text, char *why,
                            size_t size);
 
-/* "major.minor.patch" of the library. */
+/* Returns the version of the library, "major.minor.patch". The string is static. */
 const char *fmb_version(void);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-/* What can be said of numbers alone. In an object of its own in libfmb and in libfmb-client, so
- * that a program can link either or both. */
+/* The names of the numbers in fmb.h. A separate object in both libfmb and libfmb-client, so that a
+ * program can link either or both. */
 #include "fmb.h"
 
 const char *fmb_status_text(int status)

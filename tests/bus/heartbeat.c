@@ -22,7 +22,7 @@ static double time_beats(struct server *server, struct bus *bus)
     const double begin = stopwatch_now();
     for (int i = 0; i < BEATS; i++) {
         const struct bus_counts counts = bus_counts(bus);
-        server_beat(server, &counts);
+        server_heartbeat(server, &counts);
     }
     return (stopwatch_now() - begin) / 1e3 / BEATS;
 }

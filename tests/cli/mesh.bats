@@ -1,5 +1,5 @@
 # fmb mesh: what is typed, what is printed, exit codes. What is true of meshes is tested in
-# tests/unit/test_mesh_meet.c.
+# tests/unit/test_mesh_intersect.c.
 
 load ran
 

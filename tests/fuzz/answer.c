@@ -303,7 +303,7 @@ static bool is_good_scene(const struct scene_query *query, int total)
 }
 
 /* Bodies and handles of a good query. */
-struct found {
+struct located_difference {
     struct model_made made[PLACEMENTS_MAX];
     struct handle handle[PLACEMENTS_MAX];
     unsigned unknown[PLACEMENTS_MAX];
@@ -311,7 +311,7 @@ struct found {
 };
 
 static enum fmb_status find_bodies(struct model *model, const struct scene_query *query,
-                                   struct found *out)
+                                   struct located_difference *out)
 {
     out->handles = out->unknowns = 0;
     for (int32_t i = 0; i < query->placement_count; i++) {
@@ -337,7 +337,7 @@ static enum fmb_status find_bodies(struct model *model, const struct scene_query
 }
 
 static void check_lists(const struct scene_result *result, enum fmb_status status,
-                        const struct found *found)
+                        const struct located_difference *found)
 {
     const int unknowns = status == FMB_UNKNOWN_BODY ? found->unknowns : 0;
     FUZZ_CHECK(result->handle_count == found->handles && result->unknown_count == unknowns);
@@ -425,7 +425,7 @@ static void check_scene(struct service *service, const struct scene_query *query
                         const struct scene_result *result, const unsigned (*pair)[2], int total,
                         bool stopped)
 {
-    static struct found found;
+    static struct located_difference found;
     const bool good = is_good_scene(query, total);
     const enum fmb_status status =
         good ? find_bodies(&service->model, query, &found) : FMB_UNKNOWN_WANT;

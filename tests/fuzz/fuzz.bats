@@ -20,13 +20,14 @@ fuzz() {
         -artifact_prefix="$BATS_TEST_TMPDIR/" "$BATS_TEST_TMPDIR/new" "tests/fuzz/corpus/$2"
 }
 
-# finds PLANT TEXT: the text is what says that it was found, and nothing else was.
+# finds PLANT TEXT...: one of the texts is what says that it was found, and nothing else was.
 finds() {
-    local target=${1%%-*} runs
-    fuzz "planted/$1" "$target" 500000
+    local target=${1%%-*} runs text found=
+    fuzz "planted/$1" "$target" 3000000
     echo "$output" | grep -vE 'NEW|REDUCE|pulse' | tail -n 30
     [ "$status" != 0 ]
-    [[ $output == *"$2"* ]]
+    for text in "${@:2}"; do [[ $output != *"$text"* ]] || found=$text; done
+    [ -n "$found" ]
     runs=$(echo "$output" | sed -n 's/^stat::number_of_executed_units: *//p')
     echo "found by run $runs"
     rm -r "$BATS_TEST_TMPDIR/new"
@@ -71,7 +72,7 @@ finds() {
 }
 
 @test "scene_json finds a number that is not finite" {
-    finds scene_json "is_body(&scene->body[i], scene->dim)"
+    finds scene_json "is_body(&scene->body[i], scene->dim)" " in turned_box " # GMP takes no infinity
 }
 
 @test "event_log finds an event that is overlooked" {

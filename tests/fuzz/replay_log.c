@@ -67,12 +67,12 @@ static void look_at_placements(struct look *look, const struct placement *placem
 
 static void look_at_query(struct look *look, enum log_kind kind, const struct log_event *event)
 {
-    static struct any_query query;
+    static struct logged_query query;
     int32_t count;
     if (!log_kind_is_query(kind) ||
-        any_query_read(&query, kind, event->data, (uint32_t) event->kept))
+        logged_query_read(&query, kind, event->data, (uint32_t) event->kept))
         return;
-    const struct placement *placement = any_query_placements(&query, &count);
+    const struct placement *placement = logged_query_placements(&query, &count);
     if (count > PLACEMENTS_MAX ||
         (kind == LOG_SCENE_QUERY && query.scene.index_count > 2 * PAIRS_MAX))
         look->slow = true;
@@ -136,7 +136,7 @@ struct reporting {
     const struct replay_options *options;
 };
 
-static void on_found(void *user, const struct found *found)
+static void on_found(void *user, const struct located_difference *found)
 {
     struct reporting *reporting = user;
     reporting->found++;
@@ -162,7 +162,7 @@ static void on_progress(void *user, int64_t bytes)
     FUZZ_CHECK(bytes >= 0);
 }
 
-static void report_one(void *user, const struct found *found)
+static void report_one(void *user, const struct located_difference *found)
 {
     struct reporting *reporting = user;
     char line[REPLAY_LINE_MAX];

@@ -6,7 +6,7 @@
 #include "child.h"
 #include "machine.h"
 #include "mesh_face.h"
-#include "mesh_meet.h"
+#include "mesh_intersect.h"
 #include "mesh_transform.h"
 #include "stopwatch.h"
 #include "sweep.h"
@@ -59,15 +59,15 @@ static void read_scene(struct scene *scene)
     }
 }
 
-static struct mesh_question question_of(const struct scene *scene, enum mesh_as as, bool self)
+static struct mesh_query question_of(const struct scene *scene, enum mesh_as as, bool self)
 {
-    return (struct mesh_question){
+    return (struct mesh_query){
         .a = &scene->mesh[0], .b = &scene->mesh[!self], .as = as, .duration = 1};
 }
 
 /* ---- Parts ---- */
 
-static void expect_same(const struct mesh_meeting *x, const struct mesh_meeting *y)
+static void expect_same(const struct mesh_intersection *x, const struct mesh_intersection *y)
 {
     bool same = x->count == y->count && x->sharing_edge == y->sharing_edge &&
                 x->sharing_vertex == y->sharing_vertex;
@@ -78,23 +78,23 @@ static void expect_same(const struct mesh_meeting *x, const struct mesh_meeting 
         fail("the exact method says otherwise");
 }
 
-static void meet(const struct mesh_question *question, struct mesh_meeting *out)
+static void meet(const struct mesh_query *question, struct mesh_intersection *out)
 {
-    if (mesh_meet(question, out) != FMB_OK)
+    if (mesh_intersect(question, out) != FMB_OK)
         fail("the meshes could not be asked");
 }
 
 static void bench_parts(const struct scene *scene, const char *name, enum mesh_as as, bool self)
 {
-    struct mesh_question question = question_of(scene, as, self);
-    struct mesh_meeting meeting, exact;
+    struct mesh_query question = question_of(scene, as, self);
+    struct mesh_intersection meeting, exact;
     double build[ROUNDS], ask[ROUNDS];
     for (int round = 0; round < ROUNDS; round++) {
         meet(&question, &meeting);
         build[round] = (double) meeting.build_ns;
-        ask[round] = (double) meeting.ask_ns;
+        ask[round] = (double) meeting.query_ns;
         if (round < ROUNDS - 1)
-            mesh_meeting_free(&meeting);
+            mesh_intersection_free(&meeting);
     }
     question.method = fmb_method_by_name("exact");
     meet(&question, &exact);
@@ -108,8 +108,8 @@ static void bench_parts(const struct scene *scene, const char *name, enum mesh_a
     else
         printf("   faces of A that meet B %zu", meeting.faces[0]);
     printf("   exact: the same\n");
-    mesh_meeting_free(&meeting);
-    mesh_meeting_free(&exact);
+    mesh_intersection_free(&meeting);
+    mesh_intersection_free(&exact);
 }
 
 static void bench_sweep(const struct scene *scene)

@@ -147,7 +147,7 @@ static void add_odd(struct sample_log *log)
     const struct placement cube = sample_solid(7, 3, FMB_CUBOID, 1, origin);
     struct pair_query query = pair_of(cube, sample_solid(8, 3, FMB_TETRAHEDRON, 1, origin), 1);
     add_outcome(log, REPLAY_BUSY, &query);
-    add_outcome(log, REPLAY_ALONE, &query);
+    add_outcome(log, REPLAY_UNRECORDED, &query);
     sample_define(log, &query.placement[1]);
     add_outcome(log, REPLAY_UNKNOWN, &query);
     query.placement[1].frame_count = query.placement[1].number_count = 0;

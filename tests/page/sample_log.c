@@ -75,8 +75,9 @@ void sample_pair(struct sample_log *log, const struct pair_query *query)
         answer_pair_refused(log->answerer, query, FMB_BUSY, &then);
     if (log->outcome == REPLAY_UNKNOWN)
         answer_pair_refused(log->answerer, query, FMB_UNKNOWN_BODY, &then);
-    struct replayed replayed = {
-        .pair = query, .pair_now = &now, .pair_then = log->outcome == REPLAY_ALONE ? NULL : &then};
+    struct replayed replayed = {.pair = query,
+                                .pair_now = &now,
+                                .pair_then = log->outcome == REPLAY_UNRECORDED ? NULL : &then};
     take(log, &replayed, log->alter_pair != NULL);
 }
 
@@ -144,6 +145,6 @@ void sample_move(struct placement *placement, const double *velocity)
 void sample_define(struct sample_log *log, struct placement *placement)
 {
     struct cache *cache = answerer_cache(log->answerer);
-    cache_release(cache,
-                  cache_keep(cache, placement->body_id, &placement->geometry, &placement->handle));
+    cache_release(
+        cache, cache_intern(cache, placement->body_id, &placement->geometry, &placement->handle));
 }

@@ -27,8 +27,7 @@ std::shared_ptr<fcl::CollisionGeometryd> tetrahedron(const fmb_frame &frame)
         std::vector<int>{3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2});
     vertices->push_back(fcl::Vector3d::Zero());
     for (int i = 0; i < 3; i++)
-        vertices->push_back(
-            {frame.component[i][0], frame.component[i][1], frame.component[i][2]});
+        vertices->push_back({frame.component[i][0], frame.component[i][1], frame.component[i][2]});
     const fcl::Vector3d normal = ((*vertices)[1]).cross((*vertices)[2]);
     if (normal.dot((*vertices)[3]) < 0)
         std::swap((*vertices)[1], (*vertices)[2]);
@@ -65,7 +64,7 @@ fcl::Transform3d transform_of(const fmb_placement &placement)
     return out;
 }
 
-} // namespace
+}  // namespace
 
 struct fcl_robot {
     const robot *states;

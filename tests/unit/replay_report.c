@@ -6,7 +6,7 @@
 
 /* ---- What is reported ---- */
 
-static void on_found(void *user, const struct found *found)
+static void on_found(void *user, const struct located_difference *found)
 {
     struct replay_report *report = user;
     if (report->found_count == report->found_room) {
@@ -15,7 +15,7 @@ static void on_found(void *user, const struct found *found)
         if (!report->found)
             abort();
     }
-    struct found *put = &report->found[report->found_count++];
+    struct located_difference *put = &report->found[report->found_count++];
     *put = *found;
     put->difference.then.certificate = put->difference.now.certificate = NULL;
 }
@@ -52,14 +52,15 @@ static void on_progress(void *user, int64_t bytes)
 /* ---- Runs ---- */
 
 /* Of one query they stay in their order. */
-static int compare_places(const struct found *a, const struct found *b)
+static int compare_places(const struct located_difference *a, const struct located_difference *b)
 {
     if (a->place.log != b->place.log)
         return a->place.log < b->place.log ? -1 : 1;
     return a->place.offset < b->place.offset ? -1 : a->place.offset > b->place.offset;
 }
 
-static void sort_found(struct found *found, int64_t count, struct found *room)
+static void sort_found(struct located_difference *found, int64_t count,
+                       struct located_difference *room)
 {
     const int64_t half = count / 2;
     int64_t a = 0, b = half;
@@ -85,7 +86,7 @@ struct replay_report replay_report_of(const struct replay_options *options)
     for (int log = 0; log < options->log_count; log++)
         tally_add(&report.tally, &tally[log]);
     free(tally);
-    struct found *room = calloc((size_t) report.found_count + 1, sizeof *room);
+    struct located_difference *room = calloc((size_t) report.found_count + 1, sizeof *room);
     if (!room)
         abort();
     sort_found(report.found, report.found_count, room);
@@ -108,7 +109,7 @@ static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
            memcmp(a->box, b->box, sizeof a->box) == 0;
 }
 
-static bool same_found(const struct found *a, const struct found *b)
+static bool same_found(const struct located_difference *a, const struct located_difference *b)
 {
     const struct difference *x = &a->difference, *y = &b->difference;
     return compare_places(a, b) == 0 && a->place.number == b->place.number &&

@@ -5,9 +5,10 @@
 #include "replay.h"
 
 struct replay_report {
-    bool good;           /* as replay_run() */
-    struct tally tally;  /* of all logs */
-    struct found *found; /* owned, [found_count], by the places of their queries; no certificates */
+    bool good;          /* as replay_run() */
+    struct tally tally; /* of all logs */
+    struct located_difference
+        *found; /* owned, [found_count], by the places of their queries; no certificates */
     int64_t found_count, found_room;
     int64_t unreadable, damages, damaged_bytes; /* as they were reported, contradictions too */
     size_t most_memory;                         /* that malloc() had given out, bytes */

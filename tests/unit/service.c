@@ -105,14 +105,14 @@ int service_close(void **state)
 void service_receive(enum server_kind kind, const unsigned char *bytes, size_t size)
 {
     server_receive(service.server, kind, bytes, size);
-    server_received(service.server, 1);
+    server_end_batch(service.server, 1);
 }
 
 void service_settle(void)
 {
     enum server_state state;
     while ((state = server_work(service.server)) != SERVER_IDLE) {
-        if (state != SERVER_EXPECTING)
+        if (state != SERVER_ANTICIPATING)
             continue;
         service.now_ns += 1000;
         server_resume(service.server);
@@ -123,7 +123,7 @@ const struct wire_status *service_status(void)
 {
     const struct bus_counts counts = {
         .foreign = 3, .malformed = 4, .dropped = 5, .receive_buffer = 6};
-    server_beat(service.server, &counts);
+    server_heartbeat(service.server, &counts);
     return &service.status;
 }
 

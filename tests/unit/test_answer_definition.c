@@ -119,7 +119,7 @@ static void test_the_largest_body(void **state)
         frame[i] = (struct geometry_frame){.shape = FMB_CUBOID, .components = {1 + i}};
     const struct geometry geometry = {geometry_bytes,
                                       geometry_write_frames(3, frame, FRAMES, geometry_bytes)};
-    cache_release(cache, cache_keep(cache, 0, &geometry, &handle));
+    cache_release(cache, cache_intern(cache, 0, &geometry, &handle));
     keep(3, 2);
     int bodies = 0, pages = 0, found = 0;
     do {

@@ -28,7 +28,7 @@ static struct handle keep(struct cache *cache, int64_t id, double edge)
 {
     const struct geometry geometry = cuboid(edge, edge);
     struct handle handle;
-    const struct cached *cached = cache_keep(cache, id, &geometry, &handle);
+    const struct cached *cached = cache_intern(cache, id, &geometry, &handle);
     assert_true(handle_equal(&cached->handle, &handle));
     assert_int_equal(cached->body.frame_count, 1);
     assert_null(cached->body.frames);
@@ -55,7 +55,7 @@ static double find(struct cache *cache, struct handle handle)
 static struct handle keep_geometry(struct cache *cache, int64_t id, const struct geometry *geometry)
 {
     struct handle handle;
-    const struct cached *cached = cache_keep(cache, id, geometry, &handle);
+    const struct cached *cached = cache_intern(cache, id, geometry, &handle);
     assert_non_null(cached);
     cache_release(cache, cached);
     return handle;
@@ -309,7 +309,7 @@ static void test_memory_taken_is_as_it_was(void **state)
     (void) state;
     struct cache *cache = cache_create(1000, secret);
     const struct handle handle = keep(cache, 1, 1);
-    cache_take_memory(cache);
+    cache_prefault(cache);
     assert_true(find(cache, handle) == 1);
     cache_destroy(cache);
 }
@@ -407,7 +407,7 @@ static void test_more_frames_than_the_capacity(void **state)
     const struct handle held = keep_boxes(cache, 1, 20, 2);
     const struct geometry geometry = boxes(21, 3);
     struct handle handle = {{0}};
-    assert_null(cache_keep(cache, 2, &geometry, &handle));
+    assert_null(cache_intern(cache, 2, &geometry, &handle));
     assert_false(handle_is_none(&handle));
     assert_null(cache_peek(cache, &handle));
     assert_true(has_boxes(cache, &held, 20, 2));
@@ -423,7 +423,7 @@ static void test_bodies_in_use_stay(void **state)
     struct cache *cache = cache_create(30, secret);
     const struct geometry geometry = boxes(10, 4);
     struct handle handle, other;
-    const struct cached *used = cache_keep(cache, 1, &geometry, &handle);
+    const struct cached *used = cache_intern(cache, 1, &geometry, &handle);
     assert_ptr_equal(cache_find(cache, &handle), used);
     cache_release(cache, used); /* one user is left */
     for (int i = 0; i < 50; i++) {
@@ -434,7 +434,7 @@ static void test_bodies_in_use_stay(void **state)
         assert_true(has_boxes(cache, &handle, 10, 4));
     }
     const struct geometry large = boxes(21, 9);
-    assert_null(cache_keep(cache, 3, &large, &other));
+    assert_null(cache_intern(cache, 3, &large, &other));
     cache_release(cache, used);
     keep_boxes(cache, 4, 30, 1);
     assert_null(cache_peek(cache, &handle));
@@ -450,10 +450,10 @@ static void test_all_in_use(void **state)
     struct handle handle;
     for (int i = 0; i < 2; i++) {
         const struct geometry geometry = cuboid(1 + i, 1);
-        used[i] = cache_keep(cache, 1 + i, &geometry, &handle);
+        used[i] = cache_intern(cache, 1 + i, &geometry, &handle);
     }
     const struct geometry geometry = cuboid(3, 1);
-    assert_null(cache_keep(cache, 3, &geometry, &handle));
+    assert_null(cache_intern(cache, 3, &geometry, &handle));
     assert_int_equal(cache_counts(cache).bodies, 2);
     assert_int_equal(cache_counts(cache).evictions, 0);
     cache_release(cache, used[1]);
@@ -477,7 +477,7 @@ static void test_bodies_of_all_sizes(void **state)
         const int u = rand() % (3 * USED);
         const struct geometry geometry = boxes(count, length);
         struct handle handle;
-        const struct cached *cached = cache_keep(cache, rand() % 5, &geometry, &handle);
+        const struct cached *cached = cache_intern(cache, rand() % 5, &geometry, &handle);
         assert_non_null(cached);
         assert_true(has_boxes(cache, &handle, count, length));
         if (u < USED && used[u])

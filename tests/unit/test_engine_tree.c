@@ -765,7 +765,7 @@ static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
     plant(draw, &scene, &planted);
     for (unsigned i = 0; i < count; i++) {
         const struct swept box = swept_of(&scene.frame[i], 1);
-        found += tree_walk(&planted.tree, &box, 0, planted.found, &visits);
+        found += tree_query_unsorted(&planted.tree, &box, 0, planted.found, &visits);
     }
     uproot(&planted);
     scene_close(&scene);
@@ -815,11 +815,12 @@ static void boxes_with_one_centre_cost_what_is_found(void **state)
         scene_draw(&draw, kind ? nested : all_equal, 3, false, &scene);
         plant(&draw, &scene, &planted);
         const struct swept box = swept_of(&scene.frame[0], 1);
-        assert_int_equal(tree_walk(&planted.tree, &box, 0, planted.found, &visits), FRAMES);
+        assert_int_equal(tree_query_unsorted(&planted.tree, &box, 0, planted.found, &visits),
+                         FRAMES);
         assert_int_equal(visits, planted.tree.node_count);
         const struct swept outside = {{{FRAMES - 100, 100 - FRAMES}, {0, 0}, {0, 0}}};
         visits = 0;
-        assert_int_equal(tree_walk(&planted.tree, &outside, 0, planted.found, &visits),
+        assert_int_equal(tree_query_unsorted(&planted.tree, &outside, 0, planted.found, &visits),
                          kind ? 101 : 0);
         assert_true(visits < 60);
         uproot(&planted);

@@ -2,7 +2,7 @@
  * events are those of the log, byte for byte, after the definitions that they need. */
 #include "log_cut.h"
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "input.h"
 #include "log_world.h"
 #include "log_write.h"
@@ -83,7 +83,7 @@ void __wrap_page_take(struct page *page, const struct replayed *replayed)
     taken->query[taken->count++].outcome = replayed->outcome;
 }
 
-static void on_found(void *user, const struct found *found)
+static void on_found(void *user, const struct located_difference *found)
 {
     (void) user;
     (void) found;
@@ -182,7 +182,7 @@ static bool read_next(struct reading *reading)
     return outcome == LOG_EVENT;
 }
 
-static struct any_query query;
+static struct logged_query query;
 static struct log_channels channels;
 
 static enum log_kind kind_of(const struct log_event *event)
@@ -190,10 +190,10 @@ static enum log_kind kind_of(const struct log_event *event)
     return log_kind_of(&channels, event);
 }
 
-static bool read_query(const struct log_event *event, struct any_query *out)
+static bool read_query(const struct log_event *event, struct logged_query *out)
 {
     return log_kind_is_query(kind_of(event)) &&
-           !any_query_read(out, kind_of(event), event->data, (uint32_t) event->kept);
+           !logged_query_read(out, kind_of(event), event->data, (uint32_t) event->kept);
 }
 
 static bool is_same_event(const struct log_event *a, const struct log_event *b)
@@ -223,7 +223,7 @@ static bool is_chosen(const struct log_choice *choice, const struct log_event *e
     int32_t count;
     if (!read_query(event, &query))
         return in_time && choice->body_count == 0;
-    const struct placement *placement = any_query_placements(&query, &count);
+    const struct placement *placement = logged_query_placements(&query, &count);
     return in_time && log_choice_has_body(choice, placement, count);
 }
 

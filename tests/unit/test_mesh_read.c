@@ -712,7 +712,7 @@ static void test_files(void **state)
 {
     char folder[] = "/tmp/fmb-test-XXXXXX", path[64], error[MESH_ERROR_MAX];
     struct heard heard = {0};
-    const struct mesh_watch watch = {.told = hear, .context = &heard};
+    const struct mesh_progress watch = {.report = hear, .context = &heard};
     struct mesh mesh;
     (void) state;
     assert_non_null(mkdtemp(folder));

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "any_query.h"
+#include "logged_query.h"
 #include "page.h"
 #include "page_event.h"
 #include "page_pairs.h"
@@ -257,7 +257,7 @@ static void outcomes_are_counted_and_logs_named(void **state)
                 "2.log\"]");
     assert_int_equal(cJSON_GetArraySize(member(data, "events")), 21);
     assert_int_equal(number(event_at(data, 20), "log"), 2);
-    assert_int_equal(number(event_at(data, 20), "is"), REPLAY_ALONE);
+    assert_int_equal(number(event_at(data, 20), "is"), REPLAY_UNRECORDED);
     cJSON_Delete(data);
     page_close(page);
 }
@@ -365,7 +365,7 @@ static void shapes_are_kept_once(void **state)
     (void) state;
     for (int i = 0; i < 200; i++) {
         struct pair_query query = pair_query(2);
-        struct replayed replayed = of_pair(&query, NULL, NULL, REPLAY_ALONE);
+        struct replayed replayed = of_pair(&query, NULL, NULL, REPLAY_UNRECORDED);
         query.placement[0] = make_body(1, 2, 1 + i % 100, i);
         query.placement[1] = make_body(2, 3, 1 + i % 100, i);
         query.placement[1].velocity_count = 3;
@@ -454,7 +454,7 @@ static void a_scene_has_all_its_placements(void **state)
     (void) state;
     make_large_scene(0);
     scene.placement_count = QUERY_PLACEMENTS_MAX + 5;
-    const struct replayed replayed = of_scene(&scene, NULL, NULL, REPLAY_ALONE);
+    const struct replayed replayed = of_scene(&scene, NULL, NULL, REPLAY_UNRECORDED);
     cJSON *data = data_of_one(&replayed);
     const cJSON *event = event_at(data, 0);
     assert_int_equal(cJSON_GetArraySize(member(event, "frames")), QUERY_PLACEMENTS_MAX);
@@ -699,7 +699,7 @@ static void pairs_across_are_counted_across(void **state)
     add_verdict(&result_now, 1, 2, FMB_TOUCHING);
     add_verdict(&result_now, 1, 3, FMB_TOUCHING);
     expect_scene("[[1,2,1,2],[0,2,null,2],[1,3,null,2]]");
-    assert_int_equal(any_query_pairs(&scene), 6);
+    assert_int_equal(logged_query_pairs(&scene), 6);
 }
 
 static void verdicts_of_a_scene_are_counted(void **state)
@@ -717,15 +717,15 @@ static void verdicts_of_a_scene_are_counted(void **state)
     assert_int_equal(count[FMB_SEPARATED], 3);
     assert_int_equal(count[FMB_TOUCHING], 1);
     assert_int_equal(count[FMB_OVERLAPPING], 1);
-    assert_int_equal(any_query_pairs(&scene), 6);
+    assert_int_equal(logged_query_pairs(&scene), 6);
     page_pairs_count(&scene, NULL, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
     make_scene(QUERY_PAIRS_LISTED, 1);
     page_pairs_count(&scene, &result_then, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
-    assert_int_equal(any_query_pairs(&scene), 0);
+    assert_int_equal(logged_query_pairs(&scene), 0);
     make_scene(QUERY_PAIRS_ALL, 0);
-    assert_int_equal(any_query_pairs(&scene), 0);
+    assert_int_equal(logged_query_pairs(&scene), 0);
 }
 
 /* The last pair differs, the one before it touches. */

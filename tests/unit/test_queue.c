@@ -35,7 +35,7 @@ static struct queue *create(size_t chunks)
 }
 
 /* Odd kinds are scenes. */
-static enum queue_line line_of(int kind)
+static enum queue_fifo line_of(int kind)
 {
     return kind % 2 ? QUEUE_SCENES : QUEUE_SHORT;
 }
@@ -48,7 +48,7 @@ static enum queue_put_result put(struct queue *queue, int client, int kind, size
 
 static void keep(struct queue *queue, int client, int kind, size_t size)
 {
-    assert_int_equal(put(queue, client, kind, size), QUEUE_KEPT);
+    assert_int_equal(put(queue, client, kind, size), QUEUE_ADDED);
     assert_true(queue_has(queue, client, line_of(kind)));
 }
 
@@ -81,9 +81,9 @@ static void expect_empty(struct queue *queue)
 {
     struct queue_datagram got;
     for (int client = 0; client < CLIENTS; client++)
-        for (int line = 0; line < QUEUE_LINES; line++) {
-            assert_false(queue_has(queue, client, (enum queue_line) line));
-            assert_false(queue_pop(queue, client, (enum queue_line) line, &got, got_bytes));
+        for (int line = 0; line < QUEUE_FIFOS; line++) {
+            assert_false(queue_has(queue, client, (enum queue_fifo) line));
+            assert_false(queue_pop(queue, client, (enum queue_fifo) line, &got, got_bytes));
         }
     assert_false(queue_evict(queue, &got, got_bytes));
     struct queue_counts counts = queue_counts(queue);
@@ -247,7 +247,7 @@ static void withstand(struct flood flood)
         struct queue_datagram got;
         for (int i = 0; i < 20 * flood.flooders; i++)
             refused += press(queue, i % flood.flooders, flood.size) == QUEUE_REFUSED;
-        assert_int_equal(press(queue, MODEST, flood.modest_size), QUEUE_KEPT);
+        assert_int_equal(press(queue, MODEST, flood.modest_size), QUEUE_ADDED);
         for (int i = 0; i < 20 * flood.flooders; i++)
             refused += press(queue, i % flood.flooders, flood.size) == QUEUE_REFUSED;
         assert_true(queue_pop(queue, MODEST, QUEUE_SHORT, &got, got_bytes));
@@ -357,7 +357,7 @@ static enum queue_put_result model_put(const struct model *model, struct item it
     int64_t free_chunks = model->capacity - held_by_all(model), obtainable = free_chunks;
     for (int c = 0; c < MODEL_CLIENTS; c++)
         obtainable += larger(held(model, c) - would_hold, 0);
-    return free_chunks >= need ? QUEUE_KEPT : obtainable >= need ? QUEUE_FULL : QUEUE_REFUSED;
+    return free_chunks >= need ? QUEUE_ADDED : obtainable >= need ? QUEUE_FULL : QUEUE_REFUSED;
 }
 
 /* The sender counted. */
@@ -398,7 +398,7 @@ static void put_both(struct queue *queue, struct model *model, struct item item)
         assert_int_not_equal(result, QUEUE_REFUSED);
     }
     model->put++;
-    if (result == QUEUE_KEPT) {
+    if (result == QUEUE_ADDED) {
         add_item(model, item);
         return;
     }
@@ -521,7 +521,7 @@ static long faults_of_some_more(struct queue *queue)
     struct queue_datagram got;
     long before = page_faults();
     for (int i = 0; i < 10000; i++)
-        if (put(queue, i % CLIENTS, 0, 5000) != QUEUE_KEPT ||
+        if (put(queue, i % CLIENTS, 0, 5000) != QUEUE_ADDED ||
             !queue_pop(queue, i % CLIENTS, QUEUE_SHORT, &got, got_bytes))
             return -1;
     return page_faults() - before;

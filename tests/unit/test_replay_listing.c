@@ -20,13 +20,13 @@ static uint64_t draw(uint64_t below)
 
 enum { PUT_MAX = 3000 };
 
-static struct found put[PUT_MAX];
+static struct located_difference put[PUT_MAX];
 static int told_count;
 
 /* What is told next has to be put[told_count]. */
-static void on_told(void *user, const struct found *found)
+static void on_told(void *user, const struct located_difference *found)
 {
-    const struct found *expected = &put[told_count++];
+    const struct located_difference *expected = &put[told_count++];
     (void) user;
     assert_int_equal(found->place.log, expected->place.log);
     assert_int_equal(found->place.offset, expected->place.offset);
@@ -42,9 +42,9 @@ static void on_told(void *user, const struct found *found)
     assert_null(found->difference.now.certificate);
 }
 
-static struct found draw_found(int number)
+static struct located_difference draw_found(int number)
 {
-    struct found found = {.place = {.number = number}};
+    struct located_difference found = {.place = {.number = number}};
     found.place.log = (int32_t) draw(3);
     found.place.offset = (int64_t) draw(40) - 20;
     return found;
@@ -52,7 +52,7 @@ static struct found draw_found(int number)
 
 static int compare(const void *left, const void *right)
 {
-    const struct found *a = left, *b = right;
+    const struct located_difference *a = left, *b = right;
     if (a->place.log != b->place.log)
         return a->place.log < b->place.log ? -1 : 1;
     if (a->place.offset != b->place.offset)
@@ -68,7 +68,7 @@ static void check(int count, int64_t limit, int order)
         put[i] = draw_found(i);
         if (order != 0)
             put[i].place.offset = order * (int64_t) i;
-        struct found found = put[i];
+        struct located_difference found = put[i];
         snprintf(text, sizeof text, "certificate %d", i);
         found.difference.then.certificate = i % 2 ? text : NULL;
         listing_put(told, &found);
@@ -102,7 +102,7 @@ static void test_long_certificates(void **state)
     static char text[1000];
     (void) state;
     memset(text, 'x', sizeof text - 1);
-    struct found found = {.place = {.number = 1}};
+    struct located_difference found = {.place = {.number = 1}};
     found.difference.then.certificate = text;
     struct listing *told = listing_open(1);
     listing_put(told, &found);

@@ -34,7 +34,7 @@ static struct match_key key(int64_t client, int64_t number)
 
 static struct match_item *add(struct match_key of, int64_t offset, bool is_result)
 {
-    const struct match_place place = {.mine = true, .offset = offset};
+    const struct match_place place = {.in_range = true, .offset = offset};
     return match_add(match, &of, &place, is_result);
 }
 
@@ -42,10 +42,10 @@ static void take(struct match_key of, int64_t offset)
 {
     struct match_item *item = match_find(match, &of);
     assert_non_null(item);
-    assert_true(item->waits);
+    assert_true(item->in_table);
     assert_int_equal(item->place.offset, offset);
     match_remove(match, item);
-    assert_false(item->waits);
+    assert_false(item->in_table);
     match_free(item);
 }
 

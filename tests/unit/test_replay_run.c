@@ -491,7 +491,7 @@ static void test_a_result_that_cannot_be_read(void **state)
     struct replay_report report = replay();
     assert_int_equal(tally_queries(&report.tally), 9);
     assert_int_equal(outcome(&report, REPLAY_SAME), 6);
-    assert_int_equal(outcome(&report, REPLAY_ALONE), 3);
+    assert_int_equal(outcome(&report, REPLAY_UNRECORDED), 3);
     assert_int_equal(report.tally.channel[TALLY_PAIRS].unreadable[1], 4);
     replay_report_free(&report);
 }

@@ -19,13 +19,13 @@ static void test_all_slots(void **state)
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
-    assert_int_equal(runs_take(&runs, SLOTS + 1), -1);
-    assert_int_equal(runs_take(&runs, SLOTS), 0);
-    assert_int_equal(runs_take(&runs, 1), -1);
+    assert_int_equal(runs_allocate(&runs, SLOTS + 1), -1);
+    assert_int_equal(runs_allocate(&runs, SLOTS), 0);
+    assert_int_equal(runs_allocate(&runs, 1), -1);
     assert_int_equal(runs_free(&runs, 0), 0);
     for (int i = 0; i < SLOTS; i++)
-        assert_int_equal(runs_take(&runs, 1), i);
-    assert_int_equal(runs_take(&runs, 1), -1);
+        assert_int_equal(runs_allocate(&runs, 1), i);
+    assert_int_equal(runs_allocate(&runs, 1), -1);
 }
 
 /* A freed run is merged with both free neighbours, and is what is taken next. */
@@ -36,16 +36,16 @@ static void test_neighbours_are_merged(void **state)
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
     for (int i = 0; i < SLOTS / 10; i++)
-        assert_int_equal(runs_take(&runs, 10), 10 * i);
+        assert_int_equal(runs_allocate(&runs, 10), 10 * i);
     assert_int_equal(runs_free(&runs, 20), 20);
     assert_int_equal(runs_free(&runs, 40), 40);
     assert_int_equal(runs_length(&runs, 40), 10);
     assert_int_equal(runs_before(&runs, 40), 30);
     assert_int_equal(runs_after(&runs, 40), 50);
-    assert_int_equal(runs_take(&runs, 11), -1);
+    assert_int_equal(runs_allocate(&runs, 11), -1);
     assert_int_equal(runs_free(&runs, 30), 20);
     assert_int_equal(runs_length(&runs, 20), 30);
-    assert_int_equal(runs_take(&runs, 30), 20);
+    assert_int_equal(runs_allocate(&runs, 30), 20);
     assert_int_equal(runs_free(&runs, 0), 0);
     assert_int_equal(runs_before(&runs, 0), -1);
     assert_int_equal(runs_free(&runs, 90), 90);
@@ -60,14 +60,14 @@ static void test_the_last_one_is_found(void **state)
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
     for (int i = 0; i < 20; i++) /* of 4 and of 1, alternately */
-        runs_take(&runs, i % 2 ? 1 : 4);
-    const int32_t last = runs_take(&runs, 7);
-    runs_take(&runs, runs_length(&runs, last + 7));
+        runs_allocate(&runs, i % 2 ? 1 : 4);
+    const int32_t last = runs_allocate(&runs, 7);
+    runs_allocate(&runs, runs_length(&runs, last + 7));
     for (int i = 0; i < 10; i++)
         runs_free(&runs, 5 * i);
-    assert_int_equal(runs_take(&runs, 5), -1);
+    assert_int_equal(runs_allocate(&runs, 5), -1);
     assert_int_equal(runs_free(&runs, last), last);
-    assert_int_equal(runs_take(&runs, 7), last);
+    assert_int_equal(runs_allocate(&runs, 7), last);
 }
 
 /* Takes and frees at random: runs never overlap, what is free is counted, and the free run that is
@@ -98,7 +98,7 @@ static void test_against_a_map(void **state)
             continue;
         }
         const int want = 1 + rand() % 12;
-        const int32_t first = runs_take(&runs, want);
+        const int32_t first = runs_allocate(&runs, want);
         if (first < 0) {
             assert_true(want > 1 || taken == SLOTS);
             continue;

@@ -1,5 +1,5 @@
 /* Which client is served when: the server with clocks that the test moves. */
-#include "expect.h"
+#include "anticipation.h"
 #include "jobs.h"
 #include "service.h"
 
@@ -135,10 +135,10 @@ static int64_t answers_in_closed_loop(int64_t think_ns, int64_t span_ns)
             service_query_pair(CHEAP, ++number);
             waits = true;
         } else {
-            server_received(service.server, 0);
+            server_end_batch(service.server, 0);
         }
         const int64_t had = answers_to(CHEAP);
-        if (server_work(service.server) == SERVER_EXPECTING) {
+        if (server_work(service.server) == SERVER_ANTICIPATING) {
             service.now_ns += US;
             server_resume(service.server);
         }
@@ -186,9 +186,9 @@ static void test_waiting_ends(void **state)
     for (int i = 0; i < 3; i++)
         service_query_pair(COSTLY, i);
     int64_t waited_ns = 0;
-    while (server_work(service.server) == SERVER_EXPECTING || waited_ns == 0)
+    while (server_work(service.server) == SERVER_ANTICIPATING || waited_ns == 0)
         service.now_ns += 10 * US, waited_ns += 10 * US;
-    assert_true(waited_ns <= EXPECT_MAX_NS + 20 * US);
+    assert_true(waited_ns <= ANTICIPATION_MAX_NS + 20 * US);
     service_settle();
     expect_all_ok(4);
     assert_int_equal(server_work(service.server), SERVER_IDLE); /* nothing else waits: no waiting */

@@ -1,31 +1,31 @@
-/* What is seen, and from where: what is drawn, in units that it fits into, and a camera. */
+/* The state of the stage (the picture) and its camera. */
 
-const FIT = 0.88; /* part of the canvas that is filled */
+const FIT = 0.88; /* part of the canvas that the bounds fill */
 
 const stage = {
     width: 600, height: 400,
     azimuth: OBLIQUE.azimuth, elevation: OBLIQUE.elevation,
-    up: 2,                  /* the axis that is: z, or y where somebody says so; in 3D */
+    up: 2,                  /* the vertical axis in 3D: 2 is z, 1 is y */
     event: null, frames: [], units: null, bounds: null, pairs: [],
-    moment: 0,              /* of the window, 0 to 1 */
-    camera: null,           /* {target, zoom, pan}; one for each group of bodies */
-    solids: [], pointed: -1, /* what is drawn (raster.js) */
+    moment: 0,              /* position in the window, 0 to 1 */
+    camera: null,           /* {target, zoom, pan}; shared by events with the same bodies */
+    solids: [], pointed: -1, /* what the raster draws (raster.js) */
     theme: {},
 };
 
 /* ---- The camera ---- */
 
-/* Turned about x so that the axis that is up becomes z. */
-function upright([x, y, z]) {
+/* Rotates about x so that the vertical axis becomes z. */
+function rotateUp([x, y, z]) {
     return stage.up === 2 ? [x, y, z] : [x, -z, y];
 }
 
 function rotation() {
     const rotate = turn(stage.units.dim, stage.azimuth, stage.elevation);
-    return (p) => rotate(upright(p));
+    return (p) => rotate(rotateUp(p));
 }
 
-/* Along an axis of the world, or oblique. */
+/* The view along an axis of the world, or the oblique one. */
 function viewOf(name) {
     const others = { y: "z", z: "y" };
     return VIEWS[stage.up === 2 ? name : others[name] ?? name];
@@ -41,21 +41,21 @@ function projection() {
     };
 }
 
-/* Room for the numbers of the axes in 2D. */
-function inner() {
+/* Margins for the axis labels in 2D, pixels. */
+function plotMargins() {
     return stage.units.dim === 2 ? { left: 56, bottom: 24 } : { left: 0, bottom: 0 };
 }
 
-/* Turns nothing; sees the bounds. */
+/* Moves the camera so that the bounds fill the stage. Keeps its direction. */
 function fit(bounds) {
     const { camera } = stage, rotate = rotation();
     camera.target = bounds.low.map((low, axis) => (low + bounds.high[axis]) / 2);
     const points = bounds.points.map((point) => rotate(minus(point, camera.target)));
     const ends = [0, 1].map((axis) => points.map((point) => point[axis]))
-        .map((along) => [Math.min(...along), Math.max(...along)]);
-    const { left, bottom } = inner(), room = [stage.width - left, stage.height - bottom];
-    const wanted = ends.map(([low, high], axis) => room[axis] / Math.max(high - low, 1e-300));
-    /* A point is seen at some size. */
+        .map((values) => [Math.min(...values), Math.max(...values)]);
+    const { left, bottom } = plotMargins(), space = [stage.width - left, stage.height - bottom];
+    const wanted = ends.map(([low, high], axis) => space[axis] / Math.max(high - low, 1e-300));
+    /* A single point gets a fixed zoom. */
     camera.zoom = extent(bounds) > 0 ? Math.min(FIT * wanted[0], FIT * wanted[1], 1e13) : 200;
     camera.fitted = camera.zoom;
     const [right, up] = ends.map(([low, high]) => (low + high) / 2 * camera.zoom);

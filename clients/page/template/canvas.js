@@ -1,4 +1,4 @@
-/* Tools to draw with on the canvas; the grid and the axes. */
+/* Drawing functions for the canvas; the grid and the axes. */
 
 function measureStage() {
     const canvas = find("stage");
@@ -6,7 +6,7 @@ function measureStage() {
     stage.height = canvas.clientHeight || 400;
 }
 
-/* The canvas as large as it is on the screen, in its pixels, and empty. */
+/* Sets the canvas to its size on the screen, in device pixels, and clears it. */
 function clearStage() {
     const canvas = find("stage"), ratio = window.devicePixelRatio || 1;
     measureStage();
@@ -21,7 +21,7 @@ function clearStage() {
 
 /* ---- Colours ---- */
 
-/* Lit and dark, for each verdict; frames of no pair are grey. */
+/* Lit and dark colour for each verdict; frames without a pair are grey. */
 const COLOURS = {
     [-1]: [[214, 219, 226], [122, 130, 141]], 0: [[214, 219, 226], [122, 130, 141]],
     1: [[173, 203, 236], [58, 106, 160]], 2: [[255, 216, 130], [184, 124, 12]],
@@ -43,7 +43,7 @@ function strokeOf(verdict, alpha) {
 
 /* ---- Lines and text ---- */
 
-/* The part of the polygon that may be seen; false: there is none. */
+/* Adds the visible part of the polygon to the path. Returns false if there is none. */
 function addToPath(context, points) {
     const kept = clipPolygon(points, stage.width, stage.height);
     kept.forEach(([x, y], i) => i ? context.lineTo(x, y) : context.moveTo(x, y));
@@ -62,7 +62,7 @@ function drawLine(context, a, b) {
     context.stroke();
 }
 
-/* Each edge once, though two faces share it: the dashes of both would make a line. */
+/* Draws each edge once, although two faces share it: overlaid dashes would look solid. */
 function drawEdges(context, points, faces) {
     const drawn = new Set();
     context.beginPath();
@@ -87,7 +87,7 @@ function drawText(context, text, x, y, colour, align) {
 
 const LABEL_FONT = "700 12px system-ui, sans-serif";
 
-/* Centred at x, with an outline in the colour of the ground. */
+/* Draws text centred at x, with an outline in the background colour. */
 function drawLabel(context, text, x, y, colour) {
     context.font = LABEL_FONT;
     context.textAlign = "center";
@@ -97,7 +97,7 @@ function drawLabel(context, text, x, y, colour) {
     drawText(context, text, x, y, colour, "center");
 }
 
-const RING_BELOW = 7;   /* pixels: a smaller box gets a ring, to be found */
+const RING_BELOW = 7;   /* pixels: a smaller box gets a ring, so that it is visible */
 
 function drawRing(context, points) {
     const xs = points.map((p) => p[0]), ys = points.map((p) => p[1]);
@@ -111,14 +111,14 @@ function drawRing(context, points) {
 
 /* ---- Grid and axes ---- */
 
-/* Can lines be told apart in doubles, and be written as numbers? */
+/* The distance of grid lines; 0 if doubles cannot distinguish or print them. */
 function gridStep(range) {
     const size = unscaled(stage.units, range);
     return Number.isFinite(size) && size > 1e-300 ? niceStep(size) : 0;
 }
 
-/* Multiples of the step between two unit coordinates: {place, text}. Far from the origin, where
- * the digits would all be the same, they are counted from the first frame's. */
+/* Multiples of the step between two unit coordinates: {place, text}. Far from the origin, where all
+ * labels would have the same digits, they are relative to the first frame. */
 function gridLines(axis, low, high, step) {
     const origin = stage.units.origin[axis], far = Math.abs(origin) > 1e6 * step;
     const from = far ? 0 : origin, unit = scaled(stage.units, step), lines = [];
@@ -134,7 +134,7 @@ function gridLines(axis, low, high, step) {
 }
 
 function drawGrid2D(context, project) {
-    const { camera, theme, width, height } = stage, { left, bottom } = inner();
+    const { camera, theme, width, height } = stage, { left, bottom } = plotMargins();
     const step = gridStep(90 / camera.zoom);
     if (step === 0)
         return;
@@ -157,7 +157,7 @@ function drawGrid2D(context, project) {
 }
 
 function drawAxes2D(context, step) {
-    const { units, theme, width, height } = stage, { left, bottom } = inner();
+    const { units, theme, width, height } = stage, { left, bottom } = plotMargins();
     context.strokeStyle = theme.rule;
     drawLine(context, [left + 0.5, 0], [left + 0.5, height - bottom]);
     drawLine(context, [left, height - bottom - 0.5], [width, height - bottom - 0.5]);
@@ -168,7 +168,7 @@ function drawAxes2D(context, step) {
     drawText(context, names[1], left + 6, 14, theme.dim, "left");
 }
 
-/* The floor below all. */
+/* Draws the grid below everything. */
 function drawGrid3D(context, project) {
     const { low, high } = stage.camera.bounds, { theme, up } = stage;
     const axes = [0, 3 - up];
@@ -197,7 +197,7 @@ function drawGrid3D(context, project) {
         "right");
 }
 
-/* The directions of the axes, in the lower left corner. */
+/* Draws the directions of the axes in the lower left corner. */
 function drawTriad(context) {
     const rotate = rotation(), at = [40, stage.height - 38];
     context.strokeStyle = stage.theme.dim;

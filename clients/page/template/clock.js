@@ -1,20 +1,20 @@
-/* The time of the log on a line, without its long pauses.
+/* Maps the time of the log to a line without long pauses.
  *
- * Where queries come in bursts with long pauses between them, and would be dots on a true axis,
- * each pause is folded to a short break. Places on the line are in seconds too, but for the
+ * If queries come in bursts with long pauses between them, the bursts would be dots on a linear
+ * axis. Each pause is then folded to a short break. Places on the line are in seconds, except in
  * breaks. */
 
-const PAUSE_PART = 1 / 20;  /* of the whole: shorter ones are not folded */
-const PAUSE_TIMES = 10;     /* the median step: steps as usual are none */
-const PAUSES_PART = 0.8;    /* of the whole: where they are less, nothing is folded */
-const BREAK_PART = 0.03;    /* of what is left: what a break takes */
+const PAUSE_PART = 1 / 20;  /* of the whole time: shorter pauses are not folded */
+const PAUSE_TIMES = 10;     /* times the median step: shorter steps are not pauses */
+const PAUSES_PART = 0.8;    /* of the whole time: if all pauses are shorter, none is folded */
+const BREAK_PART = 0.03;    /* of the remaining time: the width of a break */
 
 function median(numbers) {
     const sorted = numbers.slice().sort((a, b) => a - b);
     return sorted.length ? sorted[sorted.length >> 1] : 0;
 }
 
-/* The steps in which nothing was asked for unusually long. */
+/* The steps without queries that are unusually long. */
 function findPauses(times) {
     const steps = times.slice(1).map((time, i) => ({ from: times[i], seconds: time - times[i] }));
     const span = times.length ? times[times.length - 1] - times[0] : 0;
@@ -23,14 +23,14 @@ function findPauses(times) {
         && step.seconds > usual * PAUSE_TIMES);
 }
 
-/* Those to fold; none where that is not worth it. */
+/* The pauses to fold; none if they do not take most of the time. */
 function findFolds(pauses, span) {
     const idle = pauses.reduce((sum, pause) => sum + pause.seconds, 0);
     return idle > PAUSES_PART * span && idle < span ? pauses : [];
 }
 
-/* times: ascending. pauses: {from, seconds}; breaks: those that are folded, {from, seconds, place,
- * width}; at: from time to place; time: back. */
+/* times: ascending. Returns pauses: {from, seconds}; breaks: the folded ones, {from, seconds,
+ * place, width}; at: converts a time to a place; time: the inverse. */
 function makeClock(times) {
     const first = times.length ? times[0] : 0, last = times.length ? times[times.length - 1] : 0;
     const pauses = findPauses(times), folds = findFolds(pauses, last - first);

@@ -1,12 +1,11 @@
-/* The data of the page, and what is made of them once: events in the order of time, rows of
- * pairs. */
+/* The data of the page, and values derived once: sorted events, and rows of pairs. */
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
 /* enum replay_outcome. */
-const SAME = 0, DIFFERENT = 1, BUSY = 2, UNKNOWN = 3, UNDEFINED = 4, ALONE = 5;
+const SAME = 0, DIFFERENT = 1, BUSY = 2, UNKNOWN = 3, UNDEFINED = 4, UNRECORDED = 5;
 const OUTCOMES = ["same", "different", "busy", "unknown body", "not defined", "without result"];
-const OUTCOME_SAID = [
+const OUTCOME_TEXT = [
     "The result is the one that was recorded.",
     "The result is another one than the one that was recorded.",
     "The service was busy then: there is no answer to compare.",
@@ -21,8 +20,8 @@ const KIND_PAIR = 0, KIND_LISTED = 1, KIND_ALL = 2, KIND_ACROSS = 3;
 
 /* ---- Events ---- */
 
-/* In the order of time; of the same time, as they came. Raw events get a few members more: at, the
- * place in this list, and seconds, since the log began. */
+/* Sorted by time, stable. Raw events get two members: at, the index in this list, and seconds since
+ * the log began. */
 const events = data.events.slice().sort((a, b) => Number(a.t) - Number(b.t));
 events.forEach((event, at) => {
     event.at = at;
@@ -31,7 +30,7 @@ events.forEach((event, at) => {
 
 const differing = events.filter((event) => event.is === DIFFERENT);
 
-/* Of what page_event.h calls then and now of a pair. */
+/* The verdict of one side of a pair, then or now (page_event.h). */
 function verdictOf(side) {
     return side === null ? NO_VERDICT : typeof side === "number" ? side : side[0];
 }
@@ -64,8 +63,8 @@ function bodyName(id) {
     return id === "0" ? "anonymous" : id;
 }
 
-/* The pairs of an event: bodies, then and now. It is the replay that says whether anything differs
- * at all: it may think nothing of a last bit. */
+/* The pairs of an event: bodies, then and now. The outcome of the replay decides whether anything
+ * differs: with a tolerance it may accept different bits. */
 function pairsOf(event) {
     return event.pairs.map(([a, b, then, now], index) => {
         const given = now !== undefined;
@@ -76,7 +75,7 @@ function pairsOf(event) {
     });
 }
 
-/* The result that is shown: what was not answered again, as it was. Null where there is none. */
+/* The result to show: the new one, or the recorded one if there is none. null: neither. */
 function answerOf(event) {
     return [event.now, event.then].find((result) => result && result.status === 0) ?? null;
 }
@@ -92,7 +91,7 @@ function worstOf(event) {
     return worst;
 }
 
-/* R(q) of fmb.h as rows, of an orientation of any length; null: not turned. */
+/* R(q) of fmb.h as rows, for an orientation that need not be normalised; null: not rotated. */
 function rotationOf(orientation) {
     if (orientation.length === 0)
         return null;
@@ -115,8 +114,8 @@ function cuboidOf(dim, [shape, ...numbers]) {
     return [CUBOID, ...size.map((value, axis) => numbers[axis] - value / 2), ...components];
 }
 
-/* Of each placed body: its shape, position, rotation (null: none) and velocity (null: none); or why
- * there are none. */
+/* For each placed body: its shape, position, rotation (null: none) and velocity (null: none); or
+ * the reason why it cannot be drawn. */
 function framesOf(event) {
     return event.frames.map(([id, shape, ...numbers], index) => {
         const frame = { index, id: String(id), shape: null, why: "" };
@@ -146,7 +145,7 @@ function rowKey(ids) {
     return isBelow(ids[0], ids[1]) ? `${ids[0]} ${ids[1]}` : `${ids[1]} ${ids[0]}`;
 }
 
-/* at: events, by their place in the list; verdict: of each; differs: those of them that differ. */
+/* at: indices of events; verdict: of each; differs: the events among them that differ */
 function makeRow(key) {
     return {
         key, ids: key.split(" "), at: [], verdict: [], differs: [], contacts: 0, filled: false,
@@ -155,7 +154,7 @@ function makeRow(key) {
 
 function addMark(row, at, verdict, differs) {
     const last = row.at.length - 1;
-    if (row.at[last] === at) { /* several frames of the same bodies */
+    if (row.at[last] === at) { /* several placements with the same bodies */
         row.verdict[last] = Math.max(row.verdict[last], verdict);
     } else {
         row.at.push(at);
@@ -166,7 +165,8 @@ function addMark(row, at, verdict, differs) {
     row.contacts += verdict >= TOUCHING ? 1 : 0;
 }
 
-/* Whether an event differs for this pair: as a whole, where no pair of it does. */
+/* Adds an event to the rows of its pairs. An event that differs as a whole, in no pair, differs in
+ * all its rows. */
 function addEvent(rows, event) {
     const pairs = pairsOf(event);
     const whole = event.is === DIFFERENT && !pairs.some((pair) => pair.differs);
@@ -176,7 +176,7 @@ function addEvent(rows, event) {
             rows.set(key, makeRow(key));
         addMark(rows.get(key), event.at, verdictOf(pair.now ?? pair.then), pair.differs || whole);
     }
-    if (event.kind === KIND_PAIR && pairs.length === 0) { /* refused */
+    if (event.kind === KIND_PAIR && pairs.length === 0) { /* the query was refused */
         const key = rowKey([bodyOf(event, 0), bodyOf(event, 1)]);
         if (!rows.has(key))
             rows.set(key, makeRow(key));
@@ -196,7 +196,7 @@ function compareRows(a, b) {
     return isBelow(a.ids[first], b.ids[first]) ? -1 : 1;
 }
 
-/* Those with differences first, then those that meet at some time. */
+/* Rows with differences first, then rows with contacts. */
 function makeRows() {
     const rows = new Map();
     events.forEach((event) => addEvent(rows, event));
@@ -206,7 +206,7 @@ function makeRows() {
 const rows = makeRows();
 const rowOf = new Map(rows.map((row) => [row.key, row]));
 
-/* Every query, whatever it asks. */
+/* The row of all queries. */
 function makeAllRow() {
     const row = { ...makeRow("all"), filled: true };
     for (const event of events)
@@ -216,14 +216,15 @@ function makeAllRow() {
 
 const allRow = makeAllRow();
 
-/* The number of a pair of all or across among those that are asked. */
+/* The number of a pair of placements in a query of all or across. */
 function pairNumber(event, a, b) {
     const n = event.frames.length;
     return event.kind === KIND_ACROSS
         ? a * (n - event.split) + b - event.split : a * n - a * (a + 1) / 2 + b - (a + 1);
 }
 
-/* Of all and across, pairs that are not named are separated where the result came so far. */
+/* In a query of all or across, a pair that the result does not name is separated, if the result
+ * reaches it. */
 function isSeparated(event, ids) {
     const answer = answerOf(event);
     if (event.kind < KIND_ALL || !answer || event.more)
@@ -240,7 +241,8 @@ function isSeparated(event, ids) {
     return number >= event.first && number < answer.end;
 }
 
-/* Puts in where the pair is separated without being named. Done for rows that are shown. */
+/* Adds the events in which the pair is separated without being named. Called for rows that are
+ * shown. */
 function fillRow(row) {
     if (row.filled)
         return row;
@@ -257,7 +259,7 @@ function fillRow(row) {
     return row;
 }
 
-/* ---- What differs, in words ---- */
+/* ---- Differences as text ---- */
 
 function boxTexts(then, now) {
     const axes = [];
@@ -269,7 +271,7 @@ function boxTexts(then, now) {
     return axes;
 }
 
-/* [what, then, now] of each thing in which the two sides differ. */
+/* [what, then, now] for each difference of the two sides. */
 function sideDifferences(then, now) {
     const found = [], verdicts = [verdictOf(then), verdictOf(now)];
     if (verdicts[0] !== verdicts[1])
@@ -277,7 +279,7 @@ function sideDifferences(then, now) {
     const gaps = [gapOf(then), gapOf(now)];
     if (JSON.stringify(gaps[0]) !== JSON.stringify(gaps[1]))
         found.push(["gap", ...(gaps[0] && gaps[1] ? intervalTexts(...gaps) : gaps.map(gapText))]);
-    if (Math.min(...verdicts) < TOUCHING) /* there is neither interval nor box to compare */
+    if (Math.min(...verdicts) < TOUCHING) /* neither has an interval or a box to compare */
         return found;
     const times = [timesOf(then), timesOf(now)], boxes = [boxOf(then), boxOf(now)];
     if (times[0] && times[1]) {
@@ -297,7 +299,7 @@ function statusText(result) {
     return !result ? "no result" : result.status === 0 ? "ok" : result.says;
 }
 
-/* The same of an event as a whole: what is not of a pair. */
+/* As sideDifferences(), for what belongs to the event and not to a pair. */
 function wholeDifferences(event) {
     const found = [], { then, now } = event;
     if (event.is !== DIFFERENT)

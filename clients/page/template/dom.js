@@ -1,4 +1,4 @@
-/* Elements. Text is always text: nothing of the data is read as HTML. */
+/* Creates elements. Data are inserted as text, never as HTML. */
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -30,7 +30,7 @@ function show(element, ...children) {
     element.replaceChildren(...children.filter((child) => child !== null && child !== undefined));
 }
 
-/* ---- Parts of both pages ---- */
+/* ---- Elements of both pages ---- */
 
 function makeCount(kind, count, one, many = one) {
     return make("div", { class: `count ${kind}${count === 0 ? " zero" : ""}` },
@@ -57,7 +57,7 @@ function verdictChip(verdict) {
     return make("span", { class: `verdict ${kind}` }, verdictName(verdict));
 }
 
-/* "then -> now", both as chips where they differ. */
+/* "then -> now" as chips; a single chip if they are equal. */
 function verdictChips(then, now) {
     if (then === now)
         return [verdictChip(now)];
@@ -67,8 +67,8 @@ function verdictChips(then, now) {
 
 /* ---- Events ---- */
 
-/* begin(event) is called where a drag begins, and what it returns at each step, wherever the pointer
- * goes meanwhile. It may return nothing. */
+/* Calls begin(event) when a drag begins, and the function that it returns for each move until the
+ * drag ends, even outside the element. begin() may return nothing. */
 function listenToDrags(element, begin) {
     element.addEventListener("pointerdown", (first) => {
         const go = begin(first);
@@ -87,12 +87,12 @@ function listenToDrags(element, begin) {
 
 const WHEEL_ZOOM = 0.0015; /* a notch of 100 pixels: some 15 % */
 
-/* Above 1 where the wheel is turned towards the reader. */
+/* Greater than 1 if the wheel turns towards the reader. */
 function wheelFactor(wheel) {
     return Math.exp(clamp(wheel.deltaY, -400, 400) * WHEEL_ZOOM);
 }
 
-/* Calls the function once before the next picture, however often it was asked for. */
+/* Limits work to one call before the next animation frame, however often it is requested. */
 function onceAFrame(work) {
     let waiting = false;
     return () => {

@@ -1,8 +1,8 @@
-/* What is chosen: a query, a row of the timeline and a pair of the query; and the keys. */
+/* The selection: a query, a row of the timeline and a pair of the query. Keyboard commands. */
 
 const chosen = { at: -1, row: null, pair: -1 };
 
-/* The row of the pair that is looked at: the one that was clicked, or of the chosen pair. */
+/* The row in focus: the clicked one, or that of the chosen pair. */
 function focusRow() {
     if (chosen.row && chosen.row !== allRow)
         return chosen.row;
@@ -10,7 +10,7 @@ function focusRow() {
     return pair ? rowOf.get(rowKey(pair.ids)) : null;
 }
 
-/* The rows of all pairs that the chosen query names. */
+/* Whether the chosen query names the pair of the row. */
 function isNamedRow(row) {
     return chosen.at >= 0 && row !== undefined && chosen.keys.has(row.key);
 }
@@ -19,7 +19,7 @@ function chosenPair() {
     return chosen.pair >= 0 ? stage.pairs[chosen.pair] : null;
 }
 
-/* Of several pairs the one of the row, else the first that differs: it is what is looked for. */
+/* The pair to show: that of the row, otherwise the first that differs. */
 function pairToShow(event, row) {
     const pairs = pairsOf(event);
     if (event.kind === KIND_PAIR || pairs.length === 0)
@@ -30,8 +30,8 @@ function pairToShow(event, row) {
     return found ? found.index : -1;
 }
 
-/* The address names the query, so that it can be sent to somebody. Some browsers refuse to change
- * it often: then it stays behind. */
+/* Puts the query into the address, so that it can be shared. Some browsers limit the rate of
+ * changes: then the address is out of date. */
 function setAddress(event) {
     const name = data.logs.length > 1 ? `${event.log}:${event.n}` : String(event.n);
     try {
@@ -52,7 +52,7 @@ function announce(event) {
         + `${verdictName(worstOf(event))}, ${OUTCOMES[event.is]}`;
 }
 
-/* row: of the timeline, or null. */
+/* row: of the timeline, or null */
 function choose(at, row) {
     const event = events[at];
     chosen.at = at;
@@ -62,7 +62,7 @@ function choose(at, row) {
     setScene(event);
     fillEvent(event);
     markDifference();
-    seeEvent(at);
+    scrollToEvent(at);
     redrawTimeline();
     setAddress(event);
     announce(event);
@@ -81,7 +81,7 @@ function choosePair(index) {
 
 /* ---- Steps ---- */
 
-/* Through the queries of the row, or of the rows that the filter leaves, or all. */
+/* The queries to step through: those of the row, of the filtered rows, or all. */
 function stepList(inRow) {
     const row = focusRow();
     if (inRow && row)
@@ -107,7 +107,7 @@ function stepDifference(forward) {
     const list = differing.map((event) => event.at);
     const before = chosen.at;
     stepTo(list, forward, null);
-    if (chosen.at === before && list.length > 0) /* around */
+    if (chosen.at === before && list.length > 0) /* wraps around */
         choose(forward ? list[0] : list[list.length - 1], null);
 }
 
@@ -123,7 +123,7 @@ const KEYS = {
     Escape: () => choosePair(-1),
 };
 
-/* ---- The beginning ---- */
+/* ---- Start ---- */
 
 function listenToSteps() {
     listenToKeys(KEYS);
@@ -142,7 +142,8 @@ function listenToSteps() {
     });
 }
 
-/* At first the query of the address, else the first difference, else the first contact. */
+/* The first selection: the query in the address, otherwise the first difference, otherwise the
+ * first contact. */
 function firstEvent() {
     return eventOfAddress() ?? differing[0]
         ?? events.find((event) => worstOf(event) >= TOUCHING) ?? events[0];

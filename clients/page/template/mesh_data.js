@@ -1,8 +1,8 @@
-/* The data of the page, and what is made of them once: meshes, and pairs of their faces. */
+/* The data of the page, and values derived once: meshes, and pairs of their faces. */
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
-/* Four bytes of a number have the lowest first, as browsers have them. */
+/* Decodes little-endian numbers of 4 bytes, the byte order of all browsers. */
 function unpack(text, Kind) {
     const read = atob(text), bytes = new Uint8Array(read.length);
     for (let i = 0; i < read.length; i++)
@@ -10,8 +10,9 @@ function unpack(text, Kind) {
     return new Kind(bytes.buffer);
 }
 
-/* corner: [x, y, z] of each vertex; face: three vertices of each; colour: its worst verdict, or 0;
- * first: the number of its first face among those of all meshes, by which pictures know them. */
+/* Returns corner: [x, y, z] of each vertex; face: three vertices of each face; colour: the worst
+ * verdict of each face, or 0; first: the id of its first face. Ids number the faces of all meshes.
+ */
 function readMesh(mesh, index) {
     return {
         index, name: mesh.name, faces: mesh.faces, met: mesh.met, shift: mesh.shift,
@@ -44,12 +45,12 @@ function meshOfFace(id) {
     return meshes[meshes.length > 1 && id >= meshes[1].first ? 1 : 0];
 }
 
-/* As the file counts it. */
+/* The number of a face in its file. */
 function numberOfFace(id) {
     return id - meshOfFace(id).first;
 }
 
-/* [[x, y, z], ...] at a moment of the window. */
+/* [[x, y, z], ...], the corners of a face at a moment of the window, 0 to 1. */
 function cornersOf(id, moment) {
     const mesh = meshOfFace(id), { corner, face, shift } = mesh, at = 3 * (id - mesh.first);
     return [0, 1, 2].map((k) => [0, 1, 2].map((axis) => corner[3 * face[at + k] + axis]
@@ -58,13 +59,13 @@ function cornersOf(id, moment) {
 
 /* ---- Pairs ---- */
 
-/* a, b: faces of the picture; numbers: of the files; times: [first, last] or null, seconds. */
+/* a, b: ids of faces; numbers: those of the files; times: [first, last] or null, seconds */
 const pairs = data.pairs.map(([a, b, verdict, ...times], index) => ({
     index, numbers: [a, b], verdict, times: times.length ? times : null,
     a, b: meshes[meshes.length - 1].first + b,
 }));
 
-/* Of each face that is in listed pairs, these. */
+/* The listed pairs of each face that is in any. */
 const pairsOfFace = new Map();
 for (const pair of pairs) {
     for (const id of [pair.a, pair.b]) {

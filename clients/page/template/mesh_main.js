@@ -1,8 +1,8 @@
-/* What is chosen, the keys, and the beginning. */
+/* The selection, keyboard commands, and the start. */
 
 const chosen = { pair: null };
 
-/* comes: the camera goes there, at the time at which the faces first meet. */
+/* comes: moves the camera to the pair, at the time of its first contact. */
 function choosePair(pair, comes) {
     chosen.pair = pair;
     if (pair && isMoving) {
@@ -51,7 +51,7 @@ const KEYS = {
     Escape: () => choosePair(null, false),
 };
 
-/* A press that moves turns the picture, and is no click. */
+/* A press that moves further than this is a drag, not a click. */
 const STILL = 4; /* pixels */
 
 function listenToClicks() {

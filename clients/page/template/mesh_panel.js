@@ -1,4 +1,4 @@
-/* What is said: counts, notes, the list of the pairs. */
+/* Text beside the picture: counts, notes, and the list of pairs. */
 
 const ROWS_MORE = 100;
 const panel = { rows: ROWS_MORE, list: pairs };
@@ -18,7 +18,7 @@ function fillHeader() {
         makeCount("touching", data.touching, "touches", "touch"));
 }
 
-/* Every note says what is not here. */
+/* Notes state what the page leaves out. */
 function notesOf() {
     const notes = [];
     if (data.count > pairs.length)
@@ -35,7 +35,7 @@ function fillNotes() {
 
 /* ---- Facts ---- */
 
-/* Over all pairs that are listed. */
+/* The earliest and latest contact over all listed pairs. */
 function timesOfAll() {
     let first = Infinity, last = -Infinity;
     for (const { times } of pairs) {
@@ -68,7 +68,7 @@ function fillLegend() {
 
 /* ---- The list ---- */
 
-/* Pairs with the face of this number, of either mesh, and with this verdict. */
+/* The pairs that match the filter: number of a face of either mesh, and verdict. */
 function filtered() {
     const number = /^\s*\d+\s*$/.test(find("filter").value) ? Number(find("filter").value) : null;
     const verdict = Number(find("verdict").value);
@@ -111,7 +111,7 @@ function applyFilter() {
     fillList();
 }
 
-/* The row of the chosen pair can be seen, where the list has it; the page stays where it is. */
+/* Scrolls the list to the row of the chosen pair, if it is listed. The page does not scroll. */
 function showChosenRow() {
     const at = panel.list.indexOf(chosen.pair);
     panel.rows = Math.max(panel.rows, at + 1);
@@ -124,9 +124,9 @@ function showChosenRow() {
     frame.scrollTop = clamp(frame.scrollTop, bottom, top);
 }
 
-/* ---- When there is contact ---- */
+/* ---- Times of contact ---- */
 
-/* The chosen pair's time; else all times at which any pair is in contact. */
+/* The contact of the chosen pair; otherwise the times at which any pair is in contact. */
 function contactTimes() {
     if (chosen.pair)
         return [chosen.pair.times];

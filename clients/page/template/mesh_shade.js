@@ -1,14 +1,14 @@
-/* Colours of the faces of meshes: what does not meet is half transparent, so that what meets is seen
- * through it. */
+/* Colours of mesh faces. Faces that do not intersect are half transparent, so that those that do
+ * are visible through them. */
 
 /* Lit and dark. */
 const OF_MESH = [[[216, 218, 222], [104, 108, 114]], [[158, 198, 246], [36, 78, 140]]];
 const OF_TOUCHING = [[255, 214, 74], [196, 140, 0]];
 const OF_OVERLAPPING = [[244, 70, 60], [190, 14, 18]];
-const OF_LATER = [[236, 176, 168], [150, 96, 92]]; /* meets, but not at this moment */
+const OF_LATER = [[236, 176, 168], [150, 96, 92]]; /* intersects, but not at this moment */
 
 const COVER = 0.64;
-const GROUP_MET = 2; /* of faces that meet; of the others it is that of their mesh */
+const GROUP_MET = 2; /* group of faces that intersect; other faces have the group of their mesh */
 
 const lights = new Float32Array(faceCount);
 let shadedMoment = null;
@@ -25,12 +25,12 @@ function groupFaces() {
 
 function lightFaces() {
     for (let id = 0; id < faceCount; id++)
-        lights[id] = lightOf(...cornersOf(id, 0).map(upright));
+        lights[id] = lightOf(...cornersOf(id, 0).map(rotateUp));
     shadedMoment = null;
 }
 
-/* By verdict: 1 where the face is in contact at this moment. A face whose pairs are not listed
- * has no times here: it is taken to be. */
+/* For each face 1 if it is in contact at this moment. A face whose pairs are not listed has no
+ * times here, and is assumed to be in contact. */
 function contactNow(moment) {
     const now = new Uint8Array(faceCount).fill(1), time = moment * data.T;
     if (!isMoving)

@@ -1,8 +1,7 @@
-/* The picture of the meshes at a moment of the window: where they are, and the chosen pair of faces on
- * top of them. */
+/* The picture of the meshes at a moment of the window, with the chosen pair of faces on top. */
 
-const NEAR_PAIR = 0.35;       /* the part of the canvas that a pair fills, of what all fills */
-const BOUND_POINTS = 3000;    /* vertices of a mesh that tell where it is */
+const NEAR_PAIR = 0.35;       /* part of the canvas that a pair fills */
+const BOUND_POINTS = 3000;    /* vertices of a mesh that are used for its bounds */
 
 function chosenPair() {
     return chosen.pair;
@@ -29,8 +28,7 @@ function fitAll() {
     redrawStage();
 }
 
-/* The two faces in the middle, with what is around them. How far one may zoom is still told by
- * the whole. */
+/* Centres the chosen pair, with its surroundings. The zoom limits remain those of the whole. */
 function fitPair() {
     const pair = chosenPair(), { camera } = stage, { fitted } = camera;
     if (!pair)
@@ -42,7 +40,7 @@ function fitPair() {
     redrawStage();
 }
 
-/* The axis that is up: y is where meshes are made for pictures, z where they are for machines. */
+/* Sets the vertical axis: y is usual in graphics, z in engineering. */
 function setUp(axis) {
     stage.up = axis;
     for (const [id, of] of [["up-y", 1], ["up-z", 2]])
@@ -64,7 +62,7 @@ function meanEdge() {
     return count ? sum / count : 0;
 }
 
-/* Edges are drawn where there is room between them: in pixels. */
+/* Edges fade in with the mean length of an edge in pixels, from EDGES_FROM to EDGES_FULL. */
 const EDGES_FROM = 7, EDGES_FULL = 24, EDGE_DARK = 0.3;
 
 function edgeDarkness() {
@@ -89,7 +87,7 @@ function strokeHalo(context, colour, width) {
     context.stroke();
 }
 
-/* One face's name stands above it, the other's below. */
+/* Labels one face above it, the other below. */
 function drawPair(context, project) {
     const pair = chosenPair();
     if (!pair)
@@ -110,7 +108,7 @@ function drawPair(context, project) {
     });
 }
 
-/* ---- What is pointed at ---- */
+/* ---- Pointer ---- */
 
 function point(at) {
     const id = at ? faceBelow(at) : NO_FACE;
@@ -124,7 +122,7 @@ function point(at) {
         + (colour ? `: ${verdictName(colour)}, ${counted(count, "pair", "pairs")}` : ""));
 }
 
-/* A click on a face that meets chooses its pairs one after the other. */
+/* Chooses the pairs of the face at the pointer in turn. */
 function chooseBelow(at) {
     const list = pairsOfFace.get(faceBelow(at)) ?? [];
     if (list.length > 0)

@@ -1,6 +1,6 @@
 "use strict";
 
-/* Numbers and times, as people read them. */
+/* Formats numbers and times for people. */
 
 const DIGITS = 6;
 
@@ -8,12 +8,12 @@ function clamp(value, low, high) {
     return value > high ? high : value >= low ? value : low;
 }
 
-/* With so many digits at most, and no -0. */
+/* With at most so many significant digits, and without -0. */
 function digits(value, count) {
     return String(Number(value.toPrecision(count)) + 0);
 }
 
-/* Of a number that JSON has: those it has not are written as words (page_event.h). */
+/* A short form of a number. Values that JSON lacks are words (page_event.h). */
 function short(value) {
     return typeof value === "number" ? digits(value, DIGITS) : String(value);
 }
@@ -28,7 +28,8 @@ function firstPlace(value) {
     return Math.floor(Math.log10(value));
 }
 
-/* The ends of an interval: as many digits as show three of their difference. */
+/* The number of digits for the ends of an interval: enough to show three digits of their
+ * difference. */
 function endDigits(low, high) {
     const difference = high - low, largest = Math.max(Math.abs(low), Math.abs(high));
     if (!Number.isFinite(difference) || largest === 0)
@@ -38,7 +39,7 @@ function endDigits(low, high) {
     return clamp(firstPlace(largest) + 4, DIGITS, 12);
 }
 
-/* An end of a box: null is infinite. */
+/* An end of a box; null is infinite. */
 function endText(value, sign, count) {
     if (value === null)
         return sign < 0 ? "-∞" : "∞";
@@ -56,13 +57,13 @@ function intervalExact(low, high) {
     return `${low === null ? "-∞" : exact(low)} .. ${high === null ? "∞" : exact(high)}`;
 }
 
-/* Of a gap: one number where its bounds look alike. */
+/* The bounds of a gap, as one number if both are the same text. */
 function gapText(gap) {
     const texts = gap ? [endText(gap[0], -1, DIGITS), endText(gap[1], 1, DIGITS)] : ["–"];
     return [...new Set(texts)].join(" .. ");
 }
 
-/* The texts of two intervals: exact where they would look alike, and are not. */
+/* The texts of two intervals, with exact numbers if they differ and their short texts would not. */
 function intervalTexts(then, now) {
     const texts = [intervalText(...then), intervalText(...now)];
     const alike = texts[0] === texts[1] && (then[0] !== now[0] || then[1] !== now[1]);
@@ -77,12 +78,12 @@ function counted(count, one, many) {
     return `${grouped(count)} ${count === 1 ? one : many}`;
 }
 
-/* Seconds with three digits behind the point, or as many of the microseconds as there are. */
+/* Seconds with three decimals, or more if microseconds require it. */
 function timeText(seconds) {
     return seconds.toFixed(6).replace(/0{1,3}$/, "");
 }
 
-/* Of a tick of the axis. */
+/* The label of a tick on the time axis. */
 function secondsText(seconds, step) {
     return (seconds + 0).toFixed(clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 6));
 }
@@ -97,27 +98,27 @@ function durationText(seconds) {
     return `${digits(seconds, 4)} s`;
 }
 
-/* Nanoseconds, in a unit of their size. */
+/* Formats nanoseconds in a suitable unit. */
 function costText(ns) {
     if (ns < 1e4)
         return `${grouped(ns)} ns`;
     return ns < 1e7 ? `${digits(ns / 1e3, 3)} µs` : `${digits(ns / 1e6, 3)} ms`;
 }
 
-/* Microseconds since 1970; what no date has, as it is. */
+/* Formats microseconds since 1970 as a date; times beyond the range of dates as a number. */
 function dateText(utime) {
     const date = new Date(utime / 1000);
     return Number.isNaN(date.getTime())
         ? `${utime} µs` : date.toISOString().replace("T", " ").replace("Z", " UTC");
 }
 
-/* 1, 2 or 5 times a power of ten, not below rough. */
+/* The smallest 1, 2 or 5 times a power of ten that is not below rough. */
 function niceStep(rough) {
     const power = 10 ** Math.floor(Math.log10(rough)), times = rough / power;
     return power * (times <= 1 ? 1 : times <= 2 ? 2 : times <= 5 ? 5 : 10);
 }
 
-/* Multiples of step, with the digits that it has. */
+/* Formats a multiple of step with the decimals of step. */
 function tickText(value, step) {
     const size = Math.abs(value);
     if (size !== 0 && (size >= 1e6 || step < 1e-5)) {
@@ -127,7 +128,7 @@ function tickText(value, step) {
     return (value + 0).toFixed(clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 9));
 }
 
-/* The first index of an ascending list whose value is not below this one. */
+/* The index of the first element of an ascending list that is not below value. */
 function lowerBound(list, value) {
     let low = 0, high = list.length;
     while (low < high) {

@@ -1,4 +1,4 @@
-/* What is said of the whole, and of the chosen query: header, list of differences, tables. */
+/* Text beside the picture: header, list of differences, tables of the chosen query. */
 
 const PAIRS_FIRST = 30, PAIRS_MORE = 200, DIFFERENCES_FIRST = 50, DIFFERENCES_MORE = 500;
 const FRAMES_FIRST = 200;
@@ -21,10 +21,11 @@ function fillCounts() {
         different.prepend(make("i", { "aria-hidden": "true" }, "≠"));
     show(find("counts"), makeCount("", total, "query", "queries"),
         makeCount("same", data.count[SAME], "same"), different,
-        ...[BUSY, UNKNOWN, UNDEFINED, ALONE].map((is) => makeCount("", data.count[is], OUTCOMES[is])));
+        ...[BUSY, UNKNOWN, UNDEFINED, UNRECORDED]
+            .map((is) => makeCount("", data.count[is], OUTCOMES[is])));
 }
 
-/* What was left out, and how it can be seen. */
+/* What the page leaves out, and how to see it. */
 function leftOutNote() {
     const count = data.left_out.reduce((sum, of) => sum + of, 0);
     if (count === 0)
@@ -72,7 +73,7 @@ function wordsOf([what, then, now]) {
         make("span", { class: "then" }, then), " → ", make("b", {}, now));
 }
 
-/* What to say of an event in a few lines: of the whole, and of its first pairs. */
+/* The differences of an event in a few lines: those of the whole, and of its first pairs. */
 function changesOf(event) {
     const lines = wholeDifferences(event).map((found) => ["query", found]);
     for (const pair of pairsOf(event))
@@ -113,7 +114,7 @@ function fillDifferences() {
     markDifference();
 }
 
-/* The list moves, not the page. */
+/* Scrolls the list, not the page. */
 function markDifference() {
     const list = find("difference-list");
     for (const button of list.querySelectorAll("button")) {
@@ -151,7 +152,7 @@ function verdictCounts(result) {
         .join(", ") || "no pair";
 }
 
-/* side: of the pair, where the query asks for one. */
+/* side: of the pair, if the query is a pair query. */
 function resultText(result, side) {
     if (!result)
         return "none";
@@ -177,7 +178,7 @@ function fillHead(event) {
     show(find("event-head"), make("h2", {}, `Query ${event.n}`), verdictChip(verdict),
         make("span", {
             class: `outcome ${event.is === DIFFERENT ? "different" : ""}`,
-            title: OUTCOME_SAID[event.is],
+            title: OUTCOME_TEXT[event.is],
         }, event.is === DIFFERENT ? "≠ different" : OUTCOMES[event.is]));
 }
 
@@ -190,7 +191,7 @@ function makeTable(kind, names, rowElements) {
 function fillEventDifferences(event) {
     if (event.is !== DIFFERENT) {
         show(find("event-differences"),
-            event.is === SAME ? null : make("p", { class: "dim" }, OUTCOME_SAID[event.is]));
+            event.is === SAME ? null : make("p", { class: "dim" }, OUTCOME_TEXT[event.is]));
         return;
     }
     const changes = changesOf(event), shown = changes.slice(0, 20);
@@ -206,7 +207,7 @@ function fillEventDifferences(event) {
 
 /* ---- The pairs ---- */
 
-/* One line where then and now are the same, else two. */
+/* One line if then and now are equal, otherwise two. */
 function twice(then, now, differs) {
     if (!differs || then === now)
         return [now];
@@ -218,7 +219,7 @@ function twice(then, now, differs) {
         make("b", { title: "now" }, now)];
 }
 
-/* Two intervals, of which one or both may be missing. */
+/* The texts of two intervals, either of which may be missing. */
 function bothTexts(intervals) {
     return intervals[0] && intervals[1] ? intervalTexts(...intervals)
         : intervals.map((of) => of ? intervalText(...of) : "–");
@@ -230,7 +231,7 @@ function timesCell(pair) {
     return make("td", { class: "number", title }, ...twice(...texts, pair.differs));
 }
 
-/* An axis a line. */
+/* One line for each axis. */
 function boxCell(pair) {
     const boxes = [boxOf(pair.then), boxOf(pair.now)];
     const dim = (boxes[0] ?? boxes[1] ?? [[]])[0].length;
@@ -250,7 +251,7 @@ function gapCell(pair) {
         ...twice(...gaps.map(gapText), pair.differs));
 }
 
-/* What was not answered then has nothing to be compared with. */
+/* A pair that was not answered then is not compared. */
 function verdictsOf(pair) {
     const { then } = stage.event, now = verdictOf(pair.now);
     return then && then.status === 0 ? verdictChips(verdictOf(pair.then), now) : [verdictChip(now)];

@@ -1,16 +1,16 @@
-/* The picture on the stage: faces in pixels, lines and text over them. The pixels are coarse where
- * fine ones would take long, and fine once nothing moves. The page's own are stage.solids (raster.js),
- * shadeFaces(), which colours their faces, and drawScene(), which draws all. */
+/* The picture: faces in pixels, with lines and text on top. While it changes, pixels are coarse if
+ * fine ones take long. Each page defines stage.solids (raster.js), shadeFaces(), which sets the
+ * colours of faces, and drawScene(), which draws all. */
 
-const FINE = 2;               /* pixels of the raster for one of the page */
+const FINE = 2;               /* raster pixels for each page pixel at rest */
 const PIXELS_MAX = 6e6;
 const REST_AFTER = 150;       /* milliseconds */
-const SLOW = 90;              /* milliseconds that a picture may take */
+const SLOW = 90;              /* milliseconds: a slower picture makes the next one coarser */
 const COARSEST = 0.35;
 
 const picture = {
-    canvas: document.createElement("canvas"), image: null, /* the raster's pixels */
-    scale: 1, coarse: 1,    /* pixels for one of the page: now, and while it moves */
+    canvas: document.createElement("canvas"), image: null, /* pixels of the raster */
+    scale: 1, coarse: 1,    /* raster pixels for each page pixel: now, and while it changes */
     resting: 0,             /* the timer */
 };
 
@@ -26,7 +26,7 @@ function sizePicture(wanted) {
     picture.image = picture.canvas.getContext("2d").createImageData(width, height);
 }
 
-/* edges: how dark they are between faces, 0 to 1. */
+/* edges: darkness of edges between faces, 0 to 1 */
 function drawFaces(context, project, edges) {
     clearRaster();
     shadeFaces();
@@ -47,7 +47,7 @@ function drawStage(wanted) {
     return performance.now() - begin;
 }
 
-/* Coarser where pictures take long, and less coarse again where they do not. */
+/* Draws a picture that changes: coarser if the last one was slow, finer if it was fast. */
 function drawMoving() {
     const taken = drawStage(picture.coarse);
     const times = taken > SLOW ? 0.75 : taken < SLOW / 3 ? 1.25 : 1;

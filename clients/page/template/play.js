@@ -1,5 +1,5 @@
-/* The moment of the window that is shown: a slider, a button that lets it run, and bands above it
- * that tell when there is contact. The moment is a part of stage.event.T seconds. */
+/* The moment of the window to show: a slider, a play button, and bands above the slider where there
+ * is contact. The moment is a fraction of stage.event.T seconds. */
 
 const PLAY_SECONDS = 3;
 const player = { running: false, before: 0 };
@@ -10,8 +10,8 @@ function percent(part) {
     return `${(100 * clamp(part, 0, 1)).toFixed(3)}%`;
 }
 
-function makeBand(kind, times, T, said) {
-    const band = make("div", { class: `band ${kind}`, title: said });
+function makeBand(kind, times, T, label) {
+    const band = make("div", { class: `band ${kind}`, title: label });
     band.style.left = percent(times[0] / T);
     band.style.width = `max(3px, ${percent(times[1] / T - times[0] / T)})`;
     return band;

@@ -1,17 +1,16 @@
-/* Faces on a grid of pixels. Faces belong to groups: a body, or what meets of a mesh. Each pixel keeps
- * the nearest face of each group, and of them the nearest SLOTS, near ones first. This needs no
- * graphics hardware and shows the same everywhere. A 3D library would add some 600 kB to each page,
- * since a page is one file that loads nothing. */
+/* A software rasteriser. Faces belong to groups: a body, or the intersecting faces of a mesh. Each
+ * pixel keeps the nearest face of each group, and of these the nearest SLOTS, sorted by depth. It
+ * needs no graphics hardware, and gives the same picture everywhere. A 3D library would add some
+ * 600 kB to each page, since a page is a single file that fetches nothing. */
 
 const SLOTS = 4;
 const NO_FACE = -1;
-const SAME_DEPTH = 1e-6;    /* of nearly equal depths the first drawn stays in front */
+const SAME_DEPTH = 1e-6;    /* with nearly equal depths the face drawn first stays in front */
 
-/* [pixel * SLOTS + slot]: depth towards the viewer, and the number of the face. */
+/* [pixel * SLOTS + slot]: depth towards the viewer, and id of the face. */
 const raster = { width: 0, height: 0, near: null, id: null };
 
-/* By the number of the face: red, green and blue, a byte each; how much of what is behind it covers,
- * 0 to 1; its group. */
+/* By the id of the face: red, green and blue, a byte each; opacity, 0 to 1; group. */
 const faces = { shade: null, cover: null, group: null };
 
 function allotFaces(count) {
@@ -49,21 +48,21 @@ function fillPixel(pixel, id, group, z) {
     ids[at] = id;
 }
 
-/* A face too small to cover the middle of a pixel is a dot, so that a crowd of them is still seen. */
+/* Draws a face that covers no pixel centre as a dot, so that many small faces remain visible. */
 function fillDot(id, group, x, y, z) {
     const column = Math.floor(x), row = Math.floor(y);
     if (column >= 0 && row >= 0 && column < raster.width && row < raster.height)
         fillPixel(row * raster.width + column, id, group, z);
 }
 
-/* The edges of a face that are not level. In a row at y the face lies between those that go down,
- * on its right, and those that go up; each is at x + slope * (y - its y). */
+/* The edges of a face that are not horizontal. In the row at y the face lies to the left of those
+ * that go down and to the right of those that go up; an edge is at x + slope * (y - its y). */
 const edges = {
     count: 0, x: new Float64Array(3), y: new Float64Array(3), slope: new Float64Array(3),
     down: new Uint8Array(3),
 };
 
-/* Of the edge from p to q of a face whose corners go around clockwise, as it is seen. */
+/* Adds the edge from p to q of a face whose corners are clockwise on the screen. */
 function addEdge(px, py, qx, qy) {
     const { count } = edges;
     if (qy === py)
@@ -75,14 +74,14 @@ function addEdge(px, py, qx, qy) {
     edges.count = count + 1;
 }
 
-/* The change of depth from pixel to pixel: across, and down. ux and uy are the way from the first
- * corner to the second, vx and vy that to the third, area is twice the face's. */
+/* The change of depth from pixel to pixel, horizontally and vertically. (ux, uy): first corner to
+ * second; (vx, vy): first to third; area: twice that of the face. */
 function slopes(p, ux, uy, vx, vy, area) {
     const uz = p[5] - p[2], vz = p[8] - p[2];
     return [(uz * vy - vz * uy) / area, (vz * ux - uz * vx) / area];
 }
 
-/* True where the face covers the middle of a pixel. */
+/* Fills the pixels whose centres the face covers. Returns whether there are any. */
 function fillRows(id, group, p, [across, down]) {
     const { width, height } = raster;
     const left = Math.min(p[0], p[3], p[6]), right = Math.max(p[0], p[3], p[6]);
@@ -118,7 +117,7 @@ function isOutside(p) {
 
 const FLAT = 1e-9; /* square pixels */
 
-/* p: 9 numbers, x and y in pixels and z towards the viewer of each corner. */
+/* p: x and y in pixels and z towards the viewer, for each of 3 corners. */
 function fillFace(id, group, p) {
     if (isOutside(p))
         return;
@@ -138,7 +137,7 @@ function fillFace(id, group, p) {
             (p[2] + p[5] + p[8]) / 3);
 }
 
-/* Where the vertices are, in pixels of the raster: rows of a matrix with a shift. */
+/* Projects the vertices to pixels of the raster. rows: a 3 x 4 matrix. */
 function projectSolid(solid, rows) {
     const { corner } = solid, count = corner.length;
     solid.seen ??= new Float64Array(count);
@@ -148,7 +147,7 @@ function projectSolid(solid, rows) {
                 + rows[4 * k + 2] * corner[i + 2] + rows[4 * k + 3];
 }
 
-/* The matrix, of what project() does to points. */
+/* The matrix of project(), which is affine. */
 function rowsOf(project, scale, shift) {
     const rows = new Float64Array(12), origin = project(shift);
     for (let axis = 0; axis < 3; axis++) {
@@ -163,8 +162,8 @@ function rowsOf(project, scale, shift) {
 
 const corners = new Float64Array(9);
 
-/* solid: corner: x, y, z of each vertex; face: the vertices of each triangle; id: the face that each
- * triangle is of; shift: how far it gets in the window. */
+/* Draws a solid. corner: x, y, z of each vertex; face: vertices of each triangle; id: of the face
+ * that each triangle belongs to; shift: displacement during the window. */
 function rasterise(solid, project, scale, moment) {
     projectSolid(solid, rowsOf(project, scale, solid.shift.map((value) => value * moment)));
     const { face, seen, id } = solid;
@@ -188,7 +187,7 @@ function isOpaque(id) {
     return faces.cover[id] === 1;
 }
 
-/* The face that is seen at a place: an opaque one before others. */
+/* The id of the face at a pixel: the first opaque one, otherwise the nearest. */
 function faceAt(column, row) {
     if (!(column >= 0 && row >= 0 && column < raster.width && row < raster.height))
         return NO_FACE;
@@ -199,7 +198,7 @@ function faceAt(column, row) {
 
 /* ---- Colours of pixels ---- */
 
-const COVER_VEIL = 0.26; /* how much a face covers of an opaque one behind it */
+const COVER_VEIL = 0.26; /* opacity of a face in front of an opaque one */
 
 function holds(pixel, face) {
     for (let at = pixel * SLOTS; at < (pixel + 1) * SLOTS; at++)
@@ -215,7 +214,7 @@ function holdsOpaque(pixel) {
     return false;
 }
 
-/* edges: how dark they are, 0 to 1. */
+/* edges: darkness of edges, 0 to 1 */
 function paintPixel(pixels, pixel, edges) {
     const { id, width } = raster, first = pixel * SLOTS, to = 4 * pixel;
     const hasOpaque = holdsOpaque(pixel);
@@ -236,7 +235,7 @@ function paintPixel(pixels, pixel, edges) {
     pixels[to + 3] = 255 * (1 - left);
 }
 
-/* pixels: red, green, blue and how much they cover, a byte each. */
+/* pixels: red, green, blue and opacity, a byte each */
 function paintPixels(pixels, edges) {
     for (let pixel = 0; pixel < raster.width * raster.height; pixel++) {
         if (raster.id[pixel * SLOTS] === NO_FACE)

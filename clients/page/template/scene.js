@@ -1,11 +1,11 @@
-/* The chosen query as a scene: its frames, and the camera that sees them. */
+/* The scene of the chosen query: its frames and its camera. */
 
-/* Queries of the same bodies are taken for steps of time, and seen from the same point. */
+/* Queries with the same bodies are steps of one motion, and share a camera. */
 const cameras = new Map();
 
-/* ---- Taking an event in ---- */
+/* ---- Loading an event ---- */
 
-/* What can be drawn in one picture: of one dimension. */
+/* The frames that one picture can show: those with the dimension of the first. */
 function drawableFrames(event) {
     const frames = framesOf(event), first = frames.find((frame) => frame.shape);
     for (const frame of frames) {
@@ -33,7 +33,8 @@ function groupOf(event, drawable) {
     return `${drawable[0].shape.dim}:${event.frames.map((frame) => frame[0]).join(" ")}`;
 }
 
-/* What was seen so far is good for this event too, if it lies within and is not lost in it. */
+/* Whether the camera also suits this event: the event is inside its bounds, and not too small in
+ * them. */
 function fits(camera, bounds) {
     const all = camera.bounds, step = extent(all) * 0.02;
     return extent(bounds) > extent(all) / 8
@@ -58,7 +59,7 @@ function setScene(event) {
     redrawStage();
 }
 
-/* The bodies for the raster: each a group of its own, its polygons cut into triangles. */
+/* Sets the solids of the raster: a group for each body, with polygons divided into triangles. */
 function setSolids(event) {
     let count = 0;
     stage.solids = stage.drawable.map((frame) => {
@@ -75,7 +76,7 @@ function setSolids(event) {
     allotFaces(count);
 }
 
-/* The camera of the group, if what it sees holds the event's frames; else a new one. */
+/* Reuses the camera of the group if it suits the event; otherwise makes a new one. */
 function setCamera(event) {
     const group = groupOf(event, stage.drawable), old = cameras.get(group);
     const bounds = old && boundsOf(old.units, stage.drawable, event.T);
@@ -91,8 +92,8 @@ function setCamera(event) {
     fit(stage.camera.bounds);
 }
 
-/* Bounds that hold the queries of the same bodies before and after it too, as far as these are of
- * the same size. */
+/* Bounds that also contain neighbouring queries with the same bodies, as long as these are of
+ * similar size. */
 const AROUND = 300, AROUND_FRAMES = 200;
 
 function widened(event, units, bounds) {
@@ -113,7 +114,7 @@ function widened(event, units, bounds) {
     return all;
 }
 
-/* ---- What is to be seen ---- */
+/* ---- Fitting the view ---- */
 
 function fitAll() {
     if (!stage.camera)
@@ -123,7 +124,7 @@ function fitAll() {
     redrawStage();
 }
 
-/* The frames of the chosen pair, at the moment that is shown; and its boxes. */
+/* Fits the frames of the chosen pair at the current moment, and its boxes. */
 function fitPair() {
     const pair = chosenPair();
     if (!stage.camera || !pair)

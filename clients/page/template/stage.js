@@ -1,15 +1,15 @@
-/* The scene of the chosen query: bodies at a moment of the window in the colours of their verdicts,
- * dashed where they are at its end, arrows on the way, the boxes of the contacts. 2D as it lies in the
- * plane, 3D turned as the mouse turns it. */
+/* Draws the scene of the chosen query: bodies at a moment of the window, coloured by verdict;
+ * dashed outlines at the end of the window; arrows along the motion; boxes of contacts. 2D is drawn
+ * in the plane, 3D can be rotated with the mouse. */
 
-const LABELS_MAX = 80;  /* more bodies cannot be labelled: their ids show when pointed at */
+const LABELS_MAX = 80;  /* with more bodies ids show only at the pointer */
 const BOXES_MAX = 2000;
 const ARROW_MIN = 5;
 
 /* ---- Frames ---- */
 
-/* Frames that do not belong to the chosen pair step back. */
-function isBack(index) {
+/* Frames outside the chosen pair are dimmed. */
+function isDimmed(index) {
     const pair = chosenPair();
     return pair && index !== pair.a && index !== pair.b;
 }
@@ -19,7 +19,8 @@ const EDGE_DARK = 0.7;
 
 function shadeFaces() {
     for (const { frame, first, light } of stage.solids) {
-        const cover = (stage.units.dim === 2 ? COVER_2D : COVER_3D) * (isBack(frame.index) ? 0.4 : 1);
+        const cover = (stage.units.dim === 2 ? COVER_2D : COVER_3D)
+            * (isDimmed(frame.index) ? 0.4 : 1);
         light.forEach((value, i) => {
             shadeFace(first + i, COLOURS[stage.worst[frame.index]], value);
             faces.cover[first + i] = cover;
@@ -28,13 +29,13 @@ function shadeFaces() {
     }
 }
 
-/* Behind the faces, but for the body that is pointed at: through them their own hidden edges show
- * faintly. Bodies without a face to be seen show here. */
+/* Drawn behind the faces, except for the body at the pointer: hidden edges show faintly through the
+ * faces. Bodies without a visible face show here. */
 function drawOutlines(context, project) {
     for (const solid of stage.solids) {
         const { index } = solid.frame;
         context.lineWidth = index === stage.pointed ? 3.6 : 2;
-        context.strokeStyle = strokeOf(stage.worst[index], isBack(index) ? 0.45 : 1);
+        context.strokeStyle = strokeOf(stage.worst[index], isDimmed(index) ? 0.45 : 1);
         drawEdges(context, cornersAt(solid, stage.moment).map(project), solid.faces);
     }
 }
@@ -53,7 +54,7 @@ function drawHead(context, from, to) {
     context.fill();
 }
 
-/* Where the window has no length there is a direction only. */
+/* A window of length 0 has a direction only. */
 function arrowEnd(project, { frame, middle, shift }, from) {
     if (stage.event.T > 0)
         return project(plus(middle, shift, 1));
@@ -68,7 +69,7 @@ function drawMotion(context, project, solid) {
     if (stage.event.T > 0) {
         context.setLineDash([4, 4]);
         context.lineWidth = 1.1;
-        context.strokeStyle = strokeOf(stage.worst[index], isBack(index) ? 0.25 : 0.85);
+        context.strokeStyle = strokeOf(stage.worst[index], isDimmed(index) ? 0.25 : 0.85);
         drawEdges(context, cornersAt(solid, 1).map(project), solid.faces);
         context.setLineDash([]);
     }
@@ -77,7 +78,7 @@ function drawMotion(context, project, solid) {
     const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
     if (!(length >= ARROW_MIN))
         return;
-    context.globalAlpha = isBack(index) ? 0.25 : 1;
+    context.globalAlpha = isDimmed(index) ? 0.25 : 1;
     context.strokeStyle = context.fillStyle = stage.theme.ink;
     context.lineWidth = 1.6;
     drawLine(context, from, to);
@@ -87,7 +88,7 @@ function drawMotion(context, project, solid) {
 
 /* ---- Boxes ---- */
 
-/* Many boxes are drawn lightly. */
+/* More boxes than this are drawn lightly. */
 const CROWD = 150;
 
 function drawBox(context, project, box, then) {
@@ -108,7 +109,7 @@ function drawBox(context, project, box, then) {
     context.setLineDash([]);
 }
 
-/* As it is now; as it was then where it differs, or where there is none now. */
+/* The new box of a contact, and the recorded one if it differs or there is no new one. */
 function boxesOf(pair) {
     const then = boxOf(pair.then), now = boxOf(pair.now);
     const differs = pair.differs && then && JSON.stringify(then) !== JSON.stringify(now);
@@ -132,7 +133,7 @@ function drawBoxes(context, project) {
 
 /* ---- Gaps ---- */
 
-/* From the nearest point of one body to that of the other. */
+/* Draws the segment between the nearest points of two bodies. */
 function drawGaps(context, project) {
     const { dim } = stage.units, one = chosenPair();
     context.strokeStyle = stage.theme.link;
@@ -157,7 +158,7 @@ function collides(a, b) {
     return Math.abs(a.x - b.x) < a.half + b.half + 2 && Math.abs(a.y - b.y) < 13;
 }
 
-/* The first place near the wanted one where no label stands yet; else the wanted one. */
+/* The first free place near the wanted one; otherwise the wanted one. */
 function placeLabel(wanted, labels) {
     for (const [x, y] of LABEL_PLACES) {
         const label = { ...wanted, x: wanted.x + x, y: wanted.y + y };
@@ -187,7 +188,7 @@ function drawLabels(context, project) {
         labels.push(placeLabel({ x, y, half, text, index: frame.index }, labels));
     }
     for (const { x, y, text, index } of labels) {
-        context.globalAlpha = isBack(index) && index !== stage.pointed ? 0.4 : 1;
+        context.globalAlpha = isDimmed(index) && index !== stage.pointed ? 0.4 : 1;
         drawLabel(context, text, x, y + 4, stage.theme.ink);
     }
     context.globalAlpha = 1;
@@ -200,7 +201,7 @@ function drawScene(context, project) {
     context.save();
     if (stage.units.dim === 2) {
         context.beginPath();
-        context.rect(inner().left, 0, stage.width, stage.height - inner().bottom);
+        context.rect(plotMargins().left, 0, stage.width, stage.height - plotMargins().bottom);
         context.clip();
     }
     drawOutlines(context, project);

@@ -1,13 +1,13 @@
-/* The timeline: an overview of the whole, an axis, a row for each pair of bodies.
+/* The timeline: an overview, an axis, and a row for each pair of bodies.
  *
- * In a row the verdict of a query holds until the next query of the row; where results stop
- * coming before, the bar ends. The verdicts differ in height, not in colour alone. */
+ * In a row the verdict of a query holds until the next query of the row. Where queries pause, the
+ * bar ends. Verdicts differ in height as well as in colour. */
 
 const ROW = 26, OVERVIEW = 20, AXIS_TOP = 34, ROWS_TOP = 62; /* pixels */
-const EDGE = 12;                 /* left and right of the first and the last query */
+const EDGE = 12;                 /* pixels left of the first query and right of the last */
 const BAR_HEIGHT = { [-1]: 4, 0: 4, 1: 8, 2: 14, 3: 20 };
-const SHORTEST_BAR = 3, DOT_ROOM = 9, FLAG_ROOM = 13;
-const PAUSE_OF_ROW = 10;         /* mean steps of the row, in queries: a longer one ends a bar */
+const SHORTEST_BAR = 3, DOT_SPACE = 9, FLAG_SPACE = 13;
+const PAUSE_OF_ROW = 10;         /* in mean steps of the row: a longer pause ends a bar */
 const ROWS_FIRST = 8, ROWS_MORE = 40;
 const SHORTEST_VIEW = 2e-5;      /* seconds */
 
@@ -15,7 +15,7 @@ const clock = makeClock(events.map((event) => event.seconds));
 const places = events.map((event) => clock.at(event.seconds));
 
 const timeline = {
-    from: 0, to: 1,              /* places on the clock's line */
+    from: 0, to: 1,              /* visible range, places of the clock */
     width: 600,                  /* pixels */
     shown: ROWS_FIRST, filter: [], rows: [],
 };
@@ -36,7 +36,7 @@ function toPlace(x) {
     return timeline.from + (x - EDGE) / innerWidth() * (timeline.to - timeline.from);
 }
 
-/* ---- What is to be seen ---- */
+/* ---- View ---- */
 
 function setView(from, to) {
     const [first, last] = wholeView();
@@ -51,13 +51,13 @@ function zoomAround(place, factor) {
     setView(place - (place - timeline.from) * factor, place + (timeline.to - place) * factor);
 }
 
-/* Moves the view as far as it takes to see the event. */
-function seeEvent(at) {
-    const length = timeline.to - timeline.from, place = places[at], room = length * 0.08;
-    if (place < timeline.from + room)
-        setView(place - room, place - room + length);
-    else if (place > timeline.to - room)
-        setView(place + room - length, place + room);
+/* Moves the view just far enough to show the event. */
+function scrollToEvent(at) {
+    const length = timeline.to - timeline.from, place = places[at], margin = length * 0.08;
+    if (place < timeline.from + margin)
+        setView(place - margin, place - margin + length);
+    else if (place > timeline.to - margin)
+        setView(place + margin - length, place + margin);
 }
 
 function matches(row) {
@@ -68,7 +68,7 @@ function matches(row) {
 
 /* ---- Bars ---- */
 
-/* Of a row, the mean of its steps: in queries of the log, and on the clock's line. */
+/* The mean step of a row: in queries of the log, and on the clock. */
 function rowSteps(row) {
     const last = row.at.length - 1;
     const mean = (numbers) => last > 0 ? (numbers(last) - numbers(0)) / last : 0;
@@ -76,8 +76,8 @@ function rowSteps(row) {
     return row.steps;
 }
 
-/* Whether results stop coming after the row's query number i: nothing is asked for long, or much
- * else is before this pair. Uneven steps alone are no pause. */
+/* Whether there is a pause after query i of the row: a long time without queries, or many queries
+ * without this pair. Uneven steps alone are not a pause. */
 function isPauseAfter(row, i) {
     if (i + 1 === row.at.length)
         return true;
@@ -86,26 +86,26 @@ function isPauseAfter(row, i) {
         ({ from }) => from >= events[at].seconds && from < events[next].seconds);
 }
 
-/* From where on differences alone were kept. */
+/* The place from which on only differences were kept. */
 const leftOutPlace = data.left_out.every((count) => count === 0)
     ? Infinity : clock.at((Number(data.left_span[0]) - Number(data.begin)) / 1e6);
 
-/* The place where the bar of the row's query number i ends: not in what was left out. */
+/* The place where the bar of query i of the row ends: before the range that was left out. */
 function barEnd(row, i) {
     const begin = places[row.at[i]], cut = begin < leftOutPlace ? leftOutPlace : Infinity;
     return Math.min(cut, isPauseAfter(row, i)
         ? begin + Math.min(rowSteps(row).place, clock.length / 100) : places[row.at[i + 1]]);
 }
 
-/* The first and the last query of the row that may be seen. */
+/* The range of queries of the row that may be visible. */
 function visibleRange(row) {
     const from = lowerBound(row.at, lowerBound(places, timeline.from));
     const to = lowerBound(row.at, lowerBound(places, timeline.to + 1e-12));
     return [Math.max(from - 1, 0), Math.min(to + 1, row.at.length)];
 }
 
-/* Runs of the same verdict, in pixels. Of what would be narrower than a pixel and a half, the worst
- * verdict is drawn. */
+/* Runs of equal verdicts, in pixels. Runs narrower than a pixel and a half are merged, with the
+ * worst verdict. */
 function runsOf(row) {
     const runs = [], [begin, end] = visibleRange(row);
     for (let i = begin; i < end; i++) {
@@ -143,23 +143,23 @@ function drawRun(run, middle) {
         + ` from ${timeText(events[run.at].seconds)} s`));
 }
 
-/* The queries themselves, where there is room for them. */
+/* Draws the queries as dots if there is space. */
 function drawDots(row, middle) {
     const [begin, end] = visibleRange(row);
-    if ((end - begin) * DOT_ROOM > timeline.width)
+    if ((end - begin) * DOT_SPACE > timeline.width)
         return [];
     return row.at.slice(begin, end).map((at) => draw("circle",
         { class: "dot", cx: toX(places[at]).toFixed(2), cy: middle, r: 1.6 }));
 }
 
-/* Differences; where they are too close, one flag says how many. */
+/* Differences as flags; close ones become one flag with their number. */
 function flagsOf(row) {
     const flags = [];
     for (const at of row.differs) {
         const x = toX(places[at]), last = flags[flags.length - 1];
-        if (x < -FLAG_ROOM || x > timeline.width + FLAG_ROOM)
+        if (x < -FLAG_SPACE || x > timeline.width + FLAG_SPACE)
             continue;
-        if (last && x - last.x < (last.count > 1 ? 2 : 1) * FLAG_ROOM)
+        if (last && x - last.x < (last.count > 1 ? 2 : 1) * FLAG_SPACE)
             last.count++;
         else
             flags.push({ x, at, count: 1 });
@@ -169,16 +169,16 @@ function flagsOf(row) {
 
 function drawFlag(flag, row, middle) {
     const many = flag.count > 1, width = many ? 15 + 6.5 * String(flag.count).length : 13;
-    const said = `${counted(flag.count, "difference", "differences")}, bodies `
+    const label = `${counted(flag.count, "difference", "differences")}, bodies `
         + `${row.ids.map(bodyName).join(" and ")}, from ${timeText(events[flag.at].seconds)} s`;
     return draw("g", {
-        class: "flag", role: "button", tabindex: 0, "aria-label": said, "data-at": flag.at,
+        class: "flag", role: "button", tabindex: 0, "aria-label": label, "data-at": flag.at,
         transform: `translate(${flag.x.toFixed(2)} ${middle})`,
     }, draw("path", { class: "pole", d: "M0 -12V12" }),
         draw("rect", { x: -0.75, y: -12.5, width, height: 13, rx: 2.5 }),
         draw("text", { x: 5.7, y: -2.2 }, "≠"),
         many ? draw("text", { class: "many", x: 12, y: -2.4 }, String(flag.count)) : null,
-        draw("title", {}, said));
+        draw("title", {}, label));
 }
 
 function drawRow(row, number) {
@@ -191,7 +191,7 @@ function drawRow(row, number) {
 
 /* ---- Axis and overview ---- */
 
-/* Between two breaks the axis is true. */
+/* The ranges between breaks, in which the axis is linear. */
 function segments() {
     const [, last] = wholeView();
     let from = -Infinity;
@@ -220,7 +220,7 @@ function ticks() {
     return seen;
 }
 
-/* Half the width of a text on the axis, in pixels, and a little. */
+/* Half the width of a text on the axis with a margin, pixels. */
 function halfOf(text) {
     return 4.2 * text.length + 3;
 }
@@ -229,8 +229,8 @@ function breakText(fold) {
     return `⋯ ${durationText(fold.seconds)}`;
 }
 
-/* The texts of the axis that do not overprint each other: that of the cursor is first, those of
- * breaks come before those of ticks. {x, text} of each; a text that would be cut is left out. */
+/* Selects axis labels that do not overlap: the cursor's first, then those of breaks, then ticks.
+ * Each is {x, text}; labels that do not fit into the width are left out. */
 function fitTexts(marks) {
     const at = cursorText(), kept = at ? [at] : [];
     const breaks = clock.breaks.map((fold) =>
@@ -271,7 +271,7 @@ function drawLeftOut(bottom) {
         draw("title", {}, "not shown from here on, but for differences"));
 }
 
-/* The whole, in columns of two pixels, each with its worst verdict. */
+/* The whole log in columns of two pixels, each with its worst verdict. */
 function overviewColumns(xOf) {
     const width = 2, columns = new Map();
     allRow.at.forEach((at, i) => {
@@ -303,7 +303,7 @@ function drawOverview() {
         ...overviewColumns(xOf), brush, ...flags);
 }
 
-/* {x, text} within the width, and the cursor's own x; or null. */
+/* The label of the cursor, moved into the width: {x, text}, with the x of the cursor; or null. */
 function cursorText() {
     const x = chosen.at < 0 ? -1 : toX(places[chosen.at]);
     if (x < 0 || x > timeline.width)
@@ -325,7 +325,7 @@ function drawCursor(bottom) {
 
 /* ---- Labels ---- */
 
-function rowSaid(row) {
+function rowText(row) {
     if (row === allRow)
         return "all queries: go to the next one";
     return `bodies ${row.ids.map(bodyName).join(" and ")}: `
@@ -338,12 +338,12 @@ function makeLabel(row) {
     const name = row === allRow ? "all queries" : row.ids.map(bodyName).join(" – ");
     return make("button", {
         class: "label", "data-row": row.key,
-        title: rowSaid(row), "aria-label": rowSaid(row), onclick: () => stepInRow(row),
+        title: rowText(row), "aria-label": rowText(row), onclick: () => stepInRow(row),
     }, make("span", { class: "name" }, name), row.differs.length === 0 ? null
         : make("span", { class: "badge" }, `≠ ${grouped(row.differs.length)}`));
 }
 
-/* The next query of the row that is worth a look: a difference or a contact, else any. */
+/* The query of the row to step to: the next difference or contact, otherwise the next one. */
 function stepInRow(row) {
     const worth = row.at.filter((at, i) => row.verdict[i] >= TOUCHING || row.differs.includes(at));
     const list = row === allRow || worth.length === 0 ? row.at : worth;
@@ -352,7 +352,7 @@ function stepInRow(row) {
         choose(next, row);
 }
 
-/* ---- The whole ---- */
+/* ---- Drawing ---- */
 
 function listRows() {
     const found = rows.filter(matches);
@@ -376,7 +376,7 @@ function markLabels() {
     }
 }
 
-/* The flag that has the focus is made anew: it is to have it again. */
+/* Flags are rebuilt: returns the focused one, so that its replacement can get the focus. */
 function focusedFlag() {
     const flag = document.activeElement?.closest(".flag"), row = flag?.closest(".row").dataset.row;
     return flag ? `[data-row="${row}"] .flag[data-at="${flag.dataset.at}"]` : "none";
@@ -402,8 +402,8 @@ const redrawTimeline = onceAFrame(drawTimeline);
 
 /* ---- Mouse and keyboard ---- */
 
-/* The query of the row that is meant at x: a difference that is near, else the one whose bar is
- * there, else the nearest. */
+/* The query of the row at x: a nearby difference, otherwise the one whose bar is at x, otherwise
+ * the nearest. */
 function eventAt(row, x) {
     let best = -1, distance = Infinity;
     for (const at of row.differs) {
@@ -426,7 +426,8 @@ function plotPoint(mouse) {
     return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
 }
 
-/* A run stands for several queries where they are narrow: the worst of them is meant. */
+/* Chooses the query at the pointer. A narrow run represents several queries: the worst is chosen.
+ */
 function clickPlot(mouse) {
     const flag = mouse.target.closest(".flag"), lane = mouse.target.closest(".row");
     const row = lane && (rowOf.get(lane.dataset.row) ?? allRow);
@@ -441,7 +442,7 @@ function clickPlot(mouse) {
     }
 }
 
-/* In the overview the view goes where the pointer is; elsewhere it is dragged along. */
+/* Moves the view: in the overview to the pointer, elsewhere with it. */
 function dragTo(begin, point) {
     const [first, last] = wholeView(), length = begin.to - begin.from;
     if (begin.y < OVERVIEW + 4) {

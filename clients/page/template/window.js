@@ -1,13 +1,12 @@
-/* The moment of the window that is shown: the contact intervals above the slider. And what the
- * mouse points at. */
+/* Contact intervals above the slider, and the tip at the pointer. */
 
 function isMoving(event) {
     return event.T > 0 && stage.drawable.some((frame) => frame.velocity !== null);
 }
 
-/* ---- Bands: when there is contact ---- */
+/* ---- Bands: times of contact ---- */
 
-/* [times now, times then where they differ] */
+/* [times now, times then if they differ] */
 function timesOfPair(pair) {
     const then = timesOf(pair.then), now = timesOf(pair.now);
     const differs = pair.differs && then && (!now || now[0] !== then[0] || now[1] !== then[1]);
@@ -37,7 +36,7 @@ function drawBands() {
     showMoment();
 }
 
-/* ---- What is pointed at ---- */
+/* ---- Pointer ---- */
 
 function point(at) {
     const index = at ? faces.group[faceBelow(at)] ?? -1 : -1;

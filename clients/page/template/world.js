@@ -1,13 +1,13 @@
-/* Frames and boxes as points to be drawn.
+/* Converts frames and boxes to points for drawing.
  *
- * Numbers may have any size. So everything is taken relative to the first body's position and scaled
- * by a power of two, such that all sums lie between -1 and 1: both are exact, or nearly so, and
- * neither is infinite. What lies farther out, infinite ends of boxes too, is cut. */
+ * Numbers may have any magnitude. So coordinates are relative to the first body's position, and
+ * scaled by a power of two such that all sums lie between -1 and 1. Both steps are nearly exact,
+ * and neither overflows. Coordinates farther out, including infinite ends of boxes, are clamped. */
 
 const CUT = 8;
 
-/* Corner k of a cuboid: bit i of k tells whether component i is added. Corner 0 of a simplex is the
- * origin, corner i + 1 the end of component i. */
+/* Corner k of a cuboid adds component i if bit i of k is set. Corner 0 of a simplex is the origin,
+ * corner i + 1 the end of component i. */
 const CUBOID_3D = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2],
     [4, 5, 7, 6]];
 const CUBOID_2D = [[0, 1, 3, 2]];
@@ -40,26 +40,26 @@ function largestOf(frames, T, origin) {
     return largest;
 }
 
-/* 2^power as two factors, of which none is infinite or 0. */
+/* 2^power as two factors, neither of which is infinite or 0. */
 function factors(power) {
     const half = Math.trunc(power / 2);
     return [2 ** half, 2 ** (power - half)];
 }
 
-/* Of the drawable bodies of an event. A sum of some dozen numbers, none larger than the largest, is
- * smaller than 1. */
+/* The units for the drawable bodies of an event. The scale leaves space for a sum of some dozen
+ * numbers of the largest magnitude to stay below 1. */
 function makeUnits(dim, frames, T) {
     const origin = frames[0].position, largest = largestOf(frames, T, origin);
     const power = largest > 0 ? -Math.floor(Math.log2(largest)) - 5 : 0;
     return { dim, origin, power, factor: factors(power) };
 }
 
-/* A length. */
+/* Converts a length. */
 function scaled(units, value) {
     return clamp(finite(value) * units.factor[0] * units.factor[1], -CUT, CUT);
 }
 
-/* A coordinate. */
+/* Converts a coordinate. */
 function placed(units, value, axis) {
     const difference = value - units.origin[axis];
     if (Number.isFinite(difference))
@@ -67,7 +67,7 @@ function placed(units, value, axis) {
     return scaled(units, value) - scaled(units, units.origin[axis]);
 }
 
-/* Back to a length of the world; may be infinite or 0 where the units are that large or small. */
+/* Converts back to a length of the world; may be infinite or 0 for extreme units. */
 function unscaled(units, value) {
     return value / units.factor[0] / units.factor[1];
 }
@@ -100,7 +100,7 @@ function middleOf(points) {
         / points.length);
 }
 
-/* A corner of a body in the world when the window begins, z = 0 in 2D. */
+/* A corner of a body in the world at the begin of the window; z = 0 in 2D. */
 function placeCorner(units, body, corner) {
     const out = [0, 0, 0];
     for (let axis = 0; axis < body.shape.dim; axis++) {
@@ -111,14 +111,14 @@ function placeCorner(units, body, corner) {
     return out;
 }
 
-/* How far a body gets in the window. */
+/* The displacement of a body during the window. */
 function shiftOf(units, body, T) {
     return [0, 1, 2].map((axis) => body.velocity && T > 0
         ? scaled(units, (body.velocity[axis] ?? 0) * T) : 0);
 }
 
-/* All frames of a body in one, when the window begins. faces: indices of corners; shift: how far it
- * gets in the window. */
+/* All frames of a body at the begin of the window. faces: indices of corners; shift: displacement
+ * during the window. */
 function outlineOf(units, body, T) {
     const { dim, frames } = body.shape, corners = [], faces = [];
     for (const given of frames) {
@@ -130,12 +130,12 @@ function outlineOf(units, body, T) {
     return { corners, faces, middle: middleOf(corners), shift: shiftOf(units, body, T) };
 }
 
-/* The same corners at a moment of the window, 0 to 1. */
+/* The corners at a moment of the window, 0 to 1. */
 function cornersAt({ corners, shift }, moment) {
     return corners.map((corner) => plus(corner, shift, moment));
 }
 
-/* An end is null where it is infinite, and a word where it is no number. */
+/* Converts an end of a box, which is null if infinite, and a word if NaN. */
 function boxEnd(units, value, axis, sign) {
     return typeof value === "number" ? placed(units, value, axis) : sign * CUT;
 }
@@ -153,9 +153,9 @@ function outlineOfBox(units, box) {
     return { corners, faces: units.dim === 3 ? CUBOID_3D : CUBOID_2D, middle: middleOf(corners) };
 }
 
-/* ---- Bounds: of many points, those that are farthest in some direction ---- */
+/* ---- Bounds: the extreme points in a set of directions ---- */
 
-/* Whole numbers from -2 to 2, without multiples: the axes and 92 others. */
+/* Directions with integer components from -2 to 2, without multiples: the axes and 92 others. */
 const DIRECTIONS = [];
 for (let k = 0; k < 125; k++) {
     const direction = [k % 5 - 2, Math.floor(k / 5) % 5 - 2, Math.floor(k / 25) - 2];
@@ -179,7 +179,7 @@ function boundsOfPoints(points) {
     };
 }
 
-/* Of the frames, one at least, over the window. */
+/* The bounds of one or more frames over the window. */
 function boundsOf(units, frames, T) {
     return boundsOfPoints(frames.map((frame) => outlineOf(units, frame, T))
         .flatMap((outline) => [...outline.corners, ...cornersAt(outline, 1)]));
@@ -191,7 +191,7 @@ function extent(bounds) {
 
 /* ---- Projection ---- */
 
-/* Where the viewer stands at first: in front, to the right and above. */
+/* The initial view: from the front, the right and above. */
 const OBLIQUE = { azimuth: -1.012, elevation: 0.419 };
 const VIEWS = {
     oblique: OBLIQUE,
@@ -200,10 +200,10 @@ const VIEWS = {
     z: { azimuth: -Math.PI / 2, elevation: Math.PI / 2 },
 };
 
-/* Where light comes from; of length 1. */
+/* Direction towards the light; unit length. */
 const LIGHT = [0.36, -0.48, 0.8];
 
-/* Right, up, and towards the viewer, of directions in unit coordinates. */
+/* Returns a function that converts unit coordinates to right, up, and towards the viewer. */
 function turn(dim, azimuth, elevation) {
     if (dim === 2)
         return (p) => [p[0], p[1], 0];
@@ -231,15 +231,15 @@ function dot(a, b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* How much a face looks up to the light: 0 to 1. */
+/* How much a face points towards the light, 0 to 1. */
 function lightOf(a, b, c) {
     const normal = cross(minus(b, a), minus(c, a)), length = Math.hypot(...normal);
     return length > 0 ? Math.abs(dot(normal, LIGHT)) / length : 0.5;
 }
 
-/* ---- Clipping: what lies far outside of the picture is not given to the canvas ---- */
+/* ---- Clipping: the canvas gets no coordinates far outside the picture ---- */
 
-/* Of a polygon the part on one side: keep(point) >= 0. */
+/* The part of a polygon with keep(point) >= 0. */
 function clipSide(points, keep) {
     const kept = [];
     points.forEach((point, i) => {

@@ -8,8 +8,8 @@ void bounds_range(const struct bounds *bounds, double range[2])
     range[1] = fmin(bounds->strict[1], bounds->closed[1]);
 }
 
-/* The open interval (p, q) meets the closed interval [u, v], u <= v, just if p < q, p < v and
- * u < q. (exact_span.c has the same rule for exact ratios: that method is to share nothing with
+/* The open interval (p, q) meets the closed interval [u, v], u <= v, if and only if p < q, p < v
+ * and u < q. (exact_span.c has the same rule for exact ratios: that method is to share nothing with
  * the others.) */
 enum fmb_verdict bounds_verdict(const struct bounds *bounds)
 {

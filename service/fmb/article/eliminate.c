@@ -1,21 +1,21 @@
-/* The article's algorithm (section 4, Listing 1), once for all dimensions and both motions.
+/* The article's algorithm (section 4, Listing 1), for all dimensions, static and moving.
  *
- * Method: the pair becomes rows M x <= y (rows.c). Fourier-Motzkin elimination takes the
- * variables out one by one, from the first: each row in which the variable has a positive
- * coefficient is added to each in which it has a negative one, scaled so that it cancels;
- * rows without it stay. Each new row is checked at once against inequality 11. The variable
- * left in the end is the time of a moving pair, else the last parameter, and its bounds are
- * tight. The box follows backwards: with the bounds of the later variables put in, the rows
- * kept from before a variable went bound it too, though no longer tightly; so the article's
- * box is loose.
+ * Method: the pair becomes rows M x <= y (rows.c). Fourier-Motzkin elimination removes the
+ * variables one by one, from the first. Each row in which the variable has a positive coefficient
+ * is added to each row in which it has a negative one, scaled so that the variable cancels. Rows
+ * without the variable stay. Each new row is checked at once against inequality 11. The last
+ * variable is the time of a moving pair, or else the last parameter, and its bounds are tight. The
+ * box follows by back substitution: with the bounds of the later variables inserted, the rows from
+ * before a variable was eliminated bound it too, but no longer tightly. The article's box is
+ * therefore loose.
  *
- * Where it differs from Listing 1, whose slips these are: the row of a tetrahedron counts in
- * all its variables; bounds that meet mean touching, not 'no intersection'; and rows know
- * whether they are strict, which tells touching from overlapping. Inequality 11 is asked of
- * all rows that are given, not of a's alone. All comparisons are with 0
- * or with each other: there is no epsilon.
+ * Differences from Listing 1, which correct its errors: the row of a tetrahedron includes all its
+ * variables; bounds that coincide mean touching, not 'no intersection'; and each row is marked as
+ * strict or not, which distinguishes touching from overlapping. Inequality 11 is checked for all
+ * given rows, not only those of a. All comparisons are with 0 or between computed values: there is
+ * no epsilon.
  *
- * Accuracy: none is promised. Rounding decides near contact. */
+ * Accuracy: none is guaranteed. Rounding decides near contact. */
 #include "inexact.h"
 #include "rows.h"
 

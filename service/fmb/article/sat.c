@@ -1,24 +1,25 @@
-/* The separating axis theorem, the article's comparator: two convex bodies are separated just
- * if they are so along one of the normals of their faces or of the planes of an edge of each
- * (Eberly and Schneider, the article's reference 1). A body that moves sweeps a body too: its
- * drift over the window is one more edge. When a moving pair is in contact is asked only where it
- * is: along each axis over an interval of time, and all of these must meet.
+/* The separating axis theorem, the article's comparator. Two convex bodies are separated if and
+ * only if they are separated along a normal of one of their faces, or of the plane of an edge of
+ * each (Eberly and Schneider, the article's reference 1). A moving body sweeps a convex body too:
+ * its drift over the window is one more edge. The times of contact are computed only for moving
+ * pairs in contact: along each axis the contact is an interval of time, and all of these must
+ * intersect.
  *
- * All is doubled, and relative to the origin of a, or to the centre where a is a cuboid: along an
- * axis n a cuboid extends to sum |n . c_i| on both sides of its centre, a sweep by w to |n . w| on
- * both sides of its middle, a tetrahedron from min(0, n . 2 c_i) to max(0, n . 2 c_i) from its
- * origin. No vertex is built. There is no branch but the way out at an axis that separates, and no
- * division but for the interval. The kernel is made for each dimension, pair of shapes and motion
- * by inlining.
+ * All numbers are doubled, and relative to the origin of a, or to its centre if a is a cuboid.
+ * Along an axis n a cuboid extends to sum |n . c_i| on both sides of its centre, a sweep by w to |n
+ * . w| on both sides of its middle, and a tetrahedron from min(0, n . 2 c_i) to max(0, n . 2 c_i)
+ * from its origin. No vertex is computed. The only branch is the exit at an axis that separates,
+ * and the only divisions are those for the interval. The kernel is instantiated for each dimension,
+ * pair of shapes and motion by inlining.
  *
- * Accuracy: none is promised. Rounding decides near contact. But there alone: products that would
- * be 0 if nothing rounded, as that of an edge with its own normal, are computed like the others.
- * The normal of edges that are nearly parallel is made of rounding errors; it is a direction all
- * the same, and extents along it are as good as along any other.
+ * Accuracy: none is guaranteed. Rounding decides near contact, but only there: products that would
+ * be 0 if nothing rounded, such as that of an edge with its own normal, are computed like the
+ * others. The normal of nearly parallel edges consists of rounding errors. It is a direction all
+ * the same, and extents along it are as accurate as along any other.
  *
  * This file is compiled with -ffinite-math-only -fno-signed-zeros (Makefile), so that least() and
- * most() are one instruction. They change no bit of an answer of sat_decide(), where all numbers
- * are finite and the sign of a 0 is not asked for. */
+ * most() are one instruction each. These options change no bit of an answer of sat_decide(), where
+ * all numbers are finite and the sign of a 0 is not used. */
 #include "inexact.h"
 
 #ifndef __OPTIMIZE__ /* megabytes of it, for nothing */
@@ -68,9 +69,9 @@ struct sides {
 
 enum purpose { VERDICT, WHEN };
 
-/* A search along one axis after the other. (The sides are no part of it: a compiler does not see
- * through a struct with arrays that are indexed.) */
-struct search {
+/* A search along one axis after another. (The sides are not members: compilers do not optimize
+ * structs with arrays that are indexed.) */
+struct sat_search {
     struct sides *sides;
     struct kind kind;
     enum purpose purpose;
@@ -94,12 +95,12 @@ INLINE double most(double x, double y)
     return x > y ? x : y;
 }
 
-struct range {
+struct sat_interval {
     double low, high;
 };
 
-INLINE struct range extent(const int dim, const bool simplex, const double (*edge)[3],
-                           const double *normal)
+INLINE struct sat_interval extent(const int dim, const bool simplex, const double (*edge)[3],
+                                  const double *normal)
 {
     double at[3] = {0};
     UNROLL(3)
@@ -107,16 +108,17 @@ INLINE struct range extent(const int dim, const bool simplex, const double (*edg
         at[i] = dot(dim, normal, edge[i]);
     if (simplex) {
         const double low = least(at[0], at[1]), high = most(at[0], at[1]);
-        return dim == 2 ? (struct range){least(low, 0), most(high, 0)}
-                        : (struct range){least(low, least(at[2], 0)), most(high, most(at[2], 0))};
+        return dim == 2
+                   ? (struct sat_interval){least(low, 0), most(high, 0)}
+                   : (struct sat_interval){least(low, least(at[2], 0)), most(high, most(at[2], 0))};
     }
     const double reach = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
-    return (struct range){-reach, reach};
+    return (struct sat_interval){-reach, reach};
 }
 
 /* The pair is in contact along the axis while low <= start + 2 tau slope <= high. A slope of 0
  * says nothing of tau, as the verdict is known to be contact. */
-INLINE void narrow(struct search *search, struct range range, double start, double slope)
+INLINE void narrow(struct sat_search *search, struct sat_interval range, double start, double slope)
 {
     const double still = slope == 0, rate = 2 * slope + still; /* never 0 */
     const double low = (range.low - start) / rate, high = (range.high - start) / rate;
@@ -125,13 +127,13 @@ INLINE void narrow(struct search *search, struct range range, double start, doub
 }
 
 /* False: the axis separates. One of no length has no extent, and says nothing. */
-INLINE bool meet_along(struct search *search, const double *normal)
+INLINE bool meet_along(struct sat_search *search, const double *normal)
 {
     const struct kind kind = search->kind;
     const struct sides *sides = search->sides;
-    const struct range a = extent(kind.dim, kind.a_simplex, sides->a, normal);
-    const struct range b = extent(kind.dim, kind.b_simplex, sides->b, normal);
-    const struct range range = {a.low - b.high, a.high - b.low};
+    const struct sat_interval a = extent(kind.dim, kind.a_simplex, sides->a, normal);
+    const struct sat_interval b = extent(kind.dim, kind.b_simplex, sides->b, normal);
+    const struct sat_interval range = {a.low - b.high, a.high - b.low};
     const double start = dot(kind.dim, normal, sides->offset);
     const double slope = kind.moving ? dot(kind.dim, normal, sides->drift) : 0;
     if (search->purpose == WHEN) {
@@ -145,7 +147,7 @@ INLINE bool meet_along(struct search *search, const double *normal)
 }
 
 /* Along the normal of the plane of two edges; in 2D of the first. */
-INLINE bool meet_across(struct search *search, const double *u, const double *v)
+INLINE bool meet_across(struct sat_search *search, const double *u, const double *v)
 {
     if (search->kind.dim == 2)
         return meet_along(search, (const double[3]){-u[1], u[0], 0});
@@ -155,7 +157,7 @@ INLINE bool meet_across(struct search *search, const double *u, const double *v)
 }
 
 /* The faces that components span: in 2D, where a face is an edge, it stands alone. */
-INLINE bool meet_across_components(struct search *search, const double (*edge)[3])
+INLINE bool meet_across_components(struct sat_search *search, const double (*edge)[3])
 {
     return meet_across(search, edge[0], edge[1]) &&
            meet_across(search, edge[1], search->kind.dim == 2 ? edge[1] : edge[2]) &&
@@ -164,7 +166,7 @@ INLINE bool meet_across_components(struct search *search, const double (*edge)[3
 
 /* The face of a simplex opposite to its origin, and its other edges, which are set here: most
  * pairs that are separated are known to be so before. */
-INLINE bool meet_across_last_face(struct search *search, const bool simplex, double (*edge)[3])
+INLINE bool meet_across_last_face(struct sat_search *search, const bool simplex, double (*edge)[3])
 {
     const int dim = search->kind.dim;
     if (!simplex)
@@ -180,7 +182,7 @@ INLINE bool meet_across_last_face(struct search *search, const bool simplex, dou
     return dim == 2 ? meet_across(search, edge[2], edge[2]) : meet_across(search, edge[3], edge[4]);
 }
 
-INLINE bool meet_across_edges(struct search *search, const double (*edge)[3], const int count,
+INLINE bool meet_across_edges(struct sat_search *search, const double (*edge)[3], const int count,
                               const double (*other)[3], const int other_count)
 {
     ROLL for (int i = 0; i < count; i++)
@@ -197,7 +199,7 @@ INLINE int edge_count(const bool simplex)
 }
 
 /* Along all axes of the bodies themselves. */
-INLINE bool meet_at_some_time(struct search *search)
+INLINE bool meet_at_some_time(struct sat_search *search)
 {
     const struct kind kind = search->kind;
     struct sides *sides = search->sides;
@@ -209,7 +211,7 @@ INLINE bool meet_at_some_time(struct search *search)
 }
 
 /* Along those that the drift adds. */
-INLINE bool meet_across_drift(struct search *search)
+INLINE bool meet_across_drift(struct sat_search *search)
 {
     const struct kind kind = search->kind;
     const struct sides *sides = search->sides;
@@ -222,7 +224,7 @@ INLINE bool meet_across_drift(struct search *search)
            meet_across_edges(search, sides->b, edge_count(kind.b_simplex), drift, 1);
 }
 
-INLINE bool meet(struct search *search)
+INLINE bool meet(struct sat_search *search)
 {
     return meet_at_some_time(search) && meet_across_drift(search);
 }
@@ -268,7 +270,7 @@ INLINE void decide(const struct inexact_pair *pair, const struct kind kind,
                    struct fmb_answer *answer)
 {
     struct sides sides;
-    struct search search = {.sides = &sides, .kind = kind, .purpose = VERDICT};
+    struct sat_search search = {.sides = &sides, .kind = kind, .purpose = VERDICT};
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
         sides.drift[axis] = pair->motion.drift[axis];

@@ -1,32 +1,34 @@
-/* The maker of certificates: what shows a verdict to one who does not believe the engine. The
- * point is found in certificate_point.c, the normal here.
+/* Writes certificates: proofs of a verdict that do not rely on the engine. certificate_point.c
+ * finds the point; this file finds the normal.
  *
- * As in exact_slabs.c, let D = A - B be the Minkowski difference, both frames with their
- * origins at 0, and W the segment along which the offset w of the frames goes, offset + tau
- * drift, tau in [0,1]. The frames meet where W meets D, and overlap where W meets ri D, the
- * relative interior. Let S = W - D: all b - a of all points and times. So a normal N proves
+ * As in exact_slabs.c, let D = A - B be the Minkowski difference of both frames with their origins
+ * at 0. Let W be the segment of the offset w of the frames, offset + tau drift, tau in [0,1]. The
+ * frames meet where W meets D, and overlap where W meets ri D, the relative interior. Let S = W -
+ * D: all b - a of all points and times. A normal N then proves
  *
  *   SEPARATED: N . s > 0 for all s of S;
- *   TOUCHING:  N . s >= 0 for all s of S, and N not constant on D: a point d of ri D then has
- *              N . d < max N . D <= min N . W, so no w of W, end of the window or not, is one.
+ *   TOUCHING:  N . s >= 0 for all s of S, and N is not constant on D: a point d of ri D then has
+ *              N . d < max N . D <= min N . W, so d is no point w of W, at any time of the window.
  *
- * S is a polytope whose edges are edges of A, of B, and the drift. Apart, 0 lies outside of S:
- * outside of its affine hull, or beyond a facet.
+ * S is a polytope whose edges are edges of A, edges of B, and the drift. If the frames are
+ * separated, 0 lies outside of S: outside of its affine hull, or beyond a facet.
  *
- * Touching, 0 lies on a facet of S whose normal is not constant on D. For 0 is not in ri S =
- * ri W - ri D (Rockafellar, Convex Analysis, corollary 6.6.2), and so it is in the relative
- * interior of a proper face F of S. Add up the normals of all facets that contain F: the sum N
- * is least on F alone. If each of these normals were constant on D, N were too; then F = W' - D
- * with a face W' of W, and from 0 in ri F = ri W' - ri D it would follow that W meets ri D.
+ * If they touch, 0 lies on a facet of S whose normal is not constant on D. Proof: 0 is not in ri S
+ * = ri W - ri D (Rockafellar, Convex Analysis, corollary 6.6.2), so it is in the relative interior
+ * of a proper face F of S. Let N be the sum of the normals of all facets that contain F; N takes
+ * its least value on F only. If each of these normals were constant on D, N would be too. Then F =
+ * W' - D with a face W' of W, and from 0 in ri F = ri W' - ri D it would follow that W meets ri D.
  *
- * So it is enough to try, for a rank r of all edges together
+ * So it suffices to try, for a rank r of all edges together and with both signs,
+ *
  *   r = 3: u x v of two edges, which span a facet;
  *   r = 2: u x v, the normal of the plane of S; and within that plane (u x v) x w, the normals of
  *          the edges w. In 2D these are w x z;
- *   r = 1: u itself, and across it (u x d) x u = (u . u) d - (u . d) u where the line of S, which
- *          goes through d along u, does not go through 0. In 2D that is u x z;
- *   r = 0: d, for S is the point d;
- * with both signs. The rank need not be known: the first that proves the verdict is taken. */
+ *   r = 1: u itself; and perpendicular to it (u x d) x u = (u . u) d - (u . d) u, if the line of S,
+ *          which passes through d along u, does not contain 0. In 2D that is u x z;
+ *   r = 0: d, since S is the point d.
+ *
+ * The rank need not be known: the first normal that proves the verdict is taken. */
 #include "certificate_point.h"
 #include "exact.h"
 #include "integer.h"
@@ -52,33 +54,33 @@ struct named {
     struct exact_edge edge;
 };
 
-struct range {
+struct normal_interval {
     mpz_t low, high;
 };
 
-struct search {
+struct normal_search {
     struct exact_pair *pair;
     enum fmb_verdict verdict;
     int directions; /* those of edges first; the last is d, if that is not 0 */
     struct named direction[DIRECTIONS_MAX];
     mpz_t z[3];
     mpz_t plane[3], normal[3];
-    mpz_t value[EXACT_VECTORS]; /* normal . each vector of the pair */
-    struct range range[2], way; /* of the normal over the frames, and over W */
+    mpz_t value[EXACT_VECTORS];           /* normal . each vector of the pair */
+    struct normal_interval range[2], way; /* of the normal over the frames, and over W */
     mpz_t scratch[2];
     char text[NORMAL_TEXT_SIZE];
 };
 
-static void range_each(struct range *range, void (*call)(mpz_ptr))
+static void interval_each(struct normal_interval *range, void (*call)(mpz_ptr))
 {
     call(range->low);
     call(range->high);
 }
 
-static void search_each(struct search *search, void (*call)(mpz_ptr))
+static void search_each(struct normal_search *search, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
-        range_each(&search->range[f], call);
+        interval_each(&search->range[f], call);
         call(search->scratch[f]);
     }
     for (int axis = 0; axis < 3; axis++) {
@@ -88,10 +90,10 @@ static void search_each(struct search *search, void (*call)(mpz_ptr))
     }
     for (int k = 0; k < EXACT_VECTORS; k++)
         call(search->value[k]);
-    range_each(&search->way, call);
+    interval_each(&search->way, call);
 }
 
-static void add_direction(struct search *search, char letter, int number, int owner,
+static void add_direction(struct normal_search *search, char letter, int number, int owner,
                           struct exact_edge edge)
 {
     if (integer_is_zero(edge.vector))
@@ -104,7 +106,7 @@ static void add_direction(struct search *search, char letter, int number, int ow
     named->edge = edge;
 }
 
-static void set_directions(struct search *search, int dim)
+static void set_directions(struct normal_search *search, int dim)
 {
     struct exact_pair *pair = search->pair;
     for (int f = 0; f < 2; f++)
@@ -116,7 +118,7 @@ static void set_directions(struct search *search, int dim)
     add_direction(search, 'd', -1, 2, (struct exact_edge){EXACT_OFFSET, -1, pair->offset});
 }
 
-static void set_ranges(struct search *search)
+static void set_ranges(struct normal_search *search)
 {
     mpz_t *value = search->value;
     for (int f = 0; f < 2; f++)
@@ -127,16 +129,16 @@ static void set_ranges(struct search *search)
     mpz_set(rises ? search->way.high : search->way.low, search->scratch[0]);
 }
 
-static bool varies(const struct range *range)
+static bool varies(const struct normal_interval *range)
 {
     return mpz_cmp(range->low, range->high) != 0;
 }
 
 /* 1 if the normal proves the verdict, -1 if its opposite does, else 0. */
-static int proving_sign(struct search *search)
+static int proving_sign(struct normal_search *search)
 {
     set_ranges(search);
-    const struct range *a = &search->range[0], *b = &search->range[1];
+    const struct normal_interval *a = &search->range[0], *b = &search->range[1];
     mpz_t *least = &search->scratch[0], *most = &search->scratch[1]; /* over S */
     mpz_add(*least, search->way.low, b->low);
     mpz_sub(*least, *least, a->high);
@@ -149,7 +151,7 @@ static int proving_sign(struct search *search)
     return mpz_sgn(*least) >= 0 ? 1 : mpz_sgn(*most) <= 0 ? -1 : 0;
 }
 
-static void set_values(struct search *search)
+static void set_values(struct normal_search *search)
 {
     for (int k = 0; k < EXACT_VECTORS; k++)
         exact_dot(search->pair, search->value[k], search->normal, k);
@@ -157,7 +159,7 @@ static void set_values(struct search *search)
 
 /* Whether the normal of search->value, or its opposite, proves the verdict; if so, search->text
  * says which. */
-static bool try_values(struct search *search, const char *format, ...)
+static bool try_values(struct normal_search *search, const char *format, ...)
 {
     int sign = proving_sign(search);
     if (sign == 0)
@@ -171,7 +173,7 @@ static bool try_values(struct search *search, const char *format, ...)
     return true;
 }
 
-static void set_product_values(struct search *search, const struct exact_edge *u,
+static void set_product_values(struct normal_search *search, const struct exact_edge *u,
                                const struct exact_edge *v)
 {
     if (u->plus >= 0 && v->plus >= 0) {
@@ -184,7 +186,7 @@ static void set_product_values(struct search *search, const struct exact_edge *u
 
 /* u x v: first the faces of each frame; then an edge of one with one of the other, with v, or
  * with z. */
-static bool try_products(struct search *search)
+static bool try_products(struct normal_search *search)
 {
     for (int mixed = 0; mixed < 2; mixed++)
         for (int i = 0; i < search->directions; i++)
@@ -199,7 +201,7 @@ static bool try_products(struct search *search)
     return false;
 }
 
-static bool try_directions(struct search *search)
+static bool try_directions(struct normal_search *search)
 {
     for (int i = 0; i < search->directions; i++) {
         const struct named *u = &search->direction[i];
@@ -214,7 +216,7 @@ static bool try_directions(struct search *search)
 
 /* (u x v) x w, with u x v the first that is not 0: of two edges or, where all edges are parallel,
  * of one of them and d. */
-static bool try_within_plane(struct search *search)
+static bool try_within_plane(struct normal_search *search)
 {
     const struct named *u = &search->direction[0], *v = u;
     do {
@@ -236,7 +238,7 @@ static bool try_within_plane(struct search *search)
 static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdict,
                         char text[NORMAL_TEXT_SIZE])
 {
-    struct search search = {.pair = pair, .verdict = verdict};
+    struct normal_search search = {.pair = pair, .verdict = verdict};
     search_each(&search, mpz_init);
     set_directions(&search, dim);
     bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);

@@ -1,25 +1,27 @@
-/* The checker of certificates. It knows the definitions of fmb.h and rational numbers, and shares
- * no code and no method with what it checks: no integers times a unit, no slabs, no polytope of
+/* Checks certificates. It uses the definitions of fmb.h and rational numbers only. It shares no
+ * code and no method with what it checks: no integers times a unit, no slabs, no polytope of the
  * intersection.
  *
- * A normal N. N . (b - a) is affine in the time and in each of the points a and b: over the
- * window, it is least at an end of the window, at a vertex of each frame. Call that g.
- *   g > 0: the frames are apart at all times. SEPARATED.
- *   g >= 0, and N not constant on, say, the first frame: no point is ever in both relative
- *   interiors. For N . a is linear and not constant there, so at a point a of the relative
- *   interior it is below its greatest value; with this it is N . b >= N . a' > N . a for all b of
- *   the second frame at that time, and so b = a for none. With a point that both have in common
- *   at a time of the window: TOUCHING.
+ * A normal N. N . (b - a) is affine in the time and in each of the points a and b. Over the window
+ * its least value is therefore at an end of the window, at a vertex of each frame. Call that value
+ * g.
  *
- * A point p. The frame is the image of its parameters under the map x -> o + t v + sum x_i c_i,
- * and its relative interior is the image of those strictly inside of their bounds (Rockafellar,
- * Convex Analysis, theorem 6.6; a frame may be flat). So it is asked whether
+ *   g > 0: the frames are separated at all times. SEPARATED.
+ *   g >= 0, and N not constant on, say, the first frame: no point is ever in both relative
+ *   interiors. For N . a is linear and not constant there, so at a point a of the relative interior
+ *   it is less than its greatest value N . a'. Hence N . b >= N . a' > N . a for all b of the
+ *   second frame at that time, so that no b equals a. Together with a point that both frames have
+ *   in common at a time of the window: TOUCHING.
+ *
+ * A point p. The frame is the image of its parameters under the map x -> o + t v + sum x_i c_i. Its
+ * relative interior is the image of those strictly inside their bounds (Rockafellar, Convex
+ * Analysis, theorem 6.6; a frame may be flat). The check is therefore whether
  *
  *     sum_i x_i c_i = p - o - t v,   0 < x_i < 1   or   0 < x_i, sum x_i < 1
  *
- * has a solution, with <= for < where the closed frame is meant: Gaussian elimination takes one
- * unknown away with each equation that is left, Fourier's the others, and what remains are numbers
- * to be compared with 0. */
+ * has a solution, with <= in place of < for the closed frame. Gaussian elimination removes one
+ * unknown for each independent equation, Fourier's method the others; what remains are comparisons
+ * of numbers with 0. */
 #include "fmb.h"
 
 #include <assert.h>
@@ -45,7 +47,7 @@ struct side {
     mpq_t origin[AXES], velocity[AXES];
 };
 
-/* The pair, and what the text says of it. */
+/* The pair, and the contents of the text. */
 struct proof {
     int dim;
     bool moving;
@@ -550,8 +552,8 @@ static mpq_t *next_row(struct rows *rows, int *count)
     return rows->next[(*count)++];
 }
 
-/* Fourier: there is an x_k for the other unknowns just if each lower bound of it is below each
- * upper one. */
+/* Fourier: there is an x_k for the other unknowns if and only if each lower bound of it is below
+ * each upper one. */
 static void eliminate(struct rows *rows, int k)
 {
     int count = 0;
@@ -636,7 +638,7 @@ static const char *flaw_of(struct proof *proof, enum fmb_verdict verdict, const 
     return flaw;
 }
 
-/* NULL, or why there can be no certificate. */
+/* Returns NULL, or the reason why there can be no certificate. */
 static const char *flaw_of_placements(const struct fmb_placement *a, const struct fmb_placement *b,
                                       double duration)
 {

@@ -1,21 +1,21 @@
 /* A point for the certificate of two frames that meet: exact, and short to write.
  *
- * In space and time (t, p) the intersection over the window is a polytope Q (exact_box.c). Where
- * the frames touch, any of its points will do. Where they overlap, any point of its relative
- * interior will: by Rockafellar, Convex Analysis, section 6,
+ * In space and time (t, p) the intersection over the window is a polytope Q (exact_box.c). If the
+ * frames touch, any of its points will do. If they overlap, any point of its relative interior
+ * will: by Rockafellar, Convex Analysis, section 6,
  *
- *   if the relative interiors meet at some time inside the window, then ri Q is where they meet
- *   at times inside it (theorem 6.5, of what the frames fill in space and time, and of the
- *   window);
- *   else they meet at an end of the window alone, and then all of Q lies there: a segment from
- *   where they meet to a point of Q at another time would lead through relative interiors
+ *   if the relative interiors meet at some time inside the window, then ri Q is the set where they
+ *   meet at times inside it (theorem 6.5, applied to the sets that the frames fill in space and
+ *   time, and to the window);
+ *   otherwise they meet only at an end of the window, and then all of Q lies there: a segment from
+ *   a point where they meet to a point of Q at another time would pass through relative interiors
  *   inside the window (theorem 6.1). So ri Q is where they meet, by theorem 6.5 at that time.
  *
- * Method: points of Q that are affinely independent, and as many as there are, span a simplex in
- * Q that is open in the affine hull of Q; so its mean is in ri Q. From there the point is moved
- * inside ri Q, along one line after the other, each time to where one coordinate is the simplest
- * number: one coordinate for each dimension of Q, the time first. Where Q is flat, the other
- * coordinates follow from these. */
+ * Method: a largest set of affinely independent points of Q spans a simplex in Q that is open in
+ * the affine hull of Q, so its mean is in ri Q. From there the point is moved inside ri Q along one
+ * line after the other, each time to where one coordinate is the simplest number: one coordinate
+ * for each dimension of Q, the time first. If Q is flat, the other coordinates follow from these.
+ */
 #include "certificate_point.h"
 
 #include <assert.h>
@@ -25,13 +25,13 @@ enum { COORDINATES = 4 };
 
 /* ---- The simplest number ---- */
 
-/* out := the simplest number strictly between a / b >= 0 and c / d > a / b, which is infinite for
- * d = 0: the one of least denominator, and of these the least. The limits are overwritten.
+/* out := the simplest number strictly between a / b >= 0 and c / d > a / b, which is infinite if d
+ * = 0: the number of least denominator, and among these the least. The limits are overwritten.
  *
- * Method: with q = floor(a / b), it is q + 1 if that is below c / d. Else both limits are
- * q + 1 / y for y from d / (c - q d) to b / (a - q b), and it is q + 1 / y for the simplest y
- * between these. So it comes as a continued fraction, of which num / den is the value so far and
- * last_num / last_den the one before. */
+ * Method: with q = floor(a / b), it is q + 1 if that is less than c / d. Otherwise both limits are
+ * q + 1 / y, for y from d / (c - q d) to b / (a - q b), and it is q + 1 / y for the simplest y
+ * between these. It is thus computed as a continued fraction; num / den is the value so far and
+ * last_num / last_den the previous one. */
 static void simplest_of_positive(mpq_t out, mpz_t a, mpz_t b, mpz_t c, mpz_t d)
 {
     mpz_t term, last_num, last_den;

@@ -1,4 +1,4 @@
-/* The point of a certificate: where and when two frames meet. */
+/* The point of a certificate: a position and a time at which two frames meet. */
 #ifndef FMB_CERTIFICATE_POINT_H
 #define FMB_CERTIFICATE_POINT_H
 
@@ -14,18 +14,19 @@ struct certificate_point {
 void certificate_point_init(struct certificate_point *point);
 void certificate_point_clear(struct certificate_point *point);
 
-/* out := the simplest number strictly between low and high > low: 0 if that is, else the one of
- * least denominator, and of these the one next to 0. low and high need not be in lowest terms; they
- * are overwritten. */
+/* out := the simplest number strictly between low and high > low: 0 if it is one; otherwise one of
+ * the least denominator, and among these the closest to 0. low and high need not be in lowest
+ * terms; they are overwritten. */
 void simplest_between(mpq_t out, mpq_t low, mpq_t high);
 
-/* On input: a pair that touches or overlaps, and the same as integers.
- * On output: a point of both frames at a time of the window; if they overlap, of the relative
- * interiors of both. */
+/* Finds a point of both frames at a time of the window; if they overlap, of the relative interiors
+ * of both.
+ *
+ * In: a pair that touches or overlaps, and its conversion to integers. */
 void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
                             const struct frame_pair *pair, bool touching);
 
-/* The same where the numbers of the pair span many bits. */
+/* The same, for a pair whose numbers span many bits. */
 void certificate_point_wide(struct certificate_point *point, struct exact_pair *exact,
                             const struct frame_pair *pair, bool touching);
 

@@ -1,5 +1,22 @@
-/* Many pairs: sorted by kind within blocks, run through the filter side by side, and only those
- * that it leaves open, and what else is wanted of contacts, one by one. */
+/* Many pairs of prepared frames, in blocks of BLOCK.
+ *
+ *   In     struct fmb_batch: frames, pairs of indices, the window
+ *   Out    verdicts; contacts, boxes and gaps where wanted; the pairs left open
+ *
+ * Steps for each block (decide_block()):
+ *
+ *   1. set_block()      looks up the frames and sorts the pairs by kind (run.h)
+ *   2. run_kind()       runs the filter on the pairs of one kind, several at a time, then its
+ *                       second pass on those that are unsure (run_exactly())
+ *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
+ *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
+ *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
+ *   5. answer_odd()     decides or refuses the pairs that the filter does not take
+ *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
+ *      put_gap()        others
+ *
+ * Blocks are independent of each other; threads share them out. Every step depends on the numbers
+ * of a pair only, except the count of single decisions in a bounded batch (SINGLE_MAX). */
 #include "batch.h"
 
 #include "certified.h"
@@ -11,41 +28,42 @@
 #include <math.h>
 #include <string.h>
 
-/* Pairs sorted at a time: their frames should stay in the first cache. */
+/* Pairs in a block: few enough for their frames to stay in the first-level cache. */
 enum { BLOCK = 128 };
 
-/* Pairs of a block that are decided alone at most where the time of a call is bounded. A pair that
- * needs integers takes 1 to 10 us. */
-enum { ALONE_MAX = 32 };
+/* The largest number of pairs of a block that are decided one by one if the time of a call is
+ * bounded. A pair that needs integers takes 1 to 10 us. */
+enum { SINGLE_MAX = 32 };
 
-/* What blocks have in common. */
-struct job {
+/* What all blocks of a batch share. */
+struct batch_job {
     const struct fmb_batch *batch;
-    double farthest;               /* of gaps */
+    double farthest;               /* the largest gap of interest */
     struct run_set run;            /* of the instruction set */
     unsigned char in_order[BLOCK]; /* 0, 1, 2, ... */
 };
 
-struct block {
+struct batch_block {
     const struct fmb_batch *batch;
     size_t first, count; /* of the batch */
-    /* Sorted by kind, with room for what a run reads and writes beyond. */
+    /* Sorted by kind, with the padding that kernels read and write past the end. */
     const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
     unsigned char start[RUN_REFUSED + 2]; /* of each kind */
     int kinds[2];                         /* [first, end): no pair is of another kind */
     unsigned char sorted[BLOCK];
-    const unsigned char *slot; /* whose pair it is, after first: sorted, or in_order */
+    const unsigned char
+        *slot; /* [k]: the position of pair k in the batch, relative to first; sorted or in_order */
     unsigned char outcome[BLOCK + RUN_LANES];
     double contact[BLOCK + RUN_LANES][2];
-    bool far[BLOCK];        /* after first: the gap is surely greater than wanted */
-    int alone;              /* pairs decided alone so far */
+    bool far[BLOCK]; /* by position relative to first: the gap is surely greater than wanted */
+    int singles;     /* pairs decided one by one so far */
     enum fmb_status status; /* of the first pair refused */
 };
 
 /* ---- Sorting ---- */
 
-/* In the place of a frame whose index is too large, and of one that was not prepared. Kernels may
- * read them in lanes that are not used. */
+/* Substitutes for a frame whose index is out of range, and for one that is not prepared. Kernels
+ * may read them in unused lanes. */
 static const struct fmb_placement nowhere;
 static const struct fmb_prepared missing = {.placement = &nowhere};
 static const struct fmb_prepared unprepared = {.placement = &nowhere};
@@ -55,7 +73,7 @@ static inline const struct fmb_prepared *frame_at(const struct fmb_batch *batch,
     return index < batch->frame_count ? &batch->frames[index] : &missing;
 }
 
-/* Bits of the heads of some frames: set in any of them, and in all. */
+/* The flags of several frames: those set in any of them, and those set in all. */
 struct heads {
     unsigned long long any, all;
 };
@@ -67,13 +85,13 @@ static inline void heads_add(struct heads *heads, const struct fmb_prepared *fra
 }
 
 /* Whether the frames are all of the same kind, and prepared. */
-static inline bool heads_are_alike(const struct heads *heads)
+static inline bool heads_same_kind(const struct heads *heads)
 {
     return (heads->any ^ heads->all) >> 3 * PREPARED_SIZE_BITS == 0 &&
            heads->all >> 3 * PREPARED_SIZE_BITS & PREPARED_GOOD;
 }
 
-static void replace_unprepared(struct block *block)
+static void replace_unprepared(struct batch_block *block)
 {
     for (size_t i = 0; i < block->count; i++)
         for (int f = 0; f < 2; f++) {
@@ -83,28 +101,29 @@ static void replace_unprepared(struct block *block)
         }
 }
 
-/* So many frames and more do not stay in the second cache. */
+/* From this number on, the frames do not stay in the second-level cache. */
 enum { MANY_FRAMES = 4096 };
 
-/* Pairs from the one whose frames are fetched to the one that is read. Frames start at every other
- * line, so that half of the first cache holds their first halves: those of a block fill it. */
+/* Prefetch distance in pairs. Frames start at every other cache line, so their first halves map to
+ * half of the first-level cache: those of one block fill it. */
 enum { AHEAD = 32 };
 
-/* Fetches the first halves of the frames of pair i, whatever the indices are. */
-static inline void fetch_heads(const struct fmb_batch *batch, size_t i)
+/* Prefetches the first halves of the frames of pair i. The indices need not be valid. */
+static inline void prefetch_frames(const struct fmb_batch *batch, size_t i)
 {
     const uintptr_t frames = (uintptr_t) batch->frames;
     __builtin_prefetch((const void *) (frames + batch->pairs[i][0] * sizeof *batch->frames));
     __builtin_prefetch((const void *) (frames + batch->pairs[i][1] * sizeof *batch->frames));
 }
 
-/* Of the loop over pairs, known when it is compiled. */
+/* Variants of the loop over pairs, constant in each inlined copy. */
 struct fetching {
-    bool whole; /* the second halves of the frames are read next */
-    bool ahead; /* the first halves of frames are fetched before they are read */
+    bool whole; /* prefetch the second halves: they are read next */
+    bool ahead; /* prefetch the first halves of later frames */
 };
 
-INLINE void put_pairs(struct block *block, const struct fetching fetching, struct heads heads[2])
+INLINE void put_pairs(struct batch_block *block, const struct fetching fetching,
+                      struct heads heads[2])
 {
     const struct fmb_batch *batch = block->batch;
     const unsigned(*pairs)[2] = batch->pairs + block->first;
@@ -112,7 +131,7 @@ INLINE void put_pairs(struct block *block, const struct fetching fetching, struc
         const struct fmb_prepared *a = frame_at(batch, pairs[i][0]);
         const struct fmb_prepared *b = frame_at(batch, pairs[i][1]);
         if (fetching.ahead && block->first + i + AHEAD < batch->pair_count)
-            fetch_heads(batch, block->first + i + AHEAD);
+            prefetch_frames(batch, block->first + i + AHEAD);
         if (fetching.whole) {
             __builtin_prefetch((const char *) a + sizeof *a / 2);
             __builtin_prefetch((const char *) b + sizeof *b / 2);
@@ -126,9 +145,10 @@ INLINE void put_pairs(struct block *block, const struct fetching fetching, struc
         block->pair[i][0] = block->pair[i][1] = &missing;
 }
 
-/* Puts the pairs into the block, in the order of the batch. Returns whether all are prepared, and
- * their heads of the same kinds. In 3D nothing is fetched ahead: it does not help there. */
-static bool set_pairs(struct block *block)
+/* Stores the frames of the pairs, in the order of the batch. Returns whether all are prepared, with
+ * all first frames of one kind and all second frames of one kind. In 3D first halves are not
+ * prefetched: it does not help there. */
+static bool set_pairs(struct batch_block *block)
 {
     const struct fmb_batch *batch = block->batch;
     const unsigned kind = prepared_kind(frame_at(batch, batch->pairs[block->first][0]));
@@ -142,13 +162,13 @@ static bool set_pairs(struct block *block)
         put_pairs(block, (struct fetching){true, true}, heads);
     else
         put_pairs(block, (struct fetching){false, true}, heads);
-    const bool alike = heads_are_alike(&heads[0]) && heads_are_alike(&heads[1]);
-    if (!alike)
+    const bool same_kind = heads_same_kind(&heads[0]) && heads_same_kind(&heads[1]);
+    if (!same_kind)
         replace_unprepared(block);
-    return alike;
+    return same_kind;
 }
 
-static struct run_kinds kinds_at(const struct block *block, size_t i)
+static struct run_kinds kinds_at(const struct batch_block *block, size_t i)
 {
     return run_kinds_of(prepared_kind(block->pair[i][0]), prepared_kind(block->pair[i][1]),
                         block->batch->duration);
@@ -161,8 +181,8 @@ static void swap(const struct fmb_prepared *pair[2])
     pair[1] = a;
 }
 
-/* Of a block whose pairs are all moving, and of the same dimension. */
-static bool all_drift(const struct block *block)
+/* Whether all pairs drift. In: a block whose pairs all move and have the same dimension. */
+static bool all_drift(const struct batch_block *block)
 {
     const bool space = prepared_kind(block->pair[0][0]) & PREPARED_SPACE;
     bool all = true;
@@ -174,9 +194,10 @@ static bool all_drift(const struct block *block)
     return all;
 }
 
-/* kind[i]: of pair i, whose frames are put into their places. Returns whether all are of one;
- * like_first: their heads are, and kind[0] alone is set then. */
-static bool set_kinds(struct block *block, bool like_first, unsigned char kind[BLOCK])
+/* Sets kind[i], the kind of pair i, and puts its frames into the order of its kernel. Returns
+ * whether all kinds are equal. like_first: all pairs have the flags of the first; only kind[0] is
+ * set then. */
+static bool set_kinds(struct batch_block *block, bool like_first, unsigned char kind[BLOCK])
 {
     struct run_kinds kinds = kinds_at(block, 0);
     if (like_first && (!kinds.moving || all_drift(block))) {
@@ -198,8 +219,8 @@ static bool set_kinds(struct block *block, bool like_first, unsigned char kind[B
     return different == 0;
 }
 
-/* By kind, each in the order of the batch. */
-static void sort(struct block *block, const unsigned char kind[BLOCK])
+/* Counting sort by kind; pairs of one kind stay in the order of the batch. */
+static void sort(struct batch_block *block, const unsigned char kind[BLOCK])
 {
     const struct fmb_prepared *pair[BLOCK][2];
     unsigned char next[RUN_REFUSED + 2] = {0};
@@ -218,7 +239,7 @@ static void sort(struct block *block, const unsigned char kind[BLOCK])
     block->slot = block->sorted;
 }
 
-static void set_block(const struct job *job, size_t first, struct block *block)
+static void set_block(const struct batch_job *job, size_t first, struct batch_block *block)
 {
     const size_t left = job->batch->pair_count - first;
     unsigned char kind[BLOCK];
@@ -226,7 +247,7 @@ static void set_block(const struct job *job, size_t first, struct block *block)
     block->batch = job->batch;
     block->first = first;
     block->count = left < BLOCK ? left : BLOCK;
-    block->alone = 0;
+    block->singles = 0;
     block->status = FMB_OK;
     block->slot = job->in_order;
     const bool like_first = set_pairs(block);
@@ -257,22 +278,23 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     put_no_box(batch, i);
 }
 
-/* Counts a pair to be decided alone. False: it is left open instead, since enough have been. */
-static bool may_decide_alone(struct block *block)
+/* Counts a pair to be decided by itself. Returns false if it must be left open, because enough
+ * others have been. */
+static bool may_decide_single(struct batch_block *block)
 {
     const struct fmb_batch *batch = block->batch;
-    return !batch->open || block->alone++ < ALONE_MAX;
+    return !batch->open || block->singles++ < SINGLE_MAX;
 }
 
-/* Pair k by itself, or left open. want: 0, or FMB_WANT_BOX. On input: its contact is NAN or already
- * known, and its box NAN. */
-static void decide_alone(struct block *block, size_t k, unsigned want)
+/* Decides pair k by itself, or leaves it open. want: 0 or FMB_WANT_BOX. In: its contact is NAN or
+ * final, and its box NAN. */
+static void decide_single(struct batch_block *block, size_t k, unsigned want)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
     struct fmb_answer answer = {0};
-    if (!may_decide_alone(block) ||
+    if (!may_decide_single(block) ||
         certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
                                   &answer) != FMB_OK) {
         put_nothing(batch, i);
@@ -286,18 +308,18 @@ static void decide_alone(struct block *block, size_t k, unsigned want)
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
-static void put_verdict_alone(struct block *block, size_t k)
+static void put_verdict_single(struct batch_block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     enum fmb_verdict verdict = 0;
-    if (may_decide_alone(block))
+    if (may_decide_single(block))
         verdict = certified_unsure(pair[0], pair[1], batch->duration, 2, batch->open);
     batch->verdicts[block->first + block->slot[k]] =
         verdict ? (unsigned char) verdict : FMB_LEFT_OPEN;
 }
 
-static void put_verdicts(struct block *block, size_t start, size_t end)
+static void put_verdicts(struct batch_block *block, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     unsigned char *verdicts = batch->verdicts + block->first;
@@ -310,11 +332,11 @@ static void put_verdicts(struct block *block, size_t start, size_t end)
         return;
     for (size_t k = start; k < end; k++)
         if (block->outcome[k] == SLABS_UNSURE)
-            put_verdict_alone(block, k);
+            put_verdict_single(block, k);
 }
 
-/* The contact of pair k, as far as the filter knows it: NAN where it does not, or there is none. */
-static const double *contact_at(const struct block *block, enum run_kind kind, size_t k,
+/* Returns the contact of pair k, if the filter gives it; otherwise, and if there is none, NAN. */
+static const double *contact_at(const struct batch_block *block, enum run_kind kind, size_t k,
                                 const double whole[2])
 {
     static const double none[2] = {NAN, NAN};
@@ -325,7 +347,7 @@ static const double *contact_at(const struct block *block, enum run_kind kind, s
     return prepared_both_plain(block->pair[k][0], block->pair[k][1]) ? none : block->contact[k];
 }
 
-static void put_contacts(struct block *block, enum run_kind kind, size_t start, size_t end)
+static void put_contacts(struct batch_block *block, enum run_kind kind, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     const double whole[2] = {0, batch->duration + 0.0}; /* never -0 */
@@ -335,19 +357,19 @@ static void put_contacts(struct block *block, enum run_kind kind, size_t start, 
         memcpy(batch->contacts[i], contact, sizeof whole);
         batch->verdicts[i] = block->outcome[k];
         if (block->outcome[k] != SLABS_SEPARATED && isnan(contact[0]))
-            decide_alone(block, k, 0);
+            decide_single(block, k, 0);
     }
 }
 
-/* Pairs of a block in contact, to be asked for their boxes. */
+/* The pairs of a block that are in contact, and their boxes. */
 struct contacts {
-    size_t count, of[BLOCK]; /* numbers of the block's pairs */
+    size_t count, of[BLOCK]; /* their numbers in the block */
     const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
     double box[BLOCK + RUN_LANES][2][FMB_DIM_MAX];
 };
 
-/* A box that the filter does not give. */
-static void put_box_alone(struct block *block, size_t k)
+/* A box that the filter does not give: by the exact method, or left open. */
+static void put_box_single(struct batch_block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
@@ -363,8 +385,8 @@ static void put_box_alone(struct block *block, size_t k)
     }
 }
 
-/* The boxes of pairs that are all of one kind of run_box_kind(). */
-static void put_boxes(struct block *block, run_function *boxes, struct contacts *contacts)
+/* Computes the boxes of pairs of one kind of run_box_kind(). */
+static void put_boxes(struct batch_block *block, run_function *boxes, struct contacts *contacts)
 {
     const struct run run = {.pairs = contacts->pair,
                             .count = contacts->count,
@@ -377,16 +399,17 @@ static void put_boxes(struct block *block, run_function *boxes, struct contacts 
     for (size_t n = 0; n < contacts->count; n++) {
         const size_t k = contacts->of[n];
         if (isnan(contacts->box[n][0][0]))
-            put_box_alone(block, k);
+            put_box_single(block, k);
         else
             memcpy(block->batch->boxes[block->first + block->slot[k]], contacts->box[n],
                    sizeof contacts->box[n]);
     }
 }
 
-/* Boxes of all pairs in contact, whose verdicts are known: first of those at rest, then of those in
- * which a frame moves. */
-static void put_all_boxes(struct block *block, const struct job *job, size_t start, size_t end)
+/* Computes the boxes of all pairs in contact, whose verdicts are known: first those at rest, then
+ * those in which a frame moves. */
+static void put_all_boxes(struct batch_block *block, const struct batch_job *job, size_t start,
+                          size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     struct contacts contacts;
@@ -413,8 +436,8 @@ static void put_all_boxes(struct block *block, const struct job *job, size_t sta
     }
 }
 
-/* Runs the second pass on the pairs of a kind that the first left unsure, side by side. Two faces
- * that may have parallel planes stay unsure. */
+/* Runs the second pass on the pairs of a kind that the first leaves unsure, RUN_LANES at a time.
+ * Two faces that may have parallel planes stay unsure. */
 static void run_exactly(run_function *exact, bool faces, const struct run *first)
 {
     unsigned char of[BLOCK], outcome[BLOCK + RUN_LANES];
@@ -439,7 +462,7 @@ static void run_exactly(run_function *exact, bool faces, const struct run *first
             first->outcomes[of[n]] = outcome[n];
 }
 
-static void run_kind(struct block *block, const struct job *job, enum run_kind kind)
+static void run_kind(struct batch_block *block, const struct batch_job *job, enum run_kind kind)
 {
     const struct fmb_batch *batch = job->batch;
     const size_t start = block->start[kind], end = block->start[kind + 1];
@@ -459,7 +482,7 @@ static void run_kind(struct block *block, const struct job *job, enum run_kind k
         put_all_boxes(block, job, start, end);
 }
 
-/* ---- Pairs of which doubles can say nothing, and such as cannot be asked ---- */
+/* ---- Pairs that the filter does not take, and pairs that are refused ---- */
 
 static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
 {
@@ -469,13 +492,13 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
                                                                            : FMB_NOT_FINITE;
 }
 
-static void answer_odd(struct block *block)
+static void answer_odd(struct batch_block *block)
 {
     for (size_t k = block->start[RUN_ODD]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
         put_nothing(block->batch, i);
         if (k < block->start[RUN_REFUSED]) {
-            decide_alone(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
+            decide_single(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
             continue;
         }
         block->batch->verdicts[i] = FMB_REFUSED;
@@ -488,58 +511,58 @@ static void answer_odd(struct block *block)
  *
  * Of frames in the order of the query: the block may have exchanged them. */
 
-/* Separated pairs of one kind, GROWN at a time. */
-enum { GROWN = 32 };
-struct grown {
+/* Separated pairs of one kind, ENLARGED at a time, with the errors of their frames enlarged. */
+enum { ENLARGED = 32 };
+struct enlarged {
     size_t count;
-    unsigned char slot[GROWN];
-    struct fmb_prepared frame[GROWN];
-    const struct fmb_prepared *pair[GROWN + RUN_LANES][2];
+    unsigned char slot[ENLARGED];
+    struct fmb_prepared frame[ENLARGED];
+    const struct fmb_prepared *pair[ENLARGED + RUN_LANES][2];
 };
 
-/* Pairs that the filter separates even where b has an error that is larger by as much as gaps may
- * be wanted are farther apart than that (slabs.h). */
-static void run_grown(struct block *block, const struct job *job, enum run_kind kind,
-                      struct grown *grown)
+/* Marks the pairs that the filter separates although the error of b is enlarged by the largest gap
+ * of interest: they are farther apart than that (slabs.h). */
+static void run_enlarged(struct batch_block *block, const struct batch_job *job, enum run_kind kind,
+                         struct enlarged *enlarged)
 {
-    unsigned char outcome[GROWN + RUN_LANES];
-    const struct run run = {.pairs = grown->pair,
-                            .count = grown->count,
+    unsigned char outcome[ENLARGED + RUN_LANES];
+    const struct run run = {.pairs = enlarged->pair,
+                            .count = enlarged->count,
                             .duration = job->batch->duration,
                             .outcomes = outcome};
-    if (grown->count == 0)
+    if (enlarged->count == 0)
         return;
-    for (size_t n = grown->count; n < grown->count + RUN_LANES; n++)
-        grown->pair[n][0] = grown->pair[n][1] = &missing;
+    for (size_t n = enlarged->count; n < enlarged->count + RUN_LANES; n++)
+        enlarged->pair[n][0] = enlarged->pair[n][1] = &missing;
     job->run.verdicts[kind](&run);
-    for (size_t n = 0; n < grown->count; n++)
-        block->far[grown->slot[n]] = outcome[n] == SLABS_SEPARATED;
-    grown->count = 0;
+    for (size_t n = 0; n < enlarged->count; n++)
+        block->far[enlarged->slot[n]] = outcome[n] == SLABS_SEPARATED;
+    enlarged->count = 0;
 }
 
-static void find_far(struct block *block, const struct job *job, enum run_kind kind)
+static void find_far(struct batch_block *block, const struct batch_job *job, enum run_kind kind)
 {
-    struct grown grown;
-    grown.count = 0;
+    struct enlarged enlarged;
+    enlarged.count = 0;
     for (size_t k = block->start[kind]; k < block->start[kind + 1]; k++) {
         const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
-        struct fmb_prepared *larger = &grown.frame[grown.count];
+        struct fmb_prepared *larger = &enlarged.frame[enlarged.count];
         const int error = prepared_kind(b) & PREPARED_SPACE ? PREPARED_ERROR_3D : PREPARED_ERROR_2D;
         if (block->outcome[k] != SLABS_SEPARATED)
             continue;
         *larger = *b;
         larger->number[error - 1] +=
-            gap_surely(a, b, job->batch->duration, job->farthest) * (1 + 0x1p-40);
-        grown.slot[grown.count] = block->slot[k];
-        grown.pair[grown.count][0] = a;
-        grown.pair[grown.count++][1] = larger;
-        if (grown.count == GROWN)
-            run_grown(block, job, kind, &grown);
+            gap_far_threshold(a, b, job->batch->duration, job->farthest) * (1 + 0x1p-40);
+        enlarged.slot[enlarged.count] = block->slot[k];
+        enlarged.pair[enlarged.count][0] = a;
+        enlarged.pair[enlarged.count++][1] = larger;
+        if (enlarged.count == ENLARGED)
+            run_enlarged(block, job, kind, &enlarged);
     }
-    run_grown(block, job, kind, &grown);
+    run_enlarged(block, job, kind, &enlarged);
 }
 
-static void put_gap(const struct job *job, const struct block *block, size_t slot)
+static void put_gap(const struct batch_job *job, const struct batch_block *block, size_t slot)
 {
     const size_t i = block->first + slot;
     const struct fmb_batch *batch = job->batch;
@@ -561,9 +584,9 @@ static void put_gap(const struct job *job, const struct block *block, size_t slo
     *verdict = FMB_LEFT_OPEN;
 }
 
-static enum fmb_status decide_block(const struct job *job, size_t first)
+static enum fmb_status decide_block(const struct batch_job *job, size_t first)
 {
-    struct block block;
+    struct batch_block block;
     set_block(job, first, &block);
     for (int kind = block.kinds[0]; kind < block.kinds[1]; kind++)
         if (block.start[kind] < block.start[kind + 1])
@@ -591,7 +614,7 @@ static const bool has_threads = false;
 static void list_open(const struct fmb_batch *batch)
 {
     unsigned char *at = batch->verdicts;
-    /* There may be no array of verdicts for no pairs. */
+    /* verdicts may be NULL if there are no pairs. */
     const unsigned char *const end = batch->pair_count > 0 ? at + batch->pair_count : at;
     size_t count = 0;
     while (at < end && (at = memchr(at, FMB_LEFT_OPEN, (size_t) (end - at))))
@@ -608,7 +631,7 @@ enum fmb_status batch_decide(const struct fmb_batch *batch, double farthest)
 {
     if (!prepared_is_duration(batch->duration))
         return FMB_BAD_DURATION;
-    struct job job = {.batch = batch, .farthest = farthest};
+    struct batch_job job = {.batch = batch, .farthest = farthest};
     if (!run_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
         return FMB_NOT_SUPPORTED;
     for (int i = 0; i < BLOCK; i++)

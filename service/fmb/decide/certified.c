@@ -1,3 +1,24 @@
+/* The method certified, for one pair of frames.
+ *
+ *   In     two prepared frames, the window, what is wanted; quick: no integers wider than
+ *          CERTIFIED_QUICK_LIMBS
+ *   Out    the answer; with quick, FMB_CANNOT_DECIDE if it needs wider integers
+ *
+ * Steps for the verdict, each for pairs that the one before leaves unsure:
+ *
+ *   1. verdict_of()           the filter in doubles (run.h)
+ *   2. verdict_of_unsure()    its second pass (walk_exact.h)
+ *   3. verdict_of_slabs()     each open slab in doubles with an error bound of its own
+ *                             (slabs_refine()), then in fixed-width integers (limbs.h)
+ *   4. verdict_exact()        the exact method (exact.h)
+ *
+ * Two faces that no slab separates go through verdict_of_planes(): if they stay in one plane, the
+ * verdict is that of their projections, two triangles in 2D.
+ *
+ * Then answer_contact(), answer_box() and gap_of() compute what else is wanted, and complete()
+ * replaces what doubles do not give within the limits of fmb.h by the exact method. Each step
+ * depends on the numbers of the pair only, so that every caller gets the same bits. The error
+ * bounds are derived in slabs.c, walk_slab.h, walk_box.h and contact.c. */
 #include "certified.h"
 
 #include "exact.h"
@@ -9,21 +30,21 @@
 #include <math.h>
 #include <string.h>
 
-/* What is known of a pair, found when it is needed. */
+/* The state of one decision. Parts are computed when they are needed. */
 struct certified {
     const struct frame_pair *pair;
-    bool quick; /* integers wider than CERTIFIED_QUICK_LIMBS are not used */
-    bool open;  /* only with quick: the verdict needs such integers */
+    bool quick;                          /* CERTIFIED_QUICK_LIMBS is the widest integer allowed */
+    bool open;                           /* only with quick: the verdict needs wider ones */
     const struct fmb_prepared *frame[2]; /* of a and b */
-    bool swapped;                        /* kernels of this kind take b first */
+    bool swapped;                        /* kernels of this kind take b as their first frame */
     enum run_kind kind;
-    bool slabs_known, slabs_good; /* slabs_good: doubles can say something of the pair */
+    bool slabs_known, slabs_good; /* slabs_good: doubles can bound the slabs of the pair */
     struct slabs_pair slabs;
     bool span_known, rounds; /* rounds: operations on these numbers may round */
     struct dyadic_span span;
     enum certified_path path;
-    enum faces_planes planes;   /* other than CROSSING only of two faces that are close */
-    struct faces_shadow shadow; /* where they are SHARED */
+    enum faces_planes planes;           /* other than CROSSING only of two faces that are close */
+    struct faces_projection projection; /* where they are SHARED */
 };
 
 static void begin(struct certified *certified, const struct frame_pair *pair, bool quick)
@@ -59,8 +80,9 @@ static enum fmb_verdict verdict_of_sign(int sign)
     return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }
 
-/* The slabs that doubles leave open, each looked at again alone if asked to; returns how many.
- * *separated: one of them separates, and the rest was not looked at. */
+/* Lists the slabs that doubles leave open, and returns how many there are. refine: each is computed
+ * again with an error bound of its own. *separated: a slab separates the pair, and those after it
+ * were not examined. */
 static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_normal out[SLABS_MAX],
                       bool *separated)
 {
@@ -70,7 +92,7 @@ static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_no
     *separated = false;
     for (int i = 0; i < count && !*separated; i++) {
         struct inequality side[2];
-        if (slab[i].error == 0 && pair->inexact) { /* the true edges might not be parallel */
+        if (slab[i].error == 0 && pair->inexact) { /* the exact edges might not be parallel */
             out[open++] = slab[i].normal;
             continue;
         }
@@ -86,8 +108,8 @@ static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_no
     return open;
 }
 
-static enum fmb_verdict verdict_in_limbs(struct limbs_pair *limbs, const struct slab_normal *open,
-                                         int count)
+static enum fmb_verdict verdict_in_fixed_width(struct limbs_pair *limbs,
+                                               const struct slab_normal *open, int count)
 {
     int sign = -1;
     for (int i = 0; i < count && sign <= 0; i++) {
@@ -97,8 +119,8 @@ static enum fmb_verdict verdict_in_limbs(struct limbs_pair *limbs, const struct 
     return verdict_of_sign(sign);
 }
 
-/* By the exact method; 0 where the decision is quick. */
-static enum fmb_verdict verdict_in_full(struct certified *certified)
+/* The verdict by the exact method; 0 if the decision is quick. */
+static enum fmb_verdict verdict_exact(struct certified *certified)
 {
     struct fmb_answer answer = {0};
     certified->path = CERTIFIED_EXACT;
@@ -108,8 +130,8 @@ static enum fmb_verdict verdict_in_full(struct certified *certified)
     return answer.verdict;
 }
 
-/* On input: good slabs. A slab in a few limbs costs little more than in doubles with a bound of its
- * own. */
+/* In: good slabs. A slab in integers of a few limbs costs little more than one in doubles with an
+ * error bound of its own, so that refinement is used only where the integers are wide. */
 static enum fmb_verdict verdict_of_slabs(struct certified *certified)
 {
     find_span(certified);
@@ -124,26 +146,26 @@ static enum fmb_verdict verdict_of_slabs(struct certified *certified)
         return separated ? FMB_SEPARATED : FMB_OVERLAPPING;
     if (fits && (!certified->quick || limbs.limbs <= CERTIFIED_QUICK_LIMBS)) {
         certified->path = CERTIFIED_LIMBS;
-        return verdict_in_limbs(&limbs, open, count);
+        return verdict_in_fixed_width(&limbs, open, count);
     }
-    return verdict_in_full(certified);
+    return verdict_exact(certified);
 }
 
-static enum fmb_verdict shadow_verdict(struct certified *certified);
+static enum fmb_verdict projection_verdict(struct certified *certified);
 
-/* Of two faces that no slab separates, and that do not lie strictly within all of them: they touch
- * unless their planes are parallel. */
+/* The verdict of two faces that no slab separates, and that do not lie strictly inside all slabs.
+ * They touch unless their planes are parallel. */
 static enum fmb_verdict verdict_of_planes(struct certified *certified)
 {
-    certified->planes =
-        faces_planes_of(certified->pair, &certified->slabs, certified->span, &certified->shadow);
+    certified->planes = faces_planes_of(certified->pair, &certified->slabs, certified->span,
+                                        &certified->projection);
     if (certified->planes == FACES_CROSSING)
         return FMB_TOUCHING;
-    return certified->planes == FACES_SHARED ? shadow_verdict(certified)
-                                             : verdict_in_full(certified);
+    return certified->planes == FACES_SHARED ? projection_verdict(certified)
+                                             : verdict_exact(certified);
 }
 
-/* Sets the kind of a pair from its prepared frames; false if doubles cannot decide it. */
+/* Sets the kind of a pair from its prepared frames. Returns false if doubles cannot decide it. */
 static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
                      const struct fmb_prepared *b)
 {
@@ -153,9 +175,9 @@ static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
     return certified->kind < RUN_KINDS;
 }
 
-/* Runs the kernel of its kind on the pair alone. */
-static enum slabs_outcome run_alone(const struct certified *certified,
-                                    run_alone_function *const *functions, double *out)
+/* Runs the kernel of its kind on this single pair. */
+static enum slabs_outcome run_kernel(const struct certified *certified,
+                                     run_alone_function *const *functions, double *out)
 {
     return functions[certified->kind](certified->frame[certified->swapped],
                                       certified->frame[!certified->swapped],
@@ -167,28 +189,28 @@ static bool are_faces(const struct certified *certified)
     return certified->kind & RUN_FACE && certified->kind & RUN_ALIKE;
 }
 
-/* On input: a pair that the second pass leaves unsure; or two faces, TOUCHING by it. */
+/* In: a pair that the second pass leaves unsure; or two faces, if it finds them touching. */
 static enum fmb_verdict verdict_in_integers(struct certified *certified, bool touching)
 {
     if (!find_slabs(certified))
-        return verdict_in_full(certified);
+        return verdict_exact(certified);
     const enum fmb_verdict verdict = touching ? FMB_TOUCHING : verdict_of_slabs(certified);
     if (!are_faces(certified))
         return verdict;
     if (certified->path == CERTIFIED_EXACT) {
-        certified->planes = FACES_ELSE; /* they may be parallel: that was not tested */
+        certified->planes = FACES_ELSE; /* they may be parallel: this was not tested */
         return verdict;
     }
     find_span(certified);
     return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;
 }
 
-/* On input: a pair that the first pass leaves unsure. */
+/* In: a pair that the first pass leaves unsure. */
 static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
     if (certified->kind >= RUN_KINDS)
-        return verdict_in_full(certified);
-    const enum slabs_outcome outcome = run_alone(certified, run_exact_alone(), NULL);
+        return verdict_exact(certified);
+    const enum slabs_outcome outcome = run_kernel(certified, run_exact_alone(), NULL);
     const bool touching = outcome == SLABS_TOUCHING;
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
@@ -196,43 +218,44 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     return (enum fmb_verdict) outcome;
 }
 
-/* On input: a pair that is prepared. contact: NULL, or where the times of a pair that drifts go, as
- * in struct run. */
+/* In: a pair whose kind is set. contact: NULL, or the output of the contact of a pair that drifts,
+ * as in struct run. */
 static enum fmb_verdict verdict_of(struct certified *certified, double contact[2])
 {
     run_alone_function *const *functions = contact ? run_times_alone() : run_verdicts_alone();
     certified->path = CERTIFIED_FILTER;
-    const enum slabs_outcome outcome = run_alone(certified, functions, contact);
+    const enum slabs_outcome outcome = run_kernel(certified, functions, contact);
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
 }
 
-/* On input: a pair that has begun. */
+/* In: a pair after begin(). */
 static enum fmb_verdict verdict_of_any(struct certified *certified)
 {
     struct fmb_prepared a, b;
     prepared_set(certified->pair->a, &a);
     prepared_set(certified->pair->b, &b);
-    return set_kind(certified, &a, &b) ? verdict_of(certified, NULL) : verdict_in_full(certified);
+    return set_kind(certified, &a, &b) ? verdict_of(certified, NULL) : verdict_exact(certified);
 }
 
-static enum fmb_verdict shadow_verdict(struct certified *certified)
+static enum fmb_verdict projection_verdict(struct certified *certified)
 {
-    struct certified shadow;
-    begin(&shadow, &certified->shadow.pair, certified->quick);
-    const enum fmb_verdict verdict = verdict_of_any(&shadow);
-    certified->path = shadow.path;
-    certified->open = shadow.open;
+    struct certified projection;
+    begin(&projection, &certified->projection.pair, certified->quick);
+    const enum fmb_verdict verdict = verdict_of_any(&projection);
+    certified->path = projection.path;
+    certified->open = projection.open;
     return verdict;
 }
 
-/* Components of few bits, as people write them: it is likely that nothing rounds, and the times are
- * exact then. */
+/* Whether the components have few bits, as hand-written numbers do: then probably no operation
+ * rounds, and the times are exact. */
 static bool is_plain(const struct certified *certified)
 {
     return prepared_both_plain(certified->frame[0], certified->frame[1]);
 }
 
-/* Whether the times are exact in doubles: not asked of numbers that are likely to round. */
+/* Whether no operation rounds, so that the times are exact in doubles. Not tested for numbers that
+ * probably round. */
 static bool never_rounds(struct certified *certified)
 {
     if (!is_plain(certified) || !find_slabs(certified))
@@ -244,9 +267,10 @@ static bool never_rounds(struct certified *certified)
 static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want, bool quick,
                                    struct fmb_answer *answer);
 
-/* On input: answer->contact, of a pair that drifts, as the filter found it. A pair that does not is
- * in contact over the whole window. False: ask the exact method. Which step gives the times depends
- * on the numbers of the pair alone, so that they are the same bits wherever they are asked. */
+/* Completes the contact. In: for a pair that drifts, answer->contact is that of the filter. A pair
+ * that does not drift is in contact over the whole window. Returns false if the exact method is
+ * needed. Which step gives the times depends on the numbers of the pair only, so that they are the
+ * same bits for every caller. */
 static bool answer_contact(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_contact = true;
@@ -256,10 +280,10 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
         return true;
     }
     if (certified->planes == FACES_SHARED) {
-        struct fmb_answer shadow = {0};
+        struct fmb_answer projection = {0};
         const enum fmb_status status =
-            decide_pair(&certified->shadow.pair, 0, certified->quick, &shadow);
-        memcpy(answer->contact, shadow.contact, sizeof shadow.contact);
+            decide_pair(&certified->projection.pair, 0, certified->quick, &projection);
+        memcpy(answer->contact, projection.contact, sizeof projection.contact);
         return status == FMB_OK;
     }
     if (!never_rounds(certified) && !isnan(answer->contact[0]))
@@ -288,7 +312,7 @@ bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, d
     return !isnan(boxes[0][0][0]);
 }
 
-/* False where doubles do not give it. */
+/* Returns false if doubles do not give the box. */
 static bool answer_box(const struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_box = true;
@@ -296,8 +320,8 @@ static bool answer_box(const struct certified *certified, struct fmb_answer *ans
                          answer->box);
 }
 
-/* The exact method gives what the doubles did not, and that alone: which of them gives what is
- * decided by the numbers of the pair, so that the answer is the same wherever it is asked. */
+/* Computes by the exact method what doubles did not give, and only that. Which method gives a value
+ * depends on the numbers of the pair only, so that the answer is the same for every caller. */
 static void complete(const struct frame_pair *pair, bool good_contact, bool good_box,
                      struct fmb_answer *answer)
 {
@@ -337,7 +361,7 @@ static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_pr
     return FMB_OK;
 }
 
-/* Adds the gap where it is wanted. */
+/* decide(), and the gap if it is wanted. */
 static enum fmb_status decide_all(const struct frame_pair *pair, const struct fmb_prepared *a,
                                   const struct fmb_prepared *b, unsigned want, bool quick,
                                   struct fmb_answer *answer)

@@ -1,39 +1,40 @@
-/* The certified method: doubles with bounds on their errors; exact arithmetic where these leave
- * something open.
+/* The method certified: doubles with bounds on their errors, and exact arithmetic for what these
+ * leave open.
  *
- *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c); where unsure, its second
- *               pass (walk_exact.h), the open slabs in integers (limbs.c), or the exact method; of
- *               two faces in one plane, that of two triangles in 2D (faces.c)
- *     contact   the filter bounds the time in the same walk (walk_slab.h); where that is not near
- *               enough, or nothing rounds, the slabs one by one (contact.c)
- *     box       the least of a list of bounds for each end (walk_box.h)
- *     gap       from the verdict on, by steps of its own (gap.h)
+ *     verdict   the filter: axes and slabs in doubles (run.h, slabs.c). If it is unsure: its second
+ *               pass (walk_exact.h), the open slabs in integers (limbs.c), or the exact method. For
+ *               two faces in one plane: the verdict of two triangles in 2D (faces.c)
+ *     contact   the filter bounds the times in the same pass (walk_slab.h). If a bound is not tight
+ *               enough, or nothing rounds: the slabs one by one (contact.c)
+ *     box       for each end the least of a list of bounds (walk_box.h)
+ *     gap       given the verdict, in steps of its own (gap.h)
  *
- * Contact and box are two-sided: the outer value surely contains the true one, the inner one is
- * surely contained in it. The answer is the outer one, given only where both are so close that it
- * is within the limits of fmb.h; else integers decide, or the exact method. */
+ * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
+ * the inner one is surely contained in it. The answer is the outer one. It is given only if the two
+ * are so close that it is within the limits of fmb.h; otherwise integers or the exact method
+ * decide. */
 #ifndef FMB_CERTIFIED_H
 #define FMB_CERTIFIED_H
 
 #include "integer.h"
 #include "slabs.h"
 
-/* The method. */
+/* The decide function of the method. */
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
 /* The widest integers of a quick decision, in limbs: 512 bits. A slab then takes at most 1,000
- * products of limbs, most 100 to 300, and a pair has at most SLABS_MAX slabs. */
+ * products of limbs (most take 100 to 300), and a pair has at most SLABS_MAX slabs. */
 enum { CERTIFIED_QUICK_LIMBS = 8 };
 
-/* The same answer from prepared frames. quick: or CANNOT_DECIDE, and *answer is unspecified, where
- * it needs GMP or wider integers; takes tens of microseconds at most then, and allocates
- * nothing. */
+/* The same answer from prepared frames. quick: returns FMB_CANNOT_DECIDE, with *answer unspecified,
+ * if the answer needs GMP or wider integers. A quick decision takes tens of microseconds at most
+ * and allocates nothing. */
 enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);
 
-/* Which step decides the verdict of a pair: the filter; its second pass; the slabs left open, in
+/* The step that decides the verdict of a pair: the filter; its second pass; the open slabs in
  * doubles with bounds of their own; integers of fixed width; GMP. For tests and reports. */
 enum certified_path {
     CERTIFIED_FILTER,
@@ -43,22 +44,22 @@ enum certified_path {
     CERTIFIED_EXACT
 };
 
-/* The verdict of a checked pair, and who found it. */
+/* Returns the verdict of a checked pair, and in *path the step that decided it. */
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
-/* The same of a prepared pair that one or both passes of the filter leave unsure. quick: 0 where it
- * needs GMP or wider integers. */
+/* Returns the verdict of a prepared pair that passes (1 or 2) passes of the filter leave unsure.
+ * quick: returns 0 if it needs GMP or wider integers. */
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                   double duration, int passes, bool quick);
 
-/* For a pair in contact that drifts: its contact. rounds: whether operations on these numbers
- * may round; span: of the pair; exact: where doubles do not give an end within its limit, integers
- * may. False if nothing that may be used does. */
+/* Computes the contact of a pair in contact that drifts. rounds: operations on these numbers may
+ * round. span: of the pair. exact: integers may be used for an end that doubles do not give within
+ * its limit. Returns false if the permitted methods do not give the contact. */
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* For a pair in contact, prepared: the box. False, and NAN, if doubles do not give it within its
- * limit. */
+/* Computes the box of a prepared pair in contact. Returns false, and NAN, if doubles do not give it
+ * within its limit. */
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    double box[2][FMB_DIM_MAX]);
 

@@ -1,26 +1,28 @@
 /* The first and last time of contact of a pair that is known to be in contact.
  *
- * Method. Each slab of the pair (those of the faces, and of an edge of each) holds the offset from
- * some time on until some other: start + tau slope <= high and >= low, two inequalities of tau,
- * which is a segment to cut (clip.h). The first time is the largest of the lower ends, the last
- * the smallest of the upper ones: the pair is in contact, so all of them are obeyed at one time.
- * Each end so lies between the outer and the inner value. Slabs of the drift do not depend on
- * time: their slope is 0, and they cut nothing.
+ * Method. Each slab of the pair (of a face, or of an edge of each frame) contains the offset from
+ * some time on until another: start + tau slope <= high and >= low. These two inequalities clip the
+ * interval of tau (clip.h). The first time is the largest of the lower ends, and the last the
+ * smallest of the upper ones: since the pair is in contact, some time satisfies all inequalities.
+ * Each end therefore lies between its outer and its inner value. Slabs of the drift do not depend
+ * on time: their slope is 0, and they clip nothing.
  *
- * Where outer and inner are too far apart, the slabs whose inner end is beyond the outer one of
- * all are asked for their exact end, in limbs: the tightest doubles, whichever of them it is,
- * since rounding keeps order. Not so with frames that have errors: a slab that is missing in the
- * rounded list, its edges being parallel there, might be the one. */
+ * If outer and inner are too far apart, the exact end is computed in fixed-width integers for each
+ * slab whose inner end is beyond the outer end of all. The result is the tightest doubles,
+ * whichever slab gives the end, since rounding preserves order. This does not hold for frames with
+ * errors: a slab that is missing in the rounded list, because its edges are parallel there, might
+ * give the end. */
 #include "certified.h"
 
 #include "clip.h"
 #include "limbs.h"
 
-/* Of the window; leaves a tenth of the limit of 1e-12 to the product with its duration. */
+/* Relative to the window; leaves a tenth of the limit of 1e-12 for the product with the duration.
+ */
 static const double limit = 0.9e-12;
 
-/* Seconds: below this, the distance of two doubles is no longer small against the window, and ends
- * have to be the tightest. */
+/* In seconds. Below this, the distance of adjacent doubles is no longer small relative to the
+ * window, and ends have to be the tightest doubles. */
 static const double least_duration = 0x1p-1000;
 
 struct times {

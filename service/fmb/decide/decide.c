@@ -14,7 +14,7 @@ static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned wa
     const enum fmb_status status = exact_decide(pair, want, answer);
     answer->has_gap = want & FMB_WANT_GAP;
     if (answer->has_gap)
-        gap_exactly(pair, answer->verdict, &answer->gap);
+        gap_exact_any_order(pair, answer->verdict, &answer->gap);
     return status;
 }
 
@@ -80,14 +80,14 @@ static void include(struct fmb_answer *all, const struct fmb_answer *one, int di
 /* Frames of a body that are placed together. */
 enum { CHUNK = 16 };
 
-struct chunk {
+struct frame_chunk {
     const struct fmb_placement *placement;
     unsigned first, count;
     struct swept box[CHUNK], all; /* over the window */
 };
 
 static void set_chunk(const struct fmb_placement *placement, unsigned first, double duration,
-                      struct chunk *out)
+                      struct frame_chunk *out)
 {
     const unsigned left = placement->body->frame_count - first;
     struct fmb_prepared prepared[CHUNK];
@@ -101,7 +101,7 @@ static void set_chunk(const struct fmb_placement *placement, unsigned first, dou
     }
 }
 
-static struct placed_frame frame_at(const struct chunk *chunk, unsigned i)
+static struct placed_frame frame_at(const struct frame_chunk *chunk, unsigned i)
 {
     return (struct placed_frame){fmb_body_frame(chunk->placement->body, chunk->first + i),
                                  chunk->placement};
@@ -118,7 +118,8 @@ struct frames {
 };
 
 /* Frames whose boxes are farther apart than that neither meet nor have the least gap. */
-static double reach_of(const struct frames *frames, const struct chunk *a, const struct chunk *b)
+static double reach_of(const struct frames *frames, const struct frame_chunk *a,
+                       const struct frame_chunk *b)
 {
     if (!(frames->want & FMB_WANT_GAP))
         return 0;
@@ -126,8 +127,8 @@ static double reach_of(const struct frames *frames, const struct chunk *a, const
 }
 
 /* Includes the pairs of frames of two chunks whose boxes are near enough. */
-static enum fmb_status decide_chunks(struct frames *frames, const struct chunk *a,
-                                     const struct chunk *b)
+static enum fmb_status decide_chunks(struct frames *frames, const struct frame_chunk *a,
+                                     const struct frame_chunk *b)
 {
     for (unsigned i = 0; i < a->count; i++) {
         const double reach = reach_of(frames, a, b);
@@ -160,7 +161,7 @@ static enum fmb_status decide_frames(struct frames *frames)
         frames->swaps = gap_swaps(frames->a, frames->b);
     }
     for (unsigned i = 0; i < count_a; i += CHUNK) {
-        struct chunk of_a, of_b;
+        struct frame_chunk of_a, of_b;
         set_chunk(frames->a, i, frames->duration, &of_a);
         for (unsigned j = 0; j < count_b && status == FMB_OK; j += CHUNK) {
             set_chunk(frames->b, j, frames->duration, &of_b);

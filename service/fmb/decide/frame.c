@@ -103,9 +103,9 @@ static void invert(struct fmb_frame *frame)
  * nor lose bits to underflow; and no number so small that a product of two underflows. */
 static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
-/* What is thinner might be turned inside out by the rounding of a rotation, or of vertices: each of
- * three components is off by at most ROTATION_ERROR and 2^-52 of itself, less than 2^-48 together,
- * and the volume by three times that. */
+/* A thinner frame might be inverted by the rounding of a rotation, or of vertices: each of three
+ * components is off by at most ROTATION_ERROR and 2^-52 of itself, less than 2^-48 together, and
+ * the volume by three times that. */
 static const double least_thickness = 0x1p-44;
 
 static double square_of(const double v[FMB_DIM_MAX])
@@ -158,8 +158,8 @@ static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span
         frame->in_range && frame->size[i] >= least_size && frame->size[i] <= largest_size;
 }
 
-/* in_range: the filter may use the doubles of a frame that is not turned. They have to be the frame
- * itself, or one near it that is surely not flat. sturdy: however it is turned. */
+/* in_range: the filter may use the doubles of a frame that is not rotated. They have to be the
+ * frame itself, or one close to it that is surely not flat. sturdy: the same for any rotation. */
 static void measure(struct fmb_frame *frame)
 {
     struct dyadic_span span = dyadic_span_begin();
@@ -328,7 +328,7 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
 
 /* ---- Bodies ---- */
 
-/* As prepared_set() of a frame whose body is at the origin and not turned: nothing rounds. */
+/* As prepared_set() for a body at the origin that is not rotated: nothing rounds. */
 INLINE struct swept box_at_origin(const struct fmb_frame *frame, const int dim,
                                   const struct fmb_placement *placement)
 {
@@ -344,7 +344,7 @@ INLINE struct swept box_at_origin(const struct fmb_frame *frame, const int dim,
     return swept_of(&prepared, 0);
 }
 
-/* The box of the frames, where the body is at the origin and not turned. */
+/* Sets the box of a body: that of its frames, at the origin and not rotated. */
 static void set_body_box(struct fmb_body *out)
 {
     const struct fmb_placement origin = {.body = out};

@@ -1,9 +1,19 @@
-/* Scenes in steps. Pairs of bodies come from scene_pairs.c, their pairs of frames from
- * scene_frames.c; blocks of these go through the batch, and the answers of a pair of bodies are put
- * together from those of its frames.
+/* Scenes, decided in steps.
  *
- * Where every body has one frame and all are placed at once, slot i is placement i, and the answers
- * of the batch are those of the bodies as they are. */
+ *   In     struct fmb_scene: placements, and which pairs of them
+ *   Out    per step, the answers of some pairs of bodies, in the order of the pairs
+ *
+ * Stages (enum scene_stage):
+ *
+ *   1. PLACING    adds the placements: their boxes, and frames that are prepared at once
+ *   2. SEARCHING  finds the pairs of bodies whose boxes overlap (scene_pairs.c)
+ *   3. DECIDING   block by block: begin_block() takes pairs of bodies from scene_pairs.c and their
+ *                 pairs of frames from scene_frames.c, and decides these by the batch. Later steps
+ *                 decide the pairs of frames that the batch left open, one a step. include()
+ *                 combines the answers of pairs of frames into those of pairs of bodies.
+ *
+ * If every body has one frame and all are prepared at once ("direct"), slot i is placement i, and
+ * the answers of the batch are those of the bodies. */
 #include "scene_pairs.h"
 
 #include "batch.h"
@@ -19,56 +29,58 @@
 enum {
     CACHE_LINE = 64,
     STEP_PLACEMENTS = 128,
-    /* Pairs of frames in doubles. The batch decides few of them in integers. */
+    /* The largest number of pairs of frames in a block. The batch decides few of them in integers.
+     */
     BLOCK = 128,
-    /* After a block with pairs left open, and with boxes, which take longer: as many as the batch
-     * decides in integers, so that none is left open for its time. */
+    /* The size of a block if boxes are wanted, which take longer, and after a block with pairs left
+     * open: as many as the batch decides in integers, so that no pair is left open for lack of
+     * time. */
     BLOCK_SLOW = 32
 };
 
 static_assert((int) FMB_SCENE_SLOTS_MIN == 2 * SCENE_CHUNK, "two chunks always fit");
 
-enum stage { PLACING, SEARCHING, DECIDING };
+enum scene_stage { PLACING, SEARCHING, DECIDING };
 
-/* Of pairs of frames or of bodies. */
-struct outcomes {
+/* Answers of pairs of frames, or of pairs of bodies. */
+struct scene_outcomes {
     unsigned char verdict[BLOCK];
     double contact[BLOCK][2];
     double box[BLOCK][2][FMB_DIM_MAX];
     struct fmb_gap gap[BLOCK];
 };
 
-struct block {
-    /* Pairs of frames: those before done are in the answers of their bodies. */
+struct scene_block {
+    /* Pairs of frames: those before done are included in the answers of their bodies. */
     size_t count, done;
     const unsigned (*frames)[2]; /* slots */
     unsigned slots[BLOCK][2];
     unsigned char owner[BLOCK]; /* the pair of bodies */
-    struct outcomes outcomes;
-    /* Those that need exact arithmetic, ascending; those before next_open have been decided. */
+    struct scene_outcomes outcomes;
+    /* Pairs of frames that need exact arithmetic, ascending; those before next_open are decided. */
     size_t open[BLOCK], open_count, next_open;
-    /* Pairs of bodies: those before given have been handed out. */
+    /* Pairs of bodies: those before given have been returned. */
     size_t body_count, given;
     const unsigned (*bodies)[2];
     unsigned out[BLOCK][2];
     unsigned long long first; /* FMB_PAIRS_LISTED: the number of the first */
-    struct outcomes answers;
+    struct scene_outcomes answers;
 };
 
 struct fmb_scene_state {
     struct fmb_scene scene;
-    enum stage stage;
+    enum scene_stage stage;
     size_t next;  /* placement */
     bool batched; /* the method is that of the batch */
     bool slow;    /* blocks of BLOCK_SLOW */
     void *tree;
     struct scene_frames frames;
     struct scene_pairs pairs;
-    bool halfway; /* the last pair of bodies of the block has more pairs of frames */
-    struct scene_cursor cursor;
-    size_t answered; /* in the last step, from the pair of bodies first_answer on */
+    bool halfway; /* the last pair of bodies has more pairs of frames than fit the block */
+    struct frame_pair_cursor cursor;
+    size_t answered; /* in the last step, starting with the pair of bodies first_answer */
     size_t first_answer;
-    struct block block;
+    struct scene_block block;
 };
 
 /* ---- Memory ---- */
@@ -78,7 +90,7 @@ static size_t whole_lines(size_t bytes)
     return (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
 }
 
-static size_t most_chunks(const struct fmb_scene_limits *limits)
+static size_t chunks_max(const struct fmb_scene_limits *limits)
 {
     return limits->frames / SCENE_CHUNK + limits->placements;
 }
@@ -90,7 +102,7 @@ static void *take(char *base, size_t *at, size_t count, size_t size)
     return out;
 }
 
-/* Lays out the arrays from base on; returns the bytes. base NULL: all arrays are. */
+/* Lays out the arrays from base on, and returns the number of bytes. base NULL: only counts. */
 static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
                       struct fmb_scene_state *state)
 {
@@ -100,13 +112,13 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
     size_t at = whole_lines(sizeof *state);
     frames->slot = take(base, &at, limits->slots, sizeof *frames->slot);
     frames->frame_box = take(base, &at, limits->slots, sizeof *frames->frame_box);
-    frames->chunk = take(base, &at, most_chunks(limits), sizeof *frames->chunk);
+    frames->chunk = take(base, &at, chunks_max(limits), sizeof *frames->chunk);
     frames->first_chunk = take(base, &at, placements, sizeof *frames->first_chunk);
     frames->body_box = take(base, &at, placements, sizeof *frames->body_box);
     pairs->space = take(base, &at, placements, sizeof *pairs->space);
     pairs->start = take(base, &at, placements + 2, sizeof *pairs->start);
-    pairs->partner = take(base, &at, scene_pairs_room(placements), sizeof *pairs->partner);
-    pairs->pair = take(base, &at, scene_pairs_room(placements), sizeof *pairs->pair);
+    pairs->partner = take(base, &at, scene_pairs_capacity(placements), sizeof *pairs->partner);
+    pairs->pair = take(base, &at, scene_pairs_capacity(placements), sizeof *pairs->pair);
     pairs->head = take(base, &at, placements, sizeof *pairs->head);
     pairs->mark = take(base, &at, placements, sizeof *pairs->mark);
     pairs->link = take(base, &at, limits->ignored, sizeof *pairs->link);
@@ -116,7 +128,7 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
 
 size_t fmb_scene_bytes(const struct fmb_scene_limits *limits)
 {
-    /* Indices have 32 bits; and no sum below overflows. */
+    /* Indices have 32 bits, and no sum below overflows. */
     const size_t most = SIZE_MAX / 4096 < UINT_MAX / 16 ? SIZE_MAX / 4096 : UINT_MAX / 16;
     struct fmb_scene_state state;
     if (limits->placements > most || limits->frames > most || limits->ignored > most ||
@@ -159,7 +171,7 @@ static enum fmb_status check_placements(const struct fmb_scene *scene)
     return FMB_OK;
 }
 
-/* Without branches, so that compilers vectorize it. */
+/* Has no branches, so that compilers vectorize it. */
 static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t placements)
 {
     const unsigned end = (unsigned) placements;
@@ -170,7 +182,7 @@ static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t p
     return !bad;
 }
 
-/* Pairs in the answers have gaps: all, or those that meet or are near. */
+/* Whether pairs in the answers have gaps: all, or those that meet or are near. */
 static bool has_gaps(const struct fmb_scene *scene)
 {
     return scene->gaps || scene->margin > 0;
@@ -250,7 +262,7 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
     state->slow = scene->boxes || scene->gaps;
     lay_out(limits, base, state);
     begin_frames(state, limits);
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     block->count = block->done = block->open_count = block->next_open = 0;
     block->body_count = block->given = 0;
     block->first = scene->first_pair;
@@ -274,10 +286,10 @@ static size_t block_size(const struct fmb_scene_state *state)
     return !state->batched ? 1 : state->slow ? BLOCK_SLOW : BLOCK;
 }
 
-/* Pairs of bodies as pairs of frames. */
+/* Fills a block of a direct scene: pairs of bodies are pairs of frames. */
 static void fill_direct(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const size_t max = block_size(state);
     block->bodies = (const unsigned(*)[2]) block->out;
     if (is_listed(state)) {
@@ -293,17 +305,18 @@ static void fill_direct(struct fmb_scene_state *state)
     block->count = block->body_count;
 }
 
-/* Gaps of pairs of frames that are surely greater need not be known. */
+/* The largest gap of a pair of bodies that is of interest. */
 static double farthest(const struct fmb_scene_state *state)
 {
     return is_listed(state) && state->scene.gaps ? INFINITY : state->scene.margin;
 }
 
-/* That of frames of the block. The bounds of a gap are apart by a share of the coordinates of both
- * bodies, which may be larger than those of two of their frames. */
+/* The largest gap of a pair of frames of the block that is of interest. The width of an enclosure
+ * is relative to the coordinates of both bodies, which may be larger than those of two of their
+ * frames. */
 static double farthest_of_frames(const struct fmb_scene_state *state)
 {
-    const struct block *block = &state->block;
+    const struct scene_block *block = &state->block;
     const struct swept *box = state->frames.body_box;
     double largest = 0;
     for (size_t k = 0; !state->frames.direct && k < block->body_count; k++)
@@ -312,10 +325,11 @@ static double farthest_of_frames(const struct fmb_scene_state *state)
     return farthest(state) + 0x1p-37 * largest;
 }
 
-/* How far apart boxes of frames of the n-th pair of bodies may be, with its answer so far. */
+/* The largest distance of frame boxes of the n-th pair of bodies that can still change its answer.
+ */
 static double reach_of(const struct fmb_scene_state *state, size_t n)
 {
-    const struct block *block = &state->block;
+    const struct scene_block *block = &state->block;
     const struct swept *box = state->frames.body_box;
     const double upper = block->answers.gap[n].bounds[1];
     if (!has_gaps(&state->scene))
@@ -325,7 +339,7 @@ static double reach_of(const struct fmb_scene_state *state, size_t n)
 
 static void begin_answer(struct fmb_scene_state *state, size_t n)
 {
-    struct outcomes *answers = &state->block.answers;
+    struct scene_outcomes *answers = &state->block.answers;
     answers->verdict[n] = FMB_SEPARATED;
     answers->gap[n] = gap_none();
     for (int end = 0; end < 2; end++) {
@@ -335,7 +349,8 @@ static void begin_answer(struct fmb_scene_state *state, size_t n)
     }
 }
 
-static void copy_answer(struct outcomes *answers, size_t to, const struct outcomes *of, size_t from)
+static void copy_answer(struct scene_outcomes *answers, size_t to, const struct scene_outcomes *of,
+                        size_t from)
 {
     answers->verdict[to] = of->verdict[from];
     memcpy(answers->contact[to], of->contact[from], sizeof of->contact[from]);
@@ -343,15 +358,16 @@ static void copy_answer(struct outcomes *answers, size_t to, const struct outcom
     answers->gap[to] = of->gap[from];
 }
 
-/* The pair of bodies that the last block left halfway, if it still needs pairs of frames. */
+/* Moves the unfinished pair of bodies of the last block to the front, if it still needs pairs of
+ * frames. */
 static void keep_halfway(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const size_t last = block->body_count - 1;
     const unsigned char verdict = block->answers.verdict[last];
     const bool verdict_alone =
         !state->scene.contacts && !state->scene.boxes && !has_gaps(&state->scene) &&
-        state->scene.method->certain; /* others may refuse a pair of frames yet to come */
+        state->scene.method->certain; /* an inexact method may still refuse a pair of frames */
     memmove(block->out[0], block->out[last], sizeof block->out[0]);
     copy_answer(&block->answers, 0, &block->answers, last);
     block->body_count = 1;
@@ -363,12 +379,12 @@ static void keep_halfway(struct fmb_scene_state *state)
 
 static bool next_bodies(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const size_t n = block->body_count;
     if (n == BLOCK || scene_pairs_next(&state->pairs, &block->out[n], 1) == 0)
         return false;
     begin_answer(state, n);
-    scene_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1], reach_of(state, n));
+    frame_pair_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1], reach_of(state, n));
     block->body_count++;
     state->halfway = true;
     return true;
@@ -376,7 +392,7 @@ static bool next_bodies(struct fmb_scene_state *state)
 
 static void fill(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const size_t max = block_size(state);
     block->count = 0;
     block->frames = (const unsigned(*)[2]) block->slots;
@@ -402,13 +418,13 @@ static void fill(struct fmb_scene_state *state)
 
 /* ---- Deciding ---- */
 
-/* Pairs first to first + count - 1 of the block. *open: positions from first on of those that need
- * exact arithmetic; NULL: those are decided too. */
+/* Decides pairs first to first + count - 1 of the block by the batch. *open: positions, relative to
+ * first, of those that need exact arithmetic; NULL: these are decided too. */
 static void decide_batch(struct fmb_scene_state *state, size_t first, size_t count, size_t *open,
                          size_t *open_count)
 {
     const struct fmb_scene *scene = &state->scene;
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const struct fmb_batch batch = {
         .frames = state->frames.slot,
         .frame_count = state->frames.used,
@@ -426,10 +442,10 @@ static void decide_batch(struct fmb_scene_state *state, size_t first, size_t cou
     (void) status;
 }
 
-/* The only pair of the block, by a method that has no batch. */
+/* Decides the only pair of the block, by a method without a batch. */
 static void decide_single(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const struct fmb_prepared *a = &state->frames.slot[block->frames[0][0]];
     const struct fmb_prepared *b = &state->frames.slot[block->frames[0][1]];
     const struct frame_pair pair = {
@@ -447,7 +463,7 @@ static void decide_single(struct fmb_scene_state *state)
 
 static void begin_block(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     state->frames.work = 0;
     state->pairs.searches = 0;
     block->done = block->next_open = block->open_count = block->given = 0;
@@ -470,10 +486,11 @@ static bool is_contact(unsigned char verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* The gap of pair of frames k, if it is known: of bodies of one frame it is theirs. */
+/* Includes the gap of pair of frames k, if it is known, in that of its bodies. If both have one
+ * frame, it is the gap of the bodies. */
 static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const struct fmb_gap *one = &block->outcomes.gap[k];
     const struct fmb_placement *a = &state->scene.placements[block->bodies[n][0]];
     const struct fmb_placement *b = &state->scene.placements[block->bodies[n][1]];
@@ -487,12 +504,12 @@ static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
                     &box[block->frames[k][1]], gap_swaps(a, b));
 }
 
-/* Puts the answer of pair of frames k to that of its bodies. */
+/* Includes the answer of pair of frames k in that of its bodies. */
 static void include(struct fmb_scene_state *state, size_t k)
 {
-    struct block *block = &state->block;
-    struct outcomes *answers = &block->answers;
-    const struct outcomes *one = &block->outcomes;
+    struct scene_block *block = &state->block;
+    struct scene_outcomes *answers = &block->answers;
+    const struct scene_outcomes *one = &block->outcomes;
     const size_t n = block->owner[k];
     const unsigned char verdict = one->verdict[k];
     if (has_gaps(&state->scene))
@@ -506,7 +523,7 @@ static void include(struct fmb_scene_state *state, size_t k)
     }
     if (verdict > answers->verdict[n])
         answers->verdict[n] = verdict;
-    /* fmin() and fmax() take the other where one is NAN. */
+    /* fmin() and fmax() return the other operand if one is NAN. */
     if (state->scene.contacts) {
         answers->contact[n][0] = fmin(answers->contact[n][0], one->contact[k][0]);
         answers->contact[n][1] = fmax(answers->contact[n][1], one->contact[k][1]);
@@ -517,11 +534,11 @@ static void include(struct fmb_scene_state *state, size_t k)
     }
 }
 
-/* Includes all pairs of frames before the first that is open; returns the end of the pairs of
- * bodies that are complete. */
+/* Includes all pairs of frames before the first open one. Returns the end of the pairs of bodies
+ * that are complete. */
 static size_t include_decided(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     const bool open = block->next_open < block->open_count;
     const size_t end = open ? block->open[block->next_open] : block->count;
     if (!state->frames.direct)
@@ -535,7 +552,7 @@ static size_t include_decided(struct fmb_scene_state *state)
 /* Clears the gap of a pair that has none, or is farther apart than the margin. */
 static void end_gap(const struct fmb_scene_state *state, unsigned char verdict, struct fmb_gap *gap)
 {
-    if (isnan(gap->bounds[0])) /* as the batch has it */
+    if (isnan(gap->bounds[0])) /* as set by the batch */
         return;
     const bool known = gap->bounds[0] < INFINITY || gap->direction[0] < INFINITY;
     const bool wanted = verdict != FMB_SEPARATED || gap->bounds[0] <= farthest(state);
@@ -550,9 +567,10 @@ static bool is_near(const struct fmb_scene_state *state, const struct fmb_gap *g
     return state->scene.margin > 0 && gap->bounds[0] <= state->scene.margin;
 }
 
-/* Moves those that meet or are near to the front of pairs first to end - 1; returns how many. */
-static size_t drop_separated(struct fmb_scene_state *state, struct outcomes *answers, size_t first,
-                             size_t end)
+/* Moves the pairs that meet or are near to the front of pairs first to end - 1. Returns how many.
+ */
+static size_t drop_separated(struct fmb_scene_state *state, struct scene_outcomes *answers,
+                             size_t first, size_t end)
 {
     unsigned(*pair)[2] = state->block.out;
     size_t to = first;
@@ -570,8 +588,8 @@ static size_t drop_separated(struct fmb_scene_state *state, struct outcomes *ans
 
 static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *out)
 {
-    struct block *block = &state->block;
-    struct outcomes *answers = state->frames.direct ? &block->outcomes : &block->answers;
+    struct scene_block *block = &state->block;
+    struct scene_outcomes *answers = state->frames.direct ? &block->outcomes : &block->answers;
     const size_t first = block->given, end = include_decided(state);
     block->given = end;
     for (size_t n = first; has_gaps(&state->scene) && n < end; n++)
@@ -601,7 +619,7 @@ unsigned long long fmb_scene_number(const struct fmb_scene_state *state, size_t 
 
 unsigned long long fmb_scene_next_pair(const struct fmb_scene_state *state)
 {
-    const struct block *block = &state->block;
+    const struct scene_block *block = &state->block;
     if (state->stage != DECIDING)
         return state->scene.first_pair;
     return block->given < block->body_count ? number_of(state, block->given)
@@ -622,7 +640,7 @@ static void place_some(struct fmb_scene_state *state)
 
 static void decide_some(struct fmb_scene_state *state)
 {
-    struct block *block = &state->block;
+    struct scene_block *block = &state->block;
     if (block->next_open < block->open_count)
         decide_batch(state, block->open[block->next_open++], 1, NULL, NULL);
     else

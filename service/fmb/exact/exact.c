@@ -418,8 +418,8 @@ static double seconds(const mpz_t num, const mpz_t den, double duration,
 /* The offset of the frames moves along a segment, offset + tau drift. */
 struct offset_walk {
     struct exact_pair *pair;
-    struct span span; /* of a flat difference */
-    bool strict;      /* of a solid one: strictly within all slabs so far */
+    struct clipped_segment span; /* of a flat difference */
+    bool strict;                 /* of a solid one: strictly within all slabs so far */
     double duration, *contact;
     mpz_t f0, f1, num, den;
 };
@@ -434,7 +434,8 @@ static bool apply_to_span(void *context, struct slab *slab)
 {
     struct offset_walk *walk = context;
     set_way(walk, slab);
-    return span_apply(&walk->span, walk->f0, walk->f1, slab->low, slab->high, slab->pins);
+    return clipped_segment_apply(&walk->span, walk->f0, walk->f1, slab->low, slab->high,
+                                 slab->pins);
 }
 
 /* Moves an end of the contact to where the offset crosses a bound. Rounding keeps order: the last
@@ -484,18 +485,19 @@ static enum fmb_verdict verdict_of_solid(struct offset_walk *walk)
 
 static enum fmb_verdict verdict_of_flat(struct offset_walk *walk)
 {
-    span_init(&walk->span);
+    clipped_segment_init(&walk->span);
     enum fmb_verdict verdict = FMB_SEPARATED;
     if (slabs_walk(walk->pair, SLABS_OF_DIFFERENCE, apply_to_span, walk)) {
-        verdict = span_has_interior(&walk->span) ? FMB_OVERLAPPING : FMB_TOUCHING;
-        const struct ratio *first = span_lower(&walk->span), *last = span_upper(&walk->span);
+        verdict = clipped_segment_has_interior(&walk->span) ? FMB_OVERLAPPING : FMB_TOUCHING;
+        const struct ratio *first = clipped_segment_lower(&walk->span),
+                           *last = clipped_segment_upper(&walk->span);
         mpz_t *scratch = walk->pair->scratch;
         if (walk->contact) {
             walk->contact[0] = seconds(first->num, first->den, walk->duration, ROUND_DOWN, scratch);
             walk->contact[1] = seconds(last->num, last->den, walk->duration, ROUND_UP, scratch);
         }
     }
-    span_clear(&walk->span);
+    clipped_segment_clear(&walk->span);
     return verdict;
 }
 

@@ -1,34 +1,36 @@
 /* The points that span the intersection of two frames over the window, and its exact box.
  *
  * In space and time (tau, p) the intersection is a convex polytope Q; its box is that of its
- * vertices. Q is the image of the polytope P of all (tau, x, y), parameters x of A and y of B
- * that at tau give the same point, and each vertex of Q is the image of a vertex of P. At a
- * vertex of P let x lie inside a face of A's cube or simplex of dimension i, and y inside one
- * of B's of dimension j (0 a vertex, 1 an edge, ...). No direction leads both ways out of a
- * vertex, so the map (dx, dy, dtau) -> sum dx c_A - sum dy c_B - dtau drift into space is one to
- * one on these faces, with dtau = 0 at an end of the window. Hence
+ * vertices. Let P be the polytope of all (tau, x, y), with parameters x of A and y of B that give
+ * the same point at tau. Q is the image of P, and each vertex of Q is the image of a vertex of P.
+ * At a vertex of P let x lie inside a face of A's cube or simplex of dimension i, and y inside one
+ * of B's of dimension j (0 a vertex, 1 an edge, ...). No direction leads both ways out of a vertex.
+ * So the map (dx, dy, dtau) -> sum dx c_A - sum dy c_B - dtau drift into space is one to one on
+ * these faces, with dtau = 0 at an end of the window. Hence
  *
- *   inside the window i + j + 1 <= 3: a vertex of one frame against whatever part of the other
+ *   inside the window i + j + 1 <= 3: a vertex of one frame against any part of the other
  *   (i = 0 or j = 0), or an edge against an edge, whose directions and the drift are
  *   independent;
  *   at an end of the window (and in a static pair) i + j <= 3: one of the two is a vertex or an
  *   edge.
  *
- * This holds for flat frames too, whose vertices and edges are meant as the images of those of
- * the parameters. So Q is the hull of
+ * This holds for flat frames too; their vertices and edges are the images of those of the
+ * parameters. So Q is the hull of
+ *
  *   1. the ends of each edge of A clipped to B, and of B to A, at both ends of the window;
  *   2. the ends of the path of each vertex of A clipped to B, and of B to A (relative motion);
  *   3. the points and times where an edge of A crosses an edge of B.
- * All of these lie in Q, and every vertex of Q is among them: in 1 and 2 since a vertex of Q is
- * no inner point of a segment in Q.
  *
- * Work, with numbers of W limbs as in exact.c: what each slab says of the vertices, and what each
- * crossing is, are sums of triple products. Signs alone reject most segments. Of one that is left,
- * at most 3 slabs of a cuboid (4 of a tetrahedron, 7 of a flat frame) move an end; each compares
- * two quotients, in doubles unless these agree in 48 bits, and then by two products of (3 W)^2
- * limbs. A point takes 15 products with numbers of at most 3 limbs and up to 6 quotients of 53
- * bits, less than 20,000 products of limbs. Q has at most 77 vertices (14 facets in 4 dimensions);
- * some are found more than once. */
+ * All of these lie in Q. Every vertex of Q is among them: in 1 and 2 because a vertex of Q is not
+ * an inner point of a segment in Q.
+ *
+ * Cost, with numbers of W limbs as in exact.c: the values of the vertices on each slab, and each
+ * crossing, are sums of triple products. Signs alone reject most segments. For one that remains, at
+ * most 3 slabs of a cuboid (4 of a tetrahedron, 7 of a flat frame) move an end. Each compares two
+ * quotients, in doubles unless these agree in 48 bits, and then by two products of (3 W)^2 limbs. A
+ * point takes 15 products with numbers of at most 3 limbs and up to 6 quotients of 53 bits: less
+ * than 20,000 products of limbs. Q has at most 77 vertices (14 facets in 4 dimensions); some are
+ * found more than once. */
 #include "exact.h"
 #include "integer.h"
 
@@ -53,7 +55,7 @@ struct clipper {
     mpz_t at[2][FRAME_SLABS_MAX][EXACT_VERTICES_MAX];
 };
 
-struct walk {
+struct box_search {
     struct exact_pair *pair;
     point_visit visit;
     void *context;
@@ -69,28 +71,28 @@ struct walk {
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */
-static void walk_each(struct walk *walk, void (*call)(mpz_ptr))
+static void box_search_each(struct box_search *search, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
-        call(walk->part[f].num);
-        call(walk->part[f].den);
+        call(search->part[f].num);
+        call(search->part[f].den);
         for (int s = 0; s < FRAME_SLABS_MAX; s++) {
-            call(walk->clipper[f].slab[s].low);
-            call(walk->clipper[f].slab[s].high);
+            call(search->clipper[f].slab[s].low);
+            call(search->clipper[f].slab[s].high);
             for (int v = 0; v < EXACT_VERTICES_MAX; v++) {
-                call(walk->clipper[f].at[0][s][v]);
-                call(walk->clipper[f].at[1][s][v]);
+                call(search->clipper[f].at[0][s][v]);
+                call(search->clipper[f].at[1][s][v]);
             }
         }
     }
-    call(walk->crossing.num);
-    call(walk->crossing.den);
+    call(search->crossing.num);
+    call(search->crossing.den);
     for (int axis = 0; axis < 3; axis++) {
-        call(walk->weight[axis]);
-        call(walk->found.at[axis]);
+        call(search->weight[axis]);
+        call(search->found.at[axis]);
     }
-    call(walk->found.tau);
-    call(walk->found.den);
+    call(search->found.tau);
+    call(search->found.den);
 }
 
 /* ---- Vertices ---- */
@@ -133,31 +135,31 @@ static void add_vertex(const struct exact_pair *pair, int sign, int f, int v,
 /* Visits vertex v of frame f plus s / den of the way to vertex w, at the time tau / den. In units,
  * it is origin + sum weight_i component_i / den + tau displacement / den: products with the numbers
  * of the pair alone, which are short (exact.c). */
-static void visit_point(struct walk *walk, int f, int v, int w, const mpz_t s, const mpz_t tau,
-                        const mpz_t den)
+static void visit_point(struct box_search *search, int f, int v, int w, const mpz_t s,
+                        const mpz_t tau, const mpz_t den)
 {
-    struct exact_frame *frame = &walk->pair->frame[f];
-    struct exact_point *found = &walk->found;
+    struct exact_frame *frame = &search->pair->frame[f];
+    struct exact_point *found = &search->found;
     for (int i = 0; i < frame->count; i++) {
         const bool from = has_component(frame, v, i), to = has_component(frame, w, i);
-        mpz_set_ui(walk->weight[i], 0);
+        mpz_set_ui(search->weight[i], 0);
         if (from)
-            mpz_set(walk->weight[i], den);
+            mpz_set(search->weight[i], den);
         if (to && !from)
-            mpz_add(walk->weight[i], walk->weight[i], s);
+            mpz_add(search->weight[i], search->weight[i], s);
         else if (from && !to)
-            mpz_sub(walk->weight[i], walk->weight[i], s);
+            mpz_sub(search->weight[i], search->weight[i], s);
     }
     for (int axis = 0; axis < 3; axis++) {
         integer_multiply(found->at[axis], den, frame->origin[axis]);
-        integer_add_product(found->at[axis], 1, tau, frame->displacement[axis], walk->scratch[0]);
+        integer_add_product(found->at[axis], 1, tau, frame->displacement[axis], search->scratch[0]);
         for (int i = 0; i < frame->count; i++)
-            integer_add_product(found->at[axis], 1, walk->weight[i], frame->component[i][axis],
-                                walk->scratch[0]);
+            integer_add_product(found->at[axis], 1, search->weight[i], frame->component[i][axis],
+                                search->scratch[0]);
     }
-    mpz_mul(found->tau, tau, walk->pair->scale);
-    mpz_mul(found->den, den, walk->pair->scale);
-    walk->visit(walk->context, found);
+    mpz_mul(found->tau, tau, search->pair->scale);
+    mpz_mul(found->den, den, search->pair->scale);
+    search->visit(search->context, found);
 }
 
 /* ---- Kinds 1 and 2: segments cut by the slabs of the other frame ---- */
@@ -165,18 +167,18 @@ static void visit_point(struct walk *walk, int f, int v, int w, const mpz_t s, c
 /* Seen from frame f, the origin of the other frame is at the offset (f = 0) or at minus that. */
 static bool keep_slab(void *context, struct slab *slab)
 {
-    struct walk *walk = context;
-    const int f = walk->clipping, other = 1 - f;
-    struct clipper *clipper = &walk->clipper[f];
+    struct box_search *search = context;
+    const int f = search->clipping, other = 1 - f;
+    struct clipper *clipper = &search->clipper[f];
     assert(clipper->slabs < FRAME_SLABS_MAX);
     const int s = clipper->slabs++;
     mpz_set(clipper->slab[s].low, slab->low);
     mpz_set(clipper->slab[s].high, slab->high);
-    for (int v = 0; v < walk->vertices[other]; v++) {
+    for (int v = 0; v < search->vertices[other]; v++) {
         mpz_set(clipper->at[0][s][v], slab->value[EXACT_OFFSET]);
         if (f == 1)
             mpz_neg(clipper->at[0][s][v], clipper->at[0][s][v]);
-        add_vertex(walk->pair, 1, other, v, slab->value, clipper->at[0][s][v]);
+        add_vertex(search->pair, 1, other, v, slab->value, clipper->at[0][s][v]);
         if (f == 0)
             mpz_add(clipper->at[1][s][v], clipper->at[0][s][v], slab->value[EXACT_DRIFT]);
         else
@@ -185,35 +187,36 @@ static bool keep_slab(void *context, struct slab *slab)
     return true;
 }
 
-static void set_clippers(struct walk *walk)
+static void set_clippers(struct box_search *search)
 {
-    for (walk->clipping = 0; walk->clipping < 2; walk->clipping++)
-        slabs_walk(walk->pair, walk->clipping ? SLABS_OF_B : SLABS_OF_A, keep_slab, walk);
+    for (search->clipping = 0; search->clipping < 2; search->clipping++)
+        slabs_walk(search->pair, search->clipping ? SLABS_OF_B : SLABS_OF_A, keep_slab, search);
 }
 
 /* Moves an end of the part of a segment to where it crosses a bound, if that is further inside. */
-static void cut(struct walk *walk, int end, const mpz_t f0, const mpz_t f1, const mpz_t bound)
+static void cut(struct box_search *search, int end, const mpz_t f0, const mpz_t f1,
+                const mpz_t bound)
 {
-    struct ratio *at = &walk->crossing;
+    struct ratio *at = &search->crossing;
     mpz_sub(at->num, bound, f0);
     mpz_sub(at->den, f1, f0);
     if (mpz_sgn(at->den) < 0) {
         mpz_neg(at->num, at->num);
         mpz_neg(at->den, at->den);
     }
-    const int sign = ratio_compare(at, &walk->part[end], walk->scratch);
+    const int sign = ratio_compare(at, &search->part[end], search->scratch);
     if (end ? sign < 0 : sign > 0)
-        ratio_copy(&walk->part[end], at);
+        ratio_copy(&search->part[end], at);
 }
 
-/* Sets walk->part of the segment on which normal . w goes from f0 to f1 for each slab; returns how
- * many ends it has: 0 if nothing is left of it, 1 if that is a point. */
-static int clip(struct walk *walk, const struct clipper *clipper, int v, int end_v, int w,
+/* Sets search->part of the segment on which normal . w goes from f0 to f1 for each slab; returns
+ * how many ends it has: 0 if nothing is left of it, 1 if that is a point. */
+static int clip(struct box_search *search, const struct clipper *clipper, int v, int end_v, int w,
                 int end_w)
 {
     for (int end = 0; end < 2; end++) {
-        mpz_set_ui(walk->part[end].num, (unsigned long) end);
-        mpz_set_ui(walk->part[end].den, 1);
+        mpz_set_ui(search->part[end].num, (unsigned long) end);
+        mpz_set_ui(search->part[end].den, 1);
     }
     for (int pass = 0; pass < 2; pass++) /* signs alone leave few segments to be cut */
         for (int s = 0; s < clipper->slabs; s++) {
@@ -224,41 +227,41 @@ static int clip(struct walk *walk, const struct clipper *clipper, int v, int end
             if ((below0 && below1) || (above0 && above1))
                 return 0;
             if (pass == 1 && (below0 || above0))
-                cut(walk, 0, *f0, *f1, below0 ? slab->low : slab->high);
+                cut(search, 0, *f0, *f1, below0 ? slab->low : slab->high);
             if (pass == 1 && (below1 || above1))
-                cut(walk, 1, *f0, *f1, below1 ? slab->low : slab->high);
+                cut(search, 1, *f0, *f1, below1 ? slab->low : slab->high);
         }
-    return 1 - ratio_compare(&walk->part[0], &walk->part[1], walk->scratch);
+    return 1 - ratio_compare(&search->part[0], &search->part[1], search->scratch);
 }
 
 /* Clips the segment of frame f that goes from vertex v at one end of the window to vertex w at the
  * same or the other end to the other frame, and visits the ends of what is left. */
-static void visit_segment(struct walk *walk, int f, int v, int end_v, int w, int end_w)
+static void visit_segment(struct box_search *search, int f, int v, int end_v, int w, int end_w)
 {
-    const int ends = clip(walk, &walk->clipper[1 - f], v, end_v, w, end_w);
+    const int ends = clip(search, &search->clipper[1 - f], v, end_v, w, end_w);
     for (int end = 0; end < ends; end++) {
-        const struct ratio *s = &walk->part[end];
-        mpz_t *tau = &walk->scratch[1];
+        const struct ratio *s = &search->part[end];
+        mpz_t *tau = &search->scratch[1];
         if (end_v != end_w) /* 0 and 1 */
             mpz_set(*tau, s->num);
         else
             mpz_mul_si(*tau, s->den, end_v);
-        visit_point(walk, f, v, w, s->num, *tau, s->den);
+        visit_point(search, f, v, w, s->num, *tau, s->den);
     }
 }
 
-static void visit_edges(struct walk *walk, int f, int end)
+static void visit_edges(struct box_search *search, int f, int end)
 {
-    for (int v = 0; v < walk->vertices[f]; v++)
-        for (int w = v + 1; w < walk->vertices[f]; w++)
-            if (is_edge(&walk->pair->frame[f], v, w))
-                visit_segment(walk, f, v, end, w, end);
+    for (int v = 0; v < search->vertices[f]; v++)
+        for (int w = v + 1; w < search->vertices[f]; w++)
+            if (is_edge(&search->pair->frame[f], v, w))
+                visit_segment(search, f, v, end, w, end);
 }
 
-static void visit_paths(struct walk *walk, int f)
+static void visit_paths(struct box_search *search, int f)
 {
-    for (int v = 0; v < walk->vertices[f]; v++)
-        visit_segment(walk, f, v, 0, v, 1);
+    for (int v = 0; v < search->vertices[f]; v++)
+        visit_segment(search, f, v, 0, v, 1);
 }
 
 /* ---- Kind 3 ----
@@ -343,54 +346,55 @@ static int end_of_edge(const struct exact_frame *frame, int e, int v)
 }
 
 /* Visits the crossings of all edges in one direction of A with all in one of B. */
-static void visit_parallel_crossings(struct walk *walk, struct crossing *crossing, int e, int f)
+static void visit_parallel_crossings(struct box_search *search, struct crossing *crossing, int e,
+                                     int f)
 {
-    struct exact_pair *pair = walk->pair;
-    for (int v = 0; v < walk->vertices[0]; v++) {
+    struct exact_pair *pair = search->pair;
+    for (int v = 0; v < search->vertices[0]; v++) {
         const int end = end_of_edge(&pair->frame[0], e, v);
         if (end < 0)
             continue;
-        for (int w = 0; w < walk->vertices[1]; w++)
+        for (int w = 0; w < search->vertices[1]; w++)
             if (end_of_edge(&pair->frame[1], f, w) >= 0 &&
                 crossing_number(crossing, pair, v, w, crossing->ef, crossing->tau) &&
                 crossing_number(crossing, pair, v, w, crossing->fd, crossing->s) &&
                 crossing_number(crossing, pair, v, w, crossing->ed, crossing->u))
-                visit_point(walk, 0, v, end, crossing->s, crossing->tau, crossing->det);
+                visit_point(search, 0, v, end, crossing->s, crossing->tau, crossing->det);
     }
 }
 
-static void visit_crossings(struct walk *walk)
+static void visit_crossings(struct box_search *search)
 {
-    struct exact_pair *pair = walk->pair;
+    struct exact_pair *pair = search->pair;
     struct crossing crossing;
     crossing_each(&crossing, mpz_init);
     for (int e = 0; e < pair->frame[0].edges; e++)
         for (int f = 0; f < pair->frame[1].edges; f++)
             if (crossing_set(&crossing, pair, &pair->frame[0].edge[e], &pair->frame[1].edge[f]))
-                visit_parallel_crossings(walk, &crossing, e, f);
+                visit_parallel_crossings(search, &crossing, e, f);
     crossing_each(&crossing, mpz_clear);
 }
 
 void points_walk(struct exact_pair *pair, point_visit visit, void *context)
 {
-    struct walk walk = {.pair = pair,
-                        .visit = visit,
-                        .context = context,
-                        .ends = pair->moving ? 2 : 1,
-                        .scratch = pair->scratch};
-    walk_each(&walk, mpz_init);
+    struct box_search search = {.pair = pair,
+                                .visit = visit,
+                                .context = context,
+                                .ends = pair->moving ? 2 : 1,
+                                .scratch = pair->scratch};
+    box_search_each(&search, mpz_init);
     for (int f = 0; f < 2; f++)
-        walk.vertices[f] = vertex_count(&pair->frame[f]);
-    set_clippers(&walk);
+        search.vertices[f] = vertex_count(&pair->frame[f]);
+    set_clippers(&search);
     for (int f = 0; f < 2; f++) {
-        for (int end = 0; end < walk.ends; end++)
-            visit_edges(&walk, f, end);
+        for (int end = 0; end < search.ends; end++)
+            visit_edges(&search, f, end);
         if (pair->moving)
-            visit_paths(&walk, f);
+            visit_paths(&search, f);
     }
     if (pair->moving)
-        visit_crossings(&walk);
-    walk_each(&walk, mpz_clear);
+        visit_crossings(&search);
+    box_search_each(&search, mpz_clear);
 }
 
 /* ---- The box ---- */

@@ -24,7 +24,7 @@ int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2]
     return integer_compare_products(x->num, y->den, y->num, x->den, scratch);
 }
 
-void span_init(struct span *span)
+void clipped_segment_init(struct clipped_segment *span)
 {
     for (int i = 0; i < 2; i++) {
         ratio_init(&span->window[i]);
@@ -40,7 +40,7 @@ void span_init(struct span *span)
     span->interior = true;
 }
 
-void span_clear(struct span *span)
+void clipped_segment_clear(struct clipped_segment *span)
 {
     for (int i = 0; i < 2; i++) {
         ratio_clear(&span->window[i]);
@@ -51,7 +51,8 @@ void span_clear(struct span *span)
 }
 
 /* span->at := (bound - f0) / (f1 - f0), where the segment crosses the bound. */
-static void cross_bound(struct span *span, const mpz_t f0, const mpz_t f1, const mpz_t bound)
+static void cross_bound(struct clipped_segment *span, const mpz_t f0, const mpz_t f1,
+                        const mpz_t bound)
 {
     mpz_sub(span->at.num, bound, f0);
     mpz_sub(span->at.den, f1, f0);
@@ -62,14 +63,14 @@ static void cross_bound(struct span *span, const mpz_t f0, const mpz_t f1, const
 }
 
 /* Raises (side 0) or lowers (side 1) an end to span->at if that is the tighter one. */
-static void tighten(struct span *span, struct ratio *end, int side)
+static void tighten(struct clipped_segment *span, struct ratio *end, int side)
 {
     int sign = ratio_compare(&span->at, end, span->scratch);
     if (side == 0 ? sign > 0 : sign < 0)
         ratio_copy(end, &span->at);
 }
 
-static void tighten_open(struct span *span, int side)
+static void tighten_open(struct clipped_segment *span, int side)
 {
     if (span->bounded[side]) {
         tighten(span, &span->open[side], side);
@@ -83,8 +84,8 @@ static void tighten_open(struct span *span, int side)
  * between the bounds at both ends does so in between, and one that has both ends beyond one
  * bound is outside: both are seen without a division, and are nearly all of them. Else f
  * enters the slab at one bound and leaves it at the other. */
-bool span_apply(struct span *span, const mpz_t f0, const mpz_t f1, const mpz_t low,
-                const mpz_t high, bool pins)
+bool clipped_segment_apply(struct clipped_segment *span, const mpz_t f0, const mpz_t f1,
+                           const mpz_t low, const mpz_t high, bool pins)
 {
     int low0 = mpz_cmp(f0, low), low1 = mpz_cmp(f1, low);
     int high0 = mpz_cmp(f0, high), high1 = mpz_cmp(f1, high);
@@ -109,26 +110,27 @@ bool span_apply(struct span *span, const mpz_t f0, const mpz_t f1, const mpz_t l
         tighten(span, &span->window[1], 1);
     else
         tighten_open(span, 1);
-    return ratio_compare(span_lower(span), span_upper(span), span->scratch) <= 0;
+    return ratio_compare(clipped_segment_lower(span), clipped_segment_upper(span), span->scratch) <=
+           0;
 }
 
-const struct ratio *span_lower(struct span *span)
+const struct ratio *clipped_segment_lower(struct clipped_segment *span)
 {
     if (span->bounded[0] && ratio_compare(&span->open[0], &span->window[0], span->scratch) > 0)
         return &span->open[0];
     return &span->window[0];
 }
 
-const struct ratio *span_upper(struct span *span)
+const struct ratio *clipped_segment_upper(struct clipped_segment *span)
 {
     if (span->bounded[1] && ratio_compare(&span->open[1], &span->window[1], span->scratch) < 0)
         return &span->open[1];
     return &span->window[1];
 }
 
-/* The open interval (p, q) meets the closed interval [u, v], u <= v, just if p < q, p < v and
- * u < q. */
-bool span_has_interior(struct span *span)
+/* The open interval (p, q) meets the closed interval [u, v], u <= v, if and only if p < q, p < v
+ * and u < q. */
+bool clipped_segment_has_interior(struct clipped_segment *span)
 {
     const struct ratio *p = &span->open[0], *q = &span->open[1];
     if (!span->interior)

@@ -18,7 +18,7 @@ static bool surely_cross(const struct world_frame *a, const struct world_frame *
     return false;
 }
 
-/* The axis along which a face has the largest shadow, or nearly. */
+/* The axis along which a face has the largest projection, or nearly. */
 static int axis_of(const struct world_frame *frame)
 {
     const struct weighed u = weigh(frame->component[0]), v = weigh(frame->component[1]);
@@ -44,7 +44,7 @@ static bool set_shadow(const struct world_frame *frame, int axis, struct fmb_fra
 }
 
 /* The same axis the other way round. */
-static bool set_shadows(const struct slabs_pair *slabs, struct faces_shadow *out)
+static bool set_shadows(const struct slabs_pair *slabs, struct faces_projection *out)
 {
     const int of_a = axis_of(&slabs->a), of_b = axis_of(&slabs->b);
     const int axis = of_a < of_b ? of_a : of_b;
@@ -56,7 +56,7 @@ static bool set_shadows(const struct slabs_pair *slabs, struct faces_shadow *out
 }
 
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
-                                  struct dyadic_span span, struct faces_shadow *shadow)
+                                  struct dyadic_span span, struct faces_projection *projection)
 {
     struct limbs_pair limbs;
     if (!slabs->inexact && surely_cross(&slabs->a, &slabs->b))
@@ -66,6 +66,6 @@ enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct sl
     const struct limbs_planes planes = limbs_planes_of(&limbs);
     if (!planes.parallel)
         return FACES_CROSSING;
-    return planes.shared && !slabs->inexact && set_shadows(slabs, shadow) ? FACES_SHARED
-                                                                          : FACES_ELSE;
+    return planes.shared && !slabs->inexact && set_shadows(slabs, projection) ? FACES_SHARED
+                                                                              : FACES_ELSE;
 }

@@ -1,13 +1,13 @@
-/* Two faces in parallel planes: what the slabs of a pair do not decide (slabs.h). */
+/* Two faces in parallel planes, which the slabs of a pair do not decide (slabs.h). */
 #ifndef FMB_FACES_H
 #define FMB_FACES_H
 
 #include "integer.h"
 #include "slabs.h"
 
-/* Two faces that stay in one plane, seen along an axis that crosses it: two triangles in 2D, with
- * the same verdict and the same times of contact. */
-struct faces_shadow {
+/* Two faces that stay in one plane, projected along an axis that is not parallel to it: two
+ * triangles in 2D with the same verdict and the same times of contact. */
+struct faces_projection {
     struct fmb_frame frame[2];
     struct fmb_placement placement[2];
     struct frame_pair pair; /* of these */
@@ -15,12 +15,12 @@ struct faces_shadow {
 
 enum faces_planes {
     FACES_CROSSING, /* the planes are not parallel */
-    FACES_SHARED,   /* both are in one plane at all times: the shadow is set */
-    FACES_ELSE      /* neither, or not to be known here: to be decided exactly */
+    FACES_SHARED,   /* both are in one plane at all times: the projection is set */
+    FACES_ELSE      /* neither, or unknown here: to be decided by the exact method */
 };
 
-/* On input: two faces with areas, in range; span: of the pair. */
+/* Classifies the planes of two faces. In: faces with areas, in range; span: of the pair. */
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
-                                  struct dyadic_span span, struct faces_shadow *shadow);
+                                  struct dyadic_span span, struct faces_projection *projection);
 
 #endif

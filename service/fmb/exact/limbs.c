@@ -1,44 +1,55 @@
-/* Coordinates. With q scaled to integers, n R(q) is a matrix of integers, n = |q|^2. Components and
- * origins stay in the coordinates of their frame, positions and displacements in those of the
- * world; all are integers times the unit of the pair. The normal of a slab is computed three times,
- * in the coordinates of A, of B and of the world, each time multiplied by a positive factor of its
- * own. The extents of A and of B are taken along the first two, the offset and the drift along the
- * third. With M_f = n_f R_f, K_f = M_g^T M_f from f to the other frame g, and n = n_a n_b:
+/* A pair in integers of fixed width.
+ *
+ *   In     a pair of frames and its span: the powers of two that bound its lengths
+ *   Out    struct limbs_pair, from which limbs_slab.c computes slabs; false if it needs more than
+ *          LIMBS_MAX limbs
+ *
+ * Steps (limbs_prepare()): quaternions to integers (limbs_turn.c); the number of limbs, bits_of();
+ * offset and drift, add_place(); frames, set_frame(); the matrices between the coordinate systems,
+ * set_same_turn() or set_turns(). limbs_never_round() is separate: it tells whether doubles are
+ * exact.
+ *
+ * Coordinates. With q scaled to integers, n R(q) is a matrix of integers, n = |q|^2. Components and
+ * origins stay in the coordinates of their frame; positions and displacements stay in those of the
+ * world. All are integers times the unit of the pair. The normal of a slab is computed three times:
+ * in the coordinates of A, of B and of the world. Each time it is multiplied by a positive factor,
+ * which differs. The extents of A and of B are taken along the first two normals, the offset and
+ * the drift along the third. Let M_f = n_f R_f, n = n_a n_b, and let K_f = M_g^T M_f map from f to
+ * the other frame g. Each normal is followed by its factor:
  *
  *     normal of                 in f               in g                   in the world
  *     edges u of f, v of g      u x K_g v    n     K_f u x v          n   M_f u x M_g v  n
  *     face u x v of f           u x v        1     K_f (u x v)        n   M_f (u x v)    n_f
  *     edge u of f, the drift h  u x M_f^T h  n_f   M_g^T (M_f u x h)  n   M_f u x h      n_f
  *
- * each with its factor. What comes out is multiplied by n over its factor: the numbers
- * of a slab are n times those of the pair. In 2D a normal is an edge turned by a right angle: that
- * of an edge of f is treated as the face of f, that of the drift has the factor 1 in the world and
- * n_f in f.
+ * Each result is multiplied by n over its factor, so that the numbers of a slab are n times those
+ * of the pair. In 2D a normal is an edge rotated by a right angle. That of an edge of f is treated
+ * as the face of f; that of the drift has the factor 1 in the world and n_f in f.
  *
- * Frames of equal orientation are decided in their own coordinates, where neither is turned: offset
- * and drift are M^T d and M^T h, n times what they were, and extents are multiplied by n. The
- * numbers of a slab are n times those of the pair, n^2 times where the drift is in its normal.
+ * Frames of equal orientation are decided in their own coordinates, in which neither is rotated.
+ * Offset and drift are M^T d and M^T h, n times their values, and extents are multiplied by n. The
+ * numbers of a slab are n times those of the pair, or n^2 times if the drift is in its normal.
  *
  * Only the direction of an edge matters. The edges of a box are unit vectors in its coordinates, or
- * 0 where its size is. A box is seen from its centre, its components halved.
+ * 0 on an axis of size 0. A box is described by its centre and half its components.
  *
- * Width. Let all lengths of a pair be below 2^t units (a component with its rest is the difference
- * of two vertices: rest is at most half a unit in the last place of it, so that what a component
- * below 2^t was rounded from is at most 2^t). In lengths of r = sqrt(3) 2^t, a component is at most
- * 1, an edge that is a difference 2, offset and drift 2 each, an origin 1. A number of a slab is at
- * most |u| |v| times the sum of one offset, one drift, two origins, and all components of a cuboid
- * or one of a simplex:
+ * Width. Let all lengths of a pair be below 2^t units. (A component with its rest is the difference
+ * of two vertices. The rest is at most half a unit in the last place of the component, so that the
+ * exact value of a component below 2^t is at most 2^t.) In lengths of r = sqrt(3) 2^t, a component
+ * is at most 1, an edge that is a difference 2, offset and drift 2 each, an origin 1. A number of a
+ * slab is at most |u| |v| times the sum of one offset, one drift, two origins, and all components
+ * of a cuboid or one of a simplex:
  *
  *     two cuboids             1 2 (2 + 2 + 2 + 6) = 24 r^3 < 125 2^(3t)
  *     cuboid and simplex      2 2 (2 + 2 + 2 + 4) = 40 r^3 < 208 2^(3t)
  *     two simplices           2 2 (2 + 2 + 2 + 2) = 32 r^3 < 167 2^(3t)
  *
- * all below 2^(3t+8), the largest being slabs of the drift. Of two boxes, whose edges have length
- * 1, a slab is below 2^(t+8), one of the drift below 2^(2t+8). Rotations keep lengths. With a
- * factor of at most 2^s, every number of a slab and every number that is multiplied by is below
- * 2^(3t+8+s), and L limbs hold it with a sign where 3t + 8 + s < 64 L. All are sums of products
- * modulo 2^(64 L), and right because they are in range at the end. A quaternion of integers below
- * 2^b has n < 2^(2b+2). In 2D everything is smaller. */
+ * All are below 2^(3t+8); the largest are slabs of the drift. For two boxes, whose edges have
+ * length 1, a slab is below 2^(t+8), and one of the drift below 2^(2t+8). Rotations preserve
+ * lengths. With a factor of at most 2^s, every number of a slab and every intermediate factor is
+ * below 2^(3t+8+s). L limbs hold it with a sign if 3t + 8 + s < 64 L. All results are sums of
+ * products modulo 2^(64 L); they are correct because their final values are in range. A quaternion
+ * of integers below 2^b has n < 2^(2b+2). In 2D all bounds are smaller. */
 #include "limbs.h"
 
 #include "range.h"
@@ -55,7 +66,7 @@ static struct dyadic half_of(double x)
     return half;
 }
 
-/* The origin of a frame, which of a box is given by the centre and the size. */
+/* Adds the origin of a frame; that of a box is given by its centre and size. */
 static void add_origin(struct dyadic_span *span, const struct fmb_frame *frame, int axis)
 {
     if (frame->shape != FMB_BOX) {
@@ -91,13 +102,13 @@ struct dyadic_span limbs_span_of(const struct frame_pair *pair)
     return span;
 }
 
-/* A gap of slabs.c is a sum of monomials u_i v_j w_k of lengths; its partial sums are at most
- * 6 |u| |v| T, in largest magnitudes. In units of the pair, with s the largest size and R the sum
- * of all (reach): two cuboids have |u|, |v| <= s and T <= 2 R, all of them integers. Else edges may
- * be differences of doubled components, |u|, |v| <= 4 s, or the half of a drift not an integer:
- * in halves of the unit all are integers, and |u|, |v| <= 4 s, T <= 2 R there too. Integers up to
- * 2^53 are doubles, and so are smaller multiples of larger units. The same holds for what offset,
- * drift and extents are computed from. */
+/* A gap of slabs.c is a sum of monomials u_i v_j w_k of lengths. Its partial sums are at most 6 |u|
+ * |v| T, in largest magnitudes. Count in units of the pair; let s be the largest size and R the sum
+ * of all (reach). For two cuboids |u|, |v| <= s and T <= 2 R, and all of them are integers.
+ * Otherwise edges may be differences of doubled components, with |u|, |v| <= 4 s, or half of a
+ * drift may not be an integer. In halves of the unit all are integers, and there too |u|, |v| <= 4
+ * s and T <= 2 R. Integers up to 2^53 are doubles, and so are smaller multiples of larger units.
+ * The same holds for the numbers from which offset, drift and extents are computed. */
 bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
 {
     if (span.top - span.unit > 50 || pair->inexact)
@@ -111,15 +122,15 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
     return (cuboids ? 6 : 6 * 16) * scaled * scaled * sum < 0x1p53;
 }
 
-/* Of all lengths of a pair. */
+/* The scale of all lengths of a pair. */
 struct scale {
     struct dyadic window;
     long unit;
-    double inverse; /* 2^-unit, or 0 where lengths might need more than one limb */
+    double inverse; /* 2^-unit; 0 if a length may need more than one limb */
 };
 
-/* out := x 2^-unit, of n limbs; returns how many it needs. With an inverse the product is exact,
- * being below 2^62, and so is its conversion. */
+/* out := x 2^-unit, in n limbs; returns how many it needs. If inverse is not 0, the product is
+ * exact, since it is below 2^62, and so is its conversion. */
 static int set_length(int n, uint64_t *out, double x, const struct scale *scale)
 {
     static const struct dyadic one = {1, 0};
@@ -148,7 +159,7 @@ static void set_lengths(int n, struct limbs_vector *out, const double x[FMB_DIM_
 
 /* ---- Pairs ---- */
 
-/* What a frame brings to offset and drift. */
+/* Adds the position and velocity of a frame to offset and drift, or subtracts them. */
 static void add_place(const struct placed_frame *placed, bool minus, const struct scale *scale,
                       struct limbs_pair *out)
 {
@@ -166,7 +177,7 @@ static void add_place(const struct placed_frame *placed, bool minus, const struc
     }
 }
 
-/* Of a box the halves of its components, and its centre as the origin. */
+/* For a box: half of its components, and its centre as the origin. */
 static void set_frame(int f, const struct fmb_frame *frame, const struct scale *scale,
                       struct limbs_pair *out)
 {
@@ -189,7 +200,7 @@ static void set_frame(int f, const struct fmb_frame *frame, const struct scale *
     }
 }
 
-/* On input: offset and drift in the world. */
+/* In: offset and drift in world coordinates. */
 static void set_same_turn(const struct limbs_quaternion *q, struct limbs_pair *out)
 {
     const int n = out->limbs;
@@ -222,7 +233,7 @@ static void set_turns(const struct limbs_quaternion q[2], struct limbs_pair *out
     out->all = &out->relative.norm;
 }
 
-/* Bits of the numbers of slabs, without a sign: see above. */
+/* Bounds the bits of the numbers of slabs, without a sign. Derived at the top of this file. */
 static long bits_of(const struct frame_pair *pair, struct dyadic_span span,
                     const struct limbs_quaternion q[2], bool same)
 {

@@ -1,5 +1,5 @@
-/* Integers of a few limbs, modulo 2^(64 n): n limbs, a constant in what is inlined for the usual
- * widths. */
+/* Fixed-width integers of n limbs, modulo 2^(64 n). In inlined functions n is a constant for the
+ * usual widths. */
 #ifndef FMB_LIMBS_NUMBER_H
 #define FMB_LIMBS_NUMBER_H
 
@@ -12,10 +12,12 @@
 
 enum { LIMBS_MAX = 24 };
 
-/* Two's complement, least significant limb first. Only the first limbs of the pair are used. */
+/* A two's complement integer, least significant limb first. Only the first limbs, as many as the
+ * pair has, are used. */
 typedef uint64_t limbs_number[LIMBS_MAX];
 
-/* limbs: as many hold each coordinate with a sign; bit i of other_than_0: coordinate i is. */
+/* A vector. limbs: the number of limbs that hold each coordinate with its sign. other_than_0: bit i
+ * is set if coordinate i is not 0. */
 struct limbs_vector {
     int limbs;
     unsigned other_than_0;
@@ -80,7 +82,7 @@ INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t *x, u
     }
 }
 
-/* The same, y of ny limbs with a sign. */
+/* The same for y of ny limbs, with a sign. */
 INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x, const int ny,
                         const uint64_t *y)
 {
@@ -104,7 +106,7 @@ INLINE void dot(const int n, const struct limbs_vector *x, const struct limbs_ve
             add_product(n, out, false, x->at[axis], y->limbs, y->at[axis]);
 }
 
-/* Where n is one of these, it is a constant in all that is called. */
+/* Calls function with n as a constant if it is one of these. */
 #define WITH_LIMBS(n, function, ...)          \
     switch (n) {                              \
     case 2: function(2, __VA_ARGS__); break;  \
@@ -116,24 +118,24 @@ INLINE void dot(const int n, const struct limbs_vector *x, const struct limbs_ve
 
 /* ---- Not inlined ---- */
 
-/* The limbs that hold x with a sign; 0 for 0. */
+/* Returns the number of limbs that hold x with a sign; 0 for 0. */
 int limbs_needed(int n, const uint64_t *x);
 
-/* Sets limbs and other_than_0. They are read of y and v below, and nowhere else. */
+/* Sets limbs and other_than_0 of a vector. The functions below read them of y and v only. */
 void limbs_trim(int n, struct limbs_vector *v);
 
-/* out := x y 2^-unit, which is an integer. */
+/* out := x y 2^-unit. In: the result is an integer. */
 void limbs_set_product(int n, uint64_t *out, struct dyadic x, struct dyadic y, long unit);
 
 /* out := out + x y, or out - x y; y of ny limbs. */
 void limbs_add_product(int n, uint64_t *out, bool minus, const uint64_t *x, int ny,
                        const uint64_t *y);
 
-/* out := x x y, or y x x where swapped. */
+/* out := x x y, or y x x if swapped. */
 void limbs_cross(int n, const struct limbs_vector *x, const struct limbs_vector *y, bool swapped,
                  struct limbs_vector *out);
 
-/* Returns row . v, in out; or v itself, where row is NULL: the identity. */
+/* out := row . v; returns out, or v itself if row is NULL (the identity). */
 const struct limbs_vector *limbs_transform(int n, const struct limbs_vector *row,
                                            const struct limbs_vector *v, struct limbs_vector *out);
 

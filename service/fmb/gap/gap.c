@@ -1,3 +1,20 @@
+/* The gap of two frames: the order of the pair, the preparation in doubles, and the choice of step.
+ *
+ *   In     two prepared frames, the window, their verdict
+ *   Out    struct fmb_gap; GAP_FAR if the gap is surely greater than farthest; with quick,
+ *          GAP_UNSURE if it needs GMP
+ *
+ * Steps (gap_of()):
+ *
+ *   1. frames_swap()    puts the pair into an order that depends on its numbers only
+ *   2. gap_pair_set()   collects offset, vectors, error and scale in doubles
+ *   3. gap_in_doubles() gap_axis_aligned(), then gap_distance() or gap_depth() by the verdict
+ *   4. gap_exact()      integers, if the enclosure is wider than the limit
+ *
+ * Each file proves its own bounds: gap_axis_aligned.c, gap_distance.c, gap_depth.c with
+ * gap_bounds.c, and gap_exact.c. The functions for bodies of several frames take the least gap of
+ * their frames.
+ */
 #include "gap.h"
 
 #include "range.h"
@@ -5,7 +22,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
+/* The limit on the width, relative to the largest coordinate; fmb.h states 1e-12. */
 static const double limit = 0.9e-12;
 
 /* ---- Order ---- */
@@ -51,7 +68,7 @@ bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
     return order > 0;
 }
 
-/* The order of equal frames at the same place is that of their bodies. */
+/* Equal frames in equal placements have the order of their bodies. */
 static bool frames_swap(const struct placed_frame *a, const struct placed_frame *b)
 {
     int order = compare_placements(a->placement, b->placement);
@@ -60,7 +77,7 @@ static bool frames_swap(const struct placed_frame *a, const struct placed_frame 
     return order == 0 ? gap_swaps(a->placement, b->placement) : order > 0;
 }
 
-/* The gap of the pair the other way round. No number is -0. */
+/* Converts a gap to that of the swapped pair. No number becomes -0. */
 static void turn_round(struct fmb_gap *gap)
 {
     double first[FMB_DIM_MAX];
@@ -83,7 +100,7 @@ static double largest_of(const double v[FMB_DIM_MAX])
     return range_greatest(fabs(v[0]), range_greatest(fabs(v[1]), fabs(v[2])));
 }
 
-/* Bounds the coordinates of a frame over the window, several times over. */
+/* Bounds the coordinates of a frame over the window; at least several times their magnitude. */
 INLINE double far_of(const int dim, const struct fmb_prepared *frame, double duration)
 {
     const double *number = frame->number;
@@ -97,11 +114,13 @@ INLINE double far_of(const int dim, const struct fmb_prepared *frame, double dur
     return far + ((fabs(v[0]) + fabs(v[1])) + (dim == 3 ? fabs(v[2]) : 0)) * duration;
 }
 
-/* Lengths are sizes (2-norms, at most a fifteenth too large) and sums of magnitudes; of a component
- * these are less than twice the size, and the largest magnitude is more than half of it.
+/* Lengths are sizes (2-norms, at most a fifteenth too large) and sums of magnitudes. The sum of
+ * magnitudes of a component is less than twice its size, and its largest magnitude is more than
+ * half its size.
  *
- * The largest coordinate of a vertex: the origin is one, and of two vertices that differ by a
- * component, or by the way over the window, one has at least half of that. */
+ * The largest coordinate of a vertex is bounded from below as follows. The origin is a vertex. Of
+ * two vertices that differ by a component, or by the displacement over the window, one has a
+ * coordinate of at least half of that difference. */
 INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
 {
     const struct fmb_prepared *frame = pair->frame[f];
@@ -124,7 +143,7 @@ INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
     pair->least = range_greatest(pair->least, 0.5 * largest_of(way));
 }
 
-/* As slabs_prepare(): drifts that are tiny are left to integers. */
+/* As slabs_prepare(): tiny drifts are left to integers. */
 INLINE bool set_drift(const int dim, struct gap_pair *pair, double drift[FMB_DIM_MAX])
 {
     const unsigned kinds = prepared_kind(pair->frame[0]) | prepared_kind(pair->frame[1]);
@@ -144,7 +163,7 @@ INLINE bool set_drift(const int dim, struct gap_pair *pair, double drift[FMB_DIM
     return !pair->drifts || (good && largest >= 0x1p-200 && largest <= 0x1p200);
 }
 
-/* Components that a face does not have are 0. */
+/* Components that a face lacks are 0. */
 INLINE bool set_numbers(const int dim, struct gap_pair *pair)
 {
     double drift[FMB_DIM_MAX] = {0};
@@ -162,7 +181,7 @@ INLINE bool set_numbers(const int dim, struct gap_pair *pair)
     }
     pair->reach += sum_of(pair->offset);
     pair->least = pair->least * (1 - 0x1p-40) - pair->error;
-    /* Bodies may move together, so that their way alone is large, or infinite. */
+    /* Bodies may move together, so that only their displacements are large or infinite. */
     return good && largest_of(pair->offset) <= 0x1p200 && pair->least <= 0x1p1000;
 }
 
@@ -185,8 +204,8 @@ bool gap_is_tight(const struct gap_pair *pair, const double bounds[2])
     return bounds[1] - bounds[0] <= limit * pair->least;
 }
 
-double gap_surely(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                  double farthest)
+double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                         double duration, double farthest)
 {
     const int dim = prepared_kind(a) & PREPARED_SPACE ? 3 : 2;
     return farthest + 0x1p-38 * (far_of(dim, a, duration) + far_of(dim, b, duration));
@@ -194,7 +213,7 @@ double gap_surely(const struct fmb_prepared *a, const struct fmb_prepared *b, do
 
 /* ---- Pairs of frames ---- */
 
-/* In doubles, of a pair in its order. */
+/* Computes the gap of an ordered pair in doubles. */
 static enum gap_outcome gap_in_doubles(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                        double duration, enum fmb_verdict verdict, double farthest,
                                        struct fmb_gap *out)
@@ -203,7 +222,7 @@ static enum gap_outcome gap_in_doubles(const struct fmb_prepared *a, const struc
     memset(out, 0, sizeof *out);
     if (!gap_pair_set(a, b, duration, &pair))
         return GAP_UNSURE;
-    if (gap_upright(&pair, out) == GAP_KNOWN)
+    if (gap_axis_aligned(&pair, out) == GAP_KNOWN)
         return GAP_KNOWN;
     const enum gap_outcome outcome = verdict == FMB_SEPARATED ? gap_distance(&pair, farthest, out)
                                                               : gap_depth(&pair, verdict, out);
@@ -224,11 +243,12 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
     if (outcome != GAP_UNSURE || quick)
         return outcome;
     const struct frame_pair pair = {first, second, duration};
-    gap_exactly(&pair, verdict, out);
+    gap_exact_any_order(&pair, verdict, out);
     return GAP_KNOWN;
 }
 
-void gap_exactly(const struct frame_pair *pair, enum fmb_verdict verdict, struct fmb_gap *out)
+void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict,
+                         struct fmb_gap *out)
 {
     const bool swaps = frames_swap(&pair->a, &pair->b);
     const struct frame_pair ordered = {swaps ? pair->b : pair->a, swaps ? pair->a : pair->b,
@@ -245,7 +265,7 @@ struct fmb_gap gap_none(void)
     return (struct fmb_gap){.bounds = {INFINITY, INFINITY}, .direction = {INFINITY}};
 }
 
-/* Raises the lower bound to the distance of the boxes on an axis, rounded down, where that is more.
+/* Raises the lower bound to the distance of the boxes on an axis, rounded down, if that is greater.
  */
 static void raise(struct fmb_gap *gap, const struct swept *a, const struct swept *b)
 {
@@ -262,7 +282,7 @@ static void raise(struct fmb_gap *gap, const struct swept *a, const struct swept
         }
 }
 
-/* Upper bounds, then what stands with them. */
+/* Compares upper bounds, then the fields that belong to them. */
 static int compare_gaps(const struct fmb_gap *x, const struct fmb_gap *y)
 {
     int order = compare(&x->bounds[1], &y->bounds[1], 1);

@@ -36,7 +36,7 @@
 enum { LENGTH_BITS = 100, DIRECTION_BITS = 160, UNITS_ERROR = 20, CORNERS = 4, SCRATCH = 6 };
 
 /* A vertex of P. */
-struct corner {
+struct exact_corner {
     unsigned bits[2]; /* of each frame: its components that are added to its origin */
     bool late;        /* at the end of the window */
     mpz_t at[3];
@@ -46,7 +46,8 @@ struct solver {
     struct exact_pair pair; /* rounded */
     int dim;
     int count;
-    struct corner pool[CORNERS + 1], *corner[CORNERS + 1]; /* the first are those of the simplex */
+    struct exact_corner pool[CORNERS + 1],
+        *corner[CORNERS + 1];     /* the first are those of the simplex */
     mpz_t weight[CORNERS], total; /* of the point next to the origin, over total */
     mpz_t normal[3];              /* a multiple of that point */
     bool zero;                    /* it is the origin */
@@ -138,7 +139,7 @@ static void round_pair(struct exact_pair *pair, mpz_t largest)
 /* ---- P along a direction ---- */
 
 /* Sets the corner of P where n . p is least. */
-static void set_support(struct solver *solver, mpz_t n[3], struct corner *out)
+static void set_support(struct solver *solver, mpz_t n[3], struct exact_corner *out)
 {
     struct exact_pair *pair = &solver->pair;
     mpz_t *at = &solver->t[0], *most = &solver->t[1], *scratch = &solver->t[2];
@@ -315,7 +316,7 @@ static void reduce(struct solver *solver)
 {
     const int last = solver->count - 1;
     for (unsigned mask = 0; mask < 1U << last; mask++) {
-        struct corner *corner[CORNERS + 1];
+        struct exact_corner *corner[CORNERS + 1];
         int member[CORNERS] = {last}, count = 1;
         for (int i = 0; i < last; i++)
             if (mask >> i & 1)
@@ -347,7 +348,7 @@ static void solve(struct solver *solver)
         solver->zero = integer_is_zero(solver->normal);
         if (solver->zero)
             return;
-        struct corner *next = solver->corner[solver->count];
+        struct exact_corner *next = solver->corner[solver->count];
         set_support(solver, solver->normal, next);
         subtract(solver->other, next->at, solver->corner[0]->at);
         integer_dot(solver->t[1], solver->normal, solver->other, solver->t[0]);
@@ -485,7 +486,7 @@ static double set_witness(struct solver *solver, int f, double out[FMB_DIM_MAX])
     for (int axis = 0; axis < solver->dim; axis++) {
         mpz_mul(*at, solver->total, frame->origin[axis]);
         for (int c = 0; c < solver->count; c++) {
-            const struct corner *corner = solver->corner[c];
+            const struct exact_corner *corner = solver->corner[c];
             mpz_set_ui(*weight, 0);
             if (corner->late)
                 mpz_set(*weight, frame->displacement[axis]);

@@ -110,7 +110,7 @@ static void reuse_slots(struct scene_frames *frames)
 }
 
 /* Places a chunk of a, and one of b. False: there are no slots. */
-static bool place_both(struct scene_frames *frames, const struct scene_cursor *cursor,
+static bool place_both(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
                        bool may_reuse)
 {
     const unsigned body[2] = {cursor->a, cursor->b};
@@ -191,7 +191,7 @@ static unsigned select_frames(const struct scene_frames *frames, unsigned body, 
     return count;
 }
 
-static void enter(struct scene_frames *frames, struct scene_cursor *cursor)
+static void enter(struct scene_frames *frames, struct frame_pair_cursor *cursor)
 {
     const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
     const struct swept *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
@@ -204,7 +204,7 @@ static void enter(struct scene_frames *frames, struct scene_cursor *cursor)
     frames->work += WORK_TILE;
 }
 
-static size_t pairs_inside(const struct scene_frames *frames, struct scene_cursor *cursor,
+static size_t pairs_inside(const struct scene_frames *frames, struct frame_pair_cursor *cursor,
                            unsigned (*out)[2], size_t max)
 {
     unsigned i = cursor->i, j = cursor->j;
@@ -228,8 +228,8 @@ static size_t pairs_inside(const struct scene_frames *frames, struct scene_curso
 
 /* Goes on to two chunks whose boxes are near, and places them. False: there are none, *done is set;
  * or the search has to pause. */
-static bool find_chunks(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
-                        bool *done)
+static bool find_chunks(struct scene_frames *frames, struct frame_pair_cursor *cursor,
+                        bool may_reuse, bool *done)
 {
     const size_t count_a = scene_chunks(frames->placement[cursor->a].body->frame_count);
     const size_t count_b = scene_chunks(frames->placement[cursor->b].body->frame_count);
@@ -254,7 +254,7 @@ static bool find_chunks(struct scene_frames *frames, struct scene_cursor *cursor
     return false;
 }
 
-static size_t single_pair(struct scene_frames *frames, const struct scene_cursor *cursor,
+static size_t single_pair(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
                           bool may_reuse, unsigned (*out)[2], bool *done)
 {
     if (!place_both(frames, cursor, may_reuse))
@@ -265,8 +265,8 @@ static size_t single_pair(struct scene_frames *frames, const struct scene_cursor
     return 1;
 }
 
-size_t scene_frames_pairs(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
-                          unsigned (*out)[2], size_t max, bool *done)
+size_t scene_frames_pairs(struct scene_frames *frames, struct frame_pair_cursor *cursor,
+                          bool may_reuse, unsigned (*out)[2], size_t max, bool *done)
 {
     size_t count = 0;
     *done = false;

@@ -1,8 +1,9 @@
-/* The frames of a scene, placed where a pair needs them.
+/* The frames of a scene, prepared when a pair needs them.
  *
- * The frames of a body are divided into chunks of up to SCENE_CHUNK successive ones, which are
- * placed together into successive slots. When the slots run out, all are given up at once; a chunk
- * that is needed again is placed again. The boxes of chunks and bodies are kept. */
+ * The frames of a body are divided into chunks of up to SCENE_CHUNK consecutive frames. The frames
+ * of a chunk are prepared together, into consecutive slots. When the slots run out, all are
+ * released at once, and a chunk that is needed again is prepared again. The boxes of chunks and
+ * bodies are kept. */
 #ifndef FMB_SCENE_FRAMES_H
 #define FMB_SCENE_FRAMES_H
 
@@ -11,15 +12,15 @@
 enum { SCENE_CHUNK = 16 };
 
 struct scene_chunk {
-    struct swept box;              /* holds its frames over the window */
-    unsigned long long generation; /* that of its slots; 0: never placed, and no box */
+    struct swept box;              /* contains its frames over the window */
+    unsigned long long generation; /* of its slots; 0: never prepared, and box is not set */
     unsigned slot;                 /* of its first frame */
 };
 
 struct scene_frames {
     const struct fmb_placement *placement;
     double duration;
-    double margin;             /* between bodies, half of it is added to the box of each */
+    double margin;             /* of bodies: half of it is added to the box of each */
     bool boxed;                /* boxes are needed */
     bool direct;               /* every body has one frame, slot i that of placement i */
     unsigned *first_chunk;     /* [placement] */
@@ -38,15 +39,15 @@ static inline size_t scene_chunks(size_t frames)
     return (frames + SCENE_CHUNK - 1) / SCENE_CHUNK;
 }
 
-/* Adds the next placement: sets its box, widened by the margin, and, where direct, places its
- * frame. bounded: its box may be smaller than those of its frames as inexact methods see them;
- * otherwise it is unbounded. */
+/* Adds the next placement: sets its box, widened by the margin, and, if direct, prepares its frame.
+ * bounded: the box contains the frames as the method sees them. Otherwise it is set to be
+ * unbounded, since an inexact method may place a frame beyond it. */
 void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded);
 
-/* Where the enumeration of the frame pairs of a pair of bodies stands. */
-struct scene_cursor {
+/* The position of the enumeration of the frame pairs of a pair of bodies. */
+struct frame_pair_cursor {
     unsigned a, b;           /* placements */
-    double reach;            /* boxes of frames may be so far apart on an axis */
+    double reach;            /* largest distance of the boxes of frames on an axis */
     size_t chunk_a, chunk_b; /* of the bodies, from 0 */
     /* The frames of two chunks that may meet: slots [of_a[i], of_b[j]] is the next pair. */
     bool inside;
@@ -54,8 +55,8 @@ struct scene_cursor {
     unsigned of_a[SCENE_CHUNK], of_b[SCENE_CHUNK];
 };
 
-static inline void scene_cursor_begin(struct scene_cursor *cursor, unsigned a, unsigned b,
-                                      double reach)
+static inline void frame_pair_cursor_begin(struct frame_pair_cursor *cursor, unsigned a, unsigned b,
+                                           double reach)
 {
     cursor->reach = reach;
     cursor->a = a;
@@ -64,11 +65,11 @@ static inline void scene_cursor_begin(struct scene_cursor *cursor, unsigned a, u
     cursor->inside = false;
 }
 
-/* Puts the next pairs of frames whose boxes are near enough into out, as slots; of two bodies of
- * one frame that pair, whatever the boxes. Returns how many, at most max. *done: there are no more
- * of these bodies. Otherwise out is full, the work is at its limit, or the slots ran out.
- * may_reuse: no slot is in use, so that they may be given up. */
-size_t scene_frames_pairs(struct scene_frames *frames, struct scene_cursor *cursor, bool may_reuse,
-                          unsigned (*out)[2], size_t max, bool *done);
+/* Writes the next pairs of frames whose boxes are within reach to out, as slots; of two bodies of
+ * one frame each, that pair in any case. Returns how many, at most max. *done: these bodies have no
+ * more pairs. Otherwise out is full, the work is at its limit, or the slots ran out. may_reuse: no
+ * slot is in use, so that the slots may be released. */
+size_t scene_frames_pairs(struct scene_frames *frames, struct frame_pair_cursor *cursor,
+                          bool may_reuse, unsigned (*out)[2], size_t max, bool *done);
 
 #endif

@@ -88,12 +88,12 @@ static void remove_ignored(struct scene_pairs *pairs)
 
 /* ---- All and across ---- */
 
-/* Finds all pairs and sorts them, if there is room for them. A walk of leaves through the tree
- * takes less time than one of each box. */
+/* Finds all pairs and sorts them, if they fit. Enumerating the pairs of leaves takes less time than
+ * a query for each box. */
 static bool list_pairs(struct scene_pairs *pairs)
 {
     const size_t placements = pairs->scene->placement_count;
-    const size_t room = scene_pairs_room(placements);
+    const size_t room = scene_pairs_capacity(placements);
     struct fmb_tree_place place = {0};
     size_t count = 0, more = 1;
     for (; more > 0; count += more)
@@ -124,7 +124,7 @@ static void find_partners(struct scene_pairs *pairs, unsigned from)
     } else {
         pairs->found = pairs->space;
         pairs->found_count =
-            tree_find(&pairs->tree, &pairs->box[pairs->a], from - pairs->first, pairs->found);
+            tree_query(&pairs->tree, &pairs->box[pairs->a], from - pairs->first, pairs->found);
     }
     for (size_t i = 0; pairs->first && i < pairs->found_count; i++)
         pairs->found[i] += pairs->first;

@@ -1,13 +1,25 @@
-/* Which pairs may meet: a binary tree of boxes.
+/* Broad phase: a binary tree of axis-aligned boxes that finds the pairs that may meet.
  *
- * Method. The boxes of many frames are parted in two, along an axis and by their centres, near the
- * middle: neither side has less than a quarter of them. Of those of FEW frames and less the halves
- * are full leaves but for the last one. That bounds how many nodes there are and how deep, whatever
- * the boxes are. Time: a bounded number of passes over the boxes a level, which select_first()
- * tells; nearly always one.
+ *   In     prepared frames, or boxes, over a window
+ *   Out    the indices of frames, or pairs of them, whose boxes overlap
+ *   Build  set_nodes() divides the boxes from the root on, by split(); set_boxes() computes the
+ *          boxes of the nodes from the leaves up
+ *   Refit  new boxes of the frames in the same order, then set_boxes()
+ *   Query  tree_query_unsorted() (tree.h), then tree_sort() for ascending indices
+ *   Pairs  each leaf of one tree against the leaves of the other: pairs_of_leaves()
  *
- * Nothing here can lose a pair: centres and axes are rounded, or no number at all, and only make a
- * tree good or bad. */
+ * Method. split() divides the boxes of a node in two by their centres on the axis of axis_of(). It
+ * first partitions them by the median of a sample. It keeps the result if each side has more than a
+ * quarter of the boxes; otherwise select_first() divides them at the middle. A node of FEW boxes or
+ * fewer is divided so that all its leaves are full except the last one. This bounds the number of
+ * nodes and the depth for any boxes.
+ *
+ * Time: a bounded number of passes over the boxes a level (select_first() derives the bound),
+ * nearly always one.
+ *
+ * Correctness: no pair can be lost. A node's box contains the boxes below it, exactly. Centres and
+ * axes may be rounded or not a number: they only determine how good the tree is. Tests compare the
+ * results with those of all pairs (tests/unit/test_engine_tree.c). */
 #include "tree.h"
 
 #include <float.h>
@@ -19,16 +31,17 @@
 enum { CACHE_LINE = 64, FEW = 64, DEPTH_MAX = 78 };
 
 _Static_assert(sizeof(struct fmb_tree_node) == CACHE_LINE, "a node is a cache line");
-_Static_assert(TREE_LEAF *TREE_LEAF == FMB_TREE_ROOM, "there is room for all pairs of two leaves");
+_Static_assert(TREE_LEAF *TREE_LEAF == FMB_TREE_ROOM,
+               "there is capacity for all pairs of two leaves");
 
 static size_t leaves_of(size_t frames)
 {
     return frames / TREE_LEAF + (frames % TREE_LEAF != 0);
 }
 
-/* At most. Those of whom there are few are at least FEW / 4 if not all there are, and have one leaf
- * more than they fill. */
-static size_t most_nodes(size_t frames)
+/* Bounds the number of nodes. A node of few boxes has at least FEW / 4 of them, unless the tree has
+ * fewer in all, and one leaf more than it fills. */
+static size_t nodes_max(size_t frames)
 {
     return 2 * (frames / TREE_LEAF + frames / (FEW / 4)) + 3;
 }
@@ -40,16 +53,16 @@ static size_t bytes_without_nodes(size_t count)
 
 size_t fmb_tree_bytes(size_t count)
 {
-    /* A frame has less than half a node. */
+    /* A frame needs less than half a node. */
     const size_t each = sizeof(struct fmb_tree_box) + sizeof(unsigned) + CACHE_LINE / 2;
     if (count >= UINT_MAX || count > (SIZE_MAX - 4 * CACHE_LINE) / each)
         return SIZE_MAX;
-    return bytes_without_nodes(count) + most_nodes(count) * sizeof(struct fmb_tree_node);
+    return bytes_without_nodes(count) + nodes_max(count) * sizeof(struct fmb_tree_node);
 }
 
 /* ---- Centres ---- */
 
-/* Of an axis, or 0 of a box without ends; may be infinite. */
+/* Returns the centre of a box on an axis; it may be infinite. Returns 0 for a box without ends. */
 static inline double centre_of(const struct fmb_tree_box *box, int axis)
 {
     const lanes end = box->box.end[axis];
@@ -57,16 +70,18 @@ static inline double centre_of(const struct fmb_tree_box *box, int axis)
     return centre == centre ? centre : 0;
 }
 
-/* Some boxes of many, as far apart in their order: no more of them are asked what they are like. */
-enum { ASKED = 16 };
+/* Properties of many boxes are estimated from a sample: at most SAMPLES of them, evenly spaced in
+ * their order. */
+enum { SAMPLES = 16 };
 
 static size_t stride_of(size_t count)
 {
-    return (count + ASKED - 1) / ASKED;
+    return (count + SAMPLES - 1) / SAMPLES;
 }
 
-/* The least and the greatest centre of some boxes on each axis; as a box, {least, -greatest}. */
-static struct swept centres_of(const struct fmb_tree_box *box, size_t count)
+/* Returns the least and the greatest centre of a sample on each axis, as a box: {least, -greatest}.
+ */
+static struct swept centre_bounds(const struct fmb_tree_box *box, size_t count)
 {
     const size_t stride = stride_of(count);
     struct swept out;
@@ -78,14 +93,15 @@ static struct swept centres_of(const struct fmb_tree_box *box, size_t count)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
             const lanes half = box[i].box.end[axis] * 0.5;
             const lanes centre = half - (lanes){half[1], half[0]};
-            out.end[axis] = lanes_least(centre, out.end[axis]); /* that, where it is no number */
+            out.end[axis] =
+                lanes_least(centre, out.end[axis]); /* the second, if the first is NaN */
         }
     }
     return out;
 }
 
-/* How far the centres reach on an axis; finite. */
-static double reach_of(lanes centres)
+/* Returns the extent of the centres on an axis; finite. */
+static double extent_of(lanes centres)
 {
     const lanes ends = lanes_greatest(centres, lanes_of(-DBL_MAX / 4));
     const double reach = -ends[0] - ends[1];
@@ -94,30 +110,30 @@ static double reach_of(lanes centres)
 
 /* ---- The axis ---- */
 
-/* How large some boxes are against the reach of their centres, each at most 1: the part of them
- * that would be in both halves. Few enough are none: what is asked about is often larger. */
+/* Estimates the fraction of boxes that would be in both halves: the mean size of a sample relative
+ * to the extent of the centres, each at most 1. It is at least 1/64: below that it is taken as
+ * none, since query boxes are often larger. */
 static double share_in_both(const struct fmb_tree_box *box, size_t count, int axis, double reach)
 {
-    const double inverse =
-        1 / reach; /* of the least doubles it is infinite, and so all are large */
-    double sum = 0, asked = 0;
-    for (size_t i = 0; i < count; i += stride_of(count), asked++) {
+    const double inverse = 1 / reach; /* infinite for subnormal extents: all boxes are then large */
+    double sum = 0, samples = 0;
+    for (size_t i = 0; i < count; i += stride_of(count), samples++) {
         const lanes end = box[i].box.end[axis];
         const double size = (-end[0] - end[1]) * inverse;
         sum += size < 1 ? size : 1;
     }
-    return sum > asked / 64 ? sum / asked : 1.0 / 64;
+    return sum > samples / 64 ? sum / samples : 1.0 / 64;
 }
 
-/* The axis on which halves have the fewest boxes in common, of equal ones the longest; -1 if all
- * centres that are asked are the same. */
+/* Returns the axis on which the two halves share the fewest boxes, the longest of several such
+ * axes; -1 if all centres of the sample are equal. */
 static int axis_of(const struct fmb_tree_box *box, size_t count)
 {
-    const struct swept centres = centres_of(box, count);
+    const struct swept centres = centre_bounds(box, count);
     double best = INFINITY, longest = 0;
     int out = -1;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const double reach = reach_of(centres.end[axis]);
+        const double reach = extent_of(centres.end[axis]);
         if (reach == 0)
             continue;
         const double share = share_in_both(box, count, axis, reach);
@@ -132,13 +148,13 @@ static int axis_of(const struct fmb_tree_box *box, size_t count)
 
 /* ---- Halves ---- */
 
-/* Boxes with the indices of their frames, and what they are put in order by. */
+/* A range of boxes with the indices of their frames, and the key that orders them. */
 struct items {
     struct fmb_tree_box *box; /* [count] */
     unsigned *order;          /* [count] */
     size_t count;
     int axis;
-    bool by_end; /* by their lower ends: the centres are all the same */
+    bool by_end; /* the key is the lower end: all centres are equal */
 };
 
 static inline double key_of(const struct items *items, size_t i)
@@ -157,7 +173,7 @@ static inline void swap_items(const struct items *items, size_t i, size_t j)
     items->order[j] = index;
 }
 
-/* Those that are on the wrong side change places. */
+/* Exchanges the boxes that are on the wrong side of target: rank below target belongs before it. */
 static void swap_wrong(const struct items *items, const unsigned char rank[], size_t target)
 {
     unsigned char left[FEW], right[FEW];
@@ -174,7 +190,8 @@ static void swap_wrong(const struct items *items, const unsigned char rank[], si
         swap_items(items, left[i], right[i]);
 }
 
-/* Few of them. How many come before each is counted, equal ones in the order they are in. */
+/* select_first() for at most FEW boxes. The rank of a box is the number of boxes before it; equal
+ * keys keep their order. */
 static void select_few(const struct items *items, size_t target)
 {
     lanes key[FEW / 2];
@@ -196,83 +213,85 @@ static void select_few(const struct items *items, size_t target)
     swap_wrong(items, rank, target);
 }
 
-/* Two ends of what is not parted yet: [first, end). */
-struct rest {
+/* The range that is not partitioned yet: [first, end). */
+struct unpartitioned {
     size_t first, end;
 };
 
-/* Parts blocks from both ends until there is less than two of them: which boxes are on the wrong
- * side is written down first, and they change places then, so that no branch is guessed. */
-static struct rest part_blocks(const struct items *items, double pivot)
+/* Partitions blocks from both ends until fewer than two of them are left. The positions of boxes on
+ * the wrong side are recorded first and exchanged afterwards, so that no branch depends on a key.
+ */
+static struct unpartitioned partition_blocks(const struct items *items, double pivot)
 {
     enum { BLOCK = 64 };
     unsigned char left[BLOCK], right[BLOCK];
     size_t left_count = 0, right_count = 0, left_done = 0, right_done = 0;
-    struct rest rest = {0, items->count};
-    while (rest.end - rest.first >= 2 * BLOCK) {
+    struct unpartitioned middle = {0, items->count};
+    while (middle.end - middle.first >= 2 * BLOCK) {
         if (left_done == left_count) {
             left_done = left_count = 0;
             for (size_t i = 0; i < BLOCK; i++) {
                 left[left_count] = (unsigned char) i;
-                left_count += key_of(items, rest.first + i) >= pivot;
+                left_count += key_of(items, middle.first + i) >= pivot;
             }
         }
         if (right_done == right_count) {
             right_done = right_count = 0;
             for (size_t i = 0; i < BLOCK; i++) {
                 right[right_count] = (unsigned char) i;
-                right_count += key_of(items, rest.end - 1 - i) <= pivot;
+                right_count += key_of(items, middle.end - 1 - i) <= pivot;
             }
         }
         while (left_done < left_count && right_done < right_count)
-            swap_items(items, rest.first + left[left_done++], rest.end - 1 - right[right_done++]);
-        rest.first += left_done == left_count ? BLOCK : 0;
-        rest.end -= right_done == right_count ? BLOCK : 0;
+            swap_items(items, middle.first + left[left_done++],
+                       middle.end - 1 - right[right_done++]);
+        middle.first += left_done == left_count ? BLOCK : 0;
+        middle.end -= right_done == right_count ? BLOCK : 0;
     }
-    return rest;
+    return middle;
 }
 
-/* Puts those at most as large as the pivot before those at least as large, and returns how many are
- * before. Neither side is empty if the least is not above and the greatest not below the pivot:
- * equal ones go to both sides. */
-static size_t part(const struct items *items, double pivot)
+/* Moves keys <= pivot before keys >= pivot, and returns how many come before. Neither side is empty
+ * if least <= pivot <= greatest: equal keys go to both sides. */
+static size_t partition(const struct items *items, double pivot)
 {
-    struct rest rest = part_blocks(items, pivot);
-    for (;; rest.first++, rest.end--) {
-        while (rest.first < rest.end && key_of(items, rest.first) < pivot)
-            rest.first++;
-        while (rest.first < rest.end && key_of(items, rest.end - 1) > pivot)
-            rest.end--;
-        if (rest.end - rest.first <= 1) /* none, or an equal one, which may be on either */
-            return rest.end < items->count ? rest.end : rest.first;
-        swap_items(items, rest.first, rest.end - 1);
+    struct unpartitioned middle = partition_blocks(items, pivot);
+    for (;; middle.first++, middle.end--) {
+        while (middle.first < middle.end && key_of(items, middle.first) < pivot)
+            middle.first++;
+        while (middle.first < middle.end && key_of(items, middle.end - 1) > pivot)
+            middle.end--;
+        if (middle.end - middle.first <=
+            1) /* none left, or one equal to the pivot, which may be on either side */
+            return middle.end < items->count ? middle.end : middle.first;
+        swap_items(items, middle.first, middle.end - 1);
     }
 }
 
-/* The middle one of some. */
+/* Returns the median key of a sample. */
 static double middle_key(const struct items *items)
 {
-    double key[ASKED];
-    size_t asked = 0;
-    for (size_t i = 0; i < items->count; i += stride_of(items->count), asked++) {
+    double key[SAMPLES];
+    size_t samples = 0;
+    for (size_t i = 0; i < items->count; i += stride_of(items->count), samples++) {
         const double x = key_of(items, i);
-        size_t to = asked;
+        size_t to = samples;
         for (; to > 0 && key[to - 1] > x; to--)
             key[to] = key[to - 1];
         key[to] = x;
     }
-    return key[asked / 2];
+    return key[samples / 2];
 }
 
-/* Doubles as integers in the same order. */
-static int64_t ordered(double x)
+/* Maps doubles to integers in the same order. */
+static int64_t order_key(double x)
 {
     int64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return bits < 0 ? INT64_MIN - bits : bits;
 }
 
-static double from_ordered(int64_t bits)
+static double from_order_key(int64_t bits)
 {
     double x;
     bits = bits < 0 ? INT64_MIN - bits : bits;
@@ -280,7 +299,7 @@ static double from_ordered(int64_t bits)
     return x;
 }
 
-static void keys_between(const struct items *items, double *least, double *greatest)
+static void key_bounds(const struct items *items, double *least, double *greatest)
 {
     *least = INFINITY;
     *greatest = -INFINITY;
@@ -291,24 +310,27 @@ static void keys_between(const struct items *items, double *least, double *great
     }
 }
 
-/* With as many doubles to either side; below the greatest. */
+/* Returns the double with equally many doubles between it and each limit; less than the greatest.
+ */
 static double halfway(double least, double greatest)
 {
-    const int64_t from = ordered(least), to = ordered(greatest);
-    return from_ordered((from >> 1) + (to >> 1) + (from & to & 1));
+    const int64_t from = order_key(least), to = order_key(greatest);
+    return from_order_key((from >> 1) + (to >> 1) + (from & to & 1));
 }
 
-/* Puts the first target of them, by their keys, before the others. A pass halves the doubles that
- * are left between the least and the greatest, which are below 2^64; once these are neighbours, it
- * leaves them all the same, or halves those that are the least. */
+/* Quickselect: moves the target smallest keys to the front.
+ *
+ * A pass halves the number of doubles between the least and the greatest key, which is below 2^64.
+ * Once these two are adjacent doubles, a pass either leaves keys that are all equal, or halves the
+ * number of boxes of the least key. So there are at most some 64 + log2(count) passes. */
 static void select_first(struct items items, size_t target)
 {
     while (items.count > FEW) {
         double least, greatest;
-        keys_between(&items, &least, &greatest);
+        key_bounds(&items, &least, &greatest);
         if (target == 0 || target == items.count || least == greatest)
             return;
-        const size_t before = part(&items, halfway(least, greatest));
+        const size_t before = partition(&items, halfway(least, greatest));
         if (before > target) {
             items.count = before;
             continue;
@@ -323,7 +345,7 @@ static void select_first(struct items items, size_t target)
 
 /* ---- The tree ---- */
 
-/* Puts those of one child before those of the other, and returns how many they are. */
+/* Moves the boxes of the first child before those of the second, and returns how many they are. */
 static size_t split(const struct fmb_tree *tree, size_t first, size_t count)
 {
     struct items items = {tree->boxes + first, tree->order + first, count, 0, false};
@@ -333,7 +355,7 @@ static size_t split(const struct fmb_tree *tree, size_t first, size_t count)
         items.by_end = true;
     }
     if (count > FEW) {
-        const size_t before = part(&items, middle_key(&items));
+        const size_t before = partition(&items, middle_key(&items));
         if (before >= count / 4 + 1 && count - before >= count / 4 + 1)
             return before;
     }
@@ -342,14 +364,15 @@ static size_t split(const struct fmb_tree *tree, size_t first, size_t count)
     return half;
 }
 
-struct pending {
+struct subtree {
     size_t first, count;
 };
 
-/* Which frames are below which node, from the root on; the boxes are put in order. */
+/* Divides the frames among the nodes, from the root on, and sorts the boxes into the order of the
+ * leaves. */
 static void set_nodes(struct fmb_tree *tree)
 {
-    struct pending later[DEPTH_MAX], now = {0, tree->frame_count};
+    struct subtree later[DEPTH_MAX], now = {0, tree->frame_count};
     size_t depth = 0, at = 0;
     for (;; at++) {
         struct fmb_tree_node *node = &tree->nodes[at];
@@ -357,7 +380,7 @@ static void set_nodes(struct fmb_tree *tree)
         node->count = now.count <= TREE_LEAF ? (unsigned) now.count : 0;
         if (!node->count) {
             const size_t before = split(tree, now.first, now.count);
-            later[depth++] = (struct pending){now.first + before, now.count - before};
+            later[depth++] = (struct subtree){now.first + before, now.count - before};
             now.count = before;
         } else if (depth) {
             now = later[--depth];
@@ -379,7 +402,8 @@ static void set_leaf(const struct fmb_tree *tree, struct fmb_tree_node *node)
     }
 }
 
-/* From the boxes of the frames: children stand behind their parents. */
+/* Computes the boxes of all nodes from those of the frames. Children come after their parents, so
+ * the nodes are processed in descending order. */
 static void set_boxes(const struct fmb_tree *tree)
 {
     for (size_t at = tree->node_count; at-- > 0;) {
@@ -396,7 +420,7 @@ static void set_boxes(const struct fmb_tree *tree)
     }
 }
 
-/* ---- The door ---- */
+/* ---- Building ---- */
 
 static int dimension_of(const struct fmb_prepared *frame)
 {
@@ -417,8 +441,8 @@ static enum fmb_status check(const struct fmb_prepared *frames, size_t count, do
                                         : FMB_OK;
 }
 
-/* Each at a multiple of what its numbers need: the nodes, the boxes, the order. On output: a tree
- * whose boxes are to be set. */
+/* Lays out the nodes, the boxes and the order in memory, each aligned as its type requires. The
+ * boxes are still to be set. */
 static void lay_out(void *memory, size_t count, int dim, double duration, struct fmb_tree *out)
 {
     char *at = memory;
@@ -427,7 +451,7 @@ static void lay_out(void *memory, size_t count, int dim, double duration, struct
     out->dim = dim;
     out->duration = duration;
     out->nodes = (void *) at;
-    at += most_nodes(count) * sizeof *out->nodes;
+    at += nodes_max(count) * sizeof *out->nodes;
     out->boxes = (void *) at;
     at += count * sizeof *out->boxes;
     out->order = (void *) at;
@@ -435,8 +459,8 @@ static void lay_out(void *memory, size_t count, int dim, double duration, struct
         out->order[i] = (unsigned) i;
 }
 
-/* On input: all boxes, in the order of the frames. */
-static void grow(struct fmb_tree *tree)
+/* In: all boxes, in the order of the frames. */
+static void set_tree(struct fmb_tree *tree)
 {
     set_nodes(tree);
     set_boxes(tree);
@@ -453,7 +477,7 @@ enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, 
     lay_out(memory, count, dimension_of(frames), duration, out);
     for (size_t i = 0; i < count; i++)
         out->boxes[i].box = swept_of(&frames[i], duration);
-    grow(out);
+    set_tree(out);
     return FMB_OK;
 }
 
@@ -483,7 +507,7 @@ enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count
     lay_out(memory, count, boxes->dim, duration, out);
     for (size_t i = 0; i < count; i++)
         out->boxes[i].box = swept_box(boxes, (unsigned) i, duration);
-    grow(out);
+    set_tree(out);
     return FMB_OK;
 }
 
@@ -496,7 +520,7 @@ void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2]
     }
 }
 
-/* Both of its cache lines. */
+/* Prefetches both cache lines of a frame. */
 static void prefetch(const struct fmb_prepared *frame)
 {
     __builtin_prefetch(frame);
@@ -520,7 +544,7 @@ enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared 
     return FMB_OK;
 }
 
-/* ---- Asking ---- */
+/* ---- Queries ---- */
 
 static void sort_few(unsigned *number, size_t count)
 {
@@ -533,8 +557,8 @@ static void sort_few(unsigned *number, size_t count)
     }
 }
 
-/* Those without the bit before those with it; returns how many are before. */
-static size_t part_by_bit(unsigned *number, size_t count, unsigned bit)
+/* Moves numbers without the bit before those with it; returns how many come before. */
+static size_t partition_by_bit(unsigned *number, size_t count, unsigned bit)
 {
     size_t before = 0;
     for (size_t i = 0; i < count; i++) {
@@ -546,7 +570,7 @@ static size_t part_by_bit(unsigned *number, size_t count, unsigned bit)
     return before;
 }
 
-/* By one bit after the other, from the highest on. */
+/* Radix sort by bits, from the highest one. */
 void tree_sort(unsigned *number, size_t count, unsigned most)
 {
     struct {
@@ -560,7 +584,7 @@ void tree_sort(unsigned *number, size_t count, unsigned most)
         bit *= 2;
     for (;;) {
         if (count > 24 && bit) {
-            const size_t before = part_by_bit(number, count, bit);
+            const size_t before = partition_by_bit(number, count, bit);
             bit /= 2;
             later[depth].number = number + before;
             later[depth].count = count - before;
@@ -577,9 +601,10 @@ void tree_sort(unsigned *number, size_t count, unsigned most)
     }
 }
 
-size_t tree_find(const struct fmb_tree *tree, const struct swept *box, unsigned from, unsigned *out)
+size_t tree_query(const struct fmb_tree *tree, const struct swept *box, unsigned from,
+                  unsigned *out)
 {
-    const size_t count = tree_walk(tree, box, from, out, NULL);
+    const size_t count = tree_query_unsorted(tree, box, from, out, NULL);
     tree_sort(out, count, (unsigned) tree->frame_count);
     return count;
 }
@@ -595,21 +620,21 @@ enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepa
     if (dimension_of(frame) != tree->dim)
         return FMB_DIMENSIONS_DIFFER;
     const struct swept box = swept_of(frame, tree->duration);
-    *count = tree_find(tree, &box, from, out);
+    *count = tree_query(tree, &box, from, out);
     return FMB_OK;
 }
 
 /* ---- Pairs ---- */
 
-/* A leaf, with what the boxes of its frames are held against. */
-struct asking {
+/* A leaf, with its boxes in the form that swept_meet() tests against. */
+struct leaf_query {
     const struct fmb_tree *tree;
     const struct fmb_tree_node *leaf;
     struct swept all, one[TREE_LEAF];
 };
 
-static void set_asking(const struct fmb_tree *tree, const struct fmb_tree_node *leaf,
-                       struct asking *out)
+static void set_leaf_query(const struct fmb_tree *tree, const struct fmb_tree_node *leaf,
+                           struct leaf_query *out)
 {
     out->tree = tree;
     out->leaf = leaf;
@@ -625,56 +650,58 @@ static inline void put_pair(unsigned first, unsigned second, bool ordered, unsig
     out[1] = swapped ? first : second;
 }
 
-/* The pairs of a frame of the one leaf and one of the other, of a leaf with itself each once. There
- * is room for all of them: each is written, and written over if it is not one. */
-static size_t pairs_of_leaves(const struct asking *asking, const struct fmb_tree *tree,
+/* Writes the pairs of a frame of each leaf whose boxes overlap; for a leaf with itself, each pair
+ * once. out has capacity for all pairs of the leaves: each candidate is written, and overwritten if
+ * it is rejected. */
+static size_t pairs_of_leaves(const struct leaf_query *query, const struct fmb_tree *tree,
                               const struct fmb_tree_node *leaf, unsigned (*out)[2])
 {
-    const bool same_tree = asking->tree == tree;
+    const bool same_tree = query->tree == tree;
     const unsigned end = leaf->first + leaf->count;
     size_t found = 0;
-    for (unsigned k = 0; k < asking->leaf->count; k++) {
-        const unsigned index = asking->tree->order[asking->leaf->first + k];
-        if (!swept_meet(&leaf->box, &asking->one[k]))
+    for (unsigned k = 0; k < query->leaf->count; k++) {
+        const unsigned index = query->tree->order[query->leaf->first + k];
+        if (!swept_meet(&leaf->box, &query->one[k]))
             continue;
-        for (unsigned m = leaf->first + (leaf == asking->leaf ? k + 1 : 0); m < end; m++) {
+        for (unsigned m = leaf->first + (leaf == query->leaf ? k + 1 : 0); m < end; m++) {
             put_pair(index, tree->order[m], same_tree, out[found]);
-            found += swept_meet(&tree->boxes[m].box, &asking->one[k]);
+            found += swept_meet(&tree->boxes[m].box, &query->one[k]);
         }
     }
     return found;
 }
 
-static enum fmb_status check_pairs(const struct fmb_tree *a, const struct fmb_tree *b, size_t room)
+static enum fmb_status check_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
+                                   size_t capacity)
 {
     if (a->frame_count == 0 || b->frame_count == 0)
         return FMB_OK;
     return a->dim != b->dim             ? FMB_DIMENSIONS_DIFFER
            : a->duration != b->duration ? FMB_BAD_DURATION
-           : room < FMB_TREE_ROOM       ? FMB_OVER_LIMIT
+           : capacity < FMB_TREE_ROOM   ? FMB_OVER_LIMIT
                                         : FMB_OK;
 }
 
-/* Each leaf of the first tree walks through the second; in its own tree from itself on, so that it
- * meets every other leaf once. */
+/* Each leaf of the first tree is tested against the second tree. Within one tree it is tested from
+ * itself on, so that each pair of leaves is tested once. */
 enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
-                               struct fmb_tree_place *place, unsigned (*out)[2], size_t room,
+                               struct fmb_tree_place *place, unsigned (*out)[2], size_t capacity,
                                size_t *count)
 {
-    const enum fmb_status status = check_pairs(a, b, room);
+    const enum fmb_status status = check_pairs(a, b, capacity);
     *count = 0;
     if (status != FMB_OK || b->frame_count == 0)
         return status;
     for (; place->leaf < a->node_count; place->leaf++, place->inside = false) {
-        struct asking asking;
+        struct leaf_query query;
         const struct fmb_tree_node *leaf = &a->nodes[place->leaf];
         if (!leaf->count)
             continue;
-        set_asking(a, leaf, &asking);
+        set_leaf_query(a, leaf, &query);
         unsigned at = place->inside ? place->node : a == b ? place->leaf : 0;
-        while ((leaf = tree_next(b, &asking.all, 0, &at, NULL))) {
-            *count += pairs_of_leaves(&asking, b, leaf, out + *count);
-            if (room - *count >= FMB_TREE_ROOM)
+        while ((leaf = tree_next_leaf(b, &query.all, 0, &at, NULL))) {
+            *count += pairs_of_leaves(&query, b, leaf, out + *count);
+            if (capacity - *count >= FMB_TREE_ROOM)
                 continue;
             place->node = at;
             place->inside = true;

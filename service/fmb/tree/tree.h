@@ -1,37 +1,37 @@
-/* What a tree of boxes holds, and how it is walked.
+/* The nodes of a tree of boxes, and the query loop.
  *
- * Nodes stand in the order in which they are visited if none is left out: a node, all below its
- * first child, all below its second. One that is left out tells where to go on, so a walk is one
- * loop and needs no stack. The boxes of the frames stand in the order of the leaves.
+ * Nodes are stored in depth-first order: a node, all nodes below its first child, all nodes below
+ * its second child. Each node has the index of the node that follows its subtree, so a query is a
+ * single loop without a stack. The boxes of the frames are stored in the order of the leaves.
  *
- * The walk is here and inline so that what it costs can be counted where it is tested. */
+ * The query is inline here, so that tests can count the nodes that it visits. */
 #ifndef FMB_TREE_H
 #define FMB_TREE_H
 
 #include "swept.h"
 
-/* Frames of a leaf; all leaves but the last are full. */
+/* Frames in a leaf; all leaves of a node of few boxes are full except the last one. */
 enum { TREE_LEAF = 8 };
 
 /* One cache line. */
 struct fmb_tree_node {
     struct swept box;
-    unsigned skip;  /* the node to go on with where this one is left out */
-    unsigned first; /* of a leaf: its first frame, in the order of the leaves */
-    unsigned count; /* of frames of a leaf; 0: not a leaf */
-    unsigned last;  /* the largest index of a frame below */
+    unsigned skip;  /* the next node if this one is rejected */
+    unsigned first; /* leaf: its first frame, in the order of the leaves */
+    unsigned count; /* leaf: its number of frames; 0: not a leaf */
+    unsigned last;  /* the largest index of a frame in this subtree */
 };
 
 struct fmb_tree_box {
     struct swept box;
 };
 
-/* The next leaf that may meet a box, of which against is the other side, and may have an index that
- * is not below from; or NULL. at: the node to go on with, 0 to begin with. visits counts nodes, or
- * is NULL. */
-INLINE const struct fmb_tree_node *tree_next(const struct fmb_tree *tree,
-                                             const struct swept *against, unsigned from,
-                                             unsigned *at, size_t *visits)
+/* Returns the next leaf whose box overlaps the query box and that may contain an index >= from;
+ * NULL if there are no more. against: swept_against() of the query box. *at: the next node to
+ * visit, 0 at first. *visits, if not NULL, is incremented for each node visited. */
+INLINE const struct fmb_tree_node *tree_next_leaf(const struct fmb_tree *tree,
+                                                  const struct swept *against, unsigned from,
+                                                  unsigned *at, size_t *visits)
 {
     while (*at < tree->node_count) {
         const struct fmb_tree_node *node = &tree->nodes[*at];
@@ -45,19 +45,19 @@ INLINE const struct fmb_tree_node *tree_next(const struct fmb_tree *tree,
     return NULL;
 }
 
-/* Puts the indices of the frames that may meet a box and are not below from into out, as they come,
- * and returns how many. */
-INLINE size_t tree_walk(const struct fmb_tree *tree, const struct swept *box, unsigned from,
-                        unsigned *out, size_t *visits)
+/* Writes the indices >= from of the frames whose boxes overlap the query box to out, in the order
+ * of the leaves, and returns how many. out has capacity for all frames of the tree. */
+INLINE size_t tree_query_unsorted(const struct fmb_tree *tree, const struct swept *box,
+                                  unsigned from, unsigned *out, size_t *visits)
 {
     const struct swept against = swept_against(box);
     const struct fmb_tree_node *leaf;
     unsigned at = 0;
     size_t found = 0;
-    while ((leaf = tree_next(tree, &against, from, &at, visits))) {
+    while ((leaf = tree_next_leaf(tree, &against, from, &at, visits))) {
         const unsigned end = leaf->first + leaf->count;
         for (unsigned k = leaf->first; k < end; k++) {
-            /* There is room for this one, and it is written over if it is not one of them. */
+            /* Always written; overwritten by the next index if rejected. */
             const unsigned index = tree->order[k];
             out[found] = index;
             found += (int) swept_meet(&tree->boxes[k].box, &against) & (index >= from);
@@ -66,11 +66,11 @@ INLINE size_t tree_walk(const struct fmb_tree *tree, const struct swept *box, un
     return found;
 }
 
-/* Sorts numbers up to most, in place and in bounded time. */
+/* Sorts numbers of at most most in ascending order, in place and in bounded time. */
 void tree_sort(unsigned *number, size_t count, unsigned most);
 
-/* The same in ascending order: fmb_tree_ask() for a box. */
-size_t tree_find(const struct fmb_tree *tree, const struct swept *box, unsigned from,
-                 unsigned *out);
+/* tree_query_unsorted() with the indices in ascending order: fmb_tree_ask() for a box. */
+size_t tree_query(const struct fmb_tree *tree, const struct swept *box, unsigned from,
+                  unsigned *out);
 
 #endif

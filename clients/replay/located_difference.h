@@ -1,11 +1,11 @@
-/* A difference, with the place of its query in the logs. */
-#ifndef FOUND_H
-#define FOUND_H
+/* A difference, with the position of its query in the logs. */
+#ifndef LOCATED_DIFFERENCE_H
+#define LOCATED_DIFFERENCE_H
 
 #include "compare.h"
 #include "match.h"
 
-struct found {
+struct located_difference {
     struct match_place place; /* of the query */
     enum log_kind kind;       /* of the query */
     int64_t client_id, sequence_number;
@@ -13,8 +13,8 @@ struct found {
 };
 
 /* Most bytes of a certificate shown in a report, final 0 included. */
-enum { FOUND_TEXT_MAX = 200 };
+enum { DIFFERENCE_TEXT_MAX = 200 };
 
-typedef void found_sink(void *user, const struct found *found);
+typedef void located_difference_sink(void *user, const struct located_difference *located);
 
 #endif

@@ -1,7 +1,7 @@
 /* Whose turn it is, whether to wait for a client, and what a span of work is charged. */
-#include "expect.h"
+#include "anticipation.h"
 #include "meter.h"
-#include "turns.h"
+#include "scheduler.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,39 +13,39 @@
 
 /* ---- Turns ---- */
 
-static struct turns *turns;
+static struct scheduler *turns;
 
 static int set_up(void **state)
 {
     (void) state;
-    turns = turns_create(0x9e3779b97f4a7c15);
+    turns = scheduler_create(0x9e3779b97f4a7c15);
     return turns ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
     (void) state;
-    turns_destroy(turns);
+    scheduler_destroy(turns);
     return 0;
 }
 
 static int active_client(int64_t id)
 {
-    const int client = turns_client(turns, id);
-    turns_activate(turns, client);
+    const int client = scheduler_client(turns, id);
+    scheduler_activate(turns, client);
     return client;
 }
 
 static int next(void)
 {
     int64_t lead_ns;
-    return turns_next(turns, NULL, NULL, -1, &lead_ns);
+    return scheduler_next(turns, NULL, NULL, -1, &lead_ns);
 }
 
 static void serve(int client, int64_t ns)
 {
-    turns_begin(turns);
-    turns_charge(turns, client, ns);
+    scheduler_advance(turns);
+    scheduler_charge(turns, client, ns);
 }
 
 /* The client that was served last keeps its turn for a while beyond the others. */
@@ -54,16 +54,16 @@ static void test_turns_last_a_slice(void **state)
     (void) state;
     int64_t lead_ns;
     const int a = active_client(1), b = active_client(2);
-    serve(a, TURNS_SLICE_NS - 1);
-    assert_int_equal(turns_next(turns, NULL, NULL, a, &lead_ns), a);
-    assert_int_equal(lead_ns, -(TURNS_SLICE_NS - 1));
-    assert_int_equal(turns_next(turns, NULL, NULL, b, &lead_ns), b);
-    assert_int_equal(turns_next(turns, NULL, NULL, -1, &lead_ns), b);
+    serve(a, SCHEDULER_SLICE_NS - 1);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, a, &lead_ns), a);
+    assert_int_equal(lead_ns, -(SCHEDULER_SLICE_NS - 1));
+    assert_int_equal(scheduler_next(turns, NULL, NULL, b, &lead_ns), b);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, -1, &lead_ns), b);
     serve(a, 1);
-    assert_int_equal(turns_next(turns, NULL, NULL, a, &lead_ns), b);
-    assert_int_equal(lead_ns, TURNS_SLICE_NS);
-    turns_deactivate(turns, b);
-    assert_int_equal(turns_next(turns, NULL, NULL, a, &lead_ns), a);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, a, &lead_ns), b);
+    assert_int_equal(lead_ns, SCHEDULER_SLICE_NS);
+    scheduler_deactivate(turns, b);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, a, &lead_ns), a);
     assert_true(lead_ns == INT64_MAX);
 }
 
@@ -71,21 +71,21 @@ static void test_least_used_is_next(void **state)
 {
     (void) state;
     int64_t lead_ns;
-    assert_int_equal(turns_next(turns, NULL, NULL, -1, &lead_ns), -1);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, -1, &lead_ns), -1);
     const int a = active_client(1);
-    assert_int_equal(turns_next(turns, NULL, NULL, -1, &lead_ns), a);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, -1, &lead_ns), a);
     assert_true(lead_ns == INT64_MAX);
     const int b = active_client(-5);
     serve(a, 100);
-    assert_int_equal(turns_next(turns, NULL, NULL, -1, &lead_ns), b);
+    assert_int_equal(scheduler_next(turns, NULL, NULL, -1, &lead_ns), b);
     assert_int_equal(lead_ns, 100);
     serve(b, 30);
     assert_int_equal(next(), b);
     serve(b, 90);
     assert_int_equal(next(), a);
-    turns_deactivate(turns, a);
+    scheduler_deactivate(turns, a);
     assert_int_equal(next(), b);
-    assert_int_equal(turns_active(turns), 1);
+    assert_int_equal(scheduler_active(turns), 1);
 }
 
 static bool is_odd(const void *user, int client)
@@ -99,10 +99,10 @@ static void test_clients_that_may_not_be_served_are_passed_over(void **state)
     (void) state;
     int64_t lead_ns;
     for (int64_t id = 0; id < 4; id++)
-        turns_charge(turns, active_client(id), 100 - 10 * id);
+        scheduler_charge(turns, active_client(id), 100 - 10 * id);
     assert_int_equal(next(), 3);
-    turns_deactivate(turns, 3);
-    assert_int_equal(turns_next(turns, is_odd, NULL, -1, &lead_ns), 1);
+    scheduler_deactivate(turns, 3);
+    assert_int_equal(scheduler_next(turns, is_odd, NULL, -1, &lead_ns), 1);
     assert_true(lead_ns == INT64_MAX);
 }
 
@@ -127,10 +127,10 @@ static void test_idling_earns_no_credit(void **state)
 {
     (void) state;
     const int idle = active_client(1), busy = active_client(2);
-    turns_deactivate(turns, idle);
+    scheduler_deactivate(turns, idle);
     serve(busy, 5000000);
     serve(busy, 10);
-    turns_activate(turns, idle);
+    scheduler_activate(turns, idle);
     assert_int_equal(next(), idle);
     serve(idle, 11);
     assert_int_equal(next(), busy);
@@ -141,10 +141,10 @@ static void test_debt_is_kept(void **state)
     (void) state;
     const int debtor = active_client(1), other = active_client(2);
     serve(debtor, 1000000);
-    turns_deactivate(turns, debtor);
+    scheduler_deactivate(turns, debtor);
     serve(other, 999000);
-    assert_int_equal(turns_lead(turns, debtor), -1000);
-    turns_activate(turns, debtor);
+    assert_int_equal(scheduler_lead(turns, debtor), -1000);
+    scheduler_activate(turns, debtor);
     assert_int_equal(next(), other);
     serve(other, 1001);
     assert_int_equal(next(), debtor);
@@ -157,37 +157,38 @@ static void test_a_new_id_starts_behind(void **state)
     serve(old, 700);
     const int new = active_client(2);
     assert_int_equal(next(), old);
-    serve(old, TURNS_ENTRY_NS - 2);
+    serve(old, SCHEDULER_ENTRY_NS - 2);
     assert_int_equal(next(), new);
 }
 
 static void test_known_clients_keep_their_number(void **state)
 {
     (void) state;
-    for (int64_t id = 0; id < TURNS_CLIENTS; id++)
-        assert_int_equal(turns_client(turns, id << 41), id);
-    for (int64_t id = 0; id < TURNS_CLIENTS; id++)
-        assert_int_equal(turns_client(turns, id << 41), id);
+    for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
+        assert_int_equal(scheduler_client(turns, id << 41), id);
+    for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
+        assert_int_equal(scheduler_client(turns, id << 41), id);
 }
 
 /* The first whose debt is paid. */
 static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
 {
     (void) state;
-    for (int64_t id = 0; id < TURNS_CLIENTS; id++)
+    for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
         active_client(id);
-    assert_int_equal(turns_client(turns, 5000), TURNS_CLIENTS); /* all are active */
-    turns_deactivate(turns, 7);
-    turns_deactivate(turns, 3);
-    assert_int_equal(turns_client(turns, 5000), TURNS_CLIENTS); /* those two started behind */
+    assert_int_equal(scheduler_client(turns, 5000), SCHEDULER_CLIENTS); /* all are active */
+    scheduler_deactivate(turns, 7);
+    scheduler_deactivate(turns, 3);
+    assert_int_equal(scheduler_client(turns, 5000),
+                     SCHEDULER_CLIENTS); /* those two started behind */
     serve(9, 1);
     assert_int_equal(active_client(5000), 7);
-    assert_int_equal(turns_client(turns, 5000), 7);
-    serve(9, TURNS_ENTRY_NS);
+    assert_int_equal(scheduler_client(turns, 5000), 7);
+    serve(9, SCHEDULER_ENTRY_NS);
     serve(9, 1);
-    assert_int_equal(turns_client(turns, 5001), 3);
-    assert_int_equal(turns_client(turns, 7), TURNS_CLIENTS);
-    assert_int_equal(turns_client(turns, 8), 8);
+    assert_int_equal(scheduler_client(turns, 5001), 3);
+    assert_int_equal(scheduler_client(turns, 7), SCHEDULER_CLIENTS);
+    assert_int_equal(scheduler_client(turns, 8), 8);
 }
 
 /* Against a list: ids come, idle and come again, in any order. */
@@ -198,71 +199,72 @@ static void test_ids_without_end(void **state)
     for (int i = 0; i < 200000; i++) {
         const int64_t id = rand() % 5000;
         const int client = active_client(id);
-        assert_in_range(client, 0, TURNS_CLIENTS);
-        assert_int_equal(turns_client(turns, id), client);
+        assert_in_range(client, 0, SCHEDULER_CLIENTS);
+        assert_int_equal(scheduler_client(turns, id), client);
         serve(client, 1 + rand() % 2000000);
         if (rand() % 8)
-            turns_deactivate(turns, client);
-        if (turns_active(turns) > 500)
-            turns_deactivate(turns, next());
+            scheduler_deactivate(turns, client);
+        if (scheduler_active(turns) > 500)
+            scheduler_deactivate(turns, next());
     }
 }
 
 /* ---- Expectation ---- */
 
-static struct expect expectation;
+static struct anticipation expectation;
 
 /* Answered and back after think_ns, so many times. */
 static void accustom(int client, int64_t think_ns, int times)
 {
     for (int i = 0; i < times; i++) {
-        expect_answered(&expectation, client, 1000);
-        expect_arrived(&expectation, client, 1000 + think_ns);
+        anticipation_answered(&expectation, client, 1000);
+        anticipation_arrived(&expectation, client, 1000 + think_ns);
     }
 }
 
 static void test_fast_clients_are_waited_for(void **state)
 {
     (void) state;
-    expect_init(&expectation);
+    anticipation_init(&expectation);
     assert_int_equal(expectation.client, -1);
-    assert_true(expect_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX)); /* not known yet */
-    assert_int_equal(expectation.until_ns, 1000 + EXPECT_MAX_NS);
-    assert_int_equal(expect_end(&expectation, 1700), 700 / 2);
+    assert_true(
+        anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX)); /* not known yet */
+    assert_int_equal(expectation.until_ns, 1000 + ANTICIPATION_MAX_NS);
+    assert_int_equal(anticipation_end(&expectation, 1700), 700 / 2);
     assert_int_equal(expectation.client, -1);
     accustom(5, 20000, 50);
-    assert_true(expect_begin(&expectation, 5, 1000, 400, INT64_MAX));
+    assert_true(anticipation_begin(&expectation, 5, 1000, 400, INT64_MAX));
     assert_int_equal(expectation.until_ns, 1400);
-    assert_true(expect_poll(&expectation, 1399));
-    assert_false(expect_poll(&expectation, 1400));
-    assert_int_equal(expect_end(&expectation, 1400), 400 / 2);
-    expect_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX);
-    assert_true(expect_poll(&expectation, 2000));
-    assert_int_equal(expect_end(&expectation, 9000000), (1000 + EXPECT_POLL_NS) / 2);
-    assert_false(expect_begin(&expectation, 5, 1000, 0, INT64_MAX));
+    assert_true(anticipation_poll(&expectation, 1399));
+    assert_false(anticipation_poll(&expectation, 1400));
+    assert_int_equal(anticipation_end(&expectation, 1400), 400 / 2);
+    anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX);
+    assert_true(anticipation_poll(&expectation, 2000));
+    assert_int_equal(anticipation_end(&expectation, 9000000), (1000 + ANTICIPATION_POLL_NS) / 2);
+    assert_false(anticipation_begin(&expectation, 5, 1000, 0, INT64_MAX));
 }
 
 /* Waiting pays only where the work of another client would take longer. */
 static void test_waiting_is_weighed_against_work(void **state)
 {
     (void) state;
-    expect_init(&expectation);
+    anticipation_init(&expectation);
     accustom(5, 20000, 50);
-    assert_false(expect_begin(&expectation, 5, 1000, INT64_MAX, 10000));
-    assert_true(expect_begin(&expectation, 5, 1000, INT64_MAX, 30000));
+    assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 10000));
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 30000));
 }
 
 static void test_slow_clients_are_not_waited_for(void **state)
 {
     (void) state;
-    expect_init(&expectation);
-    accustom(5, 2 * EXPECT_THINK_NS, 30);
-    assert_false(expect_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
-    accustom(5, EXPECT_THINK_NS / 2, 30); /* it became fast */
-    assert_true(expect_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
+    anticipation_init(&expectation);
+    accustom(5, 2 * ANTICIPATION_THINK_NS, 30);
+    assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
+    accustom(5, ANTICIPATION_THINK_NS / 2, 30); /* it became fast */
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
     accustom(5, INT64_MAX / 2, 1); /* one pause does not count for much */
-    accustom(5, EXPECT_THINK_NS / 2, 20);
-    assert_true(expect_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
+    accustom(5, ANTICIPATION_THINK_NS / 2, 20);
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
 }
 
 /* ---- Meter ---- */

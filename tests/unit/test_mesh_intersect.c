@@ -16,8 +16,8 @@
 #include "bumpy.h"
 #include "draw.h"
 #include "mesh_face.h"
-#include "mesh_meet.h"
-#include "mesh_near.h"
+#include "mesh_intersect.h"
+#include "mesh_adjacency.h"
 #include "mesh_transform.h"
 #include "triangles.h"
 
@@ -119,8 +119,8 @@ static void fail_of(const struct mesh *a, size_t i, const struct mesh *b, size_t
 }
 
 /* The next pair of the meeting, if it is this one. */
-static const struct mesh_pair *take_pair(const struct mesh_meeting *meeting, size_t *at, size_t i,
-                                         size_t j)
+static const struct mesh_pair *take_pair(const struct mesh_intersection *meeting, size_t *at,
+                                         size_t i, size_t j)
 {
     const struct mesh_pair *pair = *at < meeting->count ? &meeting->pair[*at] : NULL;
     if (!pair || pair->a != i || pair->b != j)
@@ -152,7 +152,8 @@ static void assert_contact(const struct mesh_pair *pair, double duration,
 }
 
 /* Counts again what the meeting says of itself. */
-static void assert_counts(const struct mesh_question *question, const struct mesh_meeting *meeting)
+static void assert_counts(const struct mesh_query *question,
+                          const struct mesh_intersection *meeting)
 {
     const bool self = question->a == question->b;
     size_t of[4] = {0}, faces[2] = {0};
@@ -176,13 +177,13 @@ static void assert_counts(const struct mesh_question *question, const struct mes
     free(in[1]);
 }
 
-static void assert_meeting_of_two(const struct mesh_question *question)
+static void assert_meeting_of_two(const struct mesh_query *question)
 {
-    struct mesh_meeting meeting;
+    struct mesh_intersection meeting;
     struct triangles_answer truth;
     size_t at = 0;
     triangles_init(&truth);
-    assert_int_equal(mesh_meet(question, &meeting), FMB_OK);
+    assert_int_equal(mesh_intersect(question, &meeting), FMB_OK);
     const bool moving = question->velocity[0] || question->velocity[1];
     assert_int_equal(meeting.moving, moving);
     for (size_t i = 0; i < question->a->face_count; i++)
@@ -201,7 +202,7 @@ static void assert_meeting_of_two(const struct mesh_question *question)
     assert_int_equal(meeting.sharing_edge, 0);
     assert_int_equal(meeting.sharing_vertex, 0);
     assert_counts(question, &meeting);
-    mesh_meeting_free(&meeting);
+    mesh_intersection_free(&meeting);
     triangles_clear(&truth);
 }
 
@@ -213,11 +214,10 @@ static void meshes_meet_where_every_pair_says(void **state)
     for (long n = draw_sample(150); n > 0; n--) {
         struct mesh mesh[2];
         draw_soups(&draw, mesh);
-        const struct mesh_question question = {
-            .a = &mesh[0],
-            .b = &mesh[1],
-            .duration = 1,
-            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+        const struct mesh_query question = {.a = &mesh[0],
+                                            .b = &mesh[1],
+                                            .duration = 1,
+                                            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
         assert_meeting_of_two(&question);
         mesh_free(&mesh[0]);
         mesh_free(&mesh[1]);
@@ -239,7 +239,7 @@ static void moving_meshes_meet_where_every_pair_says(void **state)
             velocity[k / 3][k % 3] =
                 draw_int(&draw, -2, 2) * 0.5 * (vertex[k % 3] - mesh[0].vertex[0][k % 3]);
         }
-        const struct mesh_question question = {
+        const struct mesh_query question = {
             .a = &mesh[0],
             .b = &mesh[1],
             .velocity = {who & 1 ? velocity[0] : NULL, who & 2 ? velocity[1] : NULL},
@@ -260,7 +260,7 @@ static void soups_of_more_than_a_block(void **state)
     draw_begin(&draw, "soups_of_more_than_a_block");
     for (int m = 0; m < 2; m++)
         draw_soup(&draw, &grids[1], 3, 40, 90, &mesh[m]);
-    const struct mesh_question question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
+    const struct mesh_query question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
     assert_meeting_of_two(&question);
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
@@ -278,7 +278,7 @@ static void closed_meshes_meet_where_every_pair_says(void **state)
         bumpy_make(72, 1, &mesh[0]);
         bumpy_make(72, n == 0 ? 1 : 2, &mesh[1]);
         assert_true(mesh_transform(&transform, &mesh[1]) == SIZE_MAX);
-        const struct mesh_question question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
+        const struct mesh_query question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
         assert_meeting_of_two(&question);
         mesh_free(&mesh[0]);
         mesh_free(&mesh[1]);
@@ -327,13 +327,13 @@ static bool is_met(const struct triangle pair[2], struct shared *shared,
 
 static void assert_meeting_with_itself(const struct mesh *mesh, const struct fmb_method *method)
 {
-    const struct mesh_question question = {.a = mesh, .b = mesh, .duration = 1, .method = method};
-    struct mesh_meeting meeting;
+    const struct mesh_query question = {.a = mesh, .b = mesh, .duration = 1, .method = method};
+    struct mesh_intersection meeting;
     struct triangles_answer truth;
     struct shared shared = {0};
     size_t at = 0;
     triangles_init(&truth);
-    assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+    assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
     assert_false(meeting.moving);
     for (size_t i = 0; i < mesh->face_count; i++)
         for (size_t j = i + 1; j < mesh->face_count; j++) {
@@ -351,7 +351,7 @@ static void assert_meeting_with_itself(const struct mesh *mesh, const struct fmb
     assert_int_equal(meeting.sharing_edge, shared.edge);
     assert_int_equal(meeting.sharing_vertex, shared.vertex);
     assert_counts(&question, &meeting);
-    mesh_meeting_free(&meeting);
+    mesh_intersection_free(&meeting);
     triangles_clear(&truth);
 }
 
@@ -393,23 +393,23 @@ static void a_closed_mesh_shares_edges_and_vertices(void **state)
     (void) state;
     for (uint64_t seed = 1; seed < 4; seed++) {
         struct mesh mesh;
-        struct mesh_meeting meeting;
+        struct mesh_intersection meeting;
         bumpy_make(128, seed, &mesh);
-        const struct mesh_question question = {.a = &mesh, .b = &mesh, .duration = 1};
+        const struct mesh_query question = {.a = &mesh, .b = &mesh, .duration = 1};
         assert_meeting_with_itself(&mesh, NULL);
-        assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+        assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
         if (meeting.count == 0) /* three edges a face, each of two */
             assert_int_equal(meeting.sharing_edge, 3 * mesh.face_count / 2);
-        mesh_meeting_free(&meeting);
+        mesh_intersection_free(&meeting);
         mesh_free(&mesh);
     }
 }
 
-/* Two faces, by coordinates: what mesh_near_of() says of them. */
+/* Two faces, by coordinates: what mesh_adjacency_of() says of them. */
 struct near_case {
     const char *name;
     double vertex[2][3][3];
-    enum mesh_nearness nearness;
+    enum mesh_relation nearness;
     enum fmb_verdict verdict; /* where they meet */
 };
 
@@ -420,11 +420,11 @@ static const struct near_case near_cases[] = {
      0},
     {"through a face from its vertex",
      {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 0}, {1, 1, 1}, {1, 1, -1}}},
-     MESH_SHARE_AND_MEET,
+     MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
     {"along an edge from a vertex",
      {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
-     MESH_SHARE_AND_MEET,
+     MESH_SHARE_AND_INTERSECT,
      FMB_TOUCHING},
     {"a hinge",
      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
@@ -436,15 +436,15 @@ static const struct near_case near_cases[] = {
      0},
     {"a hinge that is shut",
      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}},
-     MESH_SHARE_AND_MEET,
+     MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
     {"the same",
      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 0}, {1, 0, 0}}},
-     MESH_SHARE_AND_MEET,
+     MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
     {"no vertex in common",
      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}},
-     MESH_APART,
+     MESH_NOT_ADJACENT,
      0},
     {"a point and its face",
      {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
@@ -460,7 +460,7 @@ static const struct near_case near_cases[] = {
      0},
     {"a segment into a face, their vertex within it",
      {{{0, 0, 0}, {-1, -1, 0}, {1, 1, 0}}, {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}},
-     MESH_SHARE_AND_MEET,
+     MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
     {"segments that go on from what they share, to either side",
      {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}}},
@@ -468,7 +468,7 @@ static const struct near_case near_cases[] = {
      0},
     {"segments that go on from what they share, to one side",
      {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}},
-     MESH_SHARE_AND_MEET,
+     MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
     {"a segment as a face twice",
      {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}},
@@ -483,7 +483,7 @@ static void cases_of_two_faces(void **state)
         const struct near_case *c = &near_cases[n / 18];
         const int turn = (int) (n % 18), swapped = turn / 9;
         struct mesh mesh;
-        struct mesh_near near;
+        struct mesh_adjacency near;
         enum fmb_verdict verdict = 0;
         make_mesh(6, 2, &mesh);
         for (unsigned k = 0; k < 6; k++) {
@@ -491,11 +491,12 @@ static void cases_of_two_faces(void **state)
             memcpy(mesh.vertex[k], c->vertex[k / 3][(k + by) % 3], sizeof mesh.vertex[k]);
             mesh.face[k / 3][k % 3] = k;
         }
-        mesh_near_open(&mesh, &near);
-        if (mesh_near_of(&near, (unsigned) swapped, (unsigned) !swapped, &verdict) != c->nearness ||
-            (c->nearness == MESH_SHARE_AND_MEET && verdict != c->verdict))
+        mesh_adjacency_open(&mesh, &near);
+        if (mesh_adjacency_of(&near, (unsigned) swapped, (unsigned) !swapped, &verdict) !=
+                c->nearness ||
+            (c->nearness == MESH_SHARE_AND_INTERSECT && verdict != c->verdict))
             fail_msg("%s, turn %d", c->name, turn);
-        mesh_near_close(&near);
+        mesh_adjacency_close(&near);
         mesh_free(&mesh);
     }
 }
@@ -530,11 +531,11 @@ static void place_article_body(const struct mesh *mesh, size_t face, const doubl
     memcpy(out->velocity, t.velocity, sizeof out->velocity);
 }
 
-static void assert_tetrahedra(const struct mesh_question *question)
+static void assert_tetrahedra(const struct mesh_query *question)
 {
-    struct mesh_meeting meeting;
+    struct mesh_intersection meeting;
     size_t at = 0;
-    assert_int_equal(mesh_meet(question, &meeting), FMB_OK);
+    assert_int_equal(mesh_intersect(question, &meeting), FMB_OK);
     for (size_t i = 0; i < question->a->face_count; i++)
         for (size_t j = 0; j < question->b->face_count; j++) {
             struct fmb_body body[2];
@@ -554,7 +555,7 @@ static void assert_tetrahedra(const struct mesh_question *question)
         }
     assert_int_equal(at, meeting.count);
     assert_counts(question, &meeting);
-    mesh_meeting_free(&meeting);
+    mesh_intersection_free(&meeting);
 }
 
 static void tetrahedra_are_those_of_the_article(void **state)
@@ -568,7 +569,7 @@ static void tetrahedra_are_those_of_the_article(void **state)
         const struct grid *grid = &grids[n % 4];
         for (int m = 0; m < 2; m++)
             draw_soup(&draw, grid, 3, draw_int(&draw, 3, 24), draw_int(&draw, 1, 24), &mesh[m]);
-        const struct mesh_question question = {
+        const struct mesh_query question = {
             .a = &mesh[0],
             .b = &mesh[1],
             .as = MESH_TETRAHEDRA,
@@ -585,7 +586,7 @@ static void tetrahedra_are_those_of_the_article(void **state)
 static enum fmb_status ask_of_size(double size, enum mesh_as as)
 {
     struct mesh mesh[2];
-    struct mesh_meeting meeting;
+    struct mesh_intersection meeting;
     for (int m = 0; m < 2; m++) {
         make_mesh(3, 1, &mesh[m]);
         for (unsigned corner = 0; corner < 3; corner++) {
@@ -593,11 +594,11 @@ static enum fmb_status ask_of_size(double size, enum mesh_as as)
             mesh[m].vertex[corner][corner] = size;
         }
     }
-    const struct mesh_question question = {.a = &mesh[0], .b = &mesh[1], .as = as, .duration = 1};
-    const enum fmb_status status = mesh_meet(&question, &meeting);
+    const struct mesh_query question = {.a = &mesh[0], .b = &mesh[1], .as = as, .duration = 1};
+    const enum fmb_status status = mesh_intersect(&question, &meeting);
     if (status == FMB_OK) {
         assert_int_equal(meeting.overlapping, 1);
-        mesh_meeting_free(&meeting);
+        mesh_intersection_free(&meeting);
     }
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
@@ -635,15 +636,15 @@ static void progress_goes_on_to_its_end(void **state)
     struct draw draw;
     struct mesh mesh[2];
     struct heard heard = {0};
-    struct mesh_meeting meeting;
+    struct mesh_intersection meeting;
     draw_begin(&draw, "progress_goes_on_to_its_end");
     for (int m = 0; m < 2; m++)
         draw_soup(&draw, &grids[0], 3, 100, 200, &mesh[m]);
-    const struct mesh_question question = {
-        .a = &mesh[0], .b = &mesh[1], .duration = 1, .told = hear, .context = &heard};
-    assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+    const struct mesh_query question = {
+        .a = &mesh[0], .b = &mesh[1], .duration = 1, .report = hear, .context = &heard};
+    assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
     assert_true(heard.times > 10 && heard.done > 0);
-    mesh_meeting_free(&meeting);
+    mesh_intersection_free(&meeting);
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
 }
@@ -655,12 +656,12 @@ static void empty_meshes_meet_nothing(void **state)
     bumpy_make(8, 1, &mesh[1]);
     make_mesh(5, 0, &mesh[2]); /* vertices alone */
     for (int k = 0; k < 9; k++) {
-        const struct mesh_question question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
-        struct mesh_meeting meeting;
-        assert_int_equal(mesh_meet(&question, &meeting), FMB_OK);
+        const struct mesh_query question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
+        struct mesh_intersection meeting;
+        assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
         assert_int_equal(meeting.count, 0);
         assert_int_equal(meeting.sharing_edge, k == 4 ? 12 : 0);
-        mesh_meeting_free(&meeting);
+        mesh_intersection_free(&meeting);
     }
     for (int m = 0; m < 3; m++)
         mesh_free(&mesh[m]);

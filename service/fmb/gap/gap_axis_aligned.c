@@ -1,12 +1,12 @@
-/* The gap of two cuboids along the axes that do not drift, as far as it takes no root.
+/* The gap of two axis-aligned cuboids that do not drift, if it requires no square root.
  *
- * Method. Frames are the boxes of their ends. Along an axis, on either side, they are apart by the
- * difference of an end of each, a negative one where they overlap; P is a box with these distances,
- * so that the greatest is minus the depth. Where one of them alone is positive it is the distance,
- * and the witness points differ on this axis alone.
+ * Method. The frames are boxes, given by their ends. On each side of each axis their distance is
+ * the difference of an end of each, negative if they overlap there. P is a box with these
+ * distances, so that the greatest of them is minus the depth. If exactly one of them is positive,
+ * it is the distance of the frames, and the witness points differ on this axis only.
  *
- * Accuracy. Ends do not round; where one would, or a frame has an error, the pair is left to the
- * other steps. A difference is rounded outward where it rounds. */
+ * Accuracy. Ends do not round: if one would, or a frame has an error, the pair is left to the other
+ * steps. A difference is rounded outward if it rounds. */
 #include "gap.h"
 
 #include "range.h"
@@ -34,7 +34,7 @@ static bool set_ends(const struct gap_pair *pair, int f, double ends[2][FMB_DIM_
     return true;
 }
 
-enum gap_outcome gap_upright(const struct gap_pair *pair, struct fmb_gap *out)
+enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, struct fmb_gap *out)
 {
     double ends[2][2][FMB_DIM_MAX]; /* [frame] */
     struct range best = {-INFINITY, -INFINITY};

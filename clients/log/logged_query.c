@@ -1,10 +1,10 @@
-#include "any_query.h"
+#include "logged_query.h"
 
 #include "wire.h"
 
 #include <string.h>
 
-static const char *read_header(struct any_query *out, const unsigned char *bytes, uint32_t size)
+static const char *read_header(struct logged_query *out, const unsigned char *bytes, uint32_t size)
 {
     if (out->kind == LOG_PAIR_QUERY) {
         memset(&out->pair, 0, sizeof out->pair);
@@ -14,8 +14,8 @@ static const char *read_header(struct any_query *out, const unsigned char *bytes
     return wire_read_scene_header(bytes, size, &out->scene.header);
 }
 
-const char *any_query_read(struct any_query *out, enum log_kind kind, const unsigned char *bytes,
-                           uint32_t size)
+const char *logged_query_read(struct logged_query *out, enum log_kind kind,
+                              const unsigned char *bytes, uint32_t size)
 {
     out->kind = kind;
     if (size > QUERY_BYTES_MAX)
@@ -29,7 +29,7 @@ static int32_t least(int32_t a, int32_t b)
     return a < b ? a : b;
 }
 
-struct placement *any_query_placements(struct any_query *query, int32_t *count)
+struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
     *count = query->kind == LOG_PAIR_QUERY
                  ? 2
@@ -47,7 +47,7 @@ static bool placements_are_whole(const struct placement *placement, int32_t coun
     return true;
 }
 
-static bool is_whole(const struct any_query *query)
+static bool is_whole(const struct logged_query *query)
 {
     const struct scene_query *scene = &query->scene;
     if (query->kind == LOG_PAIR_QUERY)
@@ -58,7 +58,7 @@ static bool is_whole(const struct any_query *query)
            placements_are_whole(scene->placement, scene->placement_count);
 }
 
-static size_t bytes_of(const struct any_query *query)
+static size_t bytes_of(const struct logged_query *query)
 {
     const bool pair = query->kind == LOG_PAIR_QUERY;
     const struct placement *placement = pair ? query->pair.placement : query->scene.placement;
@@ -72,7 +72,7 @@ static size_t bytes_of(const struct any_query *query)
     return bytes;
 }
 
-size_t any_query_write(const struct any_query *query, unsigned char out[QUERY_BYTES_MAX])
+size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX])
 {
     if (!is_whole(query) || bytes_of(query) > QUERY_BYTES_MAX)
         return 0;
@@ -80,14 +80,14 @@ size_t any_query_write(const struct any_query *query, unsigned char out[QUERY_BY
                                          : wire_write_scene_query(&query->scene, out);
 }
 
-/* Of the placements that the struct holds. */
+/* The number of placements in the struct. */
 static int64_t placement_count(const struct scene_query *query)
 {
     return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
                                                          : QUERY_PLACEMENTS_MAX;
 }
 
-int64_t any_query_pairs(const struct scene_query *query)
+int64_t logged_query_pairs(const struct scene_query *query)
 {
     const int64_t n = placement_count(query);
     if (query->which == QUERY_PAIRS_LISTED)
@@ -95,7 +95,7 @@ int64_t any_query_pairs(const struct scene_query *query)
     return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
 }
 
-int64_t any_query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
+int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
 {
     const int64_t n = placement_count(query), first = a, second = b;
     if (query->which == QUERY_PAIRS_ACROSS)

@@ -1,12 +1,12 @@
-/* The mouse on the stage, and the buttons around it. The page says what they lead to: fitAll(),
- * fitPair(), redrawStage(), and point() of a place on the stage, or of none. */
+/* Input on the stage: mouse, keyboard, and the buttons around it. Each page defines fitAll(),
+ * fitPair(), redrawStage() and point(), which gets a position on the stage or null. */
 
 function stagePoint(mouse) {
     const box = find("stage").getBoundingClientRect();
     return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
 }
 
-/* A text beside the pointer; at is null: none. */
+/* Shows a text next to the pointer; at: null hides it. */
 function showTip(at, text) {
     const tip = find("pointed");
     tip.hidden = at === null;
@@ -80,8 +80,8 @@ function startStage() {
     new ResizeObserver(redrawStage).observe(canvas);
 }
 
-/* keys: functions by the name of the key. Fields keep their keys, buttons their space, and so does
- * the page where the window cannot be played. */
+/* keys: functions by the name of the key. Input fields keep all keys. Buttons keep the space key,
+ * and so does the page if the window cannot be played. */
 function listenToKeys(keys) {
     document.addEventListener("keydown", (key) => {
         const own = key.target.closest("input, select, textarea")

@@ -1,0 +1,36 @@
+/* A query of a log: of a pair or of a scene. Functions have no shared state. */
+#ifndef LOGGED_QUERY_H
+#define LOGGED_QUERY_H
+
+#include "log_kind.h"
+#include "query.h"
+
+struct logged_query {
+    enum log_kind kind; /* LOG_PAIR_QUERY or LOG_SCENE_QUERY */
+    union {
+        struct pair_query pair;
+        struct scene_query scene;
+    };
+};
+
+/* Decodes a query as wire_read_pair_query() or wire_read_scene_query(). Only the header of a query
+ * longer than QUERY_BYTES_MAX is read, as a service refuses it unread; other fields are 0. Returns
+ * NULL; or a static text: why it cannot be decoded. */
+const char *logged_query_read(struct logged_query *out, enum log_kind kind,
+                              const unsigned char *bytes, uint32_t size);
+
+/* The placements in the struct; *count of them. */
+struct placement *logged_query_placements(struct logged_query *query, int32_t *count);
+
+/* The number of pairs of a scene query, ignored ones included. */
+int64_t logged_query_pairs(const struct scene_query *query);
+
+/* The number of the pair (a, b) of placements, in lexicographic order, from 0. In: a PAIRS_ALL or
+ * PAIRS_ACROSS query, and one of its pairs. */
+int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
+
+/* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
+ * does not hold all of it. */
+size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX]);
+
+#endif

@@ -1,0 +1,314 @@
+#include "mesh_intersect.h"
+
+#include "allocate.h"
+#include "clock.h"
+#include "mesh_face.h"
+#include "mesh_adjacency.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Candidates decided at a time. Chosen so that their frames stay in the second-level cache. */
+enum { BLOCK = 512, FRAMES = 2 * BLOCK, SLOTS = 4 * BLOCK };
+
+struct mesh_search {
+    const struct mesh_query *query;
+    struct mesh_intersection *intersection;
+    struct fmb_tree tree[2];         /* of one mesh only the first */
+    struct mesh_adjacency adjacency; /* of one mesh with itself only */
+    enum fmb_status status;
+
+    /* The block: candidates and their frames. */
+    unsigned face[BLOCK][2], pair[BLOCK][2]; /* indices of faces, and of frames */
+    size_t count, frame_count;
+    struct mesh_placed_face *placed; /* [FRAMES] */
+    struct fmb_prepared *frame;      /* [FRAMES], prepared from placed */
+    struct slot { /* hash table: the frame of a face; valid if the slot's block is the current one
+                   */
+        unsigned face, frame, block;
+        int mesh;
+    } slot[SLOTS];
+    unsigned block;
+    unsigned char verdict[BLOCK];
+    double contact[BLOCK][2];
+};
+
+static bool is_self(const struct mesh_query *query)
+{
+    return query->a == query->b;
+}
+
+static const struct mesh *mesh_of(const struct mesh_query *query, int which)
+{
+    return which ? query->b : query->a;
+}
+
+/* ---- Trees ---- */
+
+/* The AABB of the vertices, which is exact. */
+static void face_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const struct mesh *mesh = context;
+    const unsigned *corner = mesh->face[index];
+    const double *u = mesh->vertex[corner[0]], *v = mesh->vertex[corner[1]];
+    const double *w = mesh->vertex[corner[2]];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double low = u[axis] < v[axis] ? u[axis] : v[axis];
+        const double high = u[axis] < v[axis] ? v[axis] : u[axis];
+        box[0][axis] = w[axis] < low ? w[axis] : low;
+        box[1][axis] = w[axis] > high ? w[axis] : high;
+    }
+}
+
+static void tetrahedron_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    mesh_face_tetrahedron_box(context, index, box);
+}
+
+/* Returns the memory of the tree, which the caller frees. */
+static void *build_tree(const struct mesh_query *query, int which, struct fmb_tree *out)
+{
+    const struct mesh *mesh = mesh_of(query, which);
+    const struct fmb_boxes boxes = {3, query->as == MESH_FACES ? face_box : tetrahedron_box, mesh,
+                                    query->velocity[which]};
+    void *memory = allocate(1, fmb_tree_bytes(mesh->face_count));
+    fmb_tree_build_boxes(&boxes, mesh->face_count, query->duration, memory, out);
+    return memory;
+}
+
+/* ---- The block ---- */
+
+static void clear_block(struct mesh_search *search)
+{
+    search->count = search->frame_count = 0;
+    search->block++;
+}
+
+static struct slot *slot_of(struct mesh_search *search, int which, unsigned face)
+{
+    size_t at = (face * 2654435761u + (unsigned) which) % SLOTS;
+    struct slot *slot = &search->slot[at];
+    while (slot->block == search->block && (slot->face != face || slot->mesh != which)) {
+        at = (at + 1) % SLOTS;
+        slot = &search->slot[at];
+    }
+    return slot;
+}
+
+/* The index of the frame of a face in the block; adds the frame if it is missing. */
+static unsigned frame_of(struct mesh_search *search, int which, unsigned face)
+{
+    const struct mesh_query *query = search->query;
+    struct slot *slot = slot_of(search, is_self(query) ? 0 : which, face);
+    if (slot->block == search->block)
+        return slot->frame;
+    struct mesh_placed_face *placed = &search->placed[search->frame_count];
+    struct fmb_prepared *out = &search->frame[search->frame_count];
+    memset(out, 0, sizeof *out); /* fmb_decide_batch() refuses a frame of zeros */
+    if (mesh_face_place(mesh_of(query, which), query->as, face, query->velocity[which], placed))
+        fmb_prepare(&placed->placement, 0, 1, out);
+    *slot = (struct slot){face, (unsigned) search->frame_count, search->block,
+                          is_self(query) ? 0 : which};
+    return (unsigned) search->frame_count++;
+}
+
+static void add_pair(struct mesh_search *search, const unsigned face[2], enum fmb_verdict verdict,
+                     const double contact[2])
+{
+    struct mesh_intersection *intersection = search->intersection;
+    if (verdict == FMB_SEPARATED)
+        return;
+    intersection->pair = allocate_room(intersection->pair, &intersection->capacity,
+                                       intersection->count + 1, sizeof *intersection->pair);
+    intersection->pair[intersection->count++] =
+        (struct mesh_pair){face[0], face[1], verdict, {contact[0], contact[1]}};
+}
+
+/* Decides one pair by the method of the query. */
+static void decide_pair(struct mesh_search *search, const unsigned face[2])
+{
+    const struct mesh_query *query = search->query;
+    struct mesh_placed_face a, b;
+    struct fmb_answer answer;
+    const bool frames = mesh_face_place(query->a, query->as, face[0], query->velocity[0], &a) &&
+                        mesh_face_place(query->b, query->as, face[1], query->velocity[1], &b);
+    const enum fmb_status status =
+        frames ? fmb_decide(query->method, &a.placement, &b.placement, query->duration, 0, &answer)
+               : FMB_NOT_FINITE;
+    if (status == FMB_OK)
+        add_pair(search, face, answer.verdict, answer.contact);
+    else
+        search->status = status;
+}
+
+static void decide_pairs(struct mesh_search *search)
+{
+    for (size_t i = 0; i < search->count; i++)
+        decide_pair(search, search->face[i]);
+}
+
+static void decide_block(struct mesh_search *search)
+{
+    static const double none[2] = {0, 0};
+    const bool moving = search->intersection->moving;
+    for (size_t i = 0; i < search->count; i++)
+        for (int which = 0; which < 2; which++)
+            search->pair[i][which] = frame_of(search, which, search->face[i][which]);
+    const struct fmb_batch batch = {.frames = search->frame,
+                                    .frame_count = search->frame_count,
+                                    .pairs = (const unsigned(*)[2]) search->pair,
+                                    .pair_count = search->count,
+                                    .duration = search->query->duration,
+                                    .verdicts = search->verdict,
+                                    .contacts = moving ? search->contact : NULL};
+    const enum fmb_status status = fmb_decide_batch(&batch);
+    if (status != FMB_OK)
+        search->status = status;
+    for (size_t i = 0; i < search->count && status == FMB_OK; i++)
+        add_pair(search, search->face[i], (enum fmb_verdict) search->verdict[i],
+                 moving ? search->contact[i] : none);
+}
+
+/* Of one mesh: removes the adjacent pairs from the block and counts them. */
+static void remove_adjacent(struct mesh_search *search)
+{
+    static const double none[2] = {0, 0};
+    struct mesh_intersection *intersection = search->intersection;
+    size_t kept = 0;
+    for (size_t i = 0; i < search->count; i++) {
+        const unsigned face[2] = {search->face[i][0], search->face[i][1]};
+        enum fmb_verdict verdict = FMB_SEPARATED;
+        switch (mesh_adjacency_of(&search->adjacency, face[0], face[1], &verdict)) {
+        case MESH_SHARE_EDGE: intersection->sharing_edge++; break;
+        case MESH_SHARE_VERTEX: intersection->sharing_vertex++; break;
+        case MESH_SHARE_AND_INTERSECT:
+            intersection->candidates++;
+            add_pair(search, face, verdict, none);
+            break;
+        case MESH_NOT_ADJACENT: memmove(search->face[kept++], face, sizeof face); break;
+        }
+    }
+    search->count = kept;
+}
+
+static void decide_candidates(struct mesh_search *search)
+{
+    if (is_self(search->query))
+        remove_adjacent(search);
+    search->intersection->candidates += search->count;
+    if (search->query->method)
+        decide_pairs(search);
+    else if (search->count > 0)
+        decide_block(search);
+}
+
+/* Converts a number of nodes of the first tree to about as many faces. */
+static void report_progress(const struct mesh_search *search, uint64_t nodes)
+{
+    const struct mesh_query *query = search->query;
+    const uint64_t faces = query->a->face_count;
+    query->report(query->context, faces * nodes / search->tree[0].node_count, faces);
+}
+
+static void decide_all(struct mesh_search *search)
+{
+    const struct mesh_query *query = search->query;
+    struct fmb_tree_place place = {0};
+    for (clear_block(search);
+         search->status == FMB_OK &&
+         fmb_tree_pairs(&search->tree[0], &search->tree[!is_self(query)], &place, search->face,
+                        BLOCK, &search->count) == FMB_OK &&
+         search->count > 0;
+         clear_block(search)) {
+        decide_candidates(search);
+        if (query->report)
+            report_progress(search, place.leaf);
+    }
+}
+
+/* ---- Results ---- */
+
+static int compare(const void *x, const void *y)
+{
+    const struct mesh_pair *p = x, *q = y;
+    if (p->a != q->a)
+        return p->a < q->a ? -1 : 1;
+    return (p->b > q->b) - (p->b < q->b);
+}
+
+static void mark(unsigned char *worst, enum fmb_verdict verdict)
+{
+    if (*worst < verdict)
+        *worst = (unsigned char) verdict;
+}
+
+static size_t count_marked(const unsigned char *worst, size_t count)
+{
+    size_t sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += worst[i] > 0;
+    return sum;
+}
+
+static void mark_faces(const struct mesh_query *query, struct mesh_intersection *intersection)
+{
+    intersection->worst[0] = allocate(query->a->face_count, 1);
+    intersection->worst[1] =
+        is_self(query) ? intersection->worst[0] : allocate(query->b->face_count, 1);
+    for (size_t i = 0; i < intersection->count; i++) {
+        const struct mesh_pair *pair = &intersection->pair[i];
+        mark(&intersection->worst[0][pair->a], pair->verdict);
+        mark(&intersection->worst[1][pair->b], pair->verdict);
+        intersection->overlapping += pair->verdict == FMB_OVERLAPPING;
+        intersection->touching += pair->verdict == FMB_TOUCHING;
+    }
+    for (int which = 0; which < 2; which++)
+        intersection->faces[which] =
+            count_marked(intersection->worst[which], mesh_of(query, which)->face_count);
+}
+
+enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_intersection *out)
+{
+    struct mesh_search *search = allocate(1, sizeof *search);
+    void *memory[2] = {NULL, NULL};
+    const bool self = is_self(query);
+    memset(out, 0, sizeof *out);
+    out->moving = query->velocity[0] || query->velocity[1];
+    search->query = query;
+    search->intersection = out;
+    search->placed = allocate(FRAMES, sizeof *search->placed);
+    search->frame = allocate(FRAMES, sizeof *search->frame);
+    if (self)
+        mesh_adjacency_open(query->a, &search->adjacency);
+    const int64_t begin = clock_ns();
+    for (int which = 0; which < 2 - self; which++)
+        memory[which] = build_tree(query, which, &search->tree[which]);
+    out->build_ns = clock_ns() - begin;
+    decide_all(search);
+    out->query_ns = clock_ns() - begin - out->build_ns;
+    const enum fmb_status status = search->status;
+    for (int which = 0; which < 2; which++)
+        free(memory[which]);
+    if (self)
+        mesh_adjacency_close(&search->adjacency);
+    free(search->frame);
+    free(search->placed);
+    free(search);
+    if (status != FMB_OK) {
+        mesh_intersection_free(out);
+        return status;
+    }
+    if (out->count > 0)
+        qsort(out->pair, out->count, sizeof *out->pair, compare);
+    mark_faces(query, out);
+    return FMB_OK;
+}
+
+void mesh_intersection_free(struct mesh_intersection *intersection)
+{
+    free(intersection->pair);
+    if (intersection->worst[1] != intersection->worst[0])
+        free(intersection->worst[1]);
+    free(intersection->worst[0]);
+    memset(intersection, 0, sizeof *intersection);
+}

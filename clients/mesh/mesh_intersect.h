@@ -1,0 +1,58 @@
+/* Intersects the faces of two meshes, or of one mesh with itself. Bounding volume trees (fmb.h)
+ * yield the candidate pairs, and each candidate is decided. */
+#ifndef MESH_INTERSECT_H
+#define MESH_INTERSECT_H
+
+#include "fmb.h"
+#include "mesh.h"
+
+/* How a face is represented as a body. */
+enum mesh_as {
+    /* The triangle of its vertices, exactly: no edge is rounded. */
+    MESH_FACES,
+    /* The article's tetrahedron with its origin in the first vertex: the edges c0 and c1 to the
+     * other two, rounded, and c2 = c1 x c0 divided by its length, or 0 if that length is 0. */
+    MESH_TETRAHEDRA
+};
+
+struct mesh_query {
+    const struct mesh *a, *b; /* equal pointers: one mesh with itself, as FACES */
+    enum mesh_as as;
+    const double *velocity[2];       /* [3] of a and of b, finite; NULL: at rest */
+    double duration;                 /* of the window, seconds; finite, from 0 */
+    const struct fmb_method *method; /* NULL: certified, in batches */
+    /* Progress, as an approximate number of faces of a. May be NULL. */
+    void (*report)(void *context, uint64_t done, uint64_t total);
+    void *context;
+};
+
+struct mesh_pair {
+    unsigned a, b; /* indices of faces; of one mesh a < b */
+    enum fmb_verdict verdict;
+    double contact[2]; /* seconds; set if a mesh has a velocity */
+};
+
+struct mesh_intersection {
+    struct mesh_pair *pair; /* owned; sorted by a, then by b */
+    size_t count, capacity;
+    size_t overlapping, touching; /* of the pairs, by verdict */
+    size_t faces[2]; /* faces of a and of b in at least one pair; of one mesh both the same */
+    /* Owned; [face] of a and of b: the worst verdict of its pairs (OVERLAPPING before TOUCHING), or
+     * 0 without a pair. Of one mesh both are the same array. */
+    unsigned char *worst[2];
+    uint64_t candidates; /* candidate pairs decided */
+    /* Of one mesh: adjacent pairs that share an edge, or a vertex, and no other point. No other
+     * count includes them. */
+    uint64_t sharing_edge, sharing_vertex;
+    bool moving;
+    int64_t build_ns, query_ns; /* time to build the trees, and the remaining time */
+};
+
+/* In: meshes on which mesh_transform() succeeded. Returns FMB_OK and an intersection, which the
+ * caller frees with mesh_intersection_free(). On error nothing needs to be freed: FMB_NOT_FINITE if
+ * the normal of a face overflows (TETRAHEDRA); FMB_CANNOT_DECIDE if the method cannot decide a
+ * pair. Exits with status 1 if memory is exhausted. No shared state. */
+enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_intersection *out);
+void mesh_intersection_free(struct mesh_intersection *intersection);
+
+#endif

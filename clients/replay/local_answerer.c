@@ -1,0 +1,201 @@
+#include "local_answerer.h"
+
+#include "allocate.h"
+#include "answer.h"
+#include "clock.h"
+#include "random_id.h"
+#include "scene_of_query.h"
+#include "wire.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Any constant. */
+enum { SERVER_ID = 1 };
+
+struct local_answerer {
+    struct answerer *answerer;
+    struct scene_job *job;
+    struct pair_job *pair_job;
+    struct definitions *definitions;
+    struct logged_query query; /* a pair query, or one that is too long */
+    struct pair_result pair;
+    struct scene_result refused;
+    unsigned char bytes[QUERY_BYTES_MAX];
+};
+
+struct local_answerer *local_answerer_open(size_t frames, struct definitions *definitions)
+{
+    struct local_answerer *local = allocate(1, sizeof *local);
+    const struct answerer_options options = {
+        .frames = frames,
+        .server_id = SERVER_ID,
+        .secret = {(uint64_t) random_id(), (uint64_t) random_id()}};
+    local->definitions = definitions;
+    local->answerer = answerer_create(&options);
+    local->job = scene_job_create();
+    local->pair_job = pair_job_create();
+    if (!local->answerer || !local->job || !local->pair_job)
+        allocate_failed();
+    return local;
+}
+
+void local_answerer_close(struct local_answerer *local)
+{
+    if (!local)
+        return;
+    scene_job_destroy(local->job);
+    pair_job_destroy(local->pair_job);
+    answerer_destroy(local->answerer);
+    free(local);
+}
+
+/* ---- Definitions ---- */
+
+/* Whether the cache holds the body, which then becomes the most recently used one. */
+static bool is_held(struct cache *cache, const struct handle *handle)
+{
+    const struct cached *cached = cache_find(cache, handle);
+    if (cached)
+        cache_release(cache, cached);
+    return cached != NULL;
+}
+
+/* Adds the bodies of handles to the cache, except those that a service refuses. Bodies already held
+ * are touched first, so that the others do not evict them. */
+static void supply(struct local_answerer *local, const struct placement *placement, int32_t count)
+{
+    struct cache *cache = answerer_cache(local->answerer);
+    struct handle handle;
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]))
+            is_held(cache, &placement[i].handle);
+    for (int32_t i = 0; i < count; i++) {
+        if (!placement_by_handle(&placement[i]) || is_held(cache, &placement[i].handle))
+            continue;
+        const struct geometry *geometry =
+            definitions_find(local->definitions, &placement[i].handle);
+        const struct cached *kept =
+            geometry && scene_takes(geometry) ? cache_intern(cache, 0, geometry, &handle) : NULL;
+        if (kept)
+            cache_release(cache, kept);
+    }
+}
+
+/* After UNKNOWN_BODY: supplies the bodies, and returns whether to answer again. If a handle is not
+ * defined: false and out->undefined. */
+static bool supply_undefined(struct local_answerer *local, struct new_result *out)
+{
+    const int32_t missing =
+        definitions_missing(local->definitions, out->placement, out->placement_count);
+    if (missing >= 0)
+        out->undefined = out->placement[missing].handle;
+    else
+        supply(local, out->placement, out->placement_count);
+    return missing < 0;
+}
+
+/* ---- Pairs ---- */
+
+/* Decides a pair; a job does so if the bodies have several frames. */
+static const struct pair_result *decide_pair(struct local_answerer *local,
+                                             const unsigned char *bytes, uint32_t size,
+                                             struct new_result *out)
+{
+    const int64_t begin = clock_ns();
+    struct pair_result *result = &local->pair;
+    if (!answer_pair(local->answerer, &local->query.pair, result)) {
+        pair_job_begin(local->pair_job, local->answerer, bytes, size);
+        while (!pair_job_step(local->pair_job))
+            continue;
+        result = pair_job_end(local->pair_job, local->answerer);
+    }
+    result->compute_ns = out->compute_ns = clock_ns() - begin;
+    out->status = result->status;
+    out->pairs = out->status == FMB_OK;
+    return result;
+}
+
+static const char *answer_one_pair(struct local_answerer *local, const unsigned char *bytes,
+                                   uint32_t size, struct new_result *out)
+{
+    const char *error = logged_query_read(&local->query, LOG_PAIR_QUERY, bytes, size);
+    if (error)
+        return error;
+    out->placement = local->query.pair.placement;
+    out->placement_count = 2;
+    const struct pair_result *result = decide_pair(local, bytes, size, out);
+    if (out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
+        result = decide_pair(local, bytes, size, out);
+    out->size = wire_write_pair_result(result, local->bytes);
+    return NULL;
+}
+
+/* ---- Scenes ---- */
+
+static const char *decide_scene(struct local_answerer *local, const unsigned char *bytes,
+                                uint32_t size, struct new_result *out)
+{
+    const int64_t begin = clock_ns();
+    const char *error = scene_job_begin(local->job, bytes, size);
+    while (!error && !scene_job_step(local->job, local->answerer))
+        continue;
+    if (error)
+        return error;
+    const struct scene_query *query = scene_job_query(local->job);
+    struct scene_result *result = scene_job_result(local->job);
+    result->compute_ns = out->compute_ns = clock_ns() - begin;
+    out->status = result->status;
+    out->pairs = out->status == FMB_OK ? result->end_pair - query->first_pair : 0;
+    out->placement = query->placement;
+    out->placement_count = query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                                         : QUERY_PLACEMENTS_MAX;
+    return NULL;
+}
+
+static const char *answer_one_scene(struct local_answerer *local, const unsigned char *bytes,
+                                    uint32_t size, struct new_result *out)
+{
+    const char *error = decide_scene(local, bytes, size, out);
+    if (error)
+        return error;
+    if (out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
+        decide_scene(local, bytes, size, out);
+    out->size = wire_write_scene_result(scene_job_result(local->job), local->bytes);
+    return NULL;
+}
+
+/* ---- Either ---- */
+
+/* Answers a query that is too long as a service does, which reads only its header. */
+static const char *refuse(struct local_answerer *local, enum log_kind kind,
+                          const unsigned char *bytes, uint32_t size, struct new_result *out)
+{
+    const char *error = logged_query_read(&local->query, kind, bytes, size);
+    if (error)
+        return error;
+    out->status = FMB_OVER_LIMIT;
+    if (kind == LOG_PAIR_QUERY) {
+        answer_pair_refused(local->answerer, &local->query.pair, FMB_OVER_LIMIT, &local->pair);
+        out->size = wire_write_pair_result(&local->pair, local->bytes);
+        return NULL;
+    }
+    answer_scene_refused(local->answerer, &local->query.scene.header, FMB_OVER_LIMIT,
+                         &local->refused);
+    out->size = wire_write_scene_result(&local->refused, local->bytes);
+    return NULL;
+}
+
+const char *local_answer(struct local_answerer *local, enum log_kind kind,
+                         const unsigned char *bytes, uint32_t size, struct new_result *out)
+{
+    struct cache *cache = answerer_cache(local->answerer);
+    const int64_t misses = cache_counts(cache).misses;
+    *out = (struct new_result){.bytes = local->bytes};
+    if (size > QUERY_BYTES_MAX)
+        return refuse(local, kind, bytes, size, out);
+    const char *error = kind == LOG_PAIR_QUERY ? answer_one_pair(local, bytes, size, out)
+                                               : answer_one_scene(local, bytes, size, out);
+    out->all_held = out->status == FMB_OK && cache_counts(cache).misses == misses;
+    return error;
+}

@@ -1,0 +1,201 @@
+#include "scheduler.h"
+
+#include <stdlib.h>
+
+enum { ENTRIES = SCHEDULER_CLIENTS + 1, SHARED = SCHEDULER_CLIENTS, BUCKET_BITS = 11 };
+
+struct scheduled_client {
+    int64_t id;
+    int64_t used_ns;  /* virtual time */
+    int64_t idle;     /* value of scheduler.moments when it became idle */
+    int32_t position; /* in scheduler.active; -1: idle */
+    int32_t next;     /* next client in the bucket; -1: none */
+};
+
+struct scheduler {
+    struct scheduled_client client[ENTRIES];
+    int32_t active[ENTRIES]; /* in no order */
+    int32_t active_count;
+    int32_t count;                    /* of clients, without the shared one */
+    int64_t now_ns;                   /* the system's virtual time */
+    int64_t moments;                  /* counts the times that a client became idle */
+    int32_t bucket[1 << BUCKET_BITS]; /* [hash of the id] first client; -1: none */
+    uint64_t multiplier;
+};
+
+struct scheduler *scheduler_create(uint64_t random)
+{
+    struct scheduler *scheduler = calloc(1, sizeof *scheduler);
+    if (!scheduler)
+        return NULL;
+    scheduler->multiplier = random | 1;
+    for (int i = 0; i < 1 << BUCKET_BITS; i++)
+        scheduler->bucket[i] = -1;
+    scheduler->client[SHARED] =
+        (struct scheduled_client){.used_ns = SCHEDULER_ENTRY_NS, .position = -1, .next = -1};
+    return scheduler;
+}
+
+void scheduler_destroy(struct scheduler *scheduler)
+{
+    free(scheduler);
+}
+
+/* ---- Clients by id ---- */
+
+/* Multiply-shift hashing: the highest bits of the product of the id and a random odd number. Two
+ * ids that were chosen without knowing that number share a bucket with probability at most 2 /
+ * buckets (Dietzfelbinger, Hagerup, Katajainen, Penttonen: A reliable randomized algorithm for the
+ * closest-pair problem, 1997). */
+static int32_t *bucket_of(struct scheduler *scheduler, int64_t id)
+{
+    return &scheduler->bucket[(uint64_t) id * scheduler->multiplier >> (64 - BUCKET_BITS)];
+}
+
+static void unlink_id(struct scheduler *scheduler, int32_t c)
+{
+    int32_t *link = bucket_of(scheduler, scheduler->client[c].id);
+    while (*link != c)
+        link = &scheduler->client[*link].next;
+    *link = scheduler->client[c].next;
+}
+
+/* The client without debt that has been idle longest; SHARED: there is none. */
+static int32_t find_replaceable(const struct scheduler *scheduler)
+{
+    int32_t found = SHARED;
+    int64_t idle = INT64_MAX;
+    for (int32_t c = 0; c < SCHEDULER_CLIENTS; c++) {
+        const struct scheduled_client *client = &scheduler->client[c];
+        if (client->position < 0 && client->used_ns <= scheduler->now_ns && client->idle < idle) {
+            found = c;
+            idle = client->idle;
+        }
+    }
+    return found;
+}
+
+static int32_t add(struct scheduler *scheduler, int64_t id)
+{
+    int32_t c = scheduler->count;
+    if (c < SCHEDULER_CLIENTS) {
+        scheduler->count++;
+    } else {
+        c = find_replaceable(scheduler);
+        if (c == SHARED)
+            return c;
+        unlink_id(scheduler, c);
+    }
+    int32_t *bucket = bucket_of(scheduler, id);
+    scheduler->client[c] =
+        (struct scheduled_client){.id = id,
+                                  .used_ns = scheduler->now_ns + SCHEDULER_ENTRY_NS,
+                                  .idle = scheduler->moments,
+                                  .position = -1,
+                                  .next = *bucket};
+    *bucket = c;
+    return c;
+}
+
+int scheduler_client(struct scheduler *scheduler, int64_t id)
+{
+    int32_t c = *bucket_of(scheduler, id);
+    while (c >= 0 && scheduler->client[c].id != id)
+        c = scheduler->client[c].next;
+    return c >= 0 ? c : add(scheduler, id);
+}
+
+/* ---- Virtual time ---- */
+
+/* The virtual time at which an idle client would resume. */
+static int64_t resume_ns(const struct scheduler *scheduler, int client)
+{
+    const int64_t used_ns = scheduler->client[client].used_ns;
+    return used_ns > scheduler->now_ns ? used_ns : scheduler->now_ns;
+}
+
+void scheduler_activate(struct scheduler *scheduler, int client)
+{
+    struct scheduled_client *c = &scheduler->client[client];
+    if (c->position >= 0)
+        return;
+    c->used_ns = resume_ns(scheduler, client);
+    c->position = scheduler->active_count;
+    scheduler->active[scheduler->active_count++] = client;
+}
+
+void scheduler_deactivate(struct scheduler *scheduler, int client)
+{
+    struct scheduled_client *c = &scheduler->client[client];
+    if (c->position < 0)
+        return;
+    const int32_t last = scheduler->active[--scheduler->active_count];
+    scheduler->active[c->position] = last;
+    scheduler->client[last].position = c->position;
+    c->position = -1;
+    c->idle = ++scheduler->moments;
+}
+
+int scheduler_active(const struct scheduler *scheduler)
+{
+    return scheduler->active_count;
+}
+
+void scheduler_charge(struct scheduler *scheduler, int client, int64_t ns)
+{
+    scheduler->client[client].used_ns += ns;
+}
+
+/* The active client with the least virtual time, among those that the filter accepts (NULL: all),
+ * except one (-1: no exception). Returns -1 if there is none. */
+static int least_of(const struct scheduler *scheduler, scheduler_filter *may, const void *user,
+                    int except)
+{
+    int found = -1;
+    for (int32_t i = 0; i < scheduler->active_count; i++) {
+        const int32_t c = scheduler->active[i];
+        if (c != except && (!may || may(user, c)) &&
+            (found < 0 || scheduler->client[c].used_ns < scheduler->client[found].used_ns))
+            found = c;
+    }
+    return found;
+}
+
+int scheduler_least(const struct scheduler *scheduler)
+{
+    return least_of(scheduler, NULL, NULL, -1);
+}
+
+/* The virtual time of `other` minus that of `client`. INT64_MAX: other is -1. */
+static int64_t lead_over(const struct scheduler *scheduler, int client, int other)
+{
+    return other < 0 ? INT64_MAX
+                     : scheduler->client[other].used_ns - scheduler->client[client].used_ns;
+}
+
+int scheduler_next(const struct scheduler *scheduler, scheduler_filter *may, const void *user,
+                   int last, int64_t *lead_ns)
+{
+    const int other = least_of(scheduler, may, user, last);
+    if (last >= 0 && scheduler->client[last].position >= 0 && (!may || may(user, last))) {
+        *lead_ns = lead_over(scheduler, last, other);
+        if (*lead_ns > -SCHEDULER_SLICE_NS)
+            return last;
+    }
+    *lead_ns =
+        other < 0 ? INT64_MAX : lead_over(scheduler, other, least_of(scheduler, may, user, other));
+    return other;
+}
+
+void scheduler_advance(struct scheduler *scheduler)
+{
+    const int least = scheduler_least(scheduler);
+    if (least >= 0 && scheduler->client[least].used_ns > scheduler->now_ns)
+        scheduler->now_ns = scheduler->client[least].used_ns;
+}
+
+int64_t scheduler_lead(const struct scheduler *scheduler, int client)
+{
+    const int least = scheduler_least(scheduler);
+    return least < 0 ? INT64_MAX : scheduler->client[least].used_ns - resume_ns(scheduler, client);
+}
