@@ -1,8 +1,23 @@
-/* What run.c and alone.c have in common: prepared frames into lanes, and what a walk found into
- * outcomes and times; and the table of functions, one for each kind of pair, that each of them
- * makes. RUN_NAME names the table; RUN_EXACT: the second pass; RUN_TIMES: outcomes with the times
- * of contact; RUN_BOXES: boxes, of pairs at rest and moving ones. The bits of these three are
- * promised. */
+/* A kernel of the filter: what run.c (many pairs) and alone.c (a single pair) share.
+ *
+ *   In     prepared frames (prepared.h), read as arrays of doubles, and the duration of the window
+ *   Out    for each lane an outcome (enum slabs_outcome); times of contact or boxes where wanted
+ *
+ * Steps:
+ *   1. gather()         loads the words of LANES frames; words[w] holds word w of each
+ *   2. set_run_frame()  gives the words their names: origin, components, sizes, error
+ *   3. set_pair()       sets offset, drift and error of the pair (walk_pair.h)
+ *   4. walk_pair_of()   goes through the list of slabs (walk.h) and sums it up in struct walk_found
+ *   5. outcomes_of()    separated, touching, overlapping, or unsure; times_of(): seconds
+ *
+ * Macros that the build sets choose the job: none: verdicts, the first pass; RUN_EXACT: the second
+ * pass (run_exact.h); RUN_TIMES: verdicts and times; RUN_BOXES: boxes (run_box.h). The bits of the
+ * last three are promised. At the end of this file RUN_FUNCTIONS defines one function for each kind
+ * of pair (dimension, shapes, motion: run.h), with the kind as a constant, and RUN_TABLE lists them
+ * in the order of the kinds, in a table whose name ends in RUN_NAME.
+ *
+ * Proofs: the bounds of slabs in slabs.c, of times in walk_slab.h, of frames in prepared.h, of
+ * boxes in walk_box.h. */
 #ifndef FMB_RUN_LANES_H
 #define FMB_RUN_LANES_H
 

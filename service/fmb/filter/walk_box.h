@@ -1,5 +1,20 @@
 /* The box of the intersection of a pair in contact, at rest or moving, of LANES pairs at once.
  *
+ *   In     struct walk_pair; struct box_places: the numbers of the frames as prepared, the duration
+ *   Out    the box, world coordinates, [lower, upper][axis], and the lanes in which it is good:
+ *          surely containing the exact box, and each end within the limit of fmb.h
+ *
+ * Steps (walk_box()):
+ *   1. begin_box()       frames about the middle of the window, tolerance and slack
+ *   2. set_extents()     the vertices y = 0 and y = e_k: the extents of the frames
+ *   3. add_plane_rays()  in 2D, or add_space_rays() in 3D: vertices on the normals of the faces,
+ *                        each line in add_ray(), each vertex in add_wall() or add_drift_vertex()
+ *   4. add_crossings()   vertices of an edge of A, one of B, and the drift
+ *   5. a second pass of 2 to 4 where a vertex that is not certain was left out
+ *   6. outer and inner ends from the least bounds; cut_to_extent() cuts the box to both frames
+ *
+ * The method, and the proof of both ends, follow.
+ *
  * Method. With h_A(y) = max { y . a : a in A }, the support function, and the frames about the
  * middle of the window, displaced by -way to way, every y bounds coordinate k of the intersection:
  *

@@ -1,4 +1,18 @@
-/* The slabs of a pair in 3D. */
+/* The slabs of a pair in 3D: along the normals of faces, of two edges, and of an edge and the
+ * drift.
+ *
+ *   In     struct walk_pair: components, offset of the reference points, half the drift, error
+ *   Out    struct walk_found, to which add_slab() adds each slab (walk_slab.h)
+ *
+ * Steps (walk_space()):
+ *   1. set_side()      the face normals of a frame, and what is linear in them: their products with
+ *                      the edges of the other frame, the offset and the drift
+ *   2. add_faces()     slabs of the faces of each frame; then it may be enough for all lanes
+ *   3. set_products()  triple products of an edge of A, one of B, and the offset or the drift
+ *   4. add_edges()     slabs of an edge of A and one of B; products with components come from 1
+ *   5. add_drift()     where the pair drifts: slabs of an edge and the drift
+ *
+ * Proof: the top of slabs.c derives these formulas and the error bound of each kind of slab. */
 #ifndef FMB_WALK_SPACE_H
 #define FMB_WALK_SPACE_H
 
