@@ -122,7 +122,7 @@ bool compare_status_is_transient(int32_t status)
     return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
 }
 
-/* The outcome for two statuses, at least one of which is transient. */
+/* The outcome for two statuses if one or both are transient. */
 static enum replay_outcome transient_outcome(int32_t then, int32_t now)
 {
     if (then == FMB_UNKNOWN_BODY)

@@ -307,7 +307,8 @@ void contender_help(void)
         "doubles,\n"
         "verdict alone, of placed frames: the yardstick; placed: in the call. obb: oriented "
         "boxes,\n"
-        "likewise. seidel, gpr: methods that the article names, in doubles, of placed frames.\n");
+        "the same way. seidel, gpr: methods that the article names, in doubles, of placed "
+        "frames.\n");
 }
 
 /* ---- Races ---- */

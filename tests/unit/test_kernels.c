@@ -804,7 +804,7 @@ static bool ends_hold(const double ends[2], bool enter, const struct end *end, d
 }
 
 /* Slabs that are anything from perpendicular to nearly parallel to the drift, with ends near the
- * window: those of which errors are larger than the way count most. */
+ * window. Slabs whose errors are larger than the way matter most. */
 static void ends_of_the_time_are_covered(void **state)
 {
     (void) state;

@@ -219,7 +219,7 @@ function twice(then, now, differs) {
         make("b", { title: "now" }, now)];
 }
 
-/* The texts of two intervals, either of which may be missing. */
+/* The texts of two intervals. One or both may be missing. */
 function bothTexts(intervals) {
     return intervals[0] && intervals[1] ? intervalTexts(...intervals)
         : intervals.map((of) => of ? intervalText(...of) : "–");

@@ -40,7 +40,7 @@ function largestOf(frames, T, origin) {
     return largest;
 }
 
-/* 2^power as two factors, neither of which is infinite or 0. */
+/* 2^power as two factors that are finite and not 0. */
 function factors(power) {
     const half = Math.trunc(power / 2);
     return [2 ** half, 2 ** (power - half)];

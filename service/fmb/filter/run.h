@@ -87,9 +87,9 @@ static inline bool run_is_turned(const struct fmb_prepared *a, const struct fmb_
     return false;
 }
 
-/* The kind of a pair whose box is asked: RUN_DRIFTS says that a frame moves, even if both do so
- * together. The kernels of boxes are not symmetric: frames of one shape are put in order. On input:
- * frames that may be compared. */
+/* The kind of a pair for its box: RUN_DRIFTS says that a frame moves, even if both move alike. The
+ * kernels of boxes are not symmetric: frames of one shape are put in order. On input: frames that
+ * may be compared. */
 static inline enum run_kind run_box_kind(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                          double duration, bool *swapped)
 {
@@ -111,7 +111,9 @@ struct run {
     /* [count][first, last], of pairs in contact: seconds; NAN where they are not known well enough.
      */
     double (*contacts)[2];
-    double (*boxes)[2][FMB_DIM_MAX]; /* [count], likewise */
+    /* [count][lower, upper][axis], of pairs in contact; NAN where they are not known well enough.
+     */
+    double (*boxes)[2][FMB_DIM_MAX];
 };
 
 enum { RUN_LANES = 8 };

@@ -31,7 +31,7 @@
  *
  * If the normals of the walls at hand span the space, c has its least value in a vertex: a point in
  * which three walls with independent normals meet (in 2D two). Two walls of A meet in the line of a
- * normal of A, three in 0; likewise for B. So the vertices are
+ * normal of A, three in 0; the same holds for B. So the vertices are
  *
  *     y = 0 and y = e_k                      c is the end of the extent of B, of A
  *     y = l n, n a normal of A, on a wall of B: l = b[k] / (n . b), or on that of the drift

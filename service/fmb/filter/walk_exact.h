@@ -38,7 +38,7 @@
  * the true S. Where K is empty, L is the space, and the slabs that are not parallel to X leave more
  * than e: w is in the interior of the true S. Where it is not, w lies on its bound.
  *
- * TOUCHING asks for an S with an interior: two faces are not decided by it. */
+ * TOUCHING is only given where S has an interior: never for two faces. */
 #ifndef FMB_WALK_EXACT_H
 #define FMB_WALK_EXACT_H
 

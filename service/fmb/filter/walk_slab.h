@@ -110,9 +110,10 @@ INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes mid
  *
  *     not before (l - e + r) / w,      surely by (l + e - r) / w,
  *
- * as far as these are in [-1, 1]; with w < 0, and at the other bound, likewise. Let q = |l / w| and
- * t = e / |w|. Computed are l (1 / w) -+ e (1 / w), with u = 2^-53: either product is rounded
- * twice, so that they are off by 2.01 u (q + t), and their difference by another u of itself.
+ * as far as these are in [-1, 1]. The same holds with w < 0 and at the other bound. Let q = |l /
+ * w|, and t = e / |w|. Computed are l (1 / w) -+ e (1 / w), with u = 2^-53: either product is
+ * rounded twice, so that they are off by 2.01 u (q + t), and their difference by another u of
+ * itself.
  *
  *     q <= 2   An end in [-1, 1] has t <= 3. It is off by at most 2.01 u 5 + u < 12 u, and
  *              SLABS_TIMES_SLACK is 16 u.

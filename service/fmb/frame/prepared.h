@@ -28,9 +28,9 @@ enum {
     PREPARED_USABLE = 1 << 5, /* doubles can decide pairs with it */
     PREPARED_PLAIN = 1 << 6,  /* the error is 0, and the components have few bits */
     PREPARED_GOOD = 1 << 7,   /* it was prepared */
-    /* And the next two for y and z: the error does not reach these coordinates. */
+    /* The error does not reach the x coordinates. The next two bits: y and z. */
     PREPARED_EXACT_X = 1 << 8,
-    /* Likewise: the components are exact along x. */
+    /* The components are exact along x. The next two bits: along y and z. */
     PREPARED_TRUE_X = 1 << 11
 };
 

@@ -19,12 +19,6 @@ static inline struct range range_of(double x)
     return (struct range){x, x};
 }
 
-/* Of nothing: the hull of it and x is x. */
-static inline struct range range_none(void)
-{
-    return (struct range){INFINITY, -INFINITY};
-}
-
 static inline double range_least(double x, double y)
 {
     return x < y ? x : y;
@@ -33,11 +27,6 @@ static inline double range_least(double x, double y)
 static inline double range_greatest(double x, double y)
 {
     return x > y ? x : y;
-}
-
-static inline struct range range_hull(struct range x, struct range y)
-{
-    return (struct range){range_least(x.low, y.low), range_greatest(x.high, y.high)};
 }
 
 static inline double range_sum_error(double x, double y, double sum)
