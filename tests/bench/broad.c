@@ -27,7 +27,7 @@ struct broad {
 struct end {
     double low;
     unsigned index;
-    struct swept box, against;
+    struct aabb box, against;
 };
 
 static int compare_ends(const void *one, const void *other)
@@ -42,8 +42,8 @@ static void run_sweep(struct broad *broad)
     const size_t count = broad->scene->count;
     struct end *end = broad->end;
     for (size_t i = 0; i < count; i++) {
-        end[i].box = swept_of(&broad->scene->prepared[i], 1);
-        end[i].against = swept_against(&end[i].box);
+        end[i].box = aabb_of(&broad->scene->prepared[i], 1);
+        end[i].against = aabb_probe(&end[i].box);
         end[i].low = end[i].box.end[0][0];
         end[i].index = (unsigned) i;
     }
@@ -51,7 +51,7 @@ static void run_sweep(struct broad *broad)
     broad->candidates = 0;
     for (size_t i = 0; i < count; i++)
         for (size_t j = i + 1; j < count && end[j].low <= end[i].against.end[0][0]; j++)
-            if (swept_meet(&end[j].box, &end[i].against)) {
+            if (aabb_overlaps(&end[j].box, &end[i].against)) {
                 unsigned *pair = broad->pairs[broad->candidates++ % PAIRS_MAX];
                 pair[0] = end[i].index;
                 pair[1] = end[j].index;

@@ -80,12 +80,12 @@ INLINE double most(double x, double y)
     return x > y ? x : y;
 }
 
-struct range {
+struct interval {
     double low, high;
 };
 
-INLINE struct range extent(const int dim, const bool simplex, const double (*edge)[3],
-                           const double *normal)
+INLINE struct interval extent(const int dim, const bool simplex, const double (*edge)[3],
+                              const double *normal)
 {
     double at[3] = {0};
     UNROLL(3)
@@ -93,11 +93,12 @@ INLINE struct range extent(const int dim, const bool simplex, const double (*edg
         at[i] = dot(dim, normal, edge[i]);
     if (simplex) {
         const double low = least(at[0], at[1]), high = most(at[0], at[1]);
-        return dim == 2 ? (struct range){least(low, 0), most(high, 0)}
-                        : (struct range){least(low, least(at[2], 0)), most(high, most(at[2], 0))};
+        return dim == 2
+                   ? (struct interval){least(low, 0), most(high, 0)}
+                   : (struct interval){least(low, least(at[2], 0)), most(high, most(at[2], 0))};
     }
     const double reach = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
-    return (struct range){-reach, reach};
+    return (struct interval){-reach, reach};
 }
 
 /* False: the axis separates. One of no length has no extent, and says nothing. */
@@ -105,8 +106,8 @@ INLINE bool meet_along(struct search *search, const double *normal)
 {
     const struct kind kind = search->kind;
     const struct sides *sides = search->sides;
-    const struct range a = extent(kind.dim, kind.a_simplex, sides->a, normal);
-    const struct range b = extent(kind.dim, kind.b_simplex, sides->b, normal);
+    const struct interval a = extent(kind.dim, kind.a_simplex, sides->a, normal);
+    const struct interval b = extent(kind.dim, kind.b_simplex, sides->b, normal);
     const double start = dot(kind.dim, normal, sides->offset);
     const double slope = kind.moving ? dot(kind.dim, normal, sides->drift) : 0;
     const double middle = start + slope, reach = fabs(slope);

@@ -80,7 +80,7 @@ static void set_local(const struct fmb_frame *frame, struct rational_solid *out)
         mpq_set_d(out->origin[axis], box ? frame->centre[axis] : frame->origin[axis]);
         for (int i = 0; i < frame->count; i++) {
             mpq_set_d(out->component[i][axis], frame->component[i][axis]);
-            mpq_set_d(term, frame->rest[i][axis]);
+            mpq_set_d(term, frame->remainder[i][axis]);
             mpq_add(out->component[i][axis], out->component[i][axis], term);
         }
         mpq_div_2exp(term, out->component[axis][axis], 1);

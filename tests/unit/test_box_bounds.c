@@ -37,7 +37,8 @@ static bool box_of(run_function *const *kernels, const struct fmb_prepared frame
     double boxes[RUN_LANES][2][FMB_DIM_MAX];
     bool swapped;
     const enum run_kind kind = run_box_kind(&frame[0], &frame[1], duration, &swapped);
-    const struct run run = {.pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
+    const struct kernel_call run = {
+        .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
     for (int lane = 0; lane < RUN_LANES; lane++) {
         pairs[lane][0] = &frame[swapped];
         pairs[lane][1] = &frame[!swapped];

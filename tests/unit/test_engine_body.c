@@ -183,11 +183,11 @@ static void expect_edges(const double *vertices, const struct fmb_frame *frame)
         mpq_sub(edge, edge, term);
         mpq_set_d(term, frame->component[i][axis]);
         mpq_sub(edge, edge, term);
-        mpq_set_d(term, frame->rest[i][axis]);
+        mpq_set_d(term, frame->remainder[i][axis]);
         assert_true(mpq_equal(edge, term));
         assert_true(frame->component[i][axis] ==
                     vertices[(i + 1) * frame->dim + axis] - vertices[axis]);
-        rounded = rounded || frame->rest[i][axis] != 0;
+        rounded = rounded || frame->remainder[i][axis] != 0;
     }
     assert_int_equal(frame->rounded, rounded);
     mpq_clears(edge, term, NULL);

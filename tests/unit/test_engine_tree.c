@@ -301,7 +301,7 @@ static void boxes_hold_their_frames_and_are_tight(void **state)
         struct ready ready;
         struct fmb_prepared frame;
         prepare(&solid, &ready, &frame);
-        const struct swept box = swept_of(&frame, duration);
+        const struct aabb box = aabb_of(&frame, duration);
         for (int axis = 0; axis < solid.dim; axis++)
             for (int end = 0; end < 2; end++) {
                 const double size = exact_end(&solid, duration, axis, end ? -1 : 1);
@@ -323,7 +323,7 @@ static void sums_step_down_just_where_they_were_rounded_up(void **state)
         frexp(x, &e);
         const int most = e < -1000 ? -1000 : e > 1023 ? 1023 : e;
         const double y = -fabs(draw_log(&draw, most - 60 < -1074 ? -1074 : most - 60, most));
-        const lanes sum = swept_sum((lanes){x, -x}, (lanes){y, y});
+        const lanes sum = aabb_sum_down((lanes){x, -x}, (lanes){y, y});
         for (int lane = 0; lane < 2; lane++) {
             const double from = lane ? -x : x;
             mpq_set_d(exact, from);
@@ -383,10 +383,10 @@ static void uproot(struct planted *planted)
 static size_t find_all(const struct scene *scene, const struct fmb_prepared *frame, unsigned from,
                        unsigned *out)
 {
-    const struct swept one = swept_of(frame, scene->duration);
+    const struct aabb one = aabb_of(frame, scene->duration);
     size_t found = 0;
     for (unsigned i = from; i < scene->count; i++) {
-        const struct swept other = swept_of(&scene->frame[i], scene->duration);
+        const struct aabb other = aabb_of(&scene->frame[i], scene->duration);
         bool meet = true;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             meet = meet && one.end[axis][0] <= -other.end[axis][1] &&
@@ -764,7 +764,7 @@ static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
     }
     plant(draw, &scene, &planted);
     for (unsigned i = 0; i < count; i++) {
-        const struct swept box = swept_of(&scene.frame[i], 1);
+        const struct aabb box = aabb_of(&scene.frame[i], 1);
         found += tree_query_unsorted(&planted.tree, &box, 0, planted.found, &visits);
     }
     uproot(&planted);
@@ -814,11 +814,11 @@ static void boxes_with_one_centre_cost_what_is_found(void **state)
         scene_open(FRAMES, 1, &scene);
         scene_draw(&draw, kind ? nested : all_equal, 3, false, &scene);
         plant(&draw, &scene, &planted);
-        const struct swept box = swept_of(&scene.frame[0], 1);
+        const struct aabb box = aabb_of(&scene.frame[0], 1);
         assert_int_equal(tree_query_unsorted(&planted.tree, &box, 0, planted.found, &visits),
                          FRAMES);
         assert_int_equal(visits, planted.tree.node_count);
-        const struct swept outside = {{{FRAMES - 100, 100 - FRAMES}, {0, 0}, {0, 0}}};
+        const struct aabb outside = {{{FRAMES - 100, 100 - FRAMES}, {0, 0}, {0, 0}}};
         visits = 0;
         assert_int_equal(tree_query_unsorted(&planted.tree, &outside, 0, planted.found, &visits),
                          kind ? 101 : 0);

@@ -884,14 +884,14 @@ static void assert_edges_exact(const double vertex[3][3], const struct fmb_frame
     for (int k = 0; k < 6; k++) {
         const int i = k / 3, axis = k % 3;
         mpq_set_d(edge, frame->component[i][axis]);
-        mpq_set_d(other, frame->rest[i][axis]);
+        mpq_set_d(other, frame->remainder[i][axis]);
         mpq_add(edge, edge, other);
         mpq_set_d(other, vertex[0][axis]);
         mpq_add(edge, edge, other);
         mpq_set_d(other, vertex[i + 1][axis]);
         assert_int_equal(mpq_cmp(edge, other), 0);
         assert_true(frame->component[i][axis] == vertex[i + 1][axis] - vertex[0][axis]);
-        rounded = rounded || frame->rest[i][axis] != 0;
+        rounded = rounded || frame->remainder[i][axis] != 0;
     }
     assert_int_equal(frame->rounded, rounded);
     mpq_clears(edge, other, NULL);

@@ -33,7 +33,7 @@ extern run_function *const run_wide[RUN_KINDS], *const run_exact_wide[RUN_KINDS]
                                                         *const run_boxes_wide[RUN_KINDS],
                                                             *const run_wide_planted[RUN_KINDS];
 #if defined __x86_64__
-extern run_alone_function *const run_alone_sse2[RUN_KINDS],
+extern run_single_function *const run_alone_sse2[RUN_KINDS],
     *const run_exact_alone_sse2[RUN_KINDS], *const run_times_alone_sse2[RUN_KINDS];
 #endif
 
@@ -65,7 +65,7 @@ static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
 /* Of pairs alone. */
 struct alone {
     const char *name;
-    run_alone_function *const *verdicts, *const *exact, *const *times;
+    run_single_function *const *verdicts, *const *exact, *const *times;
 };
 
 enum { ALONE_MAX = 2 };
@@ -73,7 +73,7 @@ enum { ALONE_MAX = 2 };
 /* That of this machine, and what older ones have. Returns how many. */
 static int alone_of_machine(struct alone out[ALONE_MAX])
 {
-    out[0] = (struct alone){"alone", run_verdicts_alone(), run_exact_alone(), run_times_alone()};
+    out[0] = (struct alone){"alone", run_verdicts_single(), run_exact_single(), run_times_single()};
 #if defined __x86_64__
     out[1] =
         (struct alone){"alone, sse2", run_alone_sse2, run_exact_alone_sse2, run_times_alone_sse2};
@@ -103,7 +103,7 @@ static void set_square(mpq_t out, const double *vector, int dim)
  * than its length, and at most a fifteenth more. */
 static void expect_size(const struct fmb_frame *frame, int i)
 {
-    const double size = prepared_size(frame->head, i), least = size * 15 / 16;
+    const double size = prepared_size(frame->summary, i), least = size * 15 / 16;
     mpq_t length, said;
     mpq_inits(length, said, NULL);
     set_square(length, frame->component[i], frame->dim);
@@ -136,7 +136,7 @@ static void sizes_are_lengths_or_a_little_more(void **state)
         for (int i = 0; i < frame->count && frame->in_range; i++, sizes++)
             expect_size(frame, i);
         for (int i = frame->in_range ? frame->count : 0; i < FMB_DIM_MAX; i++)
-            assert_true(prepared_size(frame->head, i) == 0);
+            assert_true(prepared_size(frame->summary, i) == 0);
     }
     printf("# %ld sizes\n", sizes);
     assert_true(sizes > 0);
@@ -151,7 +151,7 @@ static bool is_kind(int kind)
 
 static void set_shapes(int kind, enum fmb_shape shape[2])
 {
-    const bool tetrahedron = kind & RUN_TETRAHEDRON, alike = kind & RUN_ALIKE;
+    const bool tetrahedron = kind & RUN_TETRAHEDRON, alike = kind & RUN_SAME_SHAPE;
     shape[1] = kind & RUN_FACE ? FMB_FACE : tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
     shape[0] = alike ? shape[1] : kind & RUN_FACE && tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
 }
@@ -163,7 +163,7 @@ static const char *kind_text(int kind)
     set_shapes(kind, shape);
     snprintf(text, sizeof text, "%dD %s %s %s%s", kind & RUN_SPACE ? 3 : 2,
              kind & RUN_DRIFTS ? "drifts" : "at rest", fmb_shape_name(shape[0]),
-             fmb_shape_name(shape[1]), kind & RUN_ALONG ? " along" : "");
+             fmb_shape_name(shape[1]), kind & RUN_AXIS_ALIGNED ? " along" : "");
     return text;
 }
 
@@ -219,7 +219,7 @@ static void align(struct draw *draw, struct question *question)
 /* A kernel that looks for zero normals may be asked a pair that has none. */
 static bool is_of_kind(int found, int wanted)
 {
-    return found == wanted || (wanted & RUN_ALONG && found == (wanted & ~RUN_ALONG));
+    return found == wanted || (wanted & RUN_AXIS_ALIGNED && found == (wanted & ~RUN_AXIS_ALIGNED));
 }
 
 /* False: it came out as another kind. */
@@ -232,7 +232,7 @@ static bool draw_pair(struct draw *draw, pair_function *pair, struct pool *pool,
     bool swapped;
     pair(draw, &cell, question);
     pair_set_duration(question, pool->duration);
-    if (pool->kind & RUN_ALONG && draw_int(draw, 0, 3) == 0)
+    if (pool->kind & RUN_AXIS_ALIGNED && draw_int(draw, 0, 3) == 0)
         align(draw, question);
     referee_ready(question, ready);
     assert_int_equal(fmb_prepare(&ready->pair.a, 0, 1, &a), FMB_OK);
@@ -297,8 +297,8 @@ static void run_part(run_function *function, const struct pool *pool, int first,
                      struct left *out)
 {
     const struct fmb_prepared *pairs[ROOM][2];
-    const struct run run = {pairs,        (size_t) count, pool->duration,
-                            out->outcome, out->contact,   out->box};
+    const struct kernel_call run = {pairs,        (size_t) count, pool->duration,
+                                    out->outcome, out->contact,   out->box};
     for (int i = 0; i < count + RUN_LANES - 1; i++) {
         const bool here = first + i < pool->count && (i < count || first % 2 == 0);
         pairs[i][0] = here ? &pool->frame[first + i][0] : &idle;
@@ -438,7 +438,7 @@ static void a_wrong_bound_is_found(void **state)
 
 /* What a function leaves of all pairs of a pool, one by one: outcomes and, if it makes them, times
  * or boxes. */
-static void run_alone(run_alone_function *function, const struct pool *pool, struct left *out)
+static void run_alone(run_single_function *function, const struct pool *pool, struct left *out)
 {
     memset(out, GUARD, sizeof *out);
     for (int i = 0; i < pool->count; i++) {
@@ -489,7 +489,7 @@ static void expect_exact_outcomes(const struct subject *subject, const struct po
                                   const struct left *left)
 {
     struct left verdicts = *left;
-    const bool faces = pool->kind & RUN_FACE && pool->kind & RUN_ALIKE;
+    const bool faces = pool->kind & RUN_FACE && pool->kind & RUN_SAME_SHAPE;
     for (int i = 0; i < pool->count && faces; i++)
         if (left->outcome[i] == SLABS_TOUCHING)
             verdicts.outcome[i] = SLABS_UNSURE;
@@ -544,7 +544,7 @@ static bool is_separated(const struct question *question, bool exact)
     assert_true(run_set_of(FMB_PLAIN, &set));
     const enum run_kind kind = run_kind_of(&a, &b, question->duration, &swapped);
     const struct fmb_prepared *pairs[RUN_LANES][2] = {{swapped ? &b : &a, swapped ? &a : &b}};
-    const struct run run = {pairs, 1, question->duration, outcome, NULL, NULL};
+    const struct kernel_call run = {pairs, 1, question->duration, outcome, NULL, NULL};
     (exact ? set.exact : set.verdicts)[kind](&run);
     return outcome[0] == SLABS_SEPARATED;
 }

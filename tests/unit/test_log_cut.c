@@ -54,7 +54,7 @@ static int remove_folder(void **state)
 
 /* ---- What a replay says of each query ---- */
 
-struct outcomes {
+struct query_outcomes {
     size_t count;
     struct {
         int64_t sequence_number; /* no two clients have the same */
@@ -62,7 +62,7 @@ struct outcomes {
     } query[EVENTS_MAX];
 };
 
-static struct outcomes *taken;
+static struct query_outcomes *taken;
 
 struct page *__wrap_page_open(const char *title, int64_t begin);
 void __wrap_page_take(struct page *page, const struct replayed *replayed);
@@ -115,7 +115,7 @@ static void on_progress(void *user, int64_t bytes)
 static const struct replay_sink replay_sink = {on_found, on_unreadable, on_damage, on_progress,
                                                NULL};
 
-static void replay(char *log, struct outcomes *out)
+static void replay(char *log, struct query_outcomes *out)
 {
     struct replay_options options = {.log = &log,
                                      .log_count = 1,
@@ -137,7 +137,7 @@ static int64_t compared;
 static char cut_name[200];
 
 /* Whether a query with this number had this outcome. */
-static bool has_outcome(const struct outcomes *outcomes, int64_t sequence_number,
+static bool has_outcome(const struct query_outcomes *outcomes, int64_t sequence_number,
                         enum replay_outcome outcome)
 {
     for (size_t i = 0; i < outcomes->count; i++)
@@ -148,7 +148,8 @@ static bool has_outcome(const struct outcomes *outcomes, int64_t sequence_number
 }
 
 /* Where a client repeated a query, the results may have gone to the one or the other. */
-static void assert_same_outcomes(const struct outcomes *whole, const struct outcomes *cut)
+static void assert_same_outcomes(const struct query_outcomes *whole,
+                                 const struct query_outcomes *cut)
 {
     for (size_t i = 0; i < cut->count; i++) {
         const int64_t number = cut->query[i].sequence_number;
@@ -283,7 +284,8 @@ static struct log_cut_counts cut_logs(char *const *log, int count, const char *o
 
 /* Cuts, and checks that all is as it was. whole: what a replay of the log reports. */
 static struct log_cut_counts cut_and_check(char *log, char *cut, const struct log_choice *choice,
-                                           const struct outcomes *whole, struct outcomes *out)
+                                           const struct query_outcomes *whole,
+                                           struct query_outcomes *out)
 {
     const struct log_cut_counts counts = cut_logs(&log, 1, cut, choice);
     assert_holds(log, cut, choice);
@@ -294,7 +296,7 @@ static struct log_cut_counts cut_and_check(char *log, char *cut, const struct lo
 
 /* ---- Small worlds ---- */
 
-static struct outcomes whole_outcomes, cut_outcomes, again_outcomes;
+static struct query_outcomes whole_outcomes, cut_outcomes, again_outcomes;
 
 /* What the cuts of the test had to do. */
 static struct log_cut_counts all;

@@ -16,7 +16,7 @@
 #include "draw.h"
 #include "limbs.h"
 #include "question.h"
-#include "range.h"
+#include "interval.h"
 #include "referee.h"
 #include "slab_truth.h"
 
@@ -78,7 +78,7 @@ static double draw_beside(struct draw *draw, double other)
 
 /* ---- Sums and products ---- */
 
-static void expect_range(struct range range, double x, double y, double rounded, double slack)
+static void expect_range(struct interval range, double x, double y, double rounded, double slack)
 {
     if (side_of(range.low) > 0 || side_of(range.high) < 0)
         fail_msg("%a and %a: [%a, %a] does not hold it", x, y, range.low, range.high);
@@ -99,7 +99,7 @@ static void sums_hold_the_exact_one(void **state)
         mpq_set_d(exact, x);
         mpq_set_d(scratch[0], y);
         mpq_add(exact, exact, scratch[0]);
-        expect_range(range_sum(range_of(x), range_of(y)), x, y, x + y, 0);
+        expect_range(interval_sum(interval_of(x), interval_of(y)), x, y, x + y, 0);
         exact_ones += side_of(x + y) == 0;
     }
     printf("# %ld sums were exact\n", exact_ones);
@@ -114,8 +114,8 @@ static void sums_of_ranges_hold_those_of_their_ends(void **state)
     for (long n = draw_sample(200000); n > 0; n--) {
         const double a = draw_between(&draw, -1074, 990), b = draw_beside(&draw, a);
         const double c = draw_beside(&draw, a), d = draw_beside(&draw, c);
-        const struct range x = {fmin(a, b), fmax(a, b)}, y = {fmin(c, d), fmax(c, d)};
-        const struct range sum = range_sum(x, y);
+        const struct interval x = {fmin(a, b), fmax(a, b)}, y = {fmin(c, d), fmax(c, d)};
+        const struct interval sum = interval_sum(x, y);
         mpq_set_d(exact, x.low);
         mpq_set_d(scratch[0], y.low);
         mpq_add(exact, exact, scratch[0]);
@@ -145,7 +145,7 @@ static void products_hold_the_exact_one(void **state)
         mpq_set_d(scratch[0], y);
         mpq_mul(exact, exact, scratch[0]);
         const bool small = fabs(x * y) < 0x1p-900 && x != 0 && y != 0;
-        expect_range(range_product(x, y), x, y, x * y, small ? 0x1p-951 : 0);
+        expect_range(interval_product(x, y), x, y, x * y, small ? 0x1p-951 : 0);
         tiny += small;
         exact_ones += side_of(x * y) == 0;
     }

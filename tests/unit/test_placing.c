@@ -122,7 +122,7 @@ static void print_orientation(const struct fmb_placement *placement)
 }
 
 /* The square of the Frobenius norm of the error of the matrix, in units of 2^-53. */
-static double error_of(const struct rotation *rotation, struct rational_solid *exact)
+static double error_of(const struct rotation_matrix *rotation, struct rational_solid *exact)
 {
     mpq_t error, sum;
     mpq_inits(error, sum, NULL);
@@ -147,8 +147,8 @@ static bool is_unit_row(struct rational_solid *exact, int dim, int row)
 }
 
 /* Rows that are unit vectors, and no others, are said to be exact, and are. Returns how many. */
-static int expect_exact_rows(const struct fmb_placement *placement, const struct rotation *rotation,
-                             struct rational_solid *exact)
+static int expect_exact_rows(const struct fmb_placement *placement,
+                             const struct rotation_matrix *rotation, struct rational_solid *exact)
 {
     int units = 0;
     for (int i = 0; i < rotation->dim; i++) {
@@ -178,7 +178,7 @@ static void rotations_are_within_their_bound(void **state)
     for (long n = draw_sample(100000); n > 0; n--) {
         const int dim = draw_int(&draw, 2, 3);
         const struct fmb_placement placement = draw_turn(&draw, dim);
-        struct rotation rotation;
+        struct rotation_matrix rotation;
         struct rational_solid exact;
         rotation_of(&placement, dim, &rotation);
         exact_matrix(&placement, dim, &exact);
@@ -216,7 +216,7 @@ static void turns_of_a_cube_are_exact(void **state)
         found++;
         for (int n = 0; n < 40; n++) {
             struct fmb_placement placement = {.orientation_count = 4};
-            struct rotation rotation;
+            struct rotation_matrix rotation;
             struct rational_solid exact;
             const double length = n ? draw_log(&draw, -1060, 1022) : 1;
             for (int i = 0; i < 4; i++)
@@ -236,7 +236,7 @@ static void no_orientation_is_the_identity(void **state)
     (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct fmb_placement placement = {.orientation_count = 0};
-        struct rotation rotation;
+        struct rotation_matrix rotation;
         rotation_of(&placement, dim, &rotation);
         assert_true(rotation.exact && !rotation.turned);
         for (int k = 0; k < dim * dim; k++)
@@ -441,7 +441,7 @@ static bool has_exact_origin(const struct fmb_frame *frame)
 /* Whether no operation of placing rounds: axes are only exchanged, and the origin is exact. */
 static bool is_exactly_placed(const struct fmb_placement *placement, struct difference *difference)
 {
-    struct rotation rotation;
+    struct rotation_matrix rotation;
     rotation_of(placement, difference->dim, &rotation);
     const struct fmb_frame *frame = &placement->body->one;
     bool exact = rotation.exact && !frame->rounded && has_exact_origin(frame);
@@ -517,11 +517,11 @@ static void expect_sizes(const struct fmb_placement *placement, const struct fmb
     world_frame_of(prepared, &world);
     mpq_init(square);
     for (int i = 0; i < exact->count; i++) {
-        const double size = prepared_size(prepared->head, i);
+        const double size = prepared_size(prepared->summary, i);
         set_square(square, exact->component[i]);
         const double of_size = ratio_of(square, size);
         set_square(square, difference->component[i]);
-        const double of_turn = ratio_of(square, world.turn * size);
+        const double of_turn = ratio_of(square, world.relative_error * size);
         if (!(of_size <= 1 && of_size >= 0.9 && of_turn <= 1)) {
             print_placed(placement);
             fail_msg("component %d: %.17g of its size, error %g of the bound", i, of_size, of_turn);

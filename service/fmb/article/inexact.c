@@ -7,7 +7,7 @@
 static void set_inverse(const struct placed_frame *placed, struct inexact_pair *out)
 {
     const struct fmb_frame *frame = placed->frame;
-    struct rotation rotation;
+    struct rotation_matrix rotation;
     memcpy(out->inverse, frame->inverse, sizeof out->inverse);
     rotation_of(placed->placement, frame->dim, &rotation);
     for (int axis = 0; axis < frame->dim && rotation.turned; axis++)

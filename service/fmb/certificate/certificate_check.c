@@ -172,7 +172,7 @@ static void set_frame(struct side *side, const struct fmb_frame *frame)
     for (int axis = 0; axis < frame->dim; axis++) {
         for (int i = 0; i < frame->count; i++) {
             mpq_set_d(side->edge[i][axis], frame->component[i][axis]);
-            mpq_set_d(number, frame->rest[i][axis]);
+            mpq_set_d(number, frame->remainder[i][axis]);
             mpq_add(side->edge[i][axis], side->edge[i][axis], number);
         }
         if (frame->shape != FMB_BOX) {

@@ -80,15 +80,15 @@ struct heads {
 
 static inline void heads_add(struct heads *heads, const struct fmb_prepared *frame)
 {
-    heads->any |= frame->head;
-    heads->all &= frame->head;
+    heads->any |= frame->summary;
+    heads->all &= frame->summary;
 }
 
 /* Whether the frames are all of the same kind, and prepared. */
 static inline bool heads_same_kind(const struct heads *heads)
 {
     return (heads->any ^ heads->all) >> 3 * PREPARED_SIZE_BITS == 0 &&
-           heads->all >> 3 * PREPARED_SIZE_BITS & PREPARED_GOOD;
+           heads->all >> 3 * PREPARED_SIZE_BITS & PREPARED_VALID;
 }
 
 static void replace_unprepared(struct batch_block *block)
@@ -96,7 +96,7 @@ static void replace_unprepared(struct batch_block *block)
     for (size_t i = 0; i < block->count; i++)
         for (int f = 0; f < 2; f++) {
             const struct fmb_prepared **frame = &block->pair[i][f];
-            if (*frame != &missing && !(prepared_kind(*frame) & PREPARED_GOOD))
+            if (*frame != &missing && !(prepared_kind(*frame) & PREPARED_VALID))
                 *frame = &unprepared;
         }
 }
@@ -154,7 +154,7 @@ static bool set_pairs(struct batch_block *block)
     const unsigned kind = prepared_kind(frame_at(batch, batch->pairs[block->first][0]));
     const bool ahead = batch->frame_count >= MANY_FRAMES;
     struct heads heads[2] = {{0, ~0ull}, {0, ~0ull}};
-    if (kind & PREPARED_SPACE)
+    if (kind & PREPARED_3D)
         put_pairs(block, (struct fetching){true, false}, heads);
     else if (!ahead)
         put_pairs(block, (struct fetching){false, false}, heads);
@@ -184,7 +184,7 @@ static void swap(const struct fmb_prepared *pair[2])
 /* Whether all pairs drift. In: a block whose pairs all move and have the same dimension. */
 static bool all_drift(const struct batch_block *block)
 {
-    const bool space = prepared_kind(block->pair[0][0]) & PREPARED_SPACE;
+    const bool space = prepared_kind(block->pair[0][0]) & PREPARED_3D;
     bool all = true;
     for (size_t i = 0; i < block->count; i++) {
         const double *v = prepared_velocity(block->pair[i][0]);
@@ -388,10 +388,10 @@ static void put_box_single(struct batch_block *block, size_t k)
 /* Computes the boxes of pairs of one kind of run_box_kind(). */
 static void put_boxes(struct batch_block *block, run_function *boxes, struct contacts *contacts)
 {
-    const struct run run = {.pairs = contacts->pair,
-                            .count = contacts->count,
-                            .duration = block->batch->duration,
-                            .boxes = contacts->box};
+    const struct kernel_call run = {.pairs = contacts->pair,
+                                    .count = contacts->count,
+                                    .duration = block->batch->duration,
+                                    .boxes = contacts->box};
     for (size_t n = contacts->count; n < contacts->count + RUN_LANES; n++)
         contacts->pair[n][0] = contacts->pair[n][1] = &missing;
     if (contacts->count > 0)
@@ -438,7 +438,7 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
 
 /* Runs the second pass on the pairs of a kind that the first leaves unsure, RUN_LANES at a time.
  * Two faces that may have parallel planes stay unsure. */
-static void run_exactly(run_function *exact, bool faces, const struct run *first)
+static void run_exactly(run_function *exact, bool faces, const struct kernel_call *first)
 {
     unsigned char of[BLOCK], outcome[BLOCK + RUN_LANES];
     const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
@@ -454,7 +454,7 @@ static void run_exactly(run_function *exact, bool faces, const struct run *first
     }
     for (size_t n = count; n < count + RUN_LANES; n++)
         pair[n][0] = pair[n][1] = &missing;
-    const struct run run = {
+    const struct kernel_call run = {
         .pairs = pair, .count = count, .duration = first->duration, .outcomes = outcome};
     exact(&run);
     for (size_t n = 0; n < count; n++)
@@ -466,14 +466,14 @@ static void run_kind(struct batch_block *block, const struct batch_job *job, enu
 {
     const struct fmb_batch *batch = job->batch;
     const size_t start = block->start[kind], end = block->start[kind + 1];
-    const struct run run = {.pairs = &block->pair[start],
-                            .count = end - start,
-                            .duration = batch->duration,
-                            .outcomes = &block->outcome[start],
-                            .contacts = &block->contact[start]};
+    const struct kernel_call run = {.pairs = &block->pair[start],
+                                    .count = end - start,
+                                    .duration = batch->duration,
+                                    .outcomes = &block->outcome[start],
+                                    .contacts = &block->contact[start]};
     const bool times = batch->contacts && kind & RUN_DRIFTS;
     (times ? job->run.times : job->run.verdicts)[kind](&run);
-    run_exactly(job->run.exact[kind], kind & RUN_FACE && kind & RUN_ALIKE, &run);
+    run_exactly(job->run.exact[kind], kind & RUN_FACE && kind & RUN_SAME_SHAPE, &run);
     if (batch->contacts)
         put_contacts(block, kind, start, end);
     else
@@ -488,8 +488,8 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
 {
     if (pair[0] == &missing || pair[1] == &missing)
         return FMB_OVER_LIMIT;
-    return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_GOOD ? FMB_DIMENSIONS_DIFFER
-                                                                           : FMB_NOT_FINITE;
+    return prepared_kind(pair[0]) & prepared_kind(pair[1]) & PREPARED_VALID ? FMB_DIMENSIONS_DIFFER
+                                                                            : FMB_NOT_FINITE;
 }
 
 static void answer_odd(struct batch_block *block)
@@ -526,10 +526,10 @@ static void run_enlarged(struct batch_block *block, const struct batch_job *job,
                          struct enlarged *enlarged)
 {
     unsigned char outcome[ENLARGED + RUN_LANES];
-    const struct run run = {.pairs = enlarged->pair,
-                            .count = enlarged->count,
-                            .duration = job->batch->duration,
-                            .outcomes = outcome};
+    const struct kernel_call run = {.pairs = enlarged->pair,
+                                    .count = enlarged->count,
+                                    .duration = job->batch->duration,
+                                    .outcomes = outcome};
     if (enlarged->count == 0)
         return;
     for (size_t n = enlarged->count; n < enlarged->count + RUN_LANES; n++)
@@ -547,7 +547,7 @@ static void find_far(struct batch_block *block, const struct batch_job *job, enu
     for (size_t k = block->start[kind]; k < block->start[kind + 1]; k++) {
         const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
         struct fmb_prepared *larger = &enlarged.frame[enlarged.count];
-        const int error = prepared_kind(b) & PREPARED_SPACE ? PREPARED_ERROR_3D : PREPARED_ERROR_2D;
+        const int error = prepared_kind(b) & PREPARED_3D ? PREPARED_ERROR_3D : PREPARED_ERROR_2D;
         if (block->outcome[k] != SLABS_SEPARATED)
             continue;
         *larger = *b;
@@ -670,7 +670,7 @@ enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared
         return refusal((const struct fmb_prepared *const[2]){a, b});
     enum slabs_outcome outcome = SLABS_UNSURE;
     if (kind != RUN_ODD)
-        outcome = run_verdicts_alone()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
+        outcome = run_verdicts_single()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
     *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, 1, false)
                                        : (enum fmb_verdict) outcome;
     return FMB_OK;

@@ -177,7 +177,7 @@ static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
 
 /* Runs the kernel of its kind on this single pair. */
 static enum slabs_outcome run_kernel(const struct certified *certified,
-                                     run_alone_function *const *functions, double *out)
+                                     run_single_function *const *functions, double *out)
 {
     return functions[certified->kind](certified->frame[certified->swapped],
                                       certified->frame[!certified->swapped],
@@ -186,7 +186,7 @@ static enum slabs_outcome run_kernel(const struct certified *certified,
 
 static bool are_faces(const struct certified *certified)
 {
-    return certified->kind & RUN_FACE && certified->kind & RUN_ALIKE;
+    return certified->kind & RUN_FACE && certified->kind & RUN_SAME_SHAPE;
 }
 
 /* In: a pair that the second pass leaves unsure; or two faces, if it finds them touching. */
@@ -198,7 +198,7 @@ static enum fmb_verdict verdict_in_integers(struct certified *certified, bool to
     if (!are_faces(certified))
         return verdict;
     if (certified->path == CERTIFIED_EXACT) {
-        certified->planes = FACES_ELSE; /* they may be parallel: this was not tested */
+        certified->planes = FACES_UNDECIDED; /* they may be parallel: this was not tested */
         return verdict;
     }
     find_span(certified);
@@ -210,7 +210,7 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
     if (certified->kind >= RUN_KINDS)
         return verdict_exact(certified);
-    const enum slabs_outcome outcome = run_kernel(certified, run_exact_alone(), NULL);
+    const enum slabs_outcome outcome = run_kernel(certified, run_exact_single(), NULL);
     const bool touching = outcome == SLABS_TOUCHING;
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
@@ -219,10 +219,10 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 }
 
 /* In: a pair whose kind is set. contact: NULL, or the output of the contact of a pair that drifts,
- * as in struct run. */
+ * as in struct kernel_call. */
 static enum fmb_verdict verdict_of(struct certified *certified, double contact[2])
 {
-    run_alone_function *const *functions = contact ? run_times_alone() : run_verdicts_alone();
+    run_single_function *const *functions = contact ? run_times_single() : run_verdicts_single();
     certified->path = CERTIFIED_FILTER;
     const enum slabs_outcome outcome = run_kernel(certified, functions, contact);
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
@@ -288,7 +288,7 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
     }
     if (!never_rounds(certified) && !isnan(answer->contact[0]))
         return true;
-    if (certified->planes == FACES_ELSE || !find_slabs(certified))
+    if (certified->planes == FACES_UNDECIDED || !find_slabs(certified))
         return false;
     find_span(certified);
     return contact_of(certified->pair, &certified->slabs, certified->rounds, certified->span,
@@ -302,7 +302,8 @@ bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, d
     double boxes[RUN_LANES][2][FMB_DIM_MAX];
     bool swapped;
     const enum run_kind kind = run_box_kind(a, b, duration, &swapped);
-    const struct run run = {.pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
+    const struct kernel_call run = {
+        .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
     for (int lane = 0; lane < RUN_LANES; lane++) {
         pairs[lane][0] = swapped ? b : a;
         pairs[lane][1] = swapped ? a : b;

@@ -4,7 +4,7 @@
 #include "exact.h"
 #include "gap.h"
 #include "inexact.h"
-#include "swept.h"
+#include "aabb.h"
 
 #include <string.h>
 
@@ -83,7 +83,7 @@ enum { CHUNK = 16 };
 struct frame_chunk {
     const struct fmb_placement *placement;
     unsigned first, count;
-    struct swept box[CHUNK], all; /* over the window */
+    struct aabb box[CHUNK], all; /* over the window */
 };
 
 static void set_chunk(const struct fmb_placement *placement, unsigned first, double duration,
@@ -96,8 +96,8 @@ static void set_chunk(const struct fmb_placement *placement, unsigned first, dou
     out->count = left < CHUNK ? left : CHUNK;
     prepared_place(placement, first, out->count, prepared);
     for (unsigned i = 0; i < out->count; i++) {
-        out->box[i] = swept_of(&prepared[i], duration);
-        out->all = i == 0 ? out->box[0] : swept_hull(out->all, out->box[i]);
+        out->box[i] = aabb_of(&prepared[i], duration);
+        out->all = i == 0 ? out->box[0] : aabb_union(out->all, out->box[i]);
     }
 }
 
@@ -132,12 +132,12 @@ static enum fmb_status decide_chunks(struct frames *frames, const struct frame_c
 {
     for (unsigned i = 0; i < a->count; i++) {
         const double reach = reach_of(frames, a, b);
-        const struct swept against = swept_within(&a->box[i], reach);
-        const struct swept against_all = swept_within(&b->all, reach);
-        for (unsigned j = 0; swept_meet(&a->box[i], &against_all) && j < b->count; j++) {
+        const struct aabb against = aabb_probe_within(&a->box[i], reach);
+        const struct aabb against_all = aabb_probe_within(&b->all, reach);
+        for (unsigned j = 0; aabb_overlaps(&a->box[i], &against_all) && j < b->count; j++) {
             const struct frame_pair pair = {frame_at(a, i), frame_at(b, j), frames->duration};
             struct fmb_answer one = {0};
-            if (!swept_meet(&b->box[j], &against))
+            if (!aabb_overlaps(&b->box[j], &against))
                 continue;
             const enum fmb_status status = frames->method->decide(&pair, frames->want, &one);
             if (status != FMB_OK)

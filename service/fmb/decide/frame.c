@@ -4,7 +4,7 @@
 #include "integer.h"
 #include "prepared.h"
 #include "rotation.h"
-#include "swept.h"
+#include "aabb.h"
 
 #include <float.h>
 #include <math.h>
@@ -152,7 +152,7 @@ static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span
         frame->size[i] = magnitude > frame->size[i] ? magnitude : frame->size[i];
         frame->in_range = frame->in_range && (c == 0 || magnitude >= least_number);
         dyadic_span_add(span, dyadic_of(c));
-        dyadic_span_add(span, dyadic_of(frame->rest[i][axis]));
+        dyadic_span_add(span, dyadic_of(frame->remainder[i][axis]));
     }
     frame->in_range =
         frame->in_range && frame->size[i] >= least_size && frame->size[i] <= largest_size;
@@ -204,7 +204,7 @@ static double slack_of(const struct fmb_frame *frame)
             slack += 0x1p-52 * fabs(frame->origin[axis]) + 0x1p-1074;
     }
     for (int i = 0; i < frame->count; i++)
-        slack = fmax(slack, sum_of(frame->rest[i]));
+        slack = fmax(slack, sum_of(frame->remainder[i]));
     return slack * (1 + 0x1p-50);
 }
 
@@ -212,7 +212,7 @@ static double turn_error_of(const struct fmb_frame *frame)
 {
     double lengths = sum_of(frame->origin);
     for (int i = 0; i < frame->count; i++)
-        lengths += frame->in_range ? prepared_size(frame->head, i) : sum_of(frame->component[i]);
+        lengths += frame->in_range ? prepared_size(frame->summary, i) : sum_of(frame->component[i]);
     return ROTATION_ERROR * (1 + 0x1p-40) * lengths + 0x1p-1060; /* where products underflow */
 }
 
@@ -220,7 +220,7 @@ static void complete(struct fmb_frame *frame)
 {
     invert(frame);
     measure(frame);
-    frame->head = prepared_head_of(frame);
+    frame->summary = prepared_summary_of(frame);
     frame->radius = radius_of(frame);
     frame->slack = slack_of(frame);
     frame->turn_error = turn_error_of(frame);
@@ -236,7 +236,7 @@ void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *o
         memcpy(out->component[i], components[i], sizeof components[i]);
     out->flat = are_equal(components[0][0], components[1][1], components[0][1], components[1][0]);
     measure(out);
-    out->head = prepared_head_of(out);
+    out->summary = prepared_summary_of(out);
 }
 
 /* ---- Frames from numbers ---- */
@@ -319,8 +319,8 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
             out->component[i][axis] = to - from;
             if (!isfinite(out->component[i][axis])) /* nor where a vertex is not */
                 return FMB_NOT_FINITE;
-            out->rest[i][axis] = difference_error(to, from, out->component[i][axis]);
-            out->rounded = out->rounded || out->rest[i][axis] != 0;
+            out->remainder[i][axis] = difference_error(to, from, out->component[i][axis]);
+            out->rounded = out->rounded || out->remainder[i][axis] != 0;
         }
     complete(out);
     return FMB_OK;
@@ -329,10 +329,11 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
 /* ---- Bodies ---- */
 
 /* As prepared_set() for a body at the origin that is not rotated: nothing rounds. */
-INLINE struct swept box_at_origin(const struct fmb_frame *frame, const int dim,
-                                  const struct fmb_placement *placement)
+INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
+                                 const struct fmb_placement *placement)
 {
-    struct fmb_prepared prepared = {.head = frame->head, .frame = frame, .placement = placement};
+    struct fmb_prepared prepared = {
+        .summary = frame->summary, .frame = frame, .placement = placement};
     double *number = prepared.number;
     UNROLL(3)
     for (int axis = 0; axis < dim; axis++) {
@@ -341,19 +342,19 @@ INLINE struct swept box_at_origin(const struct fmb_frame *frame, const int dim,
             number[(1 + i) * dim + axis] = frame->component[i][axis];
     }
     number[(1 + dim) * dim] = frame->slack * (1 + 0x1p-40);
-    return swept_of(&prepared, 0);
+    return aabb_of(&prepared, 0);
 }
 
 /* Sets the box of a body: that of its frames, at the origin and not rotated. */
 static void set_body_box(struct fmb_body *out)
 {
     const struct fmb_placement origin = {.body = out};
-    struct swept box;
+    struct aabb box;
     for (unsigned i = 0; i < out->frame_count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(out, i);
-        const struct swept one =
+        const struct aabb one =
             frame->dim == 3 ? box_at_origin(frame, 3, &origin) : box_at_origin(frame, 2, &origin);
-        box = i == 0 ? one : swept_hull(box, one);
+        box = i == 0 ? one : aabb_union(box, one);
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         out->box[0][axis] = box.end[axis][0];

@@ -317,11 +317,11 @@ static double farthest(const struct fmb_scene_state *state)
 static double farthest_of_frames(const struct fmb_scene_state *state)
 {
     const struct scene_block *block = &state->block;
-    const struct swept *box = state->frames.body_box;
+    const struct aabb *box = state->frames.body_box;
     double largest = 0;
     for (size_t k = 0; !state->frames.direct && k < block->body_count; k++)
         for (int f = 0; f < 2; f++)
-            largest = fmax(largest, swept_largest(&box[block->out[k][f]]));
+            largest = fmax(largest, aabb_max_coordinate(&box[block->out[k][f]]));
     return farthest(state) + 0x1p-37 * largest;
 }
 
@@ -330,7 +330,7 @@ static double farthest_of_frames(const struct fmb_scene_state *state)
 static double reach_of(const struct fmb_scene_state *state, size_t n)
 {
     const struct scene_block *block = &state->block;
-    const struct swept *box = state->frames.body_box;
+    const struct aabb *box = state->frames.body_box;
     const double upper = block->answers.gap[n].bounds[1];
     if (!has_gaps(&state->scene))
         return 0;
@@ -494,7 +494,7 @@ static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
     const struct fmb_gap *one = &block->outcomes.gap[k];
     const struct fmb_placement *a = &state->scene.placements[block->bodies[n][0]];
     const struct fmb_placement *b = &state->scene.placements[block->bodies[n][1]];
-    const struct swept *box = state->frames.frame_box;
+    const struct aabb *box = state->frames.frame_box;
     if (isnan(one->bounds[0]))
         return;
     if (a->body->frame_count == 1 && b->body->frame_count == 1)

@@ -16,7 +16,7 @@ static long pair_unit(const struct frame_pair *pair)
         long lengths = INTEGER_NO_EXPONENT;
         for (int i = 0; i < frame->count; i++) {
             lengths = integer_vector_unit(lengths, frame->component[i], dim);
-            lengths = integer_vector_unit(lengths, frame->rest[i], dim);
+            lengths = integer_vector_unit(lengths, frame->remainder[i], dim);
         }
         if (frame->shape == FMB_BOX) { /* halves of sizes */
             lengths -= lengths < INTEGER_NO_EXPONENT;
@@ -145,7 +145,7 @@ static void add_rest(struct exact_frame *out, const struct fmb_frame *frame, lon
     mpz_init(rest);
     for (int i = 0; i < frame->count; i++)
         for (int axis = 0; axis < frame->dim; axis++) {
-            integer_set(rest, dyadic_of(frame->rest[i][axis]), unit);
+            integer_set(rest, dyadic_of(frame->remainder[i][axis]), unit);
             mpz_add(out->component[i][axis], out->component[i][axis], rest);
         }
     mpz_clear(rest);

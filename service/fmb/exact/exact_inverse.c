@@ -9,12 +9,12 @@ static long set_components(const struct fmb_frame *frame, mpz_t out[3][3], mpz_t
     long unit = INTEGER_NO_EXPONENT;
     for (int i = 0; i < dim; i++) {
         unit = integer_vector_unit(unit, frame->component[i], dim);
-        unit = integer_vector_unit(unit, frame->rest[i], dim);
+        unit = integer_vector_unit(unit, frame->remainder[i], dim);
     }
     for (int i = 0; i < dim; i++)
         for (int axis = 0; axis < dim; axis++) {
             integer_set(out[i][axis], dyadic_of(frame->component[i][axis]), unit);
-            integer_set(scratch, dyadic_of(frame->rest[i][axis]), unit);
+            integer_set(scratch, dyadic_of(frame->remainder[i][axis]), unit);
             mpz_add(out[i][axis], out[i][axis], scratch);
         }
     if (dim == 2)

@@ -2,17 +2,18 @@
 
 #include "limbs.h"
 #include "prepared.h"
-#include "weighed.h"
+#include "running_error.h"
 
 /* In doubles: whether the normal of a surely has an extent along b. */
 static bool surely_cross(const struct world_frame *a, const struct world_frame *b)
 {
-    const struct weighed u = weigh(a->component[0]), v = weigh(a->component[1]);
-    const struct weighed normal = weighed_cross(&u, &v);
+    const struct running_error u = running_error_of(a->component[0]),
+                               v = running_error_of(a->component[1]);
+    const struct running_error normal = running_error_cross(&u, &v);
     for (int i = 0; i < 2; i++) {
-        const struct weighed w = weigh(b->component[i]);
-        if (fabs(weighed_dot(normal.at, w.at)) >
-            weighed_error(weighed_dot(normal.weight, w.weight)))
+        const struct running_error w = running_error_of(b->component[i]);
+        if (fabs(running_error_dot(normal.at, w.at)) >
+            running_error_bound(running_error_dot(normal.weight, w.weight)))
             return true;
     }
     return false;
@@ -21,8 +22,9 @@ static bool surely_cross(const struct world_frame *a, const struct world_frame *
 /* The axis along which a face has the largest projection, or nearly. */
 static int axis_of(const struct world_frame *frame)
 {
-    const struct weighed u = weigh(frame->component[0]), v = weigh(frame->component[1]);
-    const struct weighed normal = weighed_cross(&u, &v);
+    const struct running_error u = running_error_of(frame->component[0]),
+                               v = running_error_of(frame->component[1]);
+    const struct running_error normal = running_error_cross(&u, &v);
     int axis = 0;
     for (int i = 1; i < 3; i++)
         if (fabs(normal.at[i]) > fabs(normal.at[axis]))
@@ -62,10 +64,10 @@ enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct sl
     if (!slabs->inexact && surely_cross(&slabs->a, &slabs->b))
         return FACES_CROSSING;
     if (!limbs_prepare(pair, span, &limbs))
-        return FACES_ELSE;
+        return FACES_UNDECIDED;
     const struct limbs_planes planes = limbs_planes_of(&limbs);
     if (!planes.parallel)
         return FACES_CROSSING;
     return planes.shared && !slabs->inexact && set_shadows(slabs, projection) ? FACES_SHARED
-                                                                              : FACES_ELSE;
+                                                                              : FACES_UNDECIDED;
 }

@@ -16,7 +16,7 @@ struct faces_projection {
 enum faces_planes {
     FACES_CROSSING, /* the planes are not parallel */
     FACES_SHARED,   /* both are in one plane at all times: the projection is set */
-    FACES_ELSE      /* neither, or unknown here: to be decided by the exact method */
+    FACES_UNDECIDED /* neither, or unknown here: to be decided by the exact method */
 };
 
 /* Classifies the planes of two faces. In: faces with areas, in range; span: of the pair. */

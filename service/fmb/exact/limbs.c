@@ -52,7 +52,7 @@
  * of integers below 2^b has n < 2^(2b+2). In 2D all bounds are smaller. */
 #include "limbs.h"
 
-#include "range.h"
+#include "interval.h"
 
 #include <math.h>
 
@@ -116,7 +116,7 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
     const bool cuboids = pair->a.shape == FMB_CUBOID && pair->b.shape == FMB_CUBOID;
     double largest = pair->drift_size;
     for (int i = 0; i < pair->a.dim; i++)
-        largest = range_greatest(largest, range_greatest(pair->a.size[i], pair->b.size[i]));
+        largest = interval_max(largest, interval_max(pair->a.size[i], pair->b.size[i]));
     const double scaled = ldexp(largest, (int) -span.unit);
     const double sum = 2 * ldexp(pair->reach, (int) -span.unit);
     return (cuboids ? 6 : 6 * 16) * scaled * scaled * sum < 0x1p53;
@@ -193,7 +193,7 @@ static void set_frame(int f, const struct fmb_frame *frame, const struct scale *
         if (!frame->rounded)
             continue;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-            set_length(n, term, frame->rest[i][axis], scale);
+            set_length(n, term, frame->remainder[i][axis], scale);
             add(n, component->at[axis], term);
         }
         limbs_trim(n, component);

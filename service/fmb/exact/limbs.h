@@ -6,7 +6,7 @@
 #ifndef FMB_LIMBS_H
 #define FMB_LIMBS_H
 
-#include "limbs_turn.h"
+#include "limbs_rotation.h"
 #include "slabs.h"
 
 /* The coordinates of an edge: those of its frame, of the other frame, and of the world. */
@@ -28,7 +28,7 @@ struct limbs_pair {
     struct limbs_rotation rotation[2], relative;
     /* Edges, computed when they are needed, and their storage. */
     const struct limbs_vector *view[2][SLABS_EDGES][LIMBS_VIEWS];
-    struct limbs_vector room[2][SLABS_EDGES][LIMBS_VIEWS];
+    struct limbs_vector storage[2][SLABS_EDGES][LIMBS_VIEWS];
 };
 
 /* Returns the span of all lengths of a pair: components, origins, positions, and displacements v T.

@@ -7,7 +7,7 @@ static const struct limbs_vector *edge_of(struct limbs_pair *pair, int edge, enu
 {
     const int f = edge >= SLABS_EDGE_OF_B, e = edge % SLABS_EDGES, dim = pair->frame[f]->dim;
     const struct limbs_vector **at = pair->view[f][e];
-    struct limbs_vector *own = &pair->room[f][e][LIMBS_OWN];
+    struct limbs_vector *own = &pair->storage[f][e][LIMBS_OWN];
     if (!at[LIMBS_OWN] && pair->frame[f]->shape == FMB_BOX) {
         memset(own, 0, sizeof *own);
         own->limbs = pair->component[f][e].limbs > 0;
@@ -29,9 +29,9 @@ static const struct limbs_vector *edge_of(struct limbs_pair *pair, int edge, enu
         return at[view];
     at[view] =
         limbs_transform(pair->limbs, view == LIMBS_ACROSS ? pair->across[f] : pair->to_world[f],
-                        at[LIMBS_OWN], &pair->room[f][e][view]);
+                        at[LIMBS_OWN], &pair->storage[f][e][view]);
     if (view == LIMBS_WORLD && at[view] != at[LIMBS_OWN])
-        limbs_trim(pair->limbs, &pair->room[f][e][view]);
+        limbs_trim(pair->limbs, &pair->storage[f][e][view]);
     return at[view];
 }
 
@@ -42,27 +42,27 @@ enum { WORLD = 2 }; /* after frames 0 and 1 */
 struct normal {
     const struct limbs_vector *at[3];
     const struct limbs_factor *factor[3];
-    struct limbs_vector room[3];
+    struct limbs_vector storage[3];
 };
 
 static void set_normal_of_edges(struct limbs_pair *pair, int u, int v, struct normal *out)
 {
     const int n = pair->limbs;
     limbs_cross(n, edge_of(pair, v, LIMBS_ACROSS), edge_of(pair, u, LIMBS_OWN), true,
-                &out->room[0]);
-    out->at[0] = out->at[1] = out->at[WORLD] = &out->room[0];
+                &out->storage[0]);
+    out->at[0] = out->at[1] = out->at[WORLD] = &out->storage[0];
     if (!pair->all)
         return;
     limbs_cross(n, edge_of(pair, u, LIMBS_ACROSS), edge_of(pair, v, LIMBS_OWN), false,
-                &out->room[1]);
-    out->at[1] = &out->room[1];
+                &out->storage[1]);
+    out->at[1] = &out->storage[1];
     if (!pair->to_world[0] || !pair->to_world[1]) {
         out->at[WORLD] = out->at[pair->to_world[0] != NULL];
         return;
     }
     limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), edge_of(pair, v, LIMBS_WORLD), false,
-                &out->room[WORLD]);
-    out->at[WORLD] = &out->room[WORLD];
+                &out->storage[WORLD]);
+    out->at[WORLD] = &out->storage[WORLD];
 }
 
 /* v turned by a right angle. */
@@ -80,14 +80,14 @@ static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_norma
     const struct limbs_vector *u = edge_of(pair, edges.u, LIMBS_OWN);
 
     if (pair->frame[0]->dim == 2)
-        set_plane_normal(n, u, &out->room[f]);
+        set_plane_normal(n, u, &out->storage[f]);
     else
-        limbs_cross(n, u, edge_of(pair, edges.v, LIMBS_OWN), false, &out->room[f]);
-    limbs_trim(n, &out->room[f]);
-    out->at[f] = &out->room[f];
-    out->at[other] = limbs_transform(n, pair->across[f], out->at[f], &out->room[other]);
+        limbs_cross(n, u, edge_of(pair, edges.v, LIMBS_OWN), false, &out->storage[f]);
+    limbs_trim(n, &out->storage[f]);
+    out->at[f] = &out->storage[f];
+    out->at[other] = limbs_transform(n, pair->across[f], out->at[f], &out->storage[other]);
     out->at[WORLD] = pair->to_world[other]
-                         ? limbs_transform(n, pair->to_world[f], out->at[f], &out->room[WORLD])
+                         ? limbs_transform(n, pair->to_world[f], out->at[f], &out->storage[WORLD])
                          : out->at[other];
     out->factor[f] = pair->all;
     out->factor[WORLD] = pair->norm[other];
@@ -97,27 +97,28 @@ static void set_normal_of_drift(struct limbs_pair *pair, int u, struct normal *o
 {
     const int n = pair->limbs, f = u >= SLABS_EDGE_OF_B, other = !f;
     struct limbs_vector drift;
-    limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), &pair->drift, false, &out->room[WORLD]);
-    limbs_trim(n, &out->room[WORLD]);
-    out->at[0] = out->at[1] = out->at[WORLD] = &out->room[WORLD];
+    limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), &pair->drift, false, &out->storage[WORLD]);
+    limbs_trim(n, &out->storage[WORLD]);
+    out->at[0] = out->at[1] = out->at[WORLD] = &out->storage[WORLD];
     if (pair->from_world[f]) {
         limbs_cross(n, limbs_transform(n, pair->from_world[f], &pair->drift, &drift),
-                    edge_of(pair, u, LIMBS_OWN), true, &out->room[f]);
-        out->at[f] = &out->room[f];
+                    edge_of(pair, u, LIMBS_OWN), true, &out->storage[f]);
+        out->at[f] = &out->storage[f];
     }
-    out->at[other] = limbs_transform(n, pair->from_world[other], out->at[WORLD], &out->room[other]);
+    out->at[other] =
+        limbs_transform(n, pair->from_world[other], out->at[WORLD], &out->storage[other]);
     out->factor[f] = out->factor[WORLD] = pair->norm[other];
 }
 
 static void set_normal_of_plane_drift(struct limbs_pair *pair, struct normal *out)
 {
-    set_plane_normal(pair->limbs, &pair->drift, &out->room[WORLD]);
-    limbs_trim(pair->limbs, &out->room[WORLD]);
-    out->at[WORLD] = &out->room[WORLD];
+    set_plane_normal(pair->limbs, &pair->drift, &out->storage[WORLD]);
+    limbs_trim(pair->limbs, &out->storage[WORLD]);
+    out->at[WORLD] = &out->storage[WORLD];
     out->factor[WORLD] = pair->all;
     for (int f = 0; f < 2; f++) {
         out->at[f] =
-            limbs_transform(pair->limbs, pair->from_world[f], out->at[WORLD], &out->room[f]);
+            limbs_transform(pair->limbs, pair->from_world[f], out->at[WORLD], &out->storage[f]);
         out->factor[f] = pair->norm[!f];
     }
 }

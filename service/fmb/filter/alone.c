@@ -35,7 +35,7 @@ INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepar
     UNROLL(16)
     for (int w = 0; w < word_count(kind); w++) {
         words[0][w] = side_by_side(x[w], y[w]);
-        words[1][w] = lanes_exchanged(words[0][w]);
+        words[1][w] = lanes_swap(words[0][w]);
     }
     set_run_frame(kind, words[0], of_a);
     set_run_frame(kind, words[1], of_b);
@@ -44,7 +44,7 @@ INLINE void gather_mirrored(const struct walk_kind kind, const struct fmb_prepar
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         of_a->velocity[axis] = side_by_side(velocity_of(kind, a)[axis], velocity_of(kind, b)[axis]);
-        of_b->velocity[axis] = lanes_exchanged(of_a->velocity[axis]);
+        of_b->velocity[axis] = lanes_swap(of_a->velocity[axis]);
     }
 }
 
@@ -137,4 +137,4 @@ INLINE enum slabs_outcome run_one(struct walk_kind kind, const struct fmb_prepar
 
 RUN_FUNCTIONS(RUN_FUNCTION)
 
-run_alone_function *const RUN_PASTE(run, RUN_NAME)[RUN_KINDS] = RUN_TABLE;
+run_single_function *const RUN_PASTE(run, RUN_NAME)[RUN_KINDS] = RUN_TABLE;

@@ -15,8 +15,8 @@ _Static_assert(FMB_PLAIN == 1 && FMB_SSE2 == 2 && FMB_AVX512 == 4,
     extern run_function *const run_##name[RUN_KINDS], *const run_exact_##name[RUN_KINDS],     \
                                                           *const run_times_##name[RUN_KINDS], \
                                                               *const run_boxes_##name[RUN_KINDS];
-#define RUN_DECLARE_ALONE(name)                                   \
-    extern run_alone_function *const run_alone_##name[RUN_KINDS], \
+#define RUN_DECLARE_ALONE(name)                                    \
+    extern run_single_function *const run_alone_##name[RUN_KINDS], \
         *const run_exact_alone_##name[RUN_KINDS], *const run_times_alone_##name[RUN_KINDS];
 #define RUN_SET(name)                                                    \
     {                                                                    \
@@ -69,17 +69,17 @@ static bool has(int instructions)
     return false;
 }
 
-run_alone_function *const *run_verdicts_alone(void)
+run_single_function *const *run_verdicts_single(void)
 {
     return RUN_ALONE_BEST(run);
 }
 
-run_alone_function *const *run_exact_alone(void)
+run_single_function *const *run_exact_single(void)
 {
     return RUN_ALONE_BEST(run_exact);
 }
 
-run_alone_function *const *run_times_alone(void)
+run_single_function *const *run_times_single(void)
 {
     return RUN_ALONE_BEST(run_times);
 }

@@ -1,8 +1,8 @@
 /* LANES pairs side by side. */
 #include "run_box.h"
 
-INLINE void gather_side(const struct run *run, const struct walk_kind kind, size_t first, int which,
-                        struct run_frame *out)
+INLINE void gather_side(const struct kernel_call *run, const struct walk_kind kind, size_t first,
+                        int which, struct run_frame *out)
 {
     const double *frame[LANES];
     UNROLL(8)
@@ -11,7 +11,7 @@ INLINE void gather_side(const struct run *run, const struct walk_kind kind, size
     gather(kind, frame, out);
 }
 
-INLINE void gather_pairs(const struct run *run, const struct walk_kind kind, size_t first,
+INLINE void gather_pairs(const struct kernel_call *run, const struct walk_kind kind, size_t first,
                          struct run_frame pair[2])
 {
     gather_side(run, kind, first, 0, &pair[0]);
@@ -34,7 +34,7 @@ INLINE void scatter(lanes x, double *out, int stride)
 
 #ifdef RUN_BOXES
 
-INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+INLINE void run_lanes(const struct walk_kind kind, const struct kernel_call *run, size_t first)
 {
     struct run_frame frame[2];
     struct walk_pair pair;
@@ -51,7 +51,7 @@ INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t
 
 #elif defined(RUN_EXACT)
 
-INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+INLINE void run_lanes(const struct walk_kind kind, const struct kernel_call *run, size_t first)
 {
     struct run_frame frame[2];
     struct walk_pair pair;
@@ -63,7 +63,7 @@ INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t
 
 #else
 
-INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t first)
+INLINE void run_lanes(const struct walk_kind kind, const struct kernel_call *run, size_t first)
 {
     struct run_frame frame[2];
     struct walk_pair pair;
@@ -83,7 +83,7 @@ INLINE void run_lanes(const struct walk_kind kind, const struct run *run, size_t
 #endif
 
 #define RUN_FUNCTION(name, kind)                                   \
-    static void name(const struct run *run)                        \
+    static void name(const struct kernel_call *run)                \
     {                                                              \
         for (size_t first = 0; first < run->count; first += LANES) \
             run_lanes(kind, run, first);                           \

@@ -14,11 +14,11 @@
  * first, and with the face last. */
 enum run_kind {
     RUN_TETRAHEDRON = 1 << 0, /* one is a tetrahedron: b, or with a face a */
-    RUN_ALIKE = 1 << 1,       /* both are tetrahedra, or faces */
+    RUN_SAME_SHAPE = 1 << 1,  /* both are tetrahedra, or faces */
     RUN_SPACE = 1 << 2,
-    RUN_DRIFTS = 1 << 3, /* the velocities differ and the window is not empty */
-    RUN_ALONG = 1 << 4,  /* 3D: edges or drift may be parallel to the same axis */
-    RUN_FACE = 1 << 5,   /* b is a face */
+    RUN_DRIFTS = 1 << 3,       /* the velocities differ and the window is not empty */
+    RUN_AXIS_ALIGNED = 1 << 4, /* 3D: edges or drift may be parallel to the same axis */
+    RUN_FACE = 1 << 5,         /* b is a face */
     RUN_KINDS = 1 << 6,
     RUN_ODD = RUN_KINDS, /* doubles can say nothing of it */
     RUN_REFUSED          /* cannot be asked */
@@ -36,14 +36,14 @@ struct run_kinds {
 static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, double duration)
 {
     const unsigned both = kind_a & kind_b, any = kind_a | kind_b;
-    if (!(both & PREPARED_GOOD) || ((kind_a ^ kind_b) & PREPARED_SPACE))
+    if (!(both & PREPARED_VALID) || ((kind_a ^ kind_b) & PREPARED_3D))
         return (struct run_kinds){RUN_REFUSED, RUN_REFUSED, false, false};
     if (!(both & PREPARED_USABLE))
         return (struct run_kinds){RUN_ODD, RUN_ODD, false, false};
-    const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE, space = both & PREPARED_SPACE;
+    const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE, space = both & PREPARED_3D;
     const unsigned alike = (both & PREPARED_TETRAHEDRON) << 1 | (both & PREPARED_FACE);
     const unsigned kind = (any & PREPARED_TETRAHEDRON) | alike | (any & PREPARED_FACE) << 4 | space;
-    const unsigned along = space / PREPARED_SPACE * PREPARED_ALONG;
+    const unsigned along = space / PREPARED_3D * PREPARED_AXIS_ALIGNED;
     return (struct run_kinds){.at_rest = (enum run_kind)(kind | (both & along)),
                               .drifting = (enum run_kind)(kind | RUN_DRIFTS | (any & along)),
                               .swapped = (kind_a & shapes) > (kind_b & shapes),
@@ -51,16 +51,16 @@ static inline struct run_kinds run_kinds_of(unsigned kind_a, unsigned kind_b, do
 }
 
 static_assert((int) RUN_TETRAHEDRON == (int) PREPARED_TETRAHEDRON &&
-                  (int) RUN_ALIKE == PREPARED_TETRAHEDRON << 1 &&
-                  (int) RUN_ALIKE == (int) PREPARED_FACE && (int) RUN_FACE == PREPARED_FACE << 4 &&
-                  (int) RUN_SPACE == (int) PREPARED_SPACE &&
-                  (int) RUN_ALONG == (int) PREPARED_ALONG,
+                  (int) RUN_SAME_SHAPE == PREPARED_TETRAHEDRON << 1 &&
+                  (int) RUN_SAME_SHAPE == (int) PREPARED_FACE &&
+                  (int) RUN_FACE == PREPARED_FACE << 4 && (int) RUN_SPACE == (int) PREPARED_3D &&
+                  (int) RUN_AXIS_ALIGNED == (int) PREPARED_AXIS_ALIGNED,
               "run_kinds_of() takes bits over as they are");
 
 static inline bool run_drifts(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
     const double *v = prepared_velocity(a), *w = prepared_velocity(b);
-    return v[0] != w[0] || v[1] != w[1] || (prepared_kind(a) & PREPARED_SPACE && v[2] != w[2]);
+    return v[0] != w[0] || v[1] != w[1] || (prepared_kind(a) & PREPARED_3D && v[2] != w[2]);
 }
 
 static inline enum run_kind run_kind_of(const struct fmb_prepared *a, const struct fmb_prepared *b,
@@ -75,13 +75,13 @@ static inline enum run_kind run_kind_of(const struct fmb_prepared *a, const stru
  * comes before a. Frames that are equal in all numbers are in order both ways. */
 static inline bool run_is_turned(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
-    if (a->head != b->head)
-        return b->head < a->head;
+    if (a->summary != b->summary)
+        return b->summary < a->summary;
     for (int i = 0; i < PREPARED_ERROR_3D; i++)
         if (a->number[i] != b->number[i])
             return b->number[i] < a->number[i];
     const double *v = prepared_velocity(a), *w = prepared_velocity(b);
-    for (int axis = 0; axis < (prepared_kind(a) & PREPARED_SPACE ? 3 : 2); axis++)
+    for (int axis = 0; axis < (prepared_kind(a) & PREPARED_3D ? 3 : 2); axis++)
         if (v[axis] != w[axis])
             return w[axis] < v[axis];
     return false;
@@ -100,7 +100,7 @@ static inline enum run_kind run_box_kind(const struct fmb_prepared *a, const str
     return kinds.moving ? kinds.drifting : kinds.at_rest;
 }
 
-struct run {
+struct kernel_call {
     /* [count][a, b]. Up to RUN_LANES - 1 more are read, and have to be frames of some kind. */
     const struct fmb_prepared *(*pairs)[2];
     size_t count; /* at least 1 */
@@ -118,7 +118,7 @@ struct run {
 
 enum { RUN_LANES = 8 };
 
-typedef void run_function(const struct run *run);
+typedef void run_function(const struct kernel_call *run);
 
 /* Tables have a function for each kind, NULL for combinations that do not exist. verdicts write
  * outcomes, of all kinds; times outcomes and contacts, of kinds that drift; boxes boxes, of all
@@ -136,13 +136,13 @@ struct run_set {
 bool run_set_of(int instructions, struct run_set *out);
 
 /* The same for a pair alone, of any instruction set. out: the contact, from times. */
-typedef enum slabs_outcome run_alone_function(const struct fmb_prepared *a,
-                                              const struct fmb_prepared *b, double duration,
-                                              double *out);
+typedef enum slabs_outcome run_single_function(const struct fmb_prepared *a,
+                                               const struct fmb_prepared *b, double duration,
+                                               double *out);
 
-run_alone_function *const *run_verdicts_alone(void);
-run_alone_function *const *run_exact_alone(void);
-run_alone_function *const *run_times_alone(void);
+run_single_function *const *run_verdicts_single(void);
+run_single_function *const *run_exact_single(void);
+run_single_function *const *run_times_single(void);
 
 /* Boxes of a pair alone: the kernels that take least time for it. */
 run_function *const *run_boxes_single(void);

@@ -9,7 +9,7 @@
 INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
                      const struct run_frame frame[2], double duration, lanes box[2][3])
 {
-    struct box_places places = {.head = {frame[0].head, frame[1].head},
+    struct box_places places = {.summary = {frame[0].summary, frame[1].summary},
                                 .error = {frame[0].error, frame[1].error},
                                 .duration = duration};
     places.exact = nothing_rounds(kind, &frame[0], &frame[1], duration, pair);
@@ -27,7 +27,7 @@ INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
         UNROLL(3)
     for (int axis = 0; axis < 3; axis++)
         box[end][axis] =
-            axis < kind.dim ? lanes_choose(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
+            axis < kind.dim ? lanes_select(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
 }
 
 #endif

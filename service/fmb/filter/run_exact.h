@@ -17,7 +17,8 @@ INLINE lanes set_signs(const struct walk_kind kind, const struct run_frame *a,
                        const struct run_frame *b, struct walk_pair *pair)
 {
     lanes gap = lanes_of(-INFINITY);
-    lanes_bits axes = (a->head & b->head) / ((uint64_t) PREPARED_EXACT_X << 3 * PREPARED_SIZE_BITS);
+    lanes_bits axes =
+        (a->summary & b->summary) / ((uint64_t) PREPARED_EXACT_X << 3 * PREPARED_SIZE_BITS);
     axes &= bits_of(kind.dim == 2 ? 3 : 7);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
@@ -27,7 +28,7 @@ INLINE lanes set_signs(const struct walk_kind kind, const struct run_frame *a,
         if (kind.drifts)
             open |= a->velocity[axis] != b->velocity[axis];
         axes &= ~lanes_bits_where(open, bits_of(1u << axis));
-        gap = lanes_choose((axes & (1u << axis)) != 0, lanes_greatest(along.value, gap), gap);
+        gap = lanes_select((axes & (1u << axis)) != 0, lanes_max(along.value, gap), gap);
     }
     pair->signed_axes = axes;
     return gap;
@@ -93,8 +94,8 @@ INLINE struct outcomes exact_outcomes(const struct walk_kind kind, const struct 
     walk_begin(&found);
     if (!cuboids || !lanes_all(pair->signed_axes == (kind.dim == 2 ? 3 : 7))) {
         whole = nothing_rounds(kind, a, b, duration, pair);
-        pair->unit = lanes_choose(whole, lanes_of(0), pair->unit);
-        pair->reach = lanes_choose(whole, lanes_of(0), pair->reach);
+        pair->unit = lanes_select(whole, lanes_of(0), pair->unit);
+        pair->reach = lanes_select(whole, lanes_of(0), pair->reach);
         set_across(kind, pair);
         walk_pair_of(kind, pair, &found);
     }

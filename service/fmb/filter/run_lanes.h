@@ -142,20 +142,20 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 struct run_frame {
     lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
     lanes error;
-    lanes_bits head;
+    lanes_bits summary;
 };
 
 INLINE void set_run_frame(const struct walk_kind kind, const lanes words[WORDS],
                           struct run_frame *out)
 {
-    const lanes_bits head = lanes_as_bits(words[0]);
-    out->head = head;
+    const lanes_bits summary = lanes_as_bits(words[0]);
+    out->summary = summary;
     out->origin[2] = lanes_of(0);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         out->origin[axis] = words[1 + axis];
         out->size[axis] =
-            lanes_from_bits((head << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
+            lanes_from_bits((summary << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
         UNROLL(3)
         for (int i = 0; i < kind.dim; i++)
             out->component[i][axis] = words[1 + kind.dim * (1 + i) + axis];
@@ -178,7 +178,7 @@ INLINE lanes gather_one(const double *const frame[LANES], int word)
 #endif
 }
 
-/* Of head, origin, components and error. */
+/* Of summary, origin, components and error. */
 INLINE int word_count(const struct walk_kind kind)
 {
     return 1 + (kind.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D);
@@ -258,8 +258,8 @@ struct outcomes {
 INLINE struct outcomes outcomes_of(const struct walk_pair *pair, const struct walk_found *found)
 {
     const unsigned in_range = lanes_mask_bits(pair->in_range);
-    const unsigned separated = lanes_bits_above(found->surely, lanes_of(0));
-    const unsigned overlapping = lanes_bits_above(lanes_of(0), found->possibly);
+    const unsigned separated = lanes_greater_bits(found->surely, lanes_of(0));
+    const unsigned overlapping = lanes_greater_bits(lanes_of(0), found->possibly);
     return (struct outcomes){in_range & separated, 0, in_range & overlapping & ~separated};
 }
 
@@ -307,16 +307,16 @@ INLINE void times_of(const struct walk_pair *pair, const struct walk_found *foun
                      lanes times[2])
 {
     const lanes slack = lanes_of(SLABS_TIMES_SLACK), one = lanes_of(1), duration = lanes_of(window);
-    const lanes enter = lanes_greatest(found->enter[0] - slack, -one);
-    const lanes leave = lanes_least(found->leave[0] + slack, one);
-    const lanes enter_inner = lanes_greatest(found->enter[1] + slack, -one);
-    const lanes leave_inner = lanes_least(found->leave[1] - slack, one);
+    const lanes enter = lanes_max(found->enter[0] - slack, -one);
+    const lanes leave = lanes_min(found->leave[0] + slack, one);
+    const lanes enter_inner = lanes_max(found->enter[1] + slack, -one);
+    const lanes leave_inner = lanes_min(found->leave[1] - slack, one);
     const lanes first = (0.5 + 0.5 * enter) * duration * (1 - 0x1p-51);
-    const lanes last = lanes_least((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
+    const lanes last = lanes_min((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
     const lanes_mask good = pair->in_range & (enter_inner - enter <= TIMES_LIMIT) &
                             (leave - leave_inner <= TIMES_LIMIT) & (duration >= LEAST_DURATION);
-    times[0] = lanes_choose(good, first, lanes_of(NAN));
-    times[1] = lanes_choose(good, last, lanes_of(NAN));
+    times[0] = lanes_select(good, first, lanes_of(NAN));
+    times[1] = lanes_select(good, last, lanes_of(NAN));
 }
 
 /* ---- The table ----
@@ -358,20 +358,20 @@ enum run_shape { RUN_C, RUN_T, RUN_F }; /* cuboid, tetrahedron, face */
 
 #define RUN_SOLID_ENTRIES(name, kind)                           \
     [kind] = name##_cc, [(kind) + RUN_TETRAHEDRON] = name##_ct, \
-    [(kind) + RUN_TETRAHEDRON + RUN_ALIKE] = name##_tt
+    [(kind) + RUN_TETRAHEDRON + RUN_SAME_SHAPE] = name##_tt
 #define RUN_FACE_ENTRIES(name, kind)                                                    \
     [(kind) + RUN_FACE] = name##_cf, [(kind) + RUN_FACE + RUN_TETRAHEDRON] = name##_tf, \
-              [(kind) + RUN_FACE + RUN_ALIKE] = name##_ff
-#define RUN_DRIFTING_ENTRIES                                                       \
-    RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),                                   \
-        RUN_SOLID_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS),                   \
-        RUN_SOLID_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_ALONG), \
-        RUN_FACE_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS),                    \
-        RUN_FACE_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS + RUN_ALONG)
-#define RUN_AT_REST_ENTRIES                                                                        \
-    RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(space, RUN_SPACE),                              \
-        RUN_SOLID_ENTRIES(space_along, RUN_SPACE + RUN_ALONG), RUN_FACE_ENTRIES(space, RUN_SPACE), \
-        RUN_FACE_ENTRIES(space, RUN_SPACE + RUN_ALONG)
+              [(kind) + RUN_FACE + RUN_SAME_SHAPE] = name##_ff
+#define RUN_DRIFTING_ENTRIES                                                              \
+    RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),                                          \
+        RUN_SOLID_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS),                          \
+        RUN_SOLID_ENTRIES(space_drifts_along, RUN_SPACE + RUN_DRIFTS + RUN_AXIS_ALIGNED), \
+        RUN_FACE_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS),                           \
+        RUN_FACE_ENTRIES(space_drifts, RUN_SPACE + RUN_DRIFTS + RUN_AXIS_ALIGNED)
+#define RUN_AT_REST_ENTRIES                                           \
+    RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(space, RUN_SPACE), \
+        RUN_SOLID_ENTRIES(space_along, RUN_SPACE + RUN_AXIS_ALIGNED), \
+        RUN_FACE_ENTRIES(space, RUN_SPACE), RUN_FACE_ENTRIES(space, RUN_SPACE + RUN_AXIS_ALIGNED)
 
 #if defined(RUN_TIMES)
 #define RUN_FUNCTIONS(FUNCTION) RUN_DRIFTING(FUNCTION)
@@ -389,11 +389,11 @@ enum run_shape { RUN_C, RUN_T, RUN_F }; /* cuboid, tetrahedron, face */
     RUN_SOLIDS(FUNCTION, space_drifts, 3, 1, EXACT) \
     RUN_FACES(FUNCTION, space, 0, EXACT)            \
     RUN_FACES(FUNCTION, space_drifts, 1, EXACT)
-#define RUN_SPACE_ENTRIES(name, kind)                            \
-    RUN_SOLID_ENTRIES(name, RUN_SPACE + (kind)),                 \
-        RUN_SOLID_ENTRIES(name, RUN_SPACE + RUN_ALONG + (kind)), \
-        RUN_FACE_ENTRIES(name, RUN_SPACE + (kind)),              \
-        RUN_FACE_ENTRIES(name, RUN_SPACE + RUN_ALONG + (kind))
+#define RUN_SPACE_ENTRIES(name, kind)                                   \
+    RUN_SOLID_ENTRIES(name, RUN_SPACE + (kind)),                        \
+        RUN_SOLID_ENTRIES(name, RUN_SPACE + RUN_AXIS_ALIGNED + (kind)), \
+        RUN_FACE_ENTRIES(name, RUN_SPACE + (kind)),                     \
+        RUN_FACE_ENTRIES(name, RUN_SPACE + RUN_AXIS_ALIGNED + (kind))
 #define RUN_TABLE                                                                    \
     {                                                                                \
         RUN_SOLID_ENTRIES(plane, 0), RUN_SOLID_ENTRIES(plane_drifts, RUN_DRIFTS),    \

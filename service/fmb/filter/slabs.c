@@ -85,14 +85,14 @@
  * error of the frames that is larger by 2^-1072: all other slabs hold the offset farther inside
  * than that, since what the bound has to spare is more than 2^-53 T > 2^-260 of a distance. It
  * holds for slabs decided one by one, too: such a pair spans too many bits for integers
- * (limbs_prepare), and a slab with a bound of its own leaves 2^-660 of the gap (weighed_error),
- * 2^-1064 of the distance. Along axes with known signs (walk_exact.h) the velocities are equal, and
- * nothing underflows. */
+ * (limbs_prepare), and a slab with a bound of its own leaves 2^-660 of the gap
+ * (running_error_bound), 2^-1064 of the distance. Along axes with known signs (walk_exact.h) the
+ * velocities are equal, and nothing underflows. */
 #include "slabs.h"
 
 #include "prepared.h"
 #include "walk.h"
-#include "weighed.h"
+#include "running_error.h"
 
 #include <math.h>
 
@@ -121,12 +121,13 @@ static void set_placing(struct slabs_pair *out)
 {
     double lengths = 0;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        lengths += prepared_size(out->a.head, axis) + prepared_size(out->b.head, axis);
+        lengths += prepared_size(out->a.summary, axis) + prepared_size(out->b.summary, axis);
         lengths += fabs(out->motion.offset[axis]) + fabs(out->motion.drift[axis]);
     }
     out->error = out->a.error + out->b.error;
     out->inexact = out->error != 0;
-    out->placing = (4 * fmax(out->a.turn, out->b.turn) * lengths + out->error) * (1 + 0x1p-30);
+    out->placing = (4 * fmax(out->a.relative_error, out->b.relative_error) * lengths + out->error) *
+                   (1 + 0x1p-30);
 }
 
 bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
@@ -159,7 +160,7 @@ INLINE void set_pair(const struct slabs_pair *pair, const struct walk_kind kind,
     double component[2][3][3], size[2][3];
     for (int f = 0; f < 2; f++)
         for (int i = 0; i < 3; i++) {
-            size[f][i] = prepared_size(frame[f]->head, i);
+            size[f][i] = prepared_size(frame[f]->summary, i);
             for (int axis = 0; axis < 3; axis++)
                 component[f][i][axis] = frame[f]->component[i][axis];
         }
@@ -222,17 +223,18 @@ int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out
 
 /* ---- One slab alone ---- */
 
-static struct weighed edge_of(const struct slabs_pair *pair, int number)
+static struct running_error edge_of(const struct slabs_pair *pair, int number)
 {
     if (number == SLABS_DRIFT)
-        return weigh(pair->motion.drift);
+        return running_error_of(pair->motion.drift);
     const struct world_frame *frame = number < SLABS_EDGE_OF_B ? &pair->a : &pair->b;
     const int e = number % SLABS_EDGES;
     if (e < frame->dim)
-        return weigh(frame->component[e]);
+        return running_error_of(frame->component[e]);
     const int p = frame->dim == 2 ? 0 : next(e % 3), q = frame->dim == 2 ? 1 : next(p);
-    const struct weighed from = weigh(frame->component[p]), to = weigh(frame->component[q]);
-    return weighed_sum(&to, -1, &from);
+    const struct running_error from = running_error_of(frame->component[p]),
+                               to = running_error_of(frame->component[q]);
+    return running_error_sum(&to, -1, &from);
 }
 
 static double above_zero(double x)
@@ -250,11 +252,11 @@ struct known {
     double value, error;
 };
 
-static struct known known_dot(const struct weighed *normal, const double w[FMB_DIM_MAX])
+static struct known known_dot(const struct running_error *normal, const double w[FMB_DIM_MAX])
 {
-    const struct weighed vector = weigh(w);
-    return (struct known){weighed_dot(normal->at, vector.at),
-                          weighed_error(weighed_dot(normal->weight, vector.weight))};
+    const struct running_error vector = running_error_of(w);
+    return (struct known){running_error_dot(normal->at, vector.at),
+                          running_error_bound(running_error_dot(normal->weight, vector.weight))};
 }
 
 static double middle_error(double low, double value, double high)
@@ -264,7 +266,7 @@ static double middle_error(double low, double value, double high)
 
 /* The largest of 0 and of all x (simplex), or the sum of those that are positive (cuboid), from
  * sign x. A component that surely does not count brings no error. Subtractions and sums round by
- * less than what weighed_error() leaves room for. */
+ * less than what running_error_bound() leaves room for. */
 static struct known farthest(const struct world_frame *frame, const struct known x[FMB_DIM_MAX],
                              double sign)
 {
@@ -302,17 +304,18 @@ static double size_of(const struct slabs_pair *pair, int number)
     const struct world_frame *frame = number < SLABS_EDGE_OF_B ? &pair->a : &pair->b;
     const int e = number % SLABS_EDGES;
     if (e < frame->dim)
-        return prepared_size(frame->head, e);
+        return prepared_size(frame->summary, e);
     const int p = frame->dim == 2 ? 0 : next(e % 3), q = frame->dim == 2 ? 1 : next(p);
-    return prepared_size(frame->head, p) + prepared_size(frame->head, q);
+    return prepared_size(frame->summary, p) + prepared_size(frame->summary, q);
 }
 
 /* Below: start - low, with low = -(farthest of A against the normal) - farthest of B along it. */
 void slabs_refine(const struct slabs_pair *pair, struct slab_normal edges, struct inequality out[2])
 {
     const bool plane = pair->a.dim == 2;
-    const struct weighed u = edge_of(pair, edges.u), v = edge_of(pair, edges.v);
-    const struct weighed normal = plane ? weighed_turn(&u) : weighed_cross(&u, &v);
+    const struct running_error u = edge_of(pair, edges.u), v = edge_of(pair, edges.v);
+    const struct running_error normal =
+        plane ? running_error_perpendicular(&u) : running_error_cross(&u, &v);
     const struct known start = known_dot(&normal, pair->motion.offset);
     const struct known slope = known_dot(&normal, pair->motion.drift);
     const double scale = size_of(pair, edges.u) * (plane ? 1 : size_of(pair, edges.v));

@@ -126,7 +126,7 @@ INLINE double determinant_rounding(const struct walk_kind kind)
 
 /* What the boxes need of the frames besides struct walk_pair: as they stand in prepared frames. */
 struct box_places {
-    lanes_bits head[2];
+    lanes_bits summary[2];
     lanes origin[2][3], velocity[2][3]; /* velocities are read where the kind drifts */
     lanes error[2];
     lanes_mask exact; /* nothing rounds (walk_exact.h) */
@@ -235,9 +235,9 @@ INLINE bool has_edge(const struct walk_kind kind, int which, int e)
     return e < 3 ? e < component_count(kind, which) : has_difference(kind, which, e - 3);
 }
 
-INLINE lanes_mask has_bit(lanes_bits head, unsigned bit)
+INLINE lanes_mask has_bit(lanes_bits summary, unsigned bit)
 {
-    return (head & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * bit) != 0;
+    return (summary & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * bit) != 0;
 }
 
 INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind kind, int which,
@@ -248,7 +248,7 @@ INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind k
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         const lanes_mask inexact =
-            is_not(has_bit(places->head[which], (unsigned) PREPARED_TRUE_X << axis));
+            is_not(has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis));
         const lanes at = twice * places->origin[which][axis];
         out->way[axis] =
             kind.drifts
@@ -256,21 +256,21 @@ INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind k
                 : lanes_of(0);
         out->centre[axis] =
             (kind.simplex[which] ? at : at + shift_of(kind, c, axis)) + out->way[axis];
-        out->own_sum[axis] = lanes_magnitude(out->way[axis]);
+        out->own_sum[axis] = lanes_abs(out->way[axis]);
         UNROLL(3)
         for (int i = 0; i < component_count(kind, which); i++)
-            out->own_sum[axis] += lanes_magnitude(c[i][axis]);
-        out->sum[axis] = lanes_magnitude(at) + 2 * out->own_sum[axis];
-        out->own_most = axis ? lanes_greatest(out->own_sum[axis], out->own_most) : out->own_sum[0];
-        const lanes way = lanes_magnitude(out->way[axis]);
-        out->way_most = axis ? lanes_greatest(way, out->way_most) : way;
+            out->own_sum[axis] += lanes_abs(c[i][axis]);
+        out->sum[axis] = lanes_abs(at) + 2 * out->own_sum[axis];
+        out->own_most = axis ? lanes_max(out->own_sum[axis], out->own_most) : out->own_sum[0];
+        const lanes way = lanes_abs(out->way[axis]);
+        out->way_most = axis ? lanes_max(way, out->way_most) : way;
         UNROLL(6)
         for (int index = 0; index < edge_count(kind, which); index++) {
             const int e = edge_at(kind, which, index);
             const lanes from = e < kind.dim ? lanes_of(0) : c[edge_from(kind, e)][axis];
             const lanes to = e < kind.dim ? c[e][axis] : c[edge_to(kind, e)][axis];
             out->edge[e][axis] = e < kind.dim ? to : to - from;
-            out->length[e][axis] = lanes_magnitude(to) + lanes_magnitude(from);
+            out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
             out->some[e][axis] = (out->edge[e][axis] != 0) | inexact;
         }
     }
@@ -284,14 +284,14 @@ INLINE lanes largest_place(const struct walk_pair *pair, const struct walk_kind 
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         const lanes centre = frame->centre[axis];
-        lanes farthest = lanes_magnitude(centre);
+        lanes farthest = lanes_abs(centre);
         UNROLL(3)
         for (int i = 0; i < component_count(kind, which); i++) {
             const lanes c = pair->component[which][i][axis];
-            farthest = kind.simplex[which] ? lanes_greatest(lanes_magnitude(centre + c), farthest)
-                                           : farthest + lanes_magnitude(c);
+            farthest = kind.simplex[which] ? lanes_max(lanes_abs(centre + c), farthest)
+                                           : farthest + lanes_abs(c);
         }
-        largest = lanes_greatest(farthest + lanes_magnitude(frame->way[axis]), largest);
+        largest = lanes_max(farthest + lanes_abs(frame->way[axis]), largest);
     }
     return (1 - 0x1p-40) * largest;
 }
@@ -308,8 +308,8 @@ INLINE void add_reach(const struct walk_kind kind, const struct box_reach *reach
     for (int axis = 0; axis < kind.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++)
-        bounds->outer[end][axis] = lanes_least(reach->at[end][axis], bounds->outer[end][axis]);
-    if (!lanes_bits_above(width, walk->tolerance))
+        bounds->outer[end][axis] = lanes_min(reach->at[end][axis], bounds->outer[end][axis]);
+    if (!lanes_greater_bits(width, walk->tolerance))
         return;
     const lanes_mask wide = width > walk->tolerance;
     UNROLL(3)
@@ -317,10 +317,10 @@ INLINE void add_reach(const struct walk_kind kind, const struct box_reach *reach
         UNROLL(2)
     for (int end = 0; end < 2; end++) {
         const lanes at = reach->at[end][axis], sum = walk->frame[which].own_sum[axis];
-        const lanes inner = at - (reach->width[axis] +
-                                  reach->relative * (sum + lanes_least(lanes_magnitude(at), sum)));
+        const lanes inner =
+            at - (reach->width[axis] + reach->relative * (sum + lanes_min(lanes_abs(at), sum)));
         bounds->inner[end][axis] =
-            lanes_least(lanes_choose(wide, inner, lanes_of(INFINITY)), bounds->inner[end][axis]);
+            lanes_min(lanes_select(wide, inner, lanes_of(INFINITY)), bounds->inner[end][axis]);
     }
 }
 
@@ -331,8 +331,8 @@ INLINE lanes dot_of(const struct walk_kind kind, const lanes u[3], const lanes v
 
 INLINE lanes weight_of(const struct walk_kind kind, const lanes weight[3], const lanes v[3])
 {
-    const lanes plane = weight[0] * lanes_magnitude(v[0]) + weight[1] * lanes_magnitude(v[1]);
-    return kind.dim == 2 ? plane : plane + weight[2] * lanes_magnitude(v[2]);
+    const lanes plane = weight[0] * lanes_abs(v[0]) + weight[1] * lanes_abs(v[1]);
+    return kind.dim == 2 ? plane : plane + weight[2] * lanes_abs(v[2]);
 }
 
 /* weight: of the vector whose product with v is the determinant, some of both as of edges; scale:
@@ -346,17 +346,17 @@ INLINE struct box_vertex vertex_of(const struct walk_kind kind, lanes det, lanes
     const lanes_mask none = {0};
     out.open = none;
     const lanes error = walk->determinant * scale;
-    const lanes fine = lanes_choose(
+    const lanes fine = lanes_select(
         walk->exact, lanes_of(0),
         determinant_rounding(kind) * weight_of(kind, weight, v) + (3.1 * walk->turn) * scale);
-    lanes_mask certain = lanes_magnitude(det) > 16 * error;
+    lanes_mask certain = lanes_abs(det) > 16 * error;
     if (!lanes_all(certain)) {
-        certain = lanes_magnitude(det) > 16 * fine;
-        det = lanes_choose(certain, det, lanes_of(NAN));
+        certain = lanes_abs(det) > 16 * fine;
+        det = lanes_select(certain, det, lanes_of(NAN));
         out.open = is_not(certain) & dot_some(kind, some_weight, some_v) & is_not(walk->exact);
     }
     out.inverse = 1 / det;
-    const lanes size = lanes_magnitude(out.inverse);
+    const lanes size = lanes_abs(out.inverse);
     out.error = (1.2 * error) * size + 0x1p-50;
     out.fine = (1.2 * fine) * size + 0x1p-50;
     walk->spans |= certain;
@@ -376,7 +376,7 @@ INLINE void set_extents(const struct walk_kind kind, const struct walk_pair *pai
         for (int i = 0; i < component_count(kind, which); i++)
             at[i] = pair->component[which][i][axis];
         const struct walk_extent own = extent_of_frame(kind, which, at);
-        const lanes way = lanes_magnitude(walk->frame[which].way[axis]);
+        const lanes way = lanes_abs(walk->frame[which].way[axis]);
         walk->bounds[which].outer[0][axis] = (own.radius - own.low) + way;
         walk->bounds[which].outer[1][axis] = (own.radius + own.high) + way;
         walk->bounds[which].inner[0][axis] = walk->bounds[which].inner[1][axis] =
@@ -388,7 +388,7 @@ INLINE const lanes *magnitudes(const lanes v[3], lanes out[3])
 {
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++)
-        out[axis] = lanes_magnitude(v[axis]);
+        out[axis] = lanes_abs(v[axis]);
     return out;
 }
 
@@ -398,7 +398,7 @@ INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
     UNROLL(3)
     for (int k = 0; k < 3; k++) {
         const int i = next(k), j = next(i);
-        out[k] = lanes_magnitude(u[i] * v[j]) + lanes_magnitude(u[j] * v[i]);
+        out[k] = lanes_abs(u[i] * v[j]) + lanes_abs(u[j] * v[i]);
     }
 }
 
@@ -471,7 +471,7 @@ INLINE lanes choose_by_sign(lanes x, lanes negative, lanes other)
 #elif LANES == 1
     return signbit(x) ? negative : other;
 #else
-    return lanes_choose((lanes_mask) x >> 63, negative, other);
+    return lanes_select((lanes_mask) x >> 63, negative, other);
 #endif
 }
 
@@ -489,7 +489,7 @@ INLINE lanes with_sign_of(lanes x, lanes sign)
 INLINE void set_reach(const struct walk_kind kind, int which, const struct box_line *line, lanes l,
                       struct walk_extent other, lanes way, int axis, struct box_reach *out)
 {
-    const lanes both = lanes_magnitude(l) * line->own + way;
+    const lanes both = lanes_abs(l) * line->own + way;
     if (is_one_sided(kind, which)) {
         const lanes reach = (other.high + other.radius) + both;
         out->at[0][axis] = choose_by_sign(l, reach, lanes_of(INFINITY));
@@ -519,7 +519,7 @@ INLINE void add_wall(const struct walk_pair *pair, const struct walk_kind kind, 
     const bool two = component_count(kind, other) == 3;
     const struct box_ray *ray = line->ray;
     const struct box_frame *frame = &walk->frame[other];
-    const lanes most = pair->size[other][e] * lanes_magnitude(vertex->inverse);
+    const lanes most = pair->size[other][e] * lanes_abs(vertex->inverse);
     const lanes apart = (1.2 * walk->turn) * (line->slope * most);
     struct box_reach reach = {.relative = vertex->fine};
     UNROLL(3)
@@ -530,10 +530,9 @@ INLINE void add_wall(const struct walk_pair *pair, const struct walk_kind kind, 
             two ? extent_of_two(kind.simplex[other], x,
                                 product_at(kind, which, frame, ray, q, axis, l))
                 : extent_of_one(kind.simplex[other], x);
-        const lanes way =
-            kind.drifts ? lanes_magnitude(frame->way[axis] - l * ray->swing) : lanes_of(0);
+        const lanes way = kind.drifts ? lanes_abs(frame->way[axis] - l * ray->swing) : lanes_of(0);
         set_reach(kind, which, line, l, d, way, axis, &reach);
-        reach.width[axis] = lanes_magnitude(l) * line->width + apart;
+        reach.width[axis] = lanes_abs(l) * line->width + apart;
     }
     add_reach(kind, &reach, (most * line->width + apart) + (2 * vertex->error) * frame->own_most,
               other, walk);
@@ -545,7 +544,7 @@ INLINE void add_drift_vertex(const struct walk_kind kind, int which, const struc
 {
     const int other = !which;
     const struct box_frame *frame = &walk->frame[other];
-    const lanes most = frame->way_most * lanes_magnitude(vertex->inverse);
+    const lanes most = frame->way_most * lanes_abs(vertex->inverse);
     struct box_reach reach = {.relative = vertex->fine};
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
@@ -556,7 +555,7 @@ INLINE void add_drift_vertex(const struct walk_kind kind, int which, const struc
             at[i] = product_at(kind, which, frame, line->ray, i, axis, l);
         set_reach(kind, which, line, l, extent_of_frame(kind, other, at), lanes_of(0), axis,
                   &reach);
-        reach.width[axis] = lanes_magnitude(l) * line->width;
+        reach.width[axis] = lanes_abs(l) * line->width;
     }
     add_reach(kind, &reach, most * line->width + (2 * vertex->error) * frame->own_most, other,
               walk);
@@ -570,10 +569,10 @@ INLINE void turn_outward(const struct walk_pair *pair, const struct walk_kind ki
     const lanes *size = pair->size[which];
     const lanes scale = kind.dim == 2 ? size[0] * size[1] : (size[0] * size[1]) * size[2];
     const lanes sign = across ? ray->own : -ray->own;
-    walk->good &= lanes_magnitude(ray->own) > walk->determinant * scale;
+    walk->good &= lanes_abs(ray->own) > walk->determinant * scale;
     ray->middle = with_sign_of(ray->middle, sign);
     ray->swing = with_sign_of(ray->swing, sign);
-    ray->own = across ? lanes_magnitude(ray->own) : -lanes_magnitude(ray->own);
+    ray->own = across ? lanes_abs(ray->own) : -lanes_abs(ray->own);
     UNROLL(6)
     for (int e = 0; e < 6; e++)
         if (e < 3 || has_edge(kind, !which, e))
@@ -612,12 +611,11 @@ INLINE void add_ray(const struct walk_pair *pair, const struct walk_kind kind, i
         walk->good &= is_not(open) | is_inside(kind, d, which ? -ray->middle : ray->middle,
                                                ray->swing, ray->scale, pair, walk);
     struct box_line line = {.ray = ray};
-    line.slope = ((d.high - d.low) + d.radius) +
-                 (lanes_magnitude(ray->middle) + lanes_magnitude(ray->swing));
+    line.slope = ((d.high - d.low) + d.radius) + (lanes_abs(ray->middle) + lanes_abs(ray->swing));
     const lanes error =
         value_error(kind, ray->weight, ray->normal, line.slope, walk) + ray->scale * pair->error;
     line.width = (error + error) + ray->scale * walk->placing;
-    line.width += lanes_choose(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
+    line.width += lanes_select(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
     line.middle = ray->middle;
     line.own = error + (kind.simplex[which] ? own.high : own.radius);
     if (is_one_sided(kind, which))
@@ -694,7 +692,7 @@ INLINE void add_space_rays(const struct walk_pair *pair, const struct walk_kind 
         cross_weight(pair->component[which][i], pair->component[which][j], ray->weight);
         UNROLL(3)
         for (int axis = 0; axis < 3; axis++)
-            ray->normal[axis] = lanes_magnitude(side->normal[k][axis]);
+            ray->normal[axis] = lanes_abs(side->normal[k][axis]);
         cross_some(walk->frame[which].some[i], walk->frame[which].some[j], ray->some);
         UNROLL(6)
         for (int e = 0; e < 6; e++)
@@ -749,7 +747,7 @@ INLINE void set_drift_slabs(const struct walk_pair *pair, const struct walk_kind
         products->drift_middle[e] = middle[e];
         products->error[e] =
             value_error(kind, weight, magnitudes(normal, normal),
-                        ((d.high - d.low) + d.radius) + lanes_magnitude(middle[e]), walk);
+                        ((d.high - d.low) + d.radius) + lanes_abs(middle[e]), walk);
     }
 }
 
@@ -810,14 +808,13 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
     walk->open |= vertex.open;
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_size;
-    const lanes placing = walk->placing + lanes_choose(walk->bent, walk->bends, lanes_of(0));
-    const lanes sum =
-        ((d.high - d.low) + d.radius) + (lanes_magnitude(products->edges.middle[i][j]) +
-                                         lanes_magnitude(products->edges.swing[i][j]));
+    const lanes placing = walk->placing + lanes_select(walk->bent, walk->bends, lanes_of(0));
+    const lanes sum = ((d.high - d.low) + d.radius) + (lanes_abs(products->edges.middle[i][j]) +
+                                                       lanes_abs(products->edges.swing[i][j]));
     const lanes of_m = products->error[i] + drift_scale * pair->error;
     const lanes of_n =
         value_error(kind, weight, magnitudes(normal, normal), sum, walk) + scale * pair->error;
-    const lanes size = lanes_magnitude(vertex.inverse);
+    const lanes size = lanes_abs(vertex.inverse);
     const lanes apart = ((1.2 * walk->turn) * length_b) * ((drift_scale * pair->reach) * size);
     const lanes width_of_m = (of_m + of_m) + drift_scale * placing;
     const lanes width_of_n = (of_n + of_n) + scale * placing;
@@ -825,7 +822,7 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
         const lanes m = b->edge[j][axis] * vertex.inverse, n = b->way[axis] * vertex.inverse;
-        const lanes m_size = lanes_magnitude(m), n_size = lanes_magnitude(n);
+        const lanes m_size = lanes_abs(m), n_size = lanes_abs(n);
         lanes component[3];
         UNROLL(3)
         for (int k = 0; k < component_count(kind, 1); k++)
@@ -872,7 +869,7 @@ INLINE lanes sum_below(lanes x, lanes y)
 {
     const lanes sum = x + y;
     const lanes_mask above = (sum - x > y) | (sum - y > x);
-    return lanes_choose(above, sum - 0x1p-52 * lanes_magnitude(sum), sum);
+    return lanes_select(above, sum - 0x1p-52 * lanes_abs(sum), sum);
 }
 
 INLINE lanes sum_above(lanes x, lanes y)
@@ -895,8 +892,8 @@ INLINE lanes product_slack(lanes x, lanes y, lanes product)
     const lanes error =
         ((x_high * y_high - product) + x_high * y_low + x_low * y_high) + x_low * y_low;
     const lanes_mask exact =
-        ((error == 0) & (lanes_magnitude(product) >= 0x1p-900)) | (x == 0) | (y == 0);
-    return lanes_choose(exact, lanes_of(0), 0x1p-52 * lanes_magnitude(product) + 0x1p-950);
+        ((error == 0) & (lanes_abs(product) >= 0x1p-900)) | (x == 0) | (y == 0);
+    return lanes_select(exact, lanes_of(0), 0x1p-52 * lanes_abs(product) + 0x1p-950);
 }
 
 /* Cuts the box, in the lengths of the world. */
@@ -910,28 +907,28 @@ INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind k
     for (int i = 0; i < component_count(kind, which); i++) {
         const lanes c = (twice ? 0.5 : 1.0) * pair->component[which][i][axis];
         if (kind.simplex[which]) {
-            low = lanes_least(sum_below(origin, c), low);
-            high = lanes_greatest(sum_above(origin, c), high);
+            low = lanes_min(sum_below(origin, c), low);
+            high = lanes_max(sum_above(origin, c), high);
         } else {
-            low = sum_below(low, lanes_least(c, lanes_of(0)));
-            high = sum_above(high, lanes_greatest(c, lanes_of(0)));
+            low = sum_below(low, lanes_min(c, lanes_of(0)));
+            high = sum_above(high, lanes_max(c, lanes_of(0)));
         }
     }
     if (kind.drifts) {
         const lanes velocity = places->velocity[which][axis], time = lanes_of(places->duration);
         const lanes way = velocity * time, slack = product_slack(velocity, time, way);
-        low = sum_below(low, lanes_least(way - slack, lanes_of(0)));
-        high = sum_above(high, lanes_greatest(way + slack, lanes_of(0)));
+        low = sum_below(low, lanes_min(way - slack, lanes_of(0)));
+        high = sum_above(high, lanes_max(way + slack, lanes_of(0)));
     }
     const lanes_mask inexact =
-        is_not(has_bit(places->head[which], (unsigned) PREPARED_EXACT_X << axis));
+        is_not(has_bit(places->summary[which], (unsigned) PREPARED_EXACT_X << axis));
     if (lanes_mask_bits(inexact)) {
-        const lanes error = lanes_choose(inexact, places->error[which], lanes_of(0));
+        const lanes error = lanes_select(inexact, places->error[which], lanes_of(0));
         low = sum_below(low, -error);
         high = sum_above(high, error);
     }
-    box[0][axis] = lanes_greatest(low, box[0][axis]);
-    box[1][axis] = lanes_least(high, box[1][axis]);
+    box[0][axis] = lanes_max(low, box[0][axis]);
+    box[1][axis] = lanes_min(high, box[1][axis]);
 }
 
 /* ---- All of it ---- */
@@ -940,15 +937,15 @@ INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind k
 INLINE void set_sizes(const struct walk_pair *pair, const struct walk_kind kind,
                       const struct box_places *places, int axis, struct box_walk *walk)
 {
-    const lanes apart = lanes_magnitude(places->origin[1][axis] - places->origin[0][axis]);
-    const lanes half = kind.drifts ? lanes_magnitude(pair->half[axis]) : lanes_of(0);
+    const lanes apart = lanes_abs(places->origin[1][axis] - places->origin[0][axis]);
+    const lanes half = kind.drifts ? lanes_abs(pair->half[axis]) : lanes_of(0);
     lanes sum[2] = {lanes_of(0), lanes_of(0)};
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         UNROLL(3)
     for (int i = 0; i < component_count(kind, which); i++)
-        sum[which] += lanes_magnitude(pair->component[which][i][axis]);
-    walk->size[axis] = ((sum[0] + sum[1]) + half) + lanes_magnitude(pair->offset[axis]);
+        sum[which] += lanes_abs(pair->component[which][i][axis]);
+    walk->size[axis] = ((sum[0] + sum[1]) + half) + lanes_abs(pair->offset[axis]);
     walk->way[axis] = (is_doubled(kind) ? apart + apart : apart) + 2 * half;
     UNROLL(2)
     for (int which = 0; which < 2; which++)
@@ -986,16 +983,16 @@ INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
                       const struct box_places *places, struct box_walk *walk)
 {
     lanes largest = lanes_of(0);
-    const unsigned all_true = PREPARED_TRUE_X * (kind.dim == 2 ? 3u : 7u);
+    const unsigned all_true = PREPARED_COMPONENTS_EXACT_X * (kind.dim == 2 ? 3u : 7u);
     lanes_mask inexact = {0}, lost = {0};
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         set_box_frame(pair, kind, which, places, &walk->frame[which]);
-        largest = lanes_greatest(largest_place(pair, kind, which, &walk->frame[which]), largest);
-        inexact |= (places->head[which] & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true) !=
+        largest = lanes_max(largest_place(pair, kind, which, &walk->frame[which]), largest);
+        inexact |= (places->summary[which] & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true) !=
                    (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true;
     }
-    walk->turn = lanes_choose(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
+    walk->turn = lanes_select(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
     lanes lengths = pair->half_size;
     UNROLL(2)
     for (int which = 0; which < 2; which++)
@@ -1004,7 +1001,7 @@ INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
         lengths += pair->size[which][i];
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
-        lengths += lanes_magnitude(pair->offset[axis]);
+        lengths += lanes_abs(pair->offset[axis]);
     walk->placing = (3.1 * walk->turn) * lengths;
     walk->bends = 68 * ((walk_error(kind) + 4 * walk->turn) * pair->reach);
     UNROLL(3)
@@ -1020,17 +1017,17 @@ INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
     }
     walk->exact = places->exact;
     walk->determinant =
-        lanes_choose(walk->exact, lanes_of(0), 1.2 * determinant_rounding(kind) + 3.1 * walk->turn);
+        lanes_select(walk->exact, lanes_of(0), 1.2 * determinant_rounding(kind) + 3.1 * walk->turn);
     walk->largest = largest;
     const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
-    walk->unit = lanes_choose(are_multiples(pair, kind, places, walk, 0x1p45 * power),
+    walk->unit = lanes_select(are_multiples(pair, kind, places, walk, 0x1p45 * power),
                               0x1p-7 * power, lanes_of(0));
     lanes slack = lanes_of(0);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
-        slack = lanes_greatest(lanes_greatest(walk->slack[0][axis], walk->slack[1][axis]), slack);
+        slack = lanes_max(lanes_max(walk->slack[0][axis], walk->slack[1][axis]), slack);
     const lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
-    walk->tolerance = lanes_choose((walk->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
+    walk->tolerance = lanes_select((walk->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
     walk->spans = walk->open = walk->bent = (lanes_mask){0};
     walk->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
@@ -1045,10 +1042,10 @@ INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
     const lanes snap = (middle + large) - large;
     const lanes near = 0x1p-44 * unit;
     lanes_mask is_end = unit != 0;
-    is_end &= lanes_magnitude(snap - outer) <= near;
-    is_end &= lanes_magnitude(snap - inner) <= near;
-    is_end &= lanes_magnitude(middle) <= 0x1p30 * unit;
-    return lanes_choose(is_end, snap, outer);
+    is_end &= lanes_abs(snap - outer) <= near;
+    is_end &= lanes_abs(snap - inner) <= near;
+    is_end &= lanes_abs(middle) <= 0x1p30 * unit;
+    return lanes_select(is_end, snap, outer);
 }
 
 INLINE void add_all(const struct walk_pair *pair, const struct walk_kind kind,
@@ -1096,8 +1093,8 @@ INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind 
                 const lanes slack = walk.slack[which][axis];
                 const lanes at = centre + walk.bounds[which].outer[end][axis];
                 const lanes least = centre + walk.bounds[which].inner[end][axis];
-                outer = lanes_least(at + slack, outer);
-                inner = lanes_least(lanes_least(at - walk.tolerance, least) - slack, inner);
+                outer = lanes_min(at + slack, outer);
+                inner = lanes_min(lanes_min(at - walk.tolerance, least) - slack, inner);
             }
             good &= outer - inner <= BOX_LIMIT * walk.largest;
             const lanes snap = (is_doubled(kind) ? 0.5 : 1.0) * snapped(outer, inner, walk.unit);

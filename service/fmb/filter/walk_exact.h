@@ -49,7 +49,7 @@
 /* Whether x is a multiple of g, with at = 2^52 g: sums from at on are multiples of g. */
 INLINE lanes_mask is_multiple(lanes x, lanes at)
 {
-    const lanes magnitude = lanes_magnitude(x);
+    const lanes magnitude = lanes_abs(x);
     return (magnitude + at) - at == magnitude;
 }
 
@@ -105,10 +105,10 @@ INLINE struct walk_ends ends_of(const struct walk_kind kind, int which, const la
     UNROLL(3)
     for (int i = 0; i < component_count(kind, which); i++) {
         const lanes c = component[i][axis];
-        const lanes low = lanes_least(c, lanes_of(0)), high = lanes_greatest(c, lanes_of(0));
+        const lanes low = lanes_min(c, lanes_of(0)), high = lanes_max(c, lanes_of(0));
         if (kind.simplex[which]) {
-            out.low = lanes_least(low, out.low);
-            out.high = lanes_greatest(high, out.high);
+            out.low = lanes_min(low, out.low);
+            out.high = lanes_max(high, out.high);
             continue;
         }
         const lanes_mask other = c != 0;
@@ -135,7 +135,7 @@ INLINE struct walk_sum gap_along(const struct walk_kind kind, const lanes compon
     add_exactly(&above, -a.high);
     add_exactly(&below, a.low);
     add_exactly(&below, -b.high);
-    above.value = lanes_greatest(above.value + above.rest, below.value + below.rest);
+    above.value = lanes_max(above.value + above.rest, below.value + below.rest);
     above.rounds |= below.rounds; /* of either */
     return above;
 }

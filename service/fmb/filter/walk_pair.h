@@ -166,9 +166,9 @@ INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][
                                               : 0.5 * drift[axis];
         out->half[axis] = half;
         out->offset[axis] = offset_of(kind, component, at, half, axis);
-        offset_size += lanes_magnitude(at);
-        half_size += lanes_magnitude(half);
-        out->tiny |= (half != 0) & (lanes_magnitude(half) < 0x1p-400);
+        offset_size += lanes_abs(at);
+        half_size += lanes_abs(half);
+        out->tiny |= (half != 0) & (lanes_abs(half) < 0x1p-400);
     }
     out->half_size = half_size;
     out->reach = (reach_a + reach_b) + (offset_size + (half_size + half_size));

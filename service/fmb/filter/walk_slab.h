@@ -27,28 +27,25 @@ struct walk_extent {
 INLINE struct walk_extent extent_of_one(bool simplex, lanes x)
 {
     if (!simplex)
-        return (struct walk_extent){lanes_of(0), lanes_of(0), lanes_magnitude(x)};
-    return (struct walk_extent){lanes_least(x, lanes_of(0)), lanes_greatest(x, lanes_of(0)),
-                                lanes_of(0)};
+        return (struct walk_extent){lanes_of(0), lanes_of(0), lanes_abs(x)};
+    return (struct walk_extent){lanes_min(x, lanes_of(0)), lanes_max(x, lanes_of(0)), lanes_of(0)};
 }
 
 INLINE struct walk_extent extent_of_two(bool simplex, lanes x, lanes y)
 {
     if (!simplex)
-        return (struct walk_extent){lanes_of(0), lanes_of(0),
-                                    lanes_magnitude(x) + lanes_magnitude(y)};
-    return (struct walk_extent){lanes_least(lanes_least(x, y), lanes_of(0)),
-                                lanes_greatest(lanes_greatest(x, y), lanes_of(0)), lanes_of(0)};
+        return (struct walk_extent){lanes_of(0), lanes_of(0), lanes_abs(x) + lanes_abs(y)};
+    return (struct walk_extent){lanes_min(lanes_min(x, y), lanes_of(0)),
+                                lanes_max(lanes_max(x, y), lanes_of(0)), lanes_of(0)};
 }
 
 INLINE struct walk_extent extent_of_three(bool simplex, lanes x, lanes y, lanes z)
 {
     if (!simplex)
         return (struct walk_extent){lanes_of(0), lanes_of(0),
-                                    (lanes_magnitude(x) + lanes_magnitude(y)) + lanes_magnitude(z)};
-    return (struct walk_extent){
-        lanes_least(lanes_least(lanes_least(x, y), z), lanes_of(0)),
-        lanes_greatest(lanes_greatest(lanes_greatest(x, y), z), lanes_of(0)), lanes_of(0)};
+                                    (lanes_abs(x) + lanes_abs(y)) + lanes_abs(z)};
+    return (struct walk_extent){lanes_min(lanes_min(lanes_min(x, y), z), lanes_of(0)),
+                                lanes_max(lanes_max(lanes_max(x, y), z), lanes_of(0)), lanes_of(0)};
 }
 
 /* Of all components along what makes at[] of them. */
@@ -92,11 +89,10 @@ INLINE struct walk_extent extent_sum(const struct walk_kind kind, struct walk_ex
 INLINE lanes gap_of(const struct walk_kind kind, struct walk_extent d, lanes middle, lanes swing)
 {
     const bool round = !kind.simplex[0] && !kind.simplex[1];
-    const lanes beyond =
-        round ? lanes_magnitude(middle) : lanes_greatest(middle - d.high, d.low - middle);
+    const lanes beyond = round ? lanes_abs(middle) : lanes_max(middle - d.high, d.low - middle);
     if (kind.simplex[0] && kind.simplex[1])
-        return kind.drifts ? beyond - lanes_magnitude(swing) : beyond;
-    return beyond - (kind.drifts ? d.radius + lanes_magnitude(swing) : d.radius);
+        return kind.drifts ? beyond - lanes_abs(swing) : beyond;
+    return beyond - (kind.drifts ? d.radius + lanes_abs(swing) : d.radius);
 }
 
 /* ---- A slab ---- */
@@ -141,22 +137,22 @@ INLINE void bound_times(const struct walk_kind kind, struct walk_extent d, lanes
     low -= middle;
     high -= middle;
     if (kind.along) { /* what would bound nothing, in place of what was rounded */
-        low = lanes_choose(nothing, lanes_of(-4), low);
-        high = lanes_choose(nothing, lanes_of(4), high);
-        swing = lanes_choose(nothing, lanes_of(0), swing);
-        error = lanes_choose(nothing, lanes_of(1), error);
+        low = lanes_select(nothing, lanes_of(-4), low);
+        high = lanes_select(nothing, lanes_of(4), high);
+        swing = lanes_select(nothing, lanes_of(0), swing);
+        error = lanes_select(nothing, lanes_of(1), error);
     }
-    const lanes nearest = lanes_least(-low, high);
-    low = lanes_choose(swing == 0, -nearest, low);
-    high = lanes_choose(swing == 0, nearest, high);
-    const lanes inverse = 1 / (swing + lanes_with_sign(0x1p-10 * error, swing));
+    const lanes nearest = lanes_min(-low, high);
+    low = lanes_select(swing == 0, -nearest, low);
+    high = lanes_select(swing == 0, nearest, high);
+    const lanes inverse = 1 / (swing + lanes_copysign(0x1p-10 * error, swing));
     const lanes one = low * inverse, other = high * inverse;
-    const lanes slack = error * lanes_magnitude(inverse);
-    const lanes enter = lanes_least(one, other), leave = lanes_greatest(one, other);
-    found->enter[0] = lanes_greatest(enter - slack, found->enter[0]);
-    found->enter[1] = lanes_greatest(enter + slack, found->enter[1]);
-    found->leave[0] = lanes_least(leave + slack, found->leave[0]);
-    found->leave[1] = lanes_least(leave - slack, found->leave[1]);
+    const lanes slack = error * lanes_abs(inverse);
+    const lanes enter = lanes_min(one, other), leave = lanes_max(one, other);
+    found->enter[0] = lanes_max(enter - slack, found->enter[0]);
+    found->enter[1] = lanes_max(enter + slack, found->enter[1]);
+    found->leave[0] = lanes_min(leave + slack, found->leave[0]);
+    found->leave[1] = lanes_min(leave - slack, found->leave[1]);
 }
 
 /* kind.exact: lanes in which the normal of two edges is parallel to an axis along which the sign of
@@ -177,9 +173,9 @@ INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, str
 {
     const lanes gap = gap_of(kind, d, middle, swing);
     const lanes above = gap + scale * unit;
-    found->surely = lanes_greatest(gap - scale * unit, found->surely);
-    found->possibly = lanes_greatest(
-        kind.along || kind.exact ? lanes_choose(nothing, lanes_of(-INFINITY), above) : above,
+    found->surely = lanes_max(gap - scale * unit, found->surely);
+    found->possibly = lanes_max(
+        kind.along || kind.exact ? lanes_select(nothing, lanes_of(-INFINITY), above) : above,
         found->possibly);
     if (kind.times && !timeless)
         bound_times(kind, d, scale * unit, middle, swing, nothing, found);
@@ -202,7 +198,7 @@ INLINE void add_slab(const struct walk_kind kind, struct slab_normal normal, str
 /* Whether every pair is known to be separated, and no more is wanted. */
 INLINE bool is_enough(const struct walk_kind kind, const struct walk_found *found)
 {
-    const unsigned separated = lanes_bits_above(found->surely, lanes_of(0));
+    const unsigned separated = lanes_greater_bits(found->surely, lanes_of(0));
 #if LANES == 1
     if (found->next)
         return false;
@@ -228,7 +224,7 @@ INLINE void ask_axes(const struct walk_pair *pair, const struct walk_kind kind,
             at[f][i] = pair->component[f][i][axis];
         const struct walk_extent d = extent_difference(kind, extent_of_frame(kind, 0, at[0]),
                                                        extent_of_frame(kind, 1, at[1]));
-        gap = lanes_greatest(gap_of(kind, d, pair->offset[axis], pair->half[axis]), gap);
+        gap = lanes_max(gap_of(kind, d, pair->offset[axis], pair->half[axis]), gap);
     }
     found->surely =
         gap - ((kind.rough ? SLABS_ROUGH : 1) * SLABS_ROUNDING_AXES * pair->reach + pair->error);

@@ -135,7 +135,7 @@ INLINE void add_product_differences(const struct walk_kind kind, lanes value[6][
 INLINE lanes mirrored(lanes x)
 {
 #if LANES == 2
-    return lanes_exchanged(x);
+    return lanes_swap(x);
 #else
     return x;
 #endif
@@ -199,9 +199,9 @@ INLINE struct walk_extent extent_at_edge(const struct walk_kind kind, int which,
  * numbers that are not 0 is so small as to become 0. */
 INLINE lanes_mask cross_is_nothing(const lanes u[3], const lanes v[3])
 {
-    const lanes x = lanes_magnitude(u[0]) * (lanes_magnitude(v[1]) + lanes_magnitude(v[2]));
-    const lanes y = lanes_magnitude(u[1]) * (lanes_magnitude(v[2]) + lanes_magnitude(v[0]));
-    const lanes z = lanes_magnitude(u[2]) * (lanes_magnitude(v[0]) + lanes_magnitude(v[1]));
+    const lanes x = lanes_abs(u[0]) * (lanes_abs(v[1]) + lanes_abs(v[2]));
+    const lanes y = lanes_abs(u[1]) * (lanes_abs(v[2]) + lanes_abs(v[0]));
+    const lanes z = lanes_abs(u[2]) * (lanes_abs(v[0]) + lanes_abs(v[1]));
     return (x + y) + z == 0;
 }
 

@@ -44,32 +44,32 @@ INLINE bool has_edge_along(bool simplex, int count, const double c[FMB_DIM_MAX][
     return along;
 }
 
-/* A bit of the kind, in its place in the head. */
-static uint64_t in_head(unsigned kind)
+/* A bit of the kind, in its place in the summary. */
+static uint64_t in_summary(unsigned kind)
 {
     return (uint64_t) kind << 3 * PREPARED_SIZE_BITS;
 }
 
-static const unsigned true_axes = PREPARED_TRUE_X * 7;
+static const unsigned true_axes = PREPARED_COMPONENTS_EXACT_X * 7;
 
-unsigned long long prepared_head_of(const struct fmb_frame *frame)
+unsigned long long prepared_summary_of(const struct fmb_frame *frame)
 {
     const bool plain = !frame->rounded && frame->bits[1] - frame->bits[0] <= 24;
-    unsigned kind = PREPARED_GOOD;
+    unsigned kind = PREPARED_VALID;
     kind |= frame->shape == FMB_TETRAHEDRON ? PREPARED_TETRAHEDRON : 0;
     kind |= frame->shape == FMB_FACE ? PREPARED_FACE : 0;
-    kind |= frame->dim == 3 ? PREPARED_SPACE : 0;
+    kind |= frame->dim == 3 ? PREPARED_3D : 0;
     kind |= frame->in_range ? PREPARED_USABLE : 0;
     kind |= plain ? PREPARED_PLAIN : 0;
     kind |= frame->rounded ? 0 : true_axes;
     kind |= has_edge_along(frame_is_simplex(frame), frame->count,
                            (const double(*)[FMB_DIM_MAX]) frame->component)
-                ? PREPARED_ALONG
+                ? PREPARED_AXIS_ALIGNED
                 : 0;
-    uint64_t head = in_head(kind);
+    uint64_t summary = in_summary(kind);
     for (int i = 0; i < FMB_DIM_MAX && frame->in_range; i++)
-        head |= size_bits(length_of(frame->component[i])) << i * PREPARED_SIZE_BITS;
-    return head;
+        summary |= size_bits(length_of(frame->component[i])) << i * PREPARED_SIZE_BITS;
+    return summary;
 }
 
 /* ---- Places ---- */
@@ -84,12 +84,12 @@ _Static_assert(sizeof(struct place) == sizeof(((struct fmb_prepared *) 0)->numbe
 
 /* position + R origin. A sum that rounds is off by at most half a unit in the last place on each
  * axis, which is counted twice. exact: as set_place() returns. */
-static void set_origin(const struct fmb_frame *frame, const struct rotation *rotation,
+static void set_origin(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                        const double *position, struct place *out, unsigned *exact)
 {
     double way[FMB_DIM_MAX];
     bool rounds = !rotation->exact;
-    rotation_turn(rotation, frame->origin, way);
+    rotation_apply(rotation, frame->origin, way);
     for (int axis = 0; axis < frame->dim; axis++)
         out->origin[axis] = position[axis] + way[axis];
     for (int axis = 0; axis < frame->dim && (!rounds || *exact); axis++)
@@ -111,13 +111,13 @@ static bool is_zero(const double v[FMB_DIM_MAX])
  * The entries of the rotation are 0, or at least 2^-60 and so multiples of 2^-112; components are
  * multiples of 2^bits[0]. Then products are multiples of 2^(bits[0] - 112), rounded or not, and so
  * are their sums: what is not 0 is at least 2^-400. */
-INLINE bool turns_in_range(const struct fmb_frame *frame, const struct rotation *rotation)
+INLINE bool turns_in_range(const struct fmb_frame *frame, const struct rotation_matrix *rotation)
 {
     return !rotation->small && frame->sturdy && frame->bits[0] >= -288;
 }
 
 /* The components of a box are multiples of the columns of the rotation. */
-INLINE void turn_components(const struct fmb_frame *frame, const struct rotation *rotation,
+INLINE void turn_components(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                             double out[FMB_DIM_MAX][FMB_DIM_MAX])
 {
     UNROLL(3)
@@ -130,23 +130,23 @@ INLINE void turn_components(const struct fmb_frame *frame, const struct rotation
             memcpy(out[i], &xy, sizeof xy);
             out[i][2] = rotation->z[i] * c[i];
         } else {
-            rotation_turn(rotation, c, out[i]);
+            rotation_apply(rotation, c, out[i]);
         }
     }
 }
 
 /* out := R v. Coordinates that are smaller than tiny become 0, but for those of exact rows. */
-static void turn_and_trim(const struct rotation *rotation, const double v[FMB_DIM_MAX], double tiny,
-                          double out[FMB_DIM_MAX])
+static void turn_and_trim(const struct rotation_matrix *rotation, const double v[FMB_DIM_MAX],
+                          double tiny, double out[FMB_DIM_MAX])
 {
-    rotation_turn(rotation, v, out);
+    rotation_apply(rotation, v, out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         if (fabs(out[axis]) < tiny && !rotation->axis_exact[axis])
             out[axis] = 0;
 }
 
 /* Returns which coordinates are exact: PREPARED_EXACT_X and so on. */
-INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation *rotation,
+INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                           const double *position, struct place *out)
 {
     unsigned exact = 0;
@@ -160,7 +160,7 @@ INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation *
     } else {
         UNROLL(3)
         for (int i = 0; i < FMB_DIM_MAX; i++)
-            turn_and_trim(rotation, frame->component[i], 0x1p-60 * prepared_size(frame->head, i),
+            turn_and_trim(rotation, frame->component[i], 0x1p-60 * prepared_size(frame->summary, i),
                           out->component[i]);
     }
     out->origin[0] = position[0];
@@ -172,32 +172,34 @@ INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation *
     return exact;
 }
 
-/* What the head of the frame does not say yet. */
-static uint64_t head_of(const struct fmb_frame *frame, const struct rotation *rotation,
-                        const struct fmb_placement *placement, const struct place *place,
-                        unsigned exact)
+/* What the summary of the frame does not say yet. */
+static uint64_t summary_of(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
+                           const struct fmb_placement *placement, const struct place *place,
+                           unsigned exact)
 {
-    uint64_t head = frame->head | in_head(exact);
+    uint64_t summary = frame->summary | in_summary(exact);
     if (placement_moves(placement, frame->dim))
-        head |= in_head(PREPARED_MOVING);
+        summary |= in_summary(PREPARED_MOVING);
     if (place->error != 0)
-        head &= ~in_head(PREPARED_PLAIN);
+        summary &= ~in_summary(PREPARED_PLAIN);
     if (rotation->exact)
-        return head;
+        return summary;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        head &= rotation->axis_exact[axis] ? head : ~in_head((unsigned) PREPARED_TRUE_X << axis);
-    head &= ~in_head(PREPARED_ALONG | (frame->sturdy ? 0 : PREPARED_USABLE));
+        summary &= rotation->axis_exact[axis]
+                       ? summary
+                       : ~in_summary((unsigned) PREPARED_COMPONENTS_EXACT_X << axis);
+    summary &= ~in_summary(PREPARED_AXIS_ALIGNED | (frame->sturdy ? 0 : PREPARED_USABLE));
     if (frame->dim == 3 && has_edge_along(frame_is_simplex(frame), frame->count,
                                           (const double(*)[FMB_DIM_MAX]) place->component))
-        head |= in_head(PREPARED_ALONG);
-    return head;
+        summary |= in_summary(PREPARED_AXIS_ALIGNED);
+    return summary;
 }
 
 /* ---- Frames in general orientation ---- */
 
 /* set() of a frame whose orientation and coordinates are general: nothing is exact or plain. An
  * edge that comes to lie parallel to an axis is not noticed: the filter is unsure of it. */
-INLINE void set_general(const struct fmb_frame *frame, const struct rotation *rotation,
+INLINE void set_general(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                         const struct fmb_placement *placement, struct fmb_prepared *out)
 {
     struct place *place = (struct place *) out->number;
@@ -205,7 +207,7 @@ INLINE void set_general(const struct fmb_frame *frame, const struct rotation *ro
     memcpy(o, placement->position, sizeof place->origin);
     if (!is_zero(frame->origin)) {
         double way[FMB_DIM_MAX];
-        rotation_turn(rotation, frame->origin, way);
+        rotation_apply(rotation, frame->origin, way);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             o[axis] += way[axis];
     }
@@ -213,8 +215,9 @@ INLINE void set_general(const struct fmb_frame *frame, const struct rotation *ro
     place->error = frame->slack + frame->turn_error;
     place->error += 0x1p-52 * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
     place->error *= 1 + 0x1p-40; /* for its own rounding */
-    out->head = (frame->head & ~in_head(PREPARED_ALONG | PREPARED_PLAIN | true_axes)) |
-                (placement_moves(placement, FMB_DIM_MAX) ? in_head(PREPARED_MOVING) : 0);
+    out->summary =
+        (frame->summary & ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | true_axes)) |
+        (placement_moves(placement, FMB_DIM_MAX) ? in_summary(PREPARED_MOVING) : 0);
     out->frame = frame;
     out->placement = placement;
 }
@@ -233,17 +236,17 @@ INLINE void put_plane(const double origin[2], const double component[][FMB_DIM_M
     memset(number + used, 0, sizeof((struct fmb_prepared *) 0)->number - used * sizeof *number);
 }
 
-/* A frame without orientation whose origin is that of its body: what set_place() and head_of() make
- * of it, its own numbers. */
+/* A frame without orientation whose origin is that of its body: what set_place() and summary_of()
+ * make of it, its own numbers. */
 static void set_unturned(const struct fmb_frame *frame, const struct fmb_placement *placement,
                          struct fmb_prepared *out)
 {
     const unsigned axes = (frame->dim == 3 ? 7u : 3u) * PREPARED_EXACT_X;
     const double error = frame->slack * (1 + 0x1p-40);
-    out->head = frame->head | (frame->slack == 0 ? in_head(axes) : 0) |
-                (placement_moves(placement, frame->dim) ? in_head(PREPARED_MOVING) : 0);
+    out->summary = frame->summary | (frame->slack == 0 ? in_summary(axes) : 0) |
+                   (placement_moves(placement, frame->dim) ? in_summary(PREPARED_MOVING) : 0);
     if (error != 0)
-        out->head &= ~in_head(PREPARED_PLAIN);
+        out->summary &= ~in_summary(PREPARED_PLAIN);
     out->frame = frame;
     out->placement = placement;
     if (frame->dim == 2) {
@@ -261,7 +264,7 @@ INLINE bool is_unturned(const struct fmb_frame *frame, const struct fmb_placemen
     return placement->orientation_count == 0 && is_zero(frame->origin);
 }
 
-INLINE void set(const struct fmb_frame *frame, const struct rotation *rotation,
+INLINE void set(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                 const struct fmb_placement *placement, struct fmb_prepared *out)
 {
     if (rotation->general && turns_in_range(frame, rotation)) {
@@ -270,7 +273,7 @@ INLINE void set(const struct fmb_frame *frame, const struct rotation *rotation,
     }
     struct place plane, *place = frame->dim == 3 ? (struct place *) out->number : &plane;
     const unsigned exact = set_place(frame, rotation, placement->position, place);
-    out->head = head_of(frame, rotation, placement, place, exact);
+    out->summary = summary_of(frame, rotation, placement, place, exact);
     out->frame = frame;
     out->placement = placement;
     if (frame->dim == 2)
@@ -282,7 +285,7 @@ static __attribute__((noinline)) void set_alone(const struct fmb_frame *frame,
                                                 const struct fmb_placement *placement,
                                                 struct fmb_prepared *out)
 {
-    struct rotation rotation;
+    struct rotation_matrix rotation;
     rotation_of(placement, frame->dim, &rotation);
     set(frame, &rotation, placement, out);
 }
@@ -298,7 +301,7 @@ void prepared_set(struct placed_frame placed, struct fmb_prepared *out)
 INLINE void place(const struct fmb_placement *placement, unsigned first, unsigned count,
                   struct fmb_prepared *out)
 {
-    struct rotation rotation;
+    struct rotation_matrix rotation;
     rotation_of(placement, placement->body->dim, &rotation);
     for (unsigned i = 0; i < count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(placement->body, first + i);
@@ -376,7 +379,7 @@ void world_frame_of(const struct fmb_prepared *prepared, struct world_frame *out
     out->shape = frame->shape == FMB_BOX ? FMB_CUBOID : frame->shape;
     out->dim = frame->dim;
     out->count = frame->count;
-    out->head = prepared->head;
+    out->summary = prepared->summary;
     memcpy(out->origin, next, dim * sizeof *next);
     memcpy(out->velocity, prepared->placement->velocity, dim * sizeof *next);
     for (size_t i = 0; i < dim; i++) {
@@ -386,7 +389,7 @@ void world_frame_of(const struct fmb_prepared *prepared, struct world_frame *out
             out->size[i] = fmax(out->size[i], fabs(next[axis]));
     }
     out->error = prepared_error(prepared);
-    out->turn = out->error == 0                               ? 0
-                : prepared->placement->orientation_count == 0 ? 0x1p-51
-                                                              : ROTATION_ERROR;
+    out->relative_error = out->error == 0                               ? 0
+                          : prepared->placement->orientation_count == 0 ? 0x1p-51
+                                                                        : ROTATION_ERROR;
 }

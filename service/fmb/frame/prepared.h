@@ -5,9 +5,9 @@
  * same. Bounds of the filter hold for the rounded frame, whose numbers are exact; slabs.h says what
  * follows for the true one.
  *
- * The head, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits each, then
- * the bits below. A size is the upper half of a double's upper half, rounded up: a shift to the
- * top of 64 bits makes it a double that is no smaller than the length of the component (its
+ * The summary, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits each,
+ * then the bits below. A size is the upper half of a double's upper half, rounded up: a shift to
+ * the top of 64 bits makes it a double that is no smaller than the length of the component (its
  * 2-norm), turned and rounded or not, and at most a fifteenth larger. 0 for a component that is not
  * there, or is 0. */
 #ifndef FMB_PREPARED_H
@@ -22,20 +22,20 @@ enum {
     PREPARED_SIZE_BITS = 16,
     PREPARED_TETRAHEDRON = 1 << 0, /* neither: a cuboid */
     PREPARED_FACE = 1 << 1,
-    PREPARED_SPACE = 1 << 2,  /* 3D */
-    PREPARED_MOVING = 1 << 3, /* its velocity is not 0 */
-    PREPARED_ALONG = 1 << 4,  /* an edge is parallel to a coordinate axis */
-    PREPARED_USABLE = 1 << 5, /* doubles can decide pairs with it */
-    PREPARED_PLAIN = 1 << 6,  /* the error is 0, and the components have few bits */
-    PREPARED_GOOD = 1 << 7,   /* it was prepared */
+    PREPARED_3D = 1 << 2,           /* 3D */
+    PREPARED_MOVING = 1 << 3,       /* its velocity is not 0 */
+    PREPARED_AXIS_ALIGNED = 1 << 4, /* an edge is parallel to a coordinate axis */
+    PREPARED_USABLE = 1 << 5,       /* doubles can decide pairs with it */
+    PREPARED_PLAIN = 1 << 6,        /* the error is 0, and the components have few bits */
+    PREPARED_VALID = 1 << 7,        /* it was prepared */
     /* The error does not reach the x coordinates. The next two bits: y and z. */
     PREPARED_EXACT_X = 1 << 8,
     /* The components are exact along x. The next two bits: along y and z. */
-    PREPARED_TRUE_X = 1 << 11
+    PREPARED_COMPONENTS_EXACT_X = 1 << 11
 };
 
-/* Words of struct fmb_prepared, the head being word 0. In 2D a pair at rest reads the first eight
- * alone, and the velocity follows. */
+/* Words of struct fmb_prepared, the summary being word 0. In 2D a pair at rest reads the first
+ * eight alone, and the velocity follows. */
 enum {
     PREPARED_ERROR_2D = 7,
     PREPARED_VELOCITY_2D = 8,
@@ -47,7 +47,7 @@ enum {
 /* The bits of the kind. */
 static inline unsigned prepared_kind(const struct fmb_prepared *frame)
 {
-    return (unsigned) (frame->head >> 3 * PREPARED_SIZE_BITS);
+    return (unsigned) (frame->summary >> 3 * PREPARED_SIZE_BITS);
 }
 
 /* Of a pair: both frames plain. */
@@ -59,21 +59,20 @@ static inline bool prepared_both_plain(const struct fmb_prepared *a, const struc
 /* On input: a frame that is prepared. */
 static inline const double *prepared_velocity(const struct fmb_prepared *frame)
 {
-    return prepared_kind(frame) & PREPARED_SPACE ? frame->placement->velocity
-                                                 : &frame->number[PREPARED_VELOCITY_2D - 1];
+    return prepared_kind(frame) & PREPARED_3D ? frame->placement->velocity
+                                              : &frame->number[PREPARED_VELOCITY_2D - 1];
 }
 
 static inline double prepared_error(const struct fmb_prepared *frame)
 {
     return frame
-        ->number[(prepared_kind(frame) & PREPARED_SPACE ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) -
-                 1];
+        ->number[(prepared_kind(frame) & PREPARED_3D ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
 }
 
 /* No smaller than the length of component i. */
-static inline double prepared_size(unsigned long long head, int i)
+static inline double prepared_size(unsigned long long summary, int i)
 {
-    const unsigned long long bits = head << (64 - PREPARED_SIZE_BITS * (1 + i));
+    const unsigned long long bits = summary << (64 - PREPARED_SIZE_BITS * (1 + i));
     const unsigned long long upper = bits >> 48 << 48;
     double size;
     memcpy(&size, &upper, sizeof size);
@@ -95,8 +94,8 @@ void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *o
 /* Whether a window may last so long, in seconds: not negative, and finite. */
 bool prepared_is_duration(double duration);
 
-/* The head of a frame whose other fields are set, without orientation and at rest. */
-unsigned long long prepared_head_of(const struct fmb_frame *frame);
+/* The summary of a frame whose other fields are set, without orientation and at rest. */
+unsigned long long prepared_summary_of(const struct fmb_frame *frame);
 
 /* As fmb_prepare() of one frame, without a check. */
 void prepared_set(struct placed_frame placed, struct fmb_prepared *out);
@@ -110,12 +109,12 @@ struct world_frame {
     const struct fmb_frame *frame;
     enum fmb_shape shape;
     int dim, count;
-    unsigned long long head;
+    unsigned long long summary;
     double origin[FMB_DIM_MAX], component[FMB_DIM_MAX][FMB_DIM_MAX]; /* beyond dim: 0 */
     double velocity[FMB_DIM_MAX];                                    /* exact */
     double size[FMB_DIM_MAX]; /* largest magnitude in each component */
     double error;
-    double turn; /* bounds the error of a component, against its length */
+    double relative_error; /* bounds the error of a component, relative to its length */
 };
 
 void world_frame_of(const struct fmb_prepared *prepared, struct world_frame *out);

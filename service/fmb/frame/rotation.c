@@ -36,7 +36,7 @@ static int unit_entry(const double q[4], int i, int j)
     return x == y && q[0] == z ? 1 : x == -y && q[0] == -z ? -1 : 0;
 }
 
-static void set_entry(struct rotation *out, int row, int column, double x)
+static void set_entry(struct rotation_matrix *out, int row, int column, double x)
 {
     if (row < 2)
         out->xy[column][row] = x;
@@ -44,7 +44,7 @@ static void set_entry(struct rotation *out, int row, int column, double x)
         out->z[column] = x;
 }
 
-void rotation_set_units(struct quaternion quaternion, struct rotation *out)
+void rotation_set_units(struct quaternion quaternion, struct rotation_matrix *out)
 {
     const double q[4] = {quaternion.w, quaternion.x, quaternion.y, quaternion.z};
     for (int i = 0; i < FMB_DIM_MAX; i++)

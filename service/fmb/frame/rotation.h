@@ -38,7 +38,7 @@
 /* Two coordinates side by side. */
 typedef double rotation_two __attribute__((vector_size(16)));
 
-struct rotation {
+struct rotation_matrix {
     int dim;
     bool turned;                  /* there is an orientation; else the matrix is the identity */
     bool exact;                   /* all entries are 0 or +-1, exactly */
@@ -50,14 +50,14 @@ struct rotation {
     double z[FMB_DIM_MAX];
 };
 
-static inline double rotation_entry(const struct rotation *rotation, int row, int column)
+static inline double rotation_entry(const struct rotation_matrix *rotation, int row, int column)
 {
     return row < 2 ? rotation->xy[column][row] : rotation->z[column];
 }
 
 /* out := R v. */
-INLINE void rotation_turn(const struct rotation *rotation, const double v[FMB_DIM_MAX],
-                          double out[FMB_DIM_MAX])
+INLINE void rotation_apply(const struct rotation_matrix *rotation, const double v[FMB_DIM_MAX],
+                           double out[FMB_DIM_MAX])
 {
     const rotation_two xy =
         (rotation->xy[0] * v[0] + rotation->xy[1] * v[1]) + rotation->xy[2] * v[2];
@@ -103,7 +103,7 @@ struct quaternion rotation_scaled(struct quaternion q);
 bool rotation_is_spread_legal(struct quaternion given, struct quaternion q);
 
 /* Sets the rows that are exactly unit vectors, and the columns that are so with them. */
-void rotation_set_units(struct quaternion q, struct rotation *out);
+void rotation_set_units(struct quaternion q, struct rotation_matrix *out);
 
 /* Whether an orientation is accepted: fmb_placement_check(). */
 INLINE bool rotation_is_orientation(const double *orientation, int count)
@@ -131,7 +131,7 @@ INLINE bool rotation_may_have_units(struct quaternion q)
 }
 
 /* No entry is larger than 1 + 9 u, so that the product is less than twice the least of them. */
-INLINE bool rotation_no_entry_is_small(const struct rotation *rotation)
+INLINE bool rotation_no_entry_is_small(const struct rotation_matrix *rotation)
 {
     const rotation_two xy = (rotation->xy[0] * rotation->xy[1]) * rotation->xy[2];
     const double z = (rotation->z[0] * rotation->z[1]) * rotation->z[2];
@@ -139,7 +139,7 @@ INLINE bool rotation_no_entry_is_small(const struct rotation *rotation)
 }
 
 /* A rotation about the z axis, or in the plane. */
-INLINE void rotation_set_planar(double cosine, double sine, bool exact, struct rotation *out)
+INLINE void rotation_set_planar(double cosine, double sine, bool exact, struct rotation_matrix *out)
 {
     out->xy[0] = (rotation_two){cosine, sine};
     out->xy[1] = (rotation_two){0 - sine, cosine};
@@ -153,7 +153,7 @@ INLINE void rotation_set_planar(double cosine, double sine, bool exact, struct r
 }
 
 /* As rotation_of() says, for x = y = 0. */
-INLINE void rotation_set_about_z(double w, double z, struct rotation *out)
+INLINE void rotation_set_about_z(double w, double z, struct rotation_matrix *out)
 {
     const double ww = w * w, zz = z * z, inverse = 1 / (ww + zz);
     if (w * z == 0)
@@ -164,7 +164,7 @@ INLINE void rotation_set_about_z(double w, double z, struct rotation *out)
         rotation_set_planar((ww - zz) * inverse, (w * z) * (2 * inverse), false, out);
 }
 
-INLINE void rotation_set_in_space(struct quaternion q, struct rotation *out)
+INLINE void rotation_set_in_space(struct quaternion q, struct rotation_matrix *out)
 {
     const double w = q.w, x = q.x, y = q.y, z = q.z;
     const double ww = w * w, xx = x * x, yy = y * y, zz = z * z;
@@ -185,7 +185,7 @@ INLINE void rotation_set_in_space(struct quaternion q, struct rotation *out)
 
 /* In: a placement that fmb_placement_check() accepts. In 2D the planar quaternion is one in space
  * whose x and y are 0. */
-INLINE void rotation_of(const struct fmb_placement *placement, int dim, struct rotation *out)
+INLINE void rotation_of(const struct fmb_placement *placement, int dim, struct rotation_matrix *out)
 {
     out->dim = dim;
     out->turned = placement->orientation_count != 0;

@@ -17,7 +17,7 @@
  */
 #include "gap.h"
 
-#include "range.h"
+#include "interval.h"
 
 #include <math.h>
 #include <string.h>
@@ -55,7 +55,7 @@ static int compare_frames(const struct fmb_frame *x, const struct fmb_frame *y)
         order = compare(x->centre, y->centre, FMB_DIM_MAX);
     if (order == 0)
         order = compare(x->component[0], y->component[0], FMB_COMPONENTS_MAX);
-    return order ? order : compare(x->rest[0], y->rest[0], FMB_COMPONENTS_MAX);
+    return order ? order : compare(x->remainder[0], y->remainder[0], FMB_COMPONENTS_MAX);
 }
 
 bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
@@ -97,7 +97,7 @@ static double sum_of(const double v[FMB_DIM_MAX])
 
 static double largest_of(const double v[FMB_DIM_MAX])
 {
-    return range_greatest(fabs(v[0]), range_greatest(fabs(v[1]), fabs(v[2])));
+    return interval_max(fabs(v[0]), interval_max(fabs(v[1]), fabs(v[2])));
 }
 
 /* Bounds the coordinates of a frame over the window; at least several times their magnitude. */
@@ -105,8 +105,8 @@ INLINE double far_of(const int dim, const struct fmb_prepared *frame, double dur
 {
     const double *number = frame->number;
     const double origin[FMB_DIM_MAX] = {number[0], number[1], dim == 3 ? number[2] : 0};
-    const double sizes = (prepared_size(frame->head, 0) + prepared_size(frame->head, 1)) +
-                         prepared_size(frame->head, 2);
+    const double sizes = (prepared_size(frame->summary, 0) + prepared_size(frame->summary, 1)) +
+                         prepared_size(frame->summary, 2);
     const double far = sum_of(origin) + 2 * sizes;
     if (!(prepared_kind(frame) & PREPARED_MOVING))
         return far;
@@ -126,21 +126,21 @@ INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
     const struct fmb_prepared *frame = pair->frame[f];
     const unsigned kind = prepared_kind(frame);
     const double *number = frame->number, *velocity = prepared_velocity(frame);
-    const double x = prepared_size(frame->head, 0), y = prepared_size(frame->head, 1);
-    const double z = prepared_size(frame->head, 2), sizes = (x + y) + z;
+    const double x = prepared_size(frame->summary, 0), y = prepared_size(frame->summary, 1);
+    const double z = prepared_size(frame->summary, 2), sizes = (x + y) + z;
     const double origin[FMB_DIM_MAX] = {number[0], number[1], dim == 3 ? number[2] : 0};
     pair->simplex[f] = kind & (PREPARED_TETRAHEDRON | PREPARED_FACE);
     pair->count[f] = kind & PREPARED_FACE ? 2 : dim;
     pair->error += number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
     pair->reach += sizes;
     pair->far[f] = far_of(dim, frame, pair->duration);
-    pair->least = range_greatest(pair->least, largest_of(origin));
-    pair->least = range_greatest(pair->least, 0.25 * range_greatest(x, range_greatest(y, z)));
+    pair->least = interval_max(pair->least, largest_of(origin));
+    pair->least = interval_max(pair->least, 0.25 * interval_max(x, interval_max(y, z)));
     if (!(kind & PREPARED_MOVING))
         return;
     const double way[FMB_DIM_MAX] = {velocity[0] * pair->duration, velocity[1] * pair->duration,
                                      dim == 3 ? velocity[2] * pair->duration : 0};
-    pair->least = range_greatest(pair->least, 0.5 * largest_of(way));
+    pair->least = interval_max(pair->least, 0.5 * largest_of(way));
 }
 
 /* As slabs_prepare(): tiny drifts are left to integers. */
@@ -195,7 +195,7 @@ bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, do
     out->frame[1] = b;
     out->duration = duration;
     out->error = out->reach = out->least = 0;
-    out->dim = both & PREPARED_SPACE ? 3 : 2;
+    out->dim = both & PREPARED_3D ? 3 : 2;
     return out->dim == 3 ? set_numbers(3, out) : set_numbers(2, out);
 }
 
@@ -207,7 +207,7 @@ bool gap_is_tight(const struct gap_pair *pair, const double bounds[2])
 double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared *b,
                          double duration, double farthest)
 {
-    const int dim = prepared_kind(a) & PREPARED_SPACE ? 3 : 2;
+    const int dim = prepared_kind(a) & PREPARED_3D ? 3 : 2;
     return farthest + 0x1p-38 * (far_of(dim, a, duration) + far_of(dim, b, duration));
 }
 
@@ -267,11 +267,11 @@ struct fmb_gap gap_none(void)
 
 /* Raises the lower bound to the distance of the boxes on an axis, rounded down, if that is greater.
  */
-static void raise(struct fmb_gap *gap, const struct swept *a, const struct swept *b)
+static void raise(struct fmb_gap *gap, const struct aabb *a, const struct aabb *b)
 {
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         for (int side = 0; side < 2; side++) {
-            const struct swept *low = side ? a : b, *high = side ? b : a;
+            const struct aabb *low = side ? a : b, *high = side ? b : a;
             const double apart = low->end[axis][0] + high->end[axis][1];
             const double below = apart - apart * 0x1p-52;
             if (!(apart > 0 && below > gap->bounds[0]))
@@ -295,8 +295,8 @@ static int compare_gaps(const struct fmb_gap *x, const struct fmb_gap *y)
     return order ? order : compare(x->direction, y->direction, FMB_DIM_MAX);
 }
 
-void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct swept *a,
-                 const struct swept *b, bool swaps)
+void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct aabb *a,
+                 const struct aabb *b, bool swaps)
 {
     struct fmb_gap raised = *one, x, y = *all;
     raise(&raised, a, b);
@@ -305,7 +305,7 @@ void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct sw
         turn_round(&x);
         turn_round(&y);
     }
-    const double lower = range_greatest(-x.bounds[0], -y.bounds[0]);
+    const double lower = interval_max(-x.bounds[0], -y.bounds[0]);
     if (all->direction[0] == INFINITY || compare_gaps(&x, &y) < 0)
         *all = raised;
     all->bounds[0] = 0 - lower;
@@ -317,8 +317,8 @@ void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap)
         gap->bounds[0] = 0;
 }
 
-double gap_reach(double upper, const struct swept *a, const struct swept *b)
+double gap_reach(double upper, const struct aabb *a, const struct aabb *b)
 {
     const double least = upper > 0 ? upper : 0;
-    return least + 0x1p-38 * (swept_largest(a) + swept_largest(b)) + 0x1p-1070;
+    return least + 0x1p-38 * (aabb_max_coordinate(a) + aabb_max_coordinate(b)) + 0x1p-1070;
 }

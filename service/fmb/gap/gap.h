@@ -21,7 +21,7 @@
 #ifndef FMB_GAP_H
 #define FMB_GAP_H
 
-#include "swept.h"
+#include "aabb.h"
 
 /* GAP_UNSURE: not known within the limit. GAP_FAR: surely greater than farthest; nothing else is
  * known. */
@@ -138,8 +138,8 @@ struct fmb_gap gap_none(void);
  * The lower bound of each gap is first raised to the distance of the boxes on an axis, if that is
  * greater; the axis then proves it. Frames whose boxes are farther apart than the least upper bound
  * therefore do not change the result, and can be skipped. */
-void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct swept *a,
-                 const struct swept *b, bool swaps);
+void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct aabb *a,
+                 const struct aabb *b, bool swaps);
 
 /* Completes a combined gap, given the verdict of the bodies: the gap of bodies that touch is 0,
  * although separated frames may contribute a lower bound below 0. */
@@ -147,6 +147,6 @@ void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap);
 
 /* Returns a distance for boxes of frames inside a and b, given bounds[1] of the least gap so far:
  * frames whose boxes are farther apart on an axis do not change the gap, and do not meet. */
-double gap_reach(double upper, const struct swept *a, const struct swept *b);
+double gap_reach(double upper, const struct aabb *a, const struct aabb *b);
 
 #endif

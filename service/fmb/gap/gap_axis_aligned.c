@@ -9,7 +9,7 @@
  * steps. A difference is rounded outward if it rounds. */
 #include "gap.h"
 
-#include "range.h"
+#include "interval.h"
 
 /* [lower, upper][axis]; false if the frame is not along the axes, or an end rounds. */
 static bool set_ends(const struct gap_pair *pair, int f, double ends[2][FMB_DIM_MAX])
@@ -37,18 +37,18 @@ static bool set_ends(const struct gap_pair *pair, int f, double ends[2][FMB_DIM_
 enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, struct fmb_gap *out)
 {
     double ends[2][2][FMB_DIM_MAX]; /* [frame] */
-    struct range best = {-INFINITY, -INFINITY};
+    struct interval best = {-INFINITY, -INFINITY};
     int apart = 0;
     if (pair->error != 0 || pair->drifts || pair->simplex[0] || pair->simplex[1] ||
         !set_ends(pair, 0, ends[0]) || !set_ends(pair, 1, ends[1]))
         return GAP_UNSURE;
     for (int axis = 0; axis < pair->dim; axis++) {
         out->witness[0][axis] = out->witness[1][axis] =
-            range_greatest(ends[0][0][axis], ends[1][0][axis]) + 0.0;
+            interval_max(ends[0][0][axis], ends[1][0][axis]) + 0.0;
         for (int side = 0; side < 2; side++) {
             const double low = ends[!side][0][axis], high = ends[side][1][axis];
-            const struct range by = range_sum(range_of(low), range_of(-high));
-            best.high = range_greatest(best.high, by.high);
+            const struct interval by = interval_sum(interval_of(low), interval_of(-high));
+            best.high = interval_max(best.high, by.high);
             if (by.high > 0) {
                 apart++;
                 out->witness[side][axis] = high + 0.0;

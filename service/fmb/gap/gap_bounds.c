@@ -97,10 +97,10 @@ INLINE void add_extent(const bool simplex, const lanes *x, const int count, stru
     UNROLL(3)
     for (int i = 0; i < count; i++) {
         if (simplex) {
-            low = lanes_least(x[i], low);
-            high = lanes_greatest(x[i], high);
+            low = lanes_min(x[i], low);
+            high = lanes_max(x[i], high);
         } else {
-            sum += lanes_magnitude(x[i]);
+            sum += lanes_abs(x[i]);
         }
     }
     out->low += simplex ? low : -0.5 * sum;
@@ -110,17 +110,17 @@ INLINE void add_extent(const bool simplex, const lanes *x, const int count, stru
 /* Adds that of a drift. */
 INLINE void add_swing(lanes swing, struct extent *out)
 {
-    out->low += lanes_least(swing, lanes_of(0));
-    out->high += lanes_greatest(swing, lanes_of(0));
+    out->low += lanes_min(swing, lanes_of(0));
+    out->high += lanes_max(swing, lanes_of(0));
 }
 
 /* square: |n|^2; most: |e|^2 |f|^2. */
 INLINE void add_bound(lanes middle, struct extent extent, lanes square, lanes most,
                       struct gap_bounds *out)
 {
-    const lanes above = lanes_greatest(middle + extent.low, -(middle + extent.high));
-    const lanes best = lanes_least(above, lanes_of(0));
-    out->square[out->count++] = best * best / lanes_greatest(square, 0x1p-8 * most);
+    const lanes above = lanes_max(middle + extent.low, -(middle + extent.high));
+    const lanes best = lanes_min(above, lanes_of(0));
+    out->square[out->count++] = best * best / lanes_max(square, 0x1p-8 * most);
 }
 
 /* Faces k and k + 1 of frame f. */

@@ -115,11 +115,11 @@ static void set_ends(const struct gap_pair *pair, const double n[3], double ends
             add_simplex(f * GAP_OF_B, at, ends);
             clear(f * GAP_OF_B, at);
         }
-    lanes low = lanes_least(at[0], lanes_of(0)), high = lanes_greatest(at[0], lanes_of(0));
+    lanes low = lanes_min(at[0], lanes_of(0)), high = lanes_max(at[0], lanes_of(0));
     UNROLL(3)
     for (int i = 1; i < GAP_LANES; i++) {
-        low += lanes_least(at[i], lanes_of(0));
-        high += lanes_greatest(at[i], lanes_of(0));
+        low += lanes_min(at[i], lanes_of(0));
+        high += lanes_max(at[i], lanes_of(0));
     }
     ends[0] += low[0] + low[1];
     ends[1] += high[0] + high[1];
@@ -151,7 +151,7 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
         depth->normal[axis] = (low > -high ? inverse : -inverse) * n[axis];
 }
 
-/* Whether x y - z w is exactly 0: products and their errors are doubles (range.h). */
+/* Whether x y - z w is exactly 0: products and their errors are doubles (interval.h). */
 static bool same_products(double x, double y, double z, double w)
 {
     const double xy = x * y, zw = z * w;
@@ -220,7 +220,7 @@ static int first_of(const struct gap_bounds *bounds)
 {
     lanes least = lanes_of(INFINITY);
     for (int i = 0; i < bounds->count; i++)
-        least = lanes_least(bounds->square[i], least);
+        least = lanes_min(bounds->square[i], least);
     const double square = least[0] < least[1] ? least[0] : least[1];
     for (int i = 0; i < bounds->count && square < INFINITY; i++) {
         const unsigned bits = lanes_mask_bits(bounds->square[i] == square);

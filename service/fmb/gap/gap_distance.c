@@ -26,7 +26,7 @@
  * time, and that within the error of the frame from the true one. */
 #include "gap.h"
 
-#include "range.h"
+#include "interval.h"
 
 #include <math.h>
 #include <string.h>
@@ -76,7 +76,7 @@ INLINE unsigned least_of(int first, const lanes at[GAP_LANES])
 {
     const double x = at[first / 2][first % 2], y = at[(first + 1) / 2][(first + 1) % 2];
     const double z = at[(first + 2) / 2][(first + 2) % 2];
-    const double least = range_least(range_least(x, y), z);
+    const double least = interval_min(interval_min(x, y), z);
     const unsigned equal =
         (unsigned) (x == least) | (unsigned) (y == least) << 1 | (unsigned) (z == least) << 2;
     return least < 0 ? (equal & -equal) << first : 0;
@@ -254,7 +254,7 @@ static void set_witness(const struct gap_pair *pair, const struct simplex *simpl
         share[i] += masked(simplex->corner[c].bits, i, lanes_of(simplex->weight[c]));
     UNROLL(4)
     for (int i = 0; i < GAP_LANES; i++)
-        share[i] = lanes_least(share[i], lanes_of(1));
+        share[i] = lanes_min(share[i], lanes_of(1));
     out->time = share[GAP_DRIFT / 2][GAP_DRIFT % 2] * pair->duration + 0.0;
     const double *a = pair->frame[0]->number, *b = pair->frame[1]->number;
     const double *of_a = prepared_velocity(pair->frame[0]);

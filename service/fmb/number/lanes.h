@@ -33,48 +33,48 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 
 /* x > y ? x : y and x < y ? x : y: the second where one of them is not a number. */
 #if LANES == 1
-INLINE lanes lanes_greatest(lanes x, lanes y)
+INLINE lanes lanes_max(lanes x, lanes y)
 {
     return x > y ? x : y;
 }
-INLINE lanes lanes_least(lanes x, lanes y)
+INLINE lanes lanes_min(lanes x, lanes y)
 {
     return x < y ? x : y;
 }
 #elif LANES == 2 && defined(__SSE2__)
-INLINE lanes lanes_greatest(lanes x, lanes y)
+INLINE lanes lanes_max(lanes x, lanes y)
 {
     return (lanes) _mm_max_pd((__m128d) x, (__m128d) y);
 }
-INLINE lanes lanes_least(lanes x, lanes y)
+INLINE lanes lanes_min(lanes x, lanes y)
 {
     return (lanes) _mm_min_pd((__m128d) x, (__m128d) y);
 }
 #elif LANES == 4 && defined(__AVX__)
-INLINE lanes lanes_greatest(lanes x, lanes y)
+INLINE lanes lanes_max(lanes x, lanes y)
 {
     return (lanes) _mm256_max_pd((__m256d) x, (__m256d) y);
 }
-INLINE lanes lanes_least(lanes x, lanes y)
+INLINE lanes lanes_min(lanes x, lanes y)
 {
     return (lanes) _mm256_min_pd((__m256d) x, (__m256d) y);
 }
 #elif LANES == 8 && defined(__AVX512F__)
-INLINE lanes lanes_greatest(lanes x, lanes y)
+INLINE lanes lanes_max(lanes x, lanes y)
 {
     return (lanes) _mm512_max_pd((__m512d) x, (__m512d) y);
 }
-INLINE lanes lanes_least(lanes x, lanes y)
+INLINE lanes lanes_min(lanes x, lanes y)
 {
     return (lanes) _mm512_min_pd((__m512d) x, (__m512d) y);
 }
 #else
-INLINE lanes lanes_greatest(lanes x, lanes y)
+INLINE lanes lanes_max(lanes x, lanes y)
 {
     const lanes_mask first = x > y;
     return (lanes) ((first & (lanes_mask) x) | (~first & (lanes_mask) y));
 }
-INLINE lanes lanes_least(lanes x, lanes y)
+INLINE lanes lanes_min(lanes x, lanes y)
 {
     const lanes_mask first = x < y;
     return (lanes) ((first & (lanes_mask) x) | (~first & (lanes_mask) y));
@@ -101,7 +101,7 @@ INLINE lanes lanes_from_bits(lanes_bits x)
     return out;
 }
 
-INLINE lanes lanes_magnitude(lanes x)
+INLINE lanes lanes_abs(lanes x)
 {
 #if LANES == 1
     return fabs(x);
@@ -111,7 +111,7 @@ INLINE lanes lanes_magnitude(lanes x)
 }
 
 /* x where the mask is set, else y. */
-INLINE lanes lanes_choose(lanes_mask mask, lanes x, lanes y)
+INLINE lanes lanes_select(lanes_mask mask, lanes x, lanes y)
 {
 #if LANES == 1
     return mask ? x : y;
@@ -133,7 +133,7 @@ INLINE lanes_bits lanes_bits_where(lanes_mask mask, lanes_bits x)
 }
 
 /* magnitude >= 0, with the sign of x. */
-INLINE lanes lanes_with_sign(lanes magnitude, lanes x)
+INLINE lanes lanes_copysign(lanes magnitude, lanes x)
 {
 #if LANES == 1
     return copysign(magnitude, x);
@@ -167,7 +167,7 @@ INLINE bool lanes_all(lanes_mask mask)
 }
 
 /* Bit i: x > y in lane i. Not by a mask where comparisons give the bits. */
-INLINE unsigned lanes_bits_above(lanes x, lanes y)
+INLINE unsigned lanes_greater_bits(lanes x, lanes y)
 {
 #if LANES == 8 && defined(__AVX512F__)
     return _mm512_cmp_pd_mask((__m512d) x, (__m512d) y, _CMP_GT_OQ);
@@ -179,7 +179,7 @@ INLINE unsigned lanes_bits_above(lanes x, lanes y)
 #if LANES <= 2
 
 /* The two lanes, each in the place of the other. */
-INLINE lanes lanes_exchanged(lanes x)
+INLINE lanes lanes_swap(lanes x)
 {
 #if LANES == 1
     return x;

@@ -34,11 +34,11 @@ static lanes turned_axis(const double *row, const double m[FMB_DIM_MAX],
     return (lanes){below > -INFINITY ? below : -INFINITY, above > -INFINITY ? above : -INFINITY};
 }
 
-static struct swept turned_box(const struct fmb_placement *placement, double duration)
+static struct aabb turned_box(const struct fmb_placement *placement, double duration)
 {
     const struct fmb_body *body = placement->body;
-    struct rotation rotation;
-    struct swept out = {{{0}}};
+    struct rotation_matrix rotation;
+    struct aabb out = {{{0}}};
     double m[FMB_DIM_MAX], h[FMB_DIM_MAX], sum = 0;
     rotation_of(placement, body->dim, &rotation);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
@@ -52,15 +52,15 @@ static struct swept turned_box(const struct fmb_placement *placement, double dur
         const double row[FMB_DIM_MAX] = {rotation_entry(&rotation, axis, 0),
                                          rotation_entry(&rotation, axis, 1),
                                          rotation_entry(&rotation, axis, 2)};
-        out.end[axis] = swept_along(turned_axis(row, m, h, sum, placement->position[axis]),
-                                    placement->velocity[axis], duration);
+        out.end[axis] = aabb_sweep_axis(turned_axis(row, m, h, sum, placement->position[axis]),
+                                        placement->velocity[axis], duration);
     }
     return out;
 }
 
-static struct swept unbounded_box(int dim)
+static struct aabb unbounded_box(int dim)
 {
-    struct swept out = {{{0}}};
+    struct aabb out = {{{0}}};
     for (int axis = 0; axis < dim; axis++)
         out.end[axis] = lanes_of(-INFINITY);
     return out;
@@ -97,9 +97,9 @@ static void place(struct scene_frames *frames, unsigned body, size_t k)
     if (!frames->boxed)
         return;
     for (unsigned i = first; i < first + count; i++) {
-        frames->frame_box[i] = swept_of(&frames->slot[i], frames->duration);
+        frames->frame_box[i] = aabb_of(&frames->slot[i], frames->duration);
         chunk->box =
-            i == first ? frames->frame_box[i] : swept_hull(chunk->box, frames->frame_box[i]);
+            i == first ? frames->frame_box[i] : aabb_union(chunk->box, frames->frame_box[i]);
     }
 }
 
@@ -148,11 +148,11 @@ static bool set_box(struct scene_frames *frames, unsigned body, size_t k, bool m
 
 /* Boxes that are widened so, and do not meet, are farther apart on an axis than the margin, and
  * than 1e-12 of their largest coordinate more: a bound of the gap is too (gap.h). */
-static void widen(struct swept *box, double margin)
+static void widen(struct aabb *box, double margin)
 {
-    const double by = 0.5 * margin + (0x1p-39 * swept_largest(box) + 0x1p-1070);
+    const double by = 0.5 * margin + (0x1p-39 * aabb_max_coordinate(box) + 0x1p-1070);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        box->end[axis] = swept_sum(box->end[axis], lanes_of(-by));
+        box->end[axis] = aabb_sum_down(box->end[axis], lanes_of(-by));
 }
 
 void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
@@ -171,30 +171,30 @@ void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
 
 /* ---- Pairs of frames ---- */
 
-static bool near(const struct swept *a, const struct swept *b, double reach)
+static bool near(const struct aabb *a, const struct aabb *b, double reach)
 {
-    const struct swept against = swept_within(b, reach);
-    return swept_meet(a, &against);
+    const struct aabb against = aabb_probe_within(b, reach);
+    return aabb_overlaps(a, &against);
 }
 
 /* Slots of the frames of a chunk whose boxes are near a box; returns how many. */
 static unsigned select_frames(const struct scene_frames *frames, unsigned body, size_t k,
-                              const struct swept *box, double reach, unsigned out[SCENE_CHUNK])
+                              const struct aabb *box, double reach, unsigned out[SCENE_CHUNK])
 {
-    const struct swept against = swept_within(box, reach);
+    const struct aabb against = aabb_probe_within(box, reach);
     const unsigned first = chunk_of(frames, body, k)->slot, size = chunk_size(frames, body, k);
     unsigned count = 0;
     for (unsigned slot = first; slot < first + size; slot++) {
         out[count] = slot;
-        count += swept_meet(&frames->frame_box[slot], &against);
+        count += aabb_overlaps(&frames->frame_box[slot], &against);
     }
     return count;
 }
 
 static void enter(struct scene_frames *frames, struct frame_pair_cursor *cursor)
 {
-    const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
-    const struct swept *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
+    const struct aabb *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
+    const struct aabb *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
     cursor->count_a =
         select_frames(frames, cursor->a, cursor->chunk_a, b, cursor->reach, cursor->of_a);
     cursor->count_b =
@@ -210,12 +210,12 @@ static size_t pairs_inside(const struct scene_frames *frames, struct frame_pair_
     unsigned i = cursor->i, j = cursor->j;
     size_t count = 0;
     for (; i < cursor->count_a; i++, j = 0) {
-        const struct swept against =
-            swept_within(&frames->frame_box[cursor->of_a[i]], cursor->reach);
+        const struct aabb against =
+            aabb_probe_within(&frames->frame_box[cursor->of_a[i]], cursor->reach);
         for (; j < cursor->count_b && count < max; j++) {
             out[count][0] = cursor->of_a[i];
             out[count][1] = cursor->of_b[j];
-            count += swept_meet(&frames->frame_box[cursor->of_b[j]], &against);
+            count += aabb_overlaps(&frames->frame_box[cursor->of_b[j]], &against);
         }
         if (count == max)
             break;
@@ -233,11 +233,11 @@ static bool find_chunks(struct scene_frames *frames, struct frame_pair_cursor *c
 {
     const size_t count_a = scene_chunks(frames->placement[cursor->a].body->frame_count);
     const size_t count_b = scene_chunks(frames->placement[cursor->b].body->frame_count);
-    const struct swept *body_b = &frames->body_box[cursor->b];
+    const struct aabb *body_b = &frames->body_box[cursor->b];
     for (; cursor->chunk_a < count_a; cursor->chunk_a++, cursor->chunk_b = 0) {
         if (!set_box(frames, cursor->a, cursor->chunk_a, may_reuse))
             return false;
-        const struct swept *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
+        const struct aabb *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
         frames->work += WORK_TEST;
         for (bool skip = !near(a, body_b, cursor->reach); !skip && cursor->chunk_b < count_b;
              cursor->chunk_b++) {

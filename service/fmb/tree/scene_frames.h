@@ -7,12 +7,12 @@
 #ifndef FMB_SCENE_FRAMES_H
 #define FMB_SCENE_FRAMES_H
 
-#include "swept.h"
+#include "aabb.h"
 
 enum { SCENE_CHUNK = 16 };
 
 struct scene_chunk {
-    struct swept box;              /* contains its frames over the window */
+    struct aabb box;               /* contains its frames over the window */
     unsigned long long generation; /* of its slots; 0: never prepared, and box is not set */
     unsigned slot;                 /* of its first frame */
 };
@@ -25,9 +25,9 @@ struct scene_frames {
     bool direct;               /* every body has one frame, slot i that of placement i */
     unsigned *first_chunk;     /* [placement] */
     struct scene_chunk *chunk; /* [chunk] */
-    struct swept *body_box;    /* [placement], over the window */
+    struct aabb *body_box;     /* [placement], over the window */
     struct fmb_prepared *slot; /* [slots] */
-    struct swept *frame_box;   /* [slots] */
+    struct aabb *frame_box;    /* [slots] */
     size_t slots, used;
     unsigned long long generation; /* of the slots in use, from 1 */
     long work;                     /* nanoseconds, roughly; reset by the caller */

@@ -135,10 +135,10 @@ static void find_partners(struct scene_pairs *pairs, unsigned from)
 static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
 {
     const struct scene_pairs *pairs = context;
-    const struct swept *swept = &pairs->box[pairs->first + index];
+    const struct aabb *aabb = &pairs->box[pairs->first + index];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        box[0][axis] = swept->end[axis][0];
-        box[1][axis] = -swept->end[axis][1];
+        box[0][axis] = aabb->end[axis][0];
+        box[1][axis] = -aabb->end[axis][1];
     }
 }
 
@@ -162,7 +162,7 @@ static void begin_search(struct scene_pairs *pairs, void *memory)
 }
 
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
-                       const struct swept *box, void *tree)
+                       const struct aabb *box, void *tree)
 {
     pairs->scene = scene;
     pairs->box = box;

@@ -11,7 +11,7 @@ struct scene_pairs {
     unsigned long long next; /* FMB_PAIRS_LISTED: the pair */
     /* FMB_PAIRS_ALL and FMB_PAIRS_ACROSS: the partners of a are found[0] to found[found_count - 1];
      * given of these pairs have been enumerated. The tree contains the placements from first on. */
-    const struct swept *box; /* [placement] */
+    const struct aabb *box; /* [placement] */
     struct fmb_tree tree;
     unsigned a, first;
     size_t found_count, given;
@@ -47,7 +47,7 @@ unsigned long long scene_pairs_total(const struct fmb_scene *scene);
  * those of the placements, which may be NULL with FMB_PAIRS_LISTED. All must stay valid until the
  * last pair. */
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
-                       const struct swept *box, void *tree);
+                       const struct aabb *box, void *tree);
 
 /* Writes the next pairs, at most max, to out. Returns how many; 0 also after several searches. */
 size_t scene_pairs_next(struct scene_pairs *pairs, unsigned (*out)[2], size_t max);

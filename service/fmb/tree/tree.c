@@ -81,10 +81,10 @@ static size_t stride_of(size_t count)
 
 /* Returns the least and the greatest centre of a sample on each axis, as a box: {least, -greatest}.
  */
-static struct swept centre_bounds(const struct fmb_tree_box *box, size_t count)
+static struct aabb centre_bounds(const struct fmb_tree_box *box, size_t count)
 {
     const size_t stride = stride_of(count);
-    struct swept out;
+    struct aabb out;
     UNROLL(3)
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out.end[axis] = lanes_of(INFINITY);
@@ -93,8 +93,7 @@ static struct swept centre_bounds(const struct fmb_tree_box *box, size_t count)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
             const lanes half = box[i].box.end[axis] * 0.5;
             const lanes centre = half - (lanes){half[1], half[0]};
-            out.end[axis] =
-                lanes_least(centre, out.end[axis]); /* the second, if the first is NaN */
+            out.end[axis] = lanes_min(centre, out.end[axis]); /* the second, if the first is NaN */
         }
     }
     return out;
@@ -103,7 +102,7 @@ static struct swept centre_bounds(const struct fmb_tree_box *box, size_t count)
 /* Returns the extent of the centres on an axis; finite. */
 static double extent_of(lanes centres)
 {
-    const lanes ends = lanes_greatest(centres, lanes_of(-DBL_MAX / 4));
+    const lanes ends = lanes_max(centres, lanes_of(-DBL_MAX / 4));
     const double reach = -ends[0] - ends[1];
     return reach > 0 ? reach : 0;
 }
@@ -129,7 +128,7 @@ static double share_in_both(const struct fmb_tree_box *box, size_t count, int ax
  * axes; -1 if all centres of the sample are equal. */
 static int axis_of(const struct fmb_tree_box *box, size_t count)
 {
-    const struct swept centres = centre_bounds(box, count);
+    const struct aabb centres = centre_bounds(box, count);
     double best = INFINITY, longest = 0;
     int out = -1;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
@@ -204,9 +203,9 @@ static void select_few(const struct items *items, size_t target)
         const double x = key[i / 2][i % 2];
         lanes_mask before = {0};
         for (size_t k = 0; k < i / 2; k++)
-            before -= swept_at_most(key[k], lanes_of(x));
+            before -= aabb_at_most(key[k], lanes_of(x));
         for (size_t k = i / 2 + 1; k < (items->count + 1) / 2; k++)
-            before -= ~swept_at_most(lanes_of(x), key[k]);
+            before -= ~aabb_at_most(lanes_of(x), key[k]);
         const int beside = i % 2 ? key[i / 2][0] <= x : key[i / 2][1] < x;
         rank[i] = (unsigned char) (before[0] + before[1] + beside);
     }
@@ -397,7 +396,7 @@ static void set_leaf(const struct fmb_tree *tree, struct fmb_tree_node *node)
     node->box = tree->boxes[node->first].box;
     node->last = tree->order[node->first];
     for (unsigned k = node->first + 1; k < end; k++) {
-        node->box = swept_hull(node->box, tree->boxes[k].box);
+        node->box = aabb_union(node->box, tree->boxes[k].box);
         node->last = tree->order[k] > node->last ? tree->order[k] : node->last;
     }
 }
@@ -415,7 +414,7 @@ static void set_boxes(const struct fmb_tree *tree)
         }
         const struct fmb_tree_node *first = node + 1, *second = &tree->nodes[first->skip];
         node->skip = second->skip;
-        node->box = swept_hull(first->box, second->box);
+        node->box = aabb_union(first->box, second->box);
         node->last = first->last > second->last ? first->last : second->last;
     }
 }
@@ -424,21 +423,21 @@ static void set_boxes(const struct fmb_tree *tree)
 
 static int dimension_of(const struct fmb_prepared *frame)
 {
-    return prepared_kind(frame) & PREPARED_SPACE ? 3 : 2;
+    return prepared_kind(frame) & PREPARED_3D ? 3 : 2;
 }
 
 static enum fmb_status check(const struct fmb_prepared *frames, size_t count, double duration)
 {
-    unsigned all = PREPARED_GOOD, different = 0;
+    unsigned all = PREPARED_VALID, different = 0;
     if (!prepared_is_duration(duration))
         return FMB_BAD_DURATION;
     for (size_t i = 0; i < count; i++) {
         all &= prepared_kind(&frames[i]);
         different |= prepared_kind(&frames[i]) ^ prepared_kind(&frames[0]);
     }
-    return !(all & PREPARED_GOOD)       ? FMB_NOT_FINITE
-           : different & PREPARED_SPACE ? FMB_DIMENSIONS_DIFFER
-                                        : FMB_OK;
+    return !(all & PREPARED_VALID)   ? FMB_NOT_FINITE
+           : different & PREPARED_3D ? FMB_DIMENSIONS_DIFFER
+                                     : FMB_OK;
 }
 
 /* Lays out the nodes, the boxes and the order in memory, each aligned as its type requires. The
@@ -476,20 +475,20 @@ enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, 
         return status;
     lay_out(memory, count, dimension_of(frames), duration, out);
     for (size_t i = 0; i < count; i++)
-        out->boxes[i].box = swept_of(&frames[i], duration);
+        out->boxes[i].box = aabb_of(&frames[i], duration);
     set_tree(out);
     return FMB_OK;
 }
 
-static struct swept swept_box(const struct fmb_boxes *boxes, unsigned index, double duration)
+static struct aabb aabb_of_box(const struct fmb_boxes *boxes, unsigned index, double duration)
 {
-    struct swept out = {{{0}}};
+    struct aabb out = {{{0}}};
     double box[2][FMB_DIM_MAX];
     boxes->at(boxes->context, index, box);
     for (int axis = 0; axis < boxes->dim; axis++) {
         out.end[axis] = (lanes){box[0][axis], -box[1][axis]};
         if (boxes->velocity)
-            out.end[axis] = swept_along(out.end[axis], boxes->velocity[axis], duration);
+            out.end[axis] = aabb_sweep_axis(out.end[axis], boxes->velocity[axis], duration);
     }
     return out;
 }
@@ -506,17 +505,17 @@ enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count
         return FMB_OK;
     lay_out(memory, count, boxes->dim, duration, out);
     for (size_t i = 0; i < count; i++)
-        out->boxes[i].box = swept_box(boxes, (unsigned) i, duration);
+        out->boxes[i].box = aabb_of_box(boxes, (unsigned) i, duration);
     set_tree(out);
     return FMB_OK;
 }
 
 void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX])
 {
-    const struct swept swept = swept_of(frame, duration);
+    const struct aabb aabb = aabb_of(frame, duration);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        box[0][axis] = swept.end[axis][0];
-        box[1][axis] = 0 - swept.end[axis][1];
+        box[0][axis] = aabb.end[axis][0];
+        box[1][axis] = 0 - aabb.end[axis][1];
     }
 }
 
@@ -538,7 +537,7 @@ enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared 
     for (size_t k = 0; k < tree->frame_count; k++) {
         const size_t ahead = k + 8 < tree->frame_count ? k + 8 : k;
         prefetch(&frames[tree->order[ahead]]);
-        tree->boxes[k].box = swept_of(&frames[tree->order[k]], duration);
+        tree->boxes[k].box = aabb_of(&frames[tree->order[k]], duration);
     }
     set_boxes(tree);
     return FMB_OK;
@@ -601,8 +600,7 @@ void tree_sort(unsigned *number, size_t count, unsigned most)
     }
 }
 
-size_t tree_query(const struct fmb_tree *tree, const struct swept *box, unsigned from,
-                  unsigned *out)
+size_t tree_query(const struct fmb_tree *tree, const struct aabb *box, unsigned from, unsigned *out)
 {
     const size_t count = tree_query_unsorted(tree, box, from, out, NULL);
     tree_sort(out, count, (unsigned) tree->frame_count);
@@ -613,24 +611,24 @@ enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepa
                              unsigned from, unsigned *out, size_t *count)
 {
     *count = 0;
-    if (!(prepared_kind(frame) & PREPARED_GOOD))
+    if (!(prepared_kind(frame) & PREPARED_VALID))
         return FMB_NOT_FINITE;
     if (tree->frame_count == 0)
         return FMB_OK;
     if (dimension_of(frame) != tree->dim)
         return FMB_DIMENSIONS_DIFFER;
-    const struct swept box = swept_of(frame, tree->duration);
+    const struct aabb box = aabb_of(frame, tree->duration);
     *count = tree_query(tree, &box, from, out);
     return FMB_OK;
 }
 
 /* ---- Pairs ---- */
 
-/* A leaf, with its boxes in the form that swept_meet() tests against. */
+/* A leaf, with its boxes in the form that aabb_overlaps() tests against. */
 struct leaf_query {
     const struct fmb_tree *tree;
     const struct fmb_tree_node *leaf;
-    struct swept all, one[TREE_LEAF];
+    struct aabb all, one[TREE_LEAF];
 };
 
 static void set_leaf_query(const struct fmb_tree *tree, const struct fmb_tree_node *leaf,
@@ -638,9 +636,9 @@ static void set_leaf_query(const struct fmb_tree *tree, const struct fmb_tree_no
 {
     out->tree = tree;
     out->leaf = leaf;
-    out->all = swept_against(&leaf->box);
+    out->all = aabb_probe(&leaf->box);
     for (unsigned k = 0; k < leaf->count; k++)
-        out->one[k] = swept_against(&tree->boxes[leaf->first + k].box);
+        out->one[k] = aabb_probe(&tree->boxes[leaf->first + k].box);
 }
 
 static inline void put_pair(unsigned first, unsigned second, bool ordered, unsigned out[2])
@@ -661,11 +659,11 @@ static size_t pairs_of_leaves(const struct leaf_query *query, const struct fmb_t
     size_t found = 0;
     for (unsigned k = 0; k < query->leaf->count; k++) {
         const unsigned index = query->tree->order[query->leaf->first + k];
-        if (!swept_meet(&leaf->box, &query->one[k]))
+        if (!aabb_overlaps(&leaf->box, &query->one[k]))
             continue;
         for (unsigned m = leaf->first + (leaf == query->leaf ? k + 1 : 0); m < end; m++) {
             put_pair(index, tree->order[m], same_tree, out[found]);
-            found += swept_meet(&tree->boxes[m].box, &query->one[k]);
+            found += aabb_overlaps(&tree->boxes[m].box, &query->one[k]);
         }
     }
     return found;

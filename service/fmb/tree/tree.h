@@ -8,14 +8,14 @@
 #ifndef FMB_TREE_H
 #define FMB_TREE_H
 
-#include "swept.h"
+#include "aabb.h"
 
 /* Frames in a leaf; all leaves of a node of few boxes are full except the last one. */
 enum { TREE_LEAF = 8 };
 
 /* One cache line. */
 struct fmb_tree_node {
-    struct swept box;
+    struct aabb box;
     unsigned skip;  /* the next node if this one is rejected */
     unsigned first; /* leaf: its first frame, in the order of the leaves */
     unsigned count; /* leaf: its number of frames; 0: not a leaf */
@@ -23,19 +23,19 @@ struct fmb_tree_node {
 };
 
 struct fmb_tree_box {
-    struct swept box;
+    struct aabb box;
 };
 
 /* Returns the next leaf whose box overlaps the query box and that may contain an index >= from;
- * NULL if there are no more. against: swept_against() of the query box. *at: the next node to
+ * NULL if there are no more. against: aabb_probe() of the query box. *at: the next node to
  * visit, 0 at first. *visits, if not NULL, is incremented for each node visited. */
 INLINE const struct fmb_tree_node *tree_next_leaf(const struct fmb_tree *tree,
-                                                  const struct swept *against, unsigned from,
+                                                  const struct aabb *against, unsigned from,
                                                   unsigned *at, size_t *visits)
 {
     while (*at < tree->node_count) {
         const struct fmb_tree_node *node = &tree->nodes[*at];
-        const bool enter = (int) swept_meet(&node->box, against) & (node->last >= from);
+        const bool enter = (int) aabb_overlaps(&node->box, against) & (node->last >= from);
         if (visits)
             ++*visits;
         *at = enter ? *at + 1 : node->skip;
@@ -47,10 +47,10 @@ INLINE const struct fmb_tree_node *tree_next_leaf(const struct fmb_tree *tree,
 
 /* Writes the indices >= from of the frames whose boxes overlap the query box to out, in the order
  * of the leaves, and returns how many. out has capacity for all frames of the tree. */
-INLINE size_t tree_query_unsorted(const struct fmb_tree *tree, const struct swept *box,
+INLINE size_t tree_query_unsorted(const struct fmb_tree *tree, const struct aabb *box,
                                   unsigned from, unsigned *out, size_t *visits)
 {
-    const struct swept against = swept_against(box);
+    const struct aabb against = aabb_probe(box);
     const struct fmb_tree_node *leaf;
     unsigned at = 0;
     size_t found = 0;
@@ -60,7 +60,7 @@ INLINE size_t tree_query_unsorted(const struct fmb_tree *tree, const struct swep
             /* Always written; overwritten by the next index if rejected. */
             const unsigned index = tree->order[k];
             out[found] = index;
-            found += (int) swept_meet(&tree->boxes[k].box, &against) & (index >= from);
+            found += (int) aabb_overlaps(&tree->boxes[k].box, &against) & (index >= from);
         }
     }
     return found;
@@ -70,7 +70,7 @@ INLINE size_t tree_query_unsorted(const struct fmb_tree *tree, const struct swep
 void tree_sort(unsigned *number, size_t count, unsigned most);
 
 /* tree_query_unsorted() with the indices in ascending order: fmb_tree_ask() for a box. */
-size_t tree_query(const struct fmb_tree *tree, const struct swept *box, unsigned from,
+size_t tree_query(const struct fmb_tree *tree, const struct aabb *box, unsigned from,
                   unsigned *out);
 
 #endif

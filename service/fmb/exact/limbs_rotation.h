@@ -1,6 +1,6 @@
 /* Orientations in integers: n R(q), n = |q|^2, for a quaternion scaled to integers. */
-#ifndef FMB_LIMBS_TURN_H
-#define FMB_LIMBS_TURN_H
+#ifndef FMB_LIMBS_ROTATION_H
+#define FMB_LIMBS_ROTATION_H
 
 #include "limbs_number.h"
 

@@ -3,14 +3,14 @@
  * magnitudes, u = 2^-53; and that is found by the same operations on magnitudes ("weight"). Such a
  * bound is made for one value alone: it costs as much as the value, and is small where that is
  * made of small numbers. */
-#ifndef FMB_WEIGHED_H
-#define FMB_WEIGHED_H
+#ifndef FMB_RUNNING_ERROR_H
+#define FMB_RUNNING_ERROR_H
 
 #include "fmb.h"
 
 #include <math.h>
 
-struct weighed {
+struct running_error {
     double at[FMB_DIM_MAX], weight[FMB_DIM_MAX];
     double length; /* no vector of lengths up to those of its factors is longer */
 };
@@ -25,14 +25,14 @@ struct weighed {
  * applied to one. 2^-48 = 32 u leaves room for the rounding of the weight and of what the
  * bound is added to. Underflow: at most 2^8 operations, each off by less than 2^-1074, some of them
  * multiplied later by at most two lengths, of 2^204 each at most: less than 2^-660. */
-static inline double weighed_error(double weight)
+static inline double running_error_bound(double weight)
 {
     return 0x1p-48 * weight + 0x1p-660;
 }
 
-static inline struct weighed weigh(const double v[FMB_DIM_MAX])
+static inline struct running_error running_error_of(const double v[FMB_DIM_MAX])
 {
-    struct weighed out;
+    struct running_error out;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         out.at[axis] = v[axis];
         out.weight[axis] = fabs(v[axis]);
@@ -42,10 +42,10 @@ static inline struct weighed weigh(const double v[FMB_DIM_MAX])
 }
 
 /* x + sign y */
-static inline struct weighed weighed_sum(const struct weighed *x, double sign,
-                                         const struct weighed *y)
+static inline struct running_error running_error_sum(const struct running_error *x, double sign,
+                                                     const struct running_error *y)
 {
-    struct weighed out;
+    struct running_error out;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         out.at[axis] = x->at[axis] + sign * y->at[axis];
         out.weight[axis] = x->weight[axis] + y->weight[axis];
@@ -54,9 +54,10 @@ static inline struct weighed weighed_sum(const struct weighed *x, double sign,
     return out;
 }
 
-static inline struct weighed weighed_cross(const struct weighed *u, const struct weighed *v)
+static inline struct running_error running_error_cross(const struct running_error *u,
+                                                       const struct running_error *v)
 {
-    struct weighed out;
+    struct running_error out;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         out.at[i] = u->at[j] * v->at[k] - u->at[k] * v->at[j];
@@ -67,12 +68,13 @@ static inline struct weighed weighed_cross(const struct weighed *u, const struct
 }
 
 /* In the plane z = 0: turned by a right angle, counterclockwise. */
-static inline struct weighed weighed_turn(const struct weighed *u)
+static inline struct running_error running_error_perpendicular(const struct running_error *u)
 {
-    return (struct weighed){{-u->at[1], u->at[0], 0}, {u->weight[1], u->weight[0], 0}, u->length};
+    return (struct running_error){
+        {-u->at[1], u->at[0], 0}, {u->weight[1], u->weight[0], 0}, u->length};
 }
 
-static inline double weighed_dot(const double u[FMB_DIM_MAX], const double v[FMB_DIM_MAX])
+static inline double running_error_dot(const double u[FMB_DIM_MAX], const double v[FMB_DIM_MAX])
 {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }

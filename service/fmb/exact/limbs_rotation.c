@@ -1,4 +1,4 @@
-#include "limbs_turn.h"
+#include "limbs_rotation.h"
 
 #include <stdlib.h>
 
