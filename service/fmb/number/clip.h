@@ -1,27 +1,30 @@
-/* A segment, s in [0,1], cut by inequalities c + s g >= 0 that are known within errors only.
+/* Clips the segment s in [0,1] by inequalities c + s g >= 0 whose coefficients have errors.
  *
- * Where the true c and g lie within e of the ones at hand, the true inequality holds wherever
- * (c - e) + s (g - e) >= 0 does, and only where (c + e) + s (g + e) >= 0 does, for all s >= 0. So
- * the same cut, made once with the larger numbers and once with the smaller ones, gives an outer
- * and an inner part of the segment. Quotients round outward and inward accordingly.
+ * Let the true c lie within e of the given one, and the true g within d of the given one. For every
+ * s >= 0 the true inequality then holds if (c - e) + s (g - d) >= 0, and it holds only if
+ * (c + e) + s (g + d) >= 0. Clipping with the larger coefficients gives an outer part, which
+ * contains the true part of the segment; clipping with the smaller ones gives an inner part, which
+ * the true part contains. Quotients round outward for the outer part and inward for the inner one.
  *
- * In a header to be inlined: it is the inner loop of contact and box. */
+ * The functions are inline because they are the inner loop of contacts and boxes. */
 #ifndef FMB_CLIP_H
 #define FMB_CLIP_H
 
 #include <math.h>
 #include <stdbool.h>
 
-/* What is left: low <= s <= high; nothing where low > high. */
+/* The remaining part: low <= s <= high; empty if low > high. */
 struct clip {
     double low, high;
 };
 
-/* With q = x / y rounded, 0 <= q <= 2: a number that is not larger (not smaller) than the true
- * quotient. It is moved by 2^-51 q, more than twice its error even after that is rounded again;
- * quotients below 2^-900, where underflow might tell, become 0 (2^-899). Where x and y are exact
- * (rounds = false) it is worth asking the remainder q y - x, a double itself, on which side q lies:
- * what is exact stays so. */
+/* A lower bound of x / y, and an upper bound. In: the rounded quotient q lies in [0,2].
+ *
+ * The bound is q moved by 2^-51 q, which is more than twice the error of q, even after the sum is
+ * rounded. Quotients below 2^-900, where underflow may matter, become 0 in the lower bound and
+ * 2^-899 in the upper one. If x and y are exact (rounds = false), the bound is tight: the
+ * remainder q y - x is a double, and its sign says on which side of x / y the quotient q lies. An
+ * exact quotient is returned unchanged. */
 static inline double quotient_below(double x, double y, bool rounds)
 {
     const double q = x / y;
@@ -38,8 +41,8 @@ static inline double quotient_above(double x, double y, bool rounds)
     return q < 0x1p-900 ? 0x1p-899 : q + q * 0x1p-51;
 }
 
-/* Cuts by c + s g >= 0, on the outer side (or on the inner one). Where a cut lies beyond the ends
- * of the segment it is not asked where, so that quotients lie in [0,1]. */
+/* Clips by c + s g >= 0, rounding outward if outer, else inward. A cut beyond the ends of the
+ * segment is not computed, so that all quotients lie in [0,1]. */
 static inline void clip_cut(struct clip *clip, double c, double g, bool outer, bool rounds)
 {
     if (c >= 0 && c + g >= 0)
@@ -55,32 +58,35 @@ static inline void clip_cut(struct clip *clip, double c, double g, bool outer, b
     }
 }
 
-/* An inequality whose c is known within c_error, and its g within g_error. */
+/* The inequality c + s g >= 0. The true c lies within c_error of c, the true g within g_error of
+ * g. */
 struct inequality {
     double c, g, c_error, g_error;
 };
 
-/* It holds nowhere on the segment, or everywhere: known without a cut, and so it is mostly. */
+/* Whether the true inequality certainly holds nowhere on [0,1]. Most inequalities are decided by
+ * this or by always_holds(), without a division. */
 static inline bool never_holds(const struct inequality *x)
 {
     const double c = x->c + x->c_error;
     return c < 0 && c + (x->g + x->g_error) < 0;
 }
 
-/* It holds strictly at some s of the segment. */
+/* Whether the true inequality certainly holds strictly at some s in [0,1]. */
 static inline bool surely_holds(const struct inequality *x)
 {
     const double c = x->c - x->c_error;
     return c > 0 || c + (x->g - x->g_error) > 0;
 }
 
+/* Whether the true inequality certainly holds everywhere on [0,1]. */
 static inline bool always_holds(const struct inequality *x)
 {
     const double c = x->c - x->c_error;
     return c >= 0 && c + (x->g - x->g_error) >= 0;
 }
 
-/* Cuts both parts of a segment. */
+/* Clips the outer and the inner part of a segment. rounds: false if c and g are exact. */
 static inline void clip_both(struct clip *outer, struct clip *inner, const struct inequality *x,
                              bool rounds)
 {

@@ -1,6 +1,9 @@
-/* Kernels are functions of constants (shapes, dimension, widths) that are made for each case by
- * inlining, their loops unrolled. Under a sanitizer that would take minutes to compile, and show
- * nothing more: there, and wherever INLINED_NOT is defined, they stay functions and loops. */
+/* Forced inlining for kernels.
+ *
+ * A kernel takes constants (shapes, dimension, widths) as arguments. Inlining specializes it for
+ * each case and unrolls its loops. Under AddressSanitizer this would take minutes to compile and
+ * find no more errors: there, and if INLINED_NOT is defined, kernels stay ordinary functions and
+ * loops. */
 #ifndef FMB_INLINED_H
 #define FMB_INLINED_H
 

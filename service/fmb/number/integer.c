@@ -10,7 +10,7 @@
 static_assert(FLT_RADIX == 2 && DBL_MANT_DIG == 53 && DBL_MAX_EXP == 1024, "IEEE 754 binary64");
 static_assert(sizeof(long) == 8, "GMP takes its numbers as longs: a mantissa must fit");
 
-/* Exponent of the lowest bit of the subnormals, and of the lowest bit of the largest double. */
+/* Exponents of the lowest bit of a subnormal double, and of the largest double. */
 enum { LOWEST_UNIT = -1074, HIGHEST_UNIT = 971 };
 
 struct dyadic_span dyadic_span_begin(void)
@@ -45,7 +45,8 @@ void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit)
         mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent + y.exponent - unit));
 }
 
-/* x without its low limbs that are 0; returns how many there are. x is not 0. */
+/* out := x without its low zero limbs, as a read-only view of x; returns their number. In: x is not
+ * 0. */
 static mp_size_t strip(mpz_t out, const mpz_t x)
 {
     const mp_limb_t *limbs = mpz_limbs_read(x);
@@ -100,8 +101,8 @@ void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3], mpz_t scratch)
     integer_add_product(out, 1, u[2], v[2], scratch);
 }
 
-/* x y = mantissa 2^*exponent, but for a factor of 1 +- 2^-50: each factor is cut off at 53 bits,
- * and the product rounds. */
+/* Returns a mantissa such that x y = mantissa 2^*exponent within a factor of 1 +- 2^-50: each
+ * factor is truncated to 53 bits, and the product is rounded. */
 static double leading_product(const mpz_t x, const mpz_t y, long *exponent)
 {
     long of_x, of_y;
@@ -110,10 +111,11 @@ static double leading_product(const mpz_t x, const mpz_t y, long *exponent)
     return mantissa;
 }
 
-/* Below this, products are computed no slower than compared. */
+/* Up to this total size, computing the products is no slower than comparing their leading bits. */
 enum { FEW_LIMBS = 6 };
 
-/* Mantissas lie in [1/4, 1): scaled by 2^-4 or less, one is surely the smaller in magnitude. */
+/* Mantissas lie in [1/4, 1): a product scaled by 2^-4 or less is certainly the smaller one in
+ * magnitude. */
 int integer_compare_products(const mpz_t x, const mpz_t y, const mpz_t z, const mpz_t w,
                              mpz_t scratch[2])
 {
@@ -133,7 +135,7 @@ int integer_compare_products(const mpz_t x, const mpz_t y, const mpz_t z, const 
     return mpz_cmp(scratch[0], scratch[1]);
 }
 
-/* The largest q with q 2^step <= |num| / den * 2^unit, and whether it is the value itself. */
+/* Returns the largest q with q 2^step <= |num| / den * 2^unit. *exact: whether they are equal. */
 static uint64_t floor_in_steps(const mpz_t num, const mpz_t den, long unit, long step,
                                mpz_t scratch[2], bool *exact)
 {
@@ -150,11 +152,11 @@ static uint64_t floor_in_steps(const mpz_t num, const mpz_t den, long unit, long
     return mpz_get_ui(scratch[0]);
 }
 
-/* Method: with n and m the bit lengths of num and den, |num| / den lies in
- * (2^(n-m-1), 2^(n-m+1)), so in steps of 2^(n-m-1-52+unit) it is an integer part of 53 or 54
- * bits; with 54, steps twice as wide give 53. Steps never go below those of the subnormals.
- * The quotient is exact or it is not, so rounding away from zero adds a step or none; 2^53
- * steps are again a double. */
+/* Method: let n and m be the bit lengths of num and den. Then |num| / den lies in
+ * (2^(n-m-1), 2^(n-m+1)). In steps of 2^(n-m-1-52+unit) its integer part has 53 or 54 bits; if it
+ * has 54, steps twice as wide give 53. A step is never smaller than that of the subnormals.
+ * Rounding away from zero adds one step if the quotient is not exact, else none. The sum, at most
+ * 2^53 steps, is a double again. */
 double integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
                            enum round_direction direction, mpz_t scratch[2])
 {

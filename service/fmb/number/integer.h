@@ -1,8 +1,8 @@
-/* Doubles as exact integers, and exact ratios back to doubles.
+/* Conversion of doubles to exact integers, and of exact ratios back to doubles.
  *
- * Every finite double is mantissa * 2^exponent. A set of them becomes a set of integers, all
- * times the same power of two (the unit), without rounding; sums and products of integers
- * are GMP's. */
+ * Every finite double is a dyadic number, mantissa * 2^exponent. A set of them is converted,
+ * without rounding, to integers times one common power of two, 2^unit. Sums and products of the
+ * integers are computed by GMP. No shared state. */
 #ifndef FMB_INTEGER_H
 #define FMB_INTEGER_H
 
@@ -17,14 +17,14 @@ struct dyadic {
     long exponent;
 };
 
-/* Larger than every exponent: the exponent of 0, so that minima come out right. */
+/* The exponent of 0. Larger than every other exponent, so that 0 does not affect a minimum. */
 #define INTEGER_NO_EXPONENT 1000000L
 
-/* x must be finite. This and dyadic_span_add() are inline: they are called for each number of each
- * frame that is made.
+/* Returns a finite double as a dyadic number. This function and dyadic_span_add() are inline
+ * because they are called for each number of each frame that is made.
  *
- * Bits of a double: sign 1, biased exponent e 11, fraction f 52. The value is
- * (2^52 + f) 2^(e - 1075), or f 2^-1074 for e = 0. */
+ * The bits of a double: sign 1, biased exponent e 11, fraction f 52. The value is
+ * (2^52 + f) 2^(e - 1075), or f 2^-1074 if e = 0. */
 static inline struct dyadic dyadic_of(double x)
 {
     uint64_t bits;
@@ -39,13 +39,16 @@ static inline struct dyadic dyadic_of(double x)
     return (struct dyadic){bits >> 63 ? -odd : odd, (biased ? biased : 1) - 1075 + trailing};
 }
 
-/* All numbers of a set are multiples of 2^unit and below 2^top in magnitude. */
+/* The bits that a set of numbers spans: all are multiples of 2^unit and below 2^top in magnitude.
+ */
 struct dyadic_span {
     long unit, top;
 };
 
-struct dyadic_span dyadic_span_begin(void); /* of no number: unit INTEGER_NO_EXPONENT, top less */
+/* Returns the span of the empty set: unit INTEGER_NO_EXPONENT, top -INTEGER_NO_EXPONENT. */
+struct dyadic_span dyadic_span_begin(void);
 
+/* Adds x to the set. */
 static inline void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
 {
     if (x.mantissa == 0)
@@ -56,43 +59,46 @@ static inline void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
     span->top = top > span->top ? top : span->top;
 }
 
-/* The smaller of two units, or exponents. */
+/* Returns the smaller of two units or exponents. */
 long integer_lower_unit(long unit, long exponent);
 
-/* The largest unit, at most the given one, of which all dim numbers are multiples. */
+/* Returns the largest exponent u <= unit such that all numbers v[0] to v[dim - 1] are multiples of
+ * 2^u. In: v is finite. */
 long integer_vector_unit(long unit, const double *v, int dim);
 
-/* out := x / 2^unit. unit <= x.exponent. */
+/* out := x / 2^unit. In: unit <= x.exponent. */
 void integer_set(mpz_t out, struct dyadic x, long unit);
 
-/* out := x y / 2^unit. unit <= x.exponent + y.exponent. */
+/* out := x y / 2^unit. In: unit <= x.exponent + y.exponent. */
 void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit);
 
+/* Returns whether all three coordinates are 0. */
 bool integer_is_zero(mpz_t v[3]);
 
-/* out := x y; out is none of the inputs. Numbers whose exponents are far apart end in many zero
- * bits once they share a unit; those take no time here. */
+/* out := x y. In: out is neither x nor y. Fast for integers that end in many zero bits, as doubles
+ * with exponents far apart do in a common unit. */
 void integer_multiply(mpz_t out, const mpz_t x, const mpz_t y);
 
-/* out := out + sign x y, sign +1 or -1; scratch is overwritten, and is none of the others. */
+/* out := out + sign x y. In: sign is +1 or -1; scratch, which is overwritten, is none of the other
+ * arguments. */
 void integer_add_product(mpz_t out, int sign, const mpz_t x, const mpz_t y, mpz_t scratch);
 
-/* out := u x v, the cross product of vectors of three; out is none of the inputs; scratch is
- * overwritten. */
+/* out := u x v, the cross product. In: out is neither u nor v. scratch is overwritten. */
 void integer_cross(mpz_t out[3], mpz_t u[3], mpz_t v[3], mpz_t scratch);
 
-/* out := u . v; out is none of the inputs; scratch is overwritten. */
+/* out := u . v. In: out is none of the inputs. scratch is overwritten. */
 void integer_dot(mpz_t out, mpz_t u[3], mpz_t v[3], mpz_t scratch);
 
-/* The sign of x y - z w. Decided from the leading bits where these differ. */
+/* Returns a number with the sign of x y - z w. Uses the leading bits if they decide it. scratch is
+ * overwritten. */
 int integer_compare_products(const mpz_t x, const mpz_t y, const mpz_t z, const mpz_t w,
                              mpz_t scratch[2]);
 
 enum round_direction { ROUND_DOWN, ROUND_UP };
 
-/* The double next to num / den * 2^unit on the side that direction names, or the value itself
- * where it is a double; den > 0. Infinite, with its sign, where the value lies beyond the
- * largest double, whatever the direction. Zero is never -0. scratch is overwritten. */
+/* Returns num / den * 2^unit, rounded in the given direction: the value itself if it is a double,
+ * else the next double on that side. If its magnitude is above the largest double, returns infinity
+ * with its sign, in either direction. Never returns -0. In: den > 0. scratch is overwritten. */
 double integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
                            enum round_direction direction, mpz_t scratch[2]);
 

@@ -1,10 +1,12 @@
-/* A number known to lie in [low, high], with sums and products rounded outward. What is exact stays
- * exact: the error of a sum of two doubles is a double, and so is that of a product (Knuth, The Art
- * of Computer Programming, volume 2, 4.2.2, theorem B), and its sign says on which side the
- * rounded value lies.
+/* Interval arithmetic: a number known to lie in [low, high], with sums and products rounded
+ * outward.
  *
- * All numbers here are far from overflow. Sums do not underflow: what is below the smallest
- * normal number is exact. */
+ * Exact results stay exact. The rounding error of a sum of two doubles is a double, and so is that
+ * of a product (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B). Its sign says
+ * on which side of the true value the rounded one lies.
+ *
+ * In: all numbers are far from overflow. Sums do not lose bits to underflow: a sum below the
+ * smallest normal number is exact. */
 #ifndef FMB_INTERVAL_H
 #define FMB_INTERVAL_H
 
@@ -29,14 +31,15 @@ static inline double interval_max(double x, double y)
     return x > y ? x : y;
 }
 
+/* Returns x + y - sum, exactly. In: sum is x + y, rounded. */
 static inline double interval_sum_error(double x, double y, double sum)
 {
     const double part = sum - x;
     return (x - (sum - part)) + (y - part);
 }
 
-/* One or two doubles further: 2^-52 |x| is between one and two units in the last place of a normal
- * number. */
+/* x moved down, or up, by one or two doubles: for a normal number, 2^-52 |x| is between one and two
+ * units in the last place. */
 static inline double interval_step_down(double x)
 {
     return x - fabs(x) * 0x1p-52;
@@ -57,7 +60,8 @@ static inline struct interval interval_sum(struct interval x, struct interval y)
     return sum;
 }
 
-/* Below 2^-900 the error of a product may not be a double; there it is at most 2^-953. */
+/* The interval of x y. Below 2^-900 the error of a product may not be a double; it is then at most
+ * 2^-953, and the interval is widened by that. */
 static inline struct interval interval_product(double x, double y)
 {
     const double product = x * y;

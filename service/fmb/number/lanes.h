@@ -1,15 +1,15 @@
-/* Lanes: so many doubles side by side, on which each operation does the same. LANES says how many,
- * before this is included: 1 (plain C), or 2, 4 or 8, in the vector types of gcc and clang.
+/* SIMD vectors of doubles. The includer defines LANES, the number of doubles of a vector, before
+ * this header: 1 (plain C), or 2, 4 or 8 (the vector types of gcc and clang).
  *
- * Every lane gives the bits that one double would: sums, products and quotients are IEEE's, and the
- * others do not round. Where the compiler may fuse operations (-ffp-contract=fast) that is given
- * up: a file that promises bits is compiled without. */
+ * Each lane has the same bits as scalar code: sums, products and quotients are those of IEEE 754,
+ * and the other operations do not round. This does not hold if the compiler may fuse operations
+ * (-ffp-contract=fast); a file that promises exact bits is compiled without that option. */
 #ifndef FMB_LANES_H
 #define FMB_LANES_H
 
 #include "inlined.h"
 
-#ifndef LANES /* the header alone */
+#ifndef LANES /* the header is compiled by itself */
 #define LANES 1
 #endif
 
@@ -31,7 +31,7 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 #endif
 #endif
 
-/* x > y ? x : y and x < y ? x : y: the second where one of them is not a number. */
+/* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
 #if LANES == 1
 INLINE lanes lanes_max(lanes x, lanes y)
 {
@@ -81,12 +81,14 @@ INLINE lanes lanes_min(lanes x, lanes y)
 }
 #endif
 
+/* x in all lanes. */
 INLINE lanes lanes_of(double x)
 {
     lanes out = {0};
     return out + x;
 }
 
+/* The representation of each lane. */
 INLINE lanes_bits lanes_as_bits(lanes x)
 {
     lanes_bits out;
@@ -101,6 +103,7 @@ INLINE lanes lanes_from_bits(lanes_bits x)
     return out;
 }
 
+/* |x| */
 INLINE lanes lanes_abs(lanes x)
 {
 #if LANES == 1
@@ -110,7 +113,7 @@ INLINE lanes lanes_abs(lanes x)
 #endif
 }
 
-/* x where the mask is set, else y. */
+/* x in the lanes where the mask is set, y in the others. */
 INLINE lanes lanes_select(lanes_mask mask, lanes x, lanes y)
 {
 #if LANES == 1
@@ -122,7 +125,7 @@ INLINE lanes lanes_select(lanes_mask mask, lanes x, lanes y)
 #endif
 }
 
-/* x where the mask is set, else 0. */
+/* x in the lanes where the mask is set, 0 in the others. */
 INLINE lanes_bits lanes_bits_where(lanes_mask mask, lanes_bits x)
 {
 #if LANES == 1
@@ -132,7 +135,7 @@ INLINE lanes_bits lanes_bits_where(lanes_mask mask, lanes_bits x)
 #endif
 }
 
-/* magnitude >= 0, with the sign of x. */
+/* magnitude with the sign of x. In: magnitude >= 0. */
 INLINE lanes lanes_copysign(lanes magnitude, lanes x)
 {
 #if LANES == 1
@@ -142,7 +145,7 @@ INLINE lanes lanes_copysign(lanes magnitude, lanes x)
 #endif
 }
 
-/* Bit i: lane i. */
+/* Bit i is 1 if the mask is set in lane i. */
 INLINE unsigned lanes_mask_bits(lanes_mask mask)
 {
 #if LANES == 1
@@ -161,12 +164,13 @@ INLINE unsigned lanes_mask_bits(lanes_mask mask)
 #endif
 }
 
+/* Whether the mask is set in all lanes. */
 INLINE bool lanes_all(lanes_mask mask)
 {
     return lanes_mask_bits(mask) == (1u << LANES) - 1;
 }
 
-/* Bit i: x > y in lane i. Not by a mask where comparisons give the bits. */
+/* Bit i is 1 if x > y in lane i. Avoids the mask where comparisons give the bits directly. */
 INLINE unsigned lanes_greater_bits(lanes x, lanes y)
 {
 #if LANES == 8 && defined(__AVX512F__)
@@ -178,7 +182,7 @@ INLINE unsigned lanes_greater_bits(lanes x, lanes y)
 
 #if LANES <= 2
 
-/* The two lanes, each in the place of the other. */
+/* The two lanes in reverse order. */
 INLINE lanes lanes_swap(lanes x)
 {
 #if LANES == 1

@@ -1,8 +1,12 @@
-/* Vectors that carry, for each axis, the sum of the magnitudes of what they were made of: a sum of
- * monomials, each of them rounded n times, is off by at most (n + 0.01) u times the sum of their
- * magnitudes, u = 2^-53; and that is found by the same operations on magnitudes ("weight"). Such a
- * bound is made for one value alone: it costs as much as the value, and is small where that is
- * made of small numbers. */
+/* Vectors with running error bounds.
+ *
+ * A coordinate is a sum of monomials. If each of them is rounded n times, the sum is off by at most
+ * (n + 0.01) u times the sum of the magnitudes of the monomials, u = 2^-53. That sum is the weight
+ * of the coordinate; the operations that compute the coordinate also compute the weight, on
+ * magnitudes.
+ *
+ * Such a bound belongs to one value. It costs as much as the value itself, and is small if the
+ * value is made of small numbers. */
 #ifndef FMB_RUNNING_ERROR_H
 #define FMB_RUNNING_ERROR_H
 
@@ -11,25 +15,37 @@
 #include <math.h>
 
 struct running_error {
-    double at[FMB_DIM_MAX], weight[FMB_DIM_MAX];
-    double length; /* no vector of lengths up to those of its factors is longer */
+    double at[FMB_DIM_MAX];     /* coordinates, rounded */
+    double weight[FMB_DIM_MAX]; /* sum of the magnitudes of the monomials, for each coordinate */
+    double length; /* bounds the length of every vector computed so from factors no longer */
 };
 
-/* Bounds the error of n . w, where n is a component turned by a right angle (2D), the cross product
- * of two edges, or the sum of three such (the last face of a tetrahedron), and w a vertex of one
- * frame seen from another, moving or not; weight is that of n . w, less than 2^610.
+/* Bounds the error of n . w. The normal n is a component rotated by a right angle (2D), the cross
+ * product of two edges, or the sum of three cross products (the last face of a tetrahedron). The
+ * vector w is a vertex of one frame seen from another, moving or not. In: weight is the weight of
+ * n . w, less than 2^610.
  *
- * A monomial is rounded at most 3 times before (offset once, drift twice), once in each edge that
- * is a difference, 2 times in a cross product, 2 in the sum of three normals, 3 in a dot product,
- * 4 in sums of components and motion, 2 where a bound is taken from it: 18 times, if all of these
- * applied to one. 2^-48 = 32 u leaves room for the rounding of the weight and of what the
- * bound is added to. Underflow: at most 2^8 operations, each off by less than 2^-1074, some of them
- * multiplied later by at most two lengths, of 2^204 each at most: less than 2^-660. */
+ * Number of roundings of one monomial:
+ *
+ *     3  before (offset once, drift twice)
+ *     2  in edges that are differences: once in each of two
+ *     2  in a cross product
+ *     2  in the sum of three normals
+ *     3  in a dot product
+ *     4  in sums of components and motion
+ *     2  where a bound is derived from it
+ *
+ * Together 18, if all of these applied to one monomial. 2^-48 = 32 u also covers the rounding of
+ * the weight, and of the sum that the bound is added to.
+ *
+ * Underflow: there are at most 2^8 operations. Each is off by less than 2^-1074, and some results
+ * are multiplied later by at most two lengths, each at most 2^204. The sum is less than 2^-660. */
 static inline double running_error_bound(double weight)
 {
     return 0x1p-48 * weight + 0x1p-660;
 }
 
+/* A vector of exact coordinates. */
 static inline struct running_error running_error_of(const double v[FMB_DIM_MAX])
 {
     struct running_error out;
@@ -41,7 +57,7 @@ static inline struct running_error running_error_of(const double v[FMB_DIM_MAX])
     return out;
 }
 
-/* x + sign y */
+/* x + sign y, sign +1 or -1. */
 static inline struct running_error running_error_sum(const struct running_error *x, double sign,
                                                      const struct running_error *y)
 {
@@ -54,6 +70,7 @@ static inline struct running_error running_error_sum(const struct running_error 
     return out;
 }
 
+/* The cross product u x v. */
 static inline struct running_error running_error_cross(const struct running_error *u,
                                                        const struct running_error *v)
 {
@@ -67,13 +84,14 @@ static inline struct running_error running_error_cross(const struct running_erro
     return out;
 }
 
-/* In the plane z = 0: turned by a right angle, counterclockwise. */
+/* u in the plane z = 0, rotated by a right angle, counterclockwise. */
 static inline struct running_error running_error_perpendicular(const struct running_error *u)
 {
     return (struct running_error){
         {-u->at[1], u->at[0], 0}, {u->weight[1], u->weight[0], 0}, u->length};
 }
 
+/* u . v; of coordinates a value, of weights its weight. */
 static inline double running_error_dot(const double u[FMB_DIM_MAX], const double v[FMB_DIM_MAX])
 {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
