@@ -1,5 +1,5 @@
-/* A pair of frames at their places: what every method decides. Bodies of several frames are pairs
- * of their frames (decide.c). */
+/* A pair of placed frames, the input of every method. A pair of bodies of several frames is decided
+ * as the pairs of their frames (decide.c). */
 #ifndef FMB_PAIR_H
 #define FMB_PAIR_H
 
@@ -15,23 +15,24 @@ struct frame_pair {
     double duration; /* seconds, finite, not negative */
 };
 
-/* FMB_OK, or why two placements cannot be compared: fmb_decide(). */
+/* Returns FMB_OK, or the status of fmb_decide() for two placements that cannot be compared. */
 enum fmb_status placements_check(const struct fmb_placement *a, const struct fmb_placement *b,
                                  double duration);
 
-/* Whether the frame is a simplex: a tetrahedron or a face. */
+/* Returns whether the frame is a simplex: a tetrahedron or a face. */
 static inline bool frame_is_simplex(const struct fmb_frame *frame)
 {
     return frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
 }
 
-/* Whether a velocity is not 0. */
+/* Returns whether the velocity is not 0. */
 static inline bool placement_moves(const struct fmb_placement *placement, int dim)
 {
     const double *v = placement->velocity;
     return v[0] != 0 || v[1] != 0 || (dim == 3 && v[2] != 0);
 }
 
+/* Returns whether a frame of the pair has a velocity that is not 0. */
 static inline bool pair_moves(const struct frame_pair *pair)
 {
     const int dim = pair->a.frame->dim;

@@ -9,7 +9,7 @@ struct quaternion rotation_scaled(struct quaternion q)
                                ldexp(q.z, -exponent)};
 }
 
-/* Whether a component is 0 or, scaled, at least least; no NaN. */
+/* Returns whether a component is 0 or, scaled, at least least in magnitude; false for a NaN. */
 INLINE bool is_in_range(double given, double scaled, double least)
 {
     return given == 0 || fabs(scaled) >= least;
@@ -22,7 +22,8 @@ bool rotation_is_spread_legal(struct quaternion given, struct quaternion q)
            is_in_range(given.y, q.y, least) && is_in_range(given.z, q.z, least);
 }
 
-/* The entry of row i and column j that is +-1, as its quaternion says exactly; 0: it is not. */
+/* Returns the entry of row i and column j if it is exactly +-1 (rotation.h), else 0. q: w, x, y, z.
+ */
 static int unit_entry(const double q[4], int i, int j)
 {
     const int k = 3 - i - j;
@@ -31,7 +32,7 @@ static int unit_entry(const double q[4], int i, int j)
         const double y = v[(i + 1) % 3], z = v[(i + 2) % 3];
         return y == 0 && z == 0 ? 1 : q[0] == 0 && v[i] == 0 ? -1 : 0;
     }
-    /* 2 (v_i v_j - turn w v_k): turn is 1 where i, j, k are cyclic. */
+    /* The numerator is 2 (v_i v_j - s w v_k), where s is 1 if i, j, k are cyclic, else -1. */
     const double x = q[1 + i], y = q[1 + j], z = (i + 1) % 3 == j ? -q[1 + k] : q[1 + k];
     return x == y && q[0] == z ? 1 : x == -y && q[0] == -z ? -1 : 0;
 }

@@ -1,29 +1,37 @@
-/* The rotation of a placement in doubles: R(q) of fmb.h, with a bound on its error.
+/* The rotation matrix of a placement in doubles, R(q) of fmb.h, with a bound on its error.
  *
- * Accuracy, with u = 2^-53. A quaternion whose norm n is not within [2^-400, 2^400] is scaled by a
- * power of two first. Then no square overflows, components other than 0 are at least 2^-402, and no
- * product of two underflows. With the sums of squares p = ww + xx, r = yy + zz and so on, every
- * square passes at most three roundings on its way into the norm n, a sum of positive terms: its
- * relative error is at most 3.01 u, that of 1 / n 4.02 u. A diagonal entry (ww + xx) - (yy + zz) is
- * off by at most 3.01 u n, one beside it, 2 (xy - wz), by 2.01 u (2 |xy| + 2 |wz|) <= 2.01 u n.
- * Times 1 / n, with one more rounding: an entry is off by at most 3.01 u + 5.04 u |entry|. The
- * Frobenius norm of the error of the matrix, whose own is sqrt(3), is at most
+ * Accuracy, with u = 2^-53 and n = ww + xx + yy + zz:
  *
- *     u (sqrt(3 * 3.01^2 + 6 * 2.01^2) + 5.04 sqrt(3)) < 15.9 u.
+ * 1. Scaling. A quaternion whose n is not within [2^-400, 2^400] is scaled by a power of two first.
+ *    Then no square overflows, components other than 0 are at least 2^-402, and no product of two
+ *    underflows.
+ * 2. The norm n is a sum of positive terms. It is computed from sums of two squares, ww + xx and
+ *    yy + zz, so that every square passes at most three roundings. The relative error of n is at
+ *    most 3.01 u, that of 1 / n at most 4.02 u.
+ * 3. The numerators. On the diagonal, (ww + xx) - (yy + zz) is off by at most 3.01 u n. Off the
+ *    diagonal, 2 (xy - wz) is off by at most 2.01 u (2 |xy| + 2 |wz|) <= 2.01 u n.
+ * 4. The entries. A numerator times 1 / n is rounded once more: an entry is off by at most
+ *    3.01 u + 5.04 u |entry| on the diagonal, and 2.01 u + 5.04 u |entry| off it.
+ * 5. The matrix. The Frobenius norm of R is sqrt(3). That of its error is at most
  *
- * A vector times the matrix is rounded three times in each coordinate: at most 3.01 u of the sum of
- * the magnitudes, which is at most |v|, so 5.3 u |v| for the vector. Coordinates below 2^-60 |v|
- * become 0, which adds less than 0.1 u |v|. Together less than 21.3 u |v|; ROTATION_ERROR leaves
- * the rest to the rounding of what is computed with it.
+ *        u (sqrt(3 * 3.01^2 + 6 * 2.01^2) + 5.04 sqrt(3)) < 15.9 u.
  *
- * A row that is exactly +- a unit vector is computed so. An entry is +-1 if and only if a sum of
- * two squares is 0: with n = ww + xx + yy + zz,
+ * 6. The product R v. Each coordinate is rounded three times: it is off by at most 3.01 u times the
+ *    sum of the magnitudes of its terms, which is at most |v|. For the vector that is at most
+ *    3.01 sqrt(3) u |v| < 5.3 u |v|. Coordinates below 2^-60 |v| become 0, which adds less than
+ *    0.1 u |v|.
+ *
+ * Together less than 21.3 u |v|. ROTATION_ERROR is 24 u; the difference covers the rounding of
+ * bounds that are computed with it.
+ *
+ * A row that is exactly plus or minus a unit vector is computed without error. An entry is +-1 if
+ * and only if a sum of two squares is 0:
  *
  *     ww + xx - yy - zz = n   if and only if   y = z = 0
  *     ww + xx - yy - zz = -n  if and only if   w = x = 0
  *     2 (yz - wx) = n         if and only if   (y - z)^2 + (w + x)^2 = 0,
  *
- * and likewise for the other entries. */
+ * and in the same way for the other entries. No shared state. */
 #ifndef FMB_ROTATION_H
 #define FMB_ROTATION_H
 
@@ -35,21 +43,22 @@
 
 #define ROTATION_ERROR (24 * 0x1p-53)
 
-/* Two coordinates side by side. */
+/* A SIMD vector of two coordinates, or two rows. */
 typedef double rotation_two __attribute__((vector_size(16)));
 
 struct rotation_matrix {
     int dim;
-    bool turned;                  /* there is an orientation; else the matrix is the identity */
+    bool turned;                  /* the placement has an orientation; else R is the identity */
     bool exact;                   /* all entries are 0 or +-1, exactly */
-    bool axis_exact[FMB_DIM_MAX]; /* those of row [axis] */
-    bool general;                 /* 3D, and no entry is smaller than 2^-60 */
-    bool small;                   /* an entry may be, and not exactly 0 */
-    /* By columns: rows 0 and 1, and row 2. */
+    bool axis_exact[FMB_DIM_MAX]; /* the entries of row [axis] are 0 or +-1, exactly */
+    bool general;                 /* 3D, and the magnitude of every entry is at least 2^-60 */
+    bool small;                   /* an entry may be below 2^-60, and not exactly 0 */
+    /* The columns: rows 0 and 1 in xy, row 2 in z. */
     rotation_two xy[FMB_DIM_MAX];
     double z[FMB_DIM_MAX];
 };
 
+/* Returns R[row][column]. */
 static inline double rotation_entry(const struct rotation_matrix *rotation, int row, int column)
 {
     return row < 2 ? rotation->xy[column][row] : rotation->z[column];
@@ -69,6 +78,7 @@ struct quaternion {
     double w, x, y, z;
 };
 
+/* Returns an orientation of 2 numbers (w, z) or 4 (w, x, y, z) as a quaternion. */
 INLINE struct quaternion quaternion_of(const double *given, int count)
 {
     if (count == 2)
@@ -76,6 +86,7 @@ INLINE struct quaternion quaternion_of(const double *given, int count)
     return (struct quaternion){given[0], given[1], given[2], given[3]};
 }
 
+/* Returns the largest magnitude of a component. In: no NaN. */
 INLINE double quaternion_largest(struct quaternion q)
 {
     const double w = fabs(q.w), x = fabs(q.x), y = fabs(q.y), z = fabs(q.z);
@@ -83,36 +94,39 @@ INLINE double quaternion_largest(struct quaternion q)
     return wx > yz ? wx : yz;
 }
 
+/* Returns n = |q|^2, rounded. */
 INLINE double quaternion_norm(struct quaternion q)
 {
     return (q.w * q.w + q.x * q.x) + (q.y * q.y + q.z * q.z);
 }
 
-/* Whether no square overflows, and no product of two components other than 0 underflows, of a legal
- * orientation. */
+/* Returns whether a legal orientation of this norm needs no scaling: no square overflows, and no
+ * product of two components other than 0 underflows. */
 INLINE bool quaternion_is_scaled(double norm)
 {
     return norm >= 0x1p-400 && norm <= 0x1p400;
 }
 
-/* q times a power of two, its largest component in [1, 2). In: finite, not all 0. */
+/* Returns q times a power of two, with the magnitude of its largest component in [1, 2). In:
+ * finite, not all 0. */
 struct quaternion rotation_scaled(struct quaternion q);
 
-/* Whether no component of given but 0 is more than 2^200 times smaller than the largest; q: given,
- * scaled. */
+/* Returns whether every component of given is 0 or at least 2^-200 times the largest. In: q is
+ * given times a power of two. */
 bool rotation_is_spread_legal(struct quaternion given, struct quaternion q);
 
-/* Sets the rows that are exactly unit vectors, and the columns that are so with them. */
+/* Makes exact the rows that are plus or minus a unit vector, and the columns of their entries. */
 void rotation_set_units(struct quaternion q, struct rotation_matrix *out);
 
-/* Whether an orientation is accepted: fmb_placement_check(). */
+/* Returns whether fmb_placement_check() accepts the orientation. In: count is 2 or 4. */
 INLINE bool rotation_is_orientation(const double *orientation, int count)
 {
     const struct quaternion q = quaternion_of(orientation, count);
     const double norm = quaternion_norm(q);
     if (quaternion_is_scaled(norm)) {
-        /* With L the largest component and m the smallest, norm >= L^2 and |w x y z| <= m L^3: so
-         * m >= 2^-180 L where the product is so large. Likewise |w z| <= m L. */
+        /* Let L be the largest magnitude of a component, and m the smallest. Then norm >= L^2 and
+         * |w x y z| <= m L^3. So |w x y z| >= 2^-180 norm^2 implies m >= 2^-180 L. In the planar
+         * case |w z| <= m L, and |w z| >= 2^-180 norm implies the same. */
         const bool planar = q.x == 0 && q.y == 0;
         const bool large = planar ? fabs(q.w * q.z) >= 0x1p-180 * norm
                                   : fabs((q.w * q.x) * (q.y * q.z)) >= 0x1p-180 * norm * norm;
@@ -122,15 +136,16 @@ INLINE bool rotation_is_orientation(const double *orientation, int count)
     return sum == 0 && quaternion_largest(q) > 0 && rotation_is_spread_legal(q, rotation_scaled(q));
 }
 
-/* Whether some row may be a unit vector: a component of the quaternion is 0, or as large as the
- * first (unit_entry()). No product underflows. */
+/* Returns whether some row may be plus or minus a unit vector: a component of q is 0, or as large
+ * in magnitude as w (unit_entry()). No product underflows. */
 INLINE bool rotation_may_have_units(struct quaternion q)
 {
     const double w = fabs(q.w), x = fabs(q.x), y = fabs(q.y), z = fabs(q.z);
     return (w * x) * (y * z) == 0 || (w - x) * (w - y) * (w - z) == 0;
 }
 
-/* No entry is larger than 1 + 9 u, so that the product is less than twice the least of them. */
+/* Returns whether every entry is at least 2^-60 in magnitude. No entry is larger than 1 + 9 u, so
+ * that the product of all is less than twice the smallest. */
 INLINE bool rotation_no_entry_is_small(const struct rotation_matrix *rotation)
 {
     const rotation_two xy = (rotation->xy[0] * rotation->xy[1]) * rotation->xy[2];
@@ -138,7 +153,8 @@ INLINE bool rotation_no_entry_is_small(const struct rotation_matrix *rotation)
     return fabs((xy[0] * xy[1]) * z) >= 0x1p-59;
 }
 
-/* A rotation about the z axis, or in the plane. */
+/* Sets a rotation about the z axis, or in the plane. exact: cosine and sine are 0 or +-1, exactly.
+ */
 INLINE void rotation_set_planar(double cosine, double sine, bool exact, struct rotation_matrix *out)
 {
     out->xy[0] = (rotation_two){cosine, sine};
@@ -152,7 +168,7 @@ INLINE void rotation_set_planar(double cosine, double sine, bool exact, struct r
     out->small = !exact && fabs(cosine * sine) < 0x1p-59;
 }
 
-/* As rotation_of() says, for x = y = 0. */
+/* Sets the rotation of a quaternion with x = y = 0. In: the norm is scaled. */
 INLINE void rotation_set_about_z(double w, double z, struct rotation_matrix *out)
 {
     const double ww = w * w, zz = z * z, inverse = 1 / (ww + zz);
@@ -164,6 +180,7 @@ INLINE void rotation_set_about_z(double w, double z, struct rotation_matrix *out
         rotation_set_planar((ww - zz) * inverse, (w * z) * (2 * inverse), false, out);
 }
 
+/* Sets the rotation of any other quaternion. In: the norm is scaled. */
 INLINE void rotation_set_in_space(struct quaternion q, struct rotation_matrix *out)
 {
     const double w = q.w, x = q.x, y = q.y, z = q.z;
@@ -183,8 +200,8 @@ INLINE void rotation_set_in_space(struct quaternion q, struct rotation_matrix *o
         rotation_set_units(q, out);
 }
 
-/* In: a placement that fmb_placement_check() accepts. In 2D the planar quaternion is one in space
- * whose x and y are 0. */
+/* Computes the rotation of a placement. In: fmb_placement_check() accepts the placement. In 2D the
+ * quaternion has x = y = 0. */
 INLINE void rotation_of(const struct fmb_placement *placement, int dim, struct rotation_matrix *out)
 {
     out->dim = dim;
