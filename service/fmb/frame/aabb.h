@@ -1,28 +1,30 @@
-/* Boxes of frames over a window, rounded outward.
+/* Axis-aligned bounding boxes (AABBs) of frames, swept over a window and rounded outward.
  *
- * On an axis, the points o + t v + sum x_i c_i of a frame, t in [0, T], reach from
+ * On an axis, the points o + t v + sum x_i c_i of a frame, t in [0, T], form an interval [low,
+ * high]:
  *
  *     low = o + min(0, v T) + sum_i min(0, c_i)       of a cuboid
  *     low = o + min(0, v T) + min(0, c_0, c_1, ...)   of a tetrahedron and of a face
  *
- * to high, which is -low of the frame with -o, -v and -c_i. So a box keeps low and -high side by
- * side: both come from the same sum, and both are too large where they are wrong.
+ * and high is -low of the frame with -o, -v and -c_i. So a box stores the pair {low, -high}. Both
+ * are computed by the same sum, and for both rounding outward means rounding down.
  *
- * Accuracy. Terms are added one by one, and what is exact stays exact. A sum that was rounded up is
- * known by the sign of its error, which is a double (interval.h), and steps down by 2^-52 of
- * itself: by a whole unit in its last place at least, where it was at most half of one off. It is a
- * normal number then, since sums do not underflow. v T likewise; where the error of that product
- * might not be a double it steps down anyway, by 2^-1074 more, as half of that is how far off it
- * may be where it underflows.
+ * Accuracy. Terms are added one by one, and exact sums stay exact. The error of a sum is a double
+ * (interval.h), and its sign says whether the sum was rounded up. If so, the sum is lowered by
+ * 2^-52 of itself. That is at least one unit in the last place, and the error was at most half a
+ * unit. Such a sum is a normal number, since sums do not underflow. The product v T is treated in
+ * the same way. Where its error might not be a double, it is lowered unconditionally, and by
+ * 2^-1074 more, since underflow makes it off by at most half of that.
  *
- * Special cases. All terms but o are zero or negative, and o is finite: a sum that overflows goes
- * to -infinity, and stays there. No infinity of the other sign is met, hence no number that is
- * none. Inside the error of a sum there might be one where the numbers are among the largest: such
- * a sum steps down.
+ * Special cases. All terms but o are zero or negative, and o is finite. A sum that overflows is
+ * therefore -infinity, and stays so; +infinity does not occur, and no sum is a NaN. The computed
+ * error of a sum may be a NaN if the numbers are among the largest: such a sum is lowered.
  *
- * A frame with an error is widened by it. Where that error, or a coordinate, is not finite, or the
- * frame is turned without being usable, the box is that of a ball: no point of the frame is farther
- * than its radius from the position of its body. */
+ * The box of a frame with an error is expanded by the error. If the error or a coordinate is not
+ * finite, or the frame is rotated and not usable, the box is that of a ball: no point of the frame
+ * is farther than its radius from the position of its body.
+ *
+ * No shared state. */
 #ifndef FMB_AABB_H
 #define FMB_AABB_H
 
@@ -35,12 +37,13 @@
 #include <float.h>
 #include <math.h>
 
-/* [axis], each {low, -high}. In 2D the third is {0, 0}. */
+/* A box: [axis], each {low, -high}. In 2D the third is {0, 0}. */
 struct aabb {
     lanes end[FMB_DIM_MAX];
 };
 
-/* x <= y. gcc takes such masks apart where it sees what they are made of. */
+/* x <= y, lane by lane. An intrinsic, because gcc splits a mask into lanes if it sees the
+ * comparison that the mask comes from. */
 INLINE lanes_mask aabb_at_most(lanes x, lanes y)
 {
 #if defined(__SSE2__)
@@ -50,18 +53,18 @@ INLINE lanes_mask aabb_at_most(lanes x, lanes y)
 #endif
 }
 
-/* x + y or less. On input: x is no +infinity, y <= 0. */
+/* A lower bound of x + y: the sum itself if it is exact. In: x < +infinity, y <= 0. */
 INLINE lanes aabb_sum_down(lanes x, lanes y)
 {
     const lanes sum = x + y, part = sum - x;
     const lanes error = (x - (sum - part)) + (y - part);
-    const lanes_mask holds =
+    const lanes_mask is_bound =
         aabb_at_most(lanes_of(0), error) & aabb_at_most(error, lanes_of(DBL_MAX));
     const lanes step = lanes_abs(sum) * 0x1p-52;
-    return sum - lanes_select(holds, lanes_of(0), step);
+    return sum - lanes_select(is_bound, lanes_of(0), step);
 }
 
-/* -speed * duration or less; both are finite and not negative. */
+/* A lower bound of -speed * duration. In: both are finite and not negative. */
 INLINE double aabb_path_down(double speed, double duration)
 {
     const double path = -speed * duration;
@@ -72,7 +75,7 @@ INLINE double aabb_path_down(double speed, double duration)
     return fma(-speed, duration, -path) < 0 ? path + path * 0x1p-52 : path;
 }
 
-/* An axis of a box that moves. */
+/* One axis of a box, swept over the window. */
 INLINE lanes aabb_sweep_axis(lanes end, double velocity, double duration)
 {
     const double path = aabb_path_down(fabs(velocity), duration);
@@ -80,13 +83,14 @@ INLINE lanes aabb_sweep_axis(lanes end, double velocity, double duration)
     return aabb_sum_down(end, velocity < 0 ? back : forth);
 }
 
-/* {x, -x}, where it is negative. */
+/* {min(0, x), min(0, -x)} */
 INLINE lanes aabb_of_extent(double x)
 {
     return lanes_min((lanes){x, -x}, lanes_of(0));
 }
 
-/* The components, on an axis. */
+/* One axis of a frame at rest. In: number points to that coordinate of the origin in the numbers of
+ * a prepared frame. */
 INLINE lanes aabb_of_axis(const double *number, const int dim, bool cuboid)
 {
     lanes end = {number[0], -number[0]};
@@ -103,6 +107,7 @@ INLINE lanes aabb_of_axis(const double *number, const int dim, bool cuboid)
     return aabb_sum_down(end, cuboid ? third : lanes_min(first, third));
 }
 
+/* The box of a frame at rest, from its numbers. */
 INLINE void aabb_of_axes(const struct fmb_prepared *frame, const int dim, struct aabb *out)
 {
     const unsigned kind = prepared_kind(frame);
@@ -117,6 +122,7 @@ INLINE void aabb_of_axes(const struct fmb_prepared *frame, const int dim, struct
         out->end[axis] = aabb_sum_down(out->end[axis], lanes_of(-error));
 }
 
+/* The box of the ball that contains a frame at rest. */
 INLINE void aabb_of_ball(const struct fmb_prepared *frame, struct aabb *out)
 {
     for (int axis = 0; axis < frame->frame->dim; axis++) {
@@ -125,7 +131,7 @@ INLINE void aabb_of_ball(const struct fmb_prepared *frame, struct aabb *out)
     }
 }
 
-/* Whether the numbers of a frame do not bound it. */
+/* Whether the numbers of a frame do not bound it, so that its box has to be that of a ball. */
 INLINE bool aabb_needs_ball(const struct fmb_prepared *frame)
 {
     const double error = prepared_error(frame);
@@ -133,7 +139,7 @@ INLINE bool aabb_needs_ball(const struct fmb_prepared *frame)
                                                   !(prepared_kind(frame) & PREPARED_USABLE)));
 }
 
-/* On input: a prepared frame, a legal duration. */
+/* Returns the box of a prepared frame over the window [0, duration]. In: duration is legal. */
 INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
 {
     const unsigned kind = prepared_kind(frame);
@@ -150,7 +156,7 @@ INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
     return out;
 }
 
-/* The smallest box that holds both. */
+/* Returns the smallest box that contains both. */
 INLINE struct aabb aabb_union(struct aabb x, struct aabb y)
 {
     UNROLL(3)
@@ -159,7 +165,7 @@ INLINE struct aabb aabb_union(struct aabb x, struct aabb y)
     return x;
 }
 
-/* What boxes are held against that may meet a box: {high, -low} of it. */
+/* Returns the probe of a box, the second operand of aabb_overlaps(): {high, -low} on each axis. */
 INLINE struct aabb aabb_probe(const struct aabb *box)
 {
     struct aabb out;
@@ -169,8 +175,8 @@ INLINE struct aabb aabb_probe(const struct aabb *box)
     return out;
 }
 
-/* The same for boxes that may be no farther away than reach on each axis, >= 0. Sums round: reach
- * has to be larger by that where it is not 0. */
+/* Returns the probe of a box for all boxes within reach of it on every axis. In: reach >= 0. The
+ * sums are rounded to nearest: unless it is 0, reach must include a margin for that. */
 INLINE struct aabb aabb_probe_within(const struct aabb *box, double reach)
 {
     struct aabb out = aabb_probe(box);
@@ -180,7 +186,7 @@ INLINE struct aabb aabb_probe_within(const struct aabb *box, double reach)
     return out;
 }
 
-/* The largest magnitude of a coordinate. */
+/* Returns the largest magnitude of a coordinate of the box. */
 INLINE double aabb_max_coordinate(const struct aabb *box)
 {
     lanes largest = lanes_of(0);
@@ -190,14 +196,14 @@ INLINE double aabb_max_coordinate(const struct aabb *box)
     return largest[0] > largest[1] ? largest[0] : largest[1];
 }
 
-/* Whether the boxes, one of them turned round by aabb_probe(), have a point in common. */
-INLINE bool aabb_overlaps(const struct aabb *box, const struct aabb *against)
+/* Returns whether the boxes have a point in common. In: the second is a probe. */
+INLINE bool aabb_overlaps(const struct aabb *box, const struct aabb *probe)
 {
-    lanes_mask meet = aabb_at_most(box->end[0], against->end[0]);
+    lanes_mask overlap = aabb_at_most(box->end[0], probe->end[0]);
     UNROLL(3)
     for (int axis = 1; axis < FMB_DIM_MAX; axis++)
-        meet &= aabb_at_most(box->end[axis], against->end[axis]);
-    return lanes_all(meet);
+        overlap &= aabb_at_most(box->end[axis], probe->end[axis]);
+    return lanes_all(overlap);
 }
 
 #endif

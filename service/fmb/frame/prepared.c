@@ -5,18 +5,20 @@
 
 #include <math.h>
 
-/* ---- Heads ---- */
+/* ---- Summaries ---- */
 
-/* Bounds the length of v, whose numbers are below 2^200: the sum of squares and its root have a
- * relative error below 2^-51, and squares that underflow are small against the rest of a vector in
- * range. The rest of the 2^-46 is for vectors that are turned and rounded, which are longer by less
- * than 25 u (rotation.h), or rounded as differences of vertices. */
+/* Returns an upper bound of the length of v, whose numbers are below 2^200 in magnitude.
+ *
+ * The sum of squares and its root have a relative error below 2^-51. Squares that underflow are
+ * negligible beside the others of a vector in range. The remainder of the 2^-46 covers vectors that
+ * are longer because they were rotated and rounded, by less than 25 u (rotation.h), or rounded as
+ * differences of vertices. */
 static double length_of(const double v[FMB_DIM_MAX])
 {
     return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]) * (1 + 0x1p-46);
 }
 
-/* The 16 upper bits of the least double of so few bits that is no smaller. */
+/* Returns the 16 most significant bits of the smallest double >= length whose other bits are 0. */
 static uint64_t size_bits(double length)
 {
     uint64_t bits;
@@ -24,33 +26,33 @@ static uint64_t size_bits(double length)
     return (bits + UINT64_C(0x0000ffffffffffff)) >> 48;
 }
 
-/* 1 if an edge from y to x is exactly parallel to a coordinate axis, else 0. */
-INLINE unsigned is_along(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
+/* Returns 1 if the edge from y to x is exactly parallel to a coordinate axis, or 0; else 0. */
+INLINE unsigned is_axis_aligned(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
 {
     return (x[0] == y[0]) + (x[1] == y[1]) + (x[2] == y[2]) >= 2;
 }
 
-/* Whether an edge is. */
-INLINE bool has_edge_along(bool simplex, int count, const double c[FMB_DIM_MAX][FMB_DIM_MAX])
+/* Returns whether some edge of a frame with components c is axis-aligned. */
+INLINE bool has_axis_aligned_edge(bool simplex, int count, const double c[FMB_DIM_MAX][FMB_DIM_MAX])
 {
     static const double zero[FMB_DIM_MAX];
-    unsigned along = is_along(c[0], zero) | is_along(c[1], zero);
+    unsigned aligned = is_axis_aligned(c[0], zero) | is_axis_aligned(c[1], zero);
     if (count == 3)
-        along |= is_along(c[2], zero);
+        aligned |= is_axis_aligned(c[2], zero);
     if (simplex)
-        along |= is_along(c[0], c[1]);
+        aligned |= is_axis_aligned(c[0], c[1]);
     if (simplex && count == 3)
-        along |= is_along(c[0], c[2]) | is_along(c[1], c[2]);
-    return along;
+        aligned |= is_axis_aligned(c[0], c[2]) | is_axis_aligned(c[1], c[2]);
+    return aligned;
 }
 
-/* A bit of the kind, in its place in the summary. */
+/* Returns flags at their position in the summary. */
 static uint64_t in_summary(unsigned kind)
 {
     return (uint64_t) kind << 3 * PREPARED_SIZE_BITS;
 }
 
-static const unsigned true_axes = PREPARED_COMPONENTS_EXACT_X * 7;
+static const unsigned all_components_exact = PREPARED_COMPONENTS_EXACT_X * 7;
 
 unsigned long long prepared_summary_of(const struct fmb_frame *frame)
 {
@@ -61,9 +63,9 @@ unsigned long long prepared_summary_of(const struct fmb_frame *frame)
     kind |= frame->dim == 3 ? PREPARED_3D : 0;
     kind |= frame->in_range ? PREPARED_USABLE : 0;
     kind |= plain ? PREPARED_PLAIN : 0;
-    kind |= frame->rounded ? 0 : true_axes;
-    kind |= has_edge_along(frame_is_simplex(frame), frame->count,
-                           (const double(*)[FMB_DIM_MAX]) frame->component)
+    kind |= frame->rounded ? 0 : all_components_exact;
+    kind |= has_axis_aligned_edge(frame_is_simplex(frame), frame->count,
+                                  (const double(*)[FMB_DIM_MAX]) frame->component)
                 ? PREPARED_AXIS_ALIGNED
                 : 0;
     uint64_t summary = in_summary(kind);
@@ -72,28 +74,29 @@ unsigned long long prepared_summary_of(const struct fmb_frame *frame)
     return summary;
 }
 
-/* ---- Places ---- */
+/* ---- World coordinates ---- */
 
-/* The world coordinates of a frame in progress. */
-struct place {
+/* The numbers of a prepared frame in 3D: world coordinates and their error. */
+struct world_numbers {
     double origin[FMB_DIM_MAX], component[FMB_DIM_MAX][FMB_DIM_MAX];
     double error;
 };
-_Static_assert(sizeof(struct place) == sizeof(((struct fmb_prepared *) 0)->number),
-               "the numbers of a prepared frame in 3D");
+_Static_assert(sizeof(struct world_numbers) == sizeof(((struct fmb_prepared *) 0)->number),
+               "world_numbers is the layout of fmb_prepared.number in 3D");
 
-/* position + R origin. A sum that rounds is off by at most half a unit in the last place on each
- * axis, which is counted twice. exact: as set_place() returns. */
+/* Sets out->origin to position + R origin, and adds its rounding error to out->error. A rounded sum
+ * is off by at most half a unit in the last place on each axis; a whole unit is added. Clears the
+ * bits of *exact (as set_numbers() returns them) of the axes whose sum is rounded. */
 static void set_origin(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
-                       const double *position, struct place *out, unsigned *exact)
+                       const double *position, struct world_numbers *out, unsigned *exact)
 {
-    double way[FMB_DIM_MAX];
+    double turned[FMB_DIM_MAX];
     bool rounds = !rotation->exact;
-    rotation_apply(rotation, frame->origin, way);
+    rotation_apply(rotation, frame->origin, turned);
     for (int axis = 0; axis < frame->dim; axis++)
-        out->origin[axis] = position[axis] + way[axis];
+        out->origin[axis] = position[axis] + turned[axis];
     for (int axis = 0; axis < frame->dim && (!rounds || *exact); axis++)
-        if (!prepared_exact_sum(position[axis], way[axis], out->origin[axis])) {
+        if (!prepared_exact_sum(position[axis], turned[axis], out->origin[axis])) {
             rounds = true;
             *exact &= ~((unsigned) PREPARED_EXACT_X << axis);
         }
@@ -107,24 +110,26 @@ static bool is_zero(const double v[FMB_DIM_MAX])
     return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-/* Whether no coordinate of a turned component is too small for the filter (frame.c, least_number).
- * The entries of the rotation are 0, or at least 2^-60 and so multiples of 2^-112; components are
- * multiples of 2^bits[0]. Then products are multiples of 2^(bits[0] - 112), rounded or not, and so
- * are their sums: what is not 0 is at least 2^-400. */
-INLINE bool turns_in_range(const struct fmb_frame *frame, const struct rotation_matrix *rotation)
+/* Returns whether no coordinate of a rotated component is too small for the filter (frame.c,
+ * least_number). The entries of the rotation are 0, or at least 2^-60 and therefore multiples of
+ * 2^-112. Components are multiples of 2^bits[0]. Then all products, rounded or not, are multiples
+ * of 2^(bits[0] - 112), and so are their sums. With bits[0] >= -288, a sum that is not 0 is at
+ * least 2^-400. */
+INLINE bool rotates_in_range(const struct fmb_frame *frame, const struct rotation_matrix *rotation)
 {
     return !rotation->small && frame->sturdy && frame->bits[0] >= -288;
 }
 
-/* The components of a box are multiples of the columns of the rotation. */
-INLINE void turn_components(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
-                            double out[FMB_DIM_MAX][FMB_DIM_MAX])
+/* Sets out to R times each component. The rotated components of a box are multiples of the columns
+ * of R. */
+INLINE void rotate_components(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
+                              double out[FMB_DIM_MAX][FMB_DIM_MAX])
 {
     UNROLL(3)
     for (int i = 0; i < FMB_DIM_MAX; i++) {
         const double *c = frame->component[i];
         if (i == 2 && rotation->dim == 2)
-            continue; /* nothing reads it */
+            continue; /* not used in 2D */
         if (frame->shape == FMB_BOX) {
             const rotation_two xy = rotation->xy[i] * c[i];
             memcpy(out[i], &xy, sizeof xy);
@@ -135,9 +140,9 @@ INLINE void turn_components(const struct fmb_frame *frame, const struct rotation
     }
 }
 
-/* out := R v. Coordinates that are smaller than tiny become 0, but for those of exact rows. */
-static void turn_and_trim(const struct rotation_matrix *rotation, const double v[FMB_DIM_MAX],
-                          double tiny, double out[FMB_DIM_MAX])
+/* out := R v. Coordinates below tiny in magnitude become 0, except those of exact rows. */
+static void rotate_and_trim(const struct rotation_matrix *rotation, const double v[FMB_DIM_MAX],
+                            double tiny, double out[FMB_DIM_MAX])
 {
     rotation_apply(rotation, v, out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -145,9 +150,10 @@ static void turn_and_trim(const struct rotation_matrix *rotation, const double v
             out[axis] = 0;
 }
 
-/* Returns which coordinates are exact: PREPARED_EXACT_X and so on. */
-INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
-                          const double *position, struct place *out)
+/* Sets the world coordinates of a frame and their error. Returns which of them are exact, as flags:
+ * PREPARED_EXACT_X and so on. */
+INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
+                            const double *position, struct world_numbers *out)
 {
     unsigned exact = 0;
     for (int axis = 0; axis < FMB_DIM_MAX && frame->slack == 0; axis++)
@@ -155,13 +161,13 @@ INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation_m
     out->error = frame->slack + (rotation->exact ? 0 : frame->turn_error);
     if (!rotation->turned) {
         memcpy(out->component, frame->component, sizeof out->component);
-    } else if (turns_in_range(frame, rotation)) {
-        turn_components(frame, rotation, out->component);
+    } else if (rotates_in_range(frame, rotation)) {
+        rotate_components(frame, rotation, out->component);
     } else {
         UNROLL(3)
         for (int i = 0; i < FMB_DIM_MAX; i++)
-            turn_and_trim(rotation, frame->component[i], 0x1p-60 * prepared_size(frame->summary, i),
-                          out->component[i]);
+            rotate_and_trim(rotation, frame->component[i],
+                            0x1p-60 * prepared_size(frame->summary, i), out->component[i]);
     }
     out->origin[0] = position[0];
     out->origin[1] = position[1];
@@ -172,15 +178,16 @@ INLINE unsigned set_place(const struct fmb_frame *frame, const struct rotation_m
     return exact;
 }
 
-/* What the summary of the frame does not say yet. */
+/* Returns the summary of a placed frame: that of the frame, updated for its placement. exact: as
+ * set_numbers() returns. */
 static uint64_t summary_of(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
-                           const struct fmb_placement *placement, const struct place *place,
-                           unsigned exact)
+                           const struct fmb_placement *placement,
+                           const struct world_numbers *numbers, unsigned exact)
 {
     uint64_t summary = frame->summary | in_summary(exact);
     if (placement_moves(placement, frame->dim))
         summary |= in_summary(PREPARED_MOVING);
-    if (place->error != 0)
+    if (numbers->error != 0)
         summary &= ~in_summary(PREPARED_PLAIN);
     if (rotation->exact)
         return summary;
@@ -189,43 +196,47 @@ static uint64_t summary_of(const struct fmb_frame *frame, const struct rotation_
                        ? summary
                        : ~in_summary((unsigned) PREPARED_COMPONENTS_EXACT_X << axis);
     summary &= ~in_summary(PREPARED_AXIS_ALIGNED | (frame->sturdy ? 0 : PREPARED_USABLE));
-    if (frame->dim == 3 && has_edge_along(frame_is_simplex(frame), frame->count,
-                                          (const double(*)[FMB_DIM_MAX]) place->component))
+    if (frame->dim == 3 && has_axis_aligned_edge(frame_is_simplex(frame), frame->count,
+                                                 (const double(*)[FMB_DIM_MAX]) numbers->component))
         summary |= in_summary(PREPARED_AXIS_ALIGNED);
     return summary;
 }
 
 /* ---- Frames in general orientation ---- */
 
-/* set() of a frame whose orientation and coordinates are general: nothing is exact or plain. An
- * edge that comes to lie parallel to an axis is not noticed: the filter is unsure of it. */
-INLINE void set_general(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
-                        const struct fmb_placement *placement, struct fmb_prepared *out)
+/* set() of a frame in general orientation with coordinates in range: no coordinate is exact, and
+ * the frame is not plain. An edge that becomes parallel to an axis by rounding is not detected; the
+ * filter then leaves the pair undecided. */
+INLINE void set_in_general_orientation(const struct fmb_frame *frame,
+                                       const struct rotation_matrix *rotation,
+                                       const struct fmb_placement *placement,
+                                       struct fmb_prepared *out)
 {
-    struct place *place = (struct place *) out->number;
-    double *o = place->origin;
-    memcpy(o, placement->position, sizeof place->origin);
+    struct world_numbers *numbers = (struct world_numbers *) out->number;
+    double *o = numbers->origin;
+    memcpy(o, placement->position, sizeof numbers->origin);
     if (!is_zero(frame->origin)) {
-        double way[FMB_DIM_MAX];
-        rotation_apply(rotation, frame->origin, way);
+        double turned[FMB_DIM_MAX];
+        rotation_apply(rotation, frame->origin, turned);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            o[axis] += way[axis];
+            o[axis] += turned[axis];
     }
-    turn_components(frame, rotation, place->component);
-    place->error = frame->slack + frame->turn_error;
-    place->error += 0x1p-52 * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
-    place->error *= 1 + 0x1p-40; /* for its own rounding */
-    out->summary =
-        (frame->summary & ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | true_axes)) |
-        (placement_moves(placement, FMB_DIM_MAX) ? in_summary(PREPARED_MOVING) : 0);
+    rotate_components(frame, rotation, numbers->component);
+    numbers->error = frame->slack + frame->turn_error;
+    numbers->error += 0x1p-52 * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
+    numbers->error *= 1 + 0x1p-40; /* for its own rounding */
+    out->summary = (frame->summary &
+                    ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | all_components_exact)) |
+                   (placement_moves(placement, FMB_DIM_MAX) ? in_summary(PREPARED_MOVING) : 0);
     out->frame = frame;
     out->placement = placement;
 }
 
-/* ---- Any frames ---- */
+/* ---- All frames ---- */
 
-INLINE void put_plane(const double origin[2], const double component[][FMB_DIM_MAX], double error,
-                      const double velocity[2], double number[13])
+/* Stores the world coordinates of a frame in 2D in the layout of fmb_prepared.number. */
+INLINE void set_numbers_2d(const double origin[2], const double component[][FMB_DIM_MAX],
+                           double error, const double velocity[2], double number[13])
 {
     const int used = PREPARED_VELOCITY_2D + 1;
     memcpy(number, origin, 2 * sizeof *number);
@@ -236,10 +247,10 @@ INLINE void put_plane(const double origin[2], const double component[][FMB_DIM_M
     memset(number + used, 0, sizeof((struct fmb_prepared *) 0)->number - used * sizeof *number);
 }
 
-/* A frame without orientation whose origin is that of its body: what set_place() and summary_of()
- * make of it, its own numbers. */
-static void set_unturned(const struct fmb_frame *frame, const struct fmb_placement *placement,
-                         struct fmb_prepared *out)
+/* set() of a frame that is not rotated and whose origin is that of its body. The world coordinates
+ * are its own numbers; the result is that of set_numbers() and summary_of(). */
+static void set_unrotated(const struct fmb_frame *frame, const struct fmb_placement *placement,
+                          struct fmb_prepared *out)
 {
     const unsigned axes = (frame->dim == 3 ? 7u : 3u) * PREPARED_EXACT_X;
     const double error = frame->slack * (1 + 0x1p-40);
@@ -250,40 +261,44 @@ static void set_unturned(const struct fmb_frame *frame, const struct fmb_placeme
     out->frame = frame;
     out->placement = placement;
     if (frame->dim == 2) {
-        put_plane(placement->position, frame->component, error, placement->velocity, out->number);
+        set_numbers_2d(placement->position, frame->component, error, placement->velocity,
+                       out->number);
         return;
     }
-    struct place *place = (struct place *) out->number;
-    memcpy(place->origin, placement->position, sizeof place->origin);
-    memcpy(place->component, frame->component, sizeof place->component);
-    place->error = error;
+    struct world_numbers *numbers = (struct world_numbers *) out->number;
+    memcpy(numbers->origin, placement->position, sizeof numbers->origin);
+    memcpy(numbers->component, frame->component, sizeof numbers->component);
+    numbers->error = error;
 }
 
-INLINE bool is_unturned(const struct fmb_frame *frame, const struct fmb_placement *placement)
+INLINE bool is_unrotated(const struct fmb_frame *frame, const struct fmb_placement *placement)
 {
     return placement->orientation_count == 0 && is_zero(frame->origin);
 }
 
+/* Prepares a frame with a given rotation. */
 INLINE void set(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                 const struct fmb_placement *placement, struct fmb_prepared *out)
 {
-    if (rotation->general && turns_in_range(frame, rotation)) {
-        set_general(frame, rotation, placement, out);
+    if (rotation->general && rotates_in_range(frame, rotation)) {
+        set_in_general_orientation(frame, rotation, placement, out);
         return;
     }
-    struct place plane, *place = frame->dim == 3 ? (struct place *) out->number : &plane;
-    const unsigned exact = set_place(frame, rotation, placement->position, place);
-    out->summary = summary_of(frame, rotation, placement, place, exact);
+    struct world_numbers numbers_2d,
+        *numbers = frame->dim == 3 ? (struct world_numbers *) out->number : &numbers_2d;
+    const unsigned exact = set_numbers(frame, rotation, placement->position, numbers);
+    out->summary = summary_of(frame, rotation, placement, numbers, exact);
     out->frame = frame;
     out->placement = placement;
     if (frame->dim == 2)
-        put_plane(plane.origin, plane.component, plane.error, placement->velocity, out->number);
+        set_numbers_2d(numbers_2d.origin, numbers_2d.component, numbers_2d.error,
+                       placement->velocity, out->number);
 }
 
-/* Not inlined: prepared_set() would save its registers even for frames that are not turned. */
-static __attribute__((noinline)) void set_alone(const struct fmb_frame *frame,
-                                                const struct fmb_placement *placement,
-                                                struct fmb_prepared *out)
+/* Not inlined: prepared_set() would save its registers even for frames that are not rotated. */
+static __attribute__((noinline)) void set_rotated(const struct fmb_frame *frame,
+                                                  const struct fmb_placement *placement,
+                                                  struct fmb_prepared *out)
 {
     struct rotation_matrix rotation;
     rotation_of(placement, frame->dim, &rotation);
@@ -292,21 +307,21 @@ static __attribute__((noinline)) void set_alone(const struct fmb_frame *frame,
 
 void prepared_set(struct placed_frame placed, struct fmb_prepared *out)
 {
-    if (is_unturned(placed.frame, placed.placement))
-        set_unturned(placed.frame, placed.placement, out);
+    if (is_unrotated(placed.frame, placed.placement))
+        set_unrotated(placed.frame, placed.placement, out);
     else
-        set_alone(placed.frame, placed.placement, out);
+        set_rotated(placed.frame, placed.placement, out);
 }
 
-INLINE void place(const struct fmb_placement *placement, unsigned first, unsigned count,
-                  struct fmb_prepared *out)
+INLINE void set_frames(const struct fmb_placement *placement, unsigned first, unsigned count,
+                       struct fmb_prepared *out)
 {
     struct rotation_matrix rotation;
     rotation_of(placement, placement->body->dim, &rotation);
     for (unsigned i = 0; i < count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(placement->body, first + i);
-        if (is_unturned(frame, placement))
-            set_unturned(frame, placement, &out[i]);
+        if (is_unrotated(frame, placement))
+            set_unrotated(frame, placement, &out[i]);
         else
             set(frame, &rotation, placement, &out[i]);
     }
@@ -315,12 +330,12 @@ INLINE void place(const struct fmb_placement *placement, unsigned first, unsigne
 void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,
                     struct fmb_prepared *out)
 {
-    place(placement, first, count, out);
+    set_frames(placement, first, count, out);
 }
 
 /* ---- Placements ---- */
 
-/* 0 times a number that is not finite is not 0. */
+/* Returns whether all coordinates are finite: 0 times a number that is not finite is a NaN. */
 INLINE bool is_finite(const double v[FMB_DIM_MAX], int dim)
 {
     const double none = 0 * v[0] + 0 * v[1];
@@ -352,7 +367,7 @@ enum fmb_status fmb_placement_check(const struct fmb_placement *placement)
     return check(placement);
 }
 
-/* The check and the rotation share what they compute. */
+/* check() and rotation_of() are inlined here, so that they share subexpressions. */
 enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned first, unsigned count,
                             struct fmb_prepared *out)
 {
@@ -361,7 +376,7 @@ enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned firs
         (first > placement->body->frame_count || count > placement->body->frame_count - first))
         status = FMB_BAD_PAIR;
     if (status == FMB_OK)
-        place(placement, first, count, out);
+        set_frames(placement, first, count, out);
     else
         memset(out, 0, count * sizeof *out);
     return status;

@@ -1,15 +1,15 @@
-/* What a prepared frame holds.
+/* The contents of a prepared frame. No function here has shared state.
  *
- * The numbers are those of a frame near the true one: its world coordinates, rounded. No point of
- * either is farther from the other frame than error (2-norm), and where error is 0 the two are the
- * same. Bounds of the filter hold for the rounded frame, whose numbers are exact; slabs.h says what
- * follows for the true one.
+ * Its numbers are the world coordinates of the frame, rounded. They describe a rounded frame near
+ * the true one: no point of either frame is farther from the other frame than error (2-norm). If
+ * error is 0, the two are the same. The bounds of the filter hold for the rounded frame, whose
+ * numbers are exact; slabs.h derives bounds for the true one.
  *
- * The summary, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits each,
- * then the bits below. A size is the upper half of a double's upper half, rounded up: a shift to
- * the top of 64 bits makes it a double that is no smaller than the length of the component (its
- * 2-norm), turned and rounded or not, and at most a fifteenth larger. 0 for a component that is not
- * there, or is 0. */
+ * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
+ * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
+ * Shifted to the top of 64 bits it is a double that is no smaller than the length of the component
+ * (its 2-norm), whether rotated and rounded or not, and at most a fifteenth larger. It is 0 if the
+ * component is 0 or does not exist. */
 #ifndef FMB_PREPARED_H
 #define FMB_PREPARED_H
 
@@ -20,22 +20,22 @@
 
 enum {
     PREPARED_SIZE_BITS = 16,
-    PREPARED_TETRAHEDRON = 1 << 0, /* neither: a cuboid */
-    PREPARED_FACE = 1 << 1,
-    PREPARED_3D = 1 << 2,           /* 3D */
-    PREPARED_MOVING = 1 << 3,       /* its velocity is not 0 */
+    PREPARED_TETRAHEDRON = 1 << 0,
+    PREPARED_FACE = 1 << 1,         /* neither bit: a cuboid */
+    PREPARED_3D = 1 << 2,           /* else 2D */
+    PREPARED_MOVING = 1 << 3,       /* the velocity is not 0 */
     PREPARED_AXIS_ALIGNED = 1 << 4, /* an edge is parallel to a coordinate axis */
-    PREPARED_USABLE = 1 << 5,       /* doubles can decide pairs with it */
-    PREPARED_PLAIN = 1 << 6,        /* the error is 0, and the components have few bits */
-    PREPARED_VALID = 1 << 7,        /* it was prepared */
-    /* The error does not reach the x coordinates. The next two bits: y and z. */
+    PREPARED_USABLE = 1 << 5,       /* doubles can decide pairs with the frame */
+    PREPARED_PLAIN = 1 << 6,        /* error is 0, and the components span at most 24 bits */
+    PREPARED_VALID = 1 << 7,        /* the frame is prepared */
+    /* The error does not affect the x coordinates: they are exact. The next two bits: y and z. */
     PREPARED_EXACT_X = 1 << 8,
-    /* The components are exact along x. The next two bits: along y and z. */
+    /* The x coordinates of the components are exact. The next two bits: y and z. */
     PREPARED_COMPONENTS_EXACT_X = 1 << 11
 };
 
-/* Words of struct fmb_prepared, the summary being word 0. In 2D a pair at rest reads the first
- * eight alone, and the velocity follows. */
+/* Indices of the 8-byte words of struct fmb_prepared; the summary is word 0. In 2D the velocity
+ * follows the first eight words, which are all that a pair at rest reads. */
 enum {
     PREPARED_ERROR_2D = 7,
     PREPARED_VELOCITY_2D = 8,
@@ -44,32 +44,33 @@ enum {
     PREPARED_PLACEMENT = 15
 };
 
-/* The bits of the kind. */
+/* Returns the flags: PREPARED_TETRAHEDRON and so on. */
 static inline unsigned prepared_kind(const struct fmb_prepared *frame)
 {
     return (unsigned) (frame->summary >> 3 * PREPARED_SIZE_BITS);
 }
 
-/* Of a pair: both frames plain. */
+/* Returns whether both frames are plain. */
 static inline bool prepared_both_plain(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
     return prepared_kind(a) & prepared_kind(b) & PREPARED_PLAIN;
 }
 
-/* On input: a frame that is prepared. */
+/* Returns the velocity, [dim]. In: the frame is valid. */
 static inline const double *prepared_velocity(const struct fmb_prepared *frame)
 {
     return prepared_kind(frame) & PREPARED_3D ? frame->placement->velocity
                                               : &frame->number[PREPARED_VELOCITY_2D - 1];
 }
 
+/* Returns the error of a frame, in the unit of its coordinates. */
 static inline double prepared_error(const struct fmb_prepared *frame)
 {
     return frame
         ->number[(prepared_kind(frame) & PREPARED_3D ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
 }
 
-/* No smaller than the length of component i. */
+/* Returns an upper bound of the length of component i, 0 to 2. */
 static inline double prepared_size(unsigned long long summary, int i)
 {
     const unsigned long long bits = summary << (64 - PREPARED_SIZE_BITS * (1 + i));
@@ -79,44 +80,48 @@ static inline double prepared_size(unsigned long long summary, int i)
     return size;
 }
 
-/* The error of a sum is a double (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem
- * B): whether it is 0. */
+/* Returns whether x + y is sum exactly. In: sum is x + y, rounded; its error is a double (Knuth,
+ * The Art of Computer Programming, volume 2, 4.2.2, theorem B). */
 static inline bool prepared_exact_sum(double x, double y, double sum)
 {
     const double part = sum - x;
     return (x - (sum - part)) + (y - part) == 0;
 }
 
-/* A tetrahedron in 2D without its inverse, [component][axis]. Its numbers are 0 or at least 2^-400
- * and at most 2^200, so that doubles tell exactly whether it is flat. */
+/* Makes a tetrahedron in 2D, a triangle, at the origin and without its inverse.
+ *
+ * In: components  [component][axis], each number 0 or of a magnitude in [2^-400, 2^200], so that
+ *                 doubles decide exactly whether the triangle is flat */
 void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *out);
 
-/* Whether a window may last so long, in seconds: not negative, and finite. */
+/* Returns whether a duration in seconds is legal: finite and not negative. */
 bool prepared_is_duration(double duration);
 
-/* The summary of a frame whose other fields are set, without orientation and at rest. */
+/* Returns the summary of a frame, not rotated and at rest. In: its shape, dimensions, components,
+ * rounded, bits and in_range are set. */
 unsigned long long prepared_summary_of(const struct fmb_frame *frame);
 
-/* As fmb_prepare() of one frame, without a check. */
+/* As fmb_prepare() of one frame, without its checks. */
 void prepared_set(struct placed_frame placed, struct fmb_prepared *out);
 
-/* As fmb_prepare(), without a check. */
+/* As fmb_prepare(), without its checks. */
 void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,
                     struct fmb_prepared *out);
 
-/* A prepared frame as doubles see it: for steps that decide one pair. A box is a cuboid here. */
+/* An unpacked prepared frame, for the steps that decide one pair. A box is a cuboid here. */
 struct world_frame {
     const struct fmb_frame *frame;
     enum fmb_shape shape;
     int dim, count;
     unsigned long long summary;
     double origin[FMB_DIM_MAX], component[FMB_DIM_MAX][FMB_DIM_MAX]; /* beyond dim: 0 */
-    double velocity[FMB_DIM_MAX];                                    /* exact */
+    double velocity[FMB_DIM_MAX];                                    /* per second, exact */
     double size[FMB_DIM_MAX]; /* largest magnitude in each component */
-    double error;
-    double relative_error; /* bounds the error of a component, relative to its length */
+    double error;             /* of the frame, as above */
+    double relative_error;    /* bounds the error of a component, relative to its length */
 };
 
+/* Unpacks a valid prepared frame. */
 void world_frame_of(const struct fmb_prepared *prepared, struct world_frame *out);
 
 #endif
