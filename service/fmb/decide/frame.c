@@ -1,3 +1,5 @@
+/* Frames and bodies: their construction, and the numbers that are derived from them once. Also the
+ * checks of placements and durations. */
 #include "fmb.h"
 
 #include "exact.h"
@@ -25,7 +27,7 @@ static void cross(const double u[3], const double v[3], double out[3])
     out[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-/* x 2^-exponent, rounded once. ldexp() takes longer. */
+/* Returns x 2^-exponent, rounded once. Faster than ldexp() for usual exponents. */
 static double scaled_down(double x, int exponent)
 {
     if (exponent < -1000 || exponent > 1000)
@@ -36,8 +38,8 @@ static double scaled_down(double x, int exponent)
     return x * scale;
 }
 
-/* The components times 2^-*exponent, so that the largest number lies in [0.5, 1); a frame in 2D
- * gets the unit vector along z as third. */
+/* scaled := the components times 2^-*exponent, with the largest number in [0.5, 1). The third
+ * component of a frame in 2D is the unit vector along z. */
 static void scale_components(const struct fmb_frame *frame, double scaled[3][3], int *exponent)
 {
     double largest = 0;
@@ -52,16 +54,19 @@ static void scale_components(const struct fmb_frame *frame, double scaled[3][3],
         scaled[2][2] = 1;
 }
 
-/* Filter, with u = 2^-53: the determinant is a sum of six products of three numbers of size at
- * most 1. Each product passes through two multiplications and at most three additions or
- * subtractions, so that rounding changes it by a factor within (1 +- u)^5, and the sum by at
- * most 5.01 u times the sum of their magnitudes, the permanent; fused or reordered operations
- * only take factors away. Underflow, in scaling and in products, adds less than 2^-1000 in
- * all. A computed permanent is within the same factor of the exact one. So a determinant
- * beyond 2^-48 permanent + 2^-1000 has the right sign; 2^-48 = 32 u leaves room for the
- * rounding of this bound, and for components that are rounded themselves (3.01 u). Anything else is
- * inverted exactly. */
-static bool surely_solid(const double c[3][3], double determinant)
+/* Returns whether the determinant is certainly not 0, and has the right sign.
+ *
+ * Derivation, with u = 2^-53. The determinant is a sum of six products of three numbers of
+ * magnitude at most 1. Each product passes through two multiplications and at most three additions
+ * or subtractions. Rounding therefore changes each product by a factor within (1 +- u)^5, and the
+ * sum by at most 5.01 u times the sum of the magnitudes of the products, the permanent. Fused or
+ * reordered operations only remove factors. Underflow, in scaling and in products, adds less than
+ * 2^-1000 in all. The computed permanent is within the same factor of the exact one.
+ *
+ * So a determinant beyond 2^-48 permanent + 2^-1000 has the right sign. 2^-48 = 32 u also covers
+ * the rounding of this bound, and components that are rounded themselves (3.01 u). All other frames
+ * are inverted exactly. */
+static bool certainly_solid(const double c[3][3], double determinant)
 {
     double permanent = 0;
     for (int i = 0; i < 3; i++) {
@@ -72,9 +77,10 @@ static bool surely_solid(const double c[3][3], double determinant)
     return fabs(determinant) > 0x1p-48 * permanent + 0x1p-1000;
 }
 
-/* With the components scaled by 2^-e, k_0 = c_1 x c_2 and so on around:
- * x_i = k_i . p / (c_2 . k_2) 2^-e. False, and nothing done, unless the frame is surely solid: a
- * determinant that rounding may have eaten is not to be divided by. */
+/* Sets the inverse by Cramer's rule. With the components scaled by 2^-e, and k_0 = c_1 x c_2,
+ * k_1 = c_2 x c_0, k_2 = c_0 x c_1: x_i = k_i . p / (c_2 . k_2) 2^-e. Returns false, and sets
+ * nothing, unless the frame is certainly solid: otherwise the determinant may consist of rounding
+ * errors only. */
 static bool invert_in_doubles(struct fmb_frame *frame)
 {
     double c[3][3], k[3][3];
@@ -83,7 +89,7 @@ static bool invert_in_doubles(struct fmb_frame *frame)
     for (int i = 0; i < 3; i++)
         cross(c[(i + 1) % 3], c[(i + 2) % 3], k[i]);
     double determinant = c[2][0] * k[2][0] + c[2][1] * k[2][1] + c[2][2] * k[2][2];
-    if (!surely_solid((const double(*)[3]) c, determinant))
+    if (!certainly_solid((const double(*)[3]) c, determinant))
         return false;
     for (int axis = 0; axis < frame->dim; axis++)
         for (int i = 0; i < frame->dim; i++)
@@ -99,13 +105,15 @@ static void invert(struct fmb_frame *frame)
         memset(frame->inverse, 0, sizeof frame->inverse);
 }
 
-/* Sizes whose products of four, sums of a few dozen of them and 2^-53 of those neither overflow
- * nor lose bits to underflow; and no number so small that a product of two underflows. */
+/* The range of the filter. For sizes within these bounds, products of four, sums of a few dozen
+ * such products, and 2^-53 times these sums neither overflow nor lose bits to underflow.
+ * least_number: no product of two coordinates underflows. */
 static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
 
-/* A thinner frame might be inverted by the rounding of a rotation, or of vertices: each of three
- * components is off by at most ROTATION_ERROR and 2^-52 of itself, less than 2^-48 together, and
- * the volume by three times that. */
+/* The least volume relative to the product of the lengths of the components. The rounding of a
+ * rotation or of vertices might invert a thinner frame: each of three components is off by at most
+ * ROTATION_ERROR and 2^-52 of itself, together less than 2^-48, and the volume by three times
+ * that. */
 static const double least_thickness = 0x1p-44;
 
 static double square_of(const double v[FMB_DIM_MAX])
@@ -113,8 +121,9 @@ static double square_of(const double v[FMB_DIM_MAX])
     return (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2];
 }
 
-/* Whether the volume of a solid, or twice the area of a face, against the product of the lengths of
- * its components is large enough; numbers in range. The quotient is off by less than 2^-48. */
+/* Returns whether the volume of the parallelepiped of three components, or the area of the
+ * parallelogram of two, is at least least_thickness times the product of their lengths. In: numbers
+ * in range. The computed quotient is off by less than 2^-48. */
 static bool is_thick(const struct fmb_frame *frame)
 {
     const double(*c)[FMB_DIM_MAX] = frame->component;
@@ -127,13 +136,13 @@ static bool is_thick(const struct fmb_frame *frame)
     return fabs(volume) >= least_thickness * sqrt(square) * sqrt(square_of(c[2]));
 }
 
-/* Whether x y = z w, for products that are doubles with errors that are doubles. */
+/* Returns whether x y = z w. In: the rounding errors of both products are doubles. */
 static bool are_equal(double x, double y, double z, double w)
 {
     return x * y == z * w && fma(x, y, -(x * y)) == fma(z, w, -(z * w));
 }
 
-/* Whether a face, as its doubles have it, has an area. */
+/* Returns whether a face has an area, with its components as rounded. */
 static bool has_area(const struct fmb_frame *frame)
 {
     const double *c = frame->component[0], *d = frame->component[1];
@@ -145,6 +154,7 @@ static bool has_area(const struct fmb_frame *frame)
     return false;
 }
 
+/* Adds component i to size, in_range and span. */
 static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span *span)
 {
     for (int axis = 0; axis < frame->dim; axis++) {
@@ -158,8 +168,9 @@ static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span
         frame->in_range && frame->size[i] >= least_size && frame->size[i] <= largest_size;
 }
 
-/* in_range: the filter may use the doubles of a frame that is not rotated. They have to be the
- * frame itself, or one close to it that is surely not flat. sturdy: the same for any rotation. */
+/* Sets size, in_range, sturdy and bits. in_range: the filter may use the doubles of the frame if it
+ * is not rotated. They must describe the frame itself, or one close to it that is certainly not
+ * flat. sturdy: the same for any rotation. */
 static void measure(struct fmb_frame *frame)
 {
     struct dyadic_span span = dyadic_span_begin();
@@ -174,7 +185,9 @@ static void measure(struct fmb_frame *frame)
     frame->bits[1] = (int) span.top;
 }
 
-/* The farthest vertex is no farther than the origin and all components together. */
+/* Returns the radius of a frame: the distance of a vertex from the origin of the body is at most
+ * the sum of the lengths of the origin and of all components, which is at most the sum of the
+ * magnitudes of their coordinates. The factor covers rounding, 2^-1000 underflow. */
 static double radius_of(const struct fmb_frame *frame)
 {
     double radius = 0;
@@ -186,14 +199,16 @@ static double radius_of(const struct fmb_frame *frame)
     return radius * (1 + 0x1p-40) + 0x1p-1000;
 }
 
+/* Returns the sum of the magnitudes of the coordinates. It bounds the length of v, except for
+ * rounding. */
 static double sum_of(const double v[FMB_DIM_MAX])
 {
     return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
 }
 
-/* The origin of a box, centre - size / 2, is off by at most half a unit in the last place on each
- * axis, which is counted twice. A vertex whose components have a rest is off by at most one of
- * these. */
+/* Returns the slack of a frame. The origin of a box, centre - size / 2, is off by at most half a
+ * unit in the last place on each axis; a whole unit is counted. A vertex of a simplex is off by at
+ * most the remainder of its own component. */
 static double slack_of(const struct fmb_frame *frame)
 {
     double slack = 0;
@@ -208,6 +223,8 @@ static double slack_of(const struct fmb_frame *frame)
     return slack * (1 + 0x1p-50);
 }
 
+/* Returns the turn_error of a frame: ROTATION_ERROR times the sum of the lengths of the origin and
+ * of the components. */
 static double turn_error_of(const struct fmb_frame *frame)
 {
     double lengths = sum_of(frame->origin);
@@ -216,6 +233,7 @@ static double turn_error_of(const struct fmb_frame *frame)
     return ROTATION_ERROR * (1 + 0x1p-40) * lengths + 0x1p-1060; /* where products underflow */
 }
 
+/* Derives all other fields from shape, origin, centre, component and remainder. */
 static void complete(struct fmb_frame *frame)
 {
     invert(frame);
@@ -280,19 +298,21 @@ enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t
     out->dim = dim;
     out->shape = (enum fmb_shape) shape;
     out->count = components;
-    const double *origin = count == without ? NULL : numbers, *rest = numbers + (count - without);
+    const double *origin = count == without ? NULL : numbers, *others = numbers + (count - without);
     if (shape != FMB_BOX)
-        set_components(origin, rest, out);
-    else if (set_box(origin, rest, out) != FMB_OK)
+        set_components(origin, others, out);
+    else if (set_box(origin, others, out) != FMB_OK)
         return FMB_BAD_SIZE;
     complete(out);
     return FMB_OK;
 }
 
-/* The error of a difference of doubles is a double, and what is computed here is exact: the larger
- * of them and the difference are near each other, or the smaller one is what they differ by
- * (Dekker, A floating-point technique for extending the available precision, 1971). Nothing is
- * beyond the doubles where the difference is not, be they among the largest. */
+/* Returns x - y - difference. In: difference is x - y, rounded, and finite.
+ *
+ * The error of a difference of doubles is a double, and every operation here is exact: of x and y,
+ * the larger one in magnitude and the difference are close to each other, or they differ by the
+ * smaller one (Dekker, A floating-point technique for extending the available precision, 1971).
+ * No intermediate result overflows, even if x and y are among the largest doubles. */
 static double difference_error(double x, double y, double difference)
 {
     return fabs(x) >= fabs(y) ? (x - difference) - y : x - (difference + y);
@@ -317,7 +337,7 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
         for (int axis = 0; axis < dim; axis++) {
             const double to = vertices[(i + 1) * dim + axis], from = vertices[axis];
             out->component[i][axis] = to - from;
-            if (!isfinite(out->component[i][axis])) /* nor where a vertex is not */
+            if (!isfinite(out->component[i][axis])) /* also if a vertex is not finite */
                 return FMB_NOT_FINITE;
             out->remainder[i][axis] = difference_error(to, from, out->component[i][axis]);
             out->rounded = out->rounded || out->remainder[i][axis] != 0;
@@ -328,7 +348,8 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
 
 /* ---- Bodies ---- */
 
-/* As prepared_set() for a body at the origin that is not rotated: nothing rounds. */
+/* Returns the box of a frame of a body at the origin, not rotated and at rest. The numbers are
+ * those that prepared_set() would set; none is rounded. */
 INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
                                  const struct fmb_placement *placement)
 {
@@ -345,7 +366,7 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
     return aabb_of(&prepared, 0);
 }
 
-/* Sets the box of a body: that of its frames, at the origin and not rotated. */
+/* Sets the box of a body: the union of those of its frames, in body coordinates. */
 static void set_body_box(struct fmb_body *out)
 {
     const struct fmb_placement origin = {.body = out};
@@ -362,7 +383,8 @@ static void set_body_box(struct fmb_body *out)
     }
 }
 
-static void set_one(struct fmb_body *out)
+/* Completes a body whose only frame is out->one. */
+static void set_single_frame(struct fmb_body *out)
 {
     out->dim = out->one.dim;
     out->frame_count = 1;
@@ -376,7 +398,7 @@ enum fmb_status fmb_body_make(int dim, int shape, const double *numbers, size_t 
 {
     const enum fmb_status status = fmb_frame_make(dim, shape, numbers, count, &out->one);
     if (status == FMB_OK)
-        set_one(out);
+        set_single_frame(out);
     return status;
 }
 
@@ -385,7 +407,7 @@ enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertice
 {
     const enum fmb_status status = fmb_frame_make_vertices(dim, shape, vertices, count, &out->one);
     if (status == FMB_OK)
-        set_one(out);
+        set_single_frame(out);
     return status;
 }
 

@@ -4,8 +4,9 @@
 #include "prepared.h"
 #include "running_error.h"
 
-/* In doubles: whether the normal of a surely has an extent along b. */
-static bool surely_cross(const struct world_frame *a, const struct world_frame *b)
+/* Returns whether the planes certainly cross, in doubles: some component of b is certainly not
+ * orthogonal to the normal of a. */
+static bool certainly_cross(const struct world_frame *a, const struct world_frame *b)
 {
     const struct running_error u = running_error_of(a->component[0]),
                                v = running_error_of(a->component[1]);
@@ -19,8 +20,8 @@ static bool surely_cross(const struct world_frame *a, const struct world_frame *
     return false;
 }
 
-/* The axis along which a face has the largest projection, or nearly. */
-static int axis_of(const struct world_frame *frame)
+/* Returns the axis along which the projection of a face is largest, up to rounding. */
+static int projection_axis_of(const struct world_frame *frame)
 {
     const struct running_error u = running_error_of(frame->component[0]),
                                v = running_error_of(frame->component[1]);
@@ -32,9 +33,10 @@ static int axis_of(const struct world_frame *frame)
     return axis;
 }
 
-/* The frame without its coordinate on an axis; false where it has no area then. */
-static bool set_shadow(const struct world_frame *frame, int axis, struct fmb_frame *out,
-                       struct fmb_placement *placement)
+/* Projects a frame along an axis: drops that coordinate. Returns false if the projection has no
+ * area. */
+static bool set_projection(const struct world_frame *frame, int axis, struct fmb_frame *out,
+                           struct fmb_placement *placement)
 {
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     const double(*c)[FMB_DIM_MAX] = frame->component;
@@ -45,29 +47,30 @@ static bool set_shadow(const struct world_frame *frame, int axis, struct fmb_fra
     return !out->flat;
 }
 
-/* The same axis the other way round. */
-static bool set_shadows(const struct slabs_pair *slabs, struct faces_projection *out)
+/* Projects both faces along the same axis, which does not depend on their order. Returns false if a
+ * projection has no area. */
+static bool set_projections(const struct slabs_pair *slabs, struct faces_projection *out)
 {
-    const int of_a = axis_of(&slabs->a), of_b = axis_of(&slabs->b);
+    const int of_a = projection_axis_of(&slabs->a), of_b = projection_axis_of(&slabs->b);
     const int axis = of_a < of_b ? of_a : of_b;
     out->pair = (struct frame_pair){{&out->frame[0], &out->placement[0]},
                                     {&out->frame[1], &out->placement[1]},
                                     slabs->duration};
-    return set_shadow(&slabs->a, axis, &out->frame[0], &out->placement[0]) &&
-           set_shadow(&slabs->b, axis, &out->frame[1], &out->placement[1]);
+    return set_projection(&slabs->a, axis, &out->frame[0], &out->placement[0]) &&
+           set_projection(&slabs->b, axis, &out->frame[1], &out->placement[1]);
 }
 
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
                                   struct dyadic_span span, struct faces_projection *projection)
 {
     struct limbs_pair limbs;
-    if (!slabs->inexact && surely_cross(&slabs->a, &slabs->b))
+    if (!slabs->inexact && certainly_cross(&slabs->a, &slabs->b))
         return FACES_CROSSING;
     if (!limbs_prepare(pair, span, &limbs))
         return FACES_UNDECIDED;
     const struct limbs_planes planes = limbs_planes_of(&limbs);
     if (!planes.parallel)
         return FACES_CROSSING;
-    return planes.shared && !slabs->inexact && set_shadows(slabs, projection) ? FACES_SHARED
-                                                                              : FACES_UNDECIDED;
+    return planes.shared && !slabs->inexact && set_projections(slabs, projection) ? FACES_SHARED
+                                                                                  : FACES_UNDECIDED;
 }

@@ -1,4 +1,5 @@
-/* Two faces in parallel planes, which the slabs of a pair do not decide (slabs.h). */
+/* Two faces in parallel planes, which the slabs of a pair do not decide (slabs.h). No shared
+ * state. */
 #ifndef FMB_FACES_H
 #define FMB_FACES_H
 
@@ -16,10 +17,16 @@ struct faces_projection {
 enum faces_planes {
     FACES_CROSSING, /* the planes are not parallel */
     FACES_SHARED,   /* both are in one plane at all times: the projection is set */
-    FACES_UNDECIDED /* neither, or unknown here: to be decided by the exact method */
+    FACES_UNDECIDED /* neither, or unknown: the exact method decides the pair */
 };
 
-/* Classifies the planes of two faces. In: faces with areas, in range; span: of the pair. */
+/* Returns the relation of the planes of two faces.
+ *
+ * In:  pair        two faces with areas, in range
+ *      slabs       the same pair, prepared
+ *      span        of the pair: limbs_span_of()
+ * Out: projection  set if FACES_SHARED is returned, otherwise unspecified; contains pointers into
+ *                  itself and must not be copied */
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
                                   struct dyadic_span span, struct faces_projection *projection);
 

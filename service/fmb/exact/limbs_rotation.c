@@ -2,7 +2,8 @@
 
 #include <stdlib.h>
 
-static uint64_t divisor_of(uint64_t x, uint64_t y)
+/* Returns the greatest common divisor, by the binary algorithm; of 0 and y, y. */
+static uint64_t common_divisor_of(uint64_t x, uint64_t y)
 {
     if (x == 0 || y == 0)
         return x | y;
@@ -17,19 +18,21 @@ static uint64_t divisor_of(uint64_t x, uint64_t y)
     return x << twos;
 }
 
+/* Sets reduced and bits: the smallest integers proportional to the components. In: the given
+ * components span at most 62 bits, and are not all 0. */
 static void reduce(struct limbs_quaternion *q)
 {
     uint64_t divisor = 0, all = 0;
     for (int i = 0; i < 4; i++) {
         const struct dyadic x = dyadic_of(q->given[i]);
-        q->least[i] = x.mantissa ? x.mantissa * ((int64_t) 1 << (x.exponent - q->unit)) : 0;
+        q->reduced[i] = x.mantissa ? x.mantissa * ((int64_t) 1 << (x.exponent - q->unit)) : 0;
         if (divisor != 1)
-            divisor = divisor_of((uint64_t) llabs(q->least[i]), divisor);
+            divisor = common_divisor_of((uint64_t) llabs(q->reduced[i]), divisor);
     }
     for (int i = 0; i < 4; i++) {
         if (divisor > 1)
-            q->least[i] /= (int64_t) divisor;
-        all |= (uint64_t) llabs(q->least[i]);
+            q->reduced[i] /= (int64_t) divisor;
+        all |= (uint64_t) llabs(q->reduced[i]);
     }
     q->bits = 64 - __builtin_clzll(all);
 }
@@ -57,19 +60,21 @@ bool limbs_same_rotation(const struct limbs_quaternion *a, const struct limbs_qu
     const bool small = a->bits <= 62 && b->bits <= 62;
     bool equal = true, opposite = true;
     for (int i = 0; i < 4; i++) {
-        equal = equal && (small ? a->least[i] == b->least[i] : a->given[i] == b->given[i]);
-        opposite = opposite && (small ? a->least[i] == -b->least[i] : a->given[i] == -b->given[i]);
+        equal = equal && (small ? a->reduced[i] == b->reduced[i] : a->given[i] == b->given[i]);
+        opposite =
+            opposite && (small ? a->reduced[i] == -b->reduced[i] : a->given[i] == -b->given[i]);
     }
     return equal || opposite;
 }
 
-/* The integers of a quaternion, of as many limbs as they need. */
-struct components {
+/* A quaternion in integers of as many limbs as they need. */
+struct quaternion_limbs {
     int limbs;
     limbs_number at[4];
 };
 
-static void set_components(int n, const struct limbs_quaternion *q, struct components *out)
+static void set_quaternion_limbs(int n, const struct limbs_quaternion *q,
+                                 struct quaternion_limbs *out)
 {
     static const struct dyadic one = {1, 0};
     out->limbs = q->bits / 64 + 1;
@@ -79,12 +84,12 @@ static void set_components(int n, const struct limbs_quaternion *q, struct compo
             continue;
         }
         for (int limb = 1; limb < n; limb++)
-            out->at[i][limb] = q->least[i] < 0 ? UINT64_MAX : 0;
-        out->at[i][0] = (uint64_t) q->least[i];
+            out->at[i][limb] = q->reduced[i] < 0 ? UINT64_MAX : 0;
+        out->at[i][0] = (uint64_t) q->reduced[i];
     }
 }
 
-/* The rows of the transposed matrix. */
+/* Sets the rows of the transposed matrix. */
 static void set_inverse(int n, const struct limbs_vector row[FMB_DIM_MAX],
                         struct limbs_vector out[FMB_DIM_MAX])
 {
@@ -99,10 +104,10 @@ void limbs_set_rotation(int n, const struct limbs_quaternion *quaternion,
                         struct limbs_rotation *out)
 {
     const size_t size = (size_t) n * sizeof(uint64_t);
-    struct components components;
-    const struct components *q = &components;
+    struct quaternion_limbs components;
+    const struct quaternion_limbs *q = &components;
     limbs_number product;
-    set_components(n, quaternion, &components);
+    set_quaternion_limbs(n, quaternion, &components);
     memset(out->norm.at, 0, size);
     for (int i = 0; i < 3; i++)
         memset(out->row[0][i].at[i], 0, size);
@@ -135,7 +140,7 @@ void limbs_set_rotation(int n, const struct limbs_quaternion *quaternion,
     set_inverse(n, out->row[0], out->row[1]);
 }
 
-/* The columns of the product are those of b, transformed. */
+/* The columns of R_a^-1 R_b are the columns of R_b, transformed by R_a^-1. */
 void limbs_set_relative(int n, const struct limbs_rotation *a, const struct limbs_rotation *b,
                         struct limbs_rotation *out)
 {

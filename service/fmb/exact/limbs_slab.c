@@ -1,9 +1,19 @@
+/* Slabs in fixed-width integers: their normals from edges and drift, their bounds, and the sign of
+ * their gaps.
+ *
+ * Each scalar product n . v is computed in the coordinates in which v is given: those of frame 0,
+ * of frame 1, or of the world. So a normal is computed in up to three coordinate systems. The three
+ * vectors may differ by positive factors, norms of rotations; a product is multiplied by the
+ * missing factors, so that all numbers of a slab have one common factor. */
 #include "limbs.h"
 
 /* ---- Normals ---- */
 
-/* Edges as slabs.h numbers them: with p, q, r cyclic, number 3 + r is c_q - c_p. */
-static const struct limbs_vector *edge_of(struct limbs_pair *pair, int edge, enum limbs_view view)
+/* Returns an edge, numbered as in slabs.h, in the coordinates of its frame, of the other frame, or
+ * of the world. With p, q, r cyclic, edge 3 + r is c_q - c_p. An edge is computed when it is first
+ * needed, and kept. */
+static const struct limbs_vector *edge_in_view(struct limbs_pair *pair, int edge,
+                                               enum limbs_view view)
 {
     const int f = edge >= SLABS_EDGE_OF_B, e = edge % SLABS_EDGES, dim = pair->frame[f]->dim;
     const struct limbs_vector **at = pair->view[f][e];
@@ -37,35 +47,36 @@ static const struct limbs_vector *edge_of(struct limbs_pair *pair, int edge, enu
 
 enum { WORLD = 2 }; /* after frames 0 and 1 */
 
-/* The normal of a slab in the coordinates of the two frames and of the world, and what is to be
- * multiplied by another factor each time; NULL: nothing. */
+/* The normal of a slab in the coordinates of the two frames and of the world, and the missing
+ * factor of products in each of these; NULL: 1. */
 struct normal {
     const struct limbs_vector *at[3];
     const struct limbs_factor *factor[3];
     struct limbs_vector storage[3];
 };
 
+/* u x v, u an edge of frame 0 and v one of frame 1. */
 static void set_normal_of_edges(struct limbs_pair *pair, int u, int v, struct normal *out)
 {
     const int n = pair->limbs;
-    limbs_cross(n, edge_of(pair, v, LIMBS_ACROSS), edge_of(pair, u, LIMBS_OWN), true,
+    limbs_cross(n, edge_in_view(pair, v, LIMBS_ACROSS), edge_in_view(pair, u, LIMBS_OWN), true,
                 &out->storage[0]);
     out->at[0] = out->at[1] = out->at[WORLD] = &out->storage[0];
     if (!pair->all)
         return;
-    limbs_cross(n, edge_of(pair, u, LIMBS_ACROSS), edge_of(pair, v, LIMBS_OWN), false,
+    limbs_cross(n, edge_in_view(pair, u, LIMBS_ACROSS), edge_in_view(pair, v, LIMBS_OWN), false,
                 &out->storage[1]);
     out->at[1] = &out->storage[1];
     if (!pair->to_world[0] || !pair->to_world[1]) {
         out->at[WORLD] = out->at[pair->to_world[0] != NULL];
         return;
     }
-    limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), edge_of(pair, v, LIMBS_WORLD), false,
+    limbs_cross(n, edge_in_view(pair, u, LIMBS_WORLD), edge_in_view(pair, v, LIMBS_WORLD), false,
                 &out->storage[WORLD]);
     out->at[WORLD] = &out->storage[WORLD];
 }
 
-/* v turned by a right angle. */
+/* out := v rotated by a right angle, counterclockwise: (-v_y, v_x, 0). */
 static void set_plane_normal(int n, const struct limbs_vector *v, struct limbs_vector *out)
 {
     memset(out, 0, sizeof *out);
@@ -73,16 +84,17 @@ static void set_plane_normal(int n, const struct limbs_vector *v, struct limbs_v
     memcpy(out->at[1], v->at[0], (size_t) n * sizeof *out->at[1]);
 }
 
+/* u x v of two edges of frame f; in 2D u, an edge of frame f, rotated by a right angle. */
 static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_normal edges,
                                struct normal *out)
 {
     const int n = pair->limbs, other = !f;
-    const struct limbs_vector *u = edge_of(pair, edges.u, LIMBS_OWN);
+    const struct limbs_vector *u = edge_in_view(pair, edges.u, LIMBS_OWN);
 
     if (pair->frame[0]->dim == 2)
         set_plane_normal(n, u, &out->storage[f]);
     else
-        limbs_cross(n, u, edge_of(pair, edges.v, LIMBS_OWN), false, &out->storage[f]);
+        limbs_cross(n, u, edge_in_view(pair, edges.v, LIMBS_OWN), false, &out->storage[f]);
     limbs_trim(n, &out->storage[f]);
     out->at[f] = &out->storage[f];
     out->at[other] = limbs_transform(n, pair->across[f], out->at[f], &out->storage[other]);
@@ -93,16 +105,17 @@ static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_norma
     out->factor[WORLD] = pair->norm[other];
 }
 
+/* u x drift, in 3D. */
 static void set_normal_of_drift(struct limbs_pair *pair, int u, struct normal *out)
 {
     const int n = pair->limbs, f = u >= SLABS_EDGE_OF_B, other = !f;
     struct limbs_vector drift;
-    limbs_cross(n, edge_of(pair, u, LIMBS_WORLD), &pair->drift, false, &out->storage[WORLD]);
+    limbs_cross(n, edge_in_view(pair, u, LIMBS_WORLD), &pair->drift, false, &out->storage[WORLD]);
     limbs_trim(n, &out->storage[WORLD]);
     out->at[0] = out->at[1] = out->at[WORLD] = &out->storage[WORLD];
     if (pair->from_world[f]) {
         limbs_cross(n, limbs_transform(n, pair->from_world[f], &pair->drift, &drift),
-                    edge_of(pair, u, LIMBS_OWN), true, &out->storage[f]);
+                    edge_in_view(pair, u, LIMBS_OWN), true, &out->storage[f]);
         out->at[f] = &out->storage[f];
     }
     out->at[other] =
@@ -110,6 +123,7 @@ static void set_normal_of_drift(struct limbs_pair *pair, int u, struct normal *o
     out->factor[f] = out->factor[WORLD] = pair->norm[other];
 }
 
+/* The drift rotated by a right angle, in 2D. */
 static void set_normal_of_plane_drift(struct limbs_pair *pair, struct normal *out)
 {
     set_plane_normal(pair->limbs, &pair->drift, &out->storage[WORLD]);
@@ -128,7 +142,7 @@ static bool is_zero_vector(int n, const struct limbs_vector *v)
     return is_zero(n, v->at[0]) && is_zero(n, v->at[1]) && is_zero(n, v->at[2]);
 }
 
-/* False where it is zero. */
+/* Computes the normal of a slab. Returns false if it is zero. */
 static bool set_normal(struct limbs_pair *pair, struct slab_normal edges, struct normal *out)
 {
     const bool plane = pair->frame[0]->dim == 2;
@@ -149,15 +163,18 @@ static bool set_normal(struct limbs_pair *pair, struct slab_normal edges, struct
 
 /* ---- Slabs ---- */
 
-struct value_range {
+struct value_interval {
     limbs_number low, high;
 };
 
+/* A slab: the bounds of normal . w, and its value along the path of the offset, start + tau slope,
+ * tau in [0,1]. */
 struct slab_limbs {
-    struct value_range between; /* low and high */
+    struct value_interval bounds;
     limbs_number start, slope;
 };
 
+/* x < y */
 INLINE bool less(const int n, const uint64_t *x, const uint64_t *y)
 {
     limbs_number difference;
@@ -166,6 +183,7 @@ INLINE bool less(const int n, const uint64_t *x, const uint64_t *y)
     return is_negative(n, difference);
 }
 
+/* x := x times a factor; NULL: 1. */
 INLINE void scale_by(const int n, const struct limbs_factor *factor, uint64_t *x)
 {
     limbs_number product;
@@ -176,54 +194,59 @@ INLINE void scale_by(const int n, const struct limbs_factor *factor, uint64_t *x
     memcpy(x, product, (size_t) n * sizeof *x);
 }
 
-/* A box reaches as far to either side of its centre: the sum of the magnitudes of the products. */
+/* *interval := the interval of normal . x over frame f, seen from the position of its body.
+ *
+ * A simplex: the minimum and the maximum of 0 and the products with the components. A cuboid: the
+ * sums of the negative and of the positive products. A box is given by half of its components and
+ * its centre: it extends to either side by the sum of the magnitudes of the products. */
 INLINE void set_extent(const int n, const struct limbs_pair *pair, int f,
-                       const struct normal *normal, struct value_range *range)
+                       const struct normal *normal, struct value_interval *interval)
 {
-    const size_t size = (size_t) n * sizeof *range->low;
+    const size_t size = (size_t) n * sizeof *interval->low;
     const struct fmb_frame *frame = pair->frame[f];
     const bool simplex = frame_is_simplex(frame);
     limbs_number at;
-    memset(range->low, 0, size);
-    memset(range->high, 0, size);
+    memset(interval->low, 0, size);
+    memset(interval->high, 0, size);
     for (int i = 0; i < frame->count; i++) {
         dot(n, normal->at[f], &pair->component[f][i], at);
         if (!simplex)
-            add(n, is_negative(n, at) ? range->low : range->high, at);
-        else if (less(n, at, range->low))
-            memcpy(range->low, at, size);
-        else if (less(n, range->high, at))
-            memcpy(range->high, at, size);
+            add(n, is_negative(n, at) ? interval->low : interval->high, at);
+        else if (less(n, at, interval->low))
+            memcpy(interval->low, at, size);
+        else if (less(n, interval->high, at))
+            memcpy(interval->high, at, size);
     }
     if (frame->shape == FMB_BOX) {
-        subtract(n, range->high, range->low);
-        memset(range->low, 0, size);
-        subtract(n, range->low, range->high);
+        subtract(n, interval->high, interval->low);
+        memset(interval->low, 0, size);
+        subtract(n, interval->low, interval->high);
     }
     if (pair->origin[f].limbs > 0) {
         dot(n, normal->at[f], &pair->origin[f], at);
-        add(n, range->low, at);
-        add(n, range->high, at);
+        add(n, interval->low, at);
+        add(n, interval->high, at);
     }
-    scale_by(n, normal->factor[f], range->low);
-    scale_by(n, normal->factor[f], range->high);
+    scale_by(n, normal->factor[f], interval->low);
+    scale_by(n, normal->factor[f], interval->high);
 }
 
+/* The numbers of a slab: bounds of the difference a - b, and normal . (offset + tau drift). */
 INLINE void set_values(const int n, const struct limbs_pair *pair, const struct normal *normal,
                        struct slab_limbs *out)
 {
-    struct value_range b;
-    set_extent(n, pair, 0, normal, &out->between);
+    struct value_interval b;
+    set_extent(n, pair, 0, normal, &out->bounds);
     set_extent(n, pair, 1, normal, &b);
-    subtract(n, out->between.low, b.high);
-    subtract(n, out->between.high, b.low);
+    subtract(n, out->bounds.low, b.high);
+    subtract(n, out->bounds.high, b.low);
     dot(n, normal->at[WORLD], &pair->offset, out->start);
     scale_by(n, normal->factor[WORLD], out->start);
     dot(n, normal->at[WORLD], &pair->drift, out->slope);
     scale_by(n, normal->factor[WORLD], out->slope);
 }
 
-/* False, and all 0, where the normal is zero. */
+/* Computes a slab. Returns false, with all numbers 0, if its normal is zero. */
 static bool set_slab(struct limbs_pair *pair, struct slab_normal edges, struct slab_limbs *out)
 {
     struct normal normal;
@@ -235,37 +258,39 @@ static bool set_slab(struct limbs_pair *pair, struct slab_normal edges, struct s
     return true;
 }
 
+/* -1, 0 or 1 */
 static int sign(const int n, const uint64_t *x)
 {
     return is_negative(n, x) ? -1 : !is_zero(n, x);
 }
 
-/* The gap is the larger of start + min(0, slope) - high and low - start - max(0, slope). */
+/* The gap is the larger of start + min(0, slope) - high and low - (start + max(0, slope)). */
 int limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal)
 {
     struct slab_limbs slab;
     const int n = pair->limbs;
     if (!set_slab(pair, normal, &slab))
         return -1;
-    uint64_t *above = slab.between.high, *below = slab.between.low;
+    uint64_t *above = slab.bounds.high, *below = slab.bounds.low;
     limbs_number last;
     memcpy(last, slab.start, (size_t) n * sizeof *last);
     add(n, is_negative(n, slab.slope) ? last : slab.start, slab.slope);
-    subtract(n, above, last); /* last is the lower end of the way, start the upper one */
+    subtract(n, above, last); /* now last is the lower end of the path, start the upper one */
     subtract(n, below, slab.start);
     const int sign_above = -sign(n, above), sign_below = sign(n, below);
     return sign_above > sign_below ? sign_above : sign_below;
 }
 
-/* The normal of a has no extent along a: its slab has one along b unless planes are parallel. */
+/* Along the normal of a, the extent of a is 0. So the slab of this normal has an extent of 0 if and
+ * only if b has none along it, that is, if the planes are parallel. */
 struct limbs_planes limbs_planes_of(struct limbs_pair *pair)
 {
     struct slab_limbs slab;
     const int n = pair->limbs;
     set_slab(pair, (struct slab_normal){0, 1}, &slab);
-    subtract(n, slab.between.high, slab.between.low);
-    subtract(n, slab.start, slab.between.low);
-    const bool parallel = is_zero(n, slab.between.high);
+    subtract(n, slab.bounds.high, slab.bounds.low);
+    subtract(n, slab.start, slab.bounds.low);
+    const bool parallel = is_zero(n, slab.bounds.high);
     return (struct limbs_planes){
         .parallel = parallel,
         .shared = parallel && is_zero(n, slab.start) && is_zero(n, slab.slope)};
@@ -289,8 +314,8 @@ void limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, m
 {
     struct slab_limbs slab;
     set_slab(pair, normal, &slab);
-    to_mpz(pair->limbs, slab.between.low, low);
-    to_mpz(pair->limbs, slab.between.high, high);
+    to_mpz(pair->limbs, slab.bounds.low, low);
+    to_mpz(pair->limbs, slab.bounds.high, high);
     to_mpz(pair->limbs, slab.start, start);
     to_mpz(pair->limbs, slab.slope, slope);
 }
