@@ -123,9 +123,9 @@ struct fmb_frame {
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
     bool in_range;        /* doubles can decide pairs with it in a placement not rotated */
     bool sturdy;          /* doubles can decide pairs with it in any placement (frame.c) */
-    bool rounded;         /* not all of rest is 0 */
+    bool rounded;         /* some number of remainder is not 0 */
     int bits[2];          /* all components are multiples of 2^bits[0] below 2^bits[1] */
-    unsigned long long summary; /* fmb_prepared.summary of this frame, not rotated and at rest */
+    unsigned long long summary; /* as in fmb_prepared, of this frame unrotated and at rest */
     double radius;     /* bounds the distance of each vertex from the origin of the body; may be
                           infinite */
     double slack;      /* bounds the distance of each vertex from the one that origin and component,
@@ -139,7 +139,7 @@ struct fmb_frame {
      * article's invComp (Listing 1, PROJ). All 0 if not inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
     /* [component][axis]: the rounding errors of the components of a frame made from vertices. The
-     * exact components are component + rest. */
+     * exact components are component + remainder. */
     double remainder[FMB_DIM_MAX][FMB_DIM_MAX];
     double centre[FMB_DIM_MAX]; /* of a box; otherwise 0 */
 };
@@ -365,7 +365,7 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
  * unchanged while it is used. Any alignment that is valid for doubles will do; at a multiple of 64
  * bytes it occupies exactly two cache lines. */
 struct fmb_prepared {
-    unsigned long long summary; /* flags and sizes of the components */
+    unsigned long long summary; /* flags, and upper bounds of the lengths of the components */
     /* 3D: origin, components in order, error. 2D: the same with two numbers for each vector, then
      * the velocity, then zeros. */
     double number[13];

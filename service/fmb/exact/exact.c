@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/* The largest power of two of which every length that the pair is given by is a multiple. */
+/* Returns the largest exponent u such that all lengths of the pair are multiples of 2^u:
+ * components, origins, positions, and displacements v T. */
 static long pair_unit(const struct frame_pair *pair)
 {
     const struct placed_frame *placed[2] = {&pair->a, &pair->b};
@@ -33,6 +34,7 @@ static long pair_unit(const struct frame_pair *pair)
     return unit;
 }
 
+/* Sets the directions of the edges of frame f of a pair. */
 static void set_edges(struct exact_frame *frame, int f)
 {
     const int first = f * EXACT_OF_B;
@@ -53,15 +55,16 @@ static void set_edges(struct exact_frame *frame, int f)
 
 /* ---- Orientations ----
  *
- * With q in integers, n R(q) is a matrix of integers, n = |q|^2. All lengths of a pair are
- * multiplied by scale: n_a n_b, or n_a if that is n_b. This changes no sign, no time and no
- * direction; places are divided by it at the end. */
+ * For a quaternion q of integers, n R(q) is a matrix of integers, n = |q|^2. All lengths of a pair
+ * are multiplied by scale: n_a n_b, or n_a if n_a = n_b. This changes no sign, no time and no
+ * direction. Points are divided by scale at the end. */
 
 struct turn {
     bool turned;
-    mpz_t row[3][3], norm; /* n R(q), n; norm is 1 where it is not turned */
+    mpz_t row[3][3], norm; /* n R(q) and n; if not turned, norm is 1 and row is not used */
 };
 
+/* Calls one of mpz_init and mpz_clear for every number. */
 static void turn_each(struct turn *turn, void (*call)(mpz_ptr))
 {
     for (int i = 0; i < 3; i++)
@@ -70,7 +73,7 @@ static void turn_each(struct turn *turn, void (*call)(mpz_ptr))
     call(turn->norm);
 }
 
-/* q in the least integers. */
+/* q := the smallest integers proportional to the orientation. divisor is overwritten. */
 static void set_quaternion(const struct fmb_placement *placement, mpz_t q[4], mpz_t divisor)
 {
     const int count = placement->orientation_count;
@@ -85,7 +88,7 @@ static void set_quaternion(const struct fmb_placement *placement, mpz_t q[4], mp
         mpz_divexact(q[i], q[i], divisor);
 }
 
-/* On input: turn is all 0. */
+/* Sets the matrix of a placement. In: all numbers of turn are 0. */
 static void turn_set(const struct fmb_placement *placement, struct turn *turn)
 {
     turn->turned = placement->orientation_count != 0;
@@ -99,14 +102,14 @@ static void turn_set(const struct fmb_placement *placement, struct turn *turn)
     for (int k = 0; k < 4; k++) {
         mpz_mul(product, q[k], q[k]);
         mpz_add(turn->norm, turn->norm, product);
-        for (int i = 0; i < 3; i++) { /* ww, and v_k v_k: + in row k, else - */
+        for (int i = 0; i < 3; i++) { /* ww is added; v_k v_k in row k too, else subtracted */
             if (k == 0 || k == 1 + i)
                 mpz_add(turn->row[i][i], turn->row[i][i], product);
             else
                 mpz_sub(turn->row[i][i], turn->row[i][i], product);
         }
     }
-    for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), cyclic */
+    for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), i, j, k cyclic */
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         mpz_mul(product, q[1 + i], q[1 + j]);
         mpz_mul_2exp(turn->row[i][j], product, 1);
@@ -138,20 +141,20 @@ static void turn_vector(const struct turn *turn, const mpz_t factor, mpz_t v[3])
 
 /* ---- Frames ---- */
 
-/* component + rest */
-static void add_rest(struct exact_frame *out, const struct fmb_frame *frame, long unit)
+/* Adds the remainders to the components. */
+static void add_remainders(struct exact_frame *out, const struct fmb_frame *frame, long unit)
 {
-    mpz_t rest;
-    mpz_init(rest);
+    mpz_t remainder;
+    mpz_init(remainder);
     for (int i = 0; i < frame->count; i++)
         for (int axis = 0; axis < frame->dim; axis++) {
-            integer_set(rest, dyadic_of(frame->remainder[i][axis]), unit);
-            mpz_add(out->component[i][axis], out->component[i][axis], rest);
+            integer_set(remainder, dyadic_of(frame->remainder[i][axis]), unit);
+            mpz_add(out->component[i][axis], out->component[i][axis], remainder);
         }
-    mpz_clear(rest);
+    mpz_clear(remainder);
 }
 
-/* Components and origin in body coordinates. */
+/* Sets components and origin in body coordinates, in units of 2^unit. */
 static void set_frame(struct exact_frame *out, const struct fmb_frame *frame, long unit)
 {
     out->count = frame->count;
@@ -164,15 +167,15 @@ static void set_frame(struct exact_frame *out, const struct fmb_frame *frame, lo
             continue;
         }
         integer_set(out->displacement[axis], dyadic_of(frame->centre[axis]), unit);
-        mpz_fdiv_q_2exp(out->origin[axis], out->component[axis][axis], 1); /* is even */
+        mpz_fdiv_q_2exp(out->origin[axis], out->component[axis][axis], 1); /* exact: it is even */
         mpz_sub(out->origin[axis], out->displacement[axis], out->origin[axis]);
     }
     if (frame->rounded)
-        add_rest(out, frame, unit);
+        add_remainders(out, frame, unit);
 }
 
-/* Puts it into the world: factor is what vectors that have been turned are multiplied by, scale
- * what all others are. */
+/* Transforms a frame from body to world coordinates. Rotated vectors, which contain the norm of
+ * their rotation, are multiplied by factor; all others by scale. */
 static void place_frame(struct exact_frame *out, const struct placed_frame *placed, double duration,
                         long unit, const struct turn *turn, const mpz_t factor, const mpz_t scale)
 {
@@ -218,7 +221,7 @@ static void set_frames(struct exact_pair *out, const struct frame_pair *pair)
     mpz_clear(one);
 }
 
-/* Calls one of mpz_init and mpz_clear for every number of the frame. */
+/* Call one of mpz_init and mpz_clear for every number of a frame, or of a pair. */
 static void frame_each(struct exact_frame *frame, void (*call)(mpz_ptr))
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -248,10 +251,11 @@ static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
 
 /* ---- Products ----
  *
- * A vector of a pair that is not turned is a double, or the product of two, on each axis: one or
- * two limbs, and then zeros. Only offset and drift, differences of two of these, may fill the space
- * between; their products are taken apart. So of the 56 triple products only those of both offset
- * and drift have factors that are wide, and these have one wide vector product in common. */
+ * On each axis, a vector of a pair that is not rotated is a double or the product of two: an
+ * integer of one or two limbs that are not zero, followed by zero limbs. Offset and drift are
+ * differences of two such numbers, with limbs that are not zero in between; their products are
+ * therefore computed as differences of two products. Of the 56 triple products, only those of both
+ * offset and drift have wide factors, and these share one wide vector product. */
 
 mpz_t *exact_vector(struct exact_pair *pair, int number)
 {
@@ -278,15 +282,18 @@ void exact_dot(struct exact_pair *pair, mpz_t out, mpz_t normal[3], int k)
                                 *scratch);
 }
 
-/* The place of (i x j) . k, i < j < k, in the table: all triples below k, all pairs below j. */
+/* Returns the index of (i x j) . k, i < j < k, in the table: the number of triples below k, plus
+ * the number of pairs below j, plus i. */
 static int triple_at(int i, int j, int k)
 {
     return k * (k - 1) * (k - 2) / 6 + j * (j - 1) / 2 + i;
 }
 
-/* On input: all triples are 0, and those of vectors that are 0 stay so. Vector products of two
- * components of one frame give all triples but those of two frames with the offset or the drift,
- * which only slabs of two frames need: mixed. */
+/* Computes the triple products. In: all triples are 0; those of zero vectors stay so.
+ *
+ * mixed: all triples. Otherwise only the vector products of two components of one frame are
+ * computed. They give all triples except those of one component of each frame with the offset or
+ * the drift, which only slabs of two frames need. */
 static void set_triples(struct exact_pair *pair, bool mixed)
 {
     bool zero[EXACT_VECTORS];
@@ -329,7 +336,7 @@ static void add_triples(const struct exact_pair *pair, int sign, int i, int j,
     for (int k = 0; k < EXACT_VECTORS; k++) {
         if (k == i || k == j)
             continue;
-        /* Moving k to its place passes low, high or both. */
+        /* Sorting moves k past low, high or both; each transposition changes the sign. */
         const bool between = k > low && k < high;
         const mpz_t *triple = &pair->triple[k < low   ? triple_at(k, low, high)
                                             : between ? triple_at(low, k, high)
@@ -355,8 +362,8 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
         add_triples(pair, 1, u->minus, v->minus, value);
 }
 
-/* difference: slabs of the difference will be walked. Those of the box are of one frame alone, and
- * with crossings where the pair moves. */
+/* Converts a pair. difference: the slabs of the difference are needed. The box needs only slabs of
+ * single frames, and mixed triples if the pair moves, for crossings. */
 static void begin(struct exact_pair *out, const struct frame_pair *pair, bool difference)
 {
     pair_each(out, mpz_init);
@@ -385,26 +392,24 @@ void exact_pair_clear(struct exact_pair *pair)
 /* ---- Verdict and times ----
  *
  * Bound on the work, for any input. Let a number of the pair, in its unit, have at most W limbs of
- * 64 bits. The unit is at least 2^-2148, the lowest of v T, and a coordinate lies below 2^1024:
- * W <= 50. (A displacement has fewer than 3,172 bits: T is common to all, and where it is large the
- * unit is no lower than 2^-1074.) A triple product has 3 W limbs; numbers of the pair without their
- * zeros have 3 at most.
+ * 64 bits. The unit is at least 2^-2148, the smallest unit of v T, and a coordinate lies below
+ * 2^1024, so W <= 50. (A displacement has fewer than 3,172 bits: T is common to all, and if T is
+ * large, the unit is at least 2^-1074.) A triple product has 3 W limbs. Without zero limbs, a
+ * number of the pair has at most 3.
  *
- *   The triple products: 15 vector products of 6 short products, 50 dot products of at most 6
- *   factors of 3 limbs with 2 W; one vector product of 6 W^2 limbs. Together 60,000 products of
- *   limbs.
- *   The verdict of a solid difference: at most 44 + 12 slabs of 8 values, each a sum of at most 4
- *   triple products, and as many comparisons of their sums: 56 8 4 3 W = 270,000 limbs added.
- *   Times: at most 2 quotients a slab, of 53 bits: 44 2 2 3 W = 26,000.
- *   A flat difference: at most 13 slabs with normals of 2 W limbs, 6 short factors for each value;
- *   and 5 comparisons of quotients a slab, of two products of (3 W)^2 limbs at most: 13 5 2 (3 W)^2
- *   = 3 million, if the leading bits of none differ. A few are that close in practice; the others
- *   have normals of W limbs.
- *   The box: exact_box.c.
+ *   Triple products    15 vector products of 6 short products; 50 dot products of at most 6
+ * products of 3 limbs by 2 W; one vector product of 6 products of W by W limbs. Together 60,000
+ * products of limbs. Solid difference   At most 44 + 12 slabs of 8 values, each a sum of at most 4
+ * triple products, and as many comparisons of these sums: 56 * 8 * 4 * 3 W = 270,000 additions of
+ * limbs. Times              At most 2 quotients of 53 bits for each slab: 44 * 2 * 2 * 3 W =
+ * 26,000. Flat difference    At most 13 slabs with normals of 2 W limbs, 6 short factors for each
+ * value. For each slab 5 comparisons of quotients, each of two products of at most (3 W)^2 limbs:
+ * 13 * 5 * 2 * (3 W)^2 = 3 million, if all leading bits are equal. In practice few comparisons are
+ * that close, and the others have normals of W limbs. Box                See exact_box.c.
  *
- * A product of limbs takes half a nanosecond. test_engine_work.c counts them. */
+ * A product of limbs takes half a nanosecond. test_engine_work.c counts the products. */
 
-/* tau in windows, as seconds. */
+/* Returns tau = num / den, in windows, as seconds. In: den > 0. */
 static double seconds(const mpz_t num, const mpz_t den, double duration,
                       enum round_direction direction, mpz_t scratch[EXACT_SCRATCH])
 {
@@ -415,31 +420,33 @@ static double seconds(const mpz_t num, const mpz_t den, double duration,
     return integer_ratio_round(scratch[2], den, window.exponent, direction, scratch);
 }
 
-/* The offset of the frames moves along a segment, offset + tau drift. */
+/* The path of the offset, the segment offset + tau drift, tau in [0,1], against the slabs. */
 struct offset_walk {
     struct exact_pair *pair;
-    struct clipped_segment span; /* of a flat difference */
-    bool strict;                 /* of a solid one: strictly within all slabs so far */
-    double duration, *contact;
-    mpz_t f0, f1, num, den;
+    struct clipped_segment span; /* for a flat difference */
+    bool strict;                 /* for a solid one: strictly within all slabs so far */
+    double duration, *contact;   /* seconds; contact may be NULL */
+    mpz_t f0, f1;                /* normal . offset at tau = 0 and at tau = 1 */
+    mpz_t num, den;              /* scratch */
 };
 
-static void set_way(struct offset_walk *walk, struct slab *slab)
+static void set_path(struct offset_walk *walk, struct slab *slab)
 {
     mpz_set(walk->f0, slab->value[EXACT_OFFSET]);
     mpz_add(walk->f1, slab->value[EXACT_OFFSET], slab->value[EXACT_DRIFT]);
 }
 
+/* A slab of a flat difference: clips the path. Returns false if nothing is left of it. */
 static bool apply_to_span(void *context, struct slab *slab)
 {
     struct offset_walk *walk = context;
-    set_way(walk, slab);
+    set_path(walk, slab);
     return clipped_segment_apply(&walk->span, walk->f0, walk->f1, slab->low, slab->high,
                                  slab->pins);
 }
 
-/* Moves an end of the contact to where the offset crosses a bound. Rounding keeps order: the last
- * of the rounded times is the rounded last time. */
+/* Moves an end of the contact (0: first, 1: last) to the time at which the offset crosses a bound.
+ * Rounding is monotonic: the latest of the rounded times is the latest time, rounded. */
 static void cross_bound(struct offset_walk *walk, const mpz_t bound, int end)
 {
     mpz_sub(walk->num, bound, walk->f0);
@@ -454,13 +461,14 @@ static void cross_bound(struct offset_walk *walk, const mpz_t bound, int end)
         walk->contact[end] = time;
 }
 
-/* A slab of a solid difference, or of one that is swept. Along the way, normal . w goes from f0 to
- * f1. Where all of that is beyond a bound, the frames are apart; where none of it is strictly
- * inside of a bound, the offset is on the bound of what is swept (slabs.h). */
+/* A slab of a solid difference, or of the swept one. Along the path, normal . w goes from f0 to f1.
+ * If all of the path is beyond a bound, the frames are separated: returns false. If no point of the
+ * path is strictly inside a bound, the offset lies on the boundary of the swept difference
+ * (slabs.h). */
 static bool apply_to_solid(void *context, struct slab *slab)
 {
     struct offset_walk *walk = context;
-    set_way(walk, slab);
+    set_path(walk, slab);
     const int low0 = mpz_cmp(walk->f0, slab->low), low1 = mpz_cmp(walk->f1, slab->low);
     const int high0 = mpz_cmp(walk->f0, slab->high), high1 = mpz_cmp(walk->f1, slab->high);
     if ((low0 < 0 && low1 < 0) || (high0 > 0 && high1 > 0))

@@ -3,27 +3,33 @@
 #include "rotation.h"
 
 enum {
-    WORK_MAX = 30000,
-    WORK_PLACE = 400, /* a chunk */
-    WORK_TILE = 200,  /* the frames of two chunks */
-    WORK_TEST = 4     /* two boxes */
+    WORK_MAX = 30000,   /* nanoseconds, roughly, as the others; the search pauses above it */
+    WORK_PREPARE = 400, /* of a chunk */
+    WORK_SELECT = 200,  /* of the frames of two chunks */
+    WORK_TEST = 4       /* of two boxes */
 };
 
 /* ---- Boxes of bodies ---- */
 
-/* Turns the box of a body. With its centre m and half extents h in body coordinates, a point is
- * m + y, |y_j| <= h_j, and its world coordinate on an axis
+/* Returns one axis of the box of a rotated body, {low, -high}. row is the row of the rotation
+ * matrix, m the centre and h the half extents of the box in body coordinates, sum = S below.
+ *
+ * A point of the box is m + y, |y_j| <= h_j. Its world coordinate on the axis is
  *
  *     p + R m + R y,  |R y| <= sum_j |R_j| h_j     for the row R of the axis.
  *
- * Accuracy, with u = 2^-53 and S = sum_j |m_j| + h_j, which bounds the length of m + y: a rounded
- * row is off by less than 17.4 u (rotation.h), which moves the point by 17.4 u S; R m and
- * sum |R_j| h_j are off by 3.01 u of their terms, 3.01 u S together, their sum, and half, by u S
- * each. ROTATION_ERROR S, 24 u S, covers all of them. The sum with p steps outward by a unit in its
- * last place, and by 2^-1060 for what underflows. NaN, from infinite numbers, becomes an end
- * without bound. */
-static lanes turned_axis(const double *row, const double m[FMB_DIM_MAX],
-                         const double h[FMB_DIM_MAX], double sum, double position)
+ * Accuracy, with u = 2^-53 and S = sum_j (|m_j| + h_j), which bounds the length of m + y:
+ *
+ *     17.4 u S  a rounded row is off by less than 17.4 u (rotation.h)
+ *     3.01 u S  R m and sum |R_j| h_j are off by 3.01 u times the magnitudes of their terms
+ *     u S       the sum of the two
+ *     u S       half
+ *
+ * ROTATION_ERROR S = 24 u S covers all of them. The sum with p is moved outward by a unit in the
+ * last place, and by 2^-1060 for underflow. A NaN, from infinite numbers, becomes -infinity: the
+ * box is unbounded on that side. */
+static lanes rotated_axis(const double *row, const double m[FMB_DIM_MAX],
+                          const double h[FMB_DIM_MAX], double sum, double position)
 {
     const double centre = (row[0] * m[0] + row[1] * m[1]) + row[2] * m[2];
     const double reach = (fabs(row[0]) * h[0] + fabs(row[1]) * h[1]) + fabs(row[2]) * h[2];
@@ -34,7 +40,7 @@ static lanes turned_axis(const double *row, const double m[FMB_DIM_MAX],
     return (lanes){below > -INFINITY ? below : -INFINITY, above > -INFINITY ? above : -INFINITY};
 }
 
-static struct aabb turned_box(const struct fmb_placement *placement, double duration)
+static struct aabb rotated_box(const struct fmb_placement *placement, double duration)
 {
     const struct fmb_body *body = placement->body;
     struct rotation_matrix rotation;
@@ -52,7 +58,7 @@ static struct aabb turned_box(const struct fmb_placement *placement, double dura
         const double row[FMB_DIM_MAX] = {rotation_entry(&rotation, axis, 0),
                                          rotation_entry(&rotation, axis, 1),
                                          rotation_entry(&rotation, axis, 2)};
-        out.end[axis] = aabb_sweep_axis(turned_axis(row, m, h, sum, placement->position[axis]),
+        out.end[axis] = aabb_sweep_axis(rotated_axis(row, m, h, sum, placement->position[axis]),
                                         placement->velocity[axis], duration);
     }
     return out;
@@ -66,7 +72,7 @@ static struct aabb unbounded_box(int dim)
     return out;
 }
 
-/* ---- Places ---- */
+/* ---- Chunks ---- */
 
 static struct scene_chunk *chunk_of(const struct scene_frames *frames, unsigned body, size_t k)
 {
@@ -79,12 +85,14 @@ static unsigned chunk_size(const struct scene_frames *frames, unsigned body, siz
     return (unsigned) (left < SCENE_CHUNK ? left : SCENE_CHUNK);
 }
 
-static bool is_placed(const struct scene_frames *frames, const struct scene_chunk *chunk)
+/* Returns whether the frames of a chunk are in their slots. */
+static bool is_prepared(const struct scene_frames *frames, const struct scene_chunk *chunk)
 {
     return chunk->generation == frames->generation;
 }
 
-static void place(struct scene_frames *frames, unsigned body, size_t k)
+/* Prepares chunk k of a body into the next slots, and sets its boxes. In: the slots suffice. */
+static void prepare_chunk(struct scene_frames *frames, unsigned body, size_t k)
 {
     struct scene_chunk *chunk = chunk_of(frames, body, k);
     const unsigned count = chunk_size(frames, body, k), first = (unsigned) frames->used;
@@ -93,7 +101,7 @@ static void place(struct scene_frames *frames, unsigned body, size_t k)
     chunk->generation = frames->generation;
     chunk->slot = first;
     frames->used += count;
-    frames->work += WORK_PLACE;
+    frames->work += WORK_PREPARE;
     if (!frames->boxed)
         return;
     for (unsigned i = first; i < first + count; i++) {
@@ -103,52 +111,55 @@ static void place(struct scene_frames *frames, unsigned body, size_t k)
     }
 }
 
-static void reuse_slots(struct scene_frames *frames)
+/* Releases all slots. */
+static void release_slots(struct scene_frames *frames)
 {
     frames->used = 0;
     frames->generation++;
 }
 
-/* Places a chunk of a, and one of b. False: there are no slots. */
-static bool place_both(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
-                       bool may_reuse)
+/* Prepares the current chunks of a cursor. Returns false if the slots do not suffice and may not be
+ * released. */
+static bool prepare_both(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
+                         bool may_reuse)
 {
     const unsigned body[2] = {cursor->a, cursor->b};
     const size_t k[2] = {cursor->chunk_a, cursor->chunk_b};
     size_t missing = 0;
     for (int side = 0; side < 2; side++)
-        if (!is_placed(frames, chunk_of(frames, body[side], k[side])))
+        if (!is_prepared(frames, chunk_of(frames, body[side], k[side])))
             missing += chunk_size(frames, body[side], k[side]);
     if (missing == 0)
         return true;
     if (missing > frames->slots - frames->used) {
         if (!may_reuse)
             return false;
-        reuse_slots(frames);
+        release_slots(frames);
     }
     for (int side = 0; side < 2; side++)
-        if (!is_placed(frames, chunk_of(frames, body[side], k[side])))
-            place(frames, body[side], k[side]);
+        if (!is_prepared(frames, chunk_of(frames, body[side], k[side])))
+            prepare_chunk(frames, body[side], k[side]);
     return true;
 }
 
-/* The same for the box of one chunk. */
-static bool set_box(struct scene_frames *frames, unsigned body, size_t k, bool may_reuse)
+/* Sets the box of a chunk, by preparing it. Returns as prepare_both(). */
+static bool set_chunk_box(struct scene_frames *frames, unsigned body, size_t k, bool may_reuse)
 {
     if (chunk_of(frames, body, k)->generation > 0)
         return true;
     if (chunk_size(frames, body, k) > frames->slots - frames->used) {
         if (!may_reuse)
             return false;
-        reuse_slots(frames);
+        release_slots(frames);
     }
-    place(frames, body, k);
+    prepare_chunk(frames, body, k);
     return true;
 }
 
-/* Boxes that are widened so, and do not meet, are farther apart on an axis than the margin, and
- * than 1e-12 of their largest coordinate more: a bound of the gap is too (gap.h). */
-static void widen(struct aabb *box, double margin)
+/* Expands the box of a body by half of the margin, and a little more. If two such boxes do not
+ * overlap, their bodies are farther apart on an axis than the margin plus 1e-12 of the largest
+ * coordinate. A computed bound of the gap then also exceeds the margin (gap.h). */
+static void expand(struct aabb *box, double margin)
 {
     const double by = 0.5 * margin + (0x1p-39 * aabb_max_coordinate(box) + 0x1p-1070);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -159,39 +170,43 @@ void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
 {
     const struct fmb_placement *placement = &frames->placement[i];
     if (frames->direct) {
-        set_box(frames, i, 0, true);
+        set_chunk_box(frames, i, 0, true);
         frames->body_box[i] = chunk_of(frames, i, 0)->box;
     } else {
-        frames->body_box[i] =
-            bounded ? turned_box(placement, frames->duration) : unbounded_box(placement->body->dim);
+        frames->body_box[i] = bounded ? rotated_box(placement, frames->duration)
+                                      : unbounded_box(placement->body->dim);
     }
     if (frames->margin > 0)
-        widen(&frames->body_box[i], frames->margin);
+        expand(&frames->body_box[i], frames->margin);
 }
 
 /* ---- Pairs of frames ---- */
 
-static bool near(const struct aabb *a, const struct aabb *b, double reach)
+/* Returns whether two boxes are within reach. */
+static bool is_within_reach(const struct aabb *a, const struct aabb *b, double reach)
 {
-    const struct aabb against = aabb_probe_within(b, reach);
-    return aabb_overlaps(a, &against);
+    const struct aabb probe = aabb_probe_within(b, reach);
+    return aabb_overlaps(a, &probe);
 }
 
-/* Slots of the frames of a chunk whose boxes are near a box; returns how many. */
+/* out := the slots of the frames of a chunk whose boxes are within reach of a box. Returns their
+ * number. */
 static unsigned select_frames(const struct scene_frames *frames, unsigned body, size_t k,
                               const struct aabb *box, double reach, unsigned out[SCENE_CHUNK])
 {
-    const struct aabb against = aabb_probe_within(box, reach);
+    const struct aabb probe = aabb_probe_within(box, reach);
     const unsigned first = chunk_of(frames, body, k)->slot, size = chunk_size(frames, body, k);
     unsigned count = 0;
     for (unsigned slot = first; slot < first + size; slot++) {
         out[count] = slot;
-        count += aabb_overlaps(&frames->frame_box[slot], &against);
+        count += aabb_overlaps(&frames->frame_box[slot], &probe);
     }
     return count;
 }
 
-static void enter(struct scene_frames *frames, struct frame_pair_cursor *cursor)
+/* Selects the frames of each current chunk that are within reach of the other chunk. In: both
+ * chunks are prepared. */
+static void select_pairs(struct scene_frames *frames, struct frame_pair_cursor *cursor)
 {
     const struct aabb *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
     const struct aabb *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
@@ -201,21 +216,22 @@ static void enter(struct scene_frames *frames, struct frame_pair_cursor *cursor)
         select_frames(frames, cursor->b, cursor->chunk_b, a, cursor->reach, cursor->of_b);
     cursor->i = cursor->j = 0;
     cursor->inside = true;
-    frames->work += WORK_TILE;
+    frames->work += WORK_SELECT;
 }
 
-static size_t pairs_inside(const struct scene_frames *frames, struct frame_pair_cursor *cursor,
-                           unsigned (*out)[2], size_t max)
+/* Writes the next pairs of the selected frames to out; returns their number, at most max. */
+static size_t selected_pairs(const struct scene_frames *frames, struct frame_pair_cursor *cursor,
+                             unsigned (*out)[2], size_t max)
 {
     unsigned i = cursor->i, j = cursor->j;
     size_t count = 0;
     for (; i < cursor->count_a; i++, j = 0) {
-        const struct aabb against =
+        const struct aabb probe =
             aabb_probe_within(&frames->frame_box[cursor->of_a[i]], cursor->reach);
         for (; j < cursor->count_b && count < max; j++) {
             out[count][0] = cursor->of_a[i];
             out[count][1] = cursor->of_b[j];
-            count += aabb_overlaps(&frames->frame_box[cursor->of_b[j]], &against);
+            count += aabb_overlaps(&frames->frame_box[cursor->of_b[j]], &probe);
         }
         if (count == max)
             break;
@@ -226,8 +242,8 @@ static size_t pairs_inside(const struct scene_frames *frames, struct frame_pair_
     return count;
 }
 
-/* Goes on to two chunks whose boxes are near, and places them. False: there are none, *done is set;
- * or the search has to pause. */
+/* Advances to the next two chunks whose boxes are within reach, and prepares them. Returns false if
+ * there are none (*done is then true), or if the search has to pause. */
 static bool find_chunks(struct scene_frames *frames, struct frame_pair_cursor *cursor,
                         bool may_reuse, bool *done)
 {
@@ -235,17 +251,19 @@ static bool find_chunks(struct scene_frames *frames, struct frame_pair_cursor *c
     const size_t count_b = scene_chunks(frames->placement[cursor->b].body->frame_count);
     const struct aabb *body_b = &frames->body_box[cursor->b];
     for (; cursor->chunk_a < count_a; cursor->chunk_a++, cursor->chunk_b = 0) {
-        if (!set_box(frames, cursor->a, cursor->chunk_a, may_reuse))
+        if (!set_chunk_box(frames, cursor->a, cursor->chunk_a, may_reuse))
             return false;
         const struct aabb *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
         frames->work += WORK_TEST;
-        for (bool skip = !near(a, body_b, cursor->reach); !skip && cursor->chunk_b < count_b;
-             cursor->chunk_b++) {
-            if (frames->work > WORK_MAX || !set_box(frames, cursor->b, cursor->chunk_b, may_reuse))
+        for (bool skip = !is_within_reach(a, body_b, cursor->reach);
+             !skip && cursor->chunk_b < count_b; cursor->chunk_b++) {
+            if (frames->work > WORK_MAX ||
+                !set_chunk_box(frames, cursor->b, cursor->chunk_b, may_reuse))
                 return false;
             frames->work += WORK_TEST;
-            if (near(a, &chunk_of(frames, cursor->b, cursor->chunk_b)->box, cursor->reach))
-                return place_both(frames, cursor, may_reuse);
+            if (is_within_reach(a, &chunk_of(frames, cursor->b, cursor->chunk_b)->box,
+                                cursor->reach))
+                return prepare_both(frames, cursor, may_reuse);
         }
         if (frames->work > WORK_MAX)
             return false;
@@ -254,10 +272,11 @@ static bool find_chunks(struct scene_frames *frames, struct frame_pair_cursor *c
     return false;
 }
 
+/* The pair of two bodies of one frame each. Returns 0 if the slots do not suffice. */
 static size_t single_pair(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
                           bool may_reuse, unsigned (*out)[2], bool *done)
 {
-    if (!place_both(frames, cursor, may_reuse))
+    if (!prepare_both(frames, cursor, may_reuse))
         return 0;
     out[0][0] = chunk_of(frames, cursor->a, 0)->slot;
     out[0][1] = chunk_of(frames, cursor->b, 0)->slot;
@@ -277,9 +296,9 @@ size_t scene_frames_pairs(struct scene_frames *frames, struct frame_pair_cursor 
         if (!cursor->inside) {
             if (!find_chunks(frames, cursor, may_reuse && count == 0, done))
                 break;
-            enter(frames, cursor);
+            select_pairs(frames, cursor);
         }
-        count += pairs_inside(frames, cursor, out + count, max - count);
+        count += selected_pairs(frames, cursor, out + count, max - count);
         if (!cursor->inside)
             cursor->chunk_b++;
     }
