@@ -69,9 +69,9 @@ struct exact_pair {
 void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair);
 void exact_pair_clear(struct exact_pair *pair);
 
-/* Computes the inverse of a frame of dim components, the exact ones, component + remainder. Every entry
- * is the largest double that is not above the exact one, infinite beyond the range of doubles.
- * Returns false if the frame is exactly flat and has no inverse. */
+/* Computes the inverse of a frame of dim components, the exact ones, component + remainder. Every
+ * entry is the largest double that is not above the exact one, infinite beyond the range of
+ * doubles. Returns false if the frame is exactly flat and has no inverse. */
 bool exact_inverse(struct fmb_frame *frame);
 
 /* Returns the vector of this number: [axis]. */
