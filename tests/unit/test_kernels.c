@@ -99,7 +99,7 @@ static void set_square(mpq_t out, const double *vector, int dim)
     mpq_clear(number);
 }
 
-/* What the head of a frame in range says of a component: no less
+/* What the summary of a frame in range says of a component: no less
  * than its length, and at most a fifteenth more. */
 static void expect_size(const struct fmb_frame *frame, int i)
 {

@@ -74,21 +74,21 @@ static inline const struct fmb_prepared *frame_at(const struct fmb_batch *batch,
 }
 
 /* The flags of several frames: those set in any of them, and those set in all. */
-struct heads {
+struct summaries {
     unsigned long long any, all;
 };
 
-static inline void heads_add(struct heads *heads, const struct fmb_prepared *frame)
+static inline void summaries_add(struct summaries *summaries, const struct fmb_prepared *frame)
 {
-    heads->any |= frame->summary;
-    heads->all &= frame->summary;
+    summaries->any |= frame->summary;
+    summaries->all &= frame->summary;
 }
 
 /* Whether the frames are all of the same kind, and prepared. */
-static inline bool heads_same_kind(const struct heads *heads)
+static inline bool summaries_same_kind(const struct summaries *summaries)
 {
-    return (heads->any ^ heads->all) >> 3 * PREPARED_SIZE_BITS == 0 &&
-           heads->all >> 3 * PREPARED_SIZE_BITS & PREPARED_VALID;
+    return (summaries->any ^ summaries->all) >> 3 * PREPARED_SIZE_BITS == 0 &&
+           summaries->all >> 3 * PREPARED_SIZE_BITS & PREPARED_VALID;
 }
 
 static void replace_unprepared(struct batch_block *block)
@@ -123,7 +123,7 @@ struct fetching {
 };
 
 INLINE void put_pairs(struct batch_block *block, const struct fetching fetching,
-                      struct heads heads[2])
+                      struct summaries summaries[2])
 {
     const struct fmb_batch *batch = block->batch;
     const unsigned(*pairs)[2] = batch->pairs + block->first;
@@ -136,8 +136,8 @@ INLINE void put_pairs(struct batch_block *block, const struct fetching fetching,
             __builtin_prefetch((const char *) a + sizeof *a / 2);
             __builtin_prefetch((const char *) b + sizeof *b / 2);
         }
-        heads_add(&heads[0], a);
-        heads_add(&heads[1], b);
+        summaries_add(&summaries[0], a);
+        summaries_add(&summaries[1], b);
         block->pair[i][0] = a;
         block->pair[i][1] = b;
     }
@@ -153,16 +153,16 @@ static bool set_pairs(struct batch_block *block)
     const struct fmb_batch *batch = block->batch;
     const unsigned kind = prepared_kind(frame_at(batch, batch->pairs[block->first][0]));
     const bool ahead = batch->frame_count >= MANY_FRAMES;
-    struct heads heads[2] = {{0, ~0ull}, {0, ~0ull}};
+    struct summaries summaries[2] = {{0, ~0ull}, {0, ~0ull}};
     if (kind & PREPARED_3D)
-        put_pairs(block, (struct fetching){true, false}, heads);
+        put_pairs(block, (struct fetching){true, false}, summaries);
     else if (!ahead)
-        put_pairs(block, (struct fetching){false, false}, heads);
+        put_pairs(block, (struct fetching){false, false}, summaries);
     else if (kind & PREPARED_MOVING)
-        put_pairs(block, (struct fetching){true, true}, heads);
+        put_pairs(block, (struct fetching){true, true}, summaries);
     else
-        put_pairs(block, (struct fetching){false, true}, heads);
-    const bool same_kind = heads_same_kind(&heads[0]) && heads_same_kind(&heads[1]);
+        put_pairs(block, (struct fetching){false, true}, summaries);
+    const bool same_kind = summaries_same_kind(&summaries[0]) && summaries_same_kind(&summaries[1]);
     if (!same_kind)
         replace_unprepared(block);
     return same_kind;

@@ -397,15 +397,18 @@ void exact_pair_clear(struct exact_pair *pair)
  * large, the unit is at least 2^-1074.) A triple product has 3 W limbs. Without zero limbs, a
  * number of the pair has at most 3.
  *
- *   Triple products    15 vector products of 6 short products; 50 dot products of at most 6
- * products of 3 limbs by 2 W; one vector product of 6 products of W by W limbs. Together 60,000
- * products of limbs. Solid difference   At most 44 + 12 slabs of 8 values, each a sum of at most 4
- * triple products, and as many comparisons of these sums: 56 * 8 * 4 * 3 W = 270,000 additions of
- * limbs. Times              At most 2 quotients of 53 bits for each slab: 44 * 2 * 2 * 3 W =
- * 26,000. Flat difference    At most 13 slabs with normals of 2 W limbs, 6 short factors for each
- * value. For each slab 5 comparisons of quotients, each of two products of at most (3 W)^2 limbs:
- * 13 * 5 * 2 * (3 W)^2 = 3 million, if all leading bits are equal. In practice few comparisons are
- * that close, and the others have normals of W limbs. Box                See exact_box.c.
+ * - Triple products: 15 vector products of 6 short products; 50 dot products of at most 6 products
+ *   of 3 limbs by 2 W; one vector product of 6 products of W by W limbs. Together 60,000
+ *   products of limbs.
+ * - The verdict of a solid difference: at most 44 + 12 slabs of 8 values, each a sum of at most 4
+ *   triple products, and as many comparisons of these sums: 56 * 8 * 4 * 3 W = 270,000 additions of
+ *   limbs.
+ * - Times: at most 2 quotients of 53 bits for each slab: 44 * 2 * 2 * 3 W = 26,000.
+ * - A flat difference: at most 13 slabs with normals of 2 W limbs, 6 short factors for each value.
+ *   For each slab 5 comparisons of quotients, each of two products of at most (3 W)^2 limbs:
+ *   13 * 5 * 2 * (3 W)^2 = 3 million, if no leading bits differ. In practice few comparisons are
+ *   that close, and the others have normals of W limbs.
+ * - The box: see exact_box.c.
  *
  * A product of limbs takes half a nanosecond. test_engine_work.c counts the products. */
 

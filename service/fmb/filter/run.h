@@ -24,8 +24,8 @@ enum run_kind {
     RUN_REFUSED          /* cannot be asked */
 };
 
-/* What the heads of two frames say of their pair. Inline, as all that follows, for the inner loop
- * of a batch. */
+/* What the summaries of two frames say of their pair. Inline, as all that follows, for the inner
+ * loop of a batch. */
 struct run_kinds {
     enum run_kind at_rest, drifting; /* where the velocities are the same, and where they differ */
     bool swapped;                    /* a and b change places */

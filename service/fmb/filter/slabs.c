@@ -23,8 +23,8 @@
  * that of the middle of the window, and the drift widens D by its half to either side.
  *
  * Accuracy, with u = 2^-53, for any order of summation and with or without fused operations. Let
- * |x| be the length of x (2-norm) or more: 1-norms of the offset d and of H, sizes from the heads
- * of frames, |a_p| + |a_q| for an edge that is a difference; and
+ * |x| be the length of x (2-norm) or more: 1-norms of the offset d and of H, sizes from the
+ * summaries of frames, |a_p| + |a_q| for an edge that is a difference; and
  *
  *     T = |d| + 2 |H| + sum over cuboids of 2 |c_i| + sum over tetrahedra of |c_i|
  *

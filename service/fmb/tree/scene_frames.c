@@ -206,7 +206,7 @@ static unsigned select_frames(const struct scene_frames *frames, unsigned body, 
 
 /* Selects the frames of each current chunk that are within reach of the other chunk. In: both
  * chunks are prepared. */
-static void select_pairs(struct scene_frames *frames, struct frame_pair_cursor *cursor)
+static void select_candidates(struct scene_frames *frames, struct frame_pair_cursor *cursor)
 {
     const struct aabb *a = &chunk_of(frames, cursor->a, cursor->chunk_a)->box;
     const struct aabb *b = &chunk_of(frames, cursor->b, cursor->chunk_b)->box;
@@ -220,8 +220,8 @@ static void select_pairs(struct scene_frames *frames, struct frame_pair_cursor *
 }
 
 /* Writes the next pairs of the selected frames to out; returns their number, at most max. */
-static size_t selected_pairs(const struct scene_frames *frames, struct frame_pair_cursor *cursor,
-                             unsigned (*out)[2], size_t max)
+static size_t candidate_pairs(const struct scene_frames *frames, struct frame_pair_cursor *cursor,
+                              unsigned (*out)[2], size_t max)
 {
     unsigned i = cursor->i, j = cursor->j;
     size_t count = 0;
@@ -296,9 +296,9 @@ size_t scene_frames_pairs(struct scene_frames *frames, struct frame_pair_cursor 
         if (!cursor->inside) {
             if (!find_chunks(frames, cursor, may_reuse && count == 0, done))
                 break;
-            select_pairs(frames, cursor);
+            select_candidates(frames, cursor);
         }
-        count += selected_pairs(frames, cursor, out + count, max - count);
+        count += candidate_pairs(frames, cursor, out + count, max - count);
         if (!cursor->inside)
             cursor->chunk_b++;
     }
