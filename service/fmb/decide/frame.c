@@ -185,25 +185,46 @@ static void measure(struct fmb_frame *frame)
     frame->bits[1] = (int) span.top;
 }
 
-/* Returns the radius of a frame: the distance of a vertex from the origin of the body is at most
- * the sum of the lengths of the origin and of all components, which is at most the sum of the
- * magnitudes of their coordinates. The factor covers rounding, 2^-1000 underflow. */
-static double radius_of(const struct fmb_frame *frame)
-{
-    double radius = 0;
-    for (int axis = 0; axis < frame->dim; axis++) {
-        radius += fabs(frame->origin[axis]);
-        for (int i = 0; i < frame->count; i++)
-            radius += fabs(frame->component[i][axis]);
-    }
-    return radius * (1 + 0x1p-40) + 0x1p-1000;
-}
-
 /* Returns the sum of the magnitudes of the coordinates. It bounds the length of v, except for
  * rounding. */
 static double sum_of(const double v[FMB_DIM_MAX])
 {
     return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
+}
+
+/* Returns the largest magnitude of a coordinate of a vertex along an axis. Adds the magnitudes of
+ * the numbers it is computed from to *sum. */
+static double farthest_along(const struct fmb_frame *frame, int axis, double *sum)
+{
+    double low = 0, high = 0;
+    *sum += fabs(frame->origin[axis]);
+    for (int i = 0; i < frame->count; i++) {
+        const double c = frame->component[i][axis];
+        const double below = frame_is_simplex(frame) ? c : low + c;
+        const double above = frame_is_simplex(frame) ? c : high + c;
+        low = below < low ? below : low;
+        high = above > high ? above : high;
+        *sum += fabs(c);
+    }
+    low = fabs(frame->origin[axis] + low);
+    high = fabs(frame->origin[axis] + high);
+    return low > high ? low : high;
+}
+
+/* Returns the radius of a frame: the distance of the farthest corner of its bounding box from the
+ * origin of the body. Where squares might overflow or underflow, it is the sum of the magnitudes of
+ * all coordinates. The coordinate of a corner passes at most 4 roundings, and a remainder is at
+ * most 2^-53 of its component: 2^-49 of the sum covers both. The factor covers the rounding of the
+ * root, 2^-1000 underflow. */
+static double radius_of(const struct fmb_frame *frame)
+{
+    double square = 0, sum = 0;
+    for (int axis = 0; axis < frame->dim; axis++) {
+        const double farthest = farthest_along(frame, axis, &sum);
+        square += farthest * farthest;
+    }
+    const double radius = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) + 0x1p-49 * sum : sum;
+    return radius * (1 + 0x1p-40) + 0x1p-1000;
 }
 
 /* Returns the slack of a frame. The origin of a box, centre - size / 2, is off by at most half a
@@ -223,14 +244,20 @@ static double slack_of(const struct fmb_frame *frame)
     return slack * (1 + 0x1p-50);
 }
 
-/* Returns the turn_error of a frame: ROTATION_ERROR times the sum of the lengths of the origin and
- * of the components. */
+/* Returns the turn_error of a frame: how far an inexact rotation moves a vertex v. The error of the
+ * matrix moves it by MATRIX_ERROR |v|, |v| being at most the radius; the products of the matrix
+ * with the origin and with the components are off by PRODUCT_ERROR of their lengths. The origin is
+ * a vertex too. A component of a box has one coordinate, so that its product is rounded once only.
+ */
 static double turn_error_of(const struct fmb_frame *frame)
 {
-    double lengths = sum_of(frame->origin);
+    double lengths = 0;
     for (int i = 0; i < frame->count; i++)
         lengths += frame->in_range ? prepared_size(frame->summary, i) : sum_of(frame->component[i]);
-    return ROTATION_ERROR * (1 + 0x1p-40) * lengths + 0x1p-1060; /* where products underflow */
+    const double of_origin = (MATRIX_ERROR + PRODUCT_ERROR) * frame->radius;
+    const double of_components =
+        (frame->shape == FMB_BOX ? 1.1 * 0x1p-53 : PRODUCT_ERROR) * lengths;
+    return (1 + 0x1p-40) * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
 }
 
 /* Derives all other fields from shape, origin, centre, component and remainder. */

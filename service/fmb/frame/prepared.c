@@ -84,8 +84,10 @@ struct world_numbers {
 _Static_assert(sizeof(struct world_numbers) == sizeof(((struct fmb_prepared *) 0)->number),
                "world_numbers is the layout of fmb_prepared.number in 3D");
 
-/* Sets out->origin to position + R origin, and adds its rounding error to out->error. A rounded sum
- * is off by at most half a unit in the last place on each axis; a whole unit is added. Clears the
+/* The relative error of a sum of two coordinates, and a little for that of this bound. */
+static const double sum_rounding = 0x1.01p-53;
+
+/* Sets out->origin to position + R origin, and adds its rounding error to out->error. Clears the
  * bits of *exact (as set_numbers() returns them) of the axes whose sum is rounded. */
 static void set_origin(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                        const double *position, struct world_numbers *out, unsigned *exact)
@@ -102,7 +104,7 @@ static void set_origin(const struct fmb_frame *frame, const struct rotation_matr
         }
     if (rounds)
         out->error +=
-            0x1p-52 * ((fabs(out->origin[0]) + fabs(out->origin[1])) + fabs(out->origin[2]));
+            sum_rounding * ((fabs(out->origin[0]) + fabs(out->origin[1])) + fabs(out->origin[2]));
 }
 
 static bool is_zero(const double v[FMB_DIM_MAX])
@@ -223,7 +225,7 @@ INLINE void set_in_general_orientation(const struct fmb_frame *frame,
     }
     rotate_components(frame, rotation, numbers->component);
     numbers->error = frame->slack + frame->turn_error;
-    numbers->error += 0x1p-52 * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
+    numbers->error += sum_rounding * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
     numbers->error *= 1 + 0x1p-40; /* for its own rounding */
     out->summary = (frame->summary &
                     ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | all_components_exact)) |

@@ -10,18 +10,20 @@
  *    most 3.01 u, that of 1 / n at most 4.02 u.
  * 3. The numerators. On the diagonal, (ww + xx) - (yy + zz) is off by at most 3.01 u n. Off the
  *    diagonal, 2 (xy - wz) is off by at most 2.01 u (2 |xy| + 2 |wz|) <= 2.01 u n.
- * 4. The entries. A numerator times 1 / n is rounded once more: an entry is off by at most
- *    3.01 u + 5.04 u |entry| on the diagonal, and 2.01 u + 5.04 u |entry| off it.
- * 5. The matrix. The Frobenius norm of R is sqrt(3). That of its error is at most
+ *    As a matrix these errors have a Frobenius norm of at most
+ *    u n sqrt(3 * 3.01^2 + 6 * 2.01^2) < 7.2 u n.
+ * 4. The matrix. All numerators are multiplied with the same 1 / n, whose error scales R by up to
+ *    4.02 u, and each product is rounded. The norm of R is 1, its Frobenius norm sqrt(3). So the
+ *    norm of the error of the matrix is less than
  *
- *        u (sqrt(3 * 3.01^2 + 6 * 2.01^2) + 5.04 sqrt(3)) < 15.9 u.
+ *        u (7.2 + 4.03 + 1.01 sqrt(3)) < 13 u,    MATRIX_ERROR.
  *
- * 6. The product R v. Each coordinate is rounded three times: it is off by at most 3.01 u times the
+ * 5. The product R v. Each coordinate is rounded three times: it is off by at most 3.01 u times the
  *    sum of the magnitudes of its terms, which is at most |v|. For the vector that is at most
- *    3.01 sqrt(3) u |v| < 5.3 u |v|. Coordinates below 2^-60 |v| become 0, which adds less than
- *    0.1 u |v|.
+ *    3.01 sqrt(3) u |v| < 5.22 u |v|. Coordinates below 2^-60 |v| become 0, which adds less than
+ *    0.02 u |v|: 5.3 u |v|, PRODUCT_ERROR.
  *
- * Together less than 21.3 u |v|. ROTATION_ERROR is 24 u; the difference covers the rounding of
+ * Together less than 18.3 u |v|. ROTATION_ERROR is 21 u; the difference covers the rounding of
  * bounds that are computed with it.
  *
  * A row that is exactly plus or minus a unit vector is computed without error. An entry is +-1 if
@@ -41,7 +43,9 @@
 #include <math.h>
 #include <string.h>
 
-#define ROTATION_ERROR (24 * 0x1p-53)
+#define MATRIX_ERROR (13 * 0x1p-53)
+#define PRODUCT_ERROR (5.3 * 0x1p-53)
+#define ROTATION_ERROR (21 * 0x1p-53)
 
 /* A SIMD vector of two coordinates, or two rows. */
 typedef double rotation_two __attribute__((vector_size(16)));

@@ -20,12 +20,12 @@ enum {
  *
  * Accuracy, with u = 2^-53 and S = sum_j (|m_j| + h_j), which bounds the length of m + y:
  *
- *     17.4 u S  a rounded row is off by less than 17.4 u (rotation.h)
+ *     13 u S    a row is off by less than 13 u (rotation.h)
  *     3.01 u S  R m and sum |R_j| h_j are off by 3.01 u times the magnitudes of their terms
  *     u S       the sum of the two
  *     u S       half
  *
- * ROTATION_ERROR S = 24 u S covers all of them. The sum with p is moved outward by a unit in the
+ * ROTATION_ERROR S = 21 u S covers all of them. The sum with p is moved outward by a unit in the
  * last place, and by 2^-1060 for underflow. A NaN, from infinite numbers, becomes -infinity: the
  * box is unbounded on that side. */
 static lanes rotated_axis(const double *row, const double m[FMB_DIM_MAX],
