@@ -385,13 +385,16 @@ static void put_box_single(struct batch_block *block, size_t k)
     }
 }
 
-/* Computes the boxes of pairs of one kind of run_box_kind(). */
-static void put_boxes(struct batch_block *block, run_function *boxes, struct contacts *contacts)
+/* Computes the boxes of pairs of one kind of run_box_kind(). in_contact: as in struct kernel_call.
+ */
+static void put_boxes(struct batch_block *block, run_function *boxes, bool in_contact,
+                      struct contacts *contacts)
 {
     const struct kernel_call run = {.pairs = contacts->pair,
                                     .count = contacts->count,
                                     .duration = block->batch->duration,
-                                    .boxes = contacts->box};
+                                    .boxes = contacts->box,
+                                    .in_contact = in_contact};
     for (size_t n = contacts->count; n < contacts->count + RUN_LANES; n++)
         contacts->pair[n][0] = contacts->pair[n][1] = &missing;
     if (contacts->count > 0)
@@ -406,14 +409,16 @@ static void put_boxes(struct batch_block *block, run_function *boxes, struct con
     }
 }
 
-/* Computes the boxes of all pairs in contact, whose verdicts are known: first those at rest, then
- * those in which a frame moves. */
+/* Computes the boxes of all pairs in contact, whose verdicts are known, in four groups: those at
+ * rest and those in which a frame moves, that the filter decides and that it leaves unsure. */
 static void put_all_boxes(struct batch_block *block, const struct batch_job *job, size_t start,
                           size_t end)
 {
     const struct fmb_batch *batch = block->batch;
+    const bool any_unsure = memchr(block->outcome + start, SLABS_UNSURE, end - start) != NULL;
     struct contacts contacts;
-    for (unsigned moving = 0; moving < 2; moving++) {
+    for (int group = 0; group < (any_unsure ? 4 : 2); group++) {
+        const bool moving = group & 1, unsure = group & 2;
         enum run_kind kind = 0;
         contacts.count = 0;
         for (size_t k = start; k < end; k++) {
@@ -425,14 +430,14 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
                 continue;
             }
             const enum run_kind own = run_box_kind(pair[0], pair[1], batch->duration, &swapped);
-            if (!(own & RUN_DRIFTS) != !moving)
+            if (!(own & RUN_DRIFTS) != !moving || (block->outcome[k] == SLABS_UNSURE) != unsure)
                 continue;
             kind = own;
             contacts.pair[contacts.count][0] = pair[swapped];
             contacts.pair[contacts.count][1] = pair[!swapped];
             contacts.of[contacts.count++] = k;
         }
-        put_boxes(block, job->run.boxes[kind], &contacts);
+        put_boxes(block, job->run.boxes[kind], !unsure, &contacts);
     }
 }
 

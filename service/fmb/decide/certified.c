@@ -43,6 +43,7 @@ struct certified {
     bool span_known, rounds; /* rounds: operations on these numbers may round */
     struct dyadic_span span;
     enum certified_path path;
+    bool by_filter;                     /* the filter decided the verdict */
     enum faces_planes planes;           /* other than CROSSING only of two faces that are close */
     struct faces_projection projection; /* where they are SHARED */
 };
@@ -53,6 +54,7 @@ static void begin(struct certified *certified, const struct frame_pair *pair, bo
     certified->quick = quick;
     certified->open = false;
     certified->slabs_known = certified->span_known = false;
+    certified->by_filter = false;
     certified->planes = FACES_CROSSING;
 }
 
@@ -215,6 +217,7 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
         return verdict_in_integers(certified, touching);
+    certified->by_filter = true;
     return (enum fmb_verdict) outcome;
 }
 
@@ -225,6 +228,7 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
     run_single_function *const *functions = contact ? run_times_single() : run_verdicts_single();
     certified->path = CERTIFIED_FILTER;
     const enum slabs_outcome outcome = run_kernel(certified, functions, contact);
+    certified->by_filter = outcome != SLABS_UNSURE;
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
 }
 
@@ -296,14 +300,14 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 }
 
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   double box[2][FMB_DIM_MAX])
+                   bool in_contact, double box[2][FMB_DIM_MAX])
 {
     const struct fmb_prepared *pairs[RUN_LANES][2];
     double boxes[RUN_LANES][2][FMB_DIM_MAX];
     bool swapped;
     const enum run_kind kind = run_box_kind(a, b, duration, &swapped);
     const struct kernel_call run = {
-        .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
+        .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes, .in_contact = in_contact};
     for (int lane = 0; lane < RUN_LANES; lane++) {
         pairs[lane][0] = swapped ? b : a;
         pairs[lane][1] = swapped ? a : b;
@@ -318,7 +322,7 @@ static bool answer_box(const struct certified *certified, struct fmb_answer *ans
 {
     answer->has_box = true;
     return certified_box(certified->frame[0], certified->frame[1], certified->pair->duration,
-                         answer->box);
+                         certified->by_filter, answer->box);
 }
 
 /* Computes by the exact method what doubles did not give, and only that. Which method gives a value

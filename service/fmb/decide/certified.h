@@ -58,9 +58,9 @@ enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* Computes the box of a prepared pair in contact. Returns false, and NAN, if doubles do not give it
- * within its limit. */
+/* Computes the box of a prepared pair in contact. in_contact: as in struct kernel_call. Returns
+ * false, and NAN, if doubles do not give it within its limit. */
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   double box[2][FMB_DIM_MAX]);
+                   bool in_contact, double box[2][FMB_DIM_MAX]);
 
 #endif

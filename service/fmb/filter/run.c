@@ -41,7 +41,7 @@ INLINE void run_lanes(const struct walk_kind kind, const struct kernel_call *run
     lanes box[2][3];
     gather_pairs(run, kind, first, frame);
     set_pair(kind, &frame[0], &frame[1], run->duration, &pair);
-    boxes_of(kind, &pair, frame, run->duration, box);
+    boxes_of(kind, &pair, frame, run->duration, run->in_contact, box);
     UNROLL(2)
     for (int end = 0; end < 2; end++)
         UNROLL(3)

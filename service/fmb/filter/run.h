@@ -114,6 +114,9 @@ struct kernel_call {
     /* [count][lower, upper][axis], of pairs in contact; NAN where they are not known well enough.
      */
     double (*boxes)[2][FMB_DIM_MAX];
+    /* For boxes: the frames of every pair are in contact as they are prepared, as is certain where
+     * the filter decides so. Gives more boxes of frames with an error. */
+    bool in_contact;
 };
 
 enum { RUN_LANES = 8 };

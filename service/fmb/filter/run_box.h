@@ -7,11 +7,13 @@
 
 /* NAN where doubles do not give it within its limit; 0 in axes that are not there. */
 INLINE void boxes_of(const struct walk_kind kind, const struct walk_pair *pair,
-                     const struct run_frame frame[2], double duration, lanes box[2][3])
+                     const struct run_frame frame[2], double duration, bool in_contact,
+                     lanes box[2][3])
 {
     struct box_places places = {.summary = {frame[0].summary, frame[1].summary},
                                 .error = {frame[0].error, frame[1].error},
-                                .duration = duration};
+                                .duration = duration,
+                                .in_contact = in_contact};
     places.exact = nothing_rounds(kind, &frame[0], &frame[1], duration, pair);
     UNROLL(2)
     for (int which = 0; which < 2; which++)

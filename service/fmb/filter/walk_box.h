@@ -74,8 +74,19 @@
  * the frame; what is at hand is V (1 + r) - r f, off by at most |r| (R + |V|). Or, from
  * what is at hand, by 1.1 |r| (R + its magnitude); the lesser of these counts (add_reach()).
  * Coordinates of the wall's edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by the
- * slope times as much. Components that are off move the products with n by at most 3.1 t S times
- * all lengths at hand (placing).
+ * slope times as much. n is off by at most 2.1 t S, which moves c by as much times all lengths at
+ * hand; at the true vertex this is multiplied with l / (1 + r), and so is e, of which |l| S e
+ * counts already: 2.2 t times these lengths and a tenth of e, times |l| S (placing). Likewise 1.1 e
+ * stands in the slack.
+ *
+ * Where the frames are in contact as prepared (in_contact), placing seldom counts. Let E be the end
+ * of the box of these frames, so that c(y) >= E for all y. With t = 0 the argument above bounds E:
+ * E >= (the value at hand) - w_j for some vertex j, where w consists of twice the error of
+ * rounding, of |l| S e, and of what r makes of it. At the true vertex i of the true end, the true c
+ * is at least c(y_i) - 1.1 |l| S e - 1.1 e, and so at least E less these. Let W be the largest w +
+ * |l| S e of all vertices: the true end is at least the value at hand less W + 1.1 W / 2, which
+ * is 1.55 W (shared). At vertices for which that is beyond the tolerance, the first argument holds,
+ * with placing. Bends (below) count both at i and at j.
  *
  * A vertex that is not certain may be left out if c surely grows along a line through it, the line
  * of the other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
@@ -131,6 +142,7 @@ struct box_places {
     lanes error[2];
     lanes_mask exact; /* nothing rounds (walk_exact.h) */
     double duration;
+    bool in_contact; /* as prepared; else the true frames are, which are off by the errors */
 };
 
 /* A frame; lengths are those of walk_pair. Edges by number (slabs.h). */
@@ -159,8 +171,8 @@ struct box_ray {
 /* The determinant of a vertex. */
 struct box_vertex {
     lanes inverse;   /* NAN where it may be 0 */
-    lanes error;     /* relative, no less than fine */
-    lanes fine;      /* relative, from the monomials of the determinant */
+    lanes error;     /* relative, from rounding */
+    lanes fine;      /* relative, from the monomials of the determinant and from t */
     lanes_mask open; /* it may be 0, and is not surely 0 */
 };
 
@@ -182,13 +194,16 @@ struct box_walk {
     lanes_mask exact;      /* no triple product rounds */
     lanes unit;            /* of the small numbers that ends are made of; 0: they are not */
     lanes turn;            /* t */
-    lanes placing;         /* 3.1 t times all lengths */
-    lanes bends;           /* 68 (18 u + 4 t) T */
+    lanes placing;         /* 2.2 t times all lengths, and e / 10 */
+    lanes bends;           /* 68 (18 u + 4 t) T, twice that where it counts twice */
     lanes size[3], way[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
     lanes slack[2][3];     /* of what is seen from the centre of each frame */
     lanes determinant;     /* error of a determinant of scale 1 */
+    lanes rounding;        /* the part of it that w has: in_contact without t */
     lanes largest;         /* coordinate, or a little less */
     lanes tolerance;       /* for the width of a bound */
+    lanes shared;          /* the part of the tolerance for the errors of frames in contact */
+    bool in_contact;
     struct box_bounds bounds[2]; /* about the centre of each frame */
     lanes_mask spans, good;
     lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
@@ -357,7 +372,7 @@ INLINE struct box_vertex vertex_of(const struct walk_kind kind, lanes det, lanes
     }
     out.inverse = 1 / det;
     const lanes size = lanes_abs(out.inverse);
-    out.error = (1.2 * error) * size + 0x1p-50;
+    out.error = (1.2 * walk->rounding * scale) * size + 0x1p-50;
     out.fine = (1.2 * fine) * size + 0x1p-50;
     walk->spans |= certain;
     return out;
@@ -448,9 +463,10 @@ INLINE lanes value_error(const struct walk_kind kind, const lanes weight[3], con
 /* A line and what is the same for all of its vertices. */
 struct box_line {
     const struct box_ray *ray;
-    lanes middle;       /* what the offset takes from the end above for l = 1, adds to that below */
-    lanes own;          /* what the frame of the ray adds to both, its error included */
-    lanes width, slope; /* of what c gives, for l = 1; no less than the slope of c */
+    lanes middle; /* what the offset takes from the end above for l = 1, adds to that below */
+    lanes own;    /* what the frame of the ray adds to both, its error included */
+    lanes width;  /* of what c gives, for l = 1, placing left out */
+    lanes placing, slope; /* for l = 1; no less than the slope of c */
 };
 
 /* Whether only one of n and -n is the normal of a face with points of its frame behind it: that of
@@ -532,10 +548,12 @@ INLINE void add_wall(const struct walk_pair *pair, const struct walk_kind kind, 
                 : extent_of_one(kind.simplex[other], x);
         const lanes way = kind.drifts ? lanes_abs(frame->way[axis] - l * ray->swing) : lanes_of(0);
         set_reach(kind, which, line, l, d, way, axis, &reach);
-        reach.width[axis] = lanes_abs(l) * line->width + apart;
+        reach.width[axis] = lanes_abs(l) * (line->width + line->placing) + apart;
     }
-    add_reach(kind, &reach, (most * line->width + apart) + (2 * vertex->error) * frame->own_most,
-              other, walk);
+    lanes width = most * line->width + (2 * vertex->error) * frame->own_most;
+    if (!walk->in_contact)
+        width += most * line->placing + apart;
+    add_reach(kind, &reach, width, other, walk);
 }
 
 /* The vertex of a line on the wall of the drift. */
@@ -555,10 +573,12 @@ INLINE void add_drift_vertex(const struct walk_kind kind, int which, const struc
             at[i] = product_at(kind, which, frame, line->ray, i, axis, l);
         set_reach(kind, which, line, l, extent_of_frame(kind, other, at), lanes_of(0), axis,
                   &reach);
-        reach.width[axis] = lanes_abs(l) * line->width;
+        reach.width[axis] = lanes_abs(l) * (line->width + line->placing);
     }
-    add_reach(kind, &reach, most * line->width + (2 * vertex->error) * frame->own_most, other,
-              walk);
+    lanes width = most * line->width + (2 * vertex->error) * frame->own_most;
+    if (!walk->in_contact)
+        width += most * line->placing;
+    add_reach(kind, &reach, width, other, walk);
 }
 
 /* Turns the ray of a simplex outward: its frame does not reach beyond 0 along it, or is as far as
@@ -614,8 +634,9 @@ INLINE void add_ray(const struct walk_pair *pair, const struct walk_kind kind, i
     line.slope = ((d.high - d.low) + d.radius) + (lanes_abs(ray->middle) + lanes_abs(ray->swing));
     const lanes error =
         value_error(kind, ray->weight, ray->normal, line.slope, walk) + ray->scale * pair->error;
-    line.width = (error + error) + ray->scale * walk->placing;
-    line.width += lanes_select(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
+    line.placing = ray->scale * walk->placing;
+    line.width =
+        (error + error) + lanes_select(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
     line.middle = ray->middle;
     line.own = error + (kind.simplex[which] ? own.high : own.radius);
     if (is_one_sided(kind, which))
@@ -808,7 +829,7 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
     walk->open |= vertex.open;
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_size;
-    const lanes placing = walk->placing + lanes_select(walk->bent, walk->bends, lanes_of(0));
+    const lanes bends = lanes_select(walk->bent, walk->bends, lanes_of(0));
     const lanes sum = ((d.high - d.low) + d.radius) + (lanes_abs(products->edges.middle[i][j]) +
                                                        lanes_abs(products->edges.swing[i][j]));
     const lanes of_m = products->error[i] + drift_scale * pair->error;
@@ -816,8 +837,8 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
         value_error(kind, weight, magnitudes(normal, normal), sum, walk) + scale * pair->error;
     const lanes size = lanes_abs(vertex.inverse);
     const lanes apart = ((1.2 * walk->turn) * length_b) * ((drift_scale * pair->reach) * size);
-    const lanes width_of_m = (of_m + of_m) + drift_scale * placing;
-    const lanes width_of_n = (of_n + of_n) + scale * placing;
+    const lanes width_of_m = (of_m + of_m) + drift_scale * bends;
+    const lanes width_of_n = (of_n + of_n) + scale * bends;
     struct box_reach reach;
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
@@ -833,11 +854,17 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
         const lanes error = m_size * of_m + n_size * of_n;
         reach.at[0][axis] = ((at.radius - at.low) + error) + along;
         reach.at[1][axis] = ((at.radius + at.high) + error) - along;
-        reach.width[axis] = (m_size * width_of_m + n_size * width_of_n) + apart;
+        reach.width[axis] = (m_size * (width_of_m + drift_scale * walk->placing) +
+                             n_size * (width_of_n + scale * walk->placing)) +
+                            apart;
     }
     reach.relative = vertex.fine;
-    const lanes width = ((length_b * size) * width_of_m + (b->way_most * size) * width_of_n) +
-                        (apart + (2 * vertex.error) * b->own_most);
+    lanes width = ((length_b * size) * width_of_m + (b->way_most * size) * width_of_n) +
+                  (2 * vertex.error) * b->own_most;
+    if (!walk->in_contact)
+        width +=
+            (((length_b * size) * drift_scale + (b->way_most * size) * scale) * walk->placing) +
+            apart;
     add_reach(kind, &reach, width, 1, walk);
 }
 
@@ -1002,22 +1029,29 @@ INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
         lengths += lanes_abs(pair->offset[axis]);
-    walk->placing = (3.1 * walk->turn) * lengths;
-    walk->bends = 68 * ((walk_error(kind) + 4 * walk->turn) * pair->reach);
+    const lanes_mask shares = places->in_contact ? pair->error != 0 : (lanes_mask){0};
+    walk->placing = (2.2 * walk->turn) * lengths + 0.1 * pair->error;
+    walk->bends = lanes_select(shares, lanes_of(136), lanes_of(68)) *
+                  ((walk_error(kind) + 4 * walk->turn) * pair->reach);
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++) {
         set_sizes(pair, kind, places, axis, walk);
         UNROLL(2)
         for (int which = 0; which < 2; which++)
-            walk->slack[which][axis] = (9 * BOX_UNIT) * walk->frame[which].sum[axis] + pair->error;
+            walk->slack[which][axis] =
+                (9 * BOX_UNIT) * walk->frame[which].sum[axis] + 1.1 * pair->error;
         if (!kind.drifts)
             continue;
         walk->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
         lost |= walk->drift[axis] & (pair->half[axis] == 0);
     }
     walk->exact = places->exact;
-    walk->determinant =
-        lanes_select(walk->exact, lanes_of(0), 1.2 * determinant_rounding(kind) + 3.1 * walk->turn);
+    walk->rounding =
+        lanes_select(walk->exact, lanes_of(0), lanes_of(1.2 * determinant_rounding(kind)));
+    walk->determinant = walk->rounding + 3.1 * walk->turn;
+    if (!places->in_contact)
+        walk->rounding = walk->determinant;
+    walk->in_contact = places->in_contact;
     walk->largest = largest;
     const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
     walk->unit = lanes_select(are_multiples(pair, kind, places, walk, 0x1p45 * power),
@@ -1026,8 +1060,10 @@ INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
     UNROLL(3)
     for (int axis = 0; axis < kind.dim; axis++)
         slack = lanes_max(lanes_max(walk->slack[0][axis], walk->slack[1][axis]), slack);
-    const lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
-    walk->tolerance = lanes_select((walk->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
+    lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
+    tolerance = lanes_select((walk->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
+    walk->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
+    walk->tolerance = tolerance - walk->shared;
     walk->spans = walk->open = walk->bent = (lanes_mask){0};
     walk->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
@@ -1094,7 +1130,8 @@ INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind 
                 const lanes at = centre + walk.bounds[which].outer[end][axis];
                 const lanes least = centre + walk.bounds[which].inner[end][axis];
                 outer = lanes_min(at + slack, outer);
-                inner = lanes_min(lanes_min(at - walk.tolerance, least) - slack, inner);
+                inner =
+                    lanes_min(lanes_min(at - walk.tolerance, least) - (slack + walk.shared), inner);
             }
             good &= outer - inner <= BOX_LIMIT * walk.largest;
             const lanes snap = (is_doubled(kind) ? 0.5 : 1.0) * snapped(outer, inner, walk.unit);
