@@ -14,7 +14,7 @@
 enum { ALL = 0, BOXES_ALONE = 1, BUT_BOXES = 2 };
 
 /* How pairs are drawn: by a family; touching by features, in whole numbers; else random. Boxes in
- * any pose with a gap are shifted to it. */
+ * any pose, and random pairs, with a gap are shifted to it. */
 static const struct scenario {
     const char *name, *family;
     double gap;
@@ -24,6 +24,7 @@ static const struct scenario {
 } scenarios[] = {{"random, meet", .in_contact = true},
                  {"random, apart"},
                  {"gap 1e-9", "gap-1e-9", 1e-9},
+                 {"random, by 1e-6", .gap = -1e-6, .which = BUT_BOXES},
                  {"overlap 1e-6", "overlap-1e-6", -1e-6},
                  {"overlap 1e-9", "overlap-1e-9", -1e-9},
                  {"touch, vertex", .which = BUT_BOXES, .touches = 1},
@@ -38,12 +39,17 @@ static bool is_boxes(const struct cell *cell)
     return cell->shape[0] == FMB_BOX;
 }
 
-/* Gaps of boxes are those of gap_pairs.h. */
+/* Whether the pairs are those of gap_pairs.h, which are in 3D and at rest. */
+static bool is_shifted(const struct scenario *scenario, const struct cell *cell)
+{
+    return scenario->gap != 0 && (is_boxes(cell) || !scenario->family);
+}
+
 static bool has(const struct scenario *scenario, const struct cell *cell)
 {
-    const bool gap_of_boxes = is_boxes(cell) && scenario->gap != 0;
     return scenario->which != (is_boxes(cell) ? BUT_BOXES : BOXES_ALONE) &&
-           scenario->touches <= cell->dim && !(gap_of_boxes && (cell->dim == 2 || cell->moving));
+           scenario->touches <= cell->dim &&
+           !(is_shifted(scenario, cell) && (cell->dim == 2 || cell->moving));
 }
 
 static const struct family *family_of(const char *name)
@@ -136,12 +142,12 @@ static struct scene scene_of_gaps(const struct bench *bench, const struct cell *
 static void open_arena(const struct bench *bench, const struct cell *cell,
                        const struct scenario *scenario, struct arena *out)
 {
-    if (!scenario->family && !scenario->touches)
+    if (!scenario->family && !scenario->touches && scenario->gap == 0)
         arena_open(bench, cell, scenario->in_contact, out);
     else
         arena_of(bench,
-                 is_boxes(cell) && scenario->gap != 0 ? scene_of_gaps(bench, cell, scenario->gap)
-                                                      : scene_of_scenario(bench, cell, scenario),
+                 is_shifted(scenario, cell) ? scene_of_gaps(bench, cell, scenario->gap)
+                                            : scene_of_scenario(bench, cell, scenario),
                  pairs_side_by_side(bench->pairs), out);
 }
 
