@@ -128,25 +128,6 @@ see_clients/record := clients/log $(see_clients/log)
 see_clients/mesh := clients/page clients/common service/common service/fmb
 see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
 see_clients := $(addprefix clients/,query record mesh replay) $(see_clients/replay)
-# The oracle shares no code with the engine, but the pair of frames that both are given.
-see_tests/oracle := service/fmb service/fmb/frame
-see_tests/campaign := tests/oracle $(call fmb,number frame filter exact decide)
-see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact decide) \
-	clients/common
-see_tests/bench/peers := tests/bench
-see_tests/bus := tests/bench $(see_tests/bench) service $(see_service)
-see_tests/robot := tests/bus tests/bench tests/oracle service $(wire)
-see_tests/hostile := $(GEN)
-see_tests/system := tests/hostile $(GEN)
-see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
-see_tests/logs := tests/campaign tests/oracle service/answer $(wire) service/fmb/frame $(GEN)
-see_tests/soak := clients/lib $(wire)
-see_tests/page := clients/page $(see_clients/replay)
-see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
-see_tests/fuzz := clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
-see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
-see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) service clients \
-	$(see_clients) tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
 see_clients/demo :=
 see_clients/examples := clients/lib service/fmb
 
@@ -157,9 +138,6 @@ sees = $(addprefix -I,$(see_$(<D))) \
 $(O)/%.o: %.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(sees)
-$(V)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
-	@mkdir -p $(@D)
-	$(compile) $(sees) $(openmp_flag)
 
 # ---- Objects and archives ----
 
@@ -290,34 +268,7 @@ $(B)/fmbd: $(O)/service/main.o $(product) $(B)/libfmb.a
 $(B)/fmb: $(O)/clients/fmb.o $(B)/libfmb-client.a $(product) $(B)/libfmb.a
 $(demo_programs): $(B)/%: $(O)/clients/demo/%.o
 
-# Programs of tests and measurements: the name, and the main file in tests/.
-test_programs := plain:system/plain poke:system/poke events:system/events poison:system/poison \
-	make-page:page/make_page edit-log:replay/edit_log logs/generate:logs/generate logs/tell:logs/tell \
-	mesh/make-mesh:mesh/make_mesh $(foreach s,asker memory rate blast fair relay,soak-$s:soak/$s)
-measures := validate:campaign/validate accuracy:campaign/accuracy bench/bench:bench/bench \
-	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
-	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh
-mains := $(foreach p,$(test_programs) $(measures),$(lastword $(subst :, ,$p)))
-$(foreach p,$(test_programs) $(measures),$(eval \
-	$(B)/$(firstword $(subst :, ,$p)): $(O)/tests/$(lastword $(subst :, ,$p)).o))
-program_names = $(foreach p,$1,$(B)/$(firstword $(subst :, ,$p)))
-test_programs := $(call program_names,$(test_programs))
-measures := $(call program_names,$(measures)) $(B)/accuracy-planted
-
-# What the programs of tests share. Those that look into the engine link its objects, the others
-# the library.
-test_folders := $(addprefix tests/,oracle hostile campaign mesh bench bus robot soak logs page)
-shared := $(V)/shared.a
-$(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(test_folders))) \
-		$(patsubst tests/unit/%.c,$(V)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
-			tests/unit/test_%,$(wildcard tests/unit/*.c)))
-	@rm -f $@
-	$(AR) qcs $@ $^
-looks_inside := validate accuracy bench/bench bus/bench-bus
-$(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
-$(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
-	$(shared) $(client) $(product) $(B)/libfmb.a
-$(programs) $(demo_programs) $(test_programs) $(measures):
+$(programs) $(demo_programs):
 	$(link)
 
 # ---- Pages: each is one file of text, style and scripts, compiled in as an array ----
@@ -361,9 +312,10 @@ $(O)/page/%.o: build/page/%.c $(O)/settings
 
 settings := $(CC) $(flags) $(hardened) $(filter-out -fopenmp,$(link_flags) $(link_whole)) \
 	$(filter-out %/batch.o %/batch_openmp.o,$(engine_objects)) $(product_objects) $(client_objects)
-$(O)/settings: Makefile FORCE
+$(O)/settings: Makefile tests/tests.mk FORCE
 	@mkdir -p $(@D)
-	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ && [ $@ -nt Makefile ] || \
+	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ && \
+		[ $@ -nt Makefile ] && [ $@ -nt tests/tests.mk ] || \
 		echo '$(subst ','\'',$(settings))' > $@
 .PHONY: FORCE
 
@@ -388,246 +340,9 @@ $(E)/java/PosedPair.class: clients/examples/PosedPair.java tests/system/Largest.
 	lcm-gen -j --jpath $(E)/java $(message_files)
 	javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $(filter %.java,$^)
 
-# ---- Unit tests ----
+# ---- Tests and measurements ----
 
-unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
-unit_tests := $(unit_names:%=$(B)/tests/%)
-internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_limbs test_outward \
-	test_kernels test_placing)
-comma := ,
-wraps = $(addprefix -Wl$(comma)--wrap=,$1)
-wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
-	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize))
-wraps_test_log_read := $(call wraps,pread64)
-wraps_test_log_write := $(call wraps,fsync)
-wraps_test_log_cut := $(call wraps,page_open page_take)
-wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
-wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
-
-# slabs.c and the kernels of test_bounds are there three times: as they are, with fused operations
-# (which a compiler makes only where it optimises), and with a wrong bound. They are optimised and
-# without sanitizers in all modes, which have seen the same code elsewhere.
-compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees) -DINLINED_NOT \
-	-Wno-unknown-warning-option -Wno-maybe-uninitialized -Wno-psabi
-renamed = $(foreach name,$2,-D$(name)=$1_$(name))
-slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
-slabs_planted := -DSLABS_ROUNDING=0x1p-54
-$(O)/slabs/fused.o $(O)/slabs/planted.o: $(O)/slabs/%.o: service/fmb/filter/slabs.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) $(slabs_$*) \
-		$(call renamed,$*,slabs_prepare slabs_list slabs_refine slab_inequalities)
-$(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/slabs/%.o: \
-		tests/unit/slab_kernel.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DLANES=1 $(slabs_$(*:kernel_%=%)) $(if $(filter kernel_%,$*), \
-		$(call renamed,$(*:kernel_%=%),slab_kernel_list slab_kernel_axes slab_kernel_times))
-
-# Kernels of eight lanes in vectors that every machine has; and with a wrong bound.
-set_wide := -DLANES=8
-wide_kernels := $(call kernel_of,wide exact_wide times_wide boxes_wide)
-$(wide_kernels): $(O)/kernels/%.o: service/fmb/filter/run.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DRUN_NAME=$* $(kernel_set) $(kernel_job)
-$(O)/kernels/wide_planted.o: service/fmb/filter/run.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DRUN_NAME=wide_planted $(set_wide) -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
-$(B)/tests/test_kernels: $(wide_kernels) $(O)/kernels/wide_planted.o
-
-# Kernels of boxes with bounds that are a sixteenth of theirs, and with none.
-box_kernels := $(call kernel_of,boxes_planted boxes_bare)
-box_unit_planted := 0x1p-57
-box_unit_bare := 0.0
-$(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/run.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DLANES=1 -DRUN_BOXES -DRUN_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
-$(B)/tests/test_box_bounds: $(box_kernels)
-
-$(internal_tests): $(V)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
-	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
-$(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a
-$(unit_tests): libraries += -lcmocka
-$(unit_tests): $(B)/tests/%: $(V)/tests/unit/%.o | $(B)/netns
-	$(link)
-
-# ---- Fuzz targets: each a program that replays its corpus and, with MODE=fuzz, a fuzzer ----
-
-fuzz_targets := pair_query pair_result scene_query scene_result definition_query definition status \
-	answer scene_json event_log replay_log mesh
-replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
-fuzzers := $(fuzz_targets:%=$(B)/fuzz_%)
-# Each file of planted/ is a copy of one file with one fault, and has the name of the target that
-# must find it, followed by a dash and a word where a target has several.
-planted_fuzzers := $(patsubst tests/fuzz/planted/%.c,$(B)/planted/%,$(wildcard tests/fuzz/planted/*.c))
-# Some targets replace readers of files by pieces in memory.
-fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
-fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
-fuzz_target = $(firstword $(subst -, ,$1))
-fuzz_archives := $(O)/fuzz.a $(shared) $(client) $(product) $(engine)
-$(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o results_pair.o results_scene.o)
-	@rm -f $@
-	$(AR) rcs $@ $^
-# Comparisons of numbers deep in the engine are not what inputs should be made for.
-ifeq ($(MODE),fuzz)
-$(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
-endif
-$(fuzz_targets:%=$(B)/tests/test_fuzz_%): $(B)/tests/test_fuzz_%: $(O)/tests/fuzz/replay.o \
-		$(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(fuzz_archives)
-	$(link)
-# The compiler links the fuzzer that it brings: libFuzzer, or AFL++'s.
-$(fuzzers) $(planted_fuzzers): linking = $(link_flags) -fsanitize=fuzzer
-$(fuzzers): $(B)/fuzz_%: $(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(fuzz_archives)
-	$(link)
-# One fault replaces the pieces of event_log.
-$(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
-		$(O)/tests/fuzz/$$(call fuzz_target,$$*).o $$(filter-out $(fuzz_pieces_event_log), \
-			$$(fuzz_pieces_$$(call fuzz_target,$$*))) $(fuzz_archives)
-	$(link)
-$(B)/fuzz_seeds: $(addprefix $(O)/tests/fuzz/,seeds.o seeds_message.o seeds_service.o seeds_file.o) \
-		$(fuzz_archives)
-	$(link)
-
-.PHONY: fuzzers fuzz fuzz-afl fuzz-merge
-fuzzers: $(fuzzers) $(planted_fuzzers) $(B)/fuzz_seeds
-fuzz fuzz-afl fuzz-merge:
-	tests/fuzz/fuzz.sh $@
-
-# ---- Programs that take no more of the machine than their name says ----
-
-capped_sets := plain $(if $(x86),sse2 avx2)
-capped_most_plain := 1
-capped_most_sse2 := 2
-capped_most_avx2 := 3
-capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
-$(capped_sets:%=$(O)/capped/%.o): $(O)/capped/%.o: service/fmb/filter/instructions.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) $(sees) -DINSTRUCTIONS_MOST=$(capped_most_$*)
-$(B)/capped/libfmb-plain.a: $(call alone_kernels_of,plain)
-$(capped_sets:%=$(B)/capped/libfmb-%.a): $(B)/capped/libfmb-%.a: $(O)/capped/%.o \
-		$(filter-out %/instructions.o $(call alone_kernels_of,plain),$(engine_objects))
-	$(call library,fmb_*)
-$(capped_sets:%=$(B)/capped/fmbd-%): $(O)/service/main.o
-$(capped_sets:%=$(B)/capped/fmb-%): $(O)/clients/fmb.o $(B)/libfmb-client.a
-$(capped_sets:%=$(B)/capped/generate-%): $(O)/tests/logs/generate.o $(shared)
-$(capped_programs): $(product) $(B)/capped/libfmb-$$(lastword $$(subst -, ,$$@)).a
-	$(link)
-
-# ---- Running the tests ----
-
-.PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check
-tests: fast-tests examples $(measures)
-fast-tests: tested-programs unit-tests $(capped_programs)
-tested-programs: programs $(test_programs)
-unit-tests: $(unit_tests) $(replayers) $(B)/netns
-replay-set: $(B)/fmb $(B)/logs/generate $(filter $(B)/capped/fmb-%,$(capped_programs))
-
-# The script builds what it tests, in the modes that it says.
-ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
-ifneq ($(variant),release)
-$(error 'make test' chooses modes and compilers itself: leave out MODE, CC and OPENMP)
-endif
-endif
-test check:
-	tests/run.sh
-test-fast:
-	FMB_FAST=1 tests/run.sh
-
-# ---- Campaigns and trials ----
-
-# accuracy with bounds on rounding that are wrong, which it must find.
-campaign_plants := $(addprefix $(O)/planted/,filter/slabs.o gap/gap_distance.o gap/gap_depth.o)
-$(campaign_plants): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DSLABS_ROUNDING=0x1p-70 -DGAP_ROUNDING=0x1p-70
-$(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_plants)
-
-# validate: some twenty minutes; accuracy: some hours, on two cores.
-.PHONY: validate accuracy soak
-validate: $(B)/validate
-	$<
-accuracy: $(B)/accuracy
-	$< --json $<.json
-# Some ten minutes, a minute for each trial or SECONDS=.
-soak: programs $(filter $(B)/soak-% %/poke %/poison,$(test_programs))
-	tests/soak/soak.sh $(B) $(SECONDS)
-
-# What the regression set is, made anew: the logs, and the results that they are compared with.
-# tests/cli/logs.bats checks that this changes nothing.
-.PHONY: logs goldens
-logs: $(B)/logs/generate
-	for kind in $$($< --list | cut -d ' ' -f 1); do $< $$kind tests/logs/$$kind.log || exit; done
-goldens: $(B)/fmb
-	for log in tests/logs/*.log; do \
-		$< replay --force --write-golden $${log%.log}.golden $$log > /dev/null || \
-			[ $$log = tests/logs/foreign.log ] || exit; done
-
-# ---- Benchmarks ----
-
-# Other libraries are measured too where they are installed, unless PEERS=none.
-installed = $(if $(PEERS),,$(shell for p in $1; do pkg-config --exists $$p && echo $$p; done 2> /dev/null))
-bullet := $(firstword $(call installed,bullet-float64 bullet))
-peer_packages := $(call installed,ccd fcl ode box2d) $(bullet)
-peer_libraries := $(peer_packages:%-float64=%) \
-	$(and $(if $(PEERS),,yes),$(wildcard /usr/include/CGAL/version.h),$(wildcard /usr/include/mpfr.h),cgal)
-peers := $(O)/peers/$(or $(subst $() ,_,$(strip $(peer_libraries))),none).o
-$(peers): tests/bench/peers.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) $(sees) -DPEER_LIBRARIES='$(patsubst %,X(%),$(peer_libraries))'
-peer_flags_bullet = $$(pkg-config --cflags $(bullet))
-peer_flags_cgal = -frounding-math # its intervals change the direction of rounding
-$(O)/tests/bench/peers/%.o: tests/bench/peers/%.cc $(O)/settings
-	@mkdir -p $(@D)
-	$(CXX) $(or $(peer_flags_$*),$$(pkg-config --cflags $*)) -std=c++17 -O2 -DNDEBUG -MMD -MP \
-		$(sees) -c $< -o $@
-# The article's elimination once more, with rows in an order that the benchmark chooses.
-$(O)/ordered/eliminate.o: service/fmb/article/eliminate.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) $(sees) -Drows_of_pair=ordered_rows_of_pair -Deliminate_decide=ordered_decide
-$(B)/bench/bench: $(peers) $(peer_libraries:%=$(O)/tests/bench/peers/%.o) $(O)/ordered/eliminate.o
-$(B)/bench/bench: libraries += $(if $(peer_packages),$$(pkg-config --libs $(peer_packages))) \
-	$(if $(peer_libraries),$(if $(filter cgal,$(peer_libraries)),-lmpfr) -lstdc++)
-
-fcl := $(call installed,fcl)
-$(B)/robot/robot: $(if $(fcl),$(O)/tests/robot/fcl.o)
-$(B)/robot/robot: libraries += $(if $(fcl),$$(pkg-config --libs fcl) -lstdc++)
-$(O)/tests/robot/fcl.o: tests/robot/fcl.cc $(O)/settings
-	@mkdir -p $(@D)
-	$(CXX) $$(pkg-config --cflags fcl) -std=c++17 -O2 -MMD -MP $(sees) -c $< -o $@
-$(B)/bus/bench-bus $(B)/bus/robot-bus: | $(B)/bus/echo $(B)/fmbd
-$(B)/replay/bench-replay: linking = $(link_whole)
-
-# Minutes each. What bench and bench-bus measured is in report.json then, for 'make report'.
-.PHONY: bench bench-bus bench-replay bench-mesh report
-bench: $(B)/bench/bench $(B)/robot/robot
-	$< --json $(B)/bench/report.json
-	$(B)/robot/robot
-bench-bus: $(B)/bus/bench-bus $(B)/bus/robot-bus $(B)/netns
-	$(B)/netns $< --json $(B)/bus/report.json
-	$(B)/netns $(B)/bus/robot-bus
-
-# Some hundred megabytes of logs in build/replay/.
-blast_scenes := scenes 400
-blast_pairs := pairs 500000
-blast_pairs-64-bodies := pairs 500000 --bodies 64
-blast_pairs-whole := pairs 500000 --whole
-blast_pairs-by-handle := pairs 500000 --by-handle
-bench_logs := $(patsubst %,$(B)/replay/%.log,scenes pairs pairs-64-bodies pairs-whole pairs-by-handle)
-$(B)/replay/%.log: $(B)/logs/generate
-	@mkdir -p $(@D)
-	$< --blast $(blast_$*) $@
-bench-replay: $(B)/replay/bench-replay $(B)/fmb $(bench_logs)
-	$< $(B)/fmb $(bench_logs)
-
-# The article's scene of MESH=bunny.ply, whose coordinates it multiplies by 1000 as the article
-# does; or of a mesh that is made, about as large and of as many faces.
-$(B)/mesh/bumpy.ply: $(B)/mesh/make-mesh
-	$< --faces 70000 --format ply-ascii > $@
-bench-mesh: $(B)/mesh/bench-mesh $(B)/fmb $(if $(MESH),,$(B)/mesh/bumpy.ply)
-	$< $(B)/fmb $(or $(MESH),$(B)/mesh/bumpy.ply) $(if $(MESH),1000,60)
-
-# One page of what bench, accuracy and bench-bus measured; runs none of them.
-report:
-	tests/report/report.sh $(B)/bench/report.json $(B)/accuracy.json $(B)/report \
-		$(B)/bus/report.json
+include tests/tests.mk
 
 # ---- Headers and format ----
 
