@@ -257,6 +257,7 @@ static void no_vertex_is_beyond_the_radius(void **state)
     assert_int_equal(body.frame_count, 3);
     assert_ptr_equal(fmb_body_frame(&body, 1), &frames[1]);
     assert_true(frames[0].radius >= sqrt(0.75) && frames[1].radius >= sqrt(16 + 64 + 144));
+    assert_true(frames[0].radius < 0.8661 && frames[1].radius < 14.967);
     assert_true(body.radius == frames[1].radius);
 }
 
