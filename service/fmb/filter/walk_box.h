@@ -104,8 +104,10 @@
  * e_k.
  *
  * Something certain makes the normals span the space. Where nothing rounds (walk_exact.h),
- * determinants are exact. NAN bounds nothing, and stands for what is not certain. Underflow: as in
- * slabs.c; some component is at least 2^-200, and 2^-49 of it far above all that is lost. */
+ * determinants and all products with n are exact, and l alone is rounded, twice: what is left of
+ * the wall is at most 3 u of its product with n, times l, within the 9 u of that product. NAN
+ * bounds nothing, and stands for what is not certain. Underflow: as in slabs.c; some component is
+ * at least 2^-200, and 2^-49 of it far above all that is lost. */
 #ifndef FMB_WALK_BOX_H
 #define FMB_WALK_BOX_H
 
@@ -456,8 +458,9 @@ INLINE lanes_mask is_inside(const struct walk_kind kind, struct walk_extent d, l
 INLINE lanes value_error(const struct walk_kind kind, const lanes weight[3], const lanes normal[3],
                          lanes sum, const struct box_walk *walk)
 {
-    return product_rounding(kind) * dot_of(kind, weight, walk->size) +
-           (5 * BOX_UNIT) * dot_of(kind, normal, walk->way) + (9 * BOX_UNIT) * sum;
+    const lanes rounded = product_rounding(kind) * dot_of(kind, weight, walk->size) +
+                          (5 * BOX_UNIT) * dot_of(kind, normal, walk->way);
+    return lanes_select(walk->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
 }
 
 /* A line and what is the same for all of its vertices. */
