@@ -143,38 +143,38 @@ $(O)/%.o: %.c $(O)/settings | $(message_headers)
 
 objects_in = $(patsubst %.c,$(O)/%.o,$(wildcard $(addsuffix /*.c,$1)))
 
-# The filter's kernels: filter/run.c (many pairs) and filter/alone.c (one pair), once for each
+# The filter's kernels: filter/many.c (many pairs) and filter/single.c (one pair), once for each
 # instruction set and job: verdicts, with fused operations; and without, since their bits are
 # promised, the second pass, times and boxes. The machine answers where no compiler is there:
 # 'make deps' has still to install it.
 x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 sets := plain $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2 avx512))
-alone_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
+single_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
 # Where there are others, plain C is there to be compared with: it is not worth what inlining takes.
 set_plain := -DLANES=1 $(if $(x86),-DINLINED_NOT -Wno-unknown-warning-option -Wno-maybe-uninitialized)
 set_sse2 := -DLANES=2
 set_avx2 := -DLANES=4 -mavx2 -mfma
 set_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
-set_alone_plain := $(set_plain)
-set_alone_sse2 := -DLANES=2
-set_alone_avx2 := -DLANES=2 -mavx2 -mfma
+set_single_plain := $(set_plain)
+set_single_sse2 := -DLANES=2
+set_single_avx2 := -DLANES=2 -mavx2 -mfma
 kernel_of = $(addprefix $(O)/kernels/,$(addsuffix .o,$1))
 many_kernels := $(call kernel_of,$(foreach s,$(sets),$s exact_$s times_$s boxes_$s))
-alone_kernels_of = $(call kernel_of,$(foreach s,$1,alone_$s exact_alone_$s times_alone_$s))
-alone_kernels := $(call alone_kernels_of,$(alone_sets))
+single_kernels_of = $(call kernel_of,$(foreach s,$1,single_$s exact_single_$s times_single_$s))
+single_kernels := $(call single_kernels_of,$(single_sets))
 kernel_set = $(set_$(subst exact_,,$(subst times_,,$(subst boxes_,,$*))))
-kernel_job = $(or $(if $(findstring exact_,$*),-DRUN_EXACT),$(if $(findstring times_,$*),-DRUN_TIMES), \
-	$(if $(findstring boxes_,$*),-DRUN_BOXES),-ffp-contract=fast)
-$(many_kernels): $(O)/kernels/%.o: service/fmb/filter/run.c $(O)/settings
-$(sort $(alone_kernels) $(call alone_kernels_of,plain)): \
-	$(O)/kernels/%.o: service/fmb/filter/alone.c $(O)/settings
+kernel_job = $(or $(if $(findstring exact_,$*),-DKERNEL_EXACT),$(if $(findstring times_,$*),-DKERNEL_TIMES), \
+	$(if $(findstring boxes_,$*),-DKERNEL_BOXES),-ffp-contract=fast)
+$(many_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
+$(sort $(single_kernels) $(call single_kernels_of,plain)): \
+	$(O)/kernels/%.o: service/fmb/filter/single.c $(O)/settings
 # gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
 ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
 $(O)/kernels/%.o: flags += -fno-tree-dominator-opts
 endif
-$(sort $(many_kernels) $(alone_kernels) $(call alone_kernels_of,plain)): $(O)/kernels/%.o:
+$(sort $(many_kernels) $(single_kernels) $(call single_kernels_of,plain)): $(O)/kernels/%.o:
 	@mkdir -p $(@D)
-	$(compile) $(sees) -DRUN_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
+	$(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 $(O)/service/fmb/decide/batch_openmp.o: service/fmb/decide/batch.c $(O)/settings
@@ -187,7 +187,7 @@ fast_math := service/fmb/article/sat tests/bench/gpr tests/bench/lean_sat tests/
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
-engine_objects := $(many_kernels) $(alone_kernels) $(filter-out %/run.o %/alone.o \
+engine_objects := $(many_kernels) $(single_kernels) $(filter-out %/many.o %/single.o \
 	$(if $(openmp_flag),%/batch.o),$(call objects_in,$(engine_folders))) \
 	$(if $(openmp_flag),$(O)/service/fmb/decide/batch_openmp.o)
 

@@ -1,73 +1,73 @@
-/* What run.c is made of, once more, so that what is attacked is what runs. */
-#include "run_lanes.h"
+/* What many.c is made of, once more, so that what is attacked is what runs. */
+#include "kernel_lanes.h"
 
 #include "slab_kernel.h"
 
-static struct walk_kind kind_of(const struct frame_pair *pair, bool along)
+static struct kernel_traits kind_of(const struct frame_pair *pair, bool along)
 {
     struct slabs_pair slabs;
     struct fmb_prepared a, b;
-    struct walk_kind kind = {.dim = pair->a.frame->dim};
+    struct kernel_traits traits = {.dim = pair->a.frame->dim};
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    kind.simplex[0] = pair->a.frame->shape != FMB_CUBOID;
-    kind.simplex[1] = pair->b.frame->shape != FMB_CUBOID;
-    kind.face[0] = pair->a.frame->shape == FMB_FACE;
-    kind.face[1] = pair->b.frame->shape == FMB_FACE;
-    kind.drifts = slabs_prepare(&a, &b, pair->duration, &slabs) && slabs.motion.drifts;
-    kind.along = along && kind.dim == 3;
-    return kind;
+    traits.simplex[0] = pair->a.frame->shape != FMB_CUBOID;
+    traits.simplex[1] = pair->b.frame->shape != FMB_CUBOID;
+    traits.face[0] = pair->a.frame->shape == FMB_FACE;
+    traits.face[1] = pair->b.frame->shape == FMB_FACE;
+    traits.drifts = slabs_prepare(&a, &b, pair->duration, &slabs) && slabs.motion.drifts;
+    traits.axis_aligned = along && traits.dim == 3;
+    return traits;
 }
 
-static void set_walk_pair(const struct frame_pair *pair, const struct walk_kind kind,
-                          struct walk_pair *out)
+static void set_pair_lanes(const struct frame_pair *pair, const struct kernel_traits traits,
+                           struct pair_lanes *out)
 {
     struct fmb_prepared prepared[2];
     const double *const at[2][LANES] = {{(const double *) &prepared[0]},
                                         {(const double *) &prepared[1]}};
-    struct run_frame frame[2];
+    struct frame_lanes frame[2];
     prepared_set(pair->a, &prepared[0]);
     prepared_set(pair->b, &prepared[1]);
-    gather(kind, at[0], &frame[0]);
-    gather(kind, at[1], &frame[1]);
-    set_pair(kind, &frame[0], &frame[1], pair->duration, out);
+    gather(traits, at[0], &frame[0]);
+    gather(traits, at[1], &frame[1]);
+    set_pair(traits, &frame[0], &frame[1], pair->duration, out);
 }
 
 int slab_kernel_list(const struct frame_pair *pair, bool along, struct slab_value out[SLABS_MAX])
 {
-    const struct walk_kind kind = kind_of(pair, along);
-    struct walk_pair one;
-    struct walk_found found;
-    set_walk_pair(pair, kind, &one);
-    walk_begin(&found);
-    found.next = out;
-    walk(&one, kind, &found);
-    return (int) (found.next - out);
+    const struct kernel_traits traits = kind_of(pair, along);
+    struct pair_lanes one;
+    struct slabs_result result;
+    set_pair_lanes(pair, traits, &one);
+    slabs_result_begin(&result);
+    result.next = out;
+    evaluate_slabs(&one, traits, &result);
+    return (int) (result.next - out);
 }
 
 void slab_kernel_times(double low, double high, double swing, double error, double enter[2],
                        double leave[2])
 {
-    const struct walk_kind kind = {
-        .dim = 3, .simplex = {true, true}, .drifts = true, .ordered = true, .times = true};
-    const struct walk_extent d = {low, high, 0};
-    struct walk_found found;
-    walk_begin(&found);
-    bound_times(kind, d, error, 0, swing, false, &found);
+    const struct kernel_traits traits = {
+        .dim = 3, .simplex = {true, true}, .drifts = true, .swap_invariant = true, .times = true};
+    const struct slab_extent d = {low, high, 0};
+    struct slabs_result result;
+    slabs_result_begin(&result);
+    bound_times(traits, d, error, 0, swing, false, &result);
     for (int side = 0; side < 2; side++) {
-        enter[side] = found.enter[side];
-        leave[side] = found.leave[side];
+        enter[side] = result.enter[side];
+        leave[side] = result.leave[side];
     }
 }
 
 double slab_kernel_axes(const struct frame_pair *pair, double *bound)
 {
-    const struct walk_kind kind = kind_of(pair, false);
-    struct walk_pair one;
-    struct walk_found found;
-    set_walk_pair(pair, kind, &one);
-    walk_begin(&found);
-    ask_axes(&one, kind, &found);
+    const struct kernel_traits traits = kind_of(pair, false);
+    struct pair_lanes one;
+    struct slabs_result result;
+    set_pair_lanes(pair, traits, &one);
+    slabs_result_begin(&result);
+    evaluate_axes(&one, traits, &result);
     *bound = SLABS_ROUNDING_AXES * one.reach;
-    return found.surely;
+    return result.gap_low;
 }

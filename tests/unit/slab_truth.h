@@ -15,7 +15,7 @@ struct slab_truth {
     enum fmb_shape shape[2];
     mpz_t component[2][FMB_DIM_MAX][FMB_DIM_MAX]; /* [frame][component][axis] */
     mpz_t offset[FMB_DIM_MAX], drift[FMB_DIM_MAX];
-    mpz_t shift[FMB_DIM_MAX]; /* what the reference points add to the offset (walk.h) */
+    mpz_t shift[FMB_DIM_MAX]; /* what the reference points add to the offset (slabs_evaluate.h) */
     long unit; /* all of the above are times 2^-unit; what follows is times 2^(-dim unit) */
     mpz_t low, high, start, slope, gap;
     /* As struct slab_value has them, but in the lengths of the pair: those times 2^factor are the

@@ -19,9 +19,10 @@
 #include "exact.h"
 #include "question.h"
 #include "referee.h"
-#include "run.h"
+#include "kernel.h"
 
-extern run_function *const run_boxes_bare[RUN_KINDS], *const run_boxes_planted[RUN_KINDS];
+extern kernel_function *const kernel_boxes_bare[KERNEL_KINDS],
+    *const kernel_boxes_planted[KERNEL_KINDS];
 
 /* ---- Boxes of one pair ---- */
 
@@ -30,20 +31,20 @@ typedef double box_ends[2][FMB_DIM_MAX];
 enum { REAL, PLANTED, BARE, KERNELS };
 
 /* False where doubles give none. */
-static bool box_of(run_function *const *kernels, const struct fmb_prepared frame[2],
+static bool box_of(kernel_function *const *kernels, const struct fmb_prepared frame[2],
                    double duration, box_ends out)
 {
-    const struct fmb_prepared *pairs[RUN_LANES][2];
-    double boxes[RUN_LANES][2][FMB_DIM_MAX];
+    const struct fmb_prepared *pairs[KERNEL_LANES][2];
+    double boxes[KERNEL_LANES][2][FMB_DIM_MAX];
     bool swapped;
-    const enum run_kind kind = run_box_kind(&frame[0], &frame[1], duration, &swapped);
+    const enum kernel_kind kind = kernel_box_kind(&frame[0], &frame[1], duration, &swapped);
     const struct kernel_call run = {
         .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
-    for (int lane = 0; lane < RUN_LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
         pairs[lane][0] = &frame[swapped];
         pairs[lane][1] = &frame[!swapped];
     }
-    if (kind >= RUN_KINDS)
+    if (kind >= KERNEL_KINDS)
         return false;
     kernels[kind](&run);
     memcpy(out, boxes[0], sizeof(box_ends));
@@ -62,7 +63,7 @@ static double ratio_of_end(const double end[KERNELS], double exact)
 /* The largest of these over all ends; -1 where there is no box. */
 static double ratio_of(const struct question *question)
 {
-    struct run_set set;
+    struct kernel_set set;
     struct ready ready;
     struct fmb_prepared frame[2];
     box_ends box[KERNELS], exact;
@@ -71,8 +72,8 @@ static double ratio_of(const struct question *question)
     const struct frame_pair frames = pair_frames(&ready.pair);
     prepared_set(frames.a, &frame[0]);
     prepared_set(frames.b, &frame[1]);
-    assert_true(run_set_of(FMB_PLAIN, &set));
-    run_function *const *kernels[] = {set.boxes, run_boxes_planted, run_boxes_bare};
+    assert_true(kernel_set_of(FMB_PLAIN, &set));
+    kernel_function *const *kernels[] = {set.boxes, kernel_boxes_planted, kernel_boxes_bare};
     if (fmb_meet(&frame[0], &frame[1], question->duration, &verdict) != FMB_OK ||
         verdict == FMB_SEPARATED)
         return -1;

@@ -23,25 +23,25 @@
 #include "prepared.h"
 #include "question.h"
 #include "referee.h"
-#include "run.h"
+#include "kernel.h"
 #include "slab_kernel.h"
 #include "solids.h"
 
-/* run.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (Makefile). */
-extern run_function *const run_wide[RUN_KINDS], *const run_exact_wide[RUN_KINDS],
-                                                    *const run_times_wide[RUN_KINDS],
-                                                        *const run_boxes_wide[RUN_KINDS],
-                                                            *const run_wide_planted[RUN_KINDS];
+/* many.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (Makefile). */
+extern kernel_function *const kernel_wide[KERNEL_KINDS],
+    *const kernel_exact_wide[KERNEL_KINDS], *const kernel_times_wide[KERNEL_KINDS],
+                                                *const kernel_boxes_wide[KERNEL_KINDS],
+                                                    *const kernel_wide_planted[KERNEL_KINDS];
 #if defined __x86_64__
-extern run_single_function *const run_alone_sse2[RUN_KINDS],
-    *const run_exact_alone_sse2[RUN_KINDS], *const run_times_alone_sse2[RUN_KINDS];
+extern kernel_single_function *const kernel_single_sse2[KERNEL_KINDS],
+    *const kernel_exact_single_sse2[KERNEL_KINDS], *const kernel_times_single_sse2[KERNEL_KINDS];
 #endif
 
 /* ---- Subjects ---- */
 
 struct subject {
     const char *name;
-    struct run_set set;
+    struct kernel_set set;
 };
 
 enum { SUBJECTS_MAX = FMB_AVX512 + 1 };
@@ -52,31 +52,32 @@ static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
     int count = 0;
     for (int i = FMB_PLAIN; i <= FMB_AVX512; i++) {
         struct subject one = {.name = fmb_instructions_name(i)};
-        const bool there = run_set_of(i, &one.set);
+        const bool there = kernel_set_of(i, &one.set);
         assert_int_equal(there, fmb_instructions_supported(i));
         if (there)
             out[count++] = one;
     }
-    out[count++] =
-        (struct subject){"wide", {run_wide, run_exact_wide, run_times_wide, run_boxes_wide}};
+    out[count++] = (struct subject){
+        "wide", {kernel_wide, kernel_exact_wide, kernel_times_wide, kernel_boxes_wide}};
     return count;
 }
 
 /* Of pairs alone. */
 struct alone {
     const char *name;
-    run_single_function *const *verdicts, *const *exact, *const *times;
+    kernel_single_function *const *verdicts, *const *exact, *const *times;
 };
 
 enum { ALONE_MAX = 2 };
 
 /* That of this machine, and what older ones have. Returns how many. */
-static int alone_of_machine(struct alone out[ALONE_MAX])
+static int single_of_machine(struct alone out[ALONE_MAX])
 {
-    out[0] = (struct alone){"alone", run_verdicts_single(), run_exact_single(), run_times_single()};
+    out[0] = (struct alone){"alone", kernel_verdicts_single(), kernel_exact_single(),
+                            kernel_times_single()};
 #if defined __x86_64__
-    out[1] =
-        (struct alone){"alone, sse2", run_alone_sse2, run_exact_alone_sse2, run_times_alone_sse2};
+    out[1] = (struct alone){"alone, sse2", kernel_single_sse2, kernel_exact_single_sse2,
+                            kernel_times_single_sse2};
     return 2;
 #else
     return 1;
@@ -146,14 +147,14 @@ static void sizes_are_lengths_or_a_little_more(void **state)
 
 static bool is_kind(int kind)
 {
-    return run_wide[kind] != NULL;
+    return kernel_wide[kind] != NULL;
 }
 
 static void set_shapes(int kind, enum fmb_shape shape[2])
 {
-    const bool tetrahedron = kind & RUN_TETRAHEDRON, alike = kind & RUN_SAME_SHAPE;
-    shape[1] = kind & RUN_FACE ? FMB_FACE : tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
-    shape[0] = alike ? shape[1] : kind & RUN_FACE && tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
+    const bool tetrahedron = kind & KERNEL_TETRAHEDRON, alike = kind & KERNEL_SAME_SHAPE;
+    shape[1] = kind & KERNEL_FACE ? FMB_FACE : tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
+    shape[0] = alike ? shape[1] : kind & KERNEL_FACE && tetrahedron ? FMB_TETRAHEDRON : FMB_CUBOID;
 }
 
 static const char *kind_text(int kind)
@@ -161,9 +162,9 @@ static const char *kind_text(int kind)
     static char text[80];
     enum fmb_shape shape[2];
     set_shapes(kind, shape);
-    snprintf(text, sizeof text, "%dD %s %s %s%s", kind & RUN_SPACE ? 3 : 2,
-             kind & RUN_DRIFTS ? "drifts" : "at rest", fmb_shape_name(shape[0]),
-             fmb_shape_name(shape[1]), kind & RUN_AXIS_ALIGNED ? " along" : "");
+    snprintf(text, sizeof text, "%dD %s %s %s%s", kind & KERNEL_3D ? 3 : 2,
+             kind & KERNEL_DRIFTS ? "drifts" : "at rest", fmb_shape_name(shape[0]),
+             fmb_shape_name(shape[1]), kind & KERNEL_AXIS_ALIGNED ? " along" : "");
     return text;
 }
 
@@ -173,14 +174,14 @@ static struct cell draw_cell(struct draw *draw, int kind, bool may_move)
     enum fmb_shape shape[2];
     set_shapes(kind, shape);
     const bool turned = draw_coin(draw);
-    return (struct cell){kind & RUN_SPACE ? 3 : 2,
-                         kind & RUN_DRIFTS || (may_move && draw_int(draw, 0, 7) == 0),
+    return (struct cell){kind & KERNEL_3D ? 3 : 2,
+                         kind & KERNEL_DRIFTS || (may_move && draw_int(draw, 0, 7) == 0),
                          {shape[turned], shape[!turned]}};
 }
 
 /* ---- Pools of pairs of one kind and duration ---- */
 
-enum { POOL = 40, ROOM = POOL + RUN_LANES };
+enum { POOL = 40, ROOM = POOL + KERNEL_LANES };
 
 struct pool {
     int kind, count;
@@ -219,7 +220,8 @@ static void align(struct draw *draw, struct question *question)
 /* A kernel that looks for zero normals may be asked a pair that has none. */
 static bool is_of_kind(int found, int wanted)
 {
-    return found == wanted || (wanted & RUN_AXIS_ALIGNED && found == (wanted & ~RUN_AXIS_ALIGNED));
+    return found == wanted ||
+           (wanted & KERNEL_AXIS_ALIGNED && found == (wanted & ~KERNEL_AXIS_ALIGNED));
 }
 
 /* False: it came out as another kind. */
@@ -232,12 +234,12 @@ static bool draw_pair(struct draw *draw, pair_function *pair, struct pool *pool,
     bool swapped;
     pair(draw, &cell, question);
     pair_set_duration(question, pool->duration);
-    if (pool->kind & RUN_AXIS_ALIGNED && draw_int(draw, 0, 3) == 0)
+    if (pool->kind & KERNEL_AXIS_ALIGNED && draw_int(draw, 0, 3) == 0)
         align(draw, question);
     referee_ready(question, ready);
     assert_int_equal(fmb_prepare(&ready->pair.a, 0, 1, &a), FMB_OK);
     assert_int_equal(fmb_prepare(&ready->pair.b, 0, 1, &b), FMB_OK);
-    if (!is_of_kind((int) run_kind_of(&a, &b, pool->duration, &swapped), pool->kind))
+    if (!is_of_kind((int) kernel_kind_of(&a, &b, pool->duration, &swapped), pool->kind))
         return false;
     pool->frame[i][0] = swapped ? b : a;
     pool->frame[i][1] = swapped ? a : b;
@@ -277,9 +279,9 @@ enum { GUARD = 0xa5 };
 
 /* What a function left, and room beyond what it may write. */
 struct left {
-    unsigned char outcome[ROOM + RUN_LANES];
-    double contact[ROOM + RUN_LANES][2];
-    double box[ROOM + RUN_LANES][2][FMB_DIM_MAX];
+    unsigned char outcome[ROOM + KERNEL_LANES];
+    double contact[ROOM + KERNEL_LANES][2];
+    double box[ROOM + KERNEL_LANES][2][FMB_DIM_MAX];
 };
 
 static bool is_untouched(const void *from, size_t size)
@@ -293,26 +295,26 @@ static bool is_untouched(const void *from, size_t size)
 
 /* Runs pairs first to first + count of the pool; what follows them are other pairs of it, or
  * idle. */
-static void run_part(run_function *function, const struct pool *pool, int first, int count,
+static void run_part(kernel_function *function, const struct pool *pool, int first, int count,
                      struct left *out)
 {
     const struct fmb_prepared *pairs[ROOM][2];
     const struct kernel_call run = {pairs,        (size_t) count, pool->duration,
                                     out->outcome, out->contact,   out->box};
-    for (int i = 0; i < count + RUN_LANES - 1; i++) {
+    for (int i = 0; i < count + KERNEL_LANES - 1; i++) {
         const bool here = first + i < pool->count && (i < count || first % 2 == 0);
         pairs[i][0] = here ? &pool->frame[first + i][0] : &idle;
         pairs[i][1] = here ? &pool->frame[first + i][1] : &idle;
     }
     memset(out, GUARD, sizeof *out);
     function(&run);
-    const size_t end = (size_t) count + RUN_LANES - 1;
+    const size_t end = (size_t) count + KERNEL_LANES - 1;
     assert_true(is_untouched(out->outcome + end, sizeof out->outcome - end));
     assert_true(is_untouched(out->contact + end, sizeof out->contact - end * sizeof *out->contact));
     assert_true(is_untouched(out->box + end, sizeof out->box - end * sizeof *out->box));
 }
 
-static void run_all(run_function *function, const struct pool *pool, struct left *out)
+static void run_all(kernel_function *function, const struct pool *pool, struct left *out)
 {
     run_part(function, pool, 0, pool->count, out);
 }
@@ -338,8 +340,8 @@ static long unsure_among(const struct pool *pool, const struct left *left)
 /* ---- Outcomes ---- */
 
 /* Any part of a pool has the same outcomes as it has in all of it. */
-static void expect_same_in_parts(struct draw *draw, run_function *function, const struct pool *pool,
-                                 const struct left *whole)
+static void expect_same_in_parts(struct draw *draw, kernel_function *function,
+                                 const struct pool *pool, const struct left *whole)
 {
     struct left part;
     for (int count = 1; count <= 17; count++) {
@@ -358,7 +360,7 @@ static void no_outcome_is_wrong(void **state)
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
     draw_begin(&draw, "no_outcome_is_wrong");
-    for (int kind = 0; kind < RUN_KINDS; kind++) {
+    for (int kind = 0; kind < KERNEL_KINDS; kind++) {
         long verdicts[4] = {0}, unsure[SUBJECTS_MAX] = {0};
         for (long n = is_kind(kind) ? draw_sample(60) : 0; n > 0; n--) {
             struct pool pool;
@@ -394,7 +396,7 @@ static void random_pairs_are_never_unsure(void **state)
     const int subjects = subjects_of_machine(subject);
     long pairs = 0;
     draw_begin(&draw, "random_pairs_are_never_unsure");
-    for (int kind = 0; kind < RUN_KINDS; kind++)
+    for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (long n = is_kind(kind) ? draw_sample(20) : 0; n > 0; n--) {
             struct pool pool;
             struct left left;
@@ -415,13 +417,13 @@ static void a_wrong_bound_is_found(void **state)
     (void) state;
     struct draw draw;
     draw_begin(&draw, "a_wrong_bound_is_found");
-    for (int kind = 0; kind < RUN_KINDS; kind++) {
+    for (int kind = 0; kind < KERNEL_KINDS; kind++) {
         long wrong = 0, asked = 0;
         for (int n = 0; is_kind(kind) && n < 3000 && wrong == 0; n++) {
             struct pool pool;
             struct left left;
             draw_pool(&draw, pair_draw, kind, 1, &pool);
-            run_all(run_wide_planted[kind], &pool, &left);
+            run_all(kernel_wide_planted[kind], &pool, &left);
             asked += pool.count;
             for (int i = 0; i < pool.count; i++)
                 wrong +=
@@ -438,7 +440,7 @@ static void a_wrong_bound_is_found(void **state)
 
 /* What a function leaves of all pairs of a pool, one by one: outcomes and, if it makes them, times
  * or boxes. */
-static void run_alone(run_single_function *function, const struct pool *pool, struct left *out)
+static void run_single(kernel_single_function *function, const struct pool *pool, struct left *out)
 {
     memset(out, GUARD, sizeof *out);
     for (int i = 0; i < pool->count; i++) {
@@ -454,7 +456,7 @@ static void expect_alone(const struct alone *alone, const struct pool *pool, lon
 {
     const struct subject subject = {.name = alone->name};
     struct left left;
-    run_alone(alone->verdicts[pool->kind], pool, &left);
+    run_single(alone->verdicts[pool->kind], pool, &left);
     expect_outcomes(&subject, pool, &left);
     *unsure += unsure_among(pool, &left);
     assert_true(is_untouched(left.contact, sizeof left.contact));
@@ -466,9 +468,9 @@ static void no_outcome_alone_is_wrong(void **state)
     (void) state;
     struct draw draw;
     struct alone alone[ALONE_MAX];
-    const int count = alone_of_machine(alone);
+    const int count = single_of_machine(alone);
     draw_begin(&draw, "no_outcome_alone_is_wrong");
-    for (int kind = 0; kind < RUN_KINDS; kind++)
+    for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (long n = is_kind(kind) ? draw_sample(30) : 0; n > 0; n--) {
             struct pool hard, random;
             long of_hard = 0, of_random = 0;
@@ -489,7 +491,7 @@ static void expect_exact_outcomes(const struct subject *subject, const struct po
                                   const struct left *left)
 {
     struct left verdicts = *left;
-    const bool faces = pool->kind & RUN_FACE && pool->kind & RUN_SAME_SHAPE;
+    const bool faces = pool->kind & KERNEL_FACE && pool->kind & KERNEL_SAME_SHAPE;
     for (int i = 0; i < pool->count && faces; i++)
         if (left->outcome[i] == SLABS_TOUCHING)
             verdicts.outcome[i] = SLABS_UNSURE;
@@ -522,10 +524,10 @@ static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
         run_all(subject[s].set.verdicts[pool->kind], pool, &left);
         expect_decided(subject[s].name, pool, &left, whole);
     }
-    for (int i = alone_of_machine(alone) - 1; i >= 0; i--) {
-        run_alone(alone[i].exact[pool->kind], pool, &left);
+    for (int i = single_of_machine(alone) - 1; i >= 0; i--) {
+        run_single(alone[i].exact[pool->kind], pool, &left);
         assert_memory_equal(left.outcome, whole->outcome, (size_t) pool->count);
-        run_alone(alone[i].verdicts[pool->kind], pool, &left);
+        run_single(alone[i].verdicts[pool->kind], pool, &left);
         expect_decided(alone[i].name, pool, &left, whole);
     }
 }
@@ -535,15 +537,15 @@ static bool is_separated(const struct question *question, bool exact)
 {
     struct ready ready;
     struct fmb_prepared a, b;
-    struct run_set set;
+    struct kernel_set set;
     bool swapped;
-    unsigned char outcome[RUN_LANES] = {SLABS_UNSURE};
+    unsigned char outcome[KERNEL_LANES] = {SLABS_UNSURE};
     referee_ready(question, &ready);
     assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &a), FMB_OK);
     assert_int_equal(fmb_prepare(&ready.pair.b, 0, 1, &b), FMB_OK);
-    assert_true(run_set_of(FMB_PLAIN, &set));
-    const enum run_kind kind = run_kind_of(&a, &b, question->duration, &swapped);
-    const struct fmb_prepared *pairs[RUN_LANES][2] = {{swapped ? &b : &a, swapped ? &a : &b}};
+    assert_true(kernel_set_of(FMB_PLAIN, &set));
+    const enum kernel_kind kind = kernel_kind_of(&a, &b, question->duration, &swapped);
+    const struct fmb_prepared *pairs[KERNEL_LANES][2] = {{swapped ? &b : &a, swapped ? &a : &b}};
     const struct kernel_call run = {pairs, 1, question->duration, outcome, NULL, NULL};
     (exact ? set.exact : set.verdicts)[kind](&run);
     return outcome[0] == SLABS_SEPARATED;
@@ -584,7 +586,7 @@ static void near_a_bound_the_second_pass_decides_what_any_first_does(void **stat
     const int subjects = subjects_of_machine(subject);
     long unsure = 0, decided = 0;
     draw_begin(&draw, "near_a_bound_the_second_pass_decides_what_any_first_does");
-    for (int kind = 0; kind < RUN_KINDS; kind++)
+    for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (long n = is_kind(kind) ? draw_sample(12) : 0; n > 0; n--) {
             struct pool pool;
             struct left whole;
@@ -606,7 +608,7 @@ static void the_second_pass_decides_more_and_the_same_everywhere(void **state)
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
     draw_begin(&draw, "the_second_pass_decides_more_and_the_same_everywhere");
-    for (int kind = 0; kind < RUN_KINDS; kind++) {
+    for (int kind = 0; kind < KERNEL_KINDS; kind++) {
         long touching = 0, decided = 0;
         if (!is_kind(kind))
             continue;
@@ -712,7 +714,7 @@ static void expect_same_for_all(struct draw *draw, struct pool *pool, const stru
 {
     struct left part;
     for (int s = 0; s < subjects; s++) {
-        run_function *times = subject[s].set.times[pool->kind];
+        kernel_function *times = subject[s].set.times[pool->kind];
         for (int count = 1; count <= 17; count++) {
             const int first = draw_int(draw, 0, pool->count - count);
             run_part(times, pool, first, count, &part);
@@ -726,9 +728,9 @@ static void expect_same_for_all(struct draw *draw, struct pool *pool, const stru
             swap_pool(pool);
     }
     struct alone alone[ALONE_MAX];
-    for (int i = alone_of_machine(alone) - 1; i >= 0; i--) {
+    for (int i = single_of_machine(alone) - 1; i >= 0; i--) {
         const struct subject as_subject = {.name = alone[i].name};
-        run_alone(alone[i].times[pool->kind], pool, &part);
+        run_single(alone[i].times[pool->kind], pool, &part);
         expect_same_times(&as_subject, pool, 0, pool->count, whole, &part);
     }
 }
@@ -740,9 +742,9 @@ static void times_hold_the_exact_ones(void **state)
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
     draw_begin(&draw, "times_hold_the_exact_ones");
-    for (int kind = RUN_DRIFTS; kind < RUN_KINDS; kind++) {
+    for (int kind = KERNEL_DRIFTS; kind < KERNEL_KINDS; kind++) {
         struct seen hard = {0}, random = {0};
-        if (!run_times_wide[kind])
+        if (!kernel_times_wide[kind])
             continue;
         for (long n = draw_sample(60); n > 0; n--) {
             struct pool pool;
@@ -922,7 +924,7 @@ static void expect_same_boxes_for_all(struct draw *draw, struct pool *pool,
 {
     struct left part;
     for (int s = 0; s < subjects; s++) {
-        run_function *boxes = subject[s].set.boxes[pool->kind];
+        kernel_function *boxes = subject[s].set.boxes[pool->kind];
         for (int count = 1; count <= 17; count++) {
             const int first = draw_int(draw, 0, pool->count - count);
             run_part(boxes, pool, first, count, &part);
@@ -940,11 +942,11 @@ static void boxes_hold_the_exact_ones(void **state)
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
     draw_begin(&draw, "boxes_hold_the_exact_ones");
-    for (int kind = 0; kind < RUN_KINDS; kind++) {
+    for (int kind = 0; kind < KERNEL_KINDS; kind++) {
         struct seen hard = {0}, random = {0};
-        if (!run_boxes_wide[kind])
+        if (!kernel_boxes_wide[kind])
             continue;
-        for (long n = draw_sample(kind & RUN_FACE ? 160 : 40); n > 0; n--) {
+        for (long n = draw_sample(kind & KERNEL_FACE ? 160 : 40); n > 0; n--) {
             struct pool pool;
             struct left whole;
             const bool is_hard = n % 4;
@@ -976,12 +978,12 @@ static void expect_stretched(struct draw *draw, int kind, const struct subject *
         run_all(subject[s].set.verdicts[kind], &pool, &left);
         expect_outcomes(&subject[s], &pool, &left);
     }
-    if (run_times_wide[kind]) {
+    if (kernel_times_wide[kind]) {
         run_all(subject[0].set.times[kind], &pool, &whole);
         count_times(&pool, &whole, &seen);
         expect_same_for_all(draw, &pool, subject, subjects, &whole);
     }
-    if (run_boxes_wide[kind]) {
+    if (kernel_boxes_wide[kind]) {
         draw_box_pool(draw, pair_draw_stretched, kind, &pool);
         run_all(subject[0].set.boxes[kind], &pool, &whole);
         count_boxes(&pool, &whole, &seen);
@@ -996,7 +998,7 @@ static void ends_of_the_range(void **state)
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
     draw_begin(&draw, "ends_of_the_range");
-    for (int kind = 0; kind < RUN_KINDS; kind++)
+    for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (long n = is_kind(kind) ? draw_sample(16) : 0; n > 0; n--)
             expect_stretched(&draw, kind, subject, subjects);
 }

@@ -5,7 +5,7 @@
  *
  * Steps for each block (decide_block()):
  *
- *   1. set_block()      looks up the frames and sorts the pairs by kind (run.h)
+ *   1. set_block()      looks up the frames and sorts the pairs by kind (kernel.h)
  *   2. run_kind()       runs the filter on the pairs of one kind, several at a time, then its
  *                       second pass on those that are unsure (run_exactly())
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
@@ -23,7 +23,7 @@
 #include "exact.h"
 #include "gap.h"
 #include "inlined.h"
-#include "run.h"
+#include "kernel.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,7 +39,7 @@ enum { SINGLE_MAX = 32 };
 struct batch_job {
     const struct fmb_batch *batch;
     double farthest;               /* the largest gap of interest */
-    struct run_set run;            /* of the instruction set */
+    struct kernel_set run;         /* of the instruction set */
     unsigned char in_order[BLOCK]; /* 0, 1, 2, ... */
 };
 
@@ -47,14 +47,14 @@ struct batch_block {
     const struct fmb_batch *batch;
     size_t first, count; /* of the batch */
     /* Sorted by kind, with the padding that kernels read and write past the end. */
-    const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
-    unsigned char start[RUN_REFUSED + 2]; /* of each kind */
-    int kinds[2];                         /* [first, end): no pair is of another kind */
+    const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
+    unsigned char start[KERNEL_REFUSED + 2]; /* of each kind */
+    int kinds[2];                            /* [first, end): no pair is of another kind */
     unsigned char sorted[BLOCK];
     const unsigned char
         *slot; /* [k]: the position of pair k in the batch, relative to first; sorted or in_order */
-    unsigned char outcome[BLOCK + RUN_LANES];
-    double contact[BLOCK + RUN_LANES][2];
+    unsigned char outcome[BLOCK + KERNEL_LANES];
+    double contact[BLOCK + KERNEL_LANES][2];
     bool far[BLOCK]; /* by position relative to first: the gap is surely greater than wanted */
     int singles;     /* pairs decided one by one so far */
     enum fmb_status status; /* of the first pair refused */
@@ -141,7 +141,7 @@ INLINE void put_pairs(struct batch_block *block, const struct fetching fetching,
         block->pair[i][0] = a;
         block->pair[i][1] = b;
     }
-    for (size_t i = block->count; i < block->count + RUN_LANES; i++)
+    for (size_t i = block->count; i < block->count + KERNEL_LANES; i++)
         block->pair[i][0] = block->pair[i][1] = &missing;
 }
 
@@ -168,10 +168,10 @@ static bool set_pairs(struct batch_block *block)
     return same_kind;
 }
 
-static struct run_kinds kinds_at(const struct batch_block *block, size_t i)
+static struct kernel_kinds kinds_at(const struct batch_block *block, size_t i)
 {
-    return run_kinds_of(prepared_kind(block->pair[i][0]), prepared_kind(block->pair[i][1]),
-                        block->batch->duration);
+    return kernel_kinds_of(prepared_kind(block->pair[i][0]), prepared_kind(block->pair[i][1]),
+                           block->batch->duration);
 }
 
 static void swap(const struct fmb_prepared *pair[2])
@@ -199,7 +199,7 @@ static bool all_drift(const struct batch_block *block)
  * set then. */
 static bool set_kinds(struct batch_block *block, bool like_first, unsigned char kind[BLOCK])
 {
-    struct run_kinds kinds = kinds_at(block, 0);
+    struct kernel_kinds kinds = kinds_at(block, 0);
     if (like_first && (!kinds.moving || all_drift(block))) {
         for (size_t i = 0; kinds.swapped && i < block->count; i++)
             swap(block->pair[i]);
@@ -210,8 +210,9 @@ static bool set_kinds(struct batch_block *block, bool like_first, unsigned char 
     for (size_t i = 0; i < block->count; i++) {
         const struct fmb_prepared **pair = block->pair[i];
         kinds = kinds_at(block, i);
-        kind[i] = (unsigned char) (kinds.moving && run_drifts(pair[0], pair[1]) ? kinds.drifting
-                                                                                : kinds.at_rest);
+        kind[i] =
+            (unsigned char) (kinds.moving && kernel_pair_drifts(pair[0], pair[1]) ? kinds.drifting
+                                                                                  : kinds.at_rest);
         different |= kind[i] ^ kind[0];
         if (kinds.swapped)
             swap(pair);
@@ -223,11 +224,11 @@ static bool set_kinds(struct batch_block *block, bool like_first, unsigned char 
 static void sort(struct batch_block *block, const unsigned char kind[BLOCK])
 {
     const struct fmb_prepared *pair[BLOCK][2];
-    unsigned char next[RUN_REFUSED + 2] = {0};
+    unsigned char next[KERNEL_REFUSED + 2] = {0};
     memcpy(pair, block->pair, sizeof pair);
     for (size_t i = 0; i < block->count; i++)
         next[kind[i] + 1]++;
-    for (int k = 0; k <= RUN_REFUSED; k++)
+    for (int k = 0; k <= KERNEL_REFUSED; k++)
         next[k + 1] = (unsigned char) (next[k + 1] + next[k]);
     memcpy(block->start, next, sizeof next);
     for (size_t i = 0; i < block->count; i++) {
@@ -243,7 +244,7 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
 {
     const size_t left = job->batch->pair_count - first;
     unsigned char kind[BLOCK];
-    kind[0] = RUN_REFUSED;
+    kind[0] = KERNEL_REFUSED;
     block->batch = job->batch;
     block->first = first;
     block->count = left < BLOCK ? left : BLOCK;
@@ -252,7 +253,7 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
     block->slot = job->in_order;
     const bool like_first = set_pairs(block);
     block->kinds[0] = 0;
-    block->kinds[1] = RUN_KINDS;
+    block->kinds[1] = KERNEL_KINDS;
     if (!set_kinds(block, like_first, kind)) {
         sort(block, kind);
         return;
@@ -260,7 +261,7 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
     memset(block->start, (int) block->count, sizeof block->start);
     memset(block->start, 0, kind[0] + 1u);
     block->kinds[0] = kind[0];
-    block->kinds[1] = kind[0] < RUN_KINDS ? kind[0] + 1 : kind[0];
+    block->kinds[1] = kind[0] < KERNEL_KINDS ? kind[0] + 1 : kind[0];
 }
 
 /* ---- Answers ---- */
@@ -336,18 +337,18 @@ static void put_verdicts(struct batch_block *block, size_t start, size_t end)
 }
 
 /* Returns the contact of pair k, if the filter gives it; otherwise, and if there is none, NAN. */
-static const double *contact_at(const struct batch_block *block, enum run_kind kind, size_t k,
+static const double *contact_at(const struct batch_block *block, enum kernel_kind kind, size_t k,
                                 const double whole[2])
 {
     static const double none[2] = {NAN, NAN};
     if (block->outcome[k] == SLABS_SEPARATED || block->outcome[k] == SLABS_UNSURE)
         return none;
-    if (!(kind & RUN_DRIFTS))
+    if (!(kind & KERNEL_DRIFTS))
         return whole;
     return prepared_both_plain(block->pair[k][0], block->pair[k][1]) ? none : block->contact[k];
 }
 
-static void put_contacts(struct batch_block *block, enum run_kind kind, size_t start, size_t end)
+static void put_contacts(struct batch_block *block, enum kernel_kind kind, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     const double whole[2] = {0, batch->duration + 0.0}; /* never -0 */
@@ -364,8 +365,8 @@ static void put_contacts(struct batch_block *block, enum run_kind kind, size_t s
 /* The pairs of a block that are in contact, and their boxes. */
 struct contacts {
     size_t count, of[BLOCK]; /* their numbers in the block */
-    const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
-    double box[BLOCK + RUN_LANES][2][FMB_DIM_MAX];
+    const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
+    double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX];
 };
 
 /* A box that the filter does not give: by the exact method, or left open. */
@@ -385,9 +386,10 @@ static void put_box_single(struct batch_block *block, size_t k)
     }
 }
 
-/* Computes the boxes of pairs of one kind of run_box_kind(). in_contact: as in struct kernel_call.
+/* Computes the boxes of pairs of one kind of kernel_box_kind(). in_contact: as in struct
+ * kernel_call.
  */
-static void put_boxes(struct batch_block *block, run_function *boxes, bool in_contact,
+static void put_boxes(struct batch_block *block, kernel_function *boxes, bool in_contact,
                       struct contacts *contacts)
 {
     const struct kernel_call run = {.pairs = contacts->pair,
@@ -395,7 +397,7 @@ static void put_boxes(struct batch_block *block, run_function *boxes, bool in_co
                                     .duration = block->batch->duration,
                                     .boxes = contacts->box,
                                     .in_contact = in_contact};
-    for (size_t n = contacts->count; n < contacts->count + RUN_LANES; n++)
+    for (size_t n = contacts->count; n < contacts->count + KERNEL_LANES; n++)
         contacts->pair[n][0] = contacts->pair[n][1] = &missing;
     if (contacts->count > 0)
         boxes(&run);
@@ -419,7 +421,7 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
     struct contacts contacts;
     for (int group = 0; group < (any_unsure ? 4 : 2); group++) {
         const bool moving = group & 1, unsure = group & 2;
-        enum run_kind kind = 0;
+        enum kernel_kind kind = 0;
         contacts.count = 0;
         for (size_t k = start; k < end; k++) {
             const size_t i = block->first + block->slot[k];
@@ -429,8 +431,9 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
                 put_no_box(batch, i);
                 continue;
             }
-            const enum run_kind own = run_box_kind(pair[0], pair[1], batch->duration, &swapped);
-            if (!(own & RUN_DRIFTS) != !moving || (block->outcome[k] == SLABS_UNSURE) != unsure)
+            const enum kernel_kind own =
+                kernel_box_kind(pair[0], pair[1], batch->duration, &swapped);
+            if (!(own & KERNEL_DRIFTS) != !moving || (block->outcome[k] == SLABS_UNSURE) != unsure)
                 continue;
             kind = own;
             contacts.pair[contacts.count][0] = pair[swapped];
@@ -441,12 +444,12 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
     }
 }
 
-/* Runs the second pass on the pairs of a kind that the first leaves unsure, RUN_LANES at a time.
+/* Runs the second pass on the pairs of a kind that the first leaves unsure, KERNEL_LANES at a time.
  * Two faces that may have parallel planes stay unsure. */
-static void run_exactly(run_function *exact, bool faces, const struct kernel_call *first)
+static void run_exactly(kernel_function *exact, bool faces, const struct kernel_call *first)
 {
-    unsigned char of[BLOCK], outcome[BLOCK + RUN_LANES];
-    const struct fmb_prepared *pair[BLOCK + RUN_LANES][2];
+    unsigned char of[BLOCK], outcome[BLOCK + KERNEL_LANES];
+    const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
     size_t count = 0;
     if (!memchr(first->outcomes, SLABS_UNSURE, first->count))
         return;
@@ -457,7 +460,7 @@ static void run_exactly(run_function *exact, bool faces, const struct kernel_cal
         pair[count][1] = first->pairs[k][1];
         of[count++] = (unsigned char) k;
     }
-    for (size_t n = count; n < count + RUN_LANES; n++)
+    for (size_t n = count; n < count + KERNEL_LANES; n++)
         pair[n][0] = pair[n][1] = &missing;
     const struct kernel_call run = {
         .pairs = pair, .count = count, .duration = first->duration, .outcomes = outcome};
@@ -467,7 +470,7 @@ static void run_exactly(run_function *exact, bool faces, const struct kernel_cal
             first->outcomes[of[n]] = outcome[n];
 }
 
-static void run_kind(struct batch_block *block, const struct batch_job *job, enum run_kind kind)
+static void run_kind(struct batch_block *block, const struct batch_job *job, enum kernel_kind kind)
 {
     const struct fmb_batch *batch = job->batch;
     const size_t start = block->start[kind], end = block->start[kind + 1];
@@ -476,9 +479,9 @@ static void run_kind(struct batch_block *block, const struct batch_job *job, enu
                                     .duration = batch->duration,
                                     .outcomes = &block->outcome[start],
                                     .contacts = &block->contact[start]};
-    const bool times = batch->contacts && kind & RUN_DRIFTS;
+    const bool times = batch->contacts && kind & KERNEL_DRIFTS;
     (times ? job->run.times : job->run.verdicts)[kind](&run);
-    run_exactly(job->run.exact[kind], kind & RUN_FACE && kind & RUN_SAME_SHAPE, &run);
+    run_exactly(job->run.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &run);
     if (batch->contacts)
         put_contacts(block, kind, start, end);
     else
@@ -499,10 +502,10 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
 
 static void answer_odd(struct batch_block *block)
 {
-    for (size_t k = block->start[RUN_ODD]; k < block->count; k++) {
+    for (size_t k = block->start[KERNEL_UNUSABLE]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
         put_nothing(block->batch, i);
-        if (k < block->start[RUN_REFUSED]) {
+        if (k < block->start[KERNEL_REFUSED]) {
             decide_single(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
             continue;
         }
@@ -522,22 +525,22 @@ struct enlarged {
     size_t count;
     unsigned char slot[ENLARGED];
     struct fmb_prepared frame[ENLARGED];
-    const struct fmb_prepared *pair[ENLARGED + RUN_LANES][2];
+    const struct fmb_prepared *pair[ENLARGED + KERNEL_LANES][2];
 };
 
 /* Marks the pairs that the filter separates although the error of b is enlarged by the largest gap
  * of interest: they are farther apart than that (slabs.h). */
-static void run_enlarged(struct batch_block *block, const struct batch_job *job, enum run_kind kind,
-                         struct enlarged *enlarged)
+static void run_enlarged(struct batch_block *block, const struct batch_job *job,
+                         enum kernel_kind kind, struct enlarged *enlarged)
 {
-    unsigned char outcome[ENLARGED + RUN_LANES];
+    unsigned char outcome[ENLARGED + KERNEL_LANES];
     const struct kernel_call run = {.pairs = enlarged->pair,
                                     .count = enlarged->count,
                                     .duration = job->batch->duration,
                                     .outcomes = outcome};
     if (enlarged->count == 0)
         return;
-    for (size_t n = enlarged->count; n < enlarged->count + RUN_LANES; n++)
+    for (size_t n = enlarged->count; n < enlarged->count + KERNEL_LANES; n++)
         enlarged->pair[n][0] = enlarged->pair[n][1] = &missing;
     job->run.verdicts[kind](&run);
     for (size_t n = 0; n < enlarged->count; n++)
@@ -545,7 +548,7 @@ static void run_enlarged(struct batch_block *block, const struct batch_job *job,
     enlarged->count = 0;
 }
 
-static void find_far(struct batch_block *block, const struct batch_job *job, enum run_kind kind)
+static void find_far(struct batch_block *block, const struct batch_job *job, enum kernel_kind kind)
 {
     struct enlarged enlarged;
     enlarged.count = 0;
@@ -595,13 +598,13 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
     set_block(job, first, &block);
     for (int kind = block.kinds[0]; kind < block.kinds[1]; kind++)
         if (block.start[kind] < block.start[kind + 1])
-            run_kind(&block, job, (enum run_kind) kind);
+            run_kind(&block, job, (enum kernel_kind) kind);
     answer_odd(&block);
     if (!job->batch->gaps)
         return block.status;
     memset(block.far, 0, sizeof block.far);
     for (int kind = block.kinds[0]; kind < block.kinds[1] && job->farthest < INFINITY; kind++)
-        find_far(&block, job, (enum run_kind) kind);
+        find_far(&block, job, (enum kernel_kind) kind);
     for (size_t i = 0; i < block.count; i++)
         put_gap(job, &block, i);
     return block.status;
@@ -637,7 +640,7 @@ enum fmb_status batch_decide(const struct fmb_batch *batch, double farthest)
     if (!prepared_is_duration(batch->duration))
         return FMB_BAD_DURATION;
     struct batch_job job = {.batch = batch, .farthest = farthest};
-    if (!run_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
+    if (!kernel_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
         return FMB_NOT_SUPPORTED;
     for (int i = 0; i < BLOCK; i++)
         job.in_order[i] = (unsigned char) i;
@@ -670,12 +673,12 @@ enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared
     bool swapped;
     if (!prepared_is_duration(duration))
         return FMB_BAD_DURATION;
-    const enum run_kind kind = run_kind_of(a, b, duration, &swapped);
-    if (kind == RUN_REFUSED)
+    const enum kernel_kind kind = kernel_kind_of(a, b, duration, &swapped);
+    if (kind == KERNEL_REFUSED)
         return refusal((const struct fmb_prepared *const[2]){a, b});
     enum slabs_outcome outcome = SLABS_UNSURE;
-    if (kind != RUN_ODD)
-        outcome = run_verdicts_single()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
+    if (kind != KERNEL_UNUSABLE)
+        outcome = kernel_verdicts_single()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
     *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, 1, false)
                                        : (enum fmb_verdict) outcome;
     return FMB_OK;

@@ -6,8 +6,8 @@
  *
  * Steps for the verdict, each for pairs that the one before leaves unsure:
  *
- *   1. verdict_of()           the filter in doubles (run.h)
- *   2. verdict_of_unsure()    its second pass (walk_exact.h)
+ *   1. verdict_of()           the filter in doubles (kernel.h)
+ *   2. verdict_of_unsure()    its second pass (slabs_exact.h)
  *   3. verdict_of_slabs()     each open slab in doubles with an error bound of its own
  *                             (slabs_refine()), then in fixed-width integers (limbs.h)
  *   4. verdict_exact()        the exact method (exact.h)
@@ -18,14 +18,14 @@
  * Then answer_contact(), answer_box() and gap_of() compute what else is wanted, and complete()
  * replaces what doubles do not give within the limits of fmb.h by the exact method. Each step
  * depends on the numbers of the pair only, so that every caller gets the same bits. The error
- * bounds are derived in slabs.c, walk_slab.h, walk_box.h and contact.c. */
+ * bounds are derived in slabs.c, slabs_lanes.h, box_search.h and contact.c. */
 #include "certified.h"
 
 #include "exact.h"
 #include "faces.h"
 #include "gap.h"
 #include "limbs.h"
-#include "run.h"
+#include "kernel.h"
 
 #include <math.h>
 #include <string.h>
@@ -37,7 +37,7 @@ struct certified {
     bool open;                           /* only with quick: the verdict needs wider ones */
     const struct fmb_prepared *frame[2]; /* of a and b */
     bool swapped;                        /* kernels of this kind take b as their first frame */
-    enum run_kind kind;
+    enum kernel_kind kind;
     bool slabs_known, slabs_good; /* slabs_good: doubles can bound the slabs of the pair */
     struct slabs_pair slabs;
     bool span_known, rounds; /* rounds: operations on these numbers may round */
@@ -173,13 +173,13 @@ static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
 {
     certified->frame[0] = a;
     certified->frame[1] = b;
-    certified->kind = run_kind_of(a, b, certified->pair->duration, &certified->swapped);
-    return certified->kind < RUN_KINDS;
+    certified->kind = kernel_kind_of(a, b, certified->pair->duration, &certified->swapped);
+    return certified->kind < KERNEL_KINDS;
 }
 
 /* Runs the kernel of its kind on this single pair. */
 static enum slabs_outcome run_kernel(const struct certified *certified,
-                                     run_single_function *const *functions, double *out)
+                                     kernel_single_function *const *functions, double *out)
 {
     return functions[certified->kind](certified->frame[certified->swapped],
                                       certified->frame[!certified->swapped],
@@ -188,7 +188,7 @@ static enum slabs_outcome run_kernel(const struct certified *certified,
 
 static bool are_faces(const struct certified *certified)
 {
-    return certified->kind & RUN_FACE && certified->kind & RUN_SAME_SHAPE;
+    return certified->kind & KERNEL_FACE && certified->kind & KERNEL_SAME_SHAPE;
 }
 
 /* In: a pair that the second pass leaves unsure; or two faces, if it finds them touching. */
@@ -210,9 +210,9 @@ static enum fmb_verdict verdict_in_integers(struct certified *certified, bool to
 /* In: a pair that the first pass leaves unsure. */
 static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
-    if (certified->kind >= RUN_KINDS)
+    if (certified->kind >= KERNEL_KINDS)
         return verdict_exact(certified);
-    const enum slabs_outcome outcome = run_kernel(certified, run_exact_single(), NULL);
+    const enum slabs_outcome outcome = run_kernel(certified, kernel_exact_single(), NULL);
     const bool touching = outcome == SLABS_TOUCHING;
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
@@ -225,7 +225,8 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
  * as in struct kernel_call. */
 static enum fmb_verdict verdict_of(struct certified *certified, double contact[2])
 {
-    run_single_function *const *functions = contact ? run_times_single() : run_verdicts_single();
+    kernel_single_function *const *functions =
+        contact ? kernel_times_single() : kernel_verdicts_single();
     certified->path = CERTIFIED_FILTER;
     const enum slabs_outcome outcome = run_kernel(certified, functions, contact);
     certified->by_filter = outcome != SLABS_UNSURE;
@@ -278,7 +279,7 @@ static enum fmb_status decide_pair(const struct frame_pair *pair, unsigned want,
 static bool answer_contact(struct certified *certified, struct fmb_answer *answer)
 {
     answer->has_contact = true;
-    if (!(certified->kind & RUN_DRIFTS)) {
+    if (!(certified->kind & KERNEL_DRIFTS)) {
         answer->contact[0] = 0;
         answer->contact[1] = certified->pair->duration + 0.0; /* never -0 */
         return true;
@@ -302,17 +303,17 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    bool in_contact, double box[2][FMB_DIM_MAX])
 {
-    const struct fmb_prepared *pairs[RUN_LANES][2];
-    double boxes[RUN_LANES][2][FMB_DIM_MAX];
+    const struct fmb_prepared *pairs[KERNEL_LANES][2];
+    double boxes[KERNEL_LANES][2][FMB_DIM_MAX];
     bool swapped;
-    const enum run_kind kind = run_box_kind(a, b, duration, &swapped);
+    const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
     const struct kernel_call run = {
         .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes, .in_contact = in_contact};
-    for (int lane = 0; lane < RUN_LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
         pairs[lane][0] = swapped ? b : a;
         pairs[lane][1] = swapped ? a : b;
     }
-    run_boxes_single()[kind](&run);
+    kernel_boxes_single()[kind](&run);
     memcpy(box, boxes[0], sizeof boxes[0]);
     return !isnan(boxes[0][0][0]);
 }
@@ -349,7 +350,8 @@ static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_pr
     begin(&certified, pair, quick);
     if (!set_kind(&certified, a, b))
         return quick ? FMB_CANNOT_DECIDE : exact_decide(pair, want & FMB_WANT_BOX, answer);
-    answer->verdict = verdict_of(&certified, certified.kind & RUN_DRIFTS ? answer->contact : NULL);
+    answer->verdict =
+        verdict_of(&certified, certified.kind & KERNEL_DRIFTS ? answer->contact : NULL);
     if (certified.open)
         return FMB_CANNOT_DECIDE;
     if (answer->verdict == FMB_SEPARATED) {

@@ -1,6 +1,6 @@
 /* Which instruction set the filter runs on: asked of the machine at each call, so that nothing is
  * kept. */
-#include "run.h"
+#include "kernel.h"
 
 /* The best that is ever used, of enum fmb_instructions, which the preprocessor does not know. Tests
  * build programs that know less than their machine has; one that knows plain C alone is what other
@@ -11,43 +11,44 @@
 _Static_assert(FMB_PLAIN == 1 && FMB_SSE2 == 2 && FMB_AVX512 == 4,
                "INSTRUCTIONS_MOST is a number of the enum");
 
-#define RUN_DECLARE(name)                                                                     \
-    extern run_function *const run_##name[RUN_KINDS], *const run_exact_##name[RUN_KINDS],     \
-                                                          *const run_times_##name[RUN_KINDS], \
-                                                              *const run_boxes_##name[RUN_KINDS];
-#define RUN_DECLARE_ALONE(name)                                    \
-    extern run_single_function *const run_alone_##name[RUN_KINDS], \
-        *const run_exact_alone_##name[RUN_KINDS], *const run_times_alone_##name[RUN_KINDS];
-#define RUN_SET(name)                                                    \
-    {                                                                    \
-        run_##name, run_exact_##name, run_times_##name, run_boxes_##name \
+#define KERNEL_DECLARE(name)                                                                \
+    extern kernel_function *const kernel_##name[KERNEL_KINDS],                              \
+        *const kernel_exact_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS], \
+                                                      *const kernel_boxes_##name[KERNEL_KINDS];
+#define KERNEL_DECLARE_SINGLE(name)                                          \
+    extern kernel_single_function *const kernel_single_##name[KERNEL_KINDS], \
+        *const kernel_exact_single_##name[KERNEL_KINDS],                     \
+            *const kernel_times_single_##name[KERNEL_KINDS];
+#define KERNEL_SET(name)                                                             \
+    {                                                                                \
+        kernel_##name, kernel_exact_##name, kernel_times_##name, kernel_boxes_##name \
     }
 
-RUN_DECLARE(plain)
+KERNEL_DECLARE(plain)
 
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-RUN_DECLARE(sse2)
-RUN_DECLARE_ALONE(sse2)
+KERNEL_DECLARE(sse2)
+KERNEL_DECLARE_SINGLE(sse2)
 #if INSTRUCTIONS_MOST > 2
-RUN_DECLARE(avx2)
-RUN_DECLARE(avx512)
-RUN_DECLARE_ALONE(avx2)
-#define RUN_ALONE_BEST(kind) (has(FMB_AVX2) ? kind##_alone_avx2 : kind##_alone_sse2)
+KERNEL_DECLARE(avx2)
+KERNEL_DECLARE(avx512)
+KERNEL_DECLARE_SINGLE(avx2)
+#define KERNEL_SINGLE_BEST(kind) (has(FMB_AVX2) ? kind##_single_avx2 : kind##_single_sse2)
 #else
-#define RUN_ALONE_BEST(kind) kind##_alone_sse2
+#define KERNEL_SINGLE_BEST(kind) kind##_single_sse2
 #endif
 #else
-RUN_DECLARE_ALONE(plain)
-#define RUN_ALONE_BEST(kind) kind##_alone_plain
+KERNEL_DECLARE_SINGLE(plain)
+#define KERNEL_SINGLE_BEST(kind) kind##_single_plain
 #endif
 
-static const struct run_set sets[] = {
-    [FMB_PLAIN] = RUN_SET(plain),
+static const struct kernel_set sets[] = {
+    [FMB_PLAIN] = KERNEL_SET(plain),
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-    [FMB_SSE2] = RUN_SET(sse2),
+    [FMB_SSE2] = KERNEL_SET(sse2),
 #if INSTRUCTIONS_MOST > 2
-    [FMB_AVX2] = RUN_SET(avx2),
-    [FMB_AVX512] = RUN_SET(avx512),
+    [FMB_AVX2] = KERNEL_SET(avx2),
+    [FMB_AVX512] = KERNEL_SET(avx512),
 #endif
 #endif
 };
@@ -69,19 +70,19 @@ static bool has(int instructions)
     return false;
 }
 
-run_single_function *const *run_verdicts_single(void)
+kernel_single_function *const *kernel_verdicts_single(void)
 {
-    return RUN_ALONE_BEST(run);
+    return KERNEL_SINGLE_BEST(kernel);
 }
 
-run_single_function *const *run_exact_single(void)
+kernel_single_function *const *kernel_exact_single(void)
 {
-    return RUN_ALONE_BEST(run_exact);
+    return KERNEL_SINGLE_BEST(kernel_exact);
 }
 
-run_single_function *const *run_times_single(void)
+kernel_single_function *const *kernel_times_single(void)
 {
-    return RUN_ALONE_BEST(run_times);
+    return KERNEL_SINGLE_BEST(kernel_times);
 }
 
 static int best(void)
@@ -92,7 +93,7 @@ static int best(void)
     return FMB_PLAIN;
 }
 
-run_function *const *run_boxes_single(void)
+kernel_function *const *kernel_boxes_single(void)
 {
     return sets[best() < FMB_AVX2 ? best() : FMB_AVX2].boxes;
 }
@@ -102,7 +103,7 @@ bool fmb_instructions_supported(int instructions)
     return instructions == FMB_BEST || has(instructions);
 }
 
-bool run_set_of(int instructions, struct run_set *out)
+bool kernel_set_of(int instructions, struct kernel_set *out)
 {
     const int which = instructions == FMB_BEST ? best() : instructions;
     if (!has(which))

@@ -19,8 +19,8 @@
  *
  * A cuboid is seen from its centre: along a normal it reaches as far to either side, the sum of the
  * magnitudes of the products with halves of its components, so that half of the work is saved. To
- * halve nothing, all lengths of a pair with a cuboid are doubled instead (walk_pair). The offset is
- * that of the middle of the window, and the drift widens D by its half to either side.
+ * halve nothing, all lengths of a pair with a cuboid are doubled instead (pair_lanes). The offset
+ * is that of the middle of the window, and the drift widens D by its half to either side.
  *
  * Accuracy, with u = 2^-53, for any order of summation and with or without fused operations. Let
  * |x| be the length of x (2-norm) or more: 1-norms of the offset d and of H, sizes from the
@@ -28,7 +28,7 @@
  *
  *     T = |d| + 2 |H| + sum over cuboids of 2 |c_i| + sum over tetrahedra of |c_i|
  *
- * in the lengths of walk_pair. The gap of the slab u x v is a sum of products [u v w], and the
+ * in the lengths of pair_lanes. The gap of the slab u x v is a sum of products [u v w], and the
  * lengths of these w have a sum of at most T: H stands in the offset and in the swing, a component
  * of a cuboid in the offset and in the radius, that of a tetrahedron in its extent. Each
  * product is a sum of six monomials, and for the sum of their magnitudes, with p_k = |u_i| |v_j| +
@@ -73,7 +73,7 @@
  * enough for it (SLABS_ROUGH).
  *
  * Overflow and underflow: components and a drift that is not 0 have sizes between 2^-200 and 2^200,
- * offsets are below 2^200 (slabs_prepare, walk_pair.in_range), so that nothing overflows. Entries
+ * offsets are below 2^200 (slabs_prepare, pair_lanes.in_range), so that nothing overflows. Entries
  * and products may underflow: each of at most 100 operations then adds less than 2^-1074, to cross
  * products and H before they are multiplied by at most 2^405, while |u| |v| T 2^-53 is at least
  * 2^-653: the rest of the bound covers that many times over.
@@ -86,12 +86,12 @@
  * than that, since what the bound has to spare is more than 2^-53 T > 2^-260 of a distance. It
  * holds for slabs decided one by one, too: such a pair spans too many bits for integers
  * (limbs_prepare), and a slab with a bound of its own leaves 2^-660 of the gap
- * (running_error_bound), 2^-1064 of the distance. Along axes with known signs (walk_exact.h) the
+ * (running_error_bound), 2^-1064 of the distance. Along axes with known signs (slabs_exact.h) the
  * velocities are equal, and nothing underflows. */
 #include "slabs.h"
 
 #include "prepared.h"
-#include "walk.h"
+#include "slabs_evaluate.h"
 #include "running_error.h"
 
 #include <math.h>
@@ -153,8 +153,8 @@ bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, d
 
 /* ---- The list, of one pair ---- */
 
-INLINE void set_pair(const struct slabs_pair *pair, const struct walk_kind kind,
-                     struct walk_pair *out)
+INLINE void set_pair(const struct slabs_pair *pair, const struct kernel_traits traits,
+                     struct pair_lanes *out)
 {
     const struct world_frame *frame[2] = {&pair->a, &pair->b};
     double component[2][3][3], size[2][3];
@@ -164,41 +164,41 @@ INLINE void set_pair(const struct slabs_pair *pair, const struct walk_kind kind,
             for (int axis = 0; axis < 3; axis++)
                 component[f][i][axis] = frame[f]->component[i][axis];
         }
-    walk_pair_set(kind, (const double(*)[3][3]) component, (const double(*)[3]) size,
-                  pair->motion.offset, pair->motion.drift, pair->placing, out);
+    pair_lanes_set(traits, (const double(*)[3][3]) component, (const double(*)[3]) size,
+                   pair->motion.offset, pair->motion.drift, pair->placing, out);
     out->signed_axes = 0;
     memset(out->across, 0, sizeof out->across);
 }
 
 /* next: where slabs are kept. */
-INLINE void walk_one(const struct slabs_pair *pair, const struct walk_kind kind, bool rounds,
-                     struct slab_value *next, struct walk_found *found)
+INLINE void evaluate_one(const struct slabs_pair *pair, const struct kernel_traits traits,
+                         bool rounds, struct slab_value *next, struct slabs_result *result)
 {
-    struct walk_pair one;
-    set_pair(pair, kind, &one);
+    struct pair_lanes one;
+    set_pair(pair, traits, &one);
     if (!rounds)
         one.unit = one.reach = one.error = 0;
-    walk_begin(found);
-    found->next = next;
-    walk(&one, kind, found);
+    slabs_result_begin(result);
+    result->next = next;
+    evaluate_slabs(&one, traits, result);
 }
 
-static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
-                                   struct slab_value *next)
+static struct slabs_result evaluate_list(const struct slabs_pair *pair, bool rounds,
+                                         struct slab_value *next)
 {
-    struct walk_found found;
-#define WALK(dimension, x, y, drift)                                                   \
-    if (pair->a.dim == (dimension) && pair->a.shape == (x) && pair->b.shape == (y) &&  \
-        pair->motion.drifts == (drift))                                                \
-        walk_one(pair,                                                                 \
-                 (struct walk_kind){.dim = dimension,                                  \
-                                    .simplex = {(x) != FMB_CUBOID, (y) != FMB_CUBOID}, \
-                                    .face = {(x) == FMB_FACE, (y) == FMB_FACE},        \
-                                    .drifts = drift,                                   \
-                                    .along = (dimension) == 3,                         \
-                                    .ordered = true,                                   \
-                                    .exact = true},                                    \
-                 rounds, next, &found);
+    struct slabs_result result;
+#define WALK(dimension, x, y, drift)                                                           \
+    if (pair->a.dim == (dimension) && pair->a.shape == (x) && pair->b.shape == (y) &&          \
+        pair->motion.drifts == (drift))                                                        \
+        evaluate_one(pair,                                                                     \
+                     (struct kernel_traits){.dim = dimension,                                  \
+                                            .simplex = {(x) != FMB_CUBOID, (y) != FMB_CUBOID}, \
+                                            .face = {(x) == FMB_FACE, (y) == FMB_FACE},        \
+                                            .drifts = drift,                                   \
+                                            .axis_aligned = (dimension) == 3,                  \
+                                            .swap_invariant = true,                            \
+                                            .exact = true},                                    \
+                     rounds, next, &result);
 #define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
 #define WALK_PAIR(x, y) WALK_MOTIONS(2, x, y) WALK_MOTIONS(3, x, y)
 #define WALK_FACE(x) WALK_MOTIONS(3, x, FMB_FACE) WALK_MOTIONS(3, FMB_FACE, x)
@@ -213,12 +213,12 @@ static struct walk_found walk_list(const struct slabs_pair *pair, bool rounds,
 #undef WALK_PAIR
 #undef WALK_MOTIONS
 #undef WALK
-    return found;
+    return result;
 }
 
 int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX])
 {
-    return (int) (walk_list(pair, rounds, out).next - out);
+    return (int) (evaluate_list(pair, rounds, out).next - out);
 }
 
 /* ---- One slab alone ---- */

@@ -52,11 +52,11 @@
 #define SLABS_ROUNDING_AXES 0x1p-49
 
 /* The ends of a contact, in a window from -1 to 1, are off by less than this, but for what the
- * errors of slabs have to spare: derived in walk_slab.h. */
+ * errors of slabs have to spare: derived in slabs_lanes.h. */
 #define SLABS_TIMES_SLACK 0x1p-49
 
-/* The first of two passes (run.h) takes bounds that are so many times as wide. Two computations of
- * the same gap differ by at most two of these bounds, so that what any first pass decides is
+/* The first of two passes (kernel.h) takes bounds that are so many times as wide. Two computations
+ * of the same gap differ by at most two of these bounds, so that what any first pass decides is
  * decided by every second one: what stays open does not depend on the first, whose operations may
  * be fused. */
 #define SLABS_ROUGH 4
@@ -89,10 +89,10 @@ struct slab_normal {
     int u, v; /* edges; v is not used in 2D */
 };
 
-/* normal . w in [low, high] for w in D, seen from the reference points of the frames (walk.h);
- * along the way of the offset it goes from middle - swing to middle + swing. Each of the four is
- * within error of what it stands for, and so is the gap. Where the normal is surely zero, error is
- * 0, and so are the others. */
+/* normal . w in [low, high] for w in D, seen from the reference points of the frames
+ * (slabs_evaluate.h); along the way of the offset it goes from middle - swing to middle + swing.
+ * Each of the four is within error of what it stands for, and so is the gap. Where the normal is
+ * surely zero, error is 0, and so are the others. */
 struct slab_value {
     struct slab_normal normal;
     double low, high, middle, swing;
@@ -111,7 +111,7 @@ static inline double slab_gap(const struct slab_value *slab)
 enum slabs_outcome {
     SLABS_UNSURE = 0,
     SLABS_SEPARATED = FMB_SEPARATED,
-    SLABS_TOUCHING = FMB_TOUCHING, /* of the second pass alone (run.h) */
+    SLABS_TOUCHING = FMB_TOUCHING, /* of the second pass alone (kernel.h) */
     SLABS_OVERLAPPING = FMB_OVERLAPPING
 };
 

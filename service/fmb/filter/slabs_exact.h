@@ -2,8 +2,8 @@
  * coordinate axes.
  *
  * Nothing rounds. Let g be a power of two, and let all components, the origins, and the drift of a
- * lane be multiples of g in the lengths of walk_pair. Then every number that the walk computes is a
- * sum of products of three of these (two in 2D), a multiple of g^3 (g^2), and so is every partial
+ * lane be multiples of g in the lengths of pair_lanes. Then every number that the walk computes is
+ * a sum of products of three of these (two in 2D), a multiple of g^3 (g^2), and so is every partial
  * sum. slabs.c bounds the sum of the magnitudes of these products by (2 / sqrt(3)) |u| |v| T. T
  * counts every length in it: 2 |c| for a component of a cuboid, |c| for one of a simplex, 2 |H|
  * for the drift. So 2 (|u| + |v|) <= T for two edges of a cuboid, |u| + |v| <= T for the edges of
@@ -39,10 +39,10 @@
  * than e: w is in the interior of the true S. Where it is not, w lies on its bound.
  *
  * TOUCHING is only given where S has an interior: never for two faces. */
-#ifndef FMB_WALK_EXACT_H
-#define FMB_WALK_EXACT_H
+#ifndef FMB_SLABS_EXACT_H
+#define FMB_SLABS_EXACT_H
 
-#include "walk_pair.h"
+#include "pair_lanes.h"
 
 /* ---- Nothing rounds ---- */
 
@@ -60,16 +60,16 @@ INLINE lanes_mask has_few_bits(lanes x)
 }
 
 /* Bounds T from above by a power of two; 2^52 g follows from it. */
-INLINE lanes grid_of(const struct walk_kind kind, lanes reach)
+INLINE lanes grid_of(const struct kernel_traits traits, lanes reach)
 {
     const lanes power = lanes_from_bits(lanes_as_bits(reach) & 0x7ff0000000000000);
-    return power * (kind.dim == 2 ? 0x1p27 : 0x1p35);
+    return power * (traits.dim == 2 ? 0x1p27 : 0x1p35);
 }
 
 /* ---- Axes ---- */
 
 /* A sum of doubles, as two: exact unless rounds. */
-struct walk_sum {
+struct exact_sum {
     lanes value, rest;
     lanes_mask rounds;
 };
@@ -81,7 +81,7 @@ INLINE lanes error_of_sum(lanes x, lanes y, lanes sum)
     return (x - (sum - part)) + (y - part);
 }
 
-INLINE void add_exactly(struct walk_sum *sum, lanes x)
+INLINE void add_exactly(struct exact_sum *sum, lanes x)
 {
     const lanes value = sum->value + x, error = error_of_sum(sum->value, x, value);
     const lanes rest = sum->rest + error;
@@ -91,22 +91,22 @@ INLINE void add_exactly(struct walk_sum *sum, lanes x)
 }
 
 /* From the origin of a frame to its ends along an axis. */
-struct walk_ends {
+struct exact_extent {
     lanes low, high;
     lanes_mask rounds;
 };
 
 /* A cuboid usually extends along an axis with one of its components: then no sum of them rounds. */
-INLINE struct walk_ends ends_of(const struct walk_kind kind, int which, const lanes component[3][3],
-                                int axis)
+INLINE struct exact_extent exact_extent_of(const struct kernel_traits traits, int which,
+                                           const lanes component[3][3], int axis)
 {
     lanes_mask some = {0};
-    struct walk_ends out = {lanes_of(0), lanes_of(0), some};
+    struct exact_extent out = {lanes_of(0), lanes_of(0), some};
     UNROLL(3)
-    for (int i = 0; i < component_count(kind, which); i++) {
+    for (int i = 0; i < component_count(traits, which); i++) {
         const lanes c = component[i][axis];
         const lanes low = lanes_min(c, lanes_of(0)), high = lanes_max(c, lanes_of(0));
-        if (kind.simplex[which]) {
+        if (traits.simplex[which]) {
             out.low = lanes_min(low, out.low);
             out.high = lanes_max(high, out.high);
             continue;
@@ -121,16 +121,16 @@ INLINE struct walk_ends ends_of(const struct walk_kind kind, int which, const la
 }
 
 /* The gap along an axis; rounds: its sign is not known. */
-INLINE struct walk_sum gap_along(const struct walk_kind kind, const lanes component_a[3][3],
+INLINE struct exact_sum axis_gap(const struct kernel_traits traits, const lanes component_a[3][3],
                                  const lanes origin_a[3], const lanes component_b[3][3],
                                  const lanes origin_b[3], int axis)
 {
-    const struct walk_ends a = ends_of(kind, 0, component_a, axis);
-    const struct walk_ends b = ends_of(kind, 1, component_b, axis);
+    const struct exact_extent a = exact_extent_of(traits, 0, component_a, axis);
+    const struct exact_extent b = exact_extent_of(traits, 1, component_b, axis);
     const lanes offset = origin_b[axis] - origin_a[axis];
     const lanes error = error_of_sum(origin_b[axis], -origin_a[axis], offset);
-    struct walk_sum above = {offset, error, a.rounds | b.rounds};
-    struct walk_sum below = {-offset, -error, above.rounds};
+    struct exact_sum above = {offset, error, a.rounds | b.rounds};
+    struct exact_sum below = {-offset, -error, above.rounds};
     add_exactly(&above, b.low);
     add_exactly(&above, -a.high);
     add_exactly(&below, a.low);

@@ -1,19 +1,21 @@
 /* A pair of frames in lanes, as the kernels want it: seen from reference points, in lengths that
  * need no halves. */
-#ifndef FMB_WALK_PAIR_H
-#define FMB_WALK_PAIR_H
+#ifndef FMB_PAIR_LANES_H
+#define FMB_PAIR_LANES_H
 
 #include "lanes.h"
 #include "slabs.h"
 
 /* What is known when a kernel is compiled. */
-struct walk_kind {
+struct kernel_traits {
     int dim;
     bool simplex[2]; /* of a, of b: tetrahedra, triangles of 2D, faces; else cuboids */
     bool face[2];    /* 3D: a simplex of two components */
     bool drifts;
-    bool along;   /* edges may be parallel to the same axis: zero normals are looked for (3D) */
-    bool ordered; /* every number is to have the same bits for the pair the other way round */
+    bool
+        axis_aligned; /* edges may be parallel to the same axis: zero normals are looked for (3D) */
+    bool
+        swap_invariant; /* every number is to have the same bits for the pair the other way round */
     /* Two frames of the same shape; the second of two lanes holds the pair the other way round. The
      * slabs of b are those of a there, and those of edges i of a and j of b are those of j and i.
      */
@@ -27,19 +29,19 @@ struct walk_kind {
 /* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex.
  * In a pair with a cuboid all lengths are doubled, so that the halves of its edges are its
  * components. */
-struct walk_pair {
+struct pair_lanes {
     lanes component[2][3][3]; /* [frame][component][axis]; of a cuboid half of it, as above */
     lanes size[2][6];         /* of edges: no smaller than their lengths */
     lanes offset[3];          /* of b's reference point in the middle of the window */
-    lanes half[3]; /* of the drift: the offset goes from offset - half to offset + half */
-    lanes half_size;
-    lanes reach;         /* T (walk_error) */
+    lanes half_drift[3]; /* of the drift: the offset goes from offset - half to offset + half */
+    lanes half_drift_size;
+    lanes reach;         /* T (slab_rounding) */
     lanes unit;          /* the error of a slab of scale 1, those of the frames included */
     lanes error;         /* of both frames (prepared.h) */
     lanes_mask in_range; /* doubles can say something of it */
     lanes_mask tiny;     /* products with the drift may underflow to 0 */
-    /* kind.exact (walk_exact.h). Bit i: of axis i, the sign of the gap along it is known exactly;
-     * of such an axis, the edge has no extent along it. */
+    /* traits.exact (slabs_exact.h). Bit i: of axis i, the sign of the gap along it is known
+     * exactly; of such an axis, the edge has no extent along it. */
     lanes_bits signed_axes, across[2][6];
 };
 
@@ -48,26 +50,26 @@ INLINE int next(int i)
     return i == 2 ? 0 : i + 1;
 }
 
-INLINE int component_count(const struct walk_kind kind, int which)
+INLINE int component_count(const struct kernel_traits traits, int which)
 {
-    return kind.face[which] ? 2 : kind.dim;
+    return traits.face[which] ? 2 : traits.dim;
 }
 
-INLINE int edge_count(const struct walk_kind kind, int which)
+INLINE int edge_count(const struct kernel_traits traits, int which)
 {
-    return !kind.simplex[which] ? kind.dim : component_count(kind, which) == 2 ? 3 : 6;
+    return !traits.simplex[which] ? traits.dim : component_count(traits, which) == 2 ? 3 : 6;
 }
 
 /* The number of an edge (slabs.h): a face has c_0, c_1 and c_1 - c_0. */
-INLINE int edge_at(const struct walk_kind kind, int which, int index)
+INLINE int edge_at(const struct kernel_traits traits, int which, int index)
 {
-    return kind.face[which] && index == 2 ? 5 : index;
+    return traits.face[which] && index == 2 ? 5 : index;
 }
 
 /* Whether edge 3 + i of a frame in 3D is one of its own. */
-INLINE bool has_difference(const struct walk_kind kind, int which, int i)
+INLINE bool has_difference(const struct kernel_traits traits, int which, int i)
 {
-    return kind.simplex[which] && (!kind.face[which] || i == 2);
+    return traits.simplex[which] && (!traits.face[which] || i == 2);
 }
 
 INLINE lanes dot(const lanes u[3], const lanes v[3])
@@ -92,105 +94,107 @@ INLINE lanes product(const lanes x[3], const lanes y[3])
 
 /* Bound on the error of a gap, and of what it is made of, relative to the scale of the slab:
  * derived in slabs.c. */
-INLINE double walk_error(const struct walk_kind kind)
+INLINE double slab_rounding(const struct kernel_traits traits)
 {
-    return (kind.rough ? SLABS_ROUGH : 1) * (kind.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING);
+    return (traits.rough ? SLABS_ROUGH : 1) *
+           (traits.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING);
 }
 
-INLINE bool is_doubled(const struct walk_kind kind)
+INLINE bool is_doubled(const struct kernel_traits traits)
 {
-    return !kind.simplex[0] || !kind.simplex[1];
+    return !traits.simplex[0] || !traits.simplex[1];
 }
 
 /* Components and sizes of a frame; returns its share of the reach. */
-INLINE lanes set_frame(const struct walk_kind kind, int which, const lanes component[3][3],
-                       const lanes size[3], struct walk_pair *out)
+INLINE lanes set_components(const struct kernel_traits traits, int which,
+                            const lanes component[3][3], const lanes size[3],
+                            struct pair_lanes *out)
 {
-    const bool twice = is_doubled(kind) && kind.simplex[which];
+    const bool twice = is_doubled(traits) && traits.simplex[which];
     lanes sum = size[0] + size[1];
     UNROLL(3)
-    for (int i = 0; i < component_count(kind, which); i++) {
+    for (int i = 0; i < component_count(traits, which); i++) {
         UNROLL(3)
-        for (int axis = 0; axis < kind.dim; axis++)
+        for (int axis = 0; axis < traits.dim; axis++)
             out->component[which][i][axis] =
                 twice ? component[i][axis] + component[i][axis] : component[i][axis];
         out->size[which][i] = twice ? size[i] + size[i] : size[i];
     }
-    if (component_count(kind, which) == 3)
+    if (component_count(traits, which) == 3)
         sum += size[2];
     lanes *own = out->size[which];
     UNROLL(3)
     for (int i = 0; i < 3; i++)
-        if (kind.dim == 3 && has_difference(kind, which, i))
+        if (traits.dim == 3 && has_difference(traits, which, i))
             own[3 + i] = own[next(i)] + own[next(next(i))];
-    if (kind.simplex[which] && kind.dim == 2)
+    if (traits.simplex[which] && traits.dim == 2)
         own[2] = own[0] + own[1];
-    return is_doubled(kind) ? sum + sum : sum;
+    return is_doubled(traits) ? sum + sum : sum;
 }
 
 /* From the origin of a frame to its reference point, along an axis. */
-INLINE lanes shift_of(const struct walk_kind kind, const lanes component[3][3], int axis)
+INLINE lanes shift_of(const struct kernel_traits traits, const lanes component[3][3], int axis)
 {
     const lanes sum = component[0][axis] + component[1][axis];
-    return kind.dim == 2 ? sum : sum + component[2][axis];
+    return traits.dim == 2 ? sum : sum + component[2][axis];
 }
 
 /* The offset of the reference points at the middle of the window, along an axis. The same for the
  * pair the other way round, negative. */
-INLINE lanes offset_of(const struct walk_kind kind, const lanes component[2][3][3], lanes offset,
-                       lanes half, int axis)
+INLINE lanes offset_of(const struct kernel_traits traits, const lanes component[2][3][3],
+                       lanes offset, lanes half, int axis)
 {
-    const lanes at = kind.drifts ? offset + half : offset;
-    if (kind.simplex[0])
-        return kind.simplex[1] ? at : at + shift_of(kind, component[1], axis);
-    if (kind.simplex[1])
-        return at - shift_of(kind, component[0], axis);
-    return at + (shift_of(kind, component[1], axis) - shift_of(kind, component[0], axis));
+    const lanes at = traits.drifts ? offset + half : offset;
+    if (traits.simplex[0])
+        return traits.simplex[1] ? at : at + shift_of(traits, component[1], axis);
+    if (traits.simplex[1])
+        return at - shift_of(traits, component[0], axis);
+    return at + (shift_of(traits, component[1], axis) - shift_of(traits, component[0], axis));
 }
 
 /* From components, sizes of components, offset of the origins, drift, and the sum of errors, as the
  * frames have them. */
-INLINE void walk_pair_set(const struct walk_kind kind, const lanes component[2][3][3],
-                          const lanes size[2][3], const lanes offset[3], const lanes drift[3],
-                          lanes error, struct walk_pair *out)
+INLINE void pair_lanes_set(const struct kernel_traits traits, const lanes component[2][3][3],
+                           const lanes size[2][3], const lanes offset[3], const lanes drift[3],
+                           lanes error, struct pair_lanes *out)
 {
-    const lanes reach_a = set_frame(kind, 0, component[0], size[0], out);
-    const lanes reach_b = set_frame(kind, 1, component[1], size[1], out);
+    const lanes reach_a = set_components(traits, 0, component[0], size[0], out);
+    const lanes reach_b = set_components(traits, 1, component[1], size[1], out);
     lanes offset_size = lanes_of(0), half_size = lanes_of(0);
     out->tiny = (lanes_mask){0};
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        const lanes at = is_doubled(kind) ? offset[axis] + offset[axis] : offset[axis];
-        const lanes half = !kind.drifts       ? lanes_of(0)
-                           : is_doubled(kind) ? drift[axis]
-                                              : 0.5 * drift[axis];
-        out->half[axis] = half;
-        out->offset[axis] = offset_of(kind, component, at, half, axis);
+    for (int axis = 0; axis < traits.dim; axis++) {
+        const lanes at = is_doubled(traits) ? offset[axis] + offset[axis] : offset[axis];
+        const lanes half = !traits.drifts       ? lanes_of(0)
+                           : is_doubled(traits) ? drift[axis]
+                                                : 0.5 * drift[axis];
+        out->half_drift[axis] = half;
+        out->offset[axis] = offset_of(traits, component, at, half, axis);
         offset_size += lanes_abs(at);
         half_size += lanes_abs(half);
         out->tiny |= (half != 0) & (lanes_abs(half) < 0x1p-400);
     }
-    out->half_size = half_size;
+    out->half_drift_size = half_size;
     out->reach = (reach_a + reach_b) + (offset_size + (half_size + half_size));
-    out->error = is_doubled(kind) ? error + error : error;
-    out->unit = walk_error(kind) * out->reach + out->error;
+    out->error = is_doubled(traits) ? error + error : error;
+    out->unit = slab_rounding(traits) * out->reach + out->error;
     out->in_range = offset_size <= 0x1p200;
-    if (!kind.drifts)
+    if (!traits.drifts)
         return;
     lanes_mask usable = half_size >= 0x1p-200;
-    if (kind.box)
+    if (traits.box)
         usable |= half_size == 0;
     out->in_range &= usable & (half_size <= 0x1p200);
 }
 
 /* An edge by number; a difference that is 0 is exact, and none is tiny. */
-INLINE void walk_edge(const struct walk_kind kind, const struct walk_pair *pair, int which, int e,
-                      lanes out[3])
+INLINE void edge_vector(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
+                        int e, lanes out[3])
 {
-    const int p = kind.dim == 2 ? 0 : next(e % 3), q = kind.dim == 2 ? 1 : next(p);
+    const int p = traits.dim == 2 ? 0 : next(e % 3), q = traits.dim == 2 ? 1 : next(p);
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
-        out[axis] = e < kind.dim
+    for (int axis = 0; axis < traits.dim; axis++)
+        out[axis] = e < traits.dim
                         ? pair->component[which][e][axis]
                         : pair->component[which][q][axis] - pair->component[which][p][axis];
 }

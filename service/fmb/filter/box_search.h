@@ -1,10 +1,10 @@
 /* The box of the intersection of a pair in contact, at rest or moving, of LANES pairs at once.
  *
- *   In     struct walk_pair; struct box_places: the numbers of the frames as prepared, the duration
- *   Out    the box, world coordinates, [lower, upper][axis], and the lanes in which it is good:
- *          surely containing the exact box, and each end within the limit of fmb.h
+ *   In     struct pair_lanes; struct box_places: the numbers of the frames as prepared, the
+ * duration Out    the box, world coordinates, [lower, upper][axis], and the lanes in which it is
+ * good: surely containing the exact box, and each end within the limit of fmb.h
  *
- * Steps (walk_box()):
+ * Steps (search_box()):
  *   1. begin_box()       frames about the middle of the window, tolerance and slack
  *   2. set_extents()     the vertices y = 0 and y = e_k: the extents of the frames
  *   3. add_plane_rays()  in 2D, or add_space_rays() in 3D: vertices on the normals of the faces,
@@ -103,17 +103,17 @@
  * On the line of an outward normal all of this holds of its half l >= 0, which ends in y = 0 or
  * e_k.
  *
- * Something certain makes the normals span the space. Where nothing rounds (walk_exact.h),
+ * Something certain makes the normals span the space. Where nothing rounds (slabs_exact.h),
  * determinants and all products with n are exact, and l alone is rounded, twice: what is left of
  * the wall is at most 3 u of its product with n, times l, within the 9 u of that product. NAN
  * bounds nothing, and stands for what is not certain. Underflow: as in slabs.c; some component is
  * at least 2^-200, and 2^-49 of it far above all that is lost. */
-#ifndef FMB_WALK_BOX_H
-#define FMB_WALK_BOX_H
+#ifndef FMB_BOX_SEARCH_H
+#define FMB_BOX_SEARCH_H
 
 #include "rotation.h"
-#include "walk.h"
-#include "walk_exact.h"
+#include "slabs_evaluate.h"
+#include "slabs_exact.h"
 
 /* u; tests plant a smaller one. */
 #ifndef BOX_UNIT
@@ -127,27 +127,27 @@
 #define BOX_FARTHEST 0x1p500
 
 /* Roundings of a monomial of a triple product, those of the wall that is left out included. */
-INLINE double product_rounding(const struct walk_kind kind)
+INLINE double product_rounding(const struct kernel_traits traits)
 {
-    return (kind.simplex[0] || kind.simplex[1] ? 17 : 8) * BOX_UNIT;
+    return (traits.simplex[0] || traits.simplex[1] ? 17 : 8) * BOX_UNIT;
 }
 
-INLINE double determinant_rounding(const struct walk_kind kind)
+INLINE double determinant_rounding(const struct kernel_traits traits)
 {
-    return (kind.simplex[0] || kind.simplex[1] ? 10 : 8) * BOX_UNIT;
+    return (traits.simplex[0] || traits.simplex[1] ? 10 : 8) * BOX_UNIT;
 }
 
-/* What the boxes need of the frames besides struct walk_pair: as they stand in prepared frames. */
+/* What the boxes need of the frames besides struct pair_lanes: as they stand in prepared frames. */
 struct box_places {
     lanes_bits summary[2];
     lanes origin[2][3], velocity[2][3]; /* velocities are read where the kind drifts */
     lanes error[2];
-    lanes_mask exact; /* nothing rounds (walk_exact.h) */
+    lanes_mask exact; /* nothing rounds (slabs_exact.h) */
     double duration;
     bool in_contact; /* as prepared; else the true frames are, which are off by the errors */
 };
 
-/* A frame; lengths are those of walk_pair. Edges by number (slabs.h). */
+/* A frame; lengths are those of pair_lanes. Edges by number (slabs.h). */
 struct box_frame {
     lanes edge[6][3];
     lanes length[6][3];       /* magnitudes of the components that an edge is made of */
@@ -190,12 +190,12 @@ struct box_bounds {
     lanes outer[2][3], inner[2][3];
 };
 
-struct box_walk {
+struct box_search {
     struct box_frame frame[2];
     lanes_mask drift[3];   /* where the drift may not be 0 */
     lanes_mask exact;      /* no triple product rounds */
     lanes unit;            /* of the small numbers that ends are made of; 0: they are not */
-    lanes turn;            /* t */
+    lanes relative_error;  /* t */
     lanes placing;         /* 2.2 t times all lengths, and e / 10 */
     lanes bends;           /* 68 (18 u + 4 t) T, twice that where it counts twice */
     lanes size[3], way[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
@@ -227,29 +227,29 @@ INLINE void cross_some(const lanes_mask u[3], const lanes_mask v[3], lanes_mask 
     out[2] = (u[0] & v[1]) | (u[1] & v[0]);
 }
 
-INLINE lanes_mask dot_some(const struct walk_kind kind, const lanes_mask u[3],
+INLINE lanes_mask dot_some(const struct kernel_traits traits, const lanes_mask u[3],
                            const lanes_mask v[3])
 {
     const lanes_mask plane = (u[0] & v[0]) | (u[1] & v[1]);
-    return kind.dim == 2 ? plane : plane | (u[2] & v[2]);
+    return traits.dim == 2 ? plane : plane | (u[2] & v[2]);
 }
 
 /* ---- Frames ---- */
 
 /* The components from whose ends an edge that is a difference goes, and to which. */
-INLINE int edge_from(const struct walk_kind kind, int e)
+INLINE int edge_from(const struct kernel_traits traits, int e)
 {
-    return kind.dim == 2 ? 0 : next(e % 3);
+    return traits.dim == 2 ? 0 : next(e % 3);
 }
 
-INLINE int edge_to(const struct walk_kind kind, int e)
+INLINE int edge_to(const struct kernel_traits traits, int e)
 {
-    return kind.dim == 2 ? 1 : next(next(e % 3));
+    return traits.dim == 2 ? 1 : next(next(e % 3));
 }
 
-INLINE bool has_edge(const struct walk_kind kind, int which, int e)
+INLINE bool has_edge(const struct kernel_traits traits, int which, int e)
 {
-    return e < 3 ? e < component_count(kind, which) : has_difference(kind, which, e - 3);
+    return e < 3 ? e < component_count(traits, which) : has_difference(traits, which, e - 3);
 }
 
 INLINE lanes_mask has_bit(lanes_bits summary, unsigned bit)
@@ -257,36 +257,36 @@ INLINE lanes_mask has_bit(lanes_bits summary, unsigned bit)
     return (summary & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * bit) != 0;
 }
 
-INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                          const struct box_places *places, struct box_frame *out)
+INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
+                          int which, const struct box_places *places, struct box_frame *out)
 {
     const lanes(*c)[3] = pair->component[which];
-    const double twice = is_doubled(kind) ? 2 : 1;
+    const double twice = is_doubled(traits) ? 2 : 1;
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         const lanes_mask inexact =
             is_not(has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis));
         const lanes at = twice * places->origin[which][axis];
         out->way[axis] =
-            kind.drifts
+            traits.drifts
                 ? (0.5 * twice) * (places->velocity[which][axis] * lanes_of(places->duration))
                 : lanes_of(0);
         out->centre[axis] =
-            (kind.simplex[which] ? at : at + shift_of(kind, c, axis)) + out->way[axis];
+            (traits.simplex[which] ? at : at + shift_of(traits, c, axis)) + out->way[axis];
         out->own_sum[axis] = lanes_abs(out->way[axis]);
         UNROLL(3)
-        for (int i = 0; i < component_count(kind, which); i++)
+        for (int i = 0; i < component_count(traits, which); i++)
             out->own_sum[axis] += lanes_abs(c[i][axis]);
         out->sum[axis] = lanes_abs(at) + 2 * out->own_sum[axis];
         out->own_most = axis ? lanes_max(out->own_sum[axis], out->own_most) : out->own_sum[0];
         const lanes way = lanes_abs(out->way[axis]);
         out->way_most = axis ? lanes_max(way, out->way_most) : way;
         UNROLL(6)
-        for (int index = 0; index < edge_count(kind, which); index++) {
-            const int e = edge_at(kind, which, index);
-            const lanes from = e < kind.dim ? lanes_of(0) : c[edge_from(kind, e)][axis];
-            const lanes to = e < kind.dim ? c[e][axis] : c[edge_to(kind, e)][axis];
-            out->edge[e][axis] = e < kind.dim ? to : to - from;
+        for (int index = 0; index < edge_count(traits, which); index++) {
+            const int e = edge_at(traits, which, index);
+            const lanes from = e < traits.dim ? lanes_of(0) : c[edge_from(traits, e)][axis];
+            const lanes to = e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis];
+            out->edge[e][axis] = e < traits.dim ? to : to - from;
             out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
             out->some[e][axis] = (out->edge[e][axis] != 0) | inexact;
         }
@@ -294,19 +294,19 @@ INLINE void set_box_frame(const struct walk_pair *pair, const struct walk_kind k
 }
 
 /* The largest magnitude of a coordinate of a vertex over the window, or a little less. */
-INLINE lanes largest_place(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                           const struct box_frame *frame)
+INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           int which, const struct box_frame *frame)
 {
     lanes largest = lanes_of(0);
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         const lanes centre = frame->centre[axis];
         lanes farthest = lanes_abs(centre);
         UNROLL(3)
-        for (int i = 0; i < component_count(kind, which); i++) {
+        for (int i = 0; i < component_count(traits, which); i++) {
             const lanes c = pair->component[which][i][axis];
-            farthest = kind.simplex[which] ? lanes_max(lanes_abs(centre + c), farthest)
-                                           : farthest + lanes_abs(c);
+            farthest = traits.simplex[which] ? lanes_max(lanes_abs(centre + c), farthest)
+                                             : farthest + lanes_abs(c);
         }
         largest = lanes_max(farthest + lanes_abs(frame->way[axis]), largest);
     }
@@ -317,23 +317,23 @@ INLINE lanes largest_place(const struct walk_pair *pair, const struct walk_kind 
 
 /* Takes what c gives at a vertex; what is not a number bounds nothing. width: no less than that
  * along any axis. The same for a lane whatever the others hold. */
-INLINE void add_reach(const struct walk_kind kind, const struct box_reach *reach, lanes width,
-                      int which, struct box_walk *walk)
+INLINE void add_reach(const struct kernel_traits traits, const struct box_reach *reach, lanes width,
+                      int which, struct box_search *search)
 {
-    struct box_bounds *bounds = &walk->bounds[which];
+    struct box_bounds *bounds = &search->bounds[which];
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
+    for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++)
         bounds->outer[end][axis] = lanes_min(reach->at[end][axis], bounds->outer[end][axis]);
-    if (!lanes_greater_bits(width, walk->tolerance))
+    if (!lanes_greater_bits(width, search->tolerance))
         return;
-    const lanes_mask wide = width > walk->tolerance;
+    const lanes_mask wide = width > search->tolerance;
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
+    for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++) {
-        const lanes at = reach->at[end][axis], sum = walk->frame[which].own_sum[axis];
+        const lanes at = reach->at[end][axis], sum = search->frame[which].own_sum[axis];
         const lanes inner =
             at - (reach->width[axis] + reach->relative * (sum + lanes_min(lanes_abs(at), sum)));
         bounds->inner[end][axis] =
@@ -341,62 +341,62 @@ INLINE void add_reach(const struct walk_kind kind, const struct box_reach *reach
     }
 }
 
-INLINE lanes dot_of(const struct walk_kind kind, const lanes u[3], const lanes v[3])
+INLINE lanes dot_of(const struct kernel_traits traits, const lanes u[3], const lanes v[3])
 {
-    return kind.dim == 2 ? u[0] * v[0] + u[1] * v[1] : dot(u, v);
+    return traits.dim == 2 ? u[0] * v[0] + u[1] * v[1] : dot(u, v);
 }
 
-INLINE lanes weight_of(const struct walk_kind kind, const lanes weight[3], const lanes v[3])
+INLINE lanes weight_of(const struct kernel_traits traits, const lanes weight[3], const lanes v[3])
 {
     const lanes plane = weight[0] * lanes_abs(v[0]) + weight[1] * lanes_abs(v[1]);
-    return kind.dim == 2 ? plane : plane + weight[2] * lanes_abs(v[2]);
+    return traits.dim == 2 ? plane : plane + weight[2] * lanes_abs(v[2]);
 }
 
 /* weight: of the vector whose product with v is the determinant, some of both as of edges; scale:
  * the product of the lengths. */
-INLINE struct box_vertex vertex_of(const struct walk_kind kind, lanes det, lanes scale,
+INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det, lanes scale,
                                    const lanes weight[3], const lanes v[3],
                                    const lanes_mask some_weight[3], const lanes_mask some_v[3],
-                                   struct box_walk *walk)
+                                   struct box_search *search)
 {
     struct box_vertex out;
     const lanes_mask none = {0};
     out.open = none;
-    const lanes error = walk->determinant * scale;
-    const lanes fine = lanes_select(
-        walk->exact, lanes_of(0),
-        determinant_rounding(kind) * weight_of(kind, weight, v) + (3.1 * walk->turn) * scale);
+    const lanes error = search->determinant * scale;
+    const lanes fine = lanes_select(search->exact, lanes_of(0),
+                                    determinant_rounding(traits) * weight_of(traits, weight, v) +
+                                        (3.1 * search->relative_error) * scale);
     lanes_mask certain = lanes_abs(det) > 16 * error;
     if (!lanes_all(certain)) {
         certain = lanes_abs(det) > 16 * fine;
         det = lanes_select(certain, det, lanes_of(NAN));
-        out.open = is_not(certain) & dot_some(kind, some_weight, some_v) & is_not(walk->exact);
+        out.open = is_not(certain) & dot_some(traits, some_weight, some_v) & is_not(search->exact);
     }
     out.inverse = 1 / det;
     const lanes size = lanes_abs(out.inverse);
-    out.error = (1.2 * walk->rounding * scale) * size + 0x1p-50;
+    out.error = (1.2 * search->rounding * scale) * size + 0x1p-50;
     out.fine = (1.2 * fine) * size + 0x1p-50;
-    walk->spans |= certain;
+    search->spans |= certain;
     return out;
 }
 
 /* ---- Vertices y = 0 and y = e_k: extents ---- */
 
 /* The bounds to begin with. */
-INLINE void set_extents(const struct walk_kind kind, const struct walk_pair *pair, int which,
-                        struct box_walk *walk)
+INLINE void set_extents(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
+                        struct box_search *search)
 {
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         lanes at[3];
         UNROLL(3)
-        for (int i = 0; i < component_count(kind, which); i++)
+        for (int i = 0; i < component_count(traits, which); i++)
             at[i] = pair->component[which][i][axis];
-        const struct walk_extent own = extent_of_frame(kind, which, at);
-        const lanes way = lanes_abs(walk->frame[which].way[axis]);
-        walk->bounds[which].outer[0][axis] = (own.radius - own.low) + way;
-        walk->bounds[which].outer[1][axis] = (own.radius + own.high) + way;
-        walk->bounds[which].inner[0][axis] = walk->bounds[which].inner[1][axis] =
+        const struct slab_extent own = extent_of_frame(traits, which, at);
+        const lanes way = lanes_abs(search->frame[which].way[axis]);
+        search->bounds[which].outer[0][axis] = (own.radius - own.low) + way;
+        search->bounds[which].outer[1][axis] = (own.radius + own.high) + way;
+        search->bounds[which].inner[0][axis] = search->bounds[which].inner[1][axis] =
             lanes_of(INFINITY);
     }
 }
@@ -423,9 +423,9 @@ INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
 
 /* Which components of a frame, besides 0, differ along what is 0 on its edge e: those that e does
  * not come from, or one end of e, and the component across from it. */
-INLINE int across_first(const struct walk_kind kind, int which, int e)
+INLINE int across_first(const struct kernel_traits traits, int which, int e)
 {
-    if (component_count(kind, which) == 2)
+    if (component_count(traits, which) == 2)
         return e == 0;
     return e < 3 ? next(e) : e - 3;
 }
@@ -436,31 +436,31 @@ INLINE int across_second(int e)
 }
 
 /* The extent of a frame along what is 0 on its edge e, and at[] on its components. */
-INLINE struct walk_extent extent_across(const struct walk_kind kind, int which, int e,
+INLINE struct slab_extent extent_across(const struct kernel_traits traits, int which, int e,
                                         const lanes at[3])
 {
-    const lanes first = at[across_first(kind, which, e)];
-    return component_count(kind, which) == 2
-               ? extent_of_one(kind.simplex[which], first)
-               : extent_of_two(kind.simplex[which], first, at[across_second(e)]);
+    const lanes first = at[across_first(traits, which, e)];
+    return component_count(traits, which) == 2
+               ? extent_of_one(traits.simplex[which], first)
+               : extent_of_two(traits.simplex[which], first, at[across_second(e)]);
 }
 
 /* Whether the offset surely is so far inside a slab that c grows at both ends of its line. */
-INLINE lanes_mask is_inside(const struct walk_kind kind, struct walk_extent d, lanes middle,
-                            lanes swing, lanes scale, const struct walk_pair *pair,
-                            const struct box_walk *walk)
+INLINE lanes_mask is_inside(const struct kernel_traits traits, struct slab_extent d, lanes middle,
+                            lanes swing, lanes scale, const struct pair_lanes *pair,
+                            const struct box_search *search)
 {
-    return gap_of(kind, d, middle, swing) + scale * (2 * walk->bends + 2 * pair->unit) < 0;
+    return gap_of(traits, d, middle, swing) + scale * (2 * search->bends + 2 * pair->unit) < 0;
 }
 
 /* What c is off by on the line of a vector n, for the parameter 1: products with n, those of the
  * offset, and what is made of them; sum: of the magnitudes of these products. */
-INLINE lanes value_error(const struct walk_kind kind, const lanes weight[3], const lanes normal[3],
-                         lanes sum, const struct box_walk *walk)
+INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3],
+                         const lanes normal[3], lanes sum, const struct box_search *search)
 {
-    const lanes rounded = product_rounding(kind) * dot_of(kind, weight, walk->size) +
-                          (5 * BOX_UNIT) * dot_of(kind, normal, walk->way);
-    return lanes_select(walk->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
+    const lanes rounded = product_rounding(traits) * dot_of(traits, weight, search->size) +
+                          (5 * BOX_UNIT) * dot_of(traits, normal, search->way);
+    return lanes_select(search->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
 }
 
 /* A line and what is the same for all of its vertices. */
@@ -474,9 +474,9 @@ struct box_line {
 
 /* Whether only one of n and -n is the normal of a face with points of its frame behind it: that of
  * a simplex with a volume. */
-INLINE bool is_one_sided(const struct walk_kind kind, int which)
+INLINE bool is_one_sided(const struct kernel_traits traits, int which)
 {
-    return kind.simplex[which] && component_count(kind, which) == kind.dim;
+    return traits.simplex[which] && component_count(traits, which) == traits.dim;
 }
 
 /* Where the sign of x is minus one, else the other; of -0 too. */
@@ -505,11 +505,11 @@ INLINE lanes with_sign_of(lanes x, lanes sign)
 
 /* What c gives along an axis at the vertex l of a line; other: the extent of the other frame along
  * e_k - l n, turned over with it where the ray is one-sided, and what its way adds to both ends. */
-INLINE void set_reach(const struct walk_kind kind, int which, const struct box_line *line, lanes l,
-                      struct walk_extent other, lanes way, int axis, struct box_reach *out)
+INLINE void set_reach(const struct kernel_traits traits, int which, const struct box_line *line,
+                      lanes l, struct slab_extent other, lanes way, int axis, struct box_reach *out)
 {
     const lanes both = lanes_abs(l) * line->own + way;
-    if (is_one_sided(kind, which)) {
+    if (is_one_sided(traits, which)) {
         const lanes reach = (other.high + other.radius) + both;
         out->at[0][axis] = choose_by_sign(l, reach, lanes_of(INFINITY));
         out->at[1][axis] = choose_by_sign(l, lanes_of(INFINITY), reach);
@@ -521,152 +521,154 @@ INLINE void set_reach(const struct walk_kind kind, int which, const struct box_l
 }
 
 /* What e_k - l n makes of component i of the other frame. */
-INLINE lanes product_at(const struct walk_kind kind, int which, const struct box_frame *other,
+INLINE lanes product_at(const struct kernel_traits traits, int which, const struct box_frame *other,
                         const struct box_ray *ray, int i, int axis, lanes l)
 {
     const lanes at = other->edge[i][axis] - l * ray->at[i];
-    return is_one_sided(kind, which) && kind.simplex[!which] ? with_sign_of(at, l) : at;
+    return is_one_sided(traits, which) && traits.simplex[!which] ? with_sign_of(at, l) : at;
 }
 
 /* The vertex of a line on the wall of an edge of the other frame. */
-INLINE void add_wall(const struct walk_pair *pair, const struct walk_kind kind, int which,
+INLINE void add_wall(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
                      const struct box_line *line, int index, const struct box_vertex *vertex,
-                     struct box_walk *walk)
+                     struct box_search *search)
 {
-    const int other = !which, e = edge_at(kind, other, index);
-    const int p = across_first(kind, other, e), q = across_second(e);
-    const bool two = component_count(kind, other) == 3;
+    const int other = !which, e = edge_at(traits, other, index);
+    const int p = across_first(traits, other, e), q = across_second(e);
+    const bool two = component_count(traits, other) == 3;
     const struct box_ray *ray = line->ray;
-    const struct box_frame *frame = &walk->frame[other];
+    const struct box_frame *frame = &search->frame[other];
     const lanes most = pair->size[other][e] * lanes_abs(vertex->inverse);
-    const lanes apart = (1.2 * walk->turn) * (line->slope * most);
+    const lanes apart = (1.2 * search->relative_error) * (line->slope * most);
     struct box_reach reach = {.relative = vertex->fine};
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         const lanes l = frame->edge[e][axis] * vertex->inverse;
-        const lanes x = product_at(kind, which, frame, ray, p, axis, l);
-        const struct walk_extent d =
-            two ? extent_of_two(kind.simplex[other], x,
-                                product_at(kind, which, frame, ray, q, axis, l))
-                : extent_of_one(kind.simplex[other], x);
-        const lanes way = kind.drifts ? lanes_abs(frame->way[axis] - l * ray->swing) : lanes_of(0);
-        set_reach(kind, which, line, l, d, way, axis, &reach);
+        const lanes x = product_at(traits, which, frame, ray, p, axis, l);
+        const struct slab_extent d =
+            two ? extent_of_two(traits.simplex[other], x,
+                                product_at(traits, which, frame, ray, q, axis, l))
+                : extent_of_one(traits.simplex[other], x);
+        const lanes way =
+            traits.drifts ? lanes_abs(frame->way[axis] - l * ray->swing) : lanes_of(0);
+        set_reach(traits, which, line, l, d, way, axis, &reach);
         reach.width[axis] = lanes_abs(l) * (line->width + line->placing) + apart;
     }
     lanes width = most * line->width + (2 * vertex->error) * frame->own_most;
-    if (!walk->in_contact)
+    if (!search->in_contact)
         width += most * line->placing + apart;
-    add_reach(kind, &reach, width, other, walk);
+    add_reach(traits, &reach, width, other, search);
 }
 
 /* The vertex of a line on the wall of the drift. */
-INLINE void add_drift_vertex(const struct walk_kind kind, int which, const struct box_line *line,
-                             const struct box_vertex *vertex, struct box_walk *walk)
+INLINE void add_drift_vertex(const struct kernel_traits traits, int which,
+                             const struct box_line *line, const struct box_vertex *vertex,
+                             struct box_search *search)
 {
     const int other = !which;
-    const struct box_frame *frame = &walk->frame[other];
+    const struct box_frame *frame = &search->frame[other];
     const lanes most = frame->way_most * lanes_abs(vertex->inverse);
     struct box_reach reach = {.relative = vertex->fine};
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         const lanes l = frame->way[axis] * vertex->inverse;
         lanes at[3];
         UNROLL(3)
-        for (int i = 0; i < component_count(kind, other); i++)
-            at[i] = product_at(kind, which, frame, line->ray, i, axis, l);
-        set_reach(kind, which, line, l, extent_of_frame(kind, other, at), lanes_of(0), axis,
+        for (int i = 0; i < component_count(traits, other); i++)
+            at[i] = product_at(traits, which, frame, line->ray, i, axis, l);
+        set_reach(traits, which, line, l, extent_of_frame(traits, other, at), lanes_of(0), axis,
                   &reach);
         reach.width[axis] = lanes_abs(l) * (line->width + line->placing);
     }
     lanes width = most * line->width + (2 * vertex->error) * frame->own_most;
-    if (!walk->in_contact)
+    if (!search->in_contact)
         width += most * line->placing;
-    add_reach(kind, &reach, width, other, walk);
+    add_reach(traits, &reach, width, other, search);
 }
 
 /* Turns the ray of a simplex outward: its frame does not reach beyond 0 along it, or is as far as
  * all of own. */
-INLINE void turn_outward(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                         bool across, struct box_ray *ray, struct box_walk *walk)
+INLINE void turn_outward(const struct pair_lanes *pair, const struct kernel_traits traits,
+                         int which, bool across, struct box_ray *ray, struct box_search *search)
 {
     const lanes *size = pair->size[which];
-    const lanes scale = kind.dim == 2 ? size[0] * size[1] : (size[0] * size[1]) * size[2];
+    const lanes scale = traits.dim == 2 ? size[0] * size[1] : (size[0] * size[1]) * size[2];
     const lanes sign = across ? ray->own : -ray->own;
-    walk->good &= lanes_abs(ray->own) > walk->determinant * scale;
+    search->good &= lanes_abs(ray->own) > search->determinant * scale;
     ray->middle = with_sign_of(ray->middle, sign);
     ray->swing = with_sign_of(ray->swing, sign);
     ray->own = across ? lanes_abs(ray->own) : -lanes_abs(ray->own);
     UNROLL(6)
     for (int e = 0; e < 6; e++)
-        if (e < 3 || has_edge(kind, !which, e))
+        if (e < 3 || has_edge(traits, !which, e))
             ray->at[e] = with_sign_of(ray->at[e], sign);
 }
 
 /* across: the face does not hold the origin of its frame. */
-INLINE void add_ray(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                    bool across, struct box_ray *ray, struct box_walk *walk)
+INLINE void add_ray(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
+                    bool across, struct box_ray *ray, struct box_search *search)
 {
-    const int other = !which, walls = kind.dim == 2 && which ? 0 : edge_count(kind, other);
-    const struct box_frame *frame = &walk->frame[other];
+    const int other = !which, walls = traits.dim == 2 && which ? 0 : edge_count(traits, other);
+    const struct box_frame *frame = &search->frame[other];
     struct box_vertex vertex[7];
     lanes_mask open = {0};
-    if (is_one_sided(kind, which))
-        turn_outward(pair, kind, which, across, ray, walk);
+    if (is_one_sided(traits, which))
+        turn_outward(pair, traits, which, across, ray, search);
     UNROLL(6)
     for (int index = 0; index < walls; index++) {
-        const int e = edge_at(kind, other, index);
-        vertex[index] = vertex_of(kind, ray->at[e], ray->scale * pair->size[other][e], ray->weight,
-                                  frame->length[e], ray->some, frame->some[e], walk);
+        const int e = edge_at(traits, other, index);
+        vertex[index] = vertex_of(traits, ray->at[e], ray->scale * pair->size[other][e],
+                                  ray->weight, frame->length[e], ray->some, frame->some[e], search);
         open |= vertex[index].open;
     }
-    if (kind.drifts) {
-        vertex[walls] = vertex_of(kind, ray->swing, ray->scale * pair->half_size, ray->weight,
-                                  pair->half, ray->some, walk->drift, walk);
+    if (traits.drifts) {
+        vertex[walls] = vertex_of(traits, ray->swing, ray->scale * pair->half_drift_size,
+                                  ray->weight, pair->half_drift, ray->some, search->drift, search);
         open |= vertex[walls].open;
     }
-    const struct walk_extent own = extent_of_one(kind.simplex[which], ray->own);
-    const struct walk_extent of_other = extent_of_frame(kind, other, ray->at);
-    const struct walk_extent d =
-        extent_difference(kind, which ? of_other : own, which ? own : of_other);
-    if (kind.dim == 2)
-        walk->open |= open;
+    const struct slab_extent own = extent_of_one(traits.simplex[which], ray->own);
+    const struct slab_extent of_other = extent_of_frame(traits, other, ray->at);
+    const struct slab_extent d =
+        extent_difference(traits, which ? of_other : own, which ? own : of_other);
+    if (traits.dim == 2)
+        search->open |= open;
     if (lanes_mask_bits(open))
-        walk->good &= is_not(open) | is_inside(kind, d, which ? -ray->middle : ray->middle,
-                                               ray->swing, ray->scale, pair, walk);
+        search->good &= is_not(open) | is_inside(traits, d, which ? -ray->middle : ray->middle,
+                                                 ray->swing, ray->scale, pair, search);
     struct box_line line = {.ray = ray};
     line.slope = ((d.high - d.low) + d.radius) + (lanes_abs(ray->middle) + lanes_abs(ray->swing));
-    const lanes error =
-        value_error(kind, ray->weight, ray->normal, line.slope, walk) + ray->scale * pair->error;
-    line.placing = ray->scale * walk->placing;
-    line.width =
-        (error + error) + lanes_select(open | walk->bent, ray->scale * walk->bends, lanes_of(0));
+    const lanes error = value_error(traits, ray->weight, ray->normal, line.slope, search) +
+                        ray->scale * pair->error;
+    line.placing = ray->scale * search->placing;
+    line.width = (error + error) +
+                 lanes_select(open | search->bent, ray->scale * search->bends, lanes_of(0));
     line.middle = ray->middle;
-    line.own = error + (kind.simplex[which] ? own.high : own.radius);
-    if (is_one_sided(kind, which))
+    line.own = error + (traits.simplex[which] ? own.high : own.radius);
+    if (is_one_sided(traits, which))
         line.own -= ray->middle;
-    if (kind.drifts) { /* many vertices: unrolled they gain nothing */
+    if (traits.drifts) { /* many vertices: unrolled they gain nothing */
         for (int index = 0; index < walls; index++)
-            add_wall(pair, kind, which, &line, index, &vertex[index], walk);
-        add_drift_vertex(kind, which, &line, &vertex[walls], walk);
+            add_wall(pair, traits, which, &line, index, &vertex[index], search);
+        add_drift_vertex(traits, which, &line, &vertex[walls], search);
         return;
     }
     UNROLL(6)
     for (int index = 0; index < walls; index++)
-        add_wall(pair, kind, which, &line, index, &vertex[index], walk);
+        add_wall(pair, traits, which, &line, index, &vertex[index], search);
 }
 
-INLINE void add_plane_rays(const struct walk_pair *pair, const struct walk_kind kind,
-                           struct box_walk *walk)
+INLINE void add_plane_rays(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           struct box_search *search)
 {
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
-        struct walk_plane_edges edges;
+        struct edge_products_2d edges;
         const lanes area = product(pair->component[which][0], pair->component[which][1]);
-        set_plane_edges(pair, kind, which, &edges);
+        set_edge_products_2d(pair, traits, which, &edges);
         UNROLL(3)
-        for (int e = 0; e < edge_count(kind, which); e++) {
-            const lanes *length = walk->frame[which].length[e];
-            const lanes_mask *some = walk->frame[which].some[e];
+        for (int e = 0; e < edge_count(traits, which); e++) {
+            const lanes *length = search->frame[which].length[e];
+            const lanes_mask *some = search->frame[which].some[e];
             struct box_ray ray = {.scale = pair->size[which][e],
                                   .normal = {length[1], length[0]},
                                   .weight = {length[1], length[0]},
@@ -676,7 +678,7 @@ INLINE void add_plane_rays(const struct walk_pair *pair, const struct walk_kind 
                                   .middle = which ? -edges.middle[e] : edges.middle[e],
                                   .swing = which ? -edges.swing[e] : edges.swing[e]};
             ray.at[2] = ray.at[1] - ray.at[0];
-            add_ray(pair, kind, which, e == 2, &ray, walk);
+            add_ray(pair, traits, which, e == 2, &ray, search);
         }
     }
 }
@@ -699,12 +701,12 @@ INLINE void add_sums(const struct box_ray rays[3], struct box_ray *out)
     }
 }
 
-INLINE void add_space_rays(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                           const struct walk_side *side, struct box_walk *walk)
+INLINE void add_space_rays(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           int which, const struct face_products *side, struct box_search *search)
 {
     struct box_ray rays[4];
-    const int first = first_plane(kind, which);
-    const bool across = kind.simplex[which] && !kind.face[which];
+    const int first = first_plane(traits, which);
+    const bool across = traits.simplex[which] && !traits.face[which];
     UNROLL(3)
     for (int k = first; k < 3; k++) {
         struct box_ray *ray = &rays[k];
@@ -717,74 +719,75 @@ INLINE void add_space_rays(const struct walk_pair *pair, const struct walk_kind 
         UNROLL(3)
         for (int axis = 0; axis < 3; axis++)
             ray->normal[axis] = lanes_abs(side->normal[k][axis]);
-        cross_some(walk->frame[which].some[i], walk->frame[which].some[j], ray->some);
+        cross_some(search->frame[which].some[i], search->frame[which].some[j], ray->some);
         UNROLL(6)
         for (int e = 0; e < 6; e++)
-            ray->at[e] = has_edge(kind, !which, e) ? side->other[k][e] : lanes_of(0);
+            ray->at[e] = has_edge(traits, !which, e) ? side->other[k][e] : lanes_of(0);
     }
     if (across)
         add_sums(rays, &rays[3]);
     for (int k = first; k < 3; k++)
-        add_ray(pair, kind, which, false, &rays[k], walk);
+        add_ray(pair, traits, which, false, &rays[k], search);
     if (across)
-        add_ray(pair, kind, which, true, &rays[3], walk);
+        add_ray(pair, traits, which, true, &rays[3], search);
 }
 
 /* ---- Vertices on a wall of each frame and that of the drift ---- */
 
 /* What is linear in an edge of each, and what in an edge and the drift. */
 struct box_products {
-    struct walk_edges edges;
+    struct edge_products edges;
     lanes drift_middle[6];   /* [a half offset], of edges of A */
     lanes error[6];          /* on the line of H x a: value_error() */
     lanes_mask inside[2][6]; /* the slab of an edge and the drift surely has the offset inside */
 };
 
-INLINE void set_drift_slabs(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                            const struct walk_side *own, struct box_products *products,
-                            struct box_walk *walk)
+INLINE void set_drift_slabs(const struct pair_lanes *pair, const struct kernel_traits traits,
+                            int which, const struct face_products *own,
+                            struct box_products *products, struct box_search *search)
 {
     lanes plane[3], middle[6];
-    cross(pair->half, pair->offset, plane);
+    cross(pair->half_drift, pair->offset, plane);
     UNROLL(3)
-    for (int i = 0; i < component_count(kind, which); i++)
+    for (int i = 0; i < component_count(traits, which); i++)
         middle[i] = dot(plane, pair->component[which][i]);
-    add_differences(kind, which, middle);
-    for (int index = 0; index < edge_count(kind, which); index++) {
-        const int e = edge_at(kind, which, index);
+    add_differences(traits, which, middle);
+    for (int index = 0; index < edge_count(traits, which); index++) {
+        const int e = edge_at(traits, which, index);
         lanes at[3];
         UNROLL(3)
-        for (int j = 0; j < component_count(kind, !which); j++)
+        for (int j = 0; j < component_count(traits, !which); j++)
             at[j] = which ? products->edges.swing[j][e] : -products->edges.swing[e][j];
-        const struct walk_extent of_own =
-            extent_at_edge(kind, which, e, own->swing[0], own->swing[1], own->swing[2]);
-        const struct walk_extent of_other = extent_of_frame(kind, !which, at);
-        const struct walk_extent d =
-            extent_difference(kind, which ? of_other : of_own, which ? of_own : of_other);
-        products->inside[which][e] = is_inside(kind, d, middle[e], lanes_of(0),
-                                               pair->size[which][e] * pair->half_size, pair, walk);
+        const struct slab_extent of_own =
+            extent_at_edge(traits, which, e, own->swing[0], own->swing[1], own->swing[2]);
+        const struct slab_extent of_other = extent_of_frame(traits, !which, at);
+        const struct slab_extent d =
+            extent_difference(traits, which ? of_other : of_own, which ? of_own : of_other);
+        products->inside[which][e] =
+            is_inside(traits, d, middle[e], lanes_of(0),
+                      pair->size[which][e] * pair->half_drift_size, pair, search);
         if (which)
             continue;
         lanes normal[3], weight[3];
-        cross(pair->half, walk->frame[0].edge[e], normal);
-        cross_weight(pair->half, walk->frame[0].length[e], weight);
+        cross(pair->half_drift, search->frame[0].edge[e], normal);
+        cross_weight(pair->half_drift, search->frame[0].length[e], weight);
         products->drift_middle[e] = middle[e];
         products->error[e] =
-            value_error(kind, weight, magnitudes(normal, normal),
-                        ((d.high - d.low) + d.radius) + lanes_abs(middle[e]), walk);
+            value_error(traits, weight, magnitudes(normal, normal),
+                        ((d.high - d.low) + d.radius) + lanes_abs(middle[e]), search);
     }
 }
 
 /* y = m (H x a) + n (a x b): what it makes of the components of both frames. a = edge i of A,
  * b = edge j of B. */
-INLINE struct walk_extent extent_of_crossing(const struct walk_kind kind, int i, int j, lanes m,
-                                             lanes n, const struct walk_side side[2],
+INLINE struct slab_extent extent_of_crossing(const struct kernel_traits traits, int i, int j,
+                                             lanes m, lanes n, const struct face_products side[2],
                                              const struct box_products *products,
                                              const lanes component[3])
 {
-    const struct walk_side *a = &side[0], *b = &side[1];
-    const struct walk_extent of_a =
-        extent_at_edge(kind, 0, i, n * a->other[0][j] - m * a->swing[0],
+    const struct face_products *a = &side[0], *b = &side[1];
+    const struct slab_extent of_a =
+        extent_at_edge(traits, 0, i, n * a->other[0][j] - m * a->swing[0],
                        n * a->other[1][j] - m * a->swing[1], n * a->other[2][j] - m * a->swing[2]);
     /* (a x b) . c for the components c of B, a and b as above: those of extent_at_edge() */
     const lanes *across[3] = {b->other[0], b->other[1], b->other[2]};
@@ -800,17 +803,17 @@ INLINE struct walk_extent extent_of_crossing(const struct walk_kind kind, int i,
     }
     lanes at[3];
     UNROLL(3)
-    for (int k = 0; k < component_count(kind, 1); k++)
+    for (int k = 0; k < component_count(traits, 1); k++)
         at[k] = component[k] - (m * products->edges.swing[i][k] + n * product[k]);
-    return extent_sum(kind, of_a, extent_across(kind, 1, j, at));
+    return extent_sum(traits, of_a, extent_across(traits, 1, j, at));
 }
 
 /* The vertex on the walls of edge i of A, edge j of B and the drift. */
-INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind kind, int i, int j,
-                         const struct walk_side side[2], const struct box_products *products,
-                         struct box_walk *walk)
+INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_traits traits, int i,
+                         int j, const struct face_products side[2],
+                         const struct box_products *products, struct box_search *search)
 {
-    const struct box_frame *a = &walk->frame[0], *b = &walk->frame[1];
+    const struct box_frame *a = &search->frame[0], *b = &search->frame[1];
     const lanes length_a = pair->size[0][i], length_b = pair->size[1][j];
     const lanes scale = length_a * length_b;
     lanes normal[3], weight[3];
@@ -819,27 +822,29 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
     cross_weight(a->length[i], b->length[j], weight);
     cross_some(a->some[i], b->some[j], some);
     const struct box_vertex vertex =
-        vertex_of(kind, products->edges.swing[i][j], scale * pair->half_size, weight, pair->half,
-                  some, walk->drift, walk);
-    const struct walk_extent d = extent_sum(
-        kind,
-        extent_at_edge(kind, 0, i, side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]),
-        extent_at_edge(kind, 1, j, side[1].other[0][i], side[1].other[1][i], side[1].other[2][i]));
+        vertex_of(traits, products->edges.swing[i][j], scale * pair->half_drift_size, weight,
+                  pair->half_drift, some, search->drift, search);
+    const struct slab_extent d = extent_sum(
+        traits,
+        extent_at_edge(traits, 0, i, side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]),
+        extent_at_edge(traits, 1, j, side[1].other[0][i], side[1].other[1][i],
+                       side[1].other[2][i]));
     if (lanes_mask_bits(vertex.open))
-        walk->good &= is_not(vertex.open) | products->inside[0][i] | products->inside[1][j] |
-                      is_inside(kind, d, products->edges.middle[i][j], products->edges.swing[i][j],
-                                scale, pair, walk);
-    walk->open |= vertex.open;
+        search->good &= is_not(vertex.open) | products->inside[0][i] | products->inside[1][j] |
+                        is_inside(traits, d, products->edges.middle[i][j],
+                                  products->edges.swing[i][j], scale, pair, search);
+    search->open |= vertex.open;
     /* Errors for m = 1 and n = 1. */
-    const lanes drift_scale = length_a * pair->half_size;
-    const lanes bends = lanes_select(walk->bent, walk->bends, lanes_of(0));
+    const lanes drift_scale = length_a * pair->half_drift_size;
+    const lanes bends = lanes_select(search->bent, search->bends, lanes_of(0));
     const lanes sum = ((d.high - d.low) + d.radius) + (lanes_abs(products->edges.middle[i][j]) +
                                                        lanes_abs(products->edges.swing[i][j]));
     const lanes of_m = products->error[i] + drift_scale * pair->error;
     const lanes of_n =
-        value_error(kind, weight, magnitudes(normal, normal), sum, walk) + scale * pair->error;
+        value_error(traits, weight, magnitudes(normal, normal), sum, search) + scale * pair->error;
     const lanes size = lanes_abs(vertex.inverse);
-    const lanes apart = ((1.2 * walk->turn) * length_b) * ((drift_scale * pair->reach) * size);
+    const lanes apart =
+        ((1.2 * search->relative_error) * length_b) * ((drift_scale * pair->reach) * size);
     const lanes width_of_m = (of_m + of_m) + drift_scale * bends;
     const lanes width_of_n = (of_n + of_n) + scale * bends;
     struct box_reach reach;
@@ -849,41 +854,42 @@ INLINE void add_crossing(const struct walk_pair *pair, const struct walk_kind ki
         const lanes m_size = lanes_abs(m), n_size = lanes_abs(n);
         lanes component[3];
         UNROLL(3)
-        for (int k = 0; k < component_count(kind, 1); k++)
+        for (int k = 0; k < component_count(traits, 1); k++)
             component[k] = pair->component[1][k][axis];
-        const struct walk_extent at =
-            extent_of_crossing(kind, i, j, m, n, side, products, component);
+        const struct slab_extent at =
+            extent_of_crossing(traits, i, j, m, n, side, products, component);
         const lanes along = n * products->edges.middle[i][j] - m * products->drift_middle[i];
         const lanes error = m_size * of_m + n_size * of_n;
         reach.at[0][axis] = ((at.radius - at.low) + error) + along;
         reach.at[1][axis] = ((at.radius + at.high) + error) - along;
-        reach.width[axis] = (m_size * (width_of_m + drift_scale * walk->placing) +
-                             n_size * (width_of_n + scale * walk->placing)) +
+        reach.width[axis] = (m_size * (width_of_m + drift_scale * search->placing) +
+                             n_size * (width_of_n + scale * search->placing)) +
                             apart;
     }
     reach.relative = vertex.fine;
     lanes width = ((length_b * size) * width_of_m + (b->way_most * size) * width_of_n) +
                   (2 * vertex.error) * b->own_most;
-    if (!walk->in_contact)
+    if (!search->in_contact)
         width +=
-            (((length_b * size) * drift_scale + (b->way_most * size) * scale) * walk->placing) +
+            (((length_b * size) * drift_scale + (b->way_most * size) * scale) * search->placing) +
             apart;
-    add_reach(kind, &reach, width, 1, walk);
+    add_reach(traits, &reach, width, 1, search);
 }
 
-INLINE void add_crossings(const struct walk_pair *pair, const struct walk_kind kind,
-                          const struct walk_side side[2], struct box_walk *walk)
+INLINE void add_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
+                          const struct face_products side[2], struct box_search *search)
 {
     struct box_products products;
-    set_products(pair, kind, pair->offset, products.edges.middle);
-    set_products(pair, kind, pair->half, products.edges.swing);
+    set_products(pair, traits, pair->offset, products.edges.middle);
+    set_products(pair, traits, pair->half_drift, products.edges.swing);
     UNROLL(2)
     for (int which = 0; which < 2; which++)
-        set_drift_slabs(pair, kind, which, &side[which], &products, walk);
-    for (int i = 0; i < edge_count(kind, 0); i++)
+        set_drift_slabs(pair, traits, which, &side[which], &products, search);
+    for (int i = 0; i < edge_count(traits, 0); i++)
         UNROLL(6)
-    for (int j = 0; j < edge_count(kind, 1); j++)
-        add_crossing(pair, kind, edge_at(kind, 0, i), edge_at(kind, 1, j), side, &products, walk);
+    for (int j = 0; j < edge_count(traits, 1); j++)
+        add_crossing(pair, traits, edge_at(traits, 0, i), edge_at(traits, 1, j), side, &products,
+                     search);
 }
 
 /* ---- Ends that are exact ----
@@ -927,16 +933,16 @@ INLINE lanes product_slack(lanes x, lanes y, lanes product)
 }
 
 /* Cuts the box, in the lengths of the world. */
-INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind kind, int which,
-                          const struct box_places *places, int axis, lanes box[2][3])
+INLINE void cut_to_extent(const struct pair_lanes *pair, const struct kernel_traits traits,
+                          int which, const struct box_places *places, int axis, lanes box[2][3])
 {
-    const bool twice = is_doubled(kind) && kind.simplex[which];
+    const bool twice = is_doubled(traits) && traits.simplex[which];
     const lanes origin = places->origin[which][axis];
     lanes low = origin, high = origin;
     UNROLL(3)
-    for (int i = 0; i < component_count(kind, which); i++) {
+    for (int i = 0; i < component_count(traits, which); i++) {
         const lanes c = (twice ? 0.5 : 1.0) * pair->component[which][i][axis];
-        if (kind.simplex[which]) {
+        if (traits.simplex[which]) {
             low = lanes_min(sum_below(origin, c), low);
             high = lanes_max(sum_above(origin, c), high);
         } else {
@@ -944,7 +950,7 @@ INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind k
             high = sum_above(high, lanes_max(c, lanes_of(0)));
         }
     }
-    if (kind.drifts) {
+    if (traits.drifts) {
         const lanes velocity = places->velocity[which][axis], time = lanes_of(places->duration);
         const lanes way = velocity * time, slack = product_slack(velocity, time, way);
         low = sum_below(low, lanes_min(way - slack, lanes_of(0)));
@@ -964,111 +970,111 @@ INLINE void cut_to_extent(const struct walk_pair *pair, const struct walk_kind k
 /* ---- All of it ---- */
 
 /* Sums of magnitudes along an axis. */
-INLINE void set_sizes(const struct walk_pair *pair, const struct walk_kind kind,
-                      const struct box_places *places, int axis, struct box_walk *walk)
+INLINE void set_sizes(const struct pair_lanes *pair, const struct kernel_traits traits,
+                      const struct box_places *places, int axis, struct box_search *search)
 {
     const lanes apart = lanes_abs(places->origin[1][axis] - places->origin[0][axis]);
-    const lanes half = kind.drifts ? lanes_abs(pair->half[axis]) : lanes_of(0);
+    const lanes half = traits.drifts ? lanes_abs(pair->half_drift[axis]) : lanes_of(0);
     lanes sum[2] = {lanes_of(0), lanes_of(0)};
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         UNROLL(3)
-    for (int i = 0; i < component_count(kind, which); i++)
+    for (int i = 0; i < component_count(traits, which); i++)
         sum[which] += lanes_abs(pair->component[which][i][axis]);
-    walk->size[axis] = ((sum[0] + sum[1]) + half) + lanes_abs(pair->offset[axis]);
-    walk->way[axis] = (is_doubled(kind) ? apart + apart : apart) + 2 * half;
+    search->size[axis] = ((sum[0] + sum[1]) + half) + lanes_abs(pair->offset[axis]);
+    search->way[axis] = (is_doubled(traits) ? apart + apart : apart) + 2 * half;
     UNROLL(2)
     for (int which = 0; which < 2; which++)
-        if (!kind.simplex[which])
-            walk->way[axis] += sum[which];
+        if (!traits.simplex[which])
+            search->way[axis] += sum[which];
 }
 
 /* Of lanes in which nothing rounds: whether all numbers of the pair are multiples of g, with at =
  * 2^52 g, and the frames' own ways do not round either. */
-INLINE lanes_mask are_multiples(const struct walk_pair *pair, const struct walk_kind kind,
-                                const struct box_places *places, const struct box_walk *walk,
+INLINE lanes_mask are_multiples(const struct pair_lanes *pair, const struct kernel_traits traits,
+                                const struct box_places *places, const struct box_search *search,
                                 lanes at)
 {
-    lanes_mask all = walk->exact;
+    lanes_mask all = search->exact;
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
+    for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int which = 0; which < 2; which++) {
         if (lanes_mask_bits(all) == 0)
             break;
         all &= is_multiple(places->origin[which][axis], at);
         UNROLL(3)
-        for (int i = 0; i < component_count(kind, which); i++)
+        for (int i = 0; i < component_count(traits, which); i++)
             all &= is_multiple(pair->component[which][i][axis], at);
-        if (!kind.drifts)
+        if (!traits.drifts)
             continue;
         const lanes v = places->velocity[which][axis], time = lanes_of(places->duration);
-        all &=
-            is_multiple(walk->frame[which].way[axis], at) & (product_slack(v, time, v * time) == 0);
+        all &= is_multiple(search->frame[which].way[axis], at) &
+               (product_slack(v, time, v * time) == 0);
     }
     return all;
 }
 
-INLINE void begin_box(const struct walk_pair *pair, const struct walk_kind kind,
-                      const struct box_places *places, struct box_walk *walk)
+INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits traits,
+                      const struct box_places *places, struct box_search *search)
 {
     lanes largest = lanes_of(0);
-    const unsigned all_true = PREPARED_COMPONENTS_EXACT_X * (kind.dim == 2 ? 3u : 7u);
+    const unsigned all_true = PREPARED_COMPONENTS_EXACT_X * (traits.dim == 2 ? 3u : 7u);
     lanes_mask inexact = {0}, lost = {0};
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
-        set_box_frame(pair, kind, which, places, &walk->frame[which]);
-        largest = lanes_max(largest_place(pair, kind, which, &walk->frame[which]), largest);
+        set_box_frame(pair, traits, which, places, &search->frame[which]);
+        largest = lanes_max(largest_place(pair, traits, which, &search->frame[which]), largest);
         inexact |= (places->summary[which] & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true) !=
                    (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true;
     }
-    walk->turn = lanes_select(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
-    lanes lengths = pair->half_size;
+    search->relative_error = lanes_select(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
+    lanes lengths = pair->half_drift_size;
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         UNROLL(3)
-    for (int i = 0; i < component_count(kind, which); i++)
+    for (int i = 0; i < component_count(traits, which); i++)
         lengths += pair->size[which][i];
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
+    for (int axis = 0; axis < traits.dim; axis++)
         lengths += lanes_abs(pair->offset[axis]);
     const lanes_mask shares = places->in_contact ? pair->error != 0 : (lanes_mask){0};
-    walk->placing = (2.2 * walk->turn) * lengths + 0.1 * pair->error;
-    walk->bends = lanes_select(shares, lanes_of(136), lanes_of(68)) *
-                  ((walk_error(kind) + 4 * walk->turn) * pair->reach);
+    search->placing = (2.2 * search->relative_error) * lengths + 0.1 * pair->error;
+    search->bends = lanes_select(shares, lanes_of(136), lanes_of(68)) *
+                    ((slab_rounding(traits) + 4 * search->relative_error) * pair->reach);
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
-        set_sizes(pair, kind, places, axis, walk);
+    for (int axis = 0; axis < traits.dim; axis++) {
+        set_sizes(pair, traits, places, axis, search);
         UNROLL(2)
         for (int which = 0; which < 2; which++)
-            walk->slack[which][axis] =
-                (9 * BOX_UNIT) * walk->frame[which].sum[axis] + 1.1 * pair->error;
-        if (!kind.drifts)
+            search->slack[which][axis] =
+                (9 * BOX_UNIT) * search->frame[which].sum[axis] + 1.1 * pair->error;
+        if (!traits.drifts)
             continue;
-        walk->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
-        lost |= walk->drift[axis] & (pair->half[axis] == 0);
+        search->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
+        lost |= search->drift[axis] & (pair->half_drift[axis] == 0);
     }
-    walk->exact = places->exact;
-    walk->rounding =
-        lanes_select(walk->exact, lanes_of(0), lanes_of(1.2 * determinant_rounding(kind)));
-    walk->determinant = walk->rounding + 3.1 * walk->turn;
+    search->exact = places->exact;
+    search->rounding =
+        lanes_select(search->exact, lanes_of(0), lanes_of(1.2 * determinant_rounding(traits)));
+    search->determinant = search->rounding + 3.1 * search->relative_error;
     if (!places->in_contact)
-        walk->rounding = walk->determinant;
-    walk->in_contact = places->in_contact;
-    walk->largest = largest;
+        search->rounding = search->determinant;
+    search->in_contact = places->in_contact;
+    search->largest = largest;
     const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
-    walk->unit = lanes_select(are_multiples(pair, kind, places, walk, 0x1p45 * power),
-                              0x1p-7 * power, lanes_of(0));
+    search->unit = lanes_select(are_multiples(pair, traits, places, search, 0x1p45 * power),
+                                0x1p-7 * power, lanes_of(0));
     lanes slack = lanes_of(0);
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++)
-        slack = lanes_max(lanes_max(walk->slack[0][axis], walk->slack[1][axis]), slack);
+    for (int axis = 0; axis < traits.dim; axis++)
+        slack = lanes_max(lanes_max(search->slack[0][axis], search->slack[1][axis]), slack);
     lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
-    tolerance = lanes_select((walk->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
-    walk->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
-    walk->tolerance = tolerance - walk->shared;
-    walk->spans = walk->open = walk->bent = (lanes_mask){0};
-    walk->good = is_not(lost) & (largest <= BOX_FARTHEST);
+    tolerance = lanes_select((search->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
+    search->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
+    search->tolerance = tolerance - search->shared;
+    search->spans = search->open = search->bent = (lanes_mask){0};
+    search->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
 
 /* Ends that are small numbers, to the last bit. With the numbers of the pair multiples of a unit g,
@@ -1087,62 +1093,63 @@ INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
     return lanes_select(is_end, snap, outer);
 }
 
-INLINE void add_all(const struct walk_pair *pair, const struct walk_kind kind,
-                    struct box_walk *walk)
+INLINE void add_all(const struct pair_lanes *pair, const struct kernel_traits traits,
+                    struct box_search *search)
 {
     UNROLL(2)
     for (int which = 0; which < 2; which++)
-        set_extents(kind, pair, which, walk);
-    if (kind.dim == 2) {
-        add_plane_rays(pair, kind, walk);
+        set_extents(traits, pair, which, search);
+    if (traits.dim == 2) {
+        add_plane_rays(pair, traits, search);
         return;
     }
-    struct walk_side side[2];
+    struct face_products side[2];
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
-        set_side(pair, kind, which, &side[which]);
-        add_space_rays(pair, kind, which, &side[which], walk);
+        set_face_products(pair, traits, which, &side[which]);
+        add_space_rays(pair, traits, which, &side[which], search);
     }
-    if (kind.drifts)
-        add_crossings(pair, kind, side, walk);
+    if (traits.drifts)
+        add_crossings(pair, traits, side, search);
 }
 
 /* Boxes and which of them are good. */
-INLINE lanes_mask walk_box(const struct walk_pair *pair, const struct walk_kind kind,
-                           const struct box_places *places, lanes box[2][3])
+INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_traits traits,
+                             const struct box_places *places, lanes box[2][3])
 {
-    struct box_walk walk;
-    begin_box(pair, kind, places, &walk);
+    struct box_search search;
+    begin_box(pair, traits, places, &search);
     for (int pass = 0; pass < 2; pass++) { /* one is enough unless a vertex is left out */
-        add_all(pair, kind, &walk);
-        if (lanes_mask_bits(walk.open) == 0)
+        add_all(pair, traits, &search);
+        if (lanes_mask_bits(search.open) == 0)
             break;
-        walk.bent = walk.open;
+        search.bent = search.open;
     }
-    lanes_mask good = walk.good & walk.spans;
+    lanes_mask good = search.good & search.spans;
     UNROLL(3)
-    for (int axis = 0; axis < kind.dim; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         UNROLL(2)
         for (int end = 0; end < 2; end++) {
             lanes outer = lanes_of(INFINITY), inner = lanes_of(INFINITY);
             UNROLL(2)
             for (int which = 0; which < 2; which++) {
                 const lanes centre =
-                    end ? walk.frame[which].centre[axis] : -walk.frame[which].centre[axis];
-                const lanes slack = walk.slack[which][axis];
-                const lanes at = centre + walk.bounds[which].outer[end][axis];
-                const lanes least = centre + walk.bounds[which].inner[end][axis];
+                    end ? search.frame[which].centre[axis] : -search.frame[which].centre[axis];
+                const lanes slack = search.slack[which][axis];
+                const lanes at = centre + search.bounds[which].outer[end][axis];
+                const lanes least = centre + search.bounds[which].inner[end][axis];
                 outer = lanes_min(at + slack, outer);
-                inner =
-                    lanes_min(lanes_min(at - walk.tolerance, least) - (slack + walk.shared), inner);
+                inner = lanes_min(lanes_min(at - search.tolerance, least) - (slack + search.shared),
+                                  inner);
             }
-            good &= outer - inner <= BOX_LIMIT * walk.largest;
-            const lanes snap = (is_doubled(kind) ? 0.5 : 1.0) * snapped(outer, inner, walk.unit);
+            good &= outer - inner <= BOX_LIMIT * search.largest;
+            const lanes snap =
+                (is_doubled(traits) ? 0.5 : 1.0) * snapped(outer, inner, search.unit);
             box[end][axis] = end ? snap : -snap;
         }
         UNROLL(2)
         for (int which = 0; which < 2; which++)
-            cut_to_extent(pair, kind, which, places, axis, box);
+            cut_to_extent(pair, traits, which, places, axis, box);
         UNROLL(2)
         for (int end = 0; end < 2; end++)
             box[end][axis] += 0.0; /* never -0 */

@@ -1,0 +1,417 @@
+/* A kernel of the filter: what many.c (many pairs) and single.c (a single pair) share.
+ *
+ *   In     prepared frames (prepared.h), read as arrays of doubles, and the duration of the window
+ *   Out    for each lane an outcome (enum slabs_outcome); times of contact or boxes where wanted
+ *
+ * Steps:
+ *   1. gather()         loads the words of LANES frames; words[w] holds word w of each
+ *   2. set_frame_lanes()  gives the words their names: origin, components, sizes, error
+ *   3. set_pair()       sets offset, drift and error of the pair (pair_lanes.h)
+ *   4. evaluate_pair()   goes through the list of slabs (slabs_evaluate.h) and sums it up in struct
+ * slabs_result
+ *   5. outcomes_of()    separated, touching, overlapping, or unsure; times_of(): seconds
+ *
+ * Macros that the build sets choose the job: none: verdicts, the first pass; KERNEL_EXACT: the
+ * second pass (kernel_exact.h); KERNEL_TIMES: verdicts and times; KERNEL_BOXES: boxes
+ * (kernel_box.h). The bits of the last three are promised. At the end of this file KERNEL_FUNCTIONS
+ * defines one function for each kind of pair (dimension, shapes, motion: kernel.h), with the kind
+ * as a constant, and KERNEL_TABLE lists them in the order of the kinds, in a table whose name ends
+ * in KERNEL_NAME.
+ *
+ * Proofs: the bounds of slabs in slabs.c, of times in slabs_lanes.h, of frames in prepared.h, of
+ * boxes in box_search.h. */
+#ifndef FMB_KERNEL_LANES_H
+#define FMB_KERNEL_LANES_H
+
+#include "kernel.h"
+#include "slabs_evaluate.h"
+
+#ifdef KERNEL_TIMES
+enum { TIMES = 1, SWAP_INVARIANT = 1 };
+#else
+enum { TIMES = 0, SWAP_INVARIANT = 0 };
+#endif
+#ifdef KERNEL_BOXES
+enum { BOXES = 1 };
+#else
+enum { BOXES = 0 };
+#endif
+#ifdef KERNEL_EXACT
+enum { EXACT = 1 };
+#else
+enum { EXACT = 0 };
+#endif
+enum { ROUGH = !TIMES && !EXACT && !BOXES };
+
+/* ---- The gather: words[w] holds word w of LANES frames ---- */
+
+enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
+
+#if LANES == 1
+
+enum { GATHERED = 1 }; /* frames */
+
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    UNROLL(4)
+    for (int w = 0; w < 4; w++)
+        words[w] = lanes_of(frame[0][first + w]);
+}
+
+#elif LANES == 2
+
+enum { GATHERED = 2 };
+
+INLINE lanes two_at(const double *from)
+{
+    lanes out;
+    memcpy(&out, from, sizeof out);
+    return out;
+}
+
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    UNROLL(2)
+    for (int w = 0; w < 4; w += 2) {
+        const lanes x = two_at(frame[0] + first + w), y = two_at(frame[1] + first + w);
+        words[w] = __builtin_shufflevector(x, y, 0, 2);
+        words[w + 1] = __builtin_shufflevector(x, y, 1, 3);
+    }
+}
+
+#elif LANES == 4
+
+enum { GATHERED = 4 };
+
+INLINE lanes four_at(const double *from)
+{
+    lanes out;
+    memcpy(&out, from, sizeof out);
+    return out;
+}
+
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    UNROLL(2)
+    for (int odd = 0; odd < 2; odd++) {
+        const lanes x = four_at(frame[0] + first), y = four_at(frame[1] + first);
+        const lanes z = four_at(frame[2] + first), w = four_at(frame[3] + first);
+        const lanes xy = odd ? __builtin_shufflevector(x, y, 1, 5, 3, 7)
+                             : __builtin_shufflevector(x, y, 0, 4, 2, 6);
+        const lanes zw = odd ? __builtin_shufflevector(z, w, 1, 5, 3, 7)
+                             : __builtin_shufflevector(z, w, 0, 4, 2, 6);
+        words[odd] = __builtin_shufflevector(xy, zw, 0, 1, 4, 5);
+        words[2 + odd] = __builtin_shufflevector(xy, zw, 2, 3, 6, 7);
+    }
+}
+
+#else
+
+enum { GATHERED = 8 };
+
+/* Four words of two frames: the second half is inserted as it is loaded, without a shuffle. */
+INLINE lanes four_of_two(const double *low, const double *high)
+{
+#ifdef __AVX512F__
+    return (lanes) _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)),
+                                      _mm256_loadu_pd(high), 1);
+#else
+    return (lanes){low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
+#endif
+}
+
+/* Frames are two apart in a register: shuffles of two registers then put the words into the order
+ * of the lanes. */
+INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
+{
+    const lanes x = four_of_two(frame[0] + first, frame[2] + first);
+    const lanes y = four_of_two(frame[1] + first, frame[3] + first);
+    const lanes z = four_of_two(frame[4] + first, frame[6] + first);
+    const lanes w = four_of_two(frame[5] + first, frame[7] + first);
+    const lanes xy_even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+    const lanes xy_odd = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+    const lanes zw_even = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
+    const lanes zw_odd = __builtin_shufflevector(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
+    words[0] = __builtin_shufflevector(xy_even, zw_even, 0, 1, 4, 5, 8, 9, 12, 13);
+    words[1] = __builtin_shufflevector(xy_odd, zw_odd, 0, 1, 4, 5, 8, 9, 12, 13);
+    words[2] = __builtin_shufflevector(xy_even, zw_even, 2, 3, 6, 7, 10, 11, 14, 15);
+    words[3] = __builtin_shufflevector(xy_odd, zw_odd, 2, 3, 6, 7, 10, 11, 14, 15);
+}
+
+#endif
+
+/* A frame of each lane. */
+struct frame_lanes {
+    lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
+    lanes error;
+    lanes_bits summary;
+};
+
+INLINE void set_frame_lanes(const struct kernel_traits traits, const lanes words[WORDS],
+                            struct frame_lanes *out)
+{
+    const lanes_bits summary = lanes_as_bits(words[0]);
+    out->summary = summary;
+    out->origin[2] = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        out->origin[axis] = words[1 + axis];
+        out->size[axis] =
+            lanes_from_bits((summary << (48 - PREPARED_SIZE_BITS * axis)) & 0xffff000000000000);
+        UNROLL(3)
+        for (int i = 0; i < traits.dim; i++)
+            out->component[i][axis] = words[1 + traits.dim * (1 + i) + axis];
+    }
+    out->error = words[traits.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D];
+}
+
+/* A word by itself. */
+INLINE lanes gather_one(const double *const frame[LANES], int word)
+{
+#if LANES == 1
+    return lanes_of(frame[0][word]);
+#elif LANES == 2
+    return (lanes){frame[0][word], frame[1][word]};
+#elif LANES == 4
+    return (lanes){frame[0][word], frame[1][word], frame[2][word], frame[3][word]};
+#else
+    return (lanes){frame[0][word], frame[1][word], frame[2][word], frame[3][word],
+                   frame[4][word], frame[5][word], frame[6][word], frame[7][word]};
+#endif
+}
+
+/* Of summary, origin, components and error. */
+INLINE int word_count(const struct kernel_traits traits)
+{
+    return 1 + (traits.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D);
+}
+
+/* In 3D velocities are in the placements, where more numbers follow. */
+INLINE void gather_velocity(const struct kernel_traits traits, const double *const frame[LANES],
+                            struct frame_lanes *out)
+{
+    const double *velocity[LANES];
+    lanes words[4];
+    UNROLL(8)
+    for (int lane = 0; lane < GATHERED; lane++)
+        velocity[lane] = traits.dim == 2
+                             ? frame[lane] + PREPARED_VELOCITY_2D
+                             : ((const struct fmb_prepared *) frame[lane])->placement->velocity;
+    gather_four(velocity, 0, words);
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++)
+        out->velocity[axis] = words[axis];
+}
+
+INLINE void gather(const struct kernel_traits traits, const double *const frame[LANES],
+                   struct frame_lanes *out)
+{
+    lanes words[WORDS];
+    const int used = word_count(traits);
+    const int in_fours = used - used % 4 + (used % 4 > 1 ? 4 : 0);
+    UNROLL(4)
+    for (int w = 0; w < in_fours; w += 4)
+        gather_four(frame, w, &words[w]);
+    if (in_fours < used)
+        words[used - 1] = gather_one(frame, used - 1);
+    set_frame_lanes(traits, words, out);
+    if (traits.drifts)
+        gather_velocity(traits, frame, out);
+}
+
+INLINE void set_pair(const struct kernel_traits traits, const struct frame_lanes *a,
+                     const struct frame_lanes *b, double duration, struct pair_lanes *out)
+{
+    lanes component[2][3][3], size[2][3], offset[3], drift[3];
+    size[0][2] = size[1][2] = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        offset[axis] = b->origin[axis] - a->origin[axis];
+        if (traits.drifts)
+            drift[axis] = (b->velocity[axis] - a->velocity[axis]) * duration;
+        size[0][axis] = a->size[axis];
+        size[1][axis] = b->size[axis];
+        UNROLL(3)
+        for (int i = 0; i < traits.dim; i++) {
+            component[0][i][axis] = a->component[i][axis];
+            component[1][i][axis] = b->component[i][axis];
+        }
+    }
+    pair_lanes_set(traits, component, size, offset, drift, a->error + b->error, out);
+}
+
+INLINE void evaluate_pair(const struct kernel_traits traits, const struct pair_lanes *pair,
+                          struct slabs_result *result)
+{
+    slabs_result_begin(result);
+#if LANES == 1
+    result->next = NULL;
+#endif
+    evaluate_slabs(pair, traits, result);
+}
+
+/* ---- Outcomes ---- */
+
+/* Bit i of each: lane i. Lanes of none are unsure. */
+struct outcomes {
+    unsigned separated, touching, overlapping;
+};
+
+INLINE struct outcomes outcomes_of(const struct pair_lanes *pair, const struct slabs_result *result)
+{
+    const unsigned in_range = lanes_mask_bits(pair->in_range);
+    const unsigned separated = lanes_greater_bits(result->gap_low, lanes_of(0));
+    const unsigned overlapping = lanes_greater_bits(lanes_of(0), result->gap_high);
+    return (struct outcomes){in_range & separated, 0, in_range & overlapping & ~separated};
+}
+
+INLINE enum slabs_outcome outcome_at(struct outcomes outcomes, int lane)
+{
+    return (enum slabs_outcome)((outcomes.separated >> lane & 1) * SLABS_SEPARATED +
+                                (outcomes.touching >> lane & 1) * SLABS_TOUCHING +
+                                (outcomes.overlapping >> lane & 1) * SLABS_OVERLAPPING);
+}
+
+/* Byte i is 1 where bit i of the eight is set, else 0. */
+INLINE uint64_t bits_to_bytes(unsigned bits)
+{
+    const uint64_t one_each = UINT64_C(0x0101010101010101);
+    const uint64_t own = bits * one_each & UINT64_C(0x8040201008040201); /* bit i of byte i */
+    return (own + 0x7f * one_each) >> 7 & one_each;
+}
+
+INLINE void put_outcomes(struct outcomes outcomes, unsigned char out[LANES])
+{
+#if LANES >= 4 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    const uint64_t bytes = bits_to_bytes(outcomes.separated) * SLABS_SEPARATED +
+                           bits_to_bytes(outcomes.touching) * SLABS_TOUCHING +
+                           bits_to_bytes(outcomes.overlapping) * SLABS_OVERLAPPING;
+    memcpy(out, &bytes, LANES);
+#else
+    for (int lane = 0; lane < LANES; lane++)
+        out[lane] = (unsigned char) outcome_at(outcomes, lane);
+#endif
+}
+
+/* ---- Times and boxes ---- */
+
+/* Seconds: below this a product with a time may underflow. */
+#define LEAST_DURATION 0x1p-900
+
+/* Between outer and inner ends, of a window of length 2: leaves a tenth of 1e-12 of it to what is
+ * rounded after. */
+#define TIMES_LIMIT 1.8e-12
+
+/* From outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart.
+ * SLABS_TIMES_SLACK covers the rounding of the ends (slabs_lanes.h). The product with the duration
+ * rounds three times more, each time by less than 2^-53 of it. */
+INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *result,
+                     double window, lanes times[2])
+{
+    const lanes slack = lanes_of(SLABS_TIMES_SLACK), one = lanes_of(1), duration = lanes_of(window);
+    const lanes enter = lanes_max(result->enter[0] - slack, -one);
+    const lanes leave = lanes_min(result->leave[0] + slack, one);
+    const lanes enter_inner = lanes_max(result->enter[1] + slack, -one);
+    const lanes leave_inner = lanes_min(result->leave[1] - slack, one);
+    const lanes first = (0.5 + 0.5 * enter) * duration * (1 - 0x1p-51);
+    const lanes last = lanes_min((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
+    const lanes_mask good = pair->in_range & (enter_inner - enter <= TIMES_LIMIT) &
+                            (leave - leave_inner <= TIMES_LIMIT) & (duration >= LEAST_DURATION);
+    times[0] = lanes_select(good, first, lanes_of(NAN));
+    times[1] = lanes_select(good, last, lanes_of(NAN));
+}
+
+/* ---- The table ----
+ *
+ * FUNCTION(name, traits) defines a function for a struct kernel_traits. */
+
+enum kernel_shape { SHAPE_C, SHAPE_T, SHAPE_F }; /* cuboid, tetrahedron, face */
+
+#define KERNEL_KIND(FUNCTION, name, dimension, a, b, drift, parallel)               \
+    FUNCTION(name, ((struct kernel_traits){.dim = dimension,                        \
+                                           .simplex = {a != SHAPE_C, b != SHAPE_C}, \
+                                           .face = {a == SHAPE_F, b == SHAPE_F},    \
+                                           .drifts = drift,                         \
+                                           .axis_aligned = parallel,                \
+                                           .swap_invariant = SWAP_INVARIANT,        \
+                                           .times = TIMES,                          \
+                                           .box = BOXES,                            \
+                                           .rough = ROUGH,                          \
+                                           .exact = EXACT}))
+#define KERNEL_SOLIDS(FUNCTION, name, dimension, drift, parallel)                  \
+    KERNEL_KIND(FUNCTION, name##_cc, dimension, SHAPE_C, SHAPE_C, drift, parallel) \
+    KERNEL_KIND(FUNCTION, name##_ct, dimension, SHAPE_C, SHAPE_T, drift, parallel) \
+    KERNEL_KIND(FUNCTION, name##_tt, dimension, SHAPE_T, SHAPE_T, drift, parallel)
+/* Of faces, which are often parallel to something, one function for both. */
+#define KERNEL_FACES(FUNCTION, name, drift, parallel)                      \
+    KERNEL_KIND(FUNCTION, name##_cf, 3, SHAPE_C, SHAPE_F, drift, parallel) \
+    KERNEL_KIND(FUNCTION, name##_tf, 3, SHAPE_T, SHAPE_F, drift, parallel) \
+    KERNEL_KIND(FUNCTION, name##_ff, 3, SHAPE_F, SHAPE_F, drift, parallel)
+#define KERNEL_DRIFTING(FUNCTION)                          \
+    KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)         \
+    KERNEL_SOLIDS(FUNCTION, space_drifts, 3, 1, 0)         \
+    KERNEL_SOLIDS(FUNCTION, space_drifts_aligned, 3, 1, 1) \
+    KERNEL_FACES(FUNCTION, space_drifts, 1, 1)
+#define KERNEL_AT_REST(FUNCTION)                    \
+    KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)         \
+    KERNEL_SOLIDS(FUNCTION, space, 3, 0, 0)         \
+    KERNEL_SOLIDS(FUNCTION, space_aligned, 3, 0, 1) \
+    KERNEL_FACES(FUNCTION, space, 0, 1)
+
+#define KERNEL_SOLID_ENTRIES(name, kind)                           \
+    [kind] = name##_cc, [(kind) + KERNEL_TETRAHEDRON] = name##_ct, \
+    [(kind) + KERNEL_TETRAHEDRON + KERNEL_SAME_SHAPE] = name##_tt
+#define KERNEL_FACE_ENTRIES(name, kind)                                                          \
+    [(kind) + KERNEL_FACE] = name##_cf, [(kind) + KERNEL_FACE + KERNEL_TETRAHEDRON] = name##_tf, \
+              [(kind) + KERNEL_FACE + KERNEL_SAME_SHAPE] = name##_ff
+#define KERNEL_DRIFTING_ENTRIES                                                \
+    KERNEL_SOLID_ENTRIES(plane_drifts, KERNEL_DRIFTS),                         \
+        KERNEL_SOLID_ENTRIES(space_drifts, KERNEL_3D + KERNEL_DRIFTS),         \
+        KERNEL_SOLID_ENTRIES(space_drifts_aligned,                             \
+                             KERNEL_3D + KERNEL_DRIFTS + KERNEL_AXIS_ALIGNED), \
+        KERNEL_FACE_ENTRIES(space_drifts, KERNEL_3D + KERNEL_DRIFTS),          \
+        KERNEL_FACE_ENTRIES(space_drifts, KERNEL_3D + KERNEL_DRIFTS + KERNEL_AXIS_ALIGNED)
+#define KERNEL_AT_REST_ENTRIES                                                \
+    KERNEL_SOLID_ENTRIES(plane, 0), KERNEL_SOLID_ENTRIES(space, KERNEL_3D),   \
+        KERNEL_SOLID_ENTRIES(space_aligned, KERNEL_3D + KERNEL_AXIS_ALIGNED), \
+        KERNEL_FACE_ENTRIES(space, KERNEL_3D),                                \
+        KERNEL_FACE_ENTRIES(space, KERNEL_3D + KERNEL_AXIS_ALIGNED)
+
+#if defined(KERNEL_TIMES)
+#define KERNEL_FUNCTIONS(FUNCTION) KERNEL_DRIFTING(FUNCTION)
+#define KERNEL_TABLE            \
+    {                           \
+        KERNEL_DRIFTING_ENTRIES \
+    }
+#elif defined(KERNEL_EXACT) || defined(KERNEL_BOXES)
+/* One function for edges parallel to an axis and for others: boxes find zero normals by their
+ * masks, and the second pass always looks for them. */
+#define KERNEL_FUNCTIONS(FUNCTION)                     \
+    KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)            \
+    KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)     \
+    KERNEL_SOLIDS(FUNCTION, space, 3, 0, EXACT)        \
+    KERNEL_SOLIDS(FUNCTION, space_drifts, 3, 1, EXACT) \
+    KERNEL_FACES(FUNCTION, space, 0, EXACT)            \
+    KERNEL_FACES(FUNCTION, space_drifts, 1, EXACT)
+#define KERNEL_3D_ENTRIES(name, kind)                                         \
+    KERNEL_SOLID_ENTRIES(name, KERNEL_3D + (kind)),                           \
+        KERNEL_SOLID_ENTRIES(name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (kind)), \
+        KERNEL_FACE_ENTRIES(name, KERNEL_3D + (kind)),                        \
+        KERNEL_FACE_ENTRIES(name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (kind))
+#define KERNEL_TABLE                                                                       \
+    {                                                                                      \
+        KERNEL_SOLID_ENTRIES(plane, 0), KERNEL_SOLID_ENTRIES(plane_drifts, KERNEL_DRIFTS), \
+            KERNEL_3D_ENTRIES(space, 0), KERNEL_3D_ENTRIES(space_drifts, KERNEL_DRIFTS)    \
+    }
+#else
+#define KERNEL_FUNCTIONS(FUNCTION) KERNEL_AT_REST(FUNCTION) KERNEL_DRIFTING(FUNCTION)
+#define KERNEL_TABLE                                    \
+    {                                                   \
+        KERNEL_AT_REST_ENTRIES, KERNEL_DRIFTING_ENTRIES \
+    }
+#endif
+
+#define KERNEL_PASTE_(x, y) x##_##y
+#define KERNEL_PASTE(x, y) KERNEL_PASTE_(x, y)
+
+#endif

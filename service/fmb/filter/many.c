@@ -1,0 +1,97 @@
+/* LANES pairs side by side. */
+#include "kernel_box.h"
+
+INLINE void gather_side(const struct kernel_call *call, const struct kernel_traits traits,
+                        size_t first, int which, struct frame_lanes *out)
+{
+    const double *frame[LANES];
+    UNROLL(8)
+    for (size_t lane = 0; lane < LANES; lane++)
+        frame[lane] = (const double *) call->pairs[first + lane][which];
+    gather(traits, frame, out);
+}
+
+INLINE void gather_pairs(const struct kernel_call *call, const struct kernel_traits traits,
+                         size_t first, struct frame_lanes pair[2])
+{
+    gather_side(call, traits, first, 0, &pair[0]);
+    gather_side(call, traits, first, 1, &pair[1]);
+}
+
+#if defined(KERNEL_TIMES) || defined(KERNEL_BOXES)
+
+/* To every so many doubles. */
+INLINE void scatter(lanes x, double *out, int stride)
+{
+    double at[LANES];
+    memcpy(at, &x, sizeof at);
+    UNROLL(8)
+    for (int lane = 0; lane < LANES; lane++)
+        out[lane * stride] = at[lane];
+}
+
+#endif
+
+#ifdef KERNEL_BOXES
+
+INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
+                           size_t first)
+{
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    lanes box[2][3];
+    gather_pairs(call, traits, first, frame);
+    set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
+    boxes_of(traits, &pair, frame, call->duration, call->in_contact, box);
+    UNROLL(2)
+    for (int end = 0; end < 2; end++)
+        UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        scatter(box[end][axis], &call->boxes[first][end][axis], 6);
+}
+
+#elif defined(KERNEL_EXACT)
+
+INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
+                           size_t first)
+{
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    gather_pairs(call, traits, first, frame);
+    set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
+    put_outcomes(exact_outcomes(traits, &frame[0], &frame[1], call->duration, &pair),
+                 &call->outcomes[first]);
+}
+
+#else
+
+INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
+                           size_t first)
+{
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    struct slabs_result result;
+    gather_pairs(call, traits, first, frame);
+    set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
+    evaluate_pair(traits, &pair, &result);
+    put_outcomes(outcomes_of(&pair, &result), &call->outcomes[first]);
+#ifdef KERNEL_TIMES
+    lanes times[2];
+    times_of(&pair, &result, call->duration, times);
+    scatter(times[0], &call->contacts[first][0], 2);
+    scatter(times[1], &call->contacts[first][1], 2);
+#endif
+}
+
+#endif
+
+#define KERNEL_FUNCTION(name, traits)                               \
+    static void name(const struct kernel_call *call)                \
+    {                                                               \
+        for (size_t first = 0; first < call->count; first += LANES) \
+            evaluate_lanes(traits, call, first);                    \
+    }
+
+KERNEL_FUNCTIONS(KERNEL_FUNCTION)
+
+kernel_function *const KERNEL_PASTE(kernel, KERNEL_NAME)[KERNEL_KINDS] = KERNEL_TABLE;

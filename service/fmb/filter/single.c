@@ -1,0 +1,143 @@
+/* One pair alone. It lies in both of two lanes: an instruction does as much for two doubles as for
+ * one, and the set has minima and maxima besides. Two frames of the same shape lie in the second
+ * lane the other way round, so that half of the walk does for all of it. */
+#include "kernel_exact.h"
+
+/* Times promise the bits of a batch, which is not mirrored. */
+INLINE bool is_mirrored(const struct kernel_traits traits)
+{
+    return LANES == 2 && !traits.swap_invariant && !traits.exact &&
+           traits.simplex[0] == traits.simplex[1] && traits.face[0] == traits.face[1];
+}
+
+INLINE lanes side_by_side(double x, double y)
+{
+#if LANES == 1
+    (void) y;
+    return x;
+#else
+    return (lanes){x, y};
+#endif
+}
+
+INLINE const double *velocity_of(const struct kernel_traits traits,
+                                 const struct fmb_prepared *frame)
+{
+    return traits.dim == 3 ? frame->placement->velocity
+                           : (const double *) frame + PREPARED_VELOCITY_2D;
+}
+
+INLINE void gather_mirrored(const struct kernel_traits traits, const struct fmb_prepared *a,
+                            const struct fmb_prepared *b, struct frame_lanes *of_a,
+                            struct frame_lanes *of_b)
+{
+    const double *x = (const double *) a, *y = (const double *) b;
+    lanes words[2][WORDS];
+    UNROLL(16)
+    for (int w = 0; w < word_count(traits); w++) {
+        words[0][w] = side_by_side(x[w], y[w]);
+        words[1][w] = lanes_swap(words[0][w]);
+    }
+    set_frame_lanes(traits, words[0], of_a);
+    set_frame_lanes(traits, words[1], of_b);
+    if (!traits.drifts)
+        return;
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        of_a->velocity[axis] =
+            side_by_side(velocity_of(traits, a)[axis], velocity_of(traits, b)[axis]);
+        of_b->velocity[axis] = lanes_swap(of_a->velocity[axis]);
+    }
+}
+
+/* The compiler must not see that the lanes are equal: gcc would then compute in scalars, and copy
+ * each of them into a vector where a minimum or a maximum follows. */
+INLINE lanes in_all_lanes(double x)
+{
+    lanes out = side_by_side(x, x);
+#if LANES == 2
+    __asm__("" : "+x"(out));
+#endif
+    return out;
+}
+
+INLINE void gather_frame(const struct kernel_traits traits, const struct fmb_prepared *frame,
+                         struct frame_lanes *out)
+{
+    lanes words[WORDS];
+    UNROLL(16)
+    for (int w = 0; w < word_count(traits); w++)
+        words[w] = in_all_lanes(((const double *) frame)[w]);
+    set_frame_lanes(traits, words, out);
+    if (!traits.drifts)
+        return;
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++)
+        out->velocity[axis] = in_all_lanes(velocity_of(traits, frame)[axis]);
+}
+
+#ifdef KERNEL_TIMES
+
+INLINE void put_first(lanes x, double *out)
+{
+    memcpy(out, &x, sizeof *out);
+}
+
+#endif
+
+#ifndef KERNEL_EXACT
+
+/* From lanes that hold the same, or, mirrored, each half of what there is to know. */
+INLINE enum slabs_outcome outcome_of(const struct kernel_traits traits, struct outcomes outcomes)
+{
+    if (!traits.mirrored)
+        return outcome_at(outcomes, 0);
+    return outcomes.separated          ? SLABS_SEPARATED
+           : outcomes.overlapping == 3 ? SLABS_OVERLAPPING
+                                       : SLABS_UNSURE;
+}
+
+#endif
+
+INLINE enum slabs_outcome evaluate_single(struct kernel_traits traits, const struct fmb_prepared *a,
+                                          const struct fmb_prepared *b, double duration,
+                                          double *out)
+{
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    traits.mirrored = is_mirrored(traits);
+    if (traits.mirrored) {
+        gather_mirrored(traits, a, b, &frame[0], &frame[1]);
+    } else {
+        gather_frame(traits, a, &frame[0]);
+        gather_frame(traits, b, &frame[1]);
+    }
+    set_pair(traits, &frame[0], &frame[1], duration, &pair);
+#ifdef KERNEL_EXACT
+    (void) out;
+    return outcome_at(exact_outcomes(traits, &frame[0], &frame[1], duration, &pair), 0);
+#else
+    struct slabs_result result;
+    evaluate_pair(traits, &pair, &result);
+#ifdef KERNEL_TIMES
+    lanes times[2];
+    times_of(&pair, &result, duration, times);
+    put_first(times[0], &out[0]);
+    put_first(times[1], &out[1]);
+#else
+    (void) out;
+#endif
+    return outcome_of(traits, outcomes_of(&pair, &result));
+#endif
+}
+
+#define KERNEL_FUNCTION(name, traits)                                                          \
+    static enum slabs_outcome name(const struct fmb_prepared *a, const struct fmb_prepared *b, \
+                                   double duration, double *out)                               \
+    {                                                                                          \
+        return evaluate_single(traits, a, b, duration, out);                                   \
+    }
+
+KERNEL_FUNCTIONS(KERNEL_FUNCTION)
+
+kernel_single_function *const KERNEL_PASTE(kernel, KERNEL_NAME)[KERNEL_KINDS] = KERNEL_TABLE;
