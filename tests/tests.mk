@@ -95,21 +95,21 @@ $(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/
 # Kernels of eight lanes in vectors that every machine has; and with a wrong bound.
 set_wide := -DLANES=8
 wide_kernels := $(call kernel_of,wide exact_wide times_wide boxes_wide)
-$(wide_kernels): $(O)/kernels/%.o: service/fmb/filter/run.c $(O)/settings
+$(wide_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) -DRUN_NAME=$* $(kernel_set) $(kernel_job)
-$(O)/kernels/wide_planted.o: service/fmb/filter/run.c $(O)/settings
+	$(compile_bare) -DKERNEL_NAME=$* $(kernel_set) $(kernel_job)
+$(O)/kernels/wide_planted.o: service/fmb/filter/many.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) -DRUN_NAME=wide_planted $(set_wide) -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
+	$(compile_bare) -DKERNEL_NAME=wide_planted $(set_wide) -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
 $(B)/tests/test_kernels: $(wide_kernels) $(O)/kernels/wide_planted.o
 
 # Kernels of boxes with bounds that are a sixteenth of theirs, and with none.
 box_kernels := $(call kernel_of,boxes_planted boxes_bare)
 box_unit_planted := 0x1p-57
 box_unit_bare := 0.0
-$(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/run.c $(O)/settings
+$(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/many.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) -DLANES=1 -DRUN_BOXES -DRUN_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
+	$(compile_bare) -DLANES=1 -DKERNEL_BOXES -DKERNEL_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
 $(B)/tests/test_box_bounds: $(box_kernels)
 
 $(internal_tests): $(V)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
@@ -171,9 +171,9 @@ capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-
 $(capped_sets:%=$(O)/capped/%.o): $(O)/capped/%.o: service/fmb/filter/instructions.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) $(sees) -DINSTRUCTIONS_MOST=$(capped_most_$*)
-$(B)/capped/libfmb-plain.a: $(call alone_kernels_of,plain)
+$(B)/capped/libfmb-plain.a: $(call single_kernels_of,plain)
 $(capped_sets:%=$(B)/capped/libfmb-%.a): $(B)/capped/libfmb-%.a: $(O)/capped/%.o \
-		$(filter-out %/instructions.o $(call alone_kernels_of,plain),$(engine_objects))
+		$(filter-out %/instructions.o $(call single_kernels_of,plain),$(engine_objects))
 	$(call library,fmb_*)
 $(capped_sets:%=$(B)/capped/fmbd-%): $(O)/service/main.o
 $(capped_sets:%=$(B)/capped/fmb-%): $(O)/clients/fmb.o $(B)/libfmb-client.a

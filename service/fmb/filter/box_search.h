@@ -746,12 +746,8 @@ INLINE void set_drift_slabs(const struct pair_lanes *pair, const struct kernel_t
                             int which, const struct face_products *own,
                             struct box_products *products, struct box_search *search)
 {
-    lanes plane[3], middle[6];
-    cross(pair->half_drift, pair->offset, plane);
-    UNROLL(3)
-    for (int i = 0; i < component_count(traits, which); i++)
-        middle[i] = dot(plane, pair->component[which][i]);
-    add_differences(traits, which, middle);
+    lanes middle[6];
+    set_drift_middles(pair, traits, which, middle);
     for (int index = 0; index < edge_count(traits, which); index++) {
         const int e = edge_at(traits, which, index);
         lanes at[3];

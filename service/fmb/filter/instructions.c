@@ -1,10 +1,11 @@
-/* Which instruction set the filter runs on: asked of the machine at each call, so that nothing is
- * kept. */
+/* Chooses the instruction set of the filter. The machine is queried at each call, so that there is
+ * no state. */
 #include "kernel.h"
 
-/* The best that is ever used, of enum fmb_instructions, which the preprocessor does not know. Tests
- * build programs that know less than their machine has; one that knows plain C alone is what other
- * machines have. Kernels of AVX2 and AVX-512 are linked only if this is larger than 2. */
+/* The largest of enum fmb_instructions that is used, as a number, since the preprocessor does not
+ * know the enum. Tests build programs that use less than their machine has; 1, plain C only, is
+ * what machines other than x86-64 have. Kernels of AVX2 and AVX-512 are linked only if this is
+ * larger than 2. */
 #ifndef INSTRUCTIONS_MOST
 #define INSTRUCTIONS_MOST 4
 #endif

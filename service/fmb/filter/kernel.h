@@ -1,7 +1,8 @@
-/* The filter over many pairs of one kind: prepared frames in, outcomes out, as many side by side as
- * the instruction set has lanes. many.c, and single.c for pairs alone, are compiled once for each
- * set, and once more for the times of contact, whose bits are promised (Makefile, kernel_lanes.h).
- */
+/* The kernels of the filter: prepared frames in, outcomes, times of contact or boxes out. A kernel
+ * decides pairs of one kind, as many side by side as its instruction set has lanes. many.c (many
+ * pairs) and single.c (one pair) are compiled once for each instruction set and job (Makefile,
+ * kernel_lanes.h). Only the first pass uses fused operations: the bits of all other jobs are
+ * promised. No function here has shared state. */
 #ifndef FMB_KERNEL_H
 #define FMB_KERNEL_H
 
@@ -11,30 +12,32 @@
 #include <assert.h>
 #include <stddef.h>
 
-/* Kinds of pairs that the filter can be asked. Two frames of different shapes come with the cuboid
- * first, and with the face last. */
+/* The kinds of pairs: sums of these bits, which are indices of the tables of kernels. Of two frames
+ * of different shapes the cuboid comes first, and the face last. */
 enum kernel_kind {
-    KERNEL_TETRAHEDRON = 1 << 0, /* one is a tetrahedron: b, or with a face a */
-    KERNEL_SAME_SHAPE = 1 << 1,  /* both are tetrahedra, or faces */
+    KERNEL_TETRAHEDRON = 1 << 0, /* at least one frame is a tetrahedron: b, or a if b is a face */
+    KERNEL_SAME_SHAPE = 1 << 1,  /* both are tetrahedra, or both are faces */
     KERNEL_3D = 1 << 2,
     KERNEL_DRIFTS = 1 << 3,       /* the velocities differ and the window is not empty */
     KERNEL_AXIS_ALIGNED = 1 << 4, /* 3D: edges or drift may be parallel to the same axis */
     KERNEL_FACE = 1 << 5,         /* b is a face */
     KERNEL_KINDS = 1 << 6,
-    KERNEL_UNUSABLE = KERNEL_KINDS, /* doubles can say nothing of it */
-    KERNEL_REFUSED                  /* cannot be asked */
+    KERNEL_UNUSABLE = KERNEL_KINDS, /* doubles cannot decide the pair */
+    KERNEL_REFUSED                  /* a frame is not valid, or the dimensions differ */
 };
 
-/* What the summaries of two frames say of their pair. Inline, as all that follows, for the inner
- * loop of a batch. */
+/* What the summaries of two frames (prepared.h) say about their pair. Inline, like all functions
+ * below, for the inner loop of a batch. */
 struct kernel_kinds {
-    enum kernel_kind at_rest,
-        drifting; /* where the velocities are the same, and where they differ */
-    bool swapped; /* a and b change places */
-    bool moving;  /* the velocities have to be looked at */
+    enum kernel_kind at_rest;  /* the kind if the velocities are equal */
+    enum kernel_kind drifting; /* the kind if they differ */
+    bool swapped;              /* a and b have to be swapped */
+    bool moving;               /* the velocities have to be compared; else the kind is at_rest */
 };
 
-/* The bits of a frame that its pair takes over stand where they do there. */
+/* In: prepared_kind() of both frames, and the duration of the window in seconds. The bits that a
+ * pair takes over from its frames are copied without a test of each: the assertion below checks
+ * their positions. */
 static inline struct kernel_kinds kernel_kinds_of(unsigned kind_a, unsigned kind_b, double duration)
 {
     const unsigned both = kind_a & kind_b, any = kind_a | kind_b;
@@ -43,12 +46,13 @@ static inline struct kernel_kinds kernel_kinds_of(unsigned kind_a, unsigned kind
     if (!(both & PREPARED_USABLE))
         return (struct kernel_kinds){KERNEL_UNUSABLE, KERNEL_UNUSABLE, false, false};
     const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE, space = both & PREPARED_3D;
-    const unsigned alike = (both & PREPARED_TETRAHEDRON) << 1 | (both & PREPARED_FACE);
-    const unsigned kind = (any & PREPARED_TETRAHEDRON) | alike | (any & PREPARED_FACE) << 4 | space;
-    const unsigned along = space / PREPARED_3D * PREPARED_AXIS_ALIGNED;
+    const unsigned same_shape = (both & PREPARED_TETRAHEDRON) << 1 | (both & PREPARED_FACE);
+    const unsigned kind =
+        (any & PREPARED_TETRAHEDRON) | same_shape | (any & PREPARED_FACE) << 4 | space;
+    const unsigned aligned = space / PREPARED_3D * PREPARED_AXIS_ALIGNED;
     return (struct kernel_kinds){
-        .at_rest = (enum kernel_kind)(kind | (both & along)),
-        .drifting = (enum kernel_kind)(kind | KERNEL_DRIFTS | (any & along)),
+        .at_rest = (enum kernel_kind)(kind | (both & aligned)),
+        .drifting = (enum kernel_kind)(kind | KERNEL_DRIFTS | (any & aligned)),
         .swapped = (kind_a & shapes) > (kind_b & shapes),
         .moving = any & PREPARED_MOVING && duration > 0};
 }
@@ -58,14 +62,16 @@ static_assert((int) KERNEL_TETRAHEDRON == (int) PREPARED_TETRAHEDRON &&
                   (int) KERNEL_SAME_SHAPE == (int) PREPARED_FACE &&
                   (int) KERNEL_FACE == PREPARED_FACE << 4 && (int) KERNEL_3D == (int) PREPARED_3D &&
                   (int) KERNEL_AXIS_ALIGNED == (int) PREPARED_AXIS_ALIGNED,
-              "kernel_kinds_of() takes bits over as they are");
+              "kernel_kinds_of() copies bits");
 
+/* Whether the velocities of two frames of one dimension differ. */
 static inline bool kernel_pair_drifts(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
     const double *v = prepared_velocity(a), *w = prepared_velocity(b);
     return v[0] != w[0] || v[1] != w[1] || (prepared_kind(a) & PREPARED_3D && v[2] != w[2]);
 }
 
+/* The kind of a pair for its verdict and times. *swapped: the kernel takes b first. */
 static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
                                               const struct fmb_prepared *b, double duration,
                                               bool *swapped)
@@ -75,8 +81,8 @@ static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }
 
-/* An order of two frames of one shape that does not depend on their places in a query: whether b
- * comes before a. Frames that are equal in all numbers are in order both ways. */
+/* An order of two frames of one shape that does not depend on their positions in a query. Returns
+ * whether b comes before a; false both ways for frames that are equal in all numbers. */
 static inline bool kernel_order_is_reversed(const struct fmb_prepared *a,
                                             const struct fmb_prepared *b)
 {
@@ -92,59 +98,69 @@ static inline bool kernel_order_is_reversed(const struct fmb_prepared *a,
     return false;
 }
 
-/* The kind of a pair for its box: KERNEL_DRIFTS says that a frame moves, even if both move alike.
- * The kernels of boxes are not symmetric: frames of one shape are put in order. On input: frames
- * that may be compared. */
+/* The kind of a pair for the kernel of its box. There KERNEL_DRIFTS means that a frame moves, even
+ * if both have the same velocity. *swapped: the kernel takes b first. The kernels of boxes are not
+ * swap-invariant: frames of one shape are put in the order of kernel_order_is_reversed(). On input,
+ * the frames are valid and of one dimension. */
 static inline enum kernel_kind kernel_box_kind(const struct fmb_prepared *a,
                                                const struct fmb_prepared *b, double duration,
                                                bool *swapped)
 {
     const struct kernel_kinds kinds = kernel_kinds_of(prepared_kind(a), prepared_kind(b), duration);
     const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE;
-    const bool alike = ((prepared_kind(a) ^ prepared_kind(b)) & shapes) == 0;
-    *swapped = alike ? kernel_order_is_reversed(a, b) : kinds.swapped;
+    const bool same_shape = ((prepared_kind(a) ^ prepared_kind(b)) & shapes) == 0;
+    *swapped = same_shape ? kernel_order_is_reversed(a, b) : kinds.swapped;
     return kinds.moving ? kinds.drifting : kinds.at_rest;
 }
 
+/* A call of a kernel of many pairs. All memory belongs to the caller. Each output has capacity for
+ * KERNEL_LANES - 1 more entries than count, and may be NULL if the kernel does not write it. */
 struct kernel_call {
-    /* [count][a, b]. Up to KERNEL_LANES - 1 more are read, and have to be frames of some kind. */
+    /* [count][a, b]. Up to KERNEL_LANES - 1 more entries are read, and have to point to frames of
+     * some kind. */
     const struct fmb_prepared *(*pairs)[2];
-    size_t count; /* at least 1 */
-    double duration;
-    /* What is written has room for KERNEL_LANES - 1 more; NULL where the function does not write
-     * it. [count]: enum slabs_outcome. */
+    size_t count;    /* at least 1 */
+    double duration; /* of the window, in seconds */
+    /* [count]: enum slabs_outcome. */
     unsigned char *outcomes;
-    /* [count][first, last], of pairs in contact: seconds; NAN where they are not known well enough.
-     */
+    /* [count][first, last], of pairs in contact: seconds since the start of the window; NAN where
+     * doubles do not prove the limit of fmb.h. */
     double (*contacts)[2];
-    /* [count][lower, upper][axis], of pairs in contact; NAN where they are not known well enough.
-     */
+    /* [count][lower, upper][axis], of pairs in contact; NAN where doubles do not prove the limit
+     * of fmb.h. */
     double (*boxes)[2][FMB_DIM_MAX];
-    /* For boxes: the frames of every pair are in contact as they are prepared, as is certain where
-     * the filter decides so. Gives more boxes of frames with an error. */
+    /* For boxes: the frames of every pair are in contact as they are prepared, which is certain if
+     * the filter decided it. More boxes of frames with an error are known then. */
     bool in_contact;
 };
 
 enum { KERNEL_LANES = 8 };
 
-typedef void kernel_function(const struct kernel_call *run);
+typedef void kernel_function(const struct kernel_call *call);
 
-/* Tables have a function for each kind, NULL for combinations that do not exist. verdicts write
- * outcomes, of all kinds; times outcomes and contacts, of kinds that drift; boxes boxes, of all
- * kinds, where KERNEL_DRIFTS says that a frame moves.
+/* Tables of kernels, [KERNEL_KINDS], NULL for combinations of bits that do not exist.
  *
- * exact: the second pass, for pairs that another one leaves unsure. It decides all that verdicts
- * does, pairs that touch along coordinate axes, and those on whose numbers nothing rounds
- * (slabs_exact.h). What it leaves unsure is the same with every instruction set. TOUCHING of two
- * faces: they are neither separated nor do they overlap unless their planes are parallel. */
+ *     verdicts  the first pass, of all kinds: writes outcomes
+ *     exact     the second pass, of all kinds: writes outcomes
+ *     times     of the kinds that drift: writes outcomes and contacts
+ *     boxes     of all kinds of kernel_box_kind(): writes boxes
+ *
+ * The second pass is for pairs that another kernel leaves unsure. It decides all that verdicts
+ * decides, and in addition pairs that touch along coordinate axes, and pairs whose numbers do not
+ * round (slabs_exact.h). The pairs that it leaves unsure are the same on every instruction set.
+ * TOUCHING of two faces means only that they are not separated, and do not overlap unless their
+ * planes are parallel. */
 struct kernel_set {
     kernel_function *const *verdicts, *const *exact, *const *times, *const *boxes;
 };
 
-/* By enum fmb_instructions; false if this machine does not have them, or they were not compiled. */
+/* Sets *out to the tables of an instruction set (enum fmb_instructions). Returns false if this
+ * machine does not have it, or its kernels were not compiled. */
 bool kernel_set_of(int instructions, struct kernel_set *out);
 
-/* The same for a pair alone, of any instruction set. out: the contact, from times. */
+/* Kernels of a single pair, in the instruction set that takes least time for it. Bits that are
+ * promised are the same as those of many pairs. out: [first, last] of the contact, from times; NULL
+ * from the others. */
 typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
                                                   const struct fmb_prepared *b, double duration,
                                                   double *out);
@@ -153,7 +169,8 @@ kernel_single_function *const *kernel_verdicts_single(void);
 kernel_single_function *const *kernel_exact_single(void);
 kernel_single_function *const *kernel_times_single(void);
 
-/* Boxes of a pair alone: the kernels that take least time for it. */
+/* Boxes of a single pair: kernels of many pairs, of the instruction set that takes least time for
+ * one. */
 kernel_function *const *kernel_boxes_single(void);
 
 #endif

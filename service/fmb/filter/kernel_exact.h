@@ -1,5 +1,5 @@
-/* The second pass of the filter: prepared frames in lanes to outcomes, by what is exact of them
- * (slabs_exact.h). */
+/* The second pass of the filter: prepared frames in lanes to outcomes, by what is exact about them.
+ * The proof is in slabs_exact.h. */
 #ifndef FMB_KERNEL_EXACT_H
 #define FMB_KERNEL_EXACT_H
 
@@ -12,7 +12,7 @@ INLINE lanes_bits bits_of(uint64_t bits)
     return out + bits;
 }
 
-/* The signs along axes that are known; returns the largest gap along one of them. */
+/* Sets pair->signed_axes; returns the largest gap along these axes. */
 INLINE lanes set_signs(const struct kernel_traits traits, const struct frame_lanes *a,
                        const struct frame_lanes *b, struct pair_lanes *pair)
 {
@@ -22,20 +22,21 @@ INLINE lanes set_signs(const struct kernel_traits traits, const struct frame_lan
     axes &= bits_of(traits.dim == 2 ? 3 : 7);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        const struct exact_sum along =
+        const struct exact_sum own =
             axis_gap(traits, a->component, a->origin, b->component, b->origin, axis);
-        lanes_mask open = along.rounds != 0;
+        lanes_mask open = own.rounds != 0;
         if (traits.drifts)
             open |= a->velocity[axis] != b->velocity[axis];
         axes &= ~lanes_bits_where(open, bits_of(1u << axis));
-        gap = lanes_select((axes & (1u << axis)) != 0, lanes_max(along.value, gap), gap);
+        gap = lanes_select((axes & (1u << axis)) != 0, lanes_max(own.value, gap), gap);
     }
     pair->signed_axes = axes;
     return gap;
 }
 
-/* Whether nothing rounds in a lane, and its frames have no errors. A product of numbers that have
- * 26 bits is exact unless it is tiny, and a multiple of g that is not 0 is not. */
+/* The lanes in which nothing rounds, and whose frames have no errors. A product of two numbers with
+ * 26 significant bits each is exact unless it is tiny, and a multiple of g other than 0 is not
+ * tiny. */
 INLINE lanes_mask nothing_rounds(const struct kernel_traits traits, const struct frame_lanes *a,
                                  const struct frame_lanes *b, double duration,
                                  const struct pair_lanes *pair)
@@ -61,7 +62,7 @@ INLINE lanes_mask nothing_rounds(const struct kernel_traits traits, const struct
     return out;
 }
 
-/* Of each edge the axes, of those whose signs are known, along which it has no extent. */
+/* Sets pair->across: for each edge the axes of pair->signed_axes along which it has no extent. */
 INLINE void set_across(const struct kernel_traits traits, struct pair_lanes *pair)
 {
     UNROLL(2)
@@ -79,9 +80,10 @@ INLINE void set_across(const struct kernel_traits traits, struct pair_lanes *pai
     }
 }
 
-/* Cuboids that have the signs of all axes lie along them, and have no other slabs: each extends
- * along an axis with one edge. Two faces are TOUCHING here where no slab separates them and some
- * slab does not hold them strictly. */
+/* The outcomes of the second pass. Two cuboids whose signs are known along all axes are
+ * axis-aligned, and have no other slabs: each extends along an axis with one edge. Two faces are
+ * TOUCHING here if nothing rounds, no slab separates them, and some slab does not hold the offset
+ * strictly. */
 INLINE struct outcomes exact_outcomes(const struct kernel_traits traits,
                                       const struct frame_lanes *a, const struct frame_lanes *b,
                                       double duration, struct pair_lanes *pair)
@@ -89,20 +91,20 @@ INLINE struct outcomes exact_outcomes(const struct kernel_traits traits,
     const bool cuboids = !traits.simplex[0] && !traits.simplex[1];
     const bool faces = traits.face[0] && traits.face[1];
     const lanes gap = set_signs(traits, a, b, pair);
-    lanes_mask whole = {0};
+    lanes_mask exact = {0}; /* nothing rounds */
     struct slabs_result result;
     slabs_result_begin(&result);
     if (!cuboids || !lanes_all(pair->signed_axes == (traits.dim == 2 ? 3 : 7))) {
-        whole = nothing_rounds(traits, a, b, duration, pair);
-        pair->unit = lanes_select(whole, lanes_of(0), pair->unit);
-        pair->reach = lanes_select(whole, lanes_of(0), pair->reach);
+        exact = nothing_rounds(traits, a, b, duration, pair);
+        pair->unit = lanes_select(exact, lanes_of(0), pair->unit);
+        pair->reach = lanes_select(exact, lanes_of(0), pair->reach);
         set_across(traits, pair);
         evaluate_pair(traits, pair, &result);
     }
     const lanes_mask separated = pair->in_range & ((result.gap_low > 0) | (gap > 0));
     const lanes_mask inside = pair->in_range & (result.gap_high < 0);
     const lanes_mask overlapping = inside & (gap < 0) & ~separated;
-    const lanes_mask touching = (faces ? whole : whole | inside) & ~separated & ~overlapping;
+    const lanes_mask touching = (faces ? exact : exact | inside) & ~separated & ~overlapping;
     return (struct outcomes){lanes_mask_bits(separated), lanes_mask_bits(touching),
                              lanes_mask_bits(overlapping)};
 }

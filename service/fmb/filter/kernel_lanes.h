@@ -1,22 +1,27 @@
 /* A kernel of the filter: what many.c (many pairs) and single.c (a single pair) share.
  *
  *   In     prepared frames (prepared.h), read as arrays of doubles, and the duration of the window
- *   Out    for each lane an outcome (enum slabs_outcome); times of contact or boxes where wanted
+ *   Out    for each lane an outcome (enum slabs_outcome); times of contact or boxes where requested
  *
  * Steps:
- *   1. gather()         loads the words of LANES frames; words[w] holds word w of each
- *   2. set_frame_lanes()  gives the words their names: origin, components, sizes, error
- *   3. set_pair()       sets offset, drift and error of the pair (pair_lanes.h)
- *   4. evaluate_pair()   goes through the list of slabs (slabs_evaluate.h) and sums it up in struct
- * slabs_result
- *   5. outcomes_of()    separated, touching, overlapping, or unsure; times_of(): seconds
  *
- * Macros that the build sets choose the job: none: verdicts, the first pass; KERNEL_EXACT: the
- * second pass (kernel_exact.h); KERNEL_TIMES: verdicts and times; KERNEL_BOXES: boxes
+ *   1. gather()           loads the words of LANES frames; words[w] holds word w of each
+ *   2. set_frame_lanes()  splits the words into fields: origin, components, sizes, error
+ *   3. set_pair()         sets offset, drift and error of the pair (pair_lanes.h)
+ *   4. evaluate_pair()    evaluates the slabs (slabs_evaluate.h) into a struct slabs_result
+ *   5. outcomes_of()      separated, touching, overlapping, or unsure; times_of(): seconds
+ *
+ * Macros that the build sets select the job. None: the first pass, verdicts. KERNEL_EXACT: the
+ * second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. KERNEL_BOXES: boxes
  * (kernel_box.h). The bits of the last three are promised. At the end of this file KERNEL_FUNCTIONS
- * defines one function for each kind of pair (dimension, shapes, motion: kernel.h), with the kind
- * as a constant, and KERNEL_TABLE lists them in the order of the kinds, in a table whose name ends
- * in KERNEL_NAME.
+ * defines one function for each kind of pair (dimension, shapes, motion: kernel.h), with the traits
+ * as a constant. KERNEL_TABLE lists these functions in the order of the kinds, in a table whose
+ * name ends in KERNEL_NAME.
+ *
+ * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
+ * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this
+ * file, kernel_exact.h, kernel_box.h. slabs_exact.h and box_search.h hold the mathematics of the
+ * last two.
  *
  * Proofs: the bounds of slabs in slabs.c, of times in slabs_lanes.h, of frames in prepared.h, of
  * boxes in box_search.h. */
@@ -43,13 +48,16 @@ enum { EXACT = 0 };
 #endif
 enum { ROUGH = !TIMES && !EXACT && !BOXES };
 
-/* ---- The gather: words[w] holds word w of LANES frames ---- */
+/* ---- The gather ----
+ *
+ * gather_four() loads the words first to first + 3 of all frames: words[w] holds word first + w,
+ * lane i that of frame i. */
 
 enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
 
 #if LANES == 1
 
-enum { GATHERED = 1 }; /* frames */
+enum { GATHERED = 1 }; /* frames that gather_four() reads: all LANES */
 
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
@@ -109,7 +117,7 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 
 enum { GATHERED = 8 };
 
-/* Four words of two frames: the second half is inserted as it is loaded, without a shuffle. */
+/* Four words of two frames: the second half is inserted as it is loaded, which saves a shuffle. */
 INLINE lanes four_of_two(const double *low, const double *high)
 {
 #ifdef __AVX512F__
@@ -140,13 +148,14 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 
 #endif
 
-/* A frame of each lane. */
+/* A prepared frame of each lane. */
 struct frame_lanes {
     lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
     lanes error;
     lanes_bits summary;
 };
 
+/* Splits the words of prepared frames (prepared.h) into fields. */
 INLINE void set_frame_lanes(const struct kernel_traits traits, const lanes words[WORDS],
                             struct frame_lanes *out)
 {
@@ -165,7 +174,7 @@ INLINE void set_frame_lanes(const struct kernel_traits traits, const lanes words
     out->error = words[traits.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D];
 }
 
-/* A word by itself. */
+/* A single word of each frame. */
 INLINE lanes gather_one(const double *const frame[LANES], int word)
 {
 #if LANES == 1
@@ -180,13 +189,14 @@ INLINE lanes gather_one(const double *const frame[LANES], int word)
 #endif
 }
 
-/* Of summary, origin, components and error. */
+/* The number of words of summary, origin, components and error. */
 INLINE int word_count(const struct kernel_traits traits)
 {
     return 1 + (traits.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D);
 }
 
-/* In 3D velocities are in the placements, where more numbers follow. */
+/* In 3D velocities are in the placements, followed by more numbers, so that reading four is safe.
+ */
 INLINE void gather_velocity(const struct kernel_traits traits, const double *const frame[LANES],
                             struct frame_lanes *out)
 {
@@ -203,6 +213,7 @@ INLINE void gather_velocity(const struct kernel_traits traits, const double *con
         out->velocity[axis] = words[axis];
 }
 
+/* Loads the frame of each lane: words four at a time, and a single last word by itself. */
 INLINE void gather(const struct kernel_traits traits, const double *const frame[LANES],
                    struct frame_lanes *out)
 {
@@ -219,6 +230,7 @@ INLINE void gather(const struct kernel_traits traits, const double *const frame[
         gather_velocity(traits, frame, out);
 }
 
+/* Sets the pairs of the frames; duration of the window in seconds. */
 INLINE void set_pair(const struct kernel_traits traits, const struct frame_lanes *a,
                      const struct frame_lanes *b, double duration, struct pair_lanes *out)
 {
@@ -240,6 +252,7 @@ INLINE void set_pair(const struct kernel_traits traits, const struct frame_lanes
     pair_lanes_set(traits, component, size, offset, drift, a->error + b->error, out);
 }
 
+/* Evaluates the slabs of the pairs, without a list. */
 INLINE void evaluate_pair(const struct kernel_traits traits, const struct pair_lanes *pair,
                           struct slabs_result *result)
 {
@@ -252,11 +265,12 @@ INLINE void evaluate_pair(const struct kernel_traits traits, const struct pair_l
 
 /* ---- Outcomes ---- */
 
-/* Bit i of each: lane i. Lanes of none are unsure. */
+/* Bit i of each: lane i. A lane without a bit is unsure. */
 struct outcomes {
     unsigned separated, touching, overlapping;
 };
 
+/* The outcomes of the first pass, and of kernels of times. */
 INLINE struct outcomes outcomes_of(const struct pair_lanes *pair, const struct slabs_result *result)
 {
     const unsigned in_range = lanes_mask_bits(pair->in_range);
@@ -295,16 +309,16 @@ INLINE void put_outcomes(struct outcomes outcomes, unsigned char out[LANES])
 
 /* ---- Times and boxes ---- */
 
-/* Seconds: below this a product with a time may underflow. */
-#define LEAST_DURATION 0x1p-900
+/* Seconds: a product with a shorter duration may underflow. */
+#define DURATION_MIN 0x1p-900
 
-/* Between outer and inner ends, of a window of length 2: leaves a tenth of 1e-12 of it to what is
- * rounded after. */
+/* The largest distance of an outer and an inner end, in a window of length 2. Leaves a tenth of the
+ * limit, 1e-12 of the window, to the roundings that follow. */
 #define TIMES_LIMIT 1.8e-12
 
-/* From outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart.
- * SLABS_TIMES_SLACK covers the rounding of the ends (slabs_lanes.h). The product with the duration
- * rounds three times more, each time by less than 2^-53 of it. */
+/* Outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart. SLABS_TIMES_SLACK
+ * covers the rounding of the ends (slabs_lanes.h). The product with the duration rounds three times
+ * more, each time by less than 2^-53 of it. */
 INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *result,
                      double window, lanes times[2])
 {
@@ -316,7 +330,7 @@ INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *r
     const lanes first = (0.5 + 0.5 * enter) * duration * (1 - 0x1p-51);
     const lanes last = lanes_min((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
     const lanes_mask good = pair->in_range & (enter_inner - enter <= TIMES_LIMIT) &
-                            (leave - leave_inner <= TIMES_LIMIT) & (duration >= LEAST_DURATION);
+                            (leave - leave_inner <= TIMES_LIMIT) & (duration >= DURATION_MIN);
     times[0] = lanes_select(good, first, lanes_of(NAN));
     times[1] = lanes_select(good, last, lanes_of(NAN));
 }
@@ -342,7 +356,8 @@ enum kernel_shape { SHAPE_C, SHAPE_T, SHAPE_F }; /* cuboid, tetrahedron, face */
     KERNEL_KIND(FUNCTION, name##_cc, dimension, SHAPE_C, SHAPE_C, drift, parallel) \
     KERNEL_KIND(FUNCTION, name##_ct, dimension, SHAPE_C, SHAPE_T, drift, parallel) \
     KERNEL_KIND(FUNCTION, name##_tt, dimension, SHAPE_T, SHAPE_T, drift, parallel)
-/* Of faces, which are often parallel to something, one function for both. */
+/* Kinds with faces, which are often parallel to something: one function with and without
+ * KERNEL_AXIS_ALIGNED. */
 #define KERNEL_FACES(FUNCTION, name, drift, parallel)                      \
     KERNEL_KIND(FUNCTION, name##_cf, 3, SHAPE_C, SHAPE_F, drift, parallel) \
     KERNEL_KIND(FUNCTION, name##_tf, 3, SHAPE_T, SHAPE_F, drift, parallel) \
@@ -384,8 +399,8 @@ enum kernel_shape { SHAPE_C, SHAPE_T, SHAPE_F }; /* cuboid, tetrahedron, face */
         KERNEL_DRIFTING_ENTRIES \
     }
 #elif defined(KERNEL_EXACT) || defined(KERNEL_BOXES)
-/* One function for edges parallel to an axis and for others: boxes find zero normals by their
- * masks, and the second pass always looks for them. */
+/* One function with and without KERNEL_AXIS_ALIGNED: boxes find zero normals by their masks, and
+ * the second pass always looks for them. */
 #define KERNEL_FUNCTIONS(FUNCTION)                     \
     KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)            \
     KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)     \

@@ -1,4 +1,4 @@
-/* LANES pairs side by side. */
+/* Kernels of many pairs, LANES of them at a time. */
 #include "kernel_box.h"
 
 INLINE void gather_side(const struct kernel_call *call, const struct kernel_traits traits,
@@ -20,7 +20,7 @@ INLINE void gather_pairs(const struct kernel_call *call, const struct kernel_tra
 
 #if defined(KERNEL_TIMES) || defined(KERNEL_BOXES)
 
-/* To every so many doubles. */
+/* Writes lane i to out[i * stride]. */
 INLINE void scatter(lanes x, double *out, int stride)
 {
     double at[LANES];

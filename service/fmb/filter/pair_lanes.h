@@ -1,47 +1,47 @@
-/* A pair of frames in lanes, as the kernels want it: seen from reference points, in lengths that
- * need no halves. */
+/* LANES pairs of frames side by side, in the form in which kernels compute: seen from reference
+ * points, in lengths that need no halves. */
 #ifndef FMB_PAIR_LANES_H
 #define FMB_PAIR_LANES_H
 
 #include "lanes.h"
 #include "slabs.h"
 
-/* What is known when a kernel is compiled. */
+/* The constants of a kernel: the kind of its pairs, and its job. */
 struct kernel_traits {
     int dim;
-    bool simplex[2]; /* of a, of b: tetrahedra, triangles of 2D, faces; else cuboids */
-    bool face[2];    /* 3D: a simplex of two components */
+    bool simplex[2]; /* [a, b]: a tetrahedron, a triangle in 2D, or a face; else a cuboid */
+    bool face[2];    /* [a, b]: in 3D, a simplex of two components */
     bool drifts;
-    bool
-        axis_aligned; /* edges may be parallel to the same axis: zero normals are looked for (3D) */
-    bool
-        swap_invariant; /* every number is to have the same bits for the pair the other way round */
-    /* Two frames of the same shape; the second of two lanes holds the pair the other way round. The
-     * slabs of b are those of a there, and those of edges i of a and j of b are those of j and i.
-     */
+    bool axis_aligned; /* 3D: edges may be parallel to the same axis; zero normals are looked for */
+    bool swap_invariant; /* every number has the same bits for the pair with its frames swapped */
+    /* Two frames of the same shape; of two lanes, the second holds the pair with its frames
+     * swapped. The slabs of b in one lane are those of a in the other, and those of edges i of a
+     * and j of b are those of j and i. */
     bool mirrored;
-    bool times; /* the times of contact are wanted; ordered */
-    bool box;   /* the box is wanted: of pairs that drift, and of such that move together */
-    bool rough; /* first of two passes: bounds are SLABS_ROUGH times as wide */
+    bool times; /* times of contact are computed; requires swap_invariant */
+    bool box;   /* the box is computed, also of frames that move with equal velocities */
+    bool rough; /* the first of two passes: bounds are SLABS_ROUGH times as wide */
     bool exact; /* the second pass: in some lanes nothing rounds, and signs along axes are known */
 };
 
-/* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex.
- * In a pair with a cuboid all lengths are doubled, so that the halves of its edges are its
- * components. */
+/* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex. If a
+ * frame is a cuboid, all lengths of the pair are doubled, so that half an edge of the cuboid is its
+ * component. */
 struct pair_lanes {
-    lanes component[2][3][3]; /* [frame][component][axis]; of a cuboid half of it, as above */
-    lanes size[2][6];         /* of edges: no smaller than their lengths */
-    lanes offset[3];          /* of b's reference point in the middle of the window */
-    lanes half_drift[3]; /* of the drift: the offset goes from offset - half to offset + half */
+    lanes component[2][3][3]; /* [frame][component][axis]; of a cuboid half of it, in the doubled
+                                 lengths */
+    lanes size[2][6];         /* [frame][edge]: no smaller than the length of the edge */
+    lanes offset[3];          /* of the reference point of b, in the middle of the window */
+    lanes half_drift[3];      /* the offset moves from offset - half_drift to offset + half_drift */
     lanes half_drift_size;
-    lanes reach;         /* T (slab_rounding) */
-    lanes unit;          /* the error of a slab of scale 1, those of the frames included */
-    lanes error;         /* of both frames (prepared.h) */
-    lanes_mask in_range; /* doubles can say something of it */
+    lanes reach;         /* T of the derivation in slabs.c */
+    lanes unit;          /* error of the gap of a slab of scale 1, errors of the frames included */
+    lanes error;         /* sum of the errors of both frames (prepared.h) */
+    lanes_mask in_range; /* doubles can decide the pair */
     lanes_mask tiny;     /* products with the drift may underflow to 0 */
-    /* traits.exact (slabs_exact.h). Bit i: of axis i, the sign of the gap along it is known
-     * exactly; of such an axis, the edge has no extent along it. */
+    /* traits.exact only (slabs_exact.h). signed_axes, bit i: the sign of the gap along axis i is
+     * known exactly. across[frame][edge], bit i: in addition, the edge has no extent along axis i.
+     */
     lanes_bits signed_axes, across[2][6];
 };
 
@@ -60,13 +60,14 @@ INLINE int edge_count(const struct kernel_traits traits, int which)
     return !traits.simplex[which] ? traits.dim : component_count(traits, which) == 2 ? 3 : 6;
 }
 
-/* The number of an edge (slabs.h): a face has c_0, c_1 and c_1 - c_0. */
+/* The number (slabs.h) of the edge at an index in [0, edge_count): a face has c_0, c_1 and c_1 -
+ * c_0. */
 INLINE int edge_at(const struct kernel_traits traits, int which, int index)
 {
     return traits.face[which] && index == 2 ? 5 : index;
 }
 
-/* Whether edge 3 + i of a frame in 3D is one of its own. */
+/* Whether a frame in 3D has the edge 3 + i, a difference of components. */
 INLINE bool has_difference(const struct kernel_traits traits, int which, int i)
 {
     return traits.simplex[which] && (!traits.face[which] || i == 2);
@@ -84,28 +85,29 @@ INLINE void cross(const lanes u[3], const lanes v[3], lanes out[3])
     out[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-/* In the plane. */
+/* The product [x y] of vectors in 2D. */
 INLINE lanes product(const lanes x[3], const lanes y[3])
 {
     return x[0] * y[1] - x[1] * y[0];
 }
 
-/* ---- The pair ---- */
+/* ---- Setting a pair ---- */
 
-/* Bound on the error of a gap, and of what it is made of, relative to the scale of the slab:
- * derived in slabs.c. */
+/* Bound on the error of a gap, and of all numbers that it is made of, relative to the scale of the
+ * slab and T: derived in slabs.c. */
 INLINE double slab_rounding(const struct kernel_traits traits)
 {
     return (traits.rough ? SLABS_ROUGH : 1) *
            (traits.dim == 2 ? SLABS_ROUNDING_2D : SLABS_ROUNDING);
 }
 
+/* Whether the lengths of the pair are doubled. */
 INLINE bool is_doubled(const struct kernel_traits traits)
 {
     return !traits.simplex[0] || !traits.simplex[1];
 }
 
-/* Components and sizes of a frame; returns its share of the reach. */
+/* Sets components and sizes of a frame; returns its share of the reach. */
 INLINE lanes set_components(const struct kernel_traits traits, int which,
                             const lanes component[3][3], const lanes size[3],
                             struct pair_lanes *out)
@@ -132,15 +134,15 @@ INLINE lanes set_components(const struct kernel_traits traits, int which,
     return is_doubled(traits) ? sum + sum : sum;
 }
 
-/* From the origin of a frame to its reference point, along an axis. */
+/* From the origin of a cuboid to its centre, along an axis, in the doubled lengths. */
 INLINE lanes shift_of(const struct kernel_traits traits, const lanes component[3][3], int axis)
 {
     const lanes sum = component[0][axis] + component[1][axis];
     return traits.dim == 2 ? sum : sum + component[2][axis];
 }
 
-/* The offset of the reference points at the middle of the window, along an axis. The same for the
- * pair the other way round, negative. */
+/* The offset of the reference points in the middle of the window, along an axis. For the pair with
+ * its frames swapped it is exactly the negative. */
 INLINE lanes offset_of(const struct kernel_traits traits, const lanes component[2][3][3],
                        lanes offset, lanes half, int axis)
 {
@@ -152,8 +154,8 @@ INLINE lanes offset_of(const struct kernel_traits traits, const lanes component[
     return at + (shift_of(traits, component[1], axis) - shift_of(traits, component[0], axis));
 }
 
-/* From components, sizes of components, offset of the origins, drift, and the sum of errors, as the
- * frames have them. */
+/* Sets a pair. In, as the frames have them, not doubled: component[frame][component][axis],
+ * size[frame][component], the offset of the origins, the drift, and the sum of the errors. */
 INLINE void pair_lanes_set(const struct kernel_traits traits, const lanes component[2][3][3],
                            const lanes size[2][3], const lanes offset[3], const lanes drift[3],
                            lanes error, struct pair_lanes *out)
@@ -187,7 +189,8 @@ INLINE void pair_lanes_set(const struct kernel_traits traits, const lanes compon
     out->in_range &= usable & (half_size <= 0x1p200);
 }
 
-/* An edge by number; a difference that is 0 is exact, and none is tiny. */
+/* Computes an edge by number (slabs.h). A difference that is 0 is exact, and no difference is tiny.
+ */
 INLINE void edge_vector(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
                         int e, lanes out[3])
 {

@@ -1,15 +1,18 @@
-/* One pair alone. It lies in both of two lanes: an instruction does as much for two doubles as for
- * one, and the set has minima and maxima besides. Two frames of the same shape lie in the second
- * lane the other way round, so that half of the walk does for all of it. */
+/* Kernels of a single pair. With two lanes the pair is in both: an instruction takes as long for
+ * two doubles as for one, and the vector instructions include minima and maxima. If both frames
+ * have the same shape, the second lane holds the pair with its frames swapped, so that half of the
+ * slabs do for all of them (kernel_traits.mirrored). */
 #include "kernel_exact.h"
 
-/* Times promise the bits of a batch, which is not mirrored. */
+/* Excluded: times and the second pass, which have the same bits as those of a batch, which is not
+ * mirrored. */
 INLINE bool is_mirrored(const struct kernel_traits traits)
 {
     return LANES == 2 && !traits.swap_invariant && !traits.exact &&
            traits.simplex[0] == traits.simplex[1] && traits.face[0] == traits.face[1];
 }
 
+/* x in the first lane, y in the second. */
 INLINE lanes side_by_side(double x, double y)
 {
 #if LANES == 1
@@ -27,6 +30,7 @@ INLINE const double *velocity_of(const struct kernel_traits traits,
                            : (const double *) frame + PREPARED_VELOCITY_2D;
 }
 
+/* Loads a and b: of_a holds a in the first lane and b in the second, of_b the opposite. */
 INLINE void gather_mirrored(const struct kernel_traits traits, const struct fmb_prepared *a,
                             const struct fmb_prepared *b, struct frame_lanes *of_a,
                             struct frame_lanes *of_b)
@@ -50,8 +54,8 @@ INLINE void gather_mirrored(const struct kernel_traits traits, const struct fmb_
     }
 }
 
-/* The compiler must not see that the lanes are equal: gcc would then compute in scalars, and copy
- * each of them into a vector where a minimum or a maximum follows. */
+/* Both lanes hold x, which is hidden from the compiler: gcc would otherwise compute in scalars, and
+ * copy each of them into a vector before a minimum or a maximum. */
 INLINE lanes in_all_lanes(double x)
 {
     lanes out = side_by_side(x, x);
@@ -61,6 +65,7 @@ INLINE lanes in_all_lanes(double x)
     return out;
 }
 
+/* Loads a frame into all lanes. */
 INLINE void gather_frame(const struct kernel_traits traits, const struct fmb_prepared *frame,
                          struct frame_lanes *out)
 {
@@ -87,7 +92,8 @@ INLINE void put_first(lanes x, double *out)
 
 #ifndef KERNEL_EXACT
 
-/* From lanes that hold the same, or, mirrored, each half of what there is to know. */
+/* From lanes that hold the same pair. Mirrored, each lane knows half of the slabs: one that
+ * separates is enough, and both have to overlap. */
 INLINE enum slabs_outcome outcome_of(const struct kernel_traits traits, struct outcomes outcomes)
 {
     if (!traits.mirrored)

@@ -1,11 +1,13 @@
-/* Method. With [x y z] = (x x y) . z, the triple product, everything that the list needs of a
- * pair in 3D is a triple product of vectors among the components a_i and b_j, the offset q and
+/* Slabs in doubles, for single pairs; and the derivation for the kernels of all widths.
+ *
+ * Method. Let [x y z] = (x x y) . z, the triple product. Every number of a slab of a pair in 3D is
+ * a triple product of vectors among the components a_i and b_j, the offset q and
  * half the drift H, or a sum of a few. With n_k = a_i x a_j (i, j, k cyclic) for the faces:
  *
  *     faces of A          n_k . a_k, n_k . b_j, n_k . q, n_k . H
  *     edges a_i, b_j      [a_i b_j w] for w = q, H; and [a_i b_j a_k] = b_j . (a_k x a_i) and
- *                         [a_i b_j b_k] = a_i . (b_j x b_k), which the faces have already
- *     edge a_i, drift     [a_i H a_k] = H . (a_k x a_i) and [a_i H b_j] = -[a_i b_j H], likewise;
+ *                         [a_i b_j b_k] = a_i . (b_j x b_k), known from the faces
+ *     edge a_i, drift     [a_i H a_k] = H . (a_k x a_i) and [a_i H b_j] = -[a_i b_j H];
  *                         [a_i H q]
  *
  * Edges of a tetrahedron that are not components are differences of two, and all of this is
@@ -17,10 +19,11 @@
  * and the normal of the face across from the origin is n_0 + n_1 + n_2. In 2D the products
  * [x y] = x_0 y_1 - x_1 y_0 take the place of these.
  *
- * A cuboid is seen from its centre: along a normal it reaches as far to either side, the sum of the
- * magnitudes of the products with halves of its components, so that half of the work is saved. To
- * halve nothing, all lengths of a pair with a cuboid are doubled instead (pair_lanes). The offset
- * is that of the middle of the window, and the drift widens D by its half to either side.
+ * A cuboid is seen from its centre: along a normal it reaches equally far to either side, by the
+ * sum of the magnitudes of the products with halves of its components, which saves half of the
+ * work. Instead of halving components, all lengths of a pair with a cuboid are doubled
+ * (pair_lanes). The offset is that of the middle of the window, and the drift widens D by its half
+ * to either side.
  *
  * Accuracy, with u = 2^-53, for any order of summation and with or without fused operations. Let
  * |x| be the length of x (2-norm) or more: 1-norms of the offset d and of H, sizes from the
@@ -46,17 +49,21 @@
  *     3 times on from an offset (gap, or the inequalities of the time)
  *     6 times on from a product with a component: -(at[p] + at[q]) 1, extent 2, D 1, gap 2
  *
- * so at most 4 + 5 + 2 + 3 = 14 times in the middle of a slab of edges or faces, 4 + 2 + 5 + 1 + 2
- * = 14 in that of an edge and the drift (whose normal has H in it), 5 + 1 + 6 = 12 in an extent, 2
- * + 5
- * + 1 + 6 = 14 in one along a normal with H. So its share of the result has a factor within
- * (1 +- u)^14, and the sum an error of at most 14.01 (2 / sqrt(3)) u |u| |v| T < 16.2 u |u| |v| T.
- * Maxima and minima do not round, and move by no more than what they choose from. The sum of a gap,
- * which is at most |u| |v| T (Hadamard), and its bound rounds by 1.01 u |u| |v| T more. That
- * makes 17.3 of the 18 u of SLABS_ROUNDING; the rest is for the bound itself, computed with 15
- * roundings. Times make no such sum, and need less of it than that for theirs (bound_times). In 2D
- * a product is two monomials, magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 =
- * 10 times, and 10.01 + 1.01 leaves as much of 12 u.
+ * That is at most
+ *
+ *     4 + 5 + 2 + 3 = 14 times      in the middle of a slab of edges or faces
+ *     4 + 2 + 5 + 1 + 2 = 14 times  in that of an edge and the drift, whose normal has H in it
+ *     5 + 1 + 6 = 12 times          in an extent
+ *     2 + 5 + 1 + 6 = 14 times      in an extent along a normal with H in it.
+ *
+ * So the share of a monomial in the result has a factor within (1 +- u)^14, and the sum an error of
+ * at most 14.01 (2 / sqrt(3)) u |u| |v| T < 16.2 u |u| |v| T. Maxima and minima do not round, and
+ * move by no more than the numbers that they choose from. The sum of a gap, which is at most
+ * |u| |v| T (Hadamard), and its bound rounds by 1.01 u |u| |v| T more. That uses 17.3 of the 18 u
+ * of SLABS_ROUNDING; what remains covers the bound itself, computed with 15 roundings. Times make
+ * no such sum, and need less than that for their own operations (bound_times()). In 2D a product is
+ * two monomials, of magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 = 10 times,
+ * and 10.01 + 1.01 leaves enough of 12 u.
  *
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.
@@ -76,15 +83,15 @@
  * offsets are below 2^200 (slabs_prepare, pair_lanes.in_range), so that nothing overflows. Entries
  * and products may underflow: each of at most 100 operations then adds less than 2^-1074, to cross
  * products and H before they are multiplied by at most 2^405, while |u| |v| T 2^-53 is at least
- * 2^-653: the rest of the bound covers that many times over.
+ * 2^-653: the remaining part of the bound covers that many times over.
  *
- * A coordinate of H may underflow to 0, and a normal with it that is not zero in truth: its slab
- * says nothing then, as if the frames moved without that coordinate. Let S' be swept by this other
- * drift. Its bounds differ from those of S by less than 2^-1072 along every unit vector, and the
- * list without the slab is complete for S'. So the proof of the filter (slabs.h) holds with an
+ * A coordinate of H may underflow to 0, and with it a normal whose true value is not zero. Its slab
+ * then does not count, as if the frames moved without that coordinate. Let S' be swept by this
+ * other drift. Its bounds differ from those of S by less than 2^-1072 along every unit vector, and
+ * the list without the slab is complete for S'. So the proof of the filter (slabs.h) holds with an
  * error of the frames that is larger by 2^-1072: all other slabs hold the offset farther inside
- * than that, since what the bound has to spare is more than 2^-53 T > 2^-260 of a distance. It
- * holds for slabs decided one by one, too: such a pair spans too many bits for integers
+ * than that, since the unused part of the bound is more than 2^-53 T > 2^-260 of a distance. It
+ * also holds for slabs decided one by one: such a pair spans too many bits for integers
  * (limbs_prepare), and a slab with a bound of its own leaves 2^-660 of the gap
  * (running_error_bound), 2^-1064 of the distance. Along axes with known signs (slabs_exact.h) the
  * velocities are equal, and nothing underflows. */
@@ -96,13 +103,13 @@
 
 #include <math.h>
 
-static double largest_of(double largest, const double v[3])
+static double max_magnitude(double largest, const double v[3])
 {
     return fmax(largest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
 }
 
-/* As fmb_frame.in_range says of components: no product of two underflows, half a number
- * included. */
+/* The condition of fmb_frame.in_range for components: no product of two coordinates underflows, nor
+ * one of halves. */
 static bool are_not_tiny(const double v[3])
 {
     for (int axis = 0; axis < 3; axis++)
@@ -111,12 +118,12 @@ static bool are_not_tiny(const double v[3])
     return true;
 }
 
-/* Placing: let t bound the errors of components against their lengths, and so of edges against
- * theirs as the scale of a slab has them. The normal u x v is off by at most (2 t + t^2) |u| |v|,
- * and the gap along it by as much times all lengths; along the rounded normal, the bounds of D are
- * off by the errors of the frames, times |u| |v|. In 2D the normal is off by t |u|. A product
- * [u v w] of edges is off by (3 t + 3 t^2 + t^3) |u| |v| |w|. 4 t is more than all of these.
- */
+/* Sets the errors of a pair. Placing: let t bound the errors of components relative to their
+ * lengths, and so of edges relative to the lengths in the scale of a slab. The normal u x v is off
+ * by at most (2 t + t^2) |u| |v|, and the gap along it by that times all lengths; along the rounded
+ * normal, the bounds of D are off by the errors of the frames, times |u| |v|. In 2D the normal is
+ * off by t |u|. A product [u v w] of edges is off by (3 t + 3 t^2 + t^3) |u| |v| |w|. 4 t is more
+ * than each of these factors. */
 static void set_placing(struct slabs_pair *out)
 {
     double lengths = 0;
@@ -140,8 +147,8 @@ bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, d
         !relative_motion_of(&out->a, &out->b, duration, &out->motion))
         return false;
     set_placing(out);
-    double offset = largest_of(0, out->motion.offset);
-    double drift = largest_of(0, out->motion.drift);
+    double offset = max_magnitude(0, out->motion.offset);
+    double drift = max_magnitude(0, out->motion.drift);
     out->drift_size = drift;
     out->reach = (offset + drift) + ((out->a.size[0] + out->a.size[1] + out->a.size[2]) +
                                      (out->b.size[0] + out->b.size[1] + out->b.size[2]));
@@ -151,7 +158,7 @@ bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, d
            are_not_tiny(out->motion.drift);
 }
 
-/* ---- The list, of one pair ---- */
+/* ---- The list of slabs of a single pair ---- */
 
 INLINE void set_pair(const struct slabs_pair *pair, const struct kernel_traits traits,
                      struct pair_lanes *out)
@@ -170,7 +177,7 @@ INLINE void set_pair(const struct slabs_pair *pair, const struct kernel_traits t
     memset(out->across, 0, sizeof out->across);
 }
 
-/* next: where slabs are kept. */
+/* next: where the slabs are stored. */
 INLINE void evaluate_one(const struct slabs_pair *pair, const struct kernel_traits traits,
                          bool rounds, struct slab_value *next, struct slabs_result *result)
 {
@@ -221,8 +228,9 @@ int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out
     return (int) (evaluate_list(pair, rounds, out).next - out);
 }
 
-/* ---- One slab alone ---- */
+/* ---- A single slab ---- */
 
+/* An edge by number, with its running error. */
 static struct running_error edge_of(const struct slabs_pair *pair, int number)
 {
     if (number == SLABS_DRIFT)
@@ -242,33 +250,36 @@ static double above_zero(double x)
     return x > 0 ? x : 0;
 }
 
-static double greatest(double x, double y)
+static double larger(double x, double y)
 {
     return x > y ? x : y;
 }
 
-/* A number known within error. */
-struct known {
+/* A number and a bound on its error. */
+struct bounded {
     double value, error;
 };
 
-static struct known known_dot(const struct running_error *normal, const double w[FMB_DIM_MAX])
+/* normal . w */
+static struct bounded bounded_dot(const struct running_error *normal, const double w[FMB_DIM_MAX])
 {
     const struct running_error vector = running_error_of(w);
-    return (struct known){running_error_dot(normal->at, vector.at),
-                          running_error_bound(running_error_dot(normal->weight, vector.weight))};
+    return (struct bounded){running_error_dot(normal->at, vector.at),
+                            running_error_bound(running_error_dot(normal->weight, vector.weight))};
 }
 
+/* The error of a value whose true one is in [low, high]. */
 static double middle_error(double low, double value, double high)
 {
-    return greatest(value - low, high - value);
+    return larger(value - low, high - value);
 }
 
-/* The largest of 0 and of all x (simplex), or the sum of those that are positive (cuboid), from
- * sign x. A component that surely does not count brings no error. Subtractions and sums round by
- * less than what running_error_bound() leaves room for. */
-static struct known farthest(const struct world_frame *frame, const struct known x[FMB_DIM_MAX],
-                             double sign)
+/* How far a frame extends in the direction sign * normal, from its components' products x with the
+ * normal: the largest of 0 and of all sign * x (simplex), or the sum of those that are positive
+ * (cuboid). A component that surely does not count brings no error. Subtractions and sums round by
+ * less than the margin that running_error_bound() leaves for them. */
+static struct bounded support(const struct world_frame *frame, const struct bounded x[FMB_DIM_MAX],
+                              double sign)
 {
     double value = 0, low = 0, high = 0;
     for (int i = 0; i < frame->count; i++) {
@@ -279,13 +290,13 @@ static struct known farthest(const struct world_frame *frame, const struct known
             low += above > 0 ? below - above_zero(at) : 0;
             high += above > 0 ? above - above_zero(at) : 0;
         } else {
-            value = greatest(value, at);
-            low = greatest(low, below);
-            high = greatest(high, above);
+            value = larger(value, at);
+            low = larger(low, below);
+            high = larger(high, above);
         }
     }
-    return (struct known){
-        value, frame->shape == FMB_CUBOID ? greatest(-low, high) : middle_error(low, value, high)};
+    return (struct bounded){
+        value, frame->shape == FMB_CUBOID ? larger(-low, high) : middle_error(low, value, high)};
 }
 
 void slab_inequalities(const struct slab_value *slab, struct inequality out[2])
@@ -295,7 +306,7 @@ void slab_inequalities(const struct slab_value *slab, struct inequality out[2])
     out[1] = (struct inequality){slab->high - start, -slope, slab->error, slab->error};
 }
 
-/* The length of an edge, or more. */
+/* An upper bound on the length of an edge. */
 static double size_of(const struct slabs_pair *pair, int number)
 {
     if (number == SLABS_DRIFT)
@@ -309,25 +320,26 @@ static double size_of(const struct slabs_pair *pair, int number)
     return prepared_size(frame->summary, p) + prepared_size(frame->summary, q);
 }
 
-/* Below: start - low, with low = -(farthest of A against the normal) - farthest of B along it. */
+/* [0], below: start - low, where -low is how far A extends against the normal, plus how far B
+ * extends along it. [1], above: the same with the opposite normal. */
 void slabs_refine(const struct slabs_pair *pair, struct slab_normal edges, struct inequality out[2])
 {
     const bool plane = pair->a.dim == 2;
     const struct running_error u = edge_of(pair, edges.u), v = edge_of(pair, edges.v);
     const struct running_error normal =
         plane ? running_error_perpendicular(&u) : running_error_cross(&u, &v);
-    const struct known start = known_dot(&normal, pair->motion.offset);
-    const struct known slope = known_dot(&normal, pair->motion.drift);
+    const struct bounded start = bounded_dot(&normal, pair->motion.offset);
+    const struct bounded slope = bounded_dot(&normal, pair->motion.drift);
     const double scale = size_of(pair, edges.u) * (plane ? 1 : size_of(pair, edges.v));
     const double placing = pair->inexact ? scale * pair->placing : 0;
-    struct known a[FMB_DIM_MAX], b[FMB_DIM_MAX];
+    struct bounded a[FMB_DIM_MAX], b[FMB_DIM_MAX];
     for (int i = 0; i < pair->a.count; i++)
-        a[i] = known_dot(&normal, pair->a.component[i]);
+        a[i] = bounded_dot(&normal, pair->a.component[i]);
     for (int i = 0; i < pair->b.count; i++)
-        b[i] = known_dot(&normal, pair->b.component[i]);
+        b[i] = bounded_dot(&normal, pair->b.component[i]);
     for (int side = 0; side < 2; side++) {
         const double sign = side ? -1 : 1;
-        const struct known of_a = farthest(&pair->a, a, -sign), of_b = farthest(&pair->b, b, sign);
+        const struct bounded of_a = support(&pair->a, a, -sign), of_b = support(&pair->b, b, sign);
         out[side] = (struct inequality){
             sign * start.value + (of_a.value + of_b.value), sign * slope.value,
             start.error + (of_a.error + of_b.error) + placing, slope.error + placing};

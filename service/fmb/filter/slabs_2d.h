@@ -1,15 +1,21 @@
-/* The slabs of a pair in 2D. */
+/* The slabs of LANES pairs in 2D: along the normals of the edges of both frames, and of the drift.
+ *
+ *   In     struct pair_lanes
+ *   Out    struct slabs_result, to which add_slab() adds each slab (slabs_lanes.h)
+ *
+ * Proof: the top of slabs.c derives the products and the bounds of their errors. */
 #ifndef FMB_SLABS_2D_H
 #define FMB_SLABS_2D_H
 
 #include "slabs_lanes.h"
 
+/* The products of the edges e of a frame, by number (slabs.h). */
 struct edge_products_2d {
-    lanes middle[3], swing[3]; /* [e offset], [e half] */
+    lanes middle[3], swing[3]; /* [e offset], [e half_drift] */
     lanes other[3][2];         /* [e, component of the other frame] */
 };
 
-/* On input: out->other of the components. */
+/* Sets all other products. On input, out->other of the components is set. */
 INLINE void complete_edge_products_2d(const struct pair_lanes *pair,
                                       const struct kernel_traits traits, int which,
                                       struct edge_products_2d *out)
@@ -39,7 +45,7 @@ INLINE void set_edge_products_2d(const struct pair_lanes *pair, const struct ker
     complete_edge_products_2d(pair, traits, which, out);
 }
 
-/* The edges of b, from those of a: [b a] = -[a b], rounded alike. */
+/* Sets the products of b from those of a: [b a] = -[a b], which rounds to the same magnitude. */
 INLINE void set_edge_products_2d_of_b(const struct pair_lanes *pair,
                                       const struct kernel_traits traits,
                                       struct edge_products_2d side[2])
@@ -52,8 +58,9 @@ INLINE void set_edge_products_2d_of_b(const struct pair_lanes *pair,
     complete_edge_products_2d(pair, traits, 1, &side[1]);
 }
 
-/* Along the edge c_0 the component c_1 is at area = [c_0 c_1]; along c_1, c_0 at -area; along
- * c_1 - c_0 both at -area. */
+/* Adds the slabs of the edges of a (which = 0) or of b. Along the normal of edge c_0 the component
+ * c_1 is at area = [c_0 c_1]; along that of c_1, c_0 is at -area; along that of c_1 - c_0 both are
+ * at -area. */
 INLINE void add_edges_2d(const struct pair_lanes *pair, const struct kernel_traits traits,
                          int which, const struct edge_products_2d *edges,
                          struct slabs_result *result)
@@ -72,6 +79,7 @@ INLINE void add_edges_2d(const struct pair_lanes *pair, const struct kernel_trai
     }
 }
 
+/* Adds the slab whose normal is orthogonal to the drift. */
 INLINE void add_drift_2d(const struct pair_lanes *pair, const struct kernel_traits traits,
                          const struct edge_products_2d side[2], struct slabs_result *result)
 {
@@ -91,7 +99,7 @@ INLINE void evaluate_slabs_2d(const struct pair_lanes *pair, const struct kernel
     struct edge_products_2d side[2];
     set_edge_products_2d(pair, traits, 0, &side[0]);
     add_edges_2d(pair, traits, 0, &side[0], result);
-    if (LANES <= 2 && is_enough(traits, result)) /* seldom all of more lanes */
+    if (LANES <= 2 && is_enough(traits, result)) /* of more lanes rarely all are */
         return;
     if (traits.mirrored) {
         set_edge_products_2d(pair, traits, 1, &side[1]);

@@ -1,16 +1,18 @@
-/* The slabs of a pair in 3D: along the normals of faces, of two edges, and of an edge and the
+/* The slabs of LANES pairs in 3D: along the normals of faces, of two edges, and of an edge and the
  * drift.
  *
  *   In     struct pair_lanes: components, offset of the reference points, half the drift, error
  *   Out    struct slabs_result, to which add_slab() adds each slab (slabs_lanes.h)
  *
  * Steps (evaluate_slabs_3d()):
- *   1. set_face_products()      the face normals of a frame, and what is linear in them: their
- * products with the edges of the other frame, the offset and the drift
- *   2. add_faces()     slabs of the faces of each frame; then it may be enough for all lanes
- *   3. set_products()  triple products of an edge of A, one of B, and the offset or the drift
- *   4. add_edges()     slabs of an edge of A and one of B; products with components come from 1
- *   5. add_drift()     where the pair drifts: slabs of an edge and the drift
+ *
+ *   1. set_face_products()  the face normals of a frame, and their products with the edges of the
+ * other frame, the offset and the drift
+ *   2. add_faces()          slabs of the faces of each frame; stops if that is enough for all lanes
+ *   3. set_products()       triple products of an edge of A, one of B, and the offset or the drift
+ *   4. add_edges()          slabs of an edge of A and one of B; products with components come from
+ * 1
+ *   5. add_drift()          if the pair drifts: slabs of an edge and the drift
  *
  * Proof: the top of slabs.c derives these formulas and the error bound of each kind of slab. */
 #ifndef FMB_SLABS_3D_H
@@ -18,14 +20,15 @@
 
 #include "slabs_lanes.h"
 
-/* What a frame has of its own, and what of the pair is linear in its normals. */
+/* The face normals of a frame, and all products with them. */
 struct face_products {
-    lanes normal[3][3];        /* normal[k] = c_i x c_j; of a face, k = 2 alone */
+    lanes normal[3][3];        /* normal[k] = c_i x c_j, i, j, k cyclic; of a face only k = 2 */
     lanes volume;              /* normal[k] . c_k, any k */
-    lanes other[3][6];         /* normal[k] . edges of the other frame */
-    lanes middle[3], swing[3]; /* normal[k] . offset, normal[k] . half */
+    lanes other[3][6];         /* [k][edge]: normal[k] . edges of the other frame */
+    lanes middle[3], swing[3]; /* normal[k] . offset, normal[k] . half_drift */
 };
 
+/* Completes value[edge], linear in the edges of a frame, from its components. */
 INLINE void add_differences(const struct kernel_traits traits, int which, lanes value[6])
 {
     UNROLL(3)
@@ -34,7 +37,7 @@ INLINE void add_differences(const struct kernel_traits traits, int which, lanes 
             value[3 + i] = value[next(next(i))] - value[next(i)];
 }
 
-/* The first of the components' planes that the frame has. */
+/* The first k for which normal[k] is that of a face of the frame. */
 INLINE int first_plane(const struct kernel_traits traits, int which)
 {
     return traits.face[which] ? 2 : 0;
@@ -43,7 +46,7 @@ INLINE int first_plane(const struct kernel_traits traits, int which)
 INLINE void set_face_products(const struct pair_lanes *pair, const struct kernel_traits traits,
                               int which, struct face_products *out)
 {
-    if (traits.face[which]) /* for the planes that it does not have */
+    if (traits.face[which]) /* a face has normal[2] only */
         memset(out, 0, sizeof *out);
     UNROLL(3)
     for (int k = first_plane(traits, which); k < 3; k++) {
@@ -59,8 +62,9 @@ INLINE void set_face_products(const struct pair_lanes *pair, const struct kernel
     out->volume = traits.face[which] ? lanes_of(0) : dot(out->normal[0], pair->component[which][0]);
 }
 
-/* The faces of a (which = 0) or of b. The extent of a frame along its own normals is that of one
- * component; across from the origin all three have the same. */
+/* Adds the slab of a face of a (which = 0) or of b. at[]: the components of the other frame along
+ * its normal. The extent of a frame along the normal of its own face is that of one component;
+ * along that of the face across from the origin all three components are at the same value. */
 INLINE void add_face(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
                      struct slab_normal normal, const struct face_products *side, const lanes at[3],
                      lanes scale, lanes middle, lanes swing, struct slabs_result *result)
@@ -96,13 +100,14 @@ INLINE void add_faces(const struct pair_lanes *pair, const struct kernel_traits 
              (side->swing[0] + side->swing[1]) + side->swing[2], result);
 }
 
-/* What is linear in an edge of each: [a b offset], [a b half]. */
+/* Products with an edge of each frame, [edge of a][edge of b]: [a b offset], [a b half_drift]. */
 struct edge_products {
     lanes middle[6][6], swing[6][6];
 };
 
-/* The differences of a tetrahedron's components take part in both indices alike, so that the pair
- * the other way round has the same bits. */
+/* Completes value[edge of a][edge of b] from the components. Where swap_invariant, differences of a
+ * tetrahedron's components enter in the same way by either index, so that the pair with its frames
+ * swapped has the same bits. */
 INLINE void add_product_differences(const struct kernel_traits traits, lanes value[6][6])
 {
     UNROLL(3)
@@ -131,7 +136,7 @@ INLINE void add_product_differences(const struct kernel_traits traits, lanes val
     }
 }
 
-/* Where the pair is mirrored, the other way round: of the same products for i and j exchanged. */
+/* A product of edges i of a and j of b in a mirrored pair, from that of j and i. */
 INLINE lanes mirrored(lanes x)
 {
 #if LANES == 2
@@ -141,7 +146,8 @@ INLINE lanes mirrored(lanes x)
 #endif
 }
 
-/* What edges need of side 1, where the pair is mirrored. */
+/* Sets the products of the faces of b that add_edges() needs, in a mirrored pair, from those of a.
+ */
 INLINE void mirror_side(const struct kernel_traits traits, const struct face_products *side,
                         struct face_products *out)
 {
@@ -153,34 +159,34 @@ INLINE void mirror_side(const struct kernel_traits traits, const struct face_pro
             out->other[k][j] = mirrored(side->other[k][j]);
 }
 
-/* [a_i b_j w] for all i, j: (a_i x b_j) . w has the same bits the other way round, (w x a_i) . b_j
- * takes fewer operations. */
+/* Sets [a_i b_j w] for all edges. (a_i x b_j) . w has the same bits for the pair with its frames
+ * swapped; (w x a_i) . b_j takes fewer operations. */
 INLINE void set_products(const struct pair_lanes *pair, const struct kernel_traits traits,
                          const lanes w[3], lanes value[6][6])
 {
     UNROLL(3)
     for (int i = 0; i < component_count(traits, 0); i++) {
-        lanes turned[3];
+        lanes normal[3];
         if (!traits.swap_invariant)
-            cross(w, pair->component[0][i], turned);
+            cross(w, pair->component[0][i], normal);
         UNROLL(3)
         for (int j = 0; j < component_count(traits, 1); j++) {
             if (traits.mirrored && j < i) {
                 value[i][j] = mirrored(value[j][i]);
             } else if (traits.swap_invariant) {
-                cross(pair->component[0][i], pair->component[1][j], turned);
-                value[i][j] = dot(turned, w);
+                cross(pair->component[0][i], pair->component[1][j], normal);
+                value[i][j] = dot(normal, w);
             } else {
-                value[i][j] = dot(turned, pair->component[1][j]);
+                value[i][j] = dot(normal, pair->component[1][j]);
             }
         }
     }
     add_product_differences(traits, value);
 }
 
-/* The extent of a frame along e x f, e an edge of its own; at[k] = normal[k] . f. Of a face it is
- * that of one component: c_0 x f has c_1 at -at[2], c_1 x f and (c_1 - c_0) x f have c_0 at
- * at[2], and the last of them c_1 too. */
+/* The extent of a frame along e x f, where e is an edge of its own; at[k] = normal[k] . f. Of a
+ * face it is that of one component: along c_0 x f, c_1 is at -at[2]; along c_1 x f and (c_1 - c_0)
+ * x f, c_0 is at at[2], and along the last of them c_1 too. */
 INLINE struct slab_extent extent_at_edge(const struct kernel_traits traits, int which, int e,
                                          lanes at0, lanes at1, lanes at2)
 {
@@ -195,8 +201,8 @@ INLINE struct slab_extent extent_at_edge(const struct kernel_traits traits, int 
     return extent_of_two(true, at[r], -(at[p] + at[q]));
 }
 
-/* Whether u x v is exactly 0 because each of the products in it has a factor 0. No product of two
- * numbers that are not 0 is so small as to become 0. */
+/* The lanes in which u x v is exactly 0 because each product in it has a factor 0. No product of
+ * two numbers other than 0 is small enough to underflow to 0. */
 INLINE lanes_mask cross_is_zero(const lanes u[3], const lanes v[3])
 {
     const lanes x = lanes_abs(u[0]) * (lanes_abs(v[1]) + lanes_abs(v[2]));
@@ -205,9 +211,9 @@ INLINE lanes_mask cross_is_zero(const lanes u[3], const lanes v[3])
     return (x + y) + z == 0;
 }
 
-/* traits.exact: where nothing rounds (unit = 0), the normal of two edges that is zero shows in that
- * neither frame has an extent along it. Those of two faces in parallel planes have none along that
- * of the planes either, but a face has that one of its own. */
+/* traits.exact: the lanes in which nothing rounds (unit = 0) and the normal of two edges is zero:
+ * neither frame has an extent along it. Two faces in parallel planes have no extent along the
+ * normal of the planes either, but that normal is the one of a face, which has its own slab. */
 INLINE lanes_mask extent_is_zero(const struct kernel_traits traits, lanes unit,
                                  struct slab_extent d)
 {
@@ -251,20 +257,29 @@ INLINE void add_edges(const struct pair_lanes *pair, const struct kernel_traits 
     }
 }
 
-/* The planes of the edges of a (which = 0) or of b with the drift: e x half. The offset at the
- * middle of the window is in them as good as any. [a half b] = -[a b half], [b half a] = [a b
- * half].
- */
-INLINE void add_drift(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
-                      const struct face_products *own, const struct edge_products *edges,
-                      struct slabs_result *result)
+/* Sets middle[e] to (e x half_drift) . offset = (half_drift x offset) . e, for the edges e of a
+ * frame. */
+INLINE void set_drift_middles(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              int which, lanes middle[6])
 {
-    lanes plane[3], middle[6];
+    lanes plane[3];
     cross(pair->half_drift, pair->offset, plane);
     UNROLL(3)
     for (int i = 0; i < component_count(traits, which); i++)
         middle[i] = dot(plane, pair->component[which][i]);
     add_differences(traits, which, middle);
+}
+
+/* Adds the slabs of the edges of a (which = 0) or of b with the drift; their normals are e x
+ * half_drift. own: the face products of that frame. The offset in the middle of the window stands
+ * for the offset at any time. [a half_drift b] = -[a b half_drift], [b half_drift a] = [a b
+ * half_drift]. */
+INLINE void add_drift(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
+                      const struct face_products *own, const struct edge_products *edges,
+                      struct slabs_result *result)
+{
+    lanes middle[6];
+    set_drift_middles(pair, traits, which, middle);
     const lanes unit = pair->half_drift_size * pair->unit;
     UNROLL(6)
     for (int own_edge = 0; own_edge < edge_count(traits, which); own_edge++) {

@@ -1,10 +1,11 @@
-/* The list of slabs of a pair (slabs.h), walked for LANES pairs at once. */
+/* Evaluates all slabs of LANES pairs at once (the list of slabs.h). */
 #ifndef FMB_SLABS_EVALUATE_H
 #define FMB_SLABS_EVALUATE_H
 
 #include "slabs_2d.h"
 #include "slabs_3d.h"
 
+/* The result of no slab. */
 INLINE void slabs_result_begin(struct slabs_result *result)
 {
     result->gap_low = lanes_of(-1);
@@ -13,6 +14,7 @@ INLINE void slabs_result_begin(struct slabs_result *result)
     result->leave[0] = result->leave[1] = lanes_of(1);
 }
 
+/* In 3D, stops as soon as all pairs are separated and no more is computed (is_enough()). */
 INLINE void evaluate_slabs(const struct pair_lanes *pair, const struct kernel_traits traits,
                            struct slabs_result *result)
 {

@@ -1,44 +1,46 @@
-/* Pairs that the first pass leaves open: lanes in which nothing rounds, and exact signs along
- * coordinate axes.
+/* What is exact about a pair that the first pass leaves open: lanes in which nothing rounds, and
+ * signs of gaps along coordinate axes.
  *
  * Nothing rounds. Let g be a power of two, and let all components, the origins, and the drift of a
- * lane be multiples of g in the lengths of pair_lanes. Then every number that the walk computes is
- * a sum of products of three of these (two in 2D), a multiple of g^3 (g^2), and so is every partial
- * sum. slabs.c bounds the sum of the magnitudes of these products by (2 / sqrt(3)) |u| |v| T. T
- * counts every length in it: 2 |c| for a component of a cuboid, |c| for one of a simplex, 2 |H|
- * for the drift. So 2 (|u| + |v|) <= T for two edges of a cuboid, |u| + |v| <= T for the edges of
- * all other slabs, and |u| |v| <= T^2 / 4. For the face across from the origin, |u| |v| stands for
- * the sum of the three products of lengths, which is at most T^2 / 3. With T <= 2^18 g,
+ * lane be multiples of g in the lengths of struct pair_lanes. Then every number that
+ * evaluate_slabs() computes is a sum of products of three of these (two in 2D), a multiple of g^3
+ * (g^2), and so is every partial sum. slabs.c bounds the sum of the magnitudes of these products by
+ * (2 / sqrt(3)) |u| |v| T. T counts every length in it: 2 |c| for a component of a cuboid, |c| for
+ * one of a simplex, 2 |H| for the drift. So 2 (|u| + |v|) <= T for two edges of a cuboid, |u| + |v|
+ * <= T for the edges of all other slabs, and |u| |v| <= T^2 / 4. For the face across from the
+ * origin, |u| |v| stands for the sum of the three products of lengths, which is at most T^2 / 3.
+ * With T <= 2^18 g,
  *
  *     (2 / sqrt(3)) T^3 / 3 < 0.385 * 2^54 g^3 < 2^53 g^3,
  *
  * and all of these numbers are doubles. In 2D the sum is at most |u| T <= T^2, and T <= 2^26 g is
- * enough. The gaps are exact then, and so is the verdict.
+ * enough. Then the gaps are exact, and so is the verdict.
  *
- * Axes. Let the coordinates of both frames along some axis be exact (PREPARED_EXACT_X), even where
- * the frames have errors (a box that is turned about this axis), and let the pair not drift along
- * it. The gap along the axis is a sum of a few doubles; errors of sums are doubles (Knuth), and so
- * its sign is known exactly. Call these axes X, and let every slab of the rounded S whose
- * normal is not parallel to one of X hold the offset w farther inside than the error e of the
- * frames. Then
+ * Axes. Let the coordinates of both frames along some axis be exact (PREPARED_EXACT_X), even if the
+ * frames have errors (a box that is rotated about this axis), and let the pair not drift along it.
+ * The gap along the axis is a sum of a few doubles. The rounding errors of sums are doubles
+ * (Knuth), and so the sign of this gap is known exactly. Call these axes X, and let every slab of
+ * the rounded S whose normal is not parallel to one of X hold the offset w farther inside than the
+ * error e of the frames. Then the pair is
  *
- *     a gap along X is > 0: the pair is SEPARATED,
- *     all are < 0: it is OVERLAPPING,
- *     else it is TOUCHING.
+ *     SEPARATED    if a gap along X is > 0,
+ *     OVERLAPPING  if all gaps along X are < 0,
+ *     TOUCHING     otherwise.
  *
- * The first is plain. For the others let K be the axes of X with gap 0, and F the part of the
- * rounded S on all of their bounds: a face of S, in the flat L = {x : x_k = w_k for k in K}, that
- * contains w. Let z be any vector along L whose part across X has a length of at most e, and whose
- * coordinates along X are at most d. For small d > 0, w + z lies in F: the slabs that are not
- * parallel to X are farther than e away, the others farther than 0 or parallel to L. So the support
- * function of F in the direction n, a unit vector along L, is at least n . w + e |n'| + d |n''|,
- * where n' is the part of n across X and n'' that along X. The true S has points near all vertices
- * of F, each moved by e at most, and not moved along X. So these are points of L too, and the
- * support function of their hull is at least n . w for every n: the hull contains w, and so does
- * the true S. Where K is empty, L is the space, and the slabs that are not parallel to X leave more
- * than e: w is in the interior of the true S. Where it is not, w lies on its bound.
+ * The first holds because a gap > 0 along any direction separates. Proof of the others. Let K be
+ * the axes of X with gap 0, and F the part of the rounded S on all of their bounds: a face of S, in
+ * the flat L = {x : x_k = w_k for k in K}, that contains w. Let z be any vector along L whose part
+ * orthogonal to X has a length of at most e, and whose coordinates along X are at most d. For small
+ * d > 0, w + z lies in F: the bounds of the slabs that are not parallel to X are farther than e
+ * away; those of the others are farther than 0, or parallel to L. So the support function of F in
+ * the direction n, a unit vector along L, is at least n . w + e |n'| + d |n''|, where n' is the
+ * part of n orthogonal to X and n'' that along X. The true S has points near all vertices of F,
+ * each moved by e at most, and not moved along X. So these are points of L too, and the support
+ * function of their hull is at least n . w for every n: the hull contains w, and so does the true
+ * S. If K is empty, L is the space, and the slabs that are not parallel to X leave more than e: w
+ * is in the interior of the true S. Otherwise w lies on its boundary.
  *
- * TOUCHING is only given where S has an interior: never for two faces. */
+ * TOUCHING is only given if S has an interior: never for two faces. */
 #ifndef FMB_SLABS_EXACT_H
 #define FMB_SLABS_EXACT_H
 
@@ -46,20 +48,22 @@
 
 /* ---- Nothing rounds ---- */
 
-/* Whether x is a multiple of g, with at = 2^52 g: sums from at on are multiples of g. */
+/* Whether x is a multiple of g, where at = 2^52 g: sums that are at least 2^52 g are multiples of
+ * g. */
 INLINE lanes_mask is_multiple(lanes x, lanes at)
 {
     const lanes magnitude = lanes_abs(x);
     return (magnitude + at) - at == magnitude;
 }
 
-/* Whether x y does not round unless it is tiny. 26 bits of each are enough. */
+/* Whether x has at most 26 significant bits: a product of two such numbers does not round unless it
+ * is tiny. */
 INLINE lanes_mask has_few_bits(lanes x)
 {
     return (lanes_as_bits(x) & 0x7ffffff) == 0;
 }
 
-/* Bounds T from above by a power of two; 2^52 g follows from it. */
+/* Returns 2^52 g, where 2^18 g (2^26 g in 2D) is the least power of two greater than T. */
 INLINE lanes grid_of(const struct kernel_traits traits, lanes reach)
 {
     const lanes power = lanes_from_bits(lanes_as_bits(reach) & 0x7ff0000000000000);
@@ -68,9 +72,10 @@ INLINE lanes grid_of(const struct kernel_traits traits, lanes reach)
 
 /* ---- Axes ---- */
 
-/* A sum of doubles, as two: exact unless rounds. */
+/* A sum of doubles as a pair of doubles: value + remainder, exact in lanes that are not in rounds.
+ */
 struct exact_sum {
-    lanes value, rest;
+    lanes value, remainder;
     lanes_mask rounds;
 };
 
@@ -84,19 +89,20 @@ INLINE lanes error_of_sum(lanes x, lanes y, lanes sum)
 INLINE void add_exactly(struct exact_sum *sum, lanes x)
 {
     const lanes value = sum->value + x, error = error_of_sum(sum->value, x, value);
-    const lanes rest = sum->rest + error;
-    sum->rounds |= error_of_sum(sum->rest, error, rest) != 0;
-    sum->rest = rest;
+    const lanes remainder = sum->remainder + error;
+    sum->rounds |= error_of_sum(sum->remainder, error, remainder) != 0;
+    sum->remainder = remainder;
     sum->value = value;
 }
 
-/* From the origin of a frame to its ends along an axis. */
+/* From the origin of a frame to its ends along an axis; rounds: the lanes in which these are not
+ * exact. */
 struct exact_extent {
     lanes low, high;
     lanes_mask rounds;
 };
 
-/* A cuboid usually extends along an axis with one of its components: then no sum of them rounds. */
+/* In most cuboids one component extends along the axis. Then no sum of components rounds. */
 INLINE struct exact_extent exact_extent_of(const struct kernel_traits traits, int which,
                                            const lanes component[3][3], int axis)
 {
@@ -120,7 +126,7 @@ INLINE struct exact_extent exact_extent_of(const struct kernel_traits traits, in
     return out;
 }
 
-/* The gap along an axis; rounds: its sign is not known. */
+/* The gap along an axis in value; rounds: the lanes in which its sign is not known. */
 INLINE struct exact_sum axis_gap(const struct kernel_traits traits, const lanes component_a[3][3],
                                  const lanes origin_a[3], const lanes component_b[3][3],
                                  const lanes origin_b[3], int axis)
@@ -135,7 +141,7 @@ INLINE struct exact_sum axis_gap(const struct kernel_traits traits, const lanes 
     add_exactly(&above, -a.high);
     add_exactly(&below, a.low);
     add_exactly(&below, -b.high);
-    above.value = lanes_max(above.value + above.rest, below.value + below.rest);
+    above.value = lanes_max(above.value + above.remainder, below.value + below.remainder);
     above.rounds |= below.rounds; /* of either */
     return above;
 }

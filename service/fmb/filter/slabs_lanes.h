@@ -1,29 +1,31 @@
-/* One slab of a pair in lanes: what is found of it. */
+/* One slab of LANES pairs, and what the slabs of a pair yield together. */
 #ifndef FMB_SLABS_LANES_H
 #define FMB_SLABS_LANES_H
 
 #include "pair_lanes.h"
 
-/* What a walk finds. */
+/* What all slabs so far yield. The gap of a slab is how far the offset stays beyond its bounds
+ * (slabs.h). */
 struct slabs_result {
-    lanes gap_low;  /* largest of gap - error: > 0 where some slab surely separates */
-    lanes gap_high; /* largest of gap + error: < 0 where all slabs surely overlap */
-    /* [outer, inner]: of the time of contact, from -1 (the start of the window) to 1, as far as
-     * slabs bound it */
+    lanes gap_low;  /* lower bound on the largest gap: > 0 if some slab separates */
+    lanes gap_high; /* upper bound on the largest gap: < 0 if all slabs overlap */
+    /* [outer, inner]: bounds on the time of contact, from -1 (the start of the window) to 1 (its
+     * end), as far as the slabs give them. */
     lanes enter[2], leave[2];
 #if LANES == 1
-    struct slab_value *next; /* where the next slab is kept; NULL: no list is wanted */
+    struct slab_value *next; /* the slab list: where the next slab is stored; NULL: none */
 #endif
 };
 
 /* ---- Extents along a normal ----
  *
- * Of a frame about its reference point: of a cuboid [-radius, radius], of a simplex [low, high]; of
- * D, the sum of both. */
+ * The extent of a frame about its reference point is [-radius, radius] for a cuboid, [low, high]
+ * for a simplex. That of D is [low - radius, high + radius]. */
 struct slab_extent {
     lanes low, high, radius;
 };
 
+/* The extent of a frame whose components are at x, and otherwise at 0, along the normal. */
 INLINE struct slab_extent extent_of_one(bool simplex, lanes x)
 {
     if (!simplex)
@@ -48,7 +50,7 @@ INLINE struct slab_extent extent_of_three(bool simplex, lanes x, lanes y, lanes 
                                 lanes_max(lanes_max(lanes_max(x, y), z), lanes_of(0)), lanes_of(0)};
 }
 
-/* Of all components along what makes at[] of them. */
+/* The extent of a frame whose components are at at[] along the normal. */
 INLINE struct slab_extent extent_of_frame(const struct kernel_traits traits, int which,
                                           const lanes at[3])
 {
@@ -86,12 +88,13 @@ INLINE struct slab_extent extent_sum(const struct kernel_traits traits, struct s
                              : (struct slab_extent){b.low, b.high, a.radius};
 }
 
-/* How far beyond D the offset is at most over the window: D widened by the drift. */
+/* The gap: how far the offset stays beyond D over the window, that is, beyond D widened by the
+ * drift. */
 INLINE lanes gap_of(const struct kernel_traits traits, struct slab_extent d, lanes middle,
                     lanes swing)
 {
-    const bool round = !traits.simplex[0] && !traits.simplex[1];
-    const lanes beyond = round ? lanes_abs(middle) : lanes_max(middle - d.high, d.low - middle);
+    const bool cuboids = !traits.simplex[0] && !traits.simplex[1];
+    const lanes beyond = cuboids ? lanes_abs(middle) : lanes_max(middle - d.high, d.low - middle);
     if (traits.simplex[0] && traits.simplex[1])
         return traits.drifts ? beyond - lanes_abs(swing) : beyond;
     return beyond - (traits.drifts ? d.radius + lanes_abs(swing) : d.radius);
@@ -99,12 +102,13 @@ INLINE lanes gap_of(const struct kernel_traits traits, struct slab_extent d, lan
 
 /* ---- A slab ---- */
 
-/* What is known of the time: middle + s swing lies within the bounds of D, s in [-1, 1].
+/* Bounds the time of contact by a slab: the times s in [-1, 1] at which middle + s swing lies
+ * within the bounds of D.
  *
  * Let l be the computed low - middle, and w the swing, made longer by 2^-10 of the error e: then no
- * quotient overflows. What l - s w stands for is off by at most e - r, for all s in [-1, 1]; r is
- * what the error has to spare. So the true offset is below the bound where l - s w > e - r, and
- * above it where l - s w < -(e - r). For w > 0 it enters the slab
+ * quotient overflows. The true value that l - s w stands for differs from it by at most e - r, for
+ * all s in [-1, 1]; r is the unused part of the error. So the true offset is below the bound where
+ * l - s w > e - r, and above it where l - s w < -(e - r). For w > 0 it enters the slab
  *
  *     not before (l - e + r) / w,      surely by (l + e - r) / w,
  *
@@ -117,18 +121,20 @@ INLINE lanes gap_of(const struct kernel_traits traits, struct slab_extent d, lan
  *              SLABS_TIMES_SLACK is 16 u.
  *     q > 2    An end in [-1, 1], computed or true, has t >= q - 1.01 > 0.49 q, however large both
  *              are: a slab that is nearly parallel to the drift. It is off by at most 2.01 u (q +
- *              t) + u < 6.2 u t + u. The slack covers u, and r / |w| the rest: 6.2 u e < r.
+ *              t) + u < 6.2 u t + u. The slack covers u, and r / |w| the remainder: 6.2 u e < r.
  *
- * An end that is not in [-1, 1] becomes -1 or 1, or is too far from the other one (times_of). What
- * r is: the error of a slab is SLABS_ROUNDING |u| |v| T and that of the frames, |u| |v| E. Of the
- * first 18 u, 16.2 u are used where no sum is made with the bound (slabs.c). The longer swing takes
- * 2^-10 of both, and w, which is at most |u| |v| T / 2, is rounded once more: 0.54 u |u| |v| T. The
- * rest, 1.2 u |u| |v| T, is more than 6.2 u of the first part. Of E the same shares are covered by
- * what E has to spare: a tenth (rotation.h), or half (sums counted twice, frame.c), but for the
- * rests of components that were rounded as differences of vertices, which are less than 2 u T.
+ * An end that is not in [-1, 1] becomes -1 or 1, or is too far from the other one (times_of()).
  *
- * Where the swing is 0 both signs of w are right; what they have in common is the same for the pair
- * the other way round. */
+ * The value of r. The error of a slab is the sum of SLABS_ROUNDING |u| |v| T for rounding, and |u|
+ * |v| E for the errors of the frames. Of the 18 u of the first part, 16.2 u are used where no sum
+ * is made with the bound (slabs.c). The longer swing takes 2^-10 of both parts, and w, which is at
+ * most |u| |v| T / 2, is rounded once more: 0.54 u |u| |v| T. What is left, 1.2 u |u| |v| T, is
+ * more than 6.2 u of the first part. Of E the same shares are covered by the unused part of E: a
+ * tenth (rotation.h), or half (sums counted twice, frame.c), except for the remainders of
+ * components that were rounded as differences of vertices, which are less than 2 u T.
+ *
+ * If the swing is 0, both signs of w are valid. The interval taken is what both give, which is the
+ * same for the pair with its frames swapped. */
 INLINE void bound_times(const struct kernel_traits traits, struct slab_extent d, lanes error,
                         lanes middle, lanes swing, lanes_mask ignored, struct slabs_result *result)
 {
@@ -138,7 +144,7 @@ INLINE void bound_times(const struct kernel_traits traits, struct slab_extent d,
     lanes high = both ? d.high : none ? d.radius : d.high + d.radius;
     low -= middle;
     high -= middle;
-    if (traits.axis_aligned) { /* what would bound nothing, in place of what was rounded */
+    if (traits.axis_aligned) { /* values that bound nothing, in place of what was rounded */
         low = lanes_select(ignored, lanes_of(-4), low);
         high = lanes_select(ignored, lanes_of(4), high);
         swing = lanes_select(ignored, lanes_of(0), swing);
@@ -157,8 +163,9 @@ INLINE void bound_times(const struct kernel_traits traits, struct slab_extent d,
     result->leave[1] = lanes_min(leave - slack, result->leave[1]);
 }
 
-/* traits.exact: lanes in which the normal of two edges is parallel to an axis along which the sign
- * of the gap is known: their slab is decided by that. Bits as in pair_lanes.across. */
+/* traits.exact: the lanes in which the normal of two edges is parallel to an axis along which the
+ * sign of the gap is known. That sign decides their slab. Arguments: bits as in pair_lanes.across.
+ */
 INLINE lanes_mask is_known_axis(const struct kernel_traits traits, lanes_bits across_u,
                                 lanes_bits across_v)
 {
@@ -167,8 +174,9 @@ INLINE lanes_mask is_known_axis(const struct kernel_traits traits, lanes_bits ac
     return (lanes_mask){0};
 }
 
-/* nothing: lanes whose normal is zero, or whose gap is known; they say nothing. timeless: the slab
- * of a drift. */
+/* Adds a slab to the result. The error of its gap is scale * unit. timeless: its normal is
+ * orthogonal to the drift. ignored: lanes whose normal is zero, or whose gap is known otherwise;
+ * their slab does not count. */
 INLINE void add_slab(const struct kernel_traits traits, struct slab_normal normal,
                      struct slab_extent d, lanes scale, lanes unit, lanes middle, lanes swing,
                      bool timeless, lanes_mask ignored, struct slabs_result *result)
@@ -198,7 +206,7 @@ INLINE void add_slab(const struct kernel_traits traits, struct slab_normal norma
 #endif
 }
 
-/* Whether every pair is known to be separated, and no more is wanted. */
+/* Whether all pairs are separated and no more is computed about them. */
 INLINE bool is_enough(const struct kernel_traits traits, const struct slabs_result *result)
 {
     const unsigned separated = lanes_greater_bits(result->gap_low, lanes_of(0));
@@ -211,8 +219,10 @@ INLINE bool is_enough(const struct kernel_traits traits, const struct slabs_resu
 
 /* ---- Axes ----
  *
- * They are normals of slabs too, if not of facets: in space the first to ask, since they cost
- * little and part most pairs that are far from each other. In the plane a slab costs as little. */
+ * The coordinate axes are normals of slabs too, if not of facets. In 3D they come first: they cost
+ * little and separate most pairs that are far from each other. In 2D another slab costs as little.
+ */
+/* Sets result->gap_low alone. */
 INLINE void evaluate_axes(const struct pair_lanes *pair, const struct kernel_traits traits,
                           struct slabs_result *result)
 {
