@@ -387,6 +387,50 @@ static void faces_on_a_line_or_in_a_plane(void **state)
     }
 }
 
+/* A point of the plane, to be scaled: at random, or near the line through two others, where the
+ * signs of areas depend on how differences and products round. */
+static void draw_near_line(struct draw *draw, const double p[2], const double q[2], double out[2])
+{
+    const double part = draw_int(draw, -3, 5) / 3.0;
+    for (int i = 0; i < 2; i++)
+        out[i] = part == 0 ? draw_uniform(draw, -1, 1) : p[i] + part * (q[i] - p[i]);
+    if (draw_coin(draw))
+        out[0] = nextafter(out[0], draw_coin(draw) ? HUGE_VAL : -HUGE_VAL);
+}
+
+/* Faces in a plane, whose vertices are nearly on few lines: whether they have more than a vertex or
+ * an edge in common depends on the last bits; products underflow, or overflow. */
+static void faces_nearly_on_a_line(void **state)
+{
+    (void) state;
+    enum { VERTICES = 7, FACES = 8 };
+    static const double scales[] = {1, 1, 0x1p-400, 0x1p-480, 0x1p-530, 0x1p480, 0x1p520};
+    struct draw draw;
+    draw_begin(&draw, "faces_nearly_on_a_line");
+    for (long n = draw_sample(400); n > 0; n--) {
+        const double scale = scales[n % (long) COUNT(scales)];
+        const int flat = draw_int(&draw, 0, 2);
+        const double from = draw_coin(&draw) ? 0 : draw_uniform(&draw, -8, 8);
+        double point[VERTICES][2];
+        struct mesh mesh;
+        make_mesh(VERTICES, FACES, &mesh);
+        for (int v = 0; v < VERTICES; v++) {
+            point[v][0] = from + draw_uniform(&draw, -1, 1);
+            point[v][1] = from * draw_coin(&draw) + draw_uniform(&draw, -1, 1);
+            if (v > 1)
+                draw_near_line(&draw, point[0], point[draw_int(&draw, 1, v - 1)], point[v]);
+            for (int i = 0; i < 2; i++)
+                mesh.vertex[v][(flat + 1 + i) % 3] = point[v][i] * scale;
+        }
+        for (int f = 0; f < FACES; f++)
+            for (int corner = 0; corner < 3; corner++)
+                mesh.face[f][corner] =
+                    corner == f % 3 ? 0 : (unsigned) draw_int(&draw, 1, VERTICES - 1);
+        assert_meeting_with_itself(&mesh, NULL);
+        mesh_free(&mesh);
+    }
+}
+
 /* What is closed shares edges and vertices, and where it does not meet itself nothing else. */
 static void a_closed_mesh_shares_edges_and_vertices(void **state)
 {
@@ -803,6 +847,7 @@ int main(void)
         cmocka_unit_test(closed_meshes_meet_where_every_pair_says),
         cmocka_unit_test(a_mesh_meets_itself_where_every_pair_says),
         cmocka_unit_test(faces_on_a_line_or_in_a_plane),
+        cmocka_unit_test(faces_nearly_on_a_line),
         cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
         cmocka_unit_test(cases_of_two_faces),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
