@@ -2,8 +2,10 @@
  * slow, or forges results. */
 #include "clock.h"
 #include "hostile.h"
-#include "scene_part.h"
+#include "fmb_client_raw.h"
 #include "relay.h"
+#include "request.h"
+#include "scene_part.h"
 #include "wire.h"
 
 #include <limits.h>
@@ -113,6 +115,81 @@ static void test_messages_that_cannot_be_read_are_counted(void **state)
     assert_int_equal(fmb_client_get_counts(client).malformed, count);
     fmb_client_close(client);
     relay_close(relay);
+}
+
+/* ---- Results of another kind, and refusals without end ---- */
+
+/* Before a scene is answered, results of pairs come under the numbers of its queries. */
+static struct fmb_client *deceived;
+
+static void publish_pair_results(struct relay *relay)
+{
+    for (int number = 0; number < 20; number++) {
+        struct pair_result result = {.client_id = fmb_client_raw_id(deceived),
+                                     .sequence_number = number,
+                                     .answer = {.verdict = FMB_SEPARATED}};
+        unsigned char bytes[QUERY_BYTES_MAX];
+        relay_publish(relay, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
+    }
+}
+
+static void test_results_of_another_kind_are_ignored(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    struct fmb_client_answer answer;
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    const struct fmb_client_scene scene = all_pairs();
+    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    deceived = client;
+    relay->before = publish_pair_results;
+    relay_query(client, &scene);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+static bool publish_nothing(void *user, enum fmb_client_kind kind, const unsigned char *query,
+                            size_t size)
+{
+    (void) user, (void) kind, (void) query, (void) size;
+    return true;
+}
+
+static bool receive_nothing(void *user)
+{
+    (void) user;
+    return true;
+}
+
+static enum request_taken note_status(void *user, struct request *request,
+                                      const struct request_result *result)
+{
+    (void) request;
+    *(int *) user = result->status;
+    return REQUEST_COMPLETE;
+}
+
+/* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
+static void test_a_service_that_stays_busy_is_given_up(void **state)
+{
+    (void) state;
+    static struct requests requests = {
+        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
+    const struct request_result busy = {
+        .kind = FMB_CLIENT_DEFINITION, .status = FMB_BUSY, .detail = ""};
+    int status = FMB_OK, refusals = 0;
+    requests_forget_pace(&requests);
+    struct request *request =
+        request_begin(&requests, FMB_CLIENT_DEFINITION, REQUEST_IDS_END, note_status, &status);
+    request->size = REQUEST_IDS_END;
+    request_send(&requests, request);
+    for (; status == FMB_OK && refusals < 1000; refusals++)
+        requests_take(&requests, &busy);
+    assert_int_equal(status, FMB_BUSY);
+    assert_int_equal(requests.count, 0);
+    assert_in_range(refusals, 100, 300);
 }
 
 /* ---- No service ---- */
@@ -1160,6 +1237,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
         cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
+        cmocka_unit_test(test_results_of_another_kind_are_ignored),
+        cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
         cmocka_unit_test(test_a_service_that_comes_back_is_found),
         cmocka_unit_test(test_a_repeat_finds_the_service),
         cmocka_unit_test(test_no_service_costs_the_time_of_one_query),

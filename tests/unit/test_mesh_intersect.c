@@ -387,45 +387,61 @@ static void faces_on_a_line_or_in_a_plane(void **state)
     }
 }
 
-/* A point of the plane, to be scaled: at random, or near the line through two others, where the
- * signs of areas depend on how differences and products round. */
-static void draw_near_line(struct draw *draw, const double p[2], const double q[2], double out[2])
+enum { NEAR_VERTICES = 7, NEAR_FACES = 8 };
+
+/* Points that are nearly on lines through the first: the sign of an area depends on how differences
+ * and products round. */
+static void draw_near_lines(struct draw *draw, double point[NEAR_VERTICES][2])
 {
-    const double part = draw_int(draw, -3, 5) / 3.0;
-    for (int i = 0; i < 2; i++)
-        out[i] = part == 0 ? draw_uniform(draw, -1, 1) : p[i] + part * (q[i] - p[i]);
-    if (draw_coin(draw))
-        out[0] = nextafter(out[0], draw_coin(draw) ? HUGE_VAL : -HUGE_VAL);
+    const double from = draw_coin(draw) ? 0 : draw_uniform(draw, -8, 8);
+    for (int v = 0; v < NEAR_VERTICES; v++) {
+        const double *p = point[0], *q = point[v > 1 ? draw_int(draw, 1, v - 1) : 0];
+        const double part = v > 1 ? draw_int(draw, -3, 5) / 3.0 : 0;
+        for (int i = 0; i < 2; i++)
+            point[v][i] =
+                part == 0 ? from + draw_uniform(draw, -1, 1) : p[i] + part * (q[i] - p[i]);
+        if (draw_coin(draw))
+            point[v][0] = nextafter(point[v][0], draw_coin(draw) ? HUGE_VAL : -HUGE_VAL);
+    }
 }
 
-/* Faces in a plane, whose vertices are nearly on few lines: whether they have more than a vertex or
- * an edge in common depends on the last bits; products underflow, or overflow. */
-static void faces_nearly_on_a_line(void **state)
+/* Integers of 30 bits, seen from the first point: areas of a few units, products that round. */
+static void draw_thin(struct draw *draw, double point[NEAR_VERTICES][2])
+{
+    double u[2] = {1, 0}, v[2] = {0, 1}; /* of area 1 */
+    while (u[0] + v[1] < 0x1p30) {
+        const bool first = draw_coin(draw);
+        for (int i = 0; i < 2; i++)
+            *(first ? &u[i] : &v[i]) += first ? v[i] : u[i];
+    }
+    for (int n = 0; n < NEAR_VERTICES; n++) {
+        const int of_u = n ? draw_int(draw, -2, 2) : 0, of_v = n ? draw_int(draw, -2, 2) : 0;
+        for (int i = 0; i < 2; i++)
+            point[n][i] = of_u * u[i] + of_v * v[i];
+    }
+}
+
+/* Faces in a plane that have a vertex in common: whether they have more than that depends on the
+ * last bits; products underflow, or overflow. */
+static void faces_nearly_on_lines(void **state)
 {
     (void) state;
-    enum { VERTICES = 7, FACES = 8 };
-    static const double scales[] = {1, 1, 0x1p-400, 0x1p-480, 0x1p-530, 0x1p480, 0x1p520};
+    static const int scales[] = {0, 0, -400, -480, -545, 480, 490};
     struct draw draw;
-    draw_begin(&draw, "faces_nearly_on_a_line");
+    draw_begin(&draw, "faces_nearly_on_lines");
     for (long n = draw_sample(400); n > 0; n--) {
-        const double scale = scales[n % (long) COUNT(scales)];
-        const int flat = draw_int(&draw, 0, 2);
-        const double from = draw_coin(&draw) ? 0 : draw_uniform(&draw, -8, 8);
-        double point[VERTICES][2];
+        const int scale = scales[n % (long) COUNT(scales)], flat = draw_int(&draw, 0, 2);
+        double point[NEAR_VERTICES][2];
         struct mesh mesh;
-        make_mesh(VERTICES, FACES, &mesh);
-        for (int v = 0; v < VERTICES; v++) {
-            point[v][0] = from + draw_uniform(&draw, -1, 1);
-            point[v][1] = from * draw_coin(&draw) + draw_uniform(&draw, -1, 1);
-            if (v > 1)
-                draw_near_line(&draw, point[0], point[draw_int(&draw, 1, v - 1)], point[v]);
+        make_mesh(NEAR_VERTICES, NEAR_FACES, &mesh);
+        (draw_coin(&draw) ? draw_near_lines : draw_thin)(&draw, point);
+        for (int v = 0; v < NEAR_VERTICES; v++)
             for (int i = 0; i < 2; i++)
-                mesh.vertex[v][(flat + 1 + i) % 3] = point[v][i] * scale;
-        }
-        for (int f = 0; f < FACES; f++)
+                mesh.vertex[v][(flat + 1 + i) % 3] = ldexp(point[v][i], scale);
+        for (int f = 0; f < NEAR_FACES; f++)
             for (int corner = 0; corner < 3; corner++)
                 mesh.face[f][corner] =
-                    corner == f % 3 ? 0 : (unsigned) draw_int(&draw, 1, VERTICES - 1);
+                    corner == f % 3 ? 0 : (unsigned) draw_int(&draw, 1, NEAR_VERTICES - 1);
         assert_meeting_with_itself(&mesh, NULL);
         mesh_free(&mesh);
     }
@@ -847,7 +863,7 @@ int main(void)
         cmocka_unit_test(closed_meshes_meet_where_every_pair_says),
         cmocka_unit_test(a_mesh_meets_itself_where_every_pair_says),
         cmocka_unit_test(faces_on_a_line_or_in_a_plane),
-        cmocka_unit_test(faces_nearly_on_a_line),
+        cmocka_unit_test(faces_nearly_on_lines),
         cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
         cmocka_unit_test(cases_of_two_faces),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
