@@ -550,9 +550,10 @@ static void a_different_certificate_is_reported(void **state)
     struct pair_result then = overlapping(), now = overlapping();
     const struct replayed replayed = of_pair(&query, &then, &now, REPLAY_DIFFERENT);
     static const char *const certificates[][2] = {
-        {"a", "a"}, {NULL, NULL}, {"a", "b"}, {NULL, "a"}, {"a", NULL}};
+        {"a", "a"},  {NULL, NULL}, {"a", "b"},
+        {NULL, "a"}, {"a", NULL},  {"separated + a0 a1 a2 b0", "separated + a0 a1 a2 b1"}};
     (void) state;
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         then.certificate = certificates[i][0];
         now.certificate = certificates[i][1];
         cJSON *data = data_of_one(&replayed);
