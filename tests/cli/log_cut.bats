@@ -138,7 +138,9 @@ split_at() {
     cuts 0 "$log" -o "$cut" --force --channel '.*PAIR_RES.*' --channel FMB_STATUS
     has '.pair_results > 0 and .other_events > 0 and .statuses > 0 and .pair_queries == 0'
     # The whole name has to match.
-    cuts 1 "$log" -o "$cut" --force --channel PAIR_RES
+    for part in PAIR_RES '.*PAIR_RES' 'PAIR_RES.*'; do
+        cuts 1 "$log" -o "$cut" --force --channel "$part"
+    done
     # With a prefix the service is another one.
     cuts 0 "$log" -o "$cut" --force --prefix LAB_ --channel '.*FMB_PAIR.*'
     has '.pair_queries > 0 and .other_events > 0'

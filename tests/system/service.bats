@@ -496,6 +496,30 @@ poison_all() {
     wait_until stopping
 }
 
+@test "heartbeats and signs of life come while there is always work" {
+    "$FMB_BUILD/poke" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    started="${started-} $!" clients=
+    wait_until test -S "$BATS_TEST_TMPDIR/notify"
+    NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
+    random_scene 3 150 > "$BATS_TEST_TMPDIR/scene.json"
+    touch "$BATS_TEST_TMPDIR/busy"
+    for _ in 1 2 3; do # of each a scene of tenths of a second, again and again
+        (while [ -e "$BATS_TEST_TMPDIR/busy" ]; do
+            "$FMB" query --json --method exact "$BATS_TEST_TMPDIR/scene.json" > /dev/null
+        done) 3>&- &
+        started="$started $!" clients="$clients $!"
+    done
+    sleep 0.5
+    signs() { grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/heard"; }
+    before=$(signs)
+    "$FMB" status > /dev/null
+    "$FMB" status > /dev/null
+    [ $(($(signs) - before)) -ge 3 ]
+    rm "$BATS_TEST_TMPDIR/busy"
+    wait $clients
+    stop_fmbd
+}
+
 @test "no route for multicast: two lines that say what to run" {
     unshare -rn true || skip "needs a network without routes"
     run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667

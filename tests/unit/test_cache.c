@@ -170,6 +170,26 @@ static void test_bodies_are_compared_bit_by_bit(void **state)
     cache_destroy(cache);
 }
 
+/* The body of an id is the one it was before only if no bit of any number has changed. */
+static void test_each_number_of_a_body_counts(void **state)
+{
+    (void) state;
+    enum { AT = 4 + 4 + 1 + 4, NUMBERS = 12 }; /* after dim, one shape, and the counts */
+    struct cache *cache = cache_create(2 * NUMBERS, secret);
+    for (int i = 0; i < NUMBERS; i++) {
+        const struct geometry geometry = cuboid(1, 1);
+        unsigned char changed[GEOMETRY_FRAME_BYTES_MAX];
+        const struct handle before = keep_geometry(cache, 1, &geometry);
+        memcpy(changed, geometry.bytes, geometry.size);
+        changed[AT + 8 * i + 7] ^= 1;
+        const struct geometry other = {changed, geometry.size};
+        const struct handle after = keep_geometry(cache, 1, &other);
+        assert_false(handle_equal(&before, &after));
+    }
+    assert_int_equal(cache_counts(cache).bodies, 1 + NUMBERS);
+    cache_destroy(cache);
+}
+
 static void test_the_least_recently_used_is_evicted(void **state)
 {
     (void) state;
@@ -584,6 +604,7 @@ int main(void)
         cmocka_unit_test(test_ids_share_a_body),
         cmocka_unit_test(test_an_id_with_two_bodies),
         cmocka_unit_test(test_bodies_are_compared_bit_by_bit),
+        cmocka_unit_test(test_each_number_of_a_body_counts),
         cmocka_unit_test(test_the_least_recently_used_is_evicted),
         cmocka_unit_test(test_capacity_for_one),
         cmocka_unit_test(test_stale_ids),

@@ -2,8 +2,10 @@
  * slow, or forges results. */
 #include "clock.h"
 #include "hostile.h"
-#include "scene_part.h"
+#include "fmb_client_raw.h"
 #include "relay.h"
+#include "request.h"
+#include "scene_part.h"
 #include "wire.h"
 
 #include <limits.h>
@@ -113,6 +115,100 @@ static void test_messages_that_cannot_be_read_are_counted(void **state)
     assert_int_equal(fmb_client_get_counts(client).malformed, count);
     fmb_client_close(client);
     relay_close(relay);
+}
+
+/* ---- Results of another kind, and refusals without end ---- */
+
+/* Before a scene is answered, results of pairs come under the numbers of its queries. */
+static struct fmb_client *deceived;
+
+static void publish_pair_results(struct relay *relay)
+{
+    for (int number = 0; number < 20; number++) {
+        struct pair_result result = {.client_id = fmb_client_raw_id(deceived),
+                                     .sequence_number = number,
+                                     .answer = {.verdict = FMB_SEPARATED}};
+        unsigned char bytes[QUERY_BYTES_MAX];
+        relay_publish(relay, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
+    }
+}
+
+static void test_results_of_another_kind_are_ignored(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    struct fmb_client_answer answer;
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    const struct fmb_client_scene scene = all_pairs();
+    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    deceived = client;
+    relay->before = publish_pair_results;
+    relay_query(client, &scene);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+static bool publish_nothing(void *user, enum fmb_client_kind kind, const unsigned char *query,
+                            size_t size)
+{
+    (void) user, (void) kind, (void) query, (void) size;
+    return true;
+}
+
+static bool receive_nothing(void *user)
+{
+    (void) user;
+    return true;
+}
+
+static enum request_taken note_status(void *user, struct request *request,
+                                      const struct request_result *result)
+{
+    (void) request;
+    *(int *) user = result->status;
+    return REQUEST_COMPLETE;
+}
+
+/* What follows in a request may be larger than it was when it began. */
+static void test_larger_queries_of_a_request_are_charged(void **state)
+{
+    (void) state;
+    static struct requests requests = {
+        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
+    int status;
+    requests_forget_pace(&requests);
+    for (int i = 0; i < 3; i++) {
+        assert_true(requests_ready(&requests, REQUEST_IDS_END));
+        struct request *request =
+            request_begin(&requests, FMB_CLIENT_SCENE, REQUEST_IDS_END, note_status, &status);
+        request->size = QUERY_BYTES_MAX;
+        request_send(&requests, request);
+        assert_int_equal(requests_ready(&requests, QUERY_BYTES_MAX), i == 0);
+    }
+    assert_false(requests_ready(&requests, REQUEST_IDS_END));
+}
+
+/* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
+static void test_a_service_that_stays_busy_is_given_up(void **state)
+{
+    (void) state;
+    static struct requests requests = {
+        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
+    const struct request_result busy = {
+        .kind = FMB_CLIENT_DEFINITION, .status = FMB_BUSY, .detail = ""};
+    int status = FMB_OK, refusals = 0;
+    requests_forget_pace(&requests);
+    struct request *request =
+        request_begin(&requests, FMB_CLIENT_DEFINITION, REQUEST_IDS_END, note_status, &status);
+    request->size = REQUEST_IDS_END;
+    request_send(&requests, request);
+    for (; status == FMB_OK && refusals < 1000; refusals++)
+        requests_take(&requests, &busy);
+    assert_int_equal(status, FMB_BUSY);
+    assert_int_equal(requests.count, 0);
+    assert_in_range(refusals, 100, 300);
 }
 
 /* ---- No service ---- */
@@ -524,6 +620,22 @@ static void separated_is_named(struct scene_result *result, int turn)
     result->end_pair = result->names_pairs ? result->end_pair : INT_MAX;
 }
 
+static void boxes_unasked(struct scene_result *result, int turn)
+{
+    (void) turn;
+    result->has_boxes = true;
+    result->dim = 3;
+    memset(result->boxes, 0, sizeof result->boxes);
+}
+
+/* Statuses below 0 are the library's own. */
+static void status_of_the_library(struct scene_result *result, int turn)
+{
+    not_on(result, turn);
+    result->status = FMB_CLIENT_LATE;
+    result->handle_count = 0;
+}
+
 static const struct {
     const char *name;
     void (*lie)(struct scene_result *result, int turn);
@@ -544,6 +656,8 @@ static const struct {
     {"a handle more", a_handle_more, true, true},
     {"unknown although whole", unknown_although_whole, true, true},
     {"boxes of 2D", boxes_of_2d, true, true},
+    {"boxes unasked", boxes_unasked, true, false},
+    {"status of the library", status_of_the_library, true, true},
     {"no times", no_times, true, true},
     {"times of none", times_of_none, true, true},
     {"separated is named", separated_is_named, true, true},
@@ -968,6 +1082,28 @@ static void test_contradicting_results_of_pairs_are_counted(void **state)
     relay_close(relay);
 }
 
+/* Of recent results as many are kept as the numbers have remainders: an old one is not taken for a
+ * newer one of the same remainder. */
+static void test_old_results_contradict_nothing(void **state)
+{
+    (void) state;
+    static struct recent recent;
+    struct pair_result pair = {.answer = {.verdict = FMB_SEPARATED}};
+    unsigned char bytes[2][QUERY_BYTES_MAX];
+    struct request_result result[2];
+    for (int i = 0; i < 2; i++) {
+        pair.method = i;
+        result[i] = (struct request_result){.kind = FMB_CLIENT_PAIR,
+                                            .pair = &pair,
+                                            .bytes = bytes[i],
+                                            .size = wire_write_pair_result(&pair, bytes[i])};
+    }
+    recent_note(&recent, &result[0], 0);
+    assert_true(recent_contradicts(&recent, &result[1]));
+    result[1].number = RECENT_MAX;
+    assert_false(recent_contradicts(&recent, &result[1]));
+}
+
 /* ---- The process ---- */
 
 /* LCM's own receiver, which uses select(), aborts there. */
@@ -1160,6 +1296,9 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
         cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
+        cmocka_unit_test(test_results_of_another_kind_are_ignored),
+        cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
+        cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
         cmocka_unit_test(test_a_service_that_comes_back_is_found),
         cmocka_unit_test(test_a_repeat_finds_the_service),
         cmocka_unit_test(test_no_service_costs_the_time_of_one_query),
@@ -1181,6 +1320,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
         cmocka_unit_test(test_contradicting_second_results_are_counted),
         cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
+        cmocka_unit_test(test_old_results_contradict_nothing),
         cmocka_unit_test(test_many_open_descriptors),
         cmocka_unit_test(test_a_child_that_closes_harms_nothing),
         cmocka_unit_test(test_no_call_within_a_callback),

@@ -1,6 +1,8 @@
 /* The client library against the service: every answer is that of libfmb, to the bit, in the order
  * of the pairs, whatever the size of the scene and whatever the service holds. */
+#include "client_scene.h"
 #include "relay.h"
+#include "wire.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -355,6 +357,8 @@ static void test_wrong_scenes_are_refused(void **state)
     wrong(client, &scene, FMB_BAD_ORIENTATION, "placements[2].orientation: ");
     frame[2].orientation[1] = 1, frame[2].orientation[3] = 0x1p-201;
     wrong(client, &scene, FMB_BAD_ORIENTATION, "placements[2].orientation: ");
+    frame[2].orientation_count = 0;
+    wrong(client, &scene, FMB_WRONG_COUNT, "placements[2].orientation_count: ");
     frame[2] = good[2], frame[1].dim = 2;
     wrong(client, &scene, FMB_DIMENSIONS_DIFFER, "placements[1].dim: ");
     frame[1].dim = 4;
@@ -676,6 +680,57 @@ static void test_bodies_of_many_frames(void **state)
     relay_close(relay);
 }
 
+/* Bytes of a message that a body takes which is at rest and not turned. */
+static size_t bytes_of(const struct fmb_client_placement *body)
+{
+    return 8 + HANDLE_BYTES + client_scene_geometry_bytes(body) + 4 + 4 +
+           sizeof(double) * (size_t) body->dim;
+}
+
+/* A listed pair in a query that is as large as a datagram, and a byte less, and a few more: then
+ * the bodies are sent first. */
+static void test_pairs_that_just_fit_into_a_datagram(void **state)
+{
+    (void) state;
+    enum { BOX = 49, MORE = 48 }; /* bytes of a box, and how many more a cuboid has */
+    static const unsigned pair[1][2] = {{0, 1}};
+    const int most = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - WIRE_PAIR_BYTES;
+    struct relay *relay = relay_new();
+    relay_open(relay, 20000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    for (int bytes = most - 1; bytes < most + 6; bytes++) {
+        struct fmb_client_placement body[2] = {{.body_id = 2 * bytes, .dim = 3},
+                                               {.body_id = 2 * bytes + 1, .dim = 3}};
+        body[1].position[0] = 100;
+        const int frames = bytes - 2 * (int) bytes_of(body);
+        int count = frames / (BOX + MORE) + 1;
+        while ((frames - BOX * count) % MORE != 0)
+            count++;
+        struct fmb_client_frame *frame = calloc((size_t) count, sizeof *frame);
+        assert_non_null(frame);
+        for (int i = 0; i < count; i++)
+            frame[i] =
+                i < (frames - BOX * count) / MORE
+                    ? (struct fmb_client_frame){FMB_CUBOID, {i, bytes}, {1, 0, 0, 0, 1, 0, 0, 0, 1}}
+                    : (struct fmb_client_frame){FMB_BOX, {i, bytes}, {1, 1, 1}};
+        for (int f = 0; f < 2; f++) {
+            body[f].frames = frame + f * (count / 2);
+            body[f].frame_count = (size_t) (f ? count - count / 2 : count / 2);
+        }
+        assert_int_equal(bytes_of(&body[0]) + bytes_of(&body[1]), bytes);
+        struct fmb_client_scene scene = scene_of(body, 2, FMB_CLIENT_LISTED, 0);
+        scene.pairs = pair;
+        scene.pair_count = 1;
+        const uint64_t before = fmb_client_get_counts(client).queries;
+        relay_query(client, &scene);
+        const uint64_t queries = fmb_client_get_counts(client).queries - before;
+        assert_true(bytes <= most ? queries == 1 : queries > 1);
+        free(frame);
+    }
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
 /* ---- Several clients ---- */
 
 static void test_two_clients_in_a_process(void **state)
@@ -773,6 +828,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_an_id_may_stand_twice),
         cmocka_unit_test(test_ignored_pairs_are_left_out),
         cmocka_unit_test(test_bodies_of_many_frames),
+        cmocka_unit_test(test_pairs_that_just_fit_into_a_datagram),
         cmocka_unit_test(test_two_clients_in_a_process),
         cmocka_unit_test(test_clients_in_threads),
     };

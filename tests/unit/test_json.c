@@ -404,6 +404,10 @@ static const struct {
      "bodies[0].shape: unknown shape \"sphere\" (there are cuboid, tetrahedron, face, box)"},
     {SCENE("{\"id\":1,\"shape\":\"Cuboid\",\"origin\":[0,0,0],\"components\":[]}"),
      "bodies[0].shape: unknown shape \"Cuboid\" (there are cuboid, tetrahedron, face, box)"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboids\",\"origin\":[0,0,0],\"components\":[]}"),
+     "bodies[0].shape: unknown shape \"cuboids\" (there are cuboid, tetrahedron, face, box)"},
+    {SCENE("{\"id\":1,\"shape\":\"cub\",\"origin\":[0,0,0],\"components\":[]}"),
+     "bodies[0].shape: unknown shape \"cub\" (there are cuboid, tetrahedron, face, box)"},
     {SCENE("{\"id\":1,\"shape\":1,\"origin\":[0,0,0],\"components\":[]}"),
      "bodies[0].shape: expected a string, found a number"},
     {"{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"face\",\"origin\":[0,0],"

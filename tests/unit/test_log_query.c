@@ -316,6 +316,53 @@ static void what_is_not_there_is_not_found(void **state)
     assert_int_equal(look_for(ways[0]), LOG_QUERY_NONE);
 }
 
+/* ---- Queries of equal ids ---- */
+
+static void add_query(struct log_world *world, int64_t utime, double duration)
+{
+    unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    const struct pair_query query = {
+        .utime = utime,
+        .client_id = 3,
+        .sequence_number = 4,
+        .duration = duration,
+        .placement = {sample_placement(0, geometry[0]), sample_placement(0, geometry[1])}};
+    world_add(world, WIRE_PAIR_QUERY, bytes, wire_write_pair_query(&query, bytes));
+}
+
+static void add_result(struct log_world *world, int64_t utime)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    const struct pair_result result = {
+        .utime = utime, .client_id = 3, .sequence_number = 4, .answer.verdict = FMB_SEPARATED};
+    world_add(world, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
+}
+
+/* A query that is repeated to the byte is one query; others are several. A result has the query of
+ * its time. */
+static void equal_ids(void **state)
+{
+    (void) state;
+    const struct log_query_options by_ids = {
+        .by = LOG_QUERY_IDS, .client_id = 3, .sequence_number = 4};
+    const struct log_query_options by_result = {.by = LOG_QUERY_NUMBER, .number = 4};
+    struct log_world world = {.state = 1};
+    add_query(&world, 1000, 1);
+    add_query(&world, 1000, 1);
+    world_write(&world, path);
+    assert_int_equal(look_for(by_ids), LOG_QUERY_FOUND);
+    add_query(&world, 1000, 2);
+    world_write(&world, path);
+    assert_int_equal(look_for(by_ids), LOG_QUERY_NONE);
+    add_query(&world, 2000, 3);
+    add_result(&world, 2000);
+    world_write(&world, path);
+    assert_int_equal(look_for(by_result), LOG_QUERY_FOUND);
+    assert_int_equal(found.number, 3);
+    world_clear(&world);
+}
+
 /* ---- Scenes ---- */
 
 static unsigned char geometry_bytes[GEOMETRY_FRAME_BYTES_MAX];
@@ -427,6 +474,7 @@ int main(void)
         cmocka_unit_test(large_scenes_have_the_same_answers),
         cmocka_unit_test(undefined_handles_are_reported),
         cmocka_unit_test(what_is_not_there_is_not_found),
+        cmocka_unit_test(equal_ids),
         cmocka_unit_test(bodies_get_ids_that_are_free),
         cmocka_unit_test(pairs_are_those_of_the_query),
         cmocka_unit_test(numbers_read_back_as_the_same_bits),

@@ -714,6 +714,26 @@ static void test_a_file_that_becomes_shorter(void **state)
     }
 }
 
+/* Bytes beyond the end of a file are not mapped: to read them would end the process. */
+static void test_an_event_that_is_cut_off_is_not_mapped(void **state)
+{
+    (void) state;
+    struct log_event event;
+    struct log_damage damage;
+    make_noise(5);
+    whole.size = whole.count = 0;
+    log_bytes_event(&whole, 1, "CHANNEL", noise, LOG_DATA_MAX);
+    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
+    const void *data = log_map(reader, &event);
+    assert_non_null(data);
+    log_unmap(data, &event);
+    assert_int_equal(ftruncate(log_bytes_descriptor(), (off_t) whole.size - 1), 0);
+    assert_null(log_map(reader, &event));
+    assert_int_equal(errno, ENODATA);
+    log_close(reader);
+}
+
 /* Also where nothing but a hole is to come. */
 static void test_a_hole_that_becomes_shorter(void **state)
 {
@@ -785,6 +805,7 @@ int main(void)
         cmocka_unit_test(test_seeking_in_a_log_of_many_buffers),
         cmocka_unit_test(test_what_is_written_later_is_not_read),
         cmocka_unit_test(test_a_file_that_becomes_shorter),
+        cmocka_unit_test(test_an_event_that_is_cut_off_is_not_mapped),
         cmocka_unit_test(test_a_hole_that_becomes_shorter),
         cmocka_unit_test(test_a_file_that_cannot_be_read),
         cmocka_unit_test(test_what_is_no_file),

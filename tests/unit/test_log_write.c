@@ -443,6 +443,25 @@ static void test_the_newest_files_are_kept(void **state)
     log_parts_close(&parts);
 }
 
+/* A file that the user has removed does not keep the others. */
+static void test_a_file_that_is_gone_is_not_kept(void **state)
+{
+    (void) state;
+    struct log_parts_options options = several("gone", 80000, false);
+    struct log_parts parts;
+    options.keep = 3;
+    assert_true(log_parts_open(&options, &parts));
+    for (int i = 0; i < 200; i++) {
+        assert_true(append_event(to_parts, &parts, i));
+        if (i == 20)
+            assert_int_equal(unlink(in_folder(part_name("gone", parts.first))), 0);
+    }
+    assert_true(parts.first > 2);
+    assert_int_equal(parts.first, parts.number - 2);
+    assert_int_equal(log_parts_finish(&parts), 0);
+    log_parts_close(&parts);
+}
+
 static void test_one_file_alone(void **state)
 {
     (void) state;
@@ -515,6 +534,7 @@ int main(void)
         cmocka_unit_test(test_a_truncated_file_is_noticed),
         cmocka_unit_test(test_several_files_divide_no_event),
         cmocka_unit_test(test_the_newest_files_are_kept),
+        cmocka_unit_test(test_a_file_that_is_gone_is_not_kept),
         cmocka_unit_test(test_one_file_alone),
         cmocka_unit_test(test_files_of_before_are_overwritten_with_force_alone),
         cmocka_unit_test(test_a_next_file_that_cannot_be_had),

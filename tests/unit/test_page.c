@@ -422,9 +422,9 @@ static void bodies_that_cannot_be_drawn_are_named(void **state)
 {
     struct geometry_frame frame = cuboid(3, 1);
     static unsigned char other_shape[GEOMETRY_FRAME_BYTES_MAX];
-    struct placement bad[12];
+    struct placement bad[14];
     (void) state;
-    for (int i = 0; i < 12; i++)
+    for (int i = 0; i < 14; i++)
         bad[i] = make_body(9, 3, 1, 0);
     frame.components[8] = NAN;
     bad[0].geometry = encode(3, &frame);
@@ -443,7 +443,14 @@ static void bodies_that_cannot_be_drawn_are_named(void **state)
     other_shape[8] = 17;
     bad[10].geometry.bytes = other_shape;
     bad[11].position[2] = NAN;
-    for (int i = 0; i < 12; i += 2) {
+    static unsigned char
+        longer[GEOMETRY_FRAME_BYTES_MAX + 8]; /* a number more than the frame has */
+    const size_t size = bad[12].geometry.size;
+    memcpy(longer, bad[12].geometry.bytes, size);
+    longer[12]++;
+    bad[12].geometry = (struct geometry){longer, size + 8};
+    bad[13].velocity_count = 1;
+    for (int i = 0; i < 14; i += 2) {
         const struct pair_query query = {.placement = {bad[i], bad[i + 1]}};
         expect_placements(&query, "[[9,-2],[9,-2]]");
     }
@@ -550,9 +557,10 @@ static void a_different_certificate_is_reported(void **state)
     struct pair_result then = overlapping(), now = overlapping();
     const struct replayed replayed = of_pair(&query, &then, &now, REPLAY_DIFFERENT);
     static const char *const certificates[][2] = {
-        {"a", "a"}, {NULL, NULL}, {"a", "b"}, {NULL, "a"}, {"a", NULL}};
+        {"a", "a"},  {NULL, NULL}, {"a", "b"},
+        {NULL, "a"}, {"a", NULL},  {"separated + a0 a1 a2 b0", "separated + a0 a1 a2 b1"}};
     (void) state;
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         then.certificate = certificates[i][0];
         now.certificate = certificates[i][1];
         cJSON *data = data_of_one(&replayed);

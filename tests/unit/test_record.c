@@ -319,6 +319,44 @@ static void test_requests_without_a_result(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
+/* A method that cannot decide a pair had its bodies all the same. */
+static void test_bodies_of_undecided_pairs_are_requested(void **state)
+{
+    struct world *world = *state;
+    const struct body a = make_body(world, 1), b = make_body(world, 2);
+    begin(world);
+    receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    receive_result(world, FMB_CANNOT_DECIDE);
+    pass(world, SECOND);
+    assert_int_equal(world->request.handle_count, 2);
+}
+
+/* The newest queries without a result are kept, and each result is that of one of them. */
+static void test_results_of_many_queries(void **state)
+{
+    struct world *world = *state;
+    enum { QUERIES = 300, RECENT = QUERIES - 40, FORGOTTEN = 10 };
+    static const struct {
+        int64_t number;
+        int requests;
+    } results[] = {{QUERIES + 1, 1}, {FORGOTTEN, 1}, {RECENT, 2}};
+    const struct body whole = make_body(world, 1);
+    begin(world);
+    for (int i = 1; i <= QUERIES; i++) {
+        const struct body body = make_body(world, 1 + i);
+        receive_query(world, place_by_handle(&body), place_whole(&whole));
+    }
+    for (int i = 0; i < 3; i++) {
+        world->sequence_number = results[i].number;
+        receive_result(world, FMB_OK);
+        pass(world, SECOND);
+        assert_int_equal(world->requests, results[i].requests);
+    }
+    const struct body recent = make_body(world, 1 + RECENT);
+    assert_int_equal(world->request.handle_count, 1);
+    assert_true(handle_equal(&world->request.handle[0], &recent.handle));
+}
+
 static void test_refused_queries_need_no_bodies(void **state)
 {
     struct world *world = *state;
@@ -368,6 +406,9 @@ int main(void)
                                         teardown),
         cmocka_unit_test_setup_teardown(test_handles_are_requested_in_pages, setup, teardown),
         cmocka_unit_test_setup_teardown(test_requests_without_a_result, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_bodies_of_undecided_pairs_are_requested, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(test_results_of_many_queries, setup, teardown),
         cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),

@@ -167,6 +167,11 @@ static void test_every_kind(void **state)
     assert_true(now.answer.has_gap);
     struct pair_result then = now;
     expect_same(0, &query, &then, &now);
+    char other[QUERY_CERTIFICATE_MAX];
+    strcpy(other, now.certificate);
+    other[strlen(other) - 1] ^= 1; /* at its end alone */
+    then.certificate = other;
+    expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
     then.certificate = "none such";
     expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
     assert_string_equal(reported[0].then.certificate, "none such");

@@ -191,21 +191,31 @@ static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
     assert_int_equal(scheduler_client(turns, 8), 8);
 }
 
-/* Against a list: ids come, idle and come again, in any order. */
+/* Against a list: ids come, idle and come again, in any order. Those that are active keep their
+ * number, but for the shared one. */
 static void test_ids_without_end(void **state)
 {
     (void) state;
+    enum { IDS = 5000 };
+    static int64_t active[SCHEDULER_CLIENTS + 1]; /* [client] id + 1; 0: idle */
+    static int number[IDS];
     srand(1);
     for (int i = 0; i < 200000; i++) {
-        const int64_t id = rand() % 5000;
+        const int64_t id = rand() % IDS;
         const int client = active_client(id);
         assert_in_range(client, 0, SCHEDULER_CLIENTS);
         assert_int_equal(scheduler_client(turns, id), client);
+        if (number[id] < SCHEDULER_CLIENTS && active[number[id]] == id + 1)
+            assert_int_equal(client, number[id]);
+        number[id] = client;
+        active[client] = id + 1;
         serve(client, 1 + rand() % 2000000);
-        if (rand() % 8)
-            scheduler_deactivate(turns, client);
-        if (scheduler_active(turns) > 500)
-            scheduler_deactivate(turns, next());
+        int idle = rand() % 8 ? client : -1;
+        for (int n = 0; n < 2; n++) {
+            if (idle >= 0)
+                scheduler_deactivate(turns, idle), active[idle] = 0;
+            idle = scheduler_active(turns) > 500 ? next() : -1;
+        }
     }
 }
 

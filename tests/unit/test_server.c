@@ -5,7 +5,9 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -108,6 +110,59 @@ static void test_status_counts(void **state)
     assert_true(status->utime > 1600000000000000);
 }
 
+/* Of pairs that a method cannot decide. */
+static void test_undecided_pairs_are_not_counted(void **state)
+{
+    (void) state;
+    static struct scene_query scene;
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    const struct pair_query pair = service_pair(21, 1);
+    const struct geometry_frame flat = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0}};
+    unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX];
+    scene = (struct scene_query){.client_id = 21,
+                                 .duration = 1,
+                                 .method = fmb_method_by_name("fmb")->number,
+                                 .placement_count = 3,
+                                 .placement = {pair.placement[0], pair.placement[1]},
+                                 .index_count = 4,
+                                 .pair = {{0, 1}, {1, 2}}};
+    scene.placement[2] = pair.placement[1];
+    scene.placement[2].geometry = (struct geometry){geometry, geometry_write(2, &flat, geometry)};
+    service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&scene, bytes));
+    service_settle();
+    assert_int_equal(service.result[0].end_pair, 2);
+    assert_int_equal(service_status()->pairs, 1);
+}
+
+/* The bytes on stderr when a heartbeat of this server is heard. */
+static long said_of_heartbeat(int64_t server_id)
+{
+    unsigned char bytes[WIRE_STATUS_BYTES_MAX];
+    struct wire_status status = *service_status();
+    FILE *said = tmpfile();
+    const int before = dup(STDERR_FILENO);
+    assert_true(said && before >= 0);
+    fflush(stderr);
+    dup2(fileno(said), STDERR_FILENO);
+    status.server_id = server_id;
+    service_receive(SERVER_STATUS, bytes, wire_write_status(&status, bytes));
+    fflush(stderr);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    const long size = lseek(fileno(said), 0, SEEK_END);
+    fclose(said);
+    return size;
+}
+
+/* Another service is reported once; the heartbeats that a server hears of its own are not. */
+static void test_another_service_is_reported(void **state)
+{
+    (void) state;
+    assert_int_equal(said_of_heartbeat(11), 0);
+    assert_true(said_of_heartbeat(12) > 50);
+    assert_int_equal(said_of_heartbeat(12), 0);
+}
+
 static void test_results_that_the_bus_does_not_take_are_counted(void **state)
 {
     (void) state;
@@ -178,6 +233,8 @@ int main(void)
         TEST(test_certificates_are_given_where_wanted),
         TEST(test_definitions_are_given),
         TEST(test_status_counts),
+        TEST(test_undecided_pairs_are_not_counted),
+        TEST(test_another_service_is_reported),
         TEST(test_results_that_the_bus_does_not_take_are_counted),
         TEST(test_heartbeats_are_due_each_second),
         TEST(test_what_is_too_long_is_refused),

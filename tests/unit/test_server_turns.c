@@ -71,6 +71,40 @@ static void test_clients_share_time_not_answers(void **state)
     expect_all_ok(3300);
 }
 
+/* Time is charged to the client of the query that it was spent on, before the query is served too:
+ * what it takes to read a datagram, and to refuse it or an older one for which it has no space. */
+static void test_reading_is_charged(void **state)
+{
+    (void) state;
+    const struct pair_query query = service_pair(COSTLY, 2000);
+    unsigned char bytes[QUERY_BYTES_MAX];
+    service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
+    for (int i = 0; i < 2000; i++) {
+        service_query_pair(CHEAP, i);
+        service_query_pair(COSTLY, i);
+    }
+    server_receive(service.server, SERVER_PAIRS, bytes, wire_write_pair_query(&query, bytes));
+    service.now_ns += 10 * MS;
+    server_end_batch(service.server, 1);
+    work_for(20 * MS);
+    assert_in_range(answers_to(CHEAP) - answers_to(COSTLY), 900, 1100);
+}
+
+static void test_refusing_is_charged(void **state)
+{
+    (void) state;
+    service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
+    for (int i = 0; i < 9000; i++)
+        service_query_pair(COSTLY, i);
+    for (int i = 0; i < 500; i++)
+        service_query_pair(CHEAP, i);
+    const int64_t refused = answers_to(COSTLY);
+    assert_true(refused > 1000);
+    work_for(4 * MS);
+    assert_int_equal(answers_to(COSTLY), refused);
+    assert_in_range(answers_to(CHEAP), 390, 410);
+}
+
 /* The bus is looked at between two units: no call of server_work() takes much longer than one. */
 static void test_work_is_done_in_short_spans(void **state)
 {
@@ -239,6 +273,7 @@ static void test_long_scenes_stop_where_others_wait(void **state)
     service_settle();
     assert_int_equal(service.result[0].end_pair, 550 * 549 / 2);
     assert_true(service.now_ns > 200 * MS);
+    const int64_t begin_ns = service.now_ns;
     service_query_scene(COSTLY, 2, 550);
     service_query_scene(COSTLY, 3, 10);
     service_settle();
@@ -246,6 +281,22 @@ static void test_long_scenes_stop_where_others_wait(void **state)
     assert_int_equal(service.result[1].sequence_number, 2);
     assert_in_range(service.result[1].end_pair, 1, 550 * 549 / 2 - 1);
     assert_int_equal(service.result[2].end_pair, 45);
+    assert_in_range(service.now_ns - begin_ns, 100 * MS, 120 * MS);
+}
+
+static void test_the_longest_job_is_the_one_to_stop(void **state)
+{
+    (void) state;
+    static const int used_s[] = {2, 4, 3};
+    static struct jobs jobs;
+    assert_true(jobs_init(&jobs));
+    for (int client = 0; client < 3; client++) {
+        struct job *job = jobs_take(&jobs, client);
+        job->is_pair = true;
+        job->used_ns = used_s[client] * JOBS_PATIENCE_NS;
+    }
+    assert_int_equal(jobs_longest(&jobs)->client, 1);
+    jobs_release(&jobs);
 }
 
 /* More clients than jobs: the longest stops early, and each gets an answer. */
@@ -369,6 +420,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_a_client_is_served_in_order),
         TEST(test_clients_share_time_not_answers),
+        TEST(test_reading_is_charged),
+        TEST(test_refusing_is_charged),
         TEST(test_work_is_done_in_short_spans),
         TEST(test_pairs_do_not_wait_for_scenes_of_their_client),
         TEST(test_a_new_id_gains_nothing),
@@ -378,6 +431,7 @@ int main(void)
         TEST(test_scenes_share_time),
         TEST(test_pairs_pass_long_scenes),
         TEST(test_long_scenes_stop_where_others_wait),
+        TEST(test_the_longest_job_is_the_one_to_stop),
         TEST(test_more_scenes_than_jobs),
         TEST(test_a_full_queue_refuses_the_one_that_holds_most),
         TEST(test_new_ids_without_end),

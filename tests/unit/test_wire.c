@@ -115,6 +115,30 @@ static void test_negative_size_is_refused(void **state)
     assert_non_null(wire_read_pair_header(NULL, 0, &header));
 }
 
+/* Fingerprint and ids are 32 bytes: where one is missing there is no header. */
+static void test_short_headers_are_refused(void **state)
+{
+    (void) state;
+    static const struct {
+        const char *type;
+        const char *(*read)(const void *bytes, uint32_t size, struct query_header *out);
+    } kinds[] = {{"pair_query", wire_read_pair_header},
+                 {"pair_result", wire_read_pair_result_header},
+                 {"scene_query", wire_read_scene_header},
+                 {"scene_result", wire_read_scene_result_header},
+                 {"definition_query", wire_read_definition_header}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        for (uint32_t size = 0; size <= 32; size++) {
+            unsigned char good[HOSTILE_BYTES_MAX], *copy = malloc(32);
+            struct query_header header;
+            hostile_good(kinds[k].type, good);
+            assert_non_null(copy);
+            memcpy(copy + 32 - size, good, size); /* a sanitizer sees what is read beyond */
+            assert_int_equal(kinds[k].read(copy + 32 - size, size, &header) == NULL, size == 32);
+            free(copy);
+        }
+}
+
 static uint64_t next_random(uint64_t *seed)
 {
     *seed ^= *seed << 13;
@@ -408,6 +432,26 @@ static void test_definitions_match_their_handles(void **state)
     free(read);
 }
 
+/* A body without frames, or one beside a refusal, whatever its handle. */
+static void test_definitions_have_frames_and_status_ok(void **state)
+{
+    (void) state;
+    static struct definition definition, read;
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    unsigned char geometry[SAMPLE_BYTES_MAX], none[GEOMETRY_NONE_BYTES];
+    const struct placement placement = sample_placement(0, geometry); /* whole */
+    struct query_body *body = &definition.body[0];
+    geometry_write_none(3, none);
+    for (int i = 0; i < 3; i++) {
+        definition = (struct definition){.body_count = 1, .status = i == 1 ? FMB_BUSY : FMB_OK};
+        body->geometry = i == 2 ? (struct geometry){none, sizeof none} : placement.geometry;
+        body->handle = hasher_handle(hasher, body->geometry.bytes, body->geometry.size);
+        const size_t size = wire_write_definition(&definition, bytes);
+        const char *error = wire_read_definition(bytes, (uint32_t) size, hasher, &read);
+        assert_int_equal(error == NULL, i == 0);
+    }
+}
+
 /* The certificate is read where it stands. */
 static void assert_same_result(const struct pair_result *result, const struct pair_result *read,
                                const unsigned char *bytes, size_t size)
@@ -586,6 +630,32 @@ static void test_gaps_are_consistent(void **state)
         }
 }
 
+/* A box in 3D beside a gap in 2D. */
+static void test_box_and_gap_have_one_dimension(void **state)
+{
+    (void) state;
+    double zero[6] = {0};
+    char empty[] = "";
+    for (int dim = 2; dim <= 3; dim++) {
+        fmb_msgs_pair_result_t message = {.detail = empty,
+                                          .verdict = FMB_OVERLAPPING,
+                                          .num_contact = 2,
+                                          .contact = zero,
+                                          .num_box = 6,
+                                          .box = zero,
+                                          .num_gap = 2,
+                                          .gap = zero,
+                                          .num_direction = dim,
+                                          .direction = zero,
+                                          .certificate = empty};
+        unsigned char bytes[WIRE_STATUS_BYTES_MAX];
+        struct pair_result read;
+        const int size = fmb_msgs_pair_result_t_encode(bytes, 0, sizeof bytes, &message);
+        assert_true(size > 0);
+        assert_int_equal(wire_read_pair_result(bytes, (uint32_t) size, &read) == NULL, dim == 3);
+    }
+}
+
 /* Bodies that meet have a contact interval, and they alone may have a box; only pairs that were
  * decided have a verdict. */
 static void test_answers_are_consistent(void **state)
@@ -703,6 +773,7 @@ int main(void)
         cmocka_unit_test(test_fingerprints_are_pinned),
         cmocka_unit_test(test_damage_is_refused),
         cmocka_unit_test(test_negative_size_is_refused),
+        cmocka_unit_test(test_short_headers_are_refused),
         cmocka_unit_test(test_mutants_are_survived),
         cmocka_unit_test(test_pair_query_round_trip),
         cmocka_unit_test(test_long_lists_are_read),
@@ -716,6 +787,7 @@ int main(void)
         cmocka_unit_test(test_definition_query_round_trip),
         cmocka_unit_test(test_definition_round_trip),
         cmocka_unit_test(test_definitions_match_their_handles),
+        cmocka_unit_test(test_definitions_have_frames_and_status_ok),
         cmocka_unit_test(test_pair_result_round_trip),
         cmocka_unit_test(test_pair_result_apart_round_trip),
         cmocka_unit_test(test_certificates_end_somewhere),
@@ -723,6 +795,7 @@ int main(void)
         cmocka_unit_test(test_certificates_have_a_verdict),
         cmocka_unit_test(test_refusal_round_trip),
         cmocka_unit_test(test_gaps_are_consistent),
+        cmocka_unit_test(test_box_and_gap_have_one_dimension),
         cmocka_unit_test(test_answers_are_consistent),
         cmocka_unit_test(test_intervals_and_boxes_are_such),
         cmocka_unit_test(test_status_round_trip),

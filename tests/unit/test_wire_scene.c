@@ -132,6 +132,21 @@ static void test_query_round_trip(void **state)
         }
 }
 
+/* Indices are read many at a time: of every length as many as there are, and no more. */
+static void test_lists_of_every_length(void **state)
+{
+    (void) state;
+    for (int32_t count = 0; count < 70; count++) {
+        set_query(0, count, count);
+        memset(query_read.ignored, 7, sizeof query_read.ignored);
+        memset(query_read.pair, 7, sizeof query_read.pair);
+        expect_read(read_query(wire_write_scene_query(&query, bytes)));
+        assert_same_query();
+        assert_int_equal(query_read.pair[count / 2][count % 2], 0x07070707);
+        assert_int_equal(query_read.ignored[count / 2][count % 2], 0x07070707);
+    }
+}
+
 /* To the last bytes: pairs alone, and placements alone. */
 static void test_largest_queries(void **state)
 {
@@ -455,6 +470,7 @@ static void test_lies_about_verdicts(void **state)
     LIE((lie.message.num_verdicts = QUERY_VERDICTS_MAX + 1, lie.message.num_indices = 0));
     LIE(lie.message.num_handle_bytes = HANDLE_BYTES * (QUERY_PLACEMENTS_MAX + 1));
     LIE(lie.message.num_handle_bytes = HANDLE_BYTES + 1);
+    LIE(lie.message.num_handle_bytes = HANDLE_BYTES + HANDLE_BYTES / 2);
     LIE(lie.message.end_pair = -1);
     TRUE((lie.verdicts[0] = FMB_SEPARATED, lie.message.num_times = 4, lie.message.num_boxes = 12,
           lie.message.num_indices = 0));
@@ -554,7 +570,8 @@ static void test_lies_about_gaps(void **state)
     GAP_LIE(lie.message.num_directions = 8);
     GAP_LIE(lie.message.num_directions = 0);
     GAP_LIE(lie.message.num_witnesses = 14);
-    GAP_LIE((lie.message.num_directions = 6, lie.message.num_witnesses = 15)); /* 2D, boxes 3D */
+    GAP_LIE((lie.message.num_directions = 6, lie.message.num_witnesses = 15,
+             memset(lie.witnesses + 10, 0, 5 * sizeof *lie.witnesses))); /* 2D, boxes 3D */
     GAP_LIE(lie.message.num_gaps = lie.message.num_directions = lie.message.num_witnesses = 0);
     GAP_LIE(lie.gaps[0] = -0.5);
     GAP_LIE(lie.gaps[1] = NAN);
@@ -629,6 +646,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(test_query_round_trip),
+        TEST(test_lists_of_every_length),
         TEST(test_largest_queries),
         TEST(test_more_than_the_capacity),
         TEST(test_result_round_trip),
