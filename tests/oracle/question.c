@@ -147,6 +147,21 @@ static void print_solid(const char *name, const struct solid *solid)
            solid->frames, solid->by_vertices ? "true" : "false");
 }
 
+int question_numbers(struct question *question, double *out[QUESTION_NUMBERS_MAX])
+{
+    struct solid *solids[2] = {&question->a, &question->b};
+    int count = 0;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < solids[f]->dim; axis++) {
+            for (int i = 0; i < solid_count(solids[f]); i++)
+                out[count++] = &solids[f]->component[i][axis];
+            out[count++] = &solids[f]->origin[axis];
+            if (solids[f]->moving)
+                out[count++] = &solids[f]->velocity[axis];
+        }
+    return count;
+}
+
 void question_print(const struct question *question)
 {
     printf("# struct question question = {\n");

@@ -55,6 +55,11 @@ int solid_numbers(const struct solid *solid, double number[SOLID_NUMBERS_MAX]);
 /* The placement of the body. */
 struct fmb_placement solid_placement(const struct solid *solid, const struct fmb_body *body);
 
+/* Lists where the coordinates of both solids are: components, origins, and the velocities of those
+ * that move. Returns how many. */
+enum { QUESTION_NUMBERS_MAX = 2 * (FMB_DIM_MAX + 2) * FMB_DIM_MAX };
+int question_numbers(struct question *question, double *out[QUESTION_NUMBERS_MAX]);
+
 /* In: solids of one frame, not by vertices. Out: the pair, with bodies in body[0] and body[1], of
  * which only what the oracle reads is filled: not enough for the engine. */
 void question_pair(const struct question *question, struct fmb_body body[2], struct pair *pair);

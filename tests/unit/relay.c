@@ -291,7 +291,8 @@ static int run_in_namespace(char *self)
         return EXIT_FAILURE;
     if (WEXITSTATUS(status) != SKIPPED)
         return WEXITSTATUS(status);
-    puts("1..1\nok 1 - client # SKIP no network namespace, and no route for multicast");
+    printf("1..1\nok 1 - %s # SKIP no network namespace, and no route for multicast\n",
+           slash ? slash + 1 : self);
     return EXIT_SUCCESS;
 }
 

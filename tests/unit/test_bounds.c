@@ -55,21 +55,12 @@ static double draw_number(struct draw *draw)
     return draw_coin(draw) ? x : -x;
 }
 
-enum { NUMBERS_MAX = 2 * (FMB_DIM_MAX + 2) * FMB_DIM_MAX + 1 };
+enum { NUMBERS_MAX = QUESTION_NUMBERS_MAX + 1 };
 
-/* Where the numbers of a question are; returns how many. */
+/* Lists the numbers of a question, its window too; returns how many. */
 static int numbers_of(struct question *question, double *out[NUMBERS_MAX])
 {
-    struct solid *solids[2] = {&question->a, &question->b};
-    int count = 0;
-    for (int f = 0; f < 2; f++)
-        for (int axis = 0; axis < solids[f]->dim; axis++) {
-            for (int i = 0; i < solid_count(solids[f]); i++)
-                out[count++] = &solids[f]->component[i][axis];
-            out[count++] = &solids[f]->origin[axis];
-            if (solids[f]->moving)
-                out[count++] = &solids[f]->velocity[axis];
-        }
+    int count = question_numbers(question, out);
     if (question->a.moving)
         out[count++] = &question->duration;
     return count;

@@ -115,31 +115,13 @@ static double draw_number(struct draw *draw)
     return draw_coin(draw) ? x : -x;
 }
 
-enum { NUMBERS_MAX = 2 * (FMB_DIM_MAX + 2) * FMB_DIM_MAX };
-
-/* Where the numbers of a question are; returns how many. */
-static int numbers_of(struct question *question, double *out[NUMBERS_MAX])
-{
-    struct solid *solids[2] = {&question->a, &question->b};
-    int count = 0;
-    for (int f = 0; f < 2; f++)
-        for (int axis = 0; axis < solids[f]->dim; axis++) {
-            for (int i = 0; i < solid_count(solids[f]); i++)
-                out[count++] = &solids[f]->component[i][axis];
-            out[count++] = &solids[f]->origin[axis];
-            if (solids[f]->moving)
-                out[count++] = &solids[f]->velocity[axis];
-        }
-    return count;
-}
-
 static struct question draw_question(struct draw *draw, struct kind kind)
 {
     struct question question = {{.dim = kind.dim, .shape = kind.a, .moving = kind.moving},
                                 {.dim = kind.dim, .shape = kind.b, .moving = kind.moving},
                                 1};
-    double *number[NUMBERS_MAX];
-    for (int i = numbers_of(&question, number) - 1; i >= 0; i--)
+    double *number[QUESTION_NUMBERS_MAX];
+    for (int i = question_numbers(&question, number) - 1; i >= 0; i--)
         *number[i] = draw_number(draw);
     return question;
 }
@@ -156,8 +138,8 @@ static void move_both(struct question *question, int axis, double by)
 
 static void mutate(struct draw *draw, struct question *question)
 {
-    double *number[NUMBERS_MAX];
-    const int count = numbers_of(question, number);
+    double *number[QUESTION_NUMBERS_MAX];
+    const int count = question_numbers(question, number);
     double *x = number[draw_int(draw, 0, count - 1)];
     if (draw_int(draw, 0, 4) == 0) {
         move_both(question, draw_int(draw, 0, question->a.dim - 1), *x);

@@ -1,6 +1,7 @@
 /* The bus beside liblcm, and against raw datagrams. Runs itself in a network of its own (netns);
  * where there is none, it is skipped. */
 #define _GNU_SOURCE
+#include "relay.h"
 #include "bus.h"
 
 #include <arpa/inet.h>
@@ -802,30 +803,6 @@ static void test_child_closes_and_the_parent_goes_on(void **state)
     bus_close(bus);
 }
 
-/* ---- The network ---- */
-
-/* Runs this program again in a network of its own. On output: its exit code. */
-static int run_in_namespace(char *self)
-{
-    enum { SKIPPED = 77 };
-    char netns[4096];
-    int status;
-    const char *slash = strrchr(self, '/');
-    snprintf(netns, sizeof netns, "%.*s../netns", slash ? (int) (slash + 1 - self) : 0, self);
-    const pid_t child = fork();
-    if (child == 0) {
-        execl(netns, netns, self, (char *) NULL);
-        perror(netns);
-        _exit(EXIT_FAILURE);
-    }
-    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status))
-        return EXIT_FAILURE;
-    if (WEXITSTATUS(status) != SKIPPED)
-        return WEXITSTATUS(status);
-    puts("1..1\nok 1 - test_bus # SKIP no network namespace, and no route for multicast");
-    return EXIT_SUCCESS;
-}
-
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -858,8 +835,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_child_closes_and_the_parent_goes_on),
     };
     (void) argc;
-    if (!getenv("FMB_NETNS"))
-        return run_in_namespace(argv[0]);
+    relay_enter(argv);
     port = 20000 + (int) getpid() % 40000;
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
