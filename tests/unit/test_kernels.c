@@ -185,7 +185,8 @@ enum { POOL = 40, ROOM = POOL + KERNEL_LANES };
 
 struct pool {
     int kind, count;
-    bool boxes; /* they are of interest: nothing moves */
+    bool boxes;      /* they are of interest: nothing moves */
+    bool in_contact; /* as in struct kernel_call */
     double duration;
     struct question question[POOL];
     struct ready ready[POOL];
@@ -261,7 +262,7 @@ static void draw_pool(struct draw *draw, pair_function *pair, int kind, double d
 {
     pool->kind = kind;
     pool->duration = duration;
-    pool->boxes = false;
+    pool->boxes = pool->in_contact = false;
     fill_pool(draw, pair, pool);
 }
 
@@ -270,6 +271,7 @@ static void draw_box_pool(struct draw *draw, pair_function *pair, int kind, stru
     pool->kind = kind;
     pool->duration = 1;
     pool->boxes = true;
+    pool->in_contact = false;
     fill_pool(draw, pair, pool);
 }
 
@@ -299,8 +301,8 @@ static void run_part(kernel_function *function, const struct pool *pool, int fir
                      struct left *out)
 {
     const struct fmb_prepared *pairs[ROOM][2];
-    const struct kernel_call run = {pairs,        (size_t) count, pool->duration,
-                                    out->outcome, out->contact,   out->box};
+    const struct kernel_call run = {pairs,        (size_t) count, pool->duration,  out->outcome,
+                                    out->contact, out->box,       pool->in_contact};
     for (int i = 0; i < count + KERNEL_LANES - 1; i++) {
         const bool here = first + i < pool->count && (i < count || first % 2 == 0);
         pairs[i][0] = here ? &pool->frame[first + i][0] : &idle;
@@ -935,6 +937,16 @@ static void expect_same_boxes_for_all(struct draw *draw, struct pool *pool,
     }
 }
 
+/* A hard pair in which some coordinates are 0, of either sign. */
+static void draw_with_zeros(struct draw *draw, const struct cell *cell, struct question *out)
+{
+    double *number[QUESTION_NUMBERS_MAX];
+    pair_draw(draw, cell, out);
+    const int count = question_numbers(out, number);
+    for (int zeros = draw_int(draw, 1, 4); zeros > 0; zeros--)
+        *number[draw_int(draw, 0, count - 1)] = draw_coin(draw) ? 0.0 : -0.0;
+}
+
 static void boxes_hold_the_exact_ones(void **state)
 {
     (void) state;
@@ -950,9 +962,13 @@ static void boxes_hold_the_exact_ones(void **state)
             struct pool pool;
             struct left whole;
             const bool is_hard = n % 4;
-            draw_box_pool(&draw, is_hard ? pair_draw : family_draw_random, kind, &pool);
+            draw_box_pool(&draw,
+                          is_hard ? n % 4 == 1 ? draw_with_zeros : pair_draw : family_draw_random,
+                          kind, &pool);
             run_all(subject[0].set.boxes[kind], &pool, &whole);
             count_boxes(&pool, &whole, is_hard ? &hard : &random);
+            pool.in_contact = n / 4 % 2;
+            run_all(subject[0].set.boxes[kind], &pool, &whole);
             expect_same_boxes_for_all(&draw, &pool, subject, subjects, &whole);
         }
         printf("# %s: %ld overlap, %ld boxes known, at most %.3g out; random %ld, %ld, %.3g\n",
@@ -960,6 +976,57 @@ static void boxes_hold_the_exact_ones(void **state)
                random.worst);
         assert_true(4 * hard.known > hard.met && hard.worst > 0);
         assert_true(random.met > 0 && 10 * (random.met - random.known) <= random.met);
+    }
+}
+
+/* A pair whose box is known only if a vertex at y = 0 counts for the end that it belongs to. */
+static void zeros_of_either_sign_give_the_same_box(void **state)
+{
+    (void) state;
+    static const double number[2][12] = {
+        {-0x1.29b93b0e53728p-1, 0x1.fe7d95bbfcfb4p-2, -0x1.4737ec628e7p-4, 0x1.a3443e8f46888p-1,
+         0x1.930dd59f261bap-1, 0x1.fe96072bfd2cp-2, 0x1.8fa311a71f462p-1, 0x1.df0f151fbe1e2p-1,
+         0x1.91bfb11f237f6p-1, 0x1.1da2802fe7dbcp-1, 0x1.388a2eed76cep-1, 0x1.da93297da8299p-2},
+        {0x1.513d192aa27a4p-2, 0x1.16c6d58e2d8dap-1, 0x1.bc6475cb78c9p-2, -0x1.608aa252c1154p-3,
+         -0x1.1220280624405p-1, 0x1.02ecf2da05dap-2, -0x1.8a29a5fb14534p-2, 0x1.ed2adb8fda55cp-1,
+         0x1.1198b0c22332p-5, -0x1.a51e0deb1036ep-3, 0x1.cc288c4140dffp-3, 0x1.6d84c0da353dcp-4}};
+    struct fmb_placement placement[2] = {
+        {.position = {-0x1.8338b81c2d2c7p-7, -0x1.13b667b4ec9f3p-6, 0x1.598e3a31a555p-11},
+         .orientation = {-0x1.4bbb0f429776p-5, 0, 0x1.47ad60c28f5ap-5, -0x1.671b1bbece364p-1},
+         .orientation_count = 4,
+         .velocity = {0, 0, 0x1.85b64deb0b6c8p-2}},
+        {.position = {-0x1.c82c617d8e30fp-4, 0x1.e1fb9cd19136dp-4, 0x1.b8da6bc98ce92p-3},
+         .orientation = {-0x1.e6651cabccca4p-2, 0, -0x1.1644b5f62c896p-1, 0x1.e8736f3fd0e6ep-1},
+         .orientation_count = 4,
+         .velocity = {0x1.b095393b612a8p-2, 0, 0x1.9de5da7f3bcbcp-1}}};
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    struct fmb_body body[2];
+    double box[2 + KERNEL_LANES][2][FMB_DIM_MAX], first[2][FMB_DIM_MAX];
+    for (int f = 0; f < 2; f++) {
+        struct fmb_frame frame;
+        assert_int_equal(fmb_frame_make(3, FMB_TETRAHEDRON, number[f], 12, &frame), FMB_OK);
+        assert_int_equal(fmb_body_make_frames(&frame, 1, &body[f]), FMB_OK);
+        placement[f].body = &body[f];
+    }
+    for (int s = 0; s < 2 * subjects; s++) {
+        struct fmb_prepared frame[2];
+        const struct fmb_prepared *pairs[KERNEL_LANES][2];
+        bool swapped;
+        placement[0].velocity[1] = s % 2 ? -0.0 : 0.0;
+        for (int f = 0; f < 2; f++)
+            assert_int_equal(fmb_prepare(&placement[f], 0, 1, &frame[f]), FMB_OK);
+        for (int i = 0; i < KERNEL_LANES; i++) {
+            pairs[i][0] = &frame[0];
+            pairs[i][1] = &frame[1];
+        }
+        const struct kernel_call call = {
+            .pairs = pairs, .count = 1, .duration = 1, .boxes = box, .in_contact = true};
+        subject[s / 2].set.boxes[kernel_box_kind(&frame[0], &frame[1], 1, &swapped)](&call);
+        if (s == 0)
+            memcpy(first, box[0], sizeof first);
+        assert_false(isnan(box[0][0][0]));
+        assert_memory_equal(box[0], first, sizeof first);
     }
 }
 
@@ -1070,6 +1137,7 @@ int main(void)
         cmocka_unit_test(times_hold_the_exact_ones),
         cmocka_unit_test(ends_of_the_time_are_covered),
         cmocka_unit_test(boxes_hold_the_exact_ones),
+        cmocka_unit_test(zeros_of_either_sign_give_the_same_box),
         cmocka_unit_test(ends_of_the_range),
         cmocka_unit_test(quick_decisions_need_no_wide_integers),
     };

@@ -257,6 +257,7 @@ INLINE lanes_mask has_bit(lanes_bits summary, unsigned bit)
     return (summary & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * bit) != 0;
 }
 
+/* Zeros become positive: their sign decides to which end a vertex at l = 0 belongs. */
 INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
                           int which, const struct box_places *places, struct box_frame *out)
 {
@@ -269,7 +270,7 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
         const lanes at = twice * places->origin[which][axis];
         out->way[axis] =
             traits.drifts
-                ? (0.5 * twice) * (places->velocity[which][axis] * lanes_of(places->duration))
+                ? (0.5 * twice) * (places->velocity[which][axis] * lanes_of(places->duration)) + 0.0
                 : lanes_of(0);
         out->centre[axis] =
             (traits.simplex[which] ? at : at + shift_of(traits, c, axis)) + out->way[axis];
@@ -286,7 +287,7 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
             const int e = edge_at(traits, which, index);
             const lanes from = e < traits.dim ? lanes_of(0) : c[edge_from(traits, e)][axis];
             const lanes to = e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis];
-            out->edge[e][axis] = e < traits.dim ? to : to - from;
+            out->edge[e][axis] = e < traits.dim ? to + 0.0 : to - from;
             out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
             out->some[e][axis] = (out->edge[e][axis] != 0) | inexact;
         }
