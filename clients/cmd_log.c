@@ -7,13 +7,13 @@
 #include <stdio.h>
 #include <string.h>
 
-struct command {
+struct subcommand {
     const char *name;
     const char *help;
     int (*run)(int argc, char **argv);
 };
 
-static const struct command commands[] = {
+static const struct subcommand commands[] = {
     {"info", "what is in a log, and whether all of it is whole", cmd_log_info},
     {"cut", "copy a part of a log into a new one, or repair one", cmd_log_cut},
     {"scene", "print a query of a log as a scene", cmd_log_scene},

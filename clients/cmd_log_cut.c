@@ -70,7 +70,7 @@ static bool take_body(const struct args *args, void *choice)
 /* Damaged places that are printed; others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
-struct run {
+struct cut_run {
     const struct log_cut_arguments *options;
     struct progress progress;
     int64_t complaints;
@@ -78,7 +78,7 @@ struct run {
 
 static void on_damage(void *user, int log, const struct log_damage *damage)
 {
-    struct run *run = user;
+    struct cut_run *run = user;
     progress_end(&run->progress);
     if (run->complaints++ < COMPLAINTS_MAX)
         complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s; left out",
@@ -87,7 +87,7 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
-    struct run *run = user;
+    struct cut_run *run = user;
     progress_to_of(&run->progress, (uint64_t) bytes, (uint64_t) of);
 }
 
@@ -143,7 +143,7 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_line_end(&json);
 }
 
-static int code_of(const struct run *run, const struct log_cut_counts *counts)
+static int code_of(const struct cut_run *run, const struct log_cut_counts *counts)
 {
     if (run->complaints > COMPLAINTS_MAX)
         complain("and %" PRId64 " more damaged places", run->complaints - COMPLAINTS_MAX);
@@ -156,7 +156,7 @@ static int code_of(const struct run *run, const struct log_cut_counts *counts)
 
 static int run_cut(const struct log_cut_arguments *options)
 {
-    struct run run = {.options = options, .progress = progress_begin_of("bytes", 0)};
+    struct cut_run run = {.options = options, .progress = progress_begin_of("bytes", 0)};
     const struct log_cut_sink sink = {on_damage, on_progress, &run};
     struct log_cut_counts counts;
     const bool good = log_cut(&options->cut, &sink, &counts);

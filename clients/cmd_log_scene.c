@@ -102,7 +102,7 @@ static void keep_bodies(struct answerer *answerer, struct logged_query *query)
 static bool takes_pair(struct answerer *answerer, const struct log_query *query,
                        char detail[QUERY_TEXT_MAX])
 {
-    struct pair_result alone, *result = &alone;
+    struct pair_result single, *result = &single;
     struct pair_job *job = pair_job_create();
     if (!job)
         allocate_failed();

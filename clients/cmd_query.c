@@ -101,7 +101,7 @@ static bool take_method(const struct args *args, void *out)
 
 /* ---- The run --------------------------------------------------------------------------------- */
 
-struct run {
+struct query_run {
     const struct query_options *options;
     const struct args_bus *bus_options;
     const char *input_name;
@@ -113,7 +113,7 @@ struct run {
 
 static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
 {
-    struct run *run = user;
+    struct query_run *run = user;
     struct outcome checked = *outcome;
     char refutation[VERIFY_TEXT_MAX];
     if (run->options->question.certificate && !outcome->error)
@@ -126,7 +126,7 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
 }
 
 /* The bus is opened for the first scene: a bad one is reported without a bus. */
-static void answer_on_bus(struct run *run, const struct scene *scene)
+static void answer_on_bus(struct query_run *run, const struct scene *scene)
 {
     const struct query_options *options = run->options;
     if (!run->bus)
@@ -135,7 +135,7 @@ static void answer_on_bus(struct run *run, const struct scene *scene)
     answers_bus_scene(run->bus, scene, take_outcome, run);
 }
 
-static void answer_scene(struct run *run, const struct scene *scene)
+static void answer_scene(struct query_run *run, const struct scene *scene)
 {
     for (int i = 0; i < 2; i++)
         if (run->report[i])
@@ -151,7 +151,7 @@ static void answer_scene(struct run *run, const struct scene *scene)
             run->report[i]->end(run->report[i], scene);
 }
 
-static int answer_scenes(struct run *run, int fd)
+static int answer_scenes(struct query_run *run, int fd)
 {
     struct json_reader *reader = json_open(fd);
     struct scene scene;
@@ -186,7 +186,7 @@ static int run_query(const struct query_options *options, const struct args_bus 
     struct report_json json = report_json(stdout);
     struct report_text text = report_text(stdout, options->question.box, options->question.gap);
     struct svg *svg = options->svg ? svg_open() : NULL;
-    struct run run = {
+    struct query_run run = {
         .options = options,
         .bus_options = bus,
         .input_name = file ? file : "standard input",

@@ -97,7 +97,7 @@ struct replay_arguments {
 /* Complaints that are printed; the others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
-struct run {
+struct replay_run {
     const struct replay_arguments *options;
     struct progress progress;
     int64_t first_utime;
@@ -106,19 +106,19 @@ struct run {
     struct json_writer json;
 };
 
-static const char *log_name(const struct run *run, int log)
+static const char *log_name(const struct replay_run *run, int log)
 {
     return run->options->replay.log[log];
 }
 
 static void on_found(void *user, const struct located_difference *found)
 {
-    struct run *run = user;
+    struct replay_run *run = user;
     listing_put(run->differences, found);
 }
 
 /* Whether one more may be printed. */
-static bool complains(struct run *run)
+static bool complains(struct replay_run *run)
 {
     progress_end(&run->progress);
     return run->complaints++ < COMPLAINTS_MAX;
@@ -127,7 +127,7 @@ static bool complains(struct run *run)
 static void on_unreadable(void *user, const struct match_place *place, const char *channel,
                           const char *what)
 {
-    struct run *run = user;
+    struct replay_run *run = user;
     if (complains(run))
         complain("%s: event %" PRId64 " (offset %" PRId64 "): %s: %s", log_name(run, place->log),
                  place->number, place->offset, channel, what);
@@ -135,7 +135,7 @@ static void on_unreadable(void *user, const struct match_place *place, const cha
 
 static void on_damage(void *user, int log, const struct log_damage *damage)
 {
-    struct run *run = user;
+    struct replay_run *run = user;
     if (complains(run))
         complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s", log_name(run, log),
                  damage->offset, damage->length, damage->what);
@@ -143,7 +143,7 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 
 static void on_progress(void *user, int64_t bytes)
 {
-    struct run *run = user;
+    struct replay_run *run = user;
     progress_to(&run->progress, (uint64_t) bytes);
 }
 
@@ -159,7 +159,7 @@ static void open_many(void)
     setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-static bool write_junit(const struct run *run, const struct tally *tally)
+static bool write_junit(const struct replay_run *run, const struct tally *tally)
 {
     const struct replay_arguments *options = run->options;
     FILE *file = output_open(options->junit);
@@ -205,7 +205,7 @@ static int code_of(const struct replay_arguments *options, const struct tally *a
 
 static void report_one(void *user, const struct located_difference *found)
 {
-    struct run *run = user;
+    struct replay_run *run = user;
     const bool several = run->options->replay.log_count > 1;
     const char *log = log_name(run, found->place.log);
     char line[REPLAY_LINE_MAX];
@@ -219,13 +219,13 @@ static void report_one(void *user, const struct located_difference *found)
 }
 
 /* Without a bus, or a service on it, counts say nothing. */
-static bool has_counts(const struct run *run, const struct tally *all)
+static bool has_counts(const struct replay_run *run, const struct tally *all)
 {
     return !run->options->live || all->bus.answered > 0 ||
            (all->bus.used && all->bus.end == ANSWER_BUS_NO_END);
 }
 
-static void report_all(struct run *run, const struct tally *all, int code)
+static void report_all(struct replay_run *run, const struct tally *all, int code)
 {
     const int64_t beyond = listing_beyond(run->differences);
     if (run->complaints > COMPLAINTS_MAX)
@@ -297,7 +297,7 @@ static void report_end(const struct tally_bus *bus, const struct answer_bus_opti
 
 /* ---- The run ---- */
 
-static int replay(struct run *run, int64_t size, struct tally *tally)
+static int replay(struct replay_run *run, int64_t size, struct tally *tally)
 {
     const struct replay_arguments *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
@@ -320,7 +320,7 @@ static int replay(struct run *run, int64_t size, struct tally *tally)
 
 static int run_replay(struct replay_arguments *options)
 {
-    struct run run = {.options = options};
+    struct replay_run run = {.options = options};
     open_many();
     int64_t size;
     if (!replay_extent(&options->replay, &size, &run.first_utime))

@@ -63,7 +63,7 @@ static int unknown_command(const char *name)
     return ARGS_USAGE;
 }
 
-/* For options and commands that take nothing behind the first arguments. */
+/* Refuses further arguments of an option or a command that takes none. */
 static int too_many(const char *word)
 {
     complain("unknown argument '%s'", word);

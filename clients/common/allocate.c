@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { ROOM_MIN = 16 };
+enum { CAPACITY_MIN = 16 };
 
 _Noreturn void allocate_failed(void)
 {
@@ -29,17 +29,17 @@ void *allocate_unset(size_t size)
     return or_exit(malloc(size));
 }
 
-void *allocate_room(void *memory, size_t *room, size_t needed, size_t size)
+void *allocate_grow(void *memory, size_t *capacity, size_t needed, size_t size)
 {
-    if (memory && needed <= *room)
+    if (memory && needed <= *capacity)
         return memory;
-    size_t wanted = *room > SIZE_MAX / 2 ? SIZE_MAX : 2 * *room;
+    size_t wanted = *capacity > SIZE_MAX / 2 ? SIZE_MAX : 2 * *capacity;
     if (wanted < needed)
         wanted = needed;
-    if (wanted < ROOM_MIN)
-        wanted = ROOM_MIN;
+    if (wanted < CAPACITY_MIN)
+        wanted = CAPACITY_MIN;
     if (wanted > SIZE_MAX / size)
         allocate_failed();
-    *room = wanted;
+    *capacity = wanted;
     return or_exit(realloc(memory, wanted * size));
 }

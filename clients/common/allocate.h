@@ -4,19 +4,20 @@
 
 #include <stddef.h>
 
-/* On output: count elements of size bytes, all 0; never NULL, even for a count of 0. The caller
- * frees it. */
+/* Returns count elements of size bytes, all 0; not NULL even for a count of 0. The caller frees
+ * them. */
 void *allocate(size_t count, size_t size);
 
-/* One of size bytes, from 1, not cleared. */
+/* Returns size bytes, at least 1, not cleared. The caller frees them. */
 void *allocate_unset(size_t size);
 
-/* On input: memory of allocate() or NULL. On output: the same contents with room for at least
- * `needed` elements; *room tells for how many, and grows at least twofold, so that a list that
- * is filled one by one is copied a few times only. */
-void *allocate_room(void *memory, size_t *room, size_t needed, size_t size);
+/* Returns the same contents with a capacity of at least `needed` elements of size bytes. On input:
+ * memory of allocate() or NULL, and its capacity in *capacity. On output: the new capacity, at
+ * least twice the old one if that was too small, so that a list that grows by one is copied rarely.
+ */
+void *allocate_grow(void *memory, size_t *capacity, size_t needed, size_t size);
 
-/* Where a library has found no memory. */
+/* Reports that a library is out of memory, and exits with status 1. */
 _Noreturn void allocate_failed(void);
 
 #endif

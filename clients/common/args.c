@@ -124,7 +124,7 @@ static bool take_option(struct args *args, const struct args_option *option)
     }
 }
 
-/* What stands behind the options. */
+/* Reads the arguments after the options. */
 static bool take_operands(struct args *args, int count)
 {
     args->operand_count = count;

@@ -92,10 +92,10 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
 {
     const unsigned char *at = (const unsigned char *) text, *end = at + size, *kept = at;
     while (at < end) {
-        char room[16];
+        char buffer[16];
         uint32_t code;
         const size_t length = decode(at, (size_t) (end - at), &code);
-        const char *escaped = escaped_of(form, code, room);
+        const char *escaped = escaped_of(form, code, buffer);
         if (escaped) {
             fwrite(kept, 1, (size_t) (at - kept), out);
             fputs(escaped, out);

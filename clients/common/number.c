@@ -37,7 +37,8 @@ static int first_place(double value)
     return (int) floor(log10(value));
 }
 
-/* Three digits of what the ends differ in; of ends that are the same, three behind the point. */
+/* Returns the number of digits that shows three digits of the difference of the ends; if they are
+ * equal, three digits after the decimal point. */
 static int digits_for(double low, double high)
 {
     double difference = high - low, largest = fmax(fabs(low), fabs(high));
@@ -61,7 +62,7 @@ const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX])
 {
     char plain[NUMBER_TEXT_MAX];
     int length = snprintf(plain, sizeof plain, "%" PRId64, value);
-    int first = plain[0] == '-'; /* no comma behind the sign */
+    int first = plain[0] == '-'; /* no comma after the sign */
     char *out = text;
     for (int i = 0; i < length; i++) {
         if (i > first && (length - i) % 3 == 0)

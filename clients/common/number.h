@@ -15,7 +15,8 @@ const char *number_exact(double value, char text[NUMBER_TEXT_MAX]);
 const char *number_short(double value, char text[NUMBER_TEXT_MAX]);
 
 /* The ends of an interval, low <= high, for people: with six digits, or as many more, up to 17, as
- * it takes to show three digits of their difference, or behind the point where there is none.
+ * it takes to show three digits of their difference, or three after the decimal point if they are
+ * equal.
  * Returns how many. */
 enum { NUMBER_SHORT_DIGITS = 6 };
 int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],

@@ -51,7 +51,7 @@ struct report_columns {
 struct report_columns report_columns(void);
 
 /* A table for people, and counts at its end. Numbers have six digits, or more where the ends of an
- * interval would look alike. Certificates stand below their rows, long ones cut. */
+ * interval would have the same digits. Certificates stand below their rows, long ones cut. */
 struct report_text {
     struct report report;
     FILE *out;

@@ -22,7 +22,7 @@ struct report_columns report_columns(void)
     return columns;
 }
 
-/* A table in large coordinates, as those of maps, has room for them from its first row on. */
+/* A table of large coordinates, such as those of maps, has wide columns from its first row on. */
 static struct report_columns columns_for(const struct scene *scene)
 {
     struct report_columns columns = report_columns();
@@ -33,8 +33,10 @@ static struct report_columns columns_for(const struct scene *scene)
     return columns;
 }
 
-/* The width to print text with. Where it has more digits than usual, so have the rows that follow,
- * as a rule, and they get the room at once; any other number that is too long just sticks out. */
+/* Returns the width to print text with. If it has more digits than usual, the following rows
+ * probably have too: the column becomes wider. Any other number that is too long exceeds its
+ * column.
+ */
 static int widen(int *width, int digits, const char *text)
 {
     int length = (int) strlen(text);
@@ -57,15 +59,15 @@ const char *report_contact_text(const struct fmb_answer *answer, char text[REPOR
     return text;
 }
 
-/* One number where the bounds look alike. */
+/* Prints one number where the bounds have the same digits. */
 static int write_gap(const struct fmb_gap *gap, char text[REPORT_TEXT_MAX])
 {
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_short(gap->bounds[0], low);
     number_short(gap->bounds[1], high);
-    const bool alike = strcmp(low, high) == 0;
-    snprintf(text, REPORT_TEXT_MAX, alike ? "%s" : "%s .. %s", low, high);
-    return alike ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
+    const bool same = strcmp(low, high) == 0;
+    snprintf(text, REPORT_TEXT_MAX, same ? "%s" : "%s .. %s", low, high);
+    return same ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
 }
 
 /* The ends stand in columns, so that boxes below each other can be compared. No blanks at the end

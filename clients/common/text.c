@@ -76,7 +76,7 @@ static ssize_t read_more(struct text *text)
     if (text->begin > 0)
         memmove(text->bytes, text->bytes + text->begin, text->used);
     text->begin = 0;
-    text->bytes = allocate_room(text->bytes, &text->room, text->used + READ_BYTES, 1);
+    text->bytes = allocate_grow(text->bytes, &text->capacity, text->used + READ_BYTES, 1);
     ssize_t count;
     do
         count = read(text->fd, text->bytes + text->used, READ_BYTES);

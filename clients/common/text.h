@@ -23,7 +23,7 @@ enum text_outcome { TEXT_OBJECT, TEXT_END, TEXT_BAD, TEXT_FAILED };
 struct text {
     int fd;
     char *bytes; /* owned */
-    size_t used, room;
+    size_t used, capacity;
     size_t begin;        /* of the current object, or of the white space before it */
     size_t scanned;      /* bytes before this one have been looked at */
     size_t line, column; /* of bytes[begin], from 1; columns are characters of UTF-8 */

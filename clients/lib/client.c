@@ -117,7 +117,7 @@ bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
     return true;
 }
 
-/* Results of other clients are read for the watcher alone. */
+/* Results of other clients are read only for the watcher. */
 static bool is_for(const struct fmb_client *client, const struct query_header *header, bool watched)
 {
     return watched || header->client_id == client->requests.client_id;
@@ -223,7 +223,7 @@ static void on_message(void *user, const struct bus_message *message)
     struct fmb_client *client = user;
     if (client->tap)
         client->tap(client->tap_user, message);
-    if (message->listener >= client->listener_count) /* received for the tap alone */
+    if (message->listener >= client->listener_count) /* received only for the tap */
         return;
     const char *error = channels[client->channel[message->listener]].read(client, message);
     if (!error)

@@ -9,69 +9,69 @@
 #include <string.h>
 
 /* Where a scene is wrong. */
-struct place {
+struct scene_error {
     char *why;
     int status;
 };
 
-__attribute__((format(printf, 3, 4))) static bool refuse(struct place *place, int status,
+__attribute__((format(printf, 3, 4))) static bool refuse(struct scene_error *error, int status,
                                                          const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    const int used = vsnprintf(place->why, FMB_CLIENT_WHY_MAX, format, list);
+    const int used = vsnprintf(error->why, FMB_CLIENT_WHY_MAX, format, list);
     va_end(list);
     if (used >= 0 && used < FMB_CLIENT_WHY_MAX)
-        snprintf(place->why + used, (size_t) (FMB_CLIENT_WHY_MAX - used), ": %s",
+        snprintf(error->why + used, (size_t) (FMB_CLIENT_WHY_MAX - used), ": %s",
                  fmb_status_text(status));
-    place->status = status;
+    error->status = status;
     return false;
 }
 
-static bool check_numbers(struct place *place, size_t placement, const char *field,
+static bool check_numbers(struct scene_error *error, size_t placement, const char *field,
                           const double *numbers, int count)
 {
     for (int i = 0; i < count; i++)
         if (!isfinite(numbers[i]))
-            return refuse(place, FMB_NOT_FINITE, "placements[%zu].%s[%d]", placement, field, i);
+            return refuse(error, FMB_NOT_FINITE, "placements[%zu].%s[%d]", placement, field, i);
     return true;
 }
 
-static bool check_frame(struct place *place, size_t placement, size_t i, int dim,
+static bool check_frame(struct scene_error *error, size_t placement, size_t i, int dim,
                         const struct fmb_client_frame *frame)
 {
     char field[64];
     const int count = geometry_number_count(dim, frame->shape) - dim;
     if (!fmb_shape_name(frame->shape))
-        return refuse(place, FMB_UNKNOWN_SHAPE, "placements[%zu].frames[%zu].shape", placement, i);
+        return refuse(error, FMB_UNKNOWN_SHAPE, "placements[%zu].frames[%zu].shape", placement, i);
     if (count < 0)
-        return refuse(place, FMB_WRONG_DIMENSION, "placements[%zu].frames[%zu].shape", placement,
+        return refuse(error, FMB_WRONG_DIMENSION, "placements[%zu].frames[%zu].shape", placement,
                       i);
     snprintf(field, sizeof field, "frames[%zu].origin", i);
-    if (!check_numbers(place, placement, field, frame->origin, dim))
+    if (!check_numbers(error, placement, field, frame->origin, dim))
         return false;
     snprintf(field, sizeof field, "frames[%zu].components", i);
-    if (!check_numbers(place, placement, field, frame->components, count))
+    if (!check_numbers(error, placement, field, frame->components, count))
         return false;
     for (int k = 0; k < count && frame->shape == FMB_BOX; k++)
         if (frame->components[k] < 0)
-            return refuse(place, FMB_BAD_SIZE, "placements[%zu].%s[%d]", placement, field, k);
+            return refuse(error, FMB_BAD_SIZE, "placements[%zu].%s[%d]", placement, field, k);
     return true;
 }
 
-static bool check_frames(struct place *place, const struct fmb_client_placement *placement,
+static bool check_frames(struct scene_error *error, const struct fmb_client_placement *placement,
                          size_t i)
 {
     if (placement->frame_count == 0)
-        return refuse(place, FMB_NO_FRAMES, "placements[%zu].frame_count", i);
+        return refuse(error, FMB_NO_FRAMES, "placements[%zu].frame_count", i);
     if (placement->frame_count > FMB_CLIENT_BODY_BYTES_MAX)
-        return refuse(place, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
+        return refuse(error, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
     for (size_t k = 0; k < placement->frame_count; k++)
-        if (!check_frame(place, i, k, placement->dim, &placement->frames[k]))
+        if (!check_frame(error, i, k, placement->dim, &placement->frames[k]))
             return false;
     return client_scene_geometry_bytes(placement) <=
                GEOMETRY_NONE_BYTES + FMB_CLIENT_BODY_BYTES_MAX ||
-           refuse(place, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
+           refuse(error, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
 }
 
 /* The rule of fmb_placement_check(): no component but 0 is more than 2^200 times smaller than the
@@ -87,88 +87,89 @@ static bool is_orientation(const double *q, int count)
     return largest > 0;
 }
 
-static bool check_orientation(struct place *place, const struct fmb_client_placement *placement,
-                              size_t i)
+static bool check_orientation(struct scene_error *error,
+                              const struct fmb_client_placement *placement, size_t i)
 {
     const int count = placement->orientation_count;
     for (int k = 0; k < 4 && count == 0; k++)
         if (placement->orientation[k] != 0)
-            return refuse(place, FMB_WRONG_COUNT, "placements[%zu].orientation_count", i);
+            return refuse(error, FMB_WRONG_COUNT, "placements[%zu].orientation_count", i);
     if (count == 0)
         return true;
     if (count != (placement->dim == 2 ? 2 : 4))
-        return refuse(place, FMB_WRONG_COUNT, "placements[%zu].orientation_count", i);
+        return refuse(error, FMB_WRONG_COUNT, "placements[%zu].orientation_count", i);
     return is_orientation(placement->orientation, count) ||
-           refuse(place, FMB_BAD_ORIENTATION, "placements[%zu].orientation", i);
+           refuse(error, FMB_BAD_ORIENTATION, "placements[%zu].orientation", i);
 }
 
-static bool check_placement(struct place *place, const struct fmb_client_scene *scene, size_t i)
+static bool check_placement(struct scene_error *error, const struct fmb_client_scene *scene,
+                            size_t i)
 {
     const struct fmb_client_placement *placement = &scene->placements[i];
     if (!query_id_ok(placement->body_id))
-        return refuse(place, FMB_BAD_ID, "placements[%zu].body_id", i);
+        return refuse(error, FMB_BAD_ID, "placements[%zu].body_id", i);
     if (placement->dim != 2 && placement->dim != 3)
-        return refuse(place, FMB_WRONG_DIMENSION, "placements[%zu].dim", i);
+        return refuse(error, FMB_WRONG_DIMENSION, "placements[%zu].dim", i);
     if (placement->dim != scene->placements[0].dim)
-        return refuse(place, FMB_DIMENSIONS_DIFFER, "placements[%zu].dim", i);
-    return check_frames(place, placement, i) &&
-           check_numbers(place, i, "position", placement->position, placement->dim) &&
-           check_orientation(place, placement, i) &&
-           check_numbers(place, i, "velocity", placement->velocity, placement->dim);
+        return refuse(error, FMB_DIMENSIONS_DIFFER, "placements[%zu].dim", i);
+    return check_frames(error, placement, i) &&
+           check_numbers(error, i, "position", placement->position, placement->dim) &&
+           check_orientation(error, placement, i) &&
+           check_numbers(error, i, "velocity", placement->velocity, placement->dim);
 }
 
-static bool check_placements(struct place *place, const struct fmb_client_scene *scene)
+static bool check_placements(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     if (scene->placement_count > INT_MAX)
-        return refuse(place, FMB_OVER_LIMIT, "placement_count");
+        return refuse(error, FMB_OVER_LIMIT, "placement_count");
     for (size_t i = 0; i < scene->placement_count; i++)
-        if (!check_placement(place, scene, i))
+        if (!check_placement(error, scene, i))
             return false;
     return true;
 }
 
-static bool check_list(struct place *place, const struct fmb_client_scene *scene, const char *name,
-                       const unsigned (*pairs)[2], size_t count)
+static bool check_list(struct scene_error *error, const struct fmb_client_scene *scene,
+                       const char *name, const unsigned (*pairs)[2], size_t count)
 {
     for (size_t i = 0; i < count; i++)
         if (pairs[i][0] >= scene->placement_count || pairs[i][1] >= scene->placement_count ||
             pairs[i][0] == pairs[i][1])
-            return refuse(place, FMB_BAD_PAIR, "%s[%zu]", name, i);
+            return refuse(error, FMB_BAD_PAIR, "%s[%zu]", name, i);
     return true;
 }
 
-static bool check_pairs(struct place *place, const struct fmb_client_scene *scene)
+static bool check_pairs(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     const int which = (int) scene->which;
     if (which < FMB_CLIENT_LISTED || which > FMB_CLIENT_ACROSS)
-        return refuse(place, FMB_UNKNOWN_WANT, "which");
+        return refuse(error, FMB_UNKNOWN_WANT, "which");
     if (which == FMB_CLIENT_ACROSS && scene->split > scene->placement_count)
-        return refuse(place, FMB_BAD_PAIR, "split");
+        return refuse(error, FMB_BAD_PAIR, "split");
     if (which == FMB_CLIENT_LISTED && scene->ignored_count > 0)
-        return refuse(place, FMB_BAD_PAIR, "ignored_count");
-    return check_list(place, scene, "ignored", scene->ignored, scene->ignored_count) &&
+        return refuse(error, FMB_BAD_PAIR, "ignored_count");
+    return check_list(error, scene, "ignored", scene->ignored, scene->ignored_count) &&
            (which != FMB_CLIENT_LISTED ||
-            check_list(place, scene, "pairs", scene->pairs, scene->pair_count));
+            check_list(error, scene, "pairs", scene->pairs, scene->pair_count));
 }
 
-static bool check_rest(struct place *place, const struct fmb_client_scene *scene)
+static bool check_rest(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     const unsigned wants = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_CERTIFICATE |
                            FMB_CLIENT_WANT_TIMES | FMB_CLIENT_WANT_GAP;
     if (!(scene->duration >= 0 && isfinite(scene->duration)))
-        return refuse(place, FMB_BAD_DURATION, "duration");
+        return refuse(error, FMB_BAD_DURATION, "duration");
     if (!(scene->margin >= 0 && isfinite(scene->margin)))
-        return refuse(place, FMB_BAD_MARGIN, "margin");
-    return (scene->want & ~wants) == 0 || refuse(place, FMB_UNKNOWN_WANT, "want");
+        return refuse(error, FMB_BAD_MARGIN, "margin");
+    return (scene->want & ~wants) == 0 || refuse(error, FMB_UNKNOWN_WANT, "want");
 }
 
 int client_scene_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY_MAX])
 {
-    struct place place = {.why = why};
+    struct scene_error error = {.why = why};
     why[0] = '\0';
-    if (check_rest(&place, scene) && check_placements(&place, scene))
-        check_pairs(&place, scene);
-    return place.status;
+    if (check_rest(&error, scene) && check_placements(&error, scene))
+        check_pairs(&error, scene);
+    return error.status;
 }
 
 size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement)

@@ -71,7 +71,7 @@ struct fmb_client;
 /* A field that is 0 or NULL has its default. */
 struct fmb_client_options {
     /* Of the bus: udpm://[GROUP:PORT][?ttl=N&recv_buf_size=N]. NULL: LCM_DEFAULT_URL; if that is
-     * not set, this host alone. */
+     * not set, this host only. */
     const char *url;
     const char *prefix; /* of the service's channels; NULL: none */
     /* Longest time before a query is sent again, seconds; 0: 0.5. The first repeat comes after
@@ -153,7 +153,7 @@ struct fmb_client_scene {
     /* Finite, not negative. Not 0: contacts and near pairs have their gaps, whether wanted or not.
      * A pair is near if it is separated and its lower bound is at most the margin. */
     double margin;
-    unsigned want; /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts alone */
+    unsigned want; /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts only */
     int method;    /* fmb_method.number; 0: the default, never wrong and the fastest */
     double within; /* time limit for the whole scene, seconds; 0: none but timeout and tries */
 };

@@ -44,7 +44,7 @@ bool log_choice_add_channel(struct log_choice *choice, const char *text,
     }
     channel.text = allocate(channel.length + 1, 1);
     memcpy(channel.text, text, channel.length);
-    choice->channel = allocate_room(choice->channel, &choice->channel_capacity,
+    choice->channel = allocate_grow(choice->channel, &choice->channel_capacity,
                                     choice->channel_count + 1, sizeof *choice->channel);
     choice->channel[choice->channel_count++] = channel;
     return true;
@@ -52,7 +52,7 @@ bool log_choice_add_channel(struct log_choice *choice, const char *text,
 
 void log_choice_add_body(struct log_choice *choice, int64_t id)
 {
-    choice->body = allocate_room(choice->body, &choice->body_capacity, choice->body_count + 1,
+    choice->body = allocate_grow(choice->body, &choice->body_capacity, choice->body_count + 1,
                                  sizeof *choice->body);
     choice->body[choice->body_count++] = id;
 }

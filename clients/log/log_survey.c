@@ -30,7 +30,7 @@ static void choose(struct survey *survey, int64_t event)
     struct log_survey *out = survey->out;
     const size_t byte = (size_t) (event / 8), old = out->chosen_size;
     if (byte >= old) {
-        out->chosen = allocate_room(out->chosen, &out->chosen_size, byte + 1, 1);
+        out->chosen = allocate_grow(out->chosen, &out->chosen_size, byte + 1, 1);
         memset(out->chosen + old, 0, out->chosen_size - old);
     }
     out->chosen[byte] |= (unsigned char) (1 << event % 8);
@@ -96,7 +96,7 @@ static void want(struct log_survey *out, const struct handle *handle)
     if (out->wanted_count == out->wanted_capacity) {
         sort_wanted(out);
         if (2 * out->wanted_count >= out->wanted_capacity)
-            out->wanted = allocate_room(out->wanted, &out->wanted_capacity,
+            out->wanted = allocate_grow(out->wanted, &out->wanted_capacity,
                                         out->wanted_capacity + 1, sizeof *out->wanted);
     }
     out->wanted[out->wanted_count++] = *handle;

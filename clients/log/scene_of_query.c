@@ -123,7 +123,7 @@ static void add(struct list *list, size_t a, size_t b)
     if (scene_ignores(scene, (struct scene_pair){a, b}))
         return;
     scene->pair =
-        allocate_room(scene->pair, &list->capacity, scene->pair_count + 1, sizeof *scene->pair);
+        allocate_grow(scene->pair, &list->capacity, scene->pair_count + 1, sizeof *scene->pair);
     scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
 }
 

@@ -118,7 +118,7 @@ static void add_pair(struct mesh_search *search, const unsigned face[2], enum fm
     struct mesh_intersection *intersection = search->intersection;
     if (verdict == FMB_SEPARATED)
         return;
-    intersection->pair = allocate_room(intersection->pair, &intersection->capacity,
+    intersection->pair = allocate_grow(intersection->pair, &intersection->capacity,
                                        intersection->count + 1, sizeof *intersection->pair);
     intersection->pair[intersection->count++] =
         (struct mesh_pair){face[0], face[1], verdict, {contact[0], contact[1]}};

@@ -100,7 +100,7 @@ bool mesh_add_vertex(struct mesh_build *build, const double position[3])
     struct mesh *mesh = build->mesh;
     if (!has_count(build->source, mesh->vertex_count, "vertices"))
         return false;
-    mesh->vertex = allocate_room(mesh->vertex, &build->vertex_capacity, mesh->vertex_count + 1,
+    mesh->vertex = allocate_grow(mesh->vertex, &build->vertex_capacity, mesh->vertex_count + 1,
                                  sizeof *mesh->vertex);
     memcpy(mesh->vertex[mesh->vertex_count++], position, sizeof *mesh->vertex);
     return true;
@@ -112,7 +112,7 @@ bool mesh_add_face(struct mesh_build *build, const unsigned corner[3])
     if (!has_count(build->source, mesh->face_count, "faces"))
         return false;
     mesh->face =
-        allocate_room(mesh->face, &build->face_capacity, mesh->face_count + 1, sizeof *mesh->face);
+        allocate_grow(mesh->face, &build->face_capacity, mesh->face_count + 1, sizeof *mesh->face);
     memcpy(mesh->face[mesh->face_count++], corner, sizeof *mesh->face);
     return true;
 }

@@ -62,7 +62,7 @@ static size_t log_index(struct page *page, const char *path)
     for (size_t i = page->log_count; i > 0; i--)
         if (strcmp(page->log[i - 1], path) == 0)
             return i - 1;
-    page->log = allocate_room(page->log, &page->capacity, page->log_count + 1, sizeof *page->log);
+    page->log = allocate_grow(page->log, &page->capacity, page->log_count + 1, sizeof *page->log);
     page->log[page->log_count] = copy_text(path);
     return page->log_count++;
 }

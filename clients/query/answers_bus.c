@@ -17,7 +17,7 @@ struct answers_bus {
 };
 
 /* A scene being answered. */
-struct run {
+struct bus_scene {
     const struct scene *scene;
     struct scene_cursor given; /* pairs so far */
     bool certificate;          /* wanted */
@@ -89,18 +89,18 @@ static struct fmb_client_placement placement_of(const struct scene_body *body,
 }
 
 /* The bodies of a scene for the library. */
-struct placed {
+struct client_bodies {
     struct fmb_client_placement *placement; /* owned, [body] */
     struct fmb_client_frame *frame;         /* owned, of all bodies */
 };
 
-static struct placed placed_of(const struct scene *scene)
+static struct client_bodies client_bodies_of(const struct scene *scene)
 {
     size_t count = 0;
     for (size_t i = 0; i < scene->body_count; i++)
         count += scene->body[i].body.frame_count;
-    const struct placed out = {allocate(scene->body_count, sizeof *out.placement),
-                               allocate(count, sizeof *out.frame)};
+    const struct client_bodies out = {allocate(scene->body_count, sizeof *out.placement),
+                                      allocate(count, sizeof *out.frame)};
     struct fmb_client_frame *frame = out.frame;
     for (size_t i = 0; i < scene->body_count; i++) {
         const struct scene_body *body = &scene->body[i];
@@ -111,7 +111,7 @@ static struct placed placed_of(const struct scene *scene)
     return out;
 }
 
-/* Of all pairs, the library answers contacts and near ones alone: where each has a gap, they are
+/* Of all pairs, the library answers only contacts and near ones: if each pair gets a gap, all are
  * listed. */
 static unsigned (*list_pairs(const struct scene *scene))[2]
 {
@@ -145,13 +145,13 @@ static unsigned want_of(const struct answers_question *question)
 /* ---- The answers ---- */
 
 /* With all pairs, those that the library leaves out are separated. */
-static void give_separated(const struct run *run, struct scene_pair pair)
+static void give_separated(const struct bus_scene *run, struct scene_pair pair)
 {
     const struct outcome outcome = {.pair = pair, .answer.verdict = FMB_SEPARATED};
     run->sink(run->user, run->scene, &outcome);
 }
 
-static const char *error_of(const struct run *run, const struct fmb_client_answer *answer)
+static const char *error_of(const struct bus_scene *run, const struct fmb_client_answer *answer)
 {
     if (answer->status != FMB_OK)
         return answer->text;
@@ -162,7 +162,7 @@ static const char *error_of(const struct run *run, const struct fmb_client_answe
 
 static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
-    struct run *run = user;
+    struct bus_scene *run = user;
     struct outcome outcome = {.error = error_of(run, answer)};
     while (scene_next_pair(run->scene, &run->given, &outcome.pair) &&
            (outcome.pair.a != answer->a || outcome.pair.b != answer->b))
@@ -175,7 +175,7 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
 }
 
 /* The remaining pairs. error: why no query was sent; NULL if one was. */
-static void give_remaining(struct run *run, const char *error)
+static void give_remaining(struct bus_scene *run, const char *error)
 {
     struct outcome outcome = {.error = error};
     while (scene_next_pair(run->scene, &run->given, &outcome.pair))
@@ -203,16 +203,16 @@ static void advise(struct answers_bus *answers)
              *prefix ? " --prefix " : "", prefix);
 }
 
-static void query(struct answers_bus *answers, struct run *run)
+static void query(struct answers_bus *answers, struct bus_scene *run)
 {
     const struct answers_question *question = &answers->question;
     const struct scene *scene = run->scene;
-    const struct placed placed = placed_of(scene);
+    const struct client_bodies bodies = client_bodies_of(scene);
     const bool listed = !scene->all_pairs || question->gap;
     unsigned(*pair)[2] = listed ? list_pairs(scene) : NULL;
     unsigned(*ignored)[2] = list_ignored(scene);
     const struct fmb_client_scene queried = {
-        .placements = placed.placement,
+        .placements = bodies.placement,
         .placement_count = scene->body_count,
         .which = listed ? FMB_CLIENT_LISTED : FMB_CLIENT_ALL,
         .pairs = (const unsigned(*)[2]) pair,
@@ -226,8 +226,8 @@ static void query(struct answers_bus *answers, struct run *run)
     };
     const int status = fmb_client_query(answers->client, &queried, take_answer, run);
     give_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
-    free(placed.placement);
-    free(placed.frame);
+    free(bodies.placement);
+    free(bodies.frame);
     free(pair);
     free(ignored);
     advise(answers);
@@ -236,7 +236,7 @@ static void query(struct answers_bus *answers, struct run *run)
 void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user)
 {
-    struct run run = {
+    struct bus_scene run = {
         .scene = scene, .certificate = answers->question.certificate, .sink = sink, .user = user};
     if (answers->client)
         query(answers, &run);

@@ -7,26 +7,27 @@
 #include <string.h>
 
 /* A text that grows to what certificates need. */
-struct text {
+struct certificate_text {
     char *at; /* owned */
-    size_t room;
+    size_t capacity;
 };
 
 /* The certificate of a decided pair. Most need a few dozen characters. NULL: *status tells why. */
 static const char *certificate(const struct fmb_placement *a, const struct fmb_placement *b,
-                               double duration, struct text *text, enum fmb_status *status)
+                               double duration, struct certificate_text *text,
+                               enum fmb_status *status)
 {
     size_t length = 255;
     do {
-        text->at = allocate_room(text->at, &text->room, length + 1, 1);
-        *status = fmb_certificate(a, b, duration, text->at, text->room, &length);
+        text->at = allocate_grow(text->at, &text->capacity, length + 1, 1);
+        *status = fmb_certificate(a, b, duration, text->at, text->capacity, &length);
     } while (*status == FMB_OVER_LIMIT);
     return *status == FMB_OK ? text->at : NULL;
 }
 
 /* Decides one pair. Returns the error, NULL: none. */
 static const char *decide(const struct answers_question *question, const struct scene *scene,
-                          struct outcome *out, struct text *text)
+                          struct outcome *out, struct certificate_text *text)
 {
     const struct fmb_method *method = question->method ? question->method : fmb_method_default();
     const bool gap = question->gap || scene->margin > 0;
@@ -48,7 +49,7 @@ void answers_local(const struct answers_question *question, const struct scene *
 {
     struct scene_cursor cursor = {0};
     struct outcome outcome;
-    struct text text = {.at = NULL};
+    struct certificate_text text = {.at = NULL};
     while (scene_next_pair(scene, &cursor, &outcome.pair)) {
         outcome.certificate = NULL;
         outcome.error = decide(question, scene, &outcome, &text);

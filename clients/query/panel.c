@@ -50,7 +50,7 @@ void panel_take_outcome(struct panel *panel, const struct outcome *outcome, size
         return;
     }
     panel->box =
-        allocate_room(panel->box, &panel->box_room, panel->box_count + 1, sizeof *panel->box);
+        allocate_grow(panel->box, &panel->box_capacity, panel->box_count + 1, sizeof *panel->box);
     panel->box[panel->box_count++] = (struct panel_box){outcome->pair, *answer};
 }
 

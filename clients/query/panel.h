@@ -16,7 +16,7 @@ struct panel {
     size_t body_count, bodies_left_out;
     struct scene_body *body;   /* owned */
     enum fmb_verdict *verdict; /* owned; [body], the worst of its pairs; 0: none */
-    size_t box_count, box_room, boxes_left_out;
+    size_t box_count, box_capacity, boxes_left_out;
     struct panel_box *box;               /* owned */
     uint64_t count[FMB_OVERLAPPING + 1]; /* of pairs, [verdict]; [0]: not decided */
     struct view_bounds bounds;

@@ -65,7 +65,7 @@ struct report *svg_report(struct svg *svg)
 
 /* Pixels. */
 enum { GAP = 14, PANEL_WIDTH = 440, PANEL_HEIGHT = 380, LEGEND_HEIGHT = 34 };
-enum { ONLY_WIDTH = 820, ONLY_HEIGHT = 620 }; /* of a panel that is alone */
+enum { ONLY_WIDTH = 820, ONLY_HEIGHT = 620 }; /* of a single panel */
 
 struct sheet {
     int columns, rows;

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* Draws into an SVG group. bounds: what is to be seen, the panel's own or more. */
+/* Draws into an SVG group. bounds: the visible region, the panel's own or a larger one. */
 void svg_panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
                     FILE *out);
 

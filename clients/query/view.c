@@ -212,7 +212,7 @@ static void add_floor(const struct view *view, double low[2], double high[2])
     }
 }
 
-/* The part of the paper's plane, in unit coordinates, that is to be seen. */
+/* Returns the visible part of the paper's plane, in unit coordinates. */
 static struct paper projected_bounds(const struct view *view, const struct view_bounds *bounds)
 {
     double quarter[FMB_DIM_MAX], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};

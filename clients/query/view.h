@@ -2,7 +2,7 @@
  *
  * 2D: as it lies, y up. 3D: an axonometric projection, seen from the front, right and above, z up.
  * Both keep the same scale along all axes. Numbers of any size: coordinates are first brought to
- * [-1, 1] around the middle of what is to be seen, with halves rather than sums, which could be
+ * [-1, 1] around the middle of the visible region, with halves rather than sums, which could be
  * infinite; what lies further out, infinite ends of boxes too, is cut there. */
 #ifndef VIEW_H
 #define VIEW_H
@@ -34,7 +34,7 @@ struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double 
 
 /* ---- The view ---- */
 
-/* What is to be seen: in the world, and of its projection, right and up on the paper. */
+/* The visible region: in the world, and of its projection, right and up on the paper. */
 struct view_bounds {
     double low[FMB_DIM_MAX], high[FMB_DIM_MAX];
     double paper_low[2], paper_high[2]; /* a quarter of it, so that no sum is infinite */

@@ -172,7 +172,7 @@ static bool use_body(struct record_bodies *bodies, const struct handle *handle)
 static void append_handle(struct handle **list, size_t *count, size_t *capacity,
                           const struct handle *handle)
 {
-    *list = allocate_room(*list, capacity, *count + 1, sizeof **list);
+    *list = allocate_grow(*list, capacity, *count + 1, sizeof **list);
     (*list)[(*count)++] = *handle;
 }
 

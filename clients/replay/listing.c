@@ -89,7 +89,7 @@ void listing_put(struct listing *list, const struct located_difference *located)
         return;
     if (list->count == 2 * list->limit)
         shorten(list);
-    list->entry = allocate_room(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
+    list->entry = allocate_grow(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
     set(&list->entry[list->count++], located, number);
 }
 

@@ -18,10 +18,10 @@ enum {
     STEP_FRAMES = 64      /* no further body is added after so many frames */
 };
 
-enum scene_stage { IDLE, CHECKING, FINDING, ADDING, PREPARED, DECIDING, COMPLETE };
+enum answer_stage { IDLE, CHECKING, FINDING, ADDING, PREPARED, DECIDING, COMPLETE };
 
 struct scene_job {
-    enum scene_stage stage;
+    enum answer_stage stage;
     struct answerer *answerer; /* of the query in progress */
     int32_t next;              /* the next placement in FINDING and ADDING */
     int64_t frames;            /* of the placements before next in FINDING, then of all */
@@ -284,7 +284,7 @@ static struct check_context context_of(struct scene_job *job)
 }
 
 /* The stage CHECKING. No bodies are in use yet, so a refused query has none to release. */
-static enum scene_stage check(struct scene_job *job)
+static enum answer_stage check(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
     struct check_context context = context_of(job);
@@ -302,7 +302,7 @@ static enum scene_stage check(struct scene_job *job)
 
 /* ---- Bodies ---- */
 
-static enum scene_stage complete(struct scene_job *job)
+static enum answer_stage complete(struct scene_job *job)
 {
     release(job);
     return COMPLETE;
@@ -318,7 +318,7 @@ static int32_t prefetch_placements(const struct scene_job *job)
     return end;
 }
 
-static enum scene_stage refuse_unknown(struct scene_job *job)
+static enum answer_stage refuse_unknown(struct scene_job *job)
 {
     struct check_context context = context_of(job);
     context.part = "placements";
@@ -350,7 +350,7 @@ static bool find_one(struct scene_job *job, int32_t i)
 
 /* Finds the bodies of all placements that name them by handle. This ends before any body is added,
  * so that a query with a handle that is not held adds nothing to the cache. */
-static enum scene_stage find(struct scene_job *job)
+static enum answer_stage find(struct scene_job *job)
 {
     const int32_t end = prefetch_placements(job);
     for (; job->next < end; job->next++)
@@ -367,7 +367,7 @@ static enum scene_stage find(struct scene_job *job)
 }
 
 /* Adds the bodies of placements that have frames, and fills in the engine's placements. */
-static enum scene_stage add(struct scene_job *job)
+static enum answer_stage add(struct scene_job *job)
 {
     const int32_t end = prefetch_placements(job);
     struct scene_result *result = &job->result;
@@ -388,7 +388,7 @@ static enum scene_stage add(struct scene_job *job)
 /* ---- Pairs ---- */
 
 /* Begins the engine's scene, and sets the fields of the result that do not depend on the pairs. */
-static enum scene_stage begin_pairs(struct scene_job *job)
+static enum answer_stage begin_pairs(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
     struct scene_result *result = &job->result;
@@ -493,14 +493,14 @@ static size_t append_all(struct scene_job *job, const struct fmb_scene_answers *
     return k;
 }
 
-static enum scene_stage complete_at(struct scene_job *job, unsigned long long end_pair)
+static enum answer_stage complete_at(struct scene_job *job, unsigned long long end_pair)
 {
     job->result.end_pair = (int32_t) end_pair;
     return complete(job);
 }
 
 /* Decides the next pairs. Complete after the last pair, or when the result is full. */
-static enum scene_stage decide(struct scene_job *job)
+static enum answer_stage decide(struct scene_job *job)
 {
     struct fmb_scene_answers answers;
     const bool done = fmb_scene_step(job->state, &answers);

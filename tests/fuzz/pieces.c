@@ -30,7 +30,7 @@ static ssize_t read_piece(int fd, void *out, size_t room)
 }
 
 /* And with room for so much only, so that a sanitizer sees what is read or written behind it. */
-#define allocate_room(memory, room, needed, size) \
-    allocate_room(memory, room, (needed) -READ_BYTES + piece_max, size)
+#define allocate_grow(memory, capacity, needed, size) \
+    allocate_grow(memory, capacity, (needed) -READ_BYTES + piece_max, size)
 #define read read_piece
 #include "text.c"

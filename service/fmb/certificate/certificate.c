@@ -250,7 +250,7 @@ static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdi
 
 /* ---- The text ---- */
 
-struct writer {
+struct certificate_writer {
     char *text;
     size_t size;
     size_t length; /* of all that was written, whether there was room or not */
@@ -258,27 +258,27 @@ struct writer {
 };
 
 /* Where snprintf is to write next, and how much. */
-static char *room(struct writer *writer)
+static char *room(struct certificate_writer *writer)
 {
     return writer->length < writer->size ? writer->text + writer->length : writer->nowhere;
 }
 
-static size_t room_size(const struct writer *writer)
+static size_t room_size(const struct certificate_writer *writer)
 {
     return writer->length < writer->size ? writer->size - writer->length : 0;
 }
 
-static void write_text(struct writer *writer, const char *text)
+static void write_text(struct certificate_writer *writer, const char *text)
 {
     writer->length += (size_t) snprintf(room(writer), room_size(writer), "%s", text);
 }
 
-static void write_number(struct writer *writer, const mpq_t number)
+static void write_number(struct certificate_writer *writer, const mpq_t number)
 {
     writer->length += (size_t) gmp_snprintf(room(writer), room_size(writer), "%Qd", number);
 }
 
-static void write_normal(struct writer *writer, struct exact_pair *exact, int dim,
+static void write_normal(struct certificate_writer *writer, struct exact_pair *exact, int dim,
                          enum fmb_verdict verdict)
 {
     char normal[NORMAL_TEXT_SIZE];
@@ -287,7 +287,7 @@ static void write_normal(struct writer *writer, struct exact_pair *exact, int di
     write_text(writer, normal);
 }
 
-static void write_point(struct writer *writer, struct exact_pair *exact,
+static void write_point(struct certificate_writer *writer, struct exact_pair *exact,
                         const struct frame_pair *pair, bool touching)
 {
     struct certificate_point point;
@@ -303,7 +303,7 @@ static void write_point(struct writer *writer, struct exact_pair *exact,
     certificate_point_clear(&point);
 }
 
-static void write_certificate(struct writer *writer, const struct frame_pair *pair)
+static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
     exact_pair_init(&exact, pair);
@@ -328,7 +328,7 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length)
 {
-    struct writer writer = {.text = text, .size = size};
+    struct certificate_writer writer = {.text = text, .size = size};
     enum fmb_status status = check(a, b, duration);
     if (status == FMB_OK) {
         const struct frame_pair pair = {

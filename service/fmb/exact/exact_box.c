@@ -55,7 +55,7 @@ struct clipper {
     mpz_t at[2][FRAME_SLABS_MAX][EXACT_VERTICES_MAX];
 };
 
-struct box_search {
+struct point_search {
     struct exact_pair *pair;
     point_visit visit;
     void *context;
@@ -71,7 +71,7 @@ struct box_search {
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */
-static void box_search_each(struct box_search *search, void (*call)(mpz_ptr))
+static void point_search_each(struct point_search *search, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
         call(search->part[f].num);
@@ -135,7 +135,7 @@ static void add_vertex(const struct exact_pair *pair, int sign, int f, int v,
 /* Visits vertex v of frame f plus s / den of the way to vertex w, at the time tau / den. In units,
  * it is origin + sum weight_i component_i / den + tau displacement / den: products with the numbers
  * of the pair alone, which are short (exact.c). */
-static void visit_point(struct box_search *search, int f, int v, int w, const mpz_t s,
+static void visit_point(struct point_search *search, int f, int v, int w, const mpz_t s,
                         const mpz_t tau, const mpz_t den)
 {
     struct exact_frame *frame = &search->pair->frame[f];
@@ -167,7 +167,7 @@ static void visit_point(struct box_search *search, int f, int v, int w, const mp
 /* Seen from frame f, the origin of the other frame is at the offset (f = 0) or at minus that. */
 static bool keep_slab(void *context, struct slab *slab)
 {
-    struct box_search *search = context;
+    struct point_search *search = context;
     const int f = search->clipping, other = 1 - f;
     struct clipper *clipper = &search->clipper[f];
     assert(clipper->slabs < FRAME_SLABS_MAX);
@@ -187,14 +187,14 @@ static bool keep_slab(void *context, struct slab *slab)
     return true;
 }
 
-static void set_clippers(struct box_search *search)
+static void set_clippers(struct point_search *search)
 {
     for (search->clipping = 0; search->clipping < 2; search->clipping++)
         slabs_walk(search->pair, search->clipping ? SLABS_OF_B : SLABS_OF_A, keep_slab, search);
 }
 
 /* Moves an end of the part of a segment to where it crosses a bound, if that is further inside. */
-static void cut(struct box_search *search, int end, const mpz_t f0, const mpz_t f1,
+static void cut(struct point_search *search, int end, const mpz_t f0, const mpz_t f1,
                 const mpz_t bound)
 {
     struct ratio *at = &search->crossing;
@@ -211,7 +211,7 @@ static void cut(struct box_search *search, int end, const mpz_t f0, const mpz_t 
 
 /* Sets search->part of the segment on which normal . w goes from f0 to f1 for each slab; returns
  * how many ends it has: 0 if nothing is left of it, 1 if that is a point. */
-static int clip(struct box_search *search, const struct clipper *clipper, int v, int end_v, int w,
+static int clip(struct point_search *search, const struct clipper *clipper, int v, int end_v, int w,
                 int end_w)
 {
     for (int end = 0; end < 2; end++) {
@@ -236,7 +236,7 @@ static int clip(struct box_search *search, const struct clipper *clipper, int v,
 
 /* Clips the segment of frame f that goes from vertex v at one end of the window to vertex w at the
  * same or the other end to the other frame, and visits the ends of what is left. */
-static void visit_segment(struct box_search *search, int f, int v, int end_v, int w, int end_w)
+static void visit_segment(struct point_search *search, int f, int v, int end_v, int w, int end_w)
 {
     const int ends = clip(search, &search->clipper[1 - f], v, end_v, w, end_w);
     for (int end = 0; end < ends; end++) {
@@ -250,7 +250,7 @@ static void visit_segment(struct box_search *search, int f, int v, int end_v, in
     }
 }
 
-static void visit_edges(struct box_search *search, int f, int end)
+static void visit_edges(struct point_search *search, int f, int end)
 {
     for (int v = 0; v < search->vertices[f]; v++)
         for (int w = v + 1; w < search->vertices[f]; w++)
@@ -258,7 +258,7 @@ static void visit_edges(struct box_search *search, int f, int end)
                 visit_segment(search, f, v, end, w, end);
 }
 
-static void visit_paths(struct box_search *search, int f)
+static void visit_paths(struct point_search *search, int f)
 {
     for (int v = 0; v < search->vertices[f]; v++)
         visit_segment(search, f, v, 0, v, 1);
@@ -346,7 +346,7 @@ static int end_of_edge(const struct exact_frame *frame, int e, int v)
 }
 
 /* Visits the crossings of all edges in one direction of A with all in one of B. */
-static void visit_parallel_crossings(struct box_search *search, struct crossing *crossing, int e,
+static void visit_parallel_crossings(struct point_search *search, struct crossing *crossing, int e,
                                      int f)
 {
     struct exact_pair *pair = search->pair;
@@ -363,7 +363,7 @@ static void visit_parallel_crossings(struct box_search *search, struct crossing 
     }
 }
 
-static void visit_crossings(struct box_search *search)
+static void visit_crossings(struct point_search *search)
 {
     struct exact_pair *pair = search->pair;
     struct crossing crossing;
@@ -377,12 +377,12 @@ static void visit_crossings(struct box_search *search)
 
 void points_walk(struct exact_pair *pair, point_visit visit, void *context)
 {
-    struct box_search search = {.pair = pair,
-                                .visit = visit,
-                                .context = context,
-                                .ends = pair->moving ? 2 : 1,
-                                .scratch = pair->scratch};
-    box_search_each(&search, mpz_init);
+    struct point_search search = {.pair = pair,
+                                  .visit = visit,
+                                  .context = context,
+                                  .ends = pair->moving ? 2 : 1,
+                                  .scratch = pair->scratch};
+    point_search_each(&search, mpz_init);
     for (int f = 0; f < 2; f++)
         search.vertices[f] = vertex_count(&pair->frame[f]);
     set_clippers(&search);
@@ -394,7 +394,7 @@ void points_walk(struct exact_pair *pair, point_visit visit, void *context)
     }
     if (pair->moving)
         visit_crossings(&search);
-    box_search_each(&search, mpz_clear);
+    point_search_each(&search, mpz_clear);
 }
 
 /* ---- The box ---- */
