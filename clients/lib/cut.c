@@ -94,8 +94,8 @@ int32_t cut_ignored(const struct cut *cut, const struct part *part, int32_t max,
 
 /* ---- Blocks ---- */
 
-/* Which methods answer ALL and ACROSS; of others, pairs of a part would take too long, or the
- * service refuses. */
+/* Returns whether the parts of the scene may be ALL or ACROSS. Only some methods are fast enough
+ * for that, or are accepted by the service; for others pairs are listed. */
 static bool uses_blocks(const struct fmb_client_scene *scene)
 {
     const bool certified = scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_DEFAULT ||

@@ -8,7 +8,7 @@
  * Queries under way are limited in number and bytes, so that the receive buffers of both ends can
  * hold them.
  *
- * The engine distinguishes kinds of messages; handlers process their contents. */
+ * This module distinguishes kinds of messages; handlers process their contents. */
 #ifndef REQUEST_H
 #define REQUEST_H
 
@@ -50,9 +50,9 @@ struct request {
     int64_t give_up_at; /* time to give it up at the latest */
     int64_t interval;   /* from sent_at to deadline */
     int refusals;       /* times that the service was busy */
-    bool repeated;
-    bool pausing;  /* the deadline ends a pause after a refusal */
-    size_t charge; /* bytes that it takes of a receive buffer */
+    bool repeated;      /* sent more than once */
+    bool pausing;       /* the deadline ends a pause after a refusal */
+    size_t charge;      /* bytes that it takes of a receive buffer */
     size_t size;
     unsigned char query[QUERY_BYTES_MAX];
 };

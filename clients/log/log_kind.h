@@ -30,12 +30,13 @@ struct log_channels log_channels(const char *prefix);
 
 enum log_kind log_kind_of(const struct log_channels *channels, const struct log_event *event);
 
-/* Whether it is a query or a result of a pair or a scene. */
+/* Returns whether it is a query of a pair or a scene. */
 static inline bool log_kind_is_query(enum log_kind kind)
 {
     return kind == LOG_PAIR_QUERY || kind == LOG_SCENE_QUERY;
 }
 
+/* Returns whether it is a result of a pair or a scene. */
 static inline bool log_kind_is_result(enum log_kind kind)
 {
     return kind == LOG_PAIR_RESULT || kind == LOG_SCENE_RESULT;

@@ -1,4 +1,4 @@
-/* Counts what GMP is asked to do by the code under test: the link wraps its functions (Makefile).
+/* Counts what GMP is asked to do by the code under test: the link wraps its functions (tests.mk).
  */
 #ifndef GMP_WORK_H
 #define GMP_WORK_H

@@ -26,7 +26,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-/* slabs.c once more, with fused operations, and with a bound that is wrong (Makefile). */
+/* slabs.c once more, with fused operations, and with a bound that is wrong (tests.mk). */
 int fused_slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
 void fused_slabs_refine(const struct slabs_pair *pair, struct slab_normal normal,
                         struct inequality out[2]);

@@ -1,6 +1,6 @@
 /* The bounds on the errors of boxes, attacked: a search for pairs whose boxes, as doubles have them
  * without any bound, miss most of the exact box, relative to the bound. The kernels are there three
- * times: as they are, with bounds that are too small, and with none (Makefile).
+ * times: as they are, with bounds that are too small, and with none (tests.mk).
  *
  * The search climbs: it changes a number at a time, and keeps what makes the error of one end
  * larger relative to its bound. */

@@ -27,7 +27,7 @@
 #include "slab_kernel.h"
 #include "solids.h"
 
-/* many.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (Makefile). */
+/* many.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (tests.mk). */
 extern kernel_function *const kernel_wide[KERNEL_KINDS],
     *const kernel_exact_wide[KERNEL_KINDS], *const kernel_times_wide[KERNEL_KINDS],
                                                 *const kernel_boxes_wide[KERNEL_KINDS],

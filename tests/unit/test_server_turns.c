@@ -34,7 +34,7 @@ static void expect_all_ok(int count)
         assert_int_equal(service.result[i].status, FMB_OK);
 }
 
-/* So many nanoseconds of work, and more work than that waits. */
+/* Lets the service work for ns. In: more work than that is waiting. */
 static void work_for(int64_t ns)
 {
     const int64_t end_ns = service.now_ns + ns;

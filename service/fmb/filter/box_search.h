@@ -1,8 +1,10 @@
 /* The box of the intersection of a pair in contact, at rest or moving, of LANES pairs at once.
  *
- *   In     struct pair_lanes; struct box_places: the numbers of the frames as prepared, the
- * duration Out    the box, world coordinates, [lower, upper][axis], and the lanes in which it is
- * good: surely containing the exact box, and each end within the limit of fmb.h
+ * In: struct pair_lanes; struct box_places, which has the numbers of the frames as prepared, and
+ * the duration.
+ *
+ * Out: the box in world coordinates, [lower, upper][axis], and the lanes in which it is good: it
+ * contains the exact box, and each end is within the limit of fmb.h.
  *
  * Steps (search_box()):
  *   1. begin_box()       frames about the middle of the window, tolerance and slack

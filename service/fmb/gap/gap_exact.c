@@ -1,9 +1,10 @@
 /* Gaps in integers: for pairs whose enclosure in doubles is too wide, and for those that doubles
- * cannot represent.
+ * cannot represent. P and f: gap.h.
  *
  * Method. All lengths of the pair are rounded to multiples of one unit, such that the largest has
- * LENGTH_BITS bits. Everything after that is exact for the rounded pair, whose gap is within
- * UNITS_ERROR of the true one: so the numbers stay short whatever the exponents of the pair are.
+ * LENGTH_BITS bits, or one more. Everything after that is exact for the rounded pair, whose gap is
+ * within UNITS_ERROR of the true one: so the numbers stay short whatever the exponents of the pair
+ * are.
  *
  * Separated: the algorithm of Gilbert, Johnson and Keerthi, on the vertices of P. It holds a
  * simplex of at most 4 of them, the point of P next to the origin being that of the simplex so far,
@@ -18,9 +19,10 @@
  * all edges are parallel, f is 0 for any direction across.
  *
  * Accuracy. A coordinate of an origin, a component or a displacement v T is off by less than one
- * unit; one of a point of P by less than 2 + 6 + 2 = 10, and the point by less than 18. A point of
- * a frame is off by less than 5 units on an axis, 9 in all. Integers of at most 620 bits are taken
- * as doubles, cut off: a relative error below 2^-52; quotients and roots of them are within 2^-49.
+ * unit; one of a point of P by less than 2 + 6 + 2 = 10, and the point by less than 10 sqrt(3)
+ * < 18. A point of a frame is off by less than 5 units on an axis, and by less than 5 sqrt(3) < 9
+ * in all. Integers of at most 620 bits are taken as doubles, cut off: a relative error below 2^-52;
+ * quotients and roots of them are within 2^-49.
  */
 #include "gap.h"
 
@@ -50,9 +52,9 @@ struct solver {
         *corner[CORNERS + 1];     /* the first are those of the simplex */
     mpz_t weight[CORNERS], total; /* of the point next to the origin, over total */
     mpz_t normal[3];              /* a multiple of that point */
-    bool zero;                    /* it is the origin */
+    bool zero;                    /* the point is the origin */
     mpz_t edge[3][3], other[3];
-    mpz_t best[3]; /* the normal of the slab with the greatest f */
+    mpz_t best[3]; /* the normal with the greatest f */
     mpz_t low, high, t[SCRATCH];
 };
 
@@ -121,7 +123,7 @@ static void round_pair(struct exact_pair *pair, mpz_t largest)
     pair->unit -= shift;
     if (mpz_sgn(largest) == 0)
         pair->unit =
-            -1200; /* nothing is anywhere but at 0: errors in units are less than any double */
+            -1200; /* all lengths are 0: so small a unit makes errors less than any double */
     mpz_set_ui(pair->scale, 1);
     struct exact_frame *a = &pair->frame[0], *b = &pair->frame[1];
     for (int axis = 0; axis < 3; axis++) {
@@ -502,7 +504,7 @@ static double set_witness(struct solver *solver, int f, double out[FMB_DIM_MAX])
     return error;
 }
 
-/* Sets the time; returns a bound on the distance that the frames move in as long as it is off. */
+/* Sets the time. Returns a bound on how far the frames move in the time by which it is off. */
 static double set_time(struct solver *solver, double duration, struct fmb_gap *out)
 {
     const struct dyadic window = dyadic_of(duration);
@@ -524,8 +526,8 @@ static double set_time(struct solver *solver, double duration, struct fmb_gap *o
     return above(solver, way * fmin(share, 1));
 }
 
-/* The distance from the witness points is at most that of the true points of P, twice the rounding
- * of the witness points, and how far the frames are from where they are at the time given. */
+/* Sets the upper bound: the sum of the distance of the true points of P, twice the rounding of each
+ * witness point, and how far the frames move in the time by which out->time is off. */
 static void set_upper(struct solver *solver, double distance, double duration, struct fmb_gap *out)
 {
     double error = set_time(solver, duration, out);
