@@ -4,10 +4,10 @@
  *   Out    struct limbs_pair, from which limbs_slab.c computes slabs; false if it needs more than
  *          LIMBS_MAX limbs
  *
- * Steps (limbs_prepare()): quaternions to integers (limbs_rotation.c); the number of limbs, bits_of();
- * offset and drift, add_place(); frames, set_frame(); the matrices between the coordinate systems,
- * set_same_turn() or set_turns(). limbs_never_round() is separate: it tells whether doubles are
- * exact.
+ * Steps (limbs_prepare()): quaternions to integers (limbs_rotation.c); the number of limbs,
+ * bits_of(); offset and drift, add_place(); frames, set_frame(); the matrices between the
+ * coordinate systems, set_same_turn() or set_turns(). limbs_never_round() is separate: it tells
+ * whether doubles are exact.
  *
  * Coordinates. With q scaled to integers, n R(q) is a matrix of integers, n = |q|^2. Components and
  * origins stay in the coordinates of their frame; positions and displacements stay in those of the
