@@ -8,7 +8,7 @@
 /* Exit codes of every command. */
 enum { ARGS_ANSWERED = 0, ARGS_FAILED = 1, ARGS_USAGE = 2 };
 
-/* Which bus, which service. */
+/* The bus and the service that a command queries. */
 struct args_bus {
     const char *url;    /* NULL: LCM_DEFAULT_URL, or this host */
     const char *prefix; /* "" for none */
@@ -69,7 +69,7 @@ bool args_error(const struct args *args, const char *format, ...)
 /* For take: reads optarg as an integer from low to high. Returns false after an error. */
 bool args_integer(const struct args *args, long low, long high, long *out);
 
-/* The URL of a bus, for messages. */
+/* Returns the URL of a bus for messages; valid as long as the options. */
 const char *args_bus_name(const struct args_bus *bus);
 
 #endif

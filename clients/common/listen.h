@@ -1,4 +1,4 @@
-/* Receives what a service publishes, until it is enough, a signal comes, or a time limit. */
+/* Receives what a service publishes, until that is enough, a signal arrives or time is up. */
 #ifndef LISTEN_H
 #define LISTEN_H
 
@@ -18,7 +18,7 @@ void listen_close(struct listener *listener);
 
 enum listen_end { LISTEN_ENOUGH, LISTEN_SIGNAL, LISTEN_TIMEOUT, LISTEN_FAILED };
 
-/* Waits until *enough, which the callbacks set. timeout: seconds; negative: no limit. */
+/* Receives until a callback of the watcher sets *enough. timeout: seconds; negative: no limit. */
 enum listen_end listen_until(struct listener *listener, const bool *enough, double timeout);
 
 #endif

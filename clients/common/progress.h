@@ -1,4 +1,4 @@
-/* How far a long work has come, on a terminal only. */
+/* A line that shows the progress of long work, on a terminal only. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 
@@ -13,18 +13,19 @@ struct progress {
     int64_t started_at, shown_at; /* clock_ns() */
 };
 
-/* Shows nothing unless standard error is a terminal and standard output is not: there the answers
- * themselves show how far it is. */
+/* Begins a count of pairs. Shows nothing unless standard error is a terminal and standard output is
+ * not: on a terminal the answers themselves show the progress. */
 struct progress progress_begin(uint64_t total);
 
-/* Of other things: "bytes". Standard output may be a terminal too: nothing is printed before the
- * end. unit must live as long as the progress. */
+/* Begins a count of other things, such as "bytes", where nothing is printed before the end:
+ * standard output may be a terminal too. unit must live as long as the progress. */
 struct progress progress_begin_of(const char *unit, uint64_t total);
 
-/* As progress_to(), with the total, which may be known late. */
+/* Like progress_to(), and sets the total, which may be known only now. */
 void progress_to_of(struct progress *progress, uint64_t done, uint64_t total);
 
-/* One more is done; or so many are now. Shows after the first second, then a few times a second. */
+/* Adds one to what is done, or sets it. The line is shown after the first second, then a few times
+ * a second. */
 void progress_step(struct progress *progress);
 void progress_to(struct progress *progress, uint64_t done);
 

@@ -1,4 +1,4 @@
-/* Where the answers go: one of these for each way to show them. */
+/* Prints answers: one struct report for each form. */
 #ifndef REPORT_H
 #define REPORT_H
 
@@ -15,7 +15,7 @@ struct outcome {
     const char *certificate;  /* of the verdict; NULL where there is none, or none was wanted */
 };
 
-/* For each scene: begin, each pair in the order asked, end. */
+/* Called for each scene: begin, pair for each pair in the order of the query, end. */
 struct report {
     void (*begin)(struct report *report, const struct scene *scene);
     void (*pair)(struct report *report, const struct scene *scene, const struct outcome *outcome);
@@ -40,14 +40,14 @@ struct report_json {
 
 struct report_json report_json(FILE *out);
 
-/* How wide the columns of a table have become: a row with numbers of more digits than usual makes
- * them wider for the rows below it. */
+/* The widths of the columns of a table. A row with numbers of more digits than usual widens them
+ * for the rows below it. */
 struct report_columns {
     int contact, gap;
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
 };
 
-/* For numbers of up to six digits. */
+/* Returns the widths for numbers of up to six digits. */
 struct report_columns report_columns(void);
 
 /* A table for people, and counts at its end. Numbers have six digits, or more where the ends of an
@@ -75,7 +75,7 @@ void report_answer_json(struct json_writer *json, int dim, const struct outcome 
 void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns);
 
-/* "0.25 to 0.5 s"; text is returned. */
+/* Writes an interval, such as "0.25 to 0.5 s", into text, and returns text. */
 enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
 const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
 

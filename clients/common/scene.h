@@ -22,14 +22,14 @@ struct scene_body {
     int orientation_count; /* 0, 4 (2D: 2) */
 };
 
-/* A copy, for scene_body_clear(). */
+/* Returns a copy; the caller frees it with scene_body_clear(). */
 struct scene_body scene_body_copy(const struct scene_body *body);
 void scene_body_clear(struct scene_body *body);
 
-/* The body as the engine takes it. It points into the scene's body. */
+/* Returns the placement of a body for the engine. It points into the body. */
 struct fmb_placement scene_placement(const struct scene_body *body);
 
-/* The name, or else the id, written into text. */
+/* Returns the name of a body; if it has none, its id, written into text. */
 enum { SCENE_LABEL_MAX = 24 };
 const char *scene_label(const struct scene_body *body, char text[SCENE_LABEL_MAX]);
 
@@ -73,7 +73,7 @@ struct scene_cursor {
 bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor,
                      struct scene_pair *out);
 
-/* From ids to indices in O(log n), after O(n log n). */
+/* Finds indices by ids in O(log n). Making it takes O(n log n). */
 struct scene_ids {
     size_t count;
     struct scene_id *sorted; /* owned */
@@ -85,8 +85,8 @@ void scene_ids_clear(struct scene_ids *ids);
 /* On output: true and *index, or false: no body has this id. */
 bool scene_ids_find(const struct scene_ids *ids, int64_t id, size_t *index);
 
-/* On output: true and the indices of two bodies with the same id, *first before *second, of
- * which *second is the smallest there is; or false: the ids are unique. */
+/* Returns false if all ids are unique. Otherwise returns true, and the indices *first < *second of
+ * two bodies with the same id, *second being the smallest possible. */
 bool scene_ids_repeated(const struct scene_ids *ids, size_t *first, size_t *second);
 
 #endif
