@@ -1,4 +1,4 @@
-/* One scene of a picture (svg.h): what is kept of it until it is drawn (draw.h). */
+/* One scene of a picture (svg.h): the data that are kept until it is drawn (svg_panel.h). */
 #ifndef PANEL_H
 #define PANEL_H
 
@@ -26,7 +26,7 @@ void panel_take_scene(struct panel *panel, const struct scene *scene, size_t bod
 void panel_take_outcome(struct panel *panel, const struct outcome *outcome, size_t boxes_max);
 void panel_clear(struct panel *panel);
 
-/* Do both hold the same bodies, by id, so that they may be steps of time? */
+/* Returns whether both have the same bodies, by id, and so may be steps of time. */
 bool panel_is_step_of(const struct panel *panel, const struct panel *first);
 
 #endif

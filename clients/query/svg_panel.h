@@ -1,4 +1,4 @@
-/* One scene of a picture (svg.h): how it is drawn. */
+/* Draws one scene of a picture (svg.h). */
 #ifndef SVG_PANEL_H
 #define SVG_PANEL_H
 
@@ -10,7 +10,7 @@
 void svg_panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
                     FILE *out);
 
-/* The fill of a face as "#rrggbb". light from 0 to 1. */
+/* Returns the colour of a face as "#rrggbb", written into out. light: 0 to 1. */
 const char *svg_panel_colour(enum fmb_verdict verdict, double light, char out[8]);
 
 #endif

@@ -1,4 +1,4 @@
-/* A verdict that comes with a certificate need not be trusted, wherever it comes from. */
+/* Checks certificates, so that a verdict need not be trusted. */
 #ifndef VERIFY_H
 #define VERIFY_H
 
@@ -6,9 +6,9 @@
 
 enum { VERIFY_TEXT_MAX = 256 };
 
-/* On input: an outcome with a certificate; whose: "the", or "the service's".
- * On output: the outcome as it was, where its certificate shows its verdict from the numbers of the
- * scene; else without an answer, and with an error, which stands in text. */
+/* Checks the certificate of an outcome against the numbers of the scene. If it does not hold, the
+ * outcome loses its answer, and gets an error, written into text. whose: "the" or "the service's",
+ * for that error. */
 void verify_outcome(const struct scene *scene, const char *whose, struct outcome *outcome,
                     char text[VERIFY_TEXT_MAX]);
 

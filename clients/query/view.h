@@ -1,6 +1,6 @@
-/* From the world to the paper.
+/* Projects the world to the paper.
  *
- * 2D: as it lies, y up. 3D: an axonometric projection, seen from the front, right and above, z up.
+ * 2D: the plane, y up. 3D: an axonometric projection, seen from the front, right and above, z up.
  * Both keep the same scale along all axes. Numbers of any size: coordinates are first brought to
  * [-1, 1] around the middle of the visible region, with halves rather than sums, which could be
  * infinite; what lies further out, infinite ends of boxes too, is cut there. */
@@ -9,7 +9,7 @@
 
 #include "scene.h"
 
-/* ---- The corners and faces of a frame. Doubles as they come: nothing is decided here ---- */
+/* ---- The corners and faces of a frame, in doubles: for pictures only ---- */
 
 enum { OUTLINE_CORNERS_MAX = 8, OUTLINE_FACES_MAX = 6, OUTLINE_FACE_CORNERS_MAX = 4 };
 
@@ -26,10 +26,10 @@ struct outline {
     const struct outline_face *face;
 };
 
-/* Frame `index` of a body at this time, in seconds. */
+/* Returns frame `index` of a body at a time, in seconds. */
 struct outline outline_make(const struct scene_body *body, unsigned index, double time);
 
-/* The same of an axis-aligned box. */
+/* Returns an axis-aligned box. */
 struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double high[FMB_DIM_MAX]);
 
 /* ---- The view ---- */
@@ -56,7 +56,7 @@ struct view {
     struct paper paper;
 };
 
-/* A view of the bounds that fills the paper. */
+/* Returns the view in which the bounds fill the paper. */
 struct view view_make(int dim, const struct view_bounds *bounds, struct paper paper);
 
 /* Pixels, y down; depth grows towards the viewer, 0 in 2D. All finite. */
@@ -64,13 +64,14 @@ struct point {
     double x, y, depth;
 };
 
-/* A point of the paper. */
+/* Returns the projection of a point of the world. */
 struct point view_point(const struct view *view, const double world[FMB_DIM_MAX]);
 
-/* The same of numbers in [-1, 1]; without being cut. */
+/* The same for a point in [-1, 1], which is not cut. */
 struct point view_unit_point(const struct view *view, const double unit[FMB_DIM_MAX]);
 
-/* How much a face with corners a, b, c looks up to the light: 0 to 1. */
+/* Returns the cosine, 0 to 1, of the angle between the light and the normal of a face with the
+ * corners a, b, c; 0.5 if it has no area. */
 double view_light(const struct view *view, const double a[FMB_DIM_MAX], const double b[FMB_DIM_MAX],
                   const double c[FMB_DIM_MAX]);
 

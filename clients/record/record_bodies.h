@@ -1,5 +1,4 @@
-/* The bodies of a recording: makes sure that each of its files defines the handles that its queries
- * name.
+/* The bodies of a recording. Each of its files has to define the handles that its queries name.
  *
  * Bodies come from queries that carry them whole, and from definitions. Definitions are requested
  * from the service: of all bodies at the start, later of unknown handles in answered queries. The

@@ -1,4 +1,4 @@
-/* What is shown of a recording: a line while it runs, on a terminal, and the report at its end. */
+/* Shows a recording: a line on a terminal while it runs, and a report at its end. */
 #ifndef RECORD_REPORT_H
 #define RECORD_REPORT_H
 
@@ -12,7 +12,7 @@ struct record_line {
     int64_t at_ns, events, bytes; /* of the last display: time, and counts then */
 };
 
-/* A display that is only enabled if standard error is a terminal. */
+/* Returns a line that is shown only if standard error is a terminal. */
 struct record_line record_line_begin(int64_t now_ns);
 
 /* Updates the line, at most a few times a second, and never blocks on the terminal: so it may be
