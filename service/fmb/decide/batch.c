@@ -6,12 +6,12 @@
  * Steps for each block (decide_block()):
  *
  *   1. set_block()      looks up the frames and sorts the pairs by kind (kernel.h)
- *   2. run_kind()       runs the filter on the pairs of one kind, several at a time, then its
- *                       second pass on those that are unsure (run_exactly())
+ *   2. filter_kind()    runs the filter on the pairs of one kind, several at a time, then its
+ *                       second pass on those that are unsure (second_pass())
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
  *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
  *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
- *   5. answer_odd()     decides or refuses the pairs that the filter does not take
+ *   5. put_unfiltered() decides or refuses the pairs that the filter does not take
  *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
  *      put_gap()        others
  *
@@ -39,7 +39,7 @@ enum { SINGLE_MAX = 32 };
 struct batch_job {
     const struct fmb_batch *batch;
     double farthest;               /* the largest gap of interest */
-    struct kernel_set run;         /* of the instruction set */
+    struct kernel_set kernels;     /* of the instruction set */
     unsigned char in_order[BLOCK]; /* 0, 1, 2, ... */
 };
 
@@ -264,7 +264,7 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
     block->kinds[1] = kind[0] < KERNEL_KINDS ? kind[0] + 1 : kind[0];
 }
 
-/* ---- Answers ---- */
+/* ---- Results ---- */
 
 static void put_no_box(const struct fmb_batch *batch, size_t i)
 {
@@ -364,7 +364,7 @@ static void put_contacts(struct batch_block *block, enum kernel_kind kind, size_
 
 /* The pairs of a block that are in contact, and their boxes. */
 struct contacts {
-    size_t count, of[BLOCK]; /* their numbers in the block */
+    size_t count, index[BLOCK]; /* numbers in the sorted block */
     const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
     double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX];
 };
@@ -392,17 +392,17 @@ static void put_box_single(struct batch_block *block, size_t k)
 static void put_boxes(struct batch_block *block, kernel_function *boxes, bool in_contact,
                       struct contacts *contacts)
 {
-    const struct kernel_call run = {.pairs = contacts->pair,
-                                    .count = contacts->count,
-                                    .duration = block->batch->duration,
-                                    .boxes = contacts->box,
-                                    .in_contact = in_contact};
+    const struct kernel_call call = {.pairs = contacts->pair,
+                                     .count = contacts->count,
+                                     .duration = block->batch->duration,
+                                     .boxes = contacts->box,
+                                     .in_contact = in_contact};
     for (size_t n = contacts->count; n < contacts->count + KERNEL_LANES; n++)
         contacts->pair[n][0] = contacts->pair[n][1] = &missing;
     if (contacts->count > 0)
-        boxes(&run);
+        boxes(&call);
     for (size_t n = 0; n < contacts->count; n++) {
-        const size_t k = contacts->of[n];
+        const size_t k = contacts->index[n];
         if (isnan(contacts->box[n][0][0]))
             put_box_single(block, k);
         else
@@ -438,17 +438,17 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
             kind = own;
             contacts.pair[contacts.count][0] = pair[swapped];
             contacts.pair[contacts.count][1] = pair[!swapped];
-            contacts.of[contacts.count++] = k;
+            contacts.index[contacts.count++] = k;
         }
-        put_boxes(block, job->run.boxes[kind], !unsure, &contacts);
+        put_boxes(block, job->kernels.boxes[kind], !unsure, &contacts);
     }
 }
 
 /* Runs the second pass on the pairs of a kind that the first leaves unsure, KERNEL_LANES at a time.
  * Two faces that may have parallel planes stay unsure. */
-static void run_exactly(kernel_function *exact, bool faces, const struct kernel_call *first)
+static void second_pass(kernel_function *exact, bool faces, const struct kernel_call *first)
 {
-    unsigned char of[BLOCK], outcome[BLOCK + KERNEL_LANES];
+    unsigned char index[BLOCK], outcome[BLOCK + KERNEL_LANES];
     const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
     size_t count = 0;
     if (!memchr(first->outcomes, SLABS_UNSURE, first->count))
@@ -458,30 +458,31 @@ static void run_exactly(kernel_function *exact, bool faces, const struct kernel_
             continue;
         pair[count][0] = first->pairs[k][0];
         pair[count][1] = first->pairs[k][1];
-        of[count++] = (unsigned char) k;
+        index[count++] = (unsigned char) k;
     }
     for (size_t n = count; n < count + KERNEL_LANES; n++)
         pair[n][0] = pair[n][1] = &missing;
-    const struct kernel_call run = {
+    const struct kernel_call call = {
         .pairs = pair, .count = count, .duration = first->duration, .outcomes = outcome};
-    exact(&run);
+    exact(&call);
     for (size_t n = 0; n < count; n++)
         if (!faces || outcome[n] != SLABS_TOUCHING)
-            first->outcomes[of[n]] = outcome[n];
+            first->outcomes[index[n]] = outcome[n];
 }
 
-static void run_kind(struct batch_block *block, const struct batch_job *job, enum kernel_kind kind)
+static void filter_kind(struct batch_block *block, const struct batch_job *job,
+                        enum kernel_kind kind)
 {
     const struct fmb_batch *batch = job->batch;
     const size_t start = block->start[kind], end = block->start[kind + 1];
-    const struct kernel_call run = {.pairs = &block->pair[start],
-                                    .count = end - start,
-                                    .duration = batch->duration,
-                                    .outcomes = &block->outcome[start],
-                                    .contacts = &block->contact[start]};
+    const struct kernel_call call = {.pairs = &block->pair[start],
+                                     .count = end - start,
+                                     .duration = batch->duration,
+                                     .outcomes = &block->outcome[start],
+                                     .contacts = &block->contact[start]};
     const bool times = batch->contacts && kind & KERNEL_DRIFTS;
-    (times ? job->run.times : job->run.verdicts)[kind](&run);
-    run_exactly(job->run.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &run);
+    (times ? job->kernels.times : job->kernels.verdicts)[kind](&call);
+    second_pass(job->kernels.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &call);
     if (batch->contacts)
         put_contacts(block, kind, start, end);
     else
@@ -500,7 +501,7 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
                                                                             : FMB_NOT_FINITE;
 }
 
-static void answer_odd(struct batch_block *block)
+static void put_unfiltered(struct batch_block *block)
 {
     for (size_t k = block->start[KERNEL_UNUSABLE]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
@@ -530,19 +531,19 @@ struct enlarged {
 
 /* Marks the pairs that the filter separates although the error of b is enlarged by the largest gap
  * of interest: they are farther apart than that (slabs.h). */
-static void run_enlarged(struct batch_block *block, const struct batch_job *job,
-                         enum kernel_kind kind, struct enlarged *enlarged)
+static void filter_enlarged(struct batch_block *block, const struct batch_job *job,
+                            enum kernel_kind kind, struct enlarged *enlarged)
 {
     unsigned char outcome[ENLARGED + KERNEL_LANES];
-    const struct kernel_call run = {.pairs = enlarged->pair,
-                                    .count = enlarged->count,
-                                    .duration = job->batch->duration,
-                                    .outcomes = outcome};
+    const struct kernel_call call = {.pairs = enlarged->pair,
+                                     .count = enlarged->count,
+                                     .duration = job->batch->duration,
+                                     .outcomes = outcome};
     if (enlarged->count == 0)
         return;
     for (size_t n = enlarged->count; n < enlarged->count + KERNEL_LANES; n++)
         enlarged->pair[n][0] = enlarged->pair[n][1] = &missing;
-    job->run.verdicts[kind](&run);
+    job->kernels.verdicts[kind](&call);
     for (size_t n = 0; n < enlarged->count; n++)
         block->far[enlarged->slot[n]] = outcome[n] == SLABS_SEPARATED;
     enlarged->count = 0;
@@ -565,9 +566,9 @@ static void find_far(struct batch_block *block, const struct batch_job *job, enu
         enlarged.pair[enlarged.count][0] = a;
         enlarged.pair[enlarged.count++][1] = larger;
         if (enlarged.count == ENLARGED)
-            run_enlarged(block, job, kind, &enlarged);
+            filter_enlarged(block, job, kind, &enlarged);
     }
-    run_enlarged(block, job, kind, &enlarged);
+    filter_enlarged(block, job, kind, &enlarged);
 }
 
 static void put_gap(const struct batch_job *job, const struct batch_block *block, size_t slot)
@@ -598,8 +599,8 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
     set_block(job, first, &block);
     for (int kind = block.kinds[0]; kind < block.kinds[1]; kind++)
         if (block.start[kind] < block.start[kind + 1])
-            run_kind(&block, job, (enum kernel_kind) kind);
-    answer_odd(&block);
+            filter_kind(&block, job, (enum kernel_kind) kind);
+    put_unfiltered(&block);
     if (!job->batch->gaps)
         return block.status;
     memset(block.far, 0, sizeof block.far);
@@ -640,7 +641,8 @@ enum fmb_status batch_decide(const struct fmb_batch *batch, double farthest)
     if (!prepared_is_duration(batch->duration))
         return FMB_BAD_DURATION;
     struct batch_job job = {.batch = batch, .farthest = farthest};
-    if (!kernel_set_of((int) batch->instructions, &job.run) || (batch->threads > 1 && !has_threads))
+    if (!kernel_set_of((int) batch->instructions, &job.kernels) ||
+        (batch->threads > 1 && !has_threads))
         return FMB_NOT_SUPPORTED;
     for (int i = 0; i < BLOCK; i++)
         job.in_order[i] = (unsigned char) i;

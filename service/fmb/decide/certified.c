@@ -178,8 +178,8 @@ static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
 }
 
 /* Runs the kernel of its kind on this single pair. */
-static enum slabs_outcome run_kernel(const struct certified *certified,
-                                     kernel_single_function *const *functions, double *out)
+static enum slabs_outcome call_kernel(const struct certified *certified,
+                                      kernel_single_function *const *functions, double *out)
 {
     return functions[certified->kind](certified->frame[certified->swapped],
                                       certified->frame[!certified->swapped],
@@ -212,7 +212,7 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
     if (certified->kind >= KERNEL_KINDS)
         return verdict_exact(certified);
-    const enum slabs_outcome outcome = run_kernel(certified, kernel_exact_single(), NULL);
+    const enum slabs_outcome outcome = call_kernel(certified, kernel_exact_single(), NULL);
     const bool touching = outcome == SLABS_TOUCHING;
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
@@ -228,7 +228,7 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
     kernel_single_function *const *functions =
         contact ? kernel_times_single() : kernel_verdicts_single();
     certified->path = CERTIFIED_FILTER;
-    const enum slabs_outcome outcome = run_kernel(certified, functions, contact);
+    const enum slabs_outcome outcome = call_kernel(certified, functions, contact);
     certified->by_filter = outcome != SLABS_UNSURE;
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
 }
@@ -307,13 +307,13 @@ bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, d
     double boxes[KERNEL_LANES][2][FMB_DIM_MAX];
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
-    const struct kernel_call run = {
+    const struct kernel_call call = {
         .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes, .in_contact = in_contact};
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
         pairs[lane][0] = swapped ? b : a;
         pairs[lane][1] = swapped ? a : b;
     }
-    kernel_boxes_single()[kind](&run);
+    kernel_boxes_single()[kind](&call);
     memcpy(box, boxes[0], sizeof boxes[0]);
     return !isnan(boxes[0][0][0]);
 }

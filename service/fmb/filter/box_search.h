@@ -9,8 +9,9 @@
  * Steps (search_box()):
  *   1. begin_box()       frames about the middle of the window, tolerance and slack
  *   2. set_extents()     the vertices y = 0 and y = e_k: the extents of the frames
- *   3. add_plane_rays()  in 2D, or add_space_rays() in 3D: vertices on the normals of the faces,
- *                        each line in add_ray(), each vertex in add_wall() or add_drift_vertex()
+ *   3. add_plane_normals() in 2D, or add_space_normals() in 3D: vertices on the normals of the
+ *                        faces; each line in add_normal_line(), each vertex in
+ *                        add_edge_vertex() or add_drift_vertex()
  *   4. add_crossings()   vertices of an edge of A, one of B, and the drift
  *   5. a second pass of 2 to 4 where a vertex that is not certain was left out
  *   6. outer and inner ends from the least bounds; cut_to_extent() cuts the box to both frames
@@ -18,10 +19,11 @@
  * The method, and the proof of both ends, follow.
  *
  * Method. With h_A(y) = max { y . a : a in A }, the support function, and the frames about the
- * middle of the window, displaced by -way to way, every y bounds coordinate k of the intersection:
+ * middle of the window, displaced by -travel to travel, every y bounds coordinate k of the
+ * intersection:
  *
- *     x_k = y . x + (e_k - y) . x  <=  c(y) = h_A(y) + h_B(e_k - y) + |way_B[k] - y . H|,
- *     H = way_B - way_A
+ *     x_k = y . x + (e_k - y) . x  <=  c(y) = h_A(y) + h_B(e_k - y) + |travel_B[k] - y . H|,
+ *     H = travel_B - travel_A
  *
  * since x is a point of A and of B at the same time. Where the frames meet, the least of these
  * bounds is the end of the box (duality of linear programs; this is the article's elimination of
@@ -29,7 +31,7 @@
  *
  *     y . a = 0              for the edges a of A
  *     (e_k - y) . b = 0      for the edges b of B
- *     way_B[k] - y . H = 0   where the pair drifts.
+ *     travel_B[k] - y . H = 0   where the pair drifts.
  *
  * If the normals of the walls at hand span the space, c has its least value in a vertex: a point in
  * which three walls with independent normals meet (in 2D two). Two walls of A meet in the line of a
@@ -39,15 +41,15 @@
  *     y = l n, n a normal of A, on a wall of B: l = b[k] / (n . b), or on that of the drift
  *     e_k - y = l n, n a normal of B, on a wall of A or that of the drift
  *     a wall of A, one of B and that of the drift:
- *                y = (b[k] (H x a) + way_B[k] (a x b)) / [a b H].
+ *                y = (b[k] (H x a) + travel_B[k] (a x b)) / [a b H].
  *
  * Which of them are corners of the polytope in space and time does not matter: c(y) is a bound for
  * all y. With -y the same vertices bound -x_k.
  *
  * Along a normal of a simplex with a volume, h bends at the outward one alone: opposite to it the
  * maximum is at one corner. So l n, n outward, is a vertex for the end above if l > 0, and for the
- * end below if l < 0 (set_reach()). A volume that may be 0 has no outward side; the pair is left to
- * the exact method (turn_outward()).
+ * end below if l < 0 (set_candidate()). A volume that may be 0 has no outward side; the pair is
+ * left to the exact method (turn_outward()).
  *
  * Accuracy: outer ends. What is computed is c for the l, or for the two factors of the third kind,
  * at hand, and so a bound. Let W be n with the magnitudes of its monomials. A monomial of a triple
@@ -59,7 +61,7 @@
  * times on their way into c: 9 u. All of this is multiplied with |l| (value_error()), and so is
  * part of what is: own, in struct box_line. Of the coordinates that are not
  * multiplied with l, those of the frame from whose centre c is seen, none is rounded more than 8
- * times (its way, and components at a vertex of the third kind): 9 u times the sum of their
+ * times (its travel, and components at a vertex of the third kind): 9 u times the sum of their
  * magnitudes, the slack. The errors of frames, e in all, widen h by at most |y| e and |e_k - y| e,
  * |y| being at most |l| S for the scale S of n. In the third kind m (H x a) and n (a x b) take the
  * place of l n, one after the other.
@@ -74,30 +76,30 @@
  * is at most R, the reach of the frame from its centre. If V > R the bound is no less than that of
  * y = 0 or y = e_k. Else |V| <= R, since the pair is in contact and the bound that of a point of
  * the frame; what is at hand is V (1 + r) - r f, off by at most |r| (R + |V|). Or, from
- * what is at hand, by 1.1 |r| (R + its magnitude); the lesser of these counts (add_reach()).
+ * what is at hand, by 1.1 |r| (R + its magnitude); the lesser of these counts (add_candidate()).
  * Coordinates of the wall's edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by the
  * slope times as much. n is off by at most 2.1 t S, which moves c by as much times all lengths at
  * hand; at the true vertex this is multiplied with l / (1 + r), and so is e, of which |l| S e
- * counts already: 2.2 t times these lengths and a tenth of e, times |l| S (placing). Likewise 1.1 e
- * stands in the slack.
+ * counts already: 2.2 t times these lengths and a tenth of e, times |l| S (frame_error).
+ * Likewise 1.1 e stands in the slack.
  *
- * Where the frames are in contact as prepared (in_contact), placing seldom counts. Let E be the end
- * of the box of these frames, so that c(y) >= E for all y. With t = 0 the argument above bounds E:
- * E >= (the value at hand) - w_j for some vertex j, where w consists of twice the error of
+ * Where the frames are in contact as prepared (in_contact), frame_error seldom counts. Let E be the
+ * end of the box of these frames, so that c(y) >= E for all y. With t = 0 the argument above bounds
+ * E: E >= (the value at hand) - w_j for some vertex j, where w consists of twice the error of
  * rounding, of |l| S e, and of what r makes of it. At the true vertex i of the true end, the true c
  * is at least c(y_i) - 1.1 |l| S e - 1.1 e, and so at least E less these. Let W be the largest w +
  * |l| S e of all vertices: the true end is at least the value at hand less W + 1.1 W / 2, which
  * is 1.55 W (shared). At vertices for which that is beyond the tolerance, the first argument holds,
- * with placing. Bends (below) count both at i and at j.
+ * with frame_error. The changes by bends (below) count both at i and at j.
  *
  * A vertex that is not certain may be left out if c surely grows along a line through it, the line
  * of the other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
  * -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are not
  * certain: each is at most twice 17 times the error of a determinant, and lengths have a sum of at
  * most 2 T, so that all of them change c at a certain vertex by at most 68 (18 u + 4 t) T S |l|,
- * bends. Where gap(N) is below minus twice that, what is left grows at both ends, and is least at a
- * vertex that is certain, or at 0. A determinant that is exactly 0, each of its monomials having a
- * factor 0, is no vertex at all.
+ * bend_error. Where gap(N) is below minus twice that, what is left grows at both ends, and is least
+ * at a vertex that is certain, or at 0. A determinant that is exactly 0, each of its monomials
+ * having a factor 0, is no vertex at all.
  *
  * Widths, the sums of these errors, are bounded once for all axes. Within the tolerance they are
  * allowed for at the end; few vertices need them one by one.
@@ -152,24 +154,24 @@ struct box_places {
 /* A frame; lengths are those of pair_lanes. Edges by number (slabs.h). */
 struct box_frame {
     lanes edge[6][3];
-    lanes length[6][3];       /* magnitudes of the components that an edge is made of */
-    lanes_mask some[6][3];    /* where the coordinate of an edge may not be 0 */
-    lanes centre[3];          /* of the reference point, in the middle of the window */
-    lanes way[3];             /* half of the displacement */
-    lanes sum[3];             /* of the magnitudes of all that a coordinate is made of */
-    lanes own_sum[3];         /* of those of the components and way */
-    lanes own_most, way_most; /* the largest of own_sum, of the magnitudes of way */
+    lanes length[6][3];            /* magnitudes of the components that an edge is made of */
+    lanes_mask nonzero[6][3];      /* where the coordinate of an edge may not be 0 */
+    lanes centre[3];               /* of the reference point, in the middle of the window */
+    lanes travel[3];               /* half of the displacement */
+    lanes sum[3];                  /* of the magnitudes of all that a coordinate is made of */
+    lanes own_sum[3];              /* of those of the components and travel */
+    lanes own_sum_max, travel_max; /* the largest of own_sum, of the magnitudes of travel */
 };
 
 /* A normal n of a frame, and what it makes of the pair. */
-struct box_ray {
-    lanes scale;                /* S */
-    lanes normal[3], weight[3]; /* magnitudes of n, and of its monomials */
-    lanes_mask some[3];         /* of n, as of edges */
-    lanes own;                  /* n . c of the component that is not across n, or of all of them */
-    lanes at[6];                /* n . edges of the other frame */
-    lanes middle;               /* n . (reference point of the other frame - that of this one) */
-    lanes swing;                /* n . (way of the other frame - that of this one) */
+struct box_normal {
+    lanes scale;                   /* S */
+    lanes magnitude[3], weight[3]; /* of n, and of its monomials */
+    lanes_mask nonzero[3];         /* of n, as of edges */
+    lanes own;    /* n . c of the component that is not across n, or of all of them */
+    lanes at[6];  /* n . edges of the other frame */
+    lanes middle; /* n . (reference point of the other frame - that of this one) */
+    lanes swing;  /* n . (travel of the other frame - that of this one) */
 };
 
 /* The determinant of a vertex. */
@@ -182,7 +184,7 @@ struct box_vertex {
 
 /* What c gives at a vertex: how far the intersection reaches from the centre of a frame at most,
  * and how much less it may be that c gives at the true vertex. */
-struct box_reach {
+struct box_candidate {
     lanes at[2][3];           /* [below, above][axis] */
     lanes width[3], relative; /* relative: to at, no more than own_sum of the frame */
 };
@@ -194,24 +196,25 @@ struct box_bounds {
 
 struct box_search {
     struct box_frame frame[2];
-    lanes_mask drift[3];   /* where the drift may not be 0 */
-    lanes_mask exact;      /* no triple product rounds */
-    lanes unit;            /* of the small numbers that ends are made of; 0: they are not */
-    lanes relative_error;  /* t */
-    lanes placing;         /* 2.2 t times all lengths, and e / 10 */
-    lanes bends;           /* 68 (18 u + 4 t) T, twice that where it counts twice */
-    lanes size[3], way[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
-    lanes slack[2][3];     /* of what is seen from the centre of each frame */
-    lanes determinant;     /* error of a determinant of scale 1 */
-    lanes rounding;        /* the part of it that w has: in_contact without t */
-    lanes largest;         /* coordinate, or a little less */
-    lanes tolerance;       /* for the width of a bound */
-    lanes shared;          /* the part of the tolerance for the errors of frames in contact */
+    lanes_mask drift[3];  /* where the drift may not be 0 */
+    lanes_mask exact;     /* no triple product rounds */
+    lanes unit;           /* of the small numbers that ends are made of; 0: they are not */
+    lanes relative_error; /* t */
+    lanes frame_error;    /* 2.2 t times all lengths, and e / 10 */
+    lanes bend_error;     /* 68 (18 u + 4 t) T, twice that where it counts twice */
+    lanes size[3],
+        offset_sum[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
+    lanes slack[2][3]; /* of what is seen from the centre of each frame */
+    lanes determinant; /* error of a determinant of scale 1 */
+    lanes rounding;    /* the part of it that w has: in_contact without t */
+    lanes largest;     /* coordinate, or a little less */
+    lanes tolerance;   /* for the width of a bound */
+    lanes shared;      /* the part of the tolerance for the errors of frames in contact */
     bool in_contact;
     struct box_bounds bounds[2]; /* about the centre of each frame */
     lanes_mask spans, good;
-    lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
-    lanes_mask bent; /* where errors are to allow for that */
+    lanes_mask open;     /* a vertex is left out whose line has vertices of other lines */
+    lanes_mask left_out; /* where errors are to allow for that */
 };
 
 /* ---- Masks ---- */
@@ -222,15 +225,15 @@ INLINE lanes_mask is_not(lanes_mask mask)
 }
 
 /* Whether a monomial of u x v, of [u v], of u . v, may not be 0. */
-INLINE void cross_some(const lanes_mask u[3], const lanes_mask v[3], lanes_mask out[3])
+INLINE void cross_nonzero(const lanes_mask u[3], const lanes_mask v[3], lanes_mask out[3])
 {
     out[0] = (u[1] & v[2]) | (u[2] & v[1]);
     out[1] = (u[2] & v[0]) | (u[0] & v[2]);
     out[2] = (u[0] & v[1]) | (u[1] & v[0]);
 }
 
-INLINE lanes_mask dot_some(const struct kernel_traits traits, const lanes_mask u[3],
-                           const lanes_mask v[3])
+INLINE lanes_mask dot_nonzero(const struct kernel_traits traits, const lanes_mask u[3],
+                              const lanes_mask v[3])
 {
     const lanes_mask plane = (u[0] & v[0]) | (u[1] & v[1]);
     return traits.dim == 2 ? plane : plane | (u[2] & v[2]);
@@ -270,20 +273,20 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
         const lanes_mask inexact =
             is_not(has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis));
         const lanes at = twice * places->origin[which][axis];
-        out->way[axis] =
+        out->travel[axis] =
             traits.drifts
                 ? (0.5 * twice) * (places->velocity[which][axis] * lanes_of(places->duration)) + 0.0
                 : lanes_of(0);
         out->centre[axis] =
-            (traits.simplex[which] ? at : at + shift_of(traits, c, axis)) + out->way[axis];
-        out->own_sum[axis] = lanes_abs(out->way[axis]);
+            (traits.simplex[which] ? at : at + shift_of(traits, c, axis)) + out->travel[axis];
+        out->own_sum[axis] = lanes_abs(out->travel[axis]);
         UNROLL(3)
         for (int i = 0; i < component_count(traits, which); i++)
             out->own_sum[axis] += lanes_abs(c[i][axis]);
         out->sum[axis] = lanes_abs(at) + 2 * out->own_sum[axis];
-        out->own_most = axis ? lanes_max(out->own_sum[axis], out->own_most) : out->own_sum[0];
-        const lanes way = lanes_abs(out->way[axis]);
-        out->way_most = axis ? lanes_max(way, out->way_most) : way;
+        out->own_sum_max = axis ? lanes_max(out->own_sum[axis], out->own_sum_max) : out->own_sum[0];
+        const lanes way = lanes_abs(out->travel[axis]);
+        out->travel_max = axis ? lanes_max(way, out->travel_max) : way;
         UNROLL(6)
         for (int index = 0; index < edge_count(traits, which); index++) {
             const int e = edge_at(traits, which, index);
@@ -291,7 +294,7 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
             const lanes to = e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis];
             out->edge[e][axis] = e < traits.dim ? to + 0.0 : to - from;
             out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
-            out->some[e][axis] = (out->edge[e][axis] != 0) | inexact;
+            out->nonzero[e][axis] = (out->edge[e][axis] != 0) | inexact;
         }
     }
 }
@@ -311,7 +314,7 @@ INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_tr
             farthest = traits.simplex[which] ? lanes_max(lanes_abs(centre + c), farthest)
                                              : farthest + lanes_abs(c);
         }
-        largest = lanes_max(farthest + lanes_abs(frame->way[axis]), largest);
+        largest = lanes_max(farthest + lanes_abs(frame->travel[axis]), largest);
     }
     return (1 - 0x1p-40) * largest;
 }
@@ -320,15 +323,15 @@ INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_tr
 
 /* Takes what c gives at a vertex; what is not a number bounds nothing. width: no less than that
  * along any axis. The same for a lane whatever the others hold. */
-INLINE void add_reach(const struct kernel_traits traits, const struct box_reach *reach, lanes width,
-                      int which, struct box_search *search)
+INLINE void add_candidate(const struct kernel_traits traits, const struct box_candidate *candidate,
+                          lanes width, int which, struct box_search *search)
 {
     struct box_bounds *bounds = &search->bounds[which];
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++)
-        bounds->outer[end][axis] = lanes_min(reach->at[end][axis], bounds->outer[end][axis]);
+        bounds->outer[end][axis] = lanes_min(candidate->at[end][axis], bounds->outer[end][axis]);
     if (!lanes_greater_bits(width, search->tolerance))
         return;
     const lanes_mask wide = width > search->tolerance;
@@ -336,9 +339,9 @@ INLINE void add_reach(const struct kernel_traits traits, const struct box_reach 
     for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++) {
-        const lanes at = reach->at[end][axis], sum = search->frame[which].own_sum[axis];
-        const lanes inner =
-            at - (reach->width[axis] + reach->relative * (sum + lanes_min(lanes_abs(at), sum)));
+        const lanes at = candidate->at[end][axis], sum = search->frame[which].own_sum[axis];
+        const lanes inner = at - (candidate->width[axis] +
+                                  candidate->relative * (sum + lanes_min(lanes_abs(at), sum)));
         bounds->inner[end][axis] =
             lanes_min(lanes_select(wide, inner, lanes_of(INFINITY)), bounds->inner[end][axis]);
     }
@@ -355,12 +358,12 @@ INLINE lanes weight_of(const struct kernel_traits traits, const lanes weight[3],
     return traits.dim == 2 ? plane : plane + weight[2] * lanes_abs(v[2]);
 }
 
-/* weight: of the vector whose product with v is the determinant, some of both as of edges; scale:
- * the product of the lengths. */
+/* weight: of the vector whose product with v is the determinant, nonzero of both as of edges;
+ * scale: the product of the lengths. */
 INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det, lanes scale,
                                    const lanes weight[3], const lanes v[3],
-                                   const lanes_mask some_weight[3], const lanes_mask some_v[3],
-                                   struct box_search *search)
+                                   const lanes_mask nonzero_weight[3],
+                                   const lanes_mask nonzero_v[3], struct box_search *search)
 {
     struct box_vertex out;
     const lanes_mask none = {0};
@@ -373,7 +376,8 @@ INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det,
     if (!lanes_all(certain)) {
         certain = lanes_abs(det) > 16 * fine;
         det = lanes_select(certain, det, lanes_of(NAN));
-        out.open = is_not(certain) & dot_some(traits, some_weight, some_v) & is_not(search->exact);
+        out.open = is_not(certain) & dot_nonzero(traits, nonzero_weight, nonzero_v) &
+                   is_not(search->exact);
     }
     out.inverse = 1 / det;
     const lanes size = lanes_abs(out.inverse);
@@ -396,7 +400,7 @@ INLINE void set_extents(const struct kernel_traits traits, const struct pair_lan
         for (int i = 0; i < component_count(traits, which); i++)
             at[i] = pair->component[which][i][axis];
         const struct slab_extent own = extent_of_frame(traits, which, at);
-        const lanes way = lanes_abs(search->frame[which].way[axis]);
+        const lanes way = lanes_abs(search->frame[which].travel[axis]);
         search->bounds[which].outer[0][axis] = (own.radius - own.low) + way;
         search->bounds[which].outer[1][axis] = (own.radius + own.high) + way;
         search->bounds[which].inner[0][axis] = search->bounds[which].inner[1][axis] =
@@ -453,7 +457,7 @@ INLINE lanes_mask is_inside(const struct kernel_traits traits, struct slab_exten
                             lanes swing, lanes scale, const struct pair_lanes *pair,
                             const struct box_search *search)
 {
-    return gap_of(traits, d, middle, swing) + scale * (2 * search->bends + 2 * pair->unit) < 0;
+    return gap_of(traits, d, middle, swing) + scale * (2 * search->bend_error + 2 * pair->unit) < 0;
 }
 
 /* What c is off by on the line of a vector n, for the parameter 1: products with n, those of the
@@ -462,17 +466,17 @@ INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3
                          const lanes normal[3], lanes sum, const struct box_search *search)
 {
     const lanes rounded = product_rounding(traits) * dot_of(traits, weight, search->size) +
-                          (5 * BOX_UNIT) * dot_of(traits, normal, search->way);
+                          (5 * BOX_UNIT) * dot_of(traits, normal, search->offset_sum);
     return lanes_select(search->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
 }
 
 /* A line and what is the same for all of its vertices. */
 struct box_line {
-    const struct box_ray *ray;
+    const struct box_normal *normal;
     lanes middle; /* what the offset takes from the end above for l = 1, adds to that below */
-    lanes own;    /* what the frame of the ray adds to both, its error included */
-    lanes width;  /* of what c gives, for l = 1, placing left out */
-    lanes placing, slope; /* for l = 1; no less than the slope of c */
+    lanes own;    /* what the frame of the normal adds to both, its error included */
+    lanes width;  /* of what c gives, for l = 1, frame_error left out */
+    lanes frame_error, slope; /* for l = 1; no less than the slope of c */
 };
 
 /* Whether only one of n and -n is the normal of a face with points of its frame behind it: that of
@@ -507,60 +511,62 @@ INLINE lanes with_sign_of(lanes x, lanes sign)
 }
 
 /* What c gives along an axis at the vertex l of a line; other: the extent of the other frame along
- * e_k - l n, turned over with it where the ray is one-sided, and what its way adds to both ends. */
-INLINE void set_reach(const struct kernel_traits traits, int which, const struct box_line *line,
-                      lanes l, struct slab_extent other, lanes way, int axis, struct box_reach *out)
+ * e_k - l n, turned over with it where the normal is one-sided, and what its travel adds to both
+ * ends. */
+INLINE void set_candidate(const struct kernel_traits traits, int which, const struct box_line *line,
+                          lanes l, struct slab_extent other, lanes way, int axis,
+                          struct box_candidate *out)
 {
     const lanes both = lanes_abs(l) * line->own + way;
     if (is_one_sided(traits, which)) {
-        const lanes reach = (other.high + other.radius) + both;
-        out->at[0][axis] = choose_by_sign(l, reach, lanes_of(INFINITY));
-        out->at[1][axis] = choose_by_sign(l, lanes_of(INFINITY), reach);
+        const lanes candidate = (other.high + other.radius) + both;
+        out->at[0][axis] = choose_by_sign(l, candidate, lanes_of(INFINITY));
+        out->at[1][axis] = choose_by_sign(l, lanes_of(INFINITY), candidate);
         return;
     }
-    const lanes along = l * line->middle;
-    out->at[0][axis] = ((other.radius - other.low) + both) + along;
-    out->at[1][axis] = ((other.radius + other.high) + both) - along;
+    const lanes offset_term = l * line->middle;
+    out->at[0][axis] = ((other.radius - other.low) + both) + offset_term;
+    out->at[1][axis] = ((other.radius + other.high) + both) - offset_term;
 }
 
 /* What e_k - l n makes of component i of the other frame. */
 INLINE lanes product_at(const struct kernel_traits traits, int which, const struct box_frame *other,
-                        const struct box_ray *ray, int i, int axis, lanes l)
+                        const struct box_normal *normal, int i, int axis, lanes l)
 {
-    const lanes at = other->edge[i][axis] - l * ray->at[i];
+    const lanes at = other->edge[i][axis] - l * normal->at[i];
     return is_one_sided(traits, which) && traits.simplex[!which] ? with_sign_of(at, l) : at;
 }
 
 /* The vertex of a line on the wall of an edge of the other frame. */
-INLINE void add_wall(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
-                     const struct box_line *line, int index, const struct box_vertex *vertex,
-                     struct box_search *search)
+INLINE void add_edge_vertex(const struct pair_lanes *pair, const struct kernel_traits traits,
+                            int which, const struct box_line *line, int index,
+                            const struct box_vertex *vertex, struct box_search *search)
 {
     const int other = !which, e = edge_at(traits, other, index);
     const int p = across_first(traits, other, e), q = across_second(e);
     const bool two = component_count(traits, other) == 3;
-    const struct box_ray *ray = line->ray;
+    const struct box_normal *normal = line->normal;
     const struct box_frame *frame = &search->frame[other];
-    const lanes most = pair->size[other][e] * lanes_abs(vertex->inverse);
-    const lanes apart = (1.2 * search->relative_error) * (line->slope * most);
-    struct box_reach reach = {.relative = vertex->fine};
+    const lanes l_max = pair->size[other][e] * lanes_abs(vertex->inverse);
+    const lanes edge_error = (1.2 * search->relative_error) * (line->slope * l_max);
+    struct box_candidate candidate = {.relative = vertex->fine};
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         const lanes l = frame->edge[e][axis] * vertex->inverse;
-        const lanes x = product_at(traits, which, frame, ray, p, axis, l);
+        const lanes x = product_at(traits, which, frame, normal, p, axis, l);
         const struct slab_extent d =
             two ? extent_of_two(traits.simplex[other], x,
-                                product_at(traits, which, frame, ray, q, axis, l))
+                                product_at(traits, which, frame, normal, q, axis, l))
                 : extent_of_one(traits.simplex[other], x);
         const lanes way =
-            traits.drifts ? lanes_abs(frame->way[axis] - l * ray->swing) : lanes_of(0);
-        set_reach(traits, which, line, l, d, way, axis, &reach);
-        reach.width[axis] = lanes_abs(l) * (line->width + line->placing) + apart;
+            traits.drifts ? lanes_abs(frame->travel[axis] - l * normal->swing) : lanes_of(0);
+        set_candidate(traits, which, line, l, d, way, axis, &candidate);
+        candidate.width[axis] = lanes_abs(l) * (line->width + line->frame_error) + edge_error;
     }
-    lanes width = most * line->width + (2 * vertex->error) * frame->own_most;
+    lanes width = l_max * line->width + (2 * vertex->error) * frame->own_sum_max;
     if (!search->in_contact)
-        width += most * line->placing + apart;
-    add_reach(traits, &reach, width, other, search);
+        width += l_max * line->frame_error + edge_error;
+    add_candidate(traits, &candidate, width, other, search);
 }
 
 /* The vertex of a line on the wall of the drift. */
@@ -570,98 +576,104 @@ INLINE void add_drift_vertex(const struct kernel_traits traits, int which,
 {
     const int other = !which;
     const struct box_frame *frame = &search->frame[other];
-    const lanes most = frame->way_most * lanes_abs(vertex->inverse);
-    struct box_reach reach = {.relative = vertex->fine};
+    const lanes l_max = frame->travel_max * lanes_abs(vertex->inverse);
+    struct box_candidate candidate = {.relative = vertex->fine};
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        const lanes l = frame->way[axis] * vertex->inverse;
+        const lanes l = frame->travel[axis] * vertex->inverse;
         lanes at[3];
         UNROLL(3)
         for (int i = 0; i < component_count(traits, other); i++)
-            at[i] = product_at(traits, which, frame, line->ray, i, axis, l);
-        set_reach(traits, which, line, l, extent_of_frame(traits, other, at), lanes_of(0), axis,
-                  &reach);
-        reach.width[axis] = lanes_abs(l) * (line->width + line->placing);
+            at[i] = product_at(traits, which, frame, line->normal, i, axis, l);
+        set_candidate(traits, which, line, l, extent_of_frame(traits, other, at), lanes_of(0), axis,
+                      &candidate);
+        candidate.width[axis] = lanes_abs(l) * (line->width + line->frame_error);
     }
-    lanes width = most * line->width + (2 * vertex->error) * frame->own_most;
+    lanes width = l_max * line->width + (2 * vertex->error) * frame->own_sum_max;
     if (!search->in_contact)
-        width += most * line->placing;
-    add_reach(traits, &reach, width, other, search);
+        width += l_max * line->frame_error;
+    add_candidate(traits, &candidate, width, other, search);
 }
 
-/* Turns the ray of a simplex outward: its frame does not reach beyond 0 along it, or is as far as
- * all of own. */
+/* Turns the normal of a simplex outward: its frame does not reach beyond 0 along it, or is as far
+ * as all of own. */
 INLINE void turn_outward(const struct pair_lanes *pair, const struct kernel_traits traits,
-                         int which, bool across, struct box_ray *ray, struct box_search *search)
+                         int which, bool across, struct box_normal *normal,
+                         struct box_search *search)
 {
     const lanes *size = pair->size[which];
     const lanes scale = traits.dim == 2 ? size[0] * size[1] : (size[0] * size[1]) * size[2];
-    const lanes sign = across ? ray->own : -ray->own;
-    search->good &= lanes_abs(ray->own) > search->determinant * scale;
-    ray->middle = with_sign_of(ray->middle, sign);
-    ray->swing = with_sign_of(ray->swing, sign);
-    ray->own = across ? lanes_abs(ray->own) : -lanes_abs(ray->own);
+    const lanes sign = across ? normal->own : -normal->own;
+    search->good &= lanes_abs(normal->own) > search->determinant * scale;
+    normal->middle = with_sign_of(normal->middle, sign);
+    normal->swing = with_sign_of(normal->swing, sign);
+    normal->own = across ? lanes_abs(normal->own) : -lanes_abs(normal->own);
     UNROLL(6)
     for (int e = 0; e < 6; e++)
         if (e < 3 || has_edge(traits, !which, e))
-            ray->at[e] = with_sign_of(ray->at[e], sign);
+            normal->at[e] = with_sign_of(normal->at[e], sign);
 }
 
 /* across: the face does not hold the origin of its frame. */
-INLINE void add_ray(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
-                    bool across, struct box_ray *ray, struct box_search *search)
+INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_traits traits,
+                            int which, bool across, struct box_normal *normal,
+                            struct box_search *search)
 {
     const int other = !which, walls = traits.dim == 2 && which ? 0 : edge_count(traits, other);
     const struct box_frame *frame = &search->frame[other];
     struct box_vertex vertex[7];
     lanes_mask open = {0};
     if (is_one_sided(traits, which))
-        turn_outward(pair, traits, which, across, ray, search);
+        turn_outward(pair, traits, which, across, normal, search);
     UNROLL(6)
     for (int index = 0; index < walls; index++) {
         const int e = edge_at(traits, other, index);
-        vertex[index] = vertex_of(traits, ray->at[e], ray->scale * pair->size[other][e],
-                                  ray->weight, frame->length[e], ray->some, frame->some[e], search);
+        vertex[index] =
+            vertex_of(traits, normal->at[e], normal->scale * pair->size[other][e], normal->weight,
+                      frame->length[e], normal->nonzero, frame->nonzero[e], search);
         open |= vertex[index].open;
     }
     if (traits.drifts) {
-        vertex[walls] = vertex_of(traits, ray->swing, ray->scale * pair->half_drift_size,
-                                  ray->weight, pair->half_drift, ray->some, search->drift, search);
+        vertex[walls] =
+            vertex_of(traits, normal->swing, normal->scale * pair->half_drift_size, normal->weight,
+                      pair->half_drift, normal->nonzero, search->drift, search);
         open |= vertex[walls].open;
     }
-    const struct slab_extent own = extent_of_one(traits.simplex[which], ray->own);
-    const struct slab_extent of_other = extent_of_frame(traits, other, ray->at);
+    const struct slab_extent own = extent_of_one(traits.simplex[which], normal->own);
+    const struct slab_extent of_other = extent_of_frame(traits, other, normal->at);
     const struct slab_extent d =
         extent_difference(traits, which ? of_other : own, which ? own : of_other);
     if (traits.dim == 2)
         search->open |= open;
     if (lanes_mask_bits(open))
-        search->good &= is_not(open) | is_inside(traits, d, which ? -ray->middle : ray->middle,
-                                                 ray->swing, ray->scale, pair, search);
-    struct box_line line = {.ray = ray};
-    line.slope = ((d.high - d.low) + d.radius) + (lanes_abs(ray->middle) + lanes_abs(ray->swing));
-    const lanes error = value_error(traits, ray->weight, ray->normal, line.slope, search) +
-                        ray->scale * pair->error;
-    line.placing = ray->scale * search->placing;
-    line.width = (error + error) +
-                 lanes_select(open | search->bent, ray->scale * search->bends, lanes_of(0));
-    line.middle = ray->middle;
+        search->good &=
+            is_not(open) | is_inside(traits, d, which ? -normal->middle : normal->middle,
+                                     normal->swing, normal->scale, pair, search);
+    struct box_line line = {.normal = normal};
+    line.slope =
+        ((d.high - d.low) + d.radius) + (lanes_abs(normal->middle) + lanes_abs(normal->swing));
+    const lanes error = value_error(traits, normal->weight, normal->magnitude, line.slope, search) +
+                        normal->scale * pair->error;
+    line.frame_error = normal->scale * search->frame_error;
+    line.width = (error + error) + lanes_select(open | search->left_out,
+                                                normal->scale * search->bend_error, lanes_of(0));
+    line.middle = normal->middle;
     line.own = error + (traits.simplex[which] ? own.high : own.radius);
     if (is_one_sided(traits, which))
-        line.own -= ray->middle;
+        line.own -= normal->middle;
     if (traits.drifts) { /* many vertices: unrolled they gain nothing */
         for (int index = 0; index < walls; index++)
-            add_wall(pair, traits, which, &line, index, &vertex[index], search);
+            add_edge_vertex(pair, traits, which, &line, index, &vertex[index], search);
         add_drift_vertex(traits, which, &line, &vertex[walls], search);
         return;
     }
     UNROLL(6)
     for (int index = 0; index < walls; index++)
-        add_wall(pair, traits, which, &line, index, &vertex[index], search);
+        add_edge_vertex(pair, traits, which, &line, index, &vertex[index], search);
 }
 
-INLINE void add_plane_rays(const struct pair_lanes *pair, const struct kernel_traits traits,
-                           struct box_search *search)
+INLINE void add_plane_normals(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              struct box_search *search)
 {
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
@@ -671,68 +683,73 @@ INLINE void add_plane_rays(const struct pair_lanes *pair, const struct kernel_tr
         UNROLL(3)
         for (int e = 0; e < edge_count(traits, which); e++) {
             const lanes *length = search->frame[which].length[e];
-            const lanes_mask *some = search->frame[which].some[e];
-            struct box_ray ray = {.scale = pair->size[which][e],
-                                  .normal = {length[1], length[0]},
-                                  .weight = {length[1], length[0]},
-                                  .some = {some[1], some[0]},
-                                  .own = e == 0 ? area : -area,
-                                  .at = {edges.other[e][0], edges.other[e][1]},
-                                  .middle = which ? -edges.middle[e] : edges.middle[e],
-                                  .swing = which ? -edges.swing[e] : edges.swing[e]};
-            ray.at[2] = ray.at[1] - ray.at[0];
-            add_ray(pair, traits, which, e == 2, &ray, search);
+            const lanes_mask *nonzero = search->frame[which].nonzero[e];
+            struct box_normal normal = {.scale = pair->size[which][e],
+                                        .magnitude = {length[1], length[0]},
+                                        .weight = {length[1], length[0]},
+                                        .nonzero = {nonzero[1], nonzero[0]},
+                                        .own = e == 0 ? area : -area,
+                                        .at = {edges.other[e][0], edges.other[e][1]},
+                                        .middle = which ? -edges.middle[e] : edges.middle[e],
+                                        .swing = which ? -edges.swing[e] : edges.swing[e]};
+            normal.at[2] = normal.at[1] - normal.at[0];
+            add_normal_line(pair, traits, which, e == 2, &normal, search);
         }
     }
 }
 
-/* The ray of the face across from the origin. */
-INLINE void add_sums(const struct box_ray rays[3], struct box_ray *out)
+/* The normal of the face across from the origin. */
+INLINE void add_far_face(const struct box_normal normals[3], struct box_normal *out)
 {
-    out->scale = (rays[0].scale + rays[1].scale) + rays[2].scale;
-    out->own = rays[0].own;
-    out->middle = (rays[0].middle + rays[1].middle) + rays[2].middle;
-    out->swing = (rays[0].swing + rays[1].swing) + rays[2].swing;
+    out->scale = (normals[0].scale + normals[1].scale) + normals[2].scale;
+    out->own = normals[0].own;
+    out->middle = (normals[0].middle + normals[1].middle) + normals[2].middle;
+    out->swing = (normals[0].swing + normals[1].swing) + normals[2].swing;
     UNROLL(6)
     for (int i = 0; i < 6; i++)
-        out->at[i] = (rays[0].at[i] + rays[1].at[i]) + rays[2].at[i];
+        out->at[i] = (normals[0].at[i] + normals[1].at[i]) + normals[2].at[i];
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
-        out->some[axis] = (rays[0].some[axis] | rays[1].some[axis]) | rays[2].some[axis];
-        out->weight[axis] = (rays[0].weight[axis] + rays[1].weight[axis]) + rays[2].weight[axis];
-        out->normal[axis] = (rays[0].normal[axis] + rays[1].normal[axis]) + rays[2].normal[axis];
+        out->nonzero[axis] =
+            (normals[0].nonzero[axis] | normals[1].nonzero[axis]) | normals[2].nonzero[axis];
+        out->weight[axis] =
+            (normals[0].weight[axis] + normals[1].weight[axis]) + normals[2].weight[axis];
+        out->magnitude[axis] =
+            (normals[0].magnitude[axis] + normals[1].magnitude[axis]) + normals[2].magnitude[axis];
     }
 }
 
-INLINE void add_space_rays(const struct pair_lanes *pair, const struct kernel_traits traits,
-                           int which, const struct face_products *side, struct box_search *search)
+INLINE void add_space_normals(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              int which, const struct face_products *side,
+                              struct box_search *search)
 {
-    struct box_ray rays[4];
+    struct box_normal normals[4];
     const int first = first_plane(traits, which);
     const bool across = traits.simplex[which] && !traits.face[which];
     UNROLL(3)
     for (int k = first; k < 3; k++) {
-        struct box_ray *ray = &rays[k];
+        struct box_normal *normal = &normals[k];
         const int i = next(k), j = next(i);
-        ray->scale = pair->size[which][i] * pair->size[which][j];
-        ray->own = side->volume;
-        ray->middle = which ? -side->middle[k] : side->middle[k];
-        ray->swing = which ? -side->swing[k] : side->swing[k];
-        cross_weight(pair->component[which][i], pair->component[which][j], ray->weight);
+        normal->scale = pair->size[which][i] * pair->size[which][j];
+        normal->own = side->volume;
+        normal->middle = which ? -side->middle[k] : side->middle[k];
+        normal->swing = which ? -side->swing[k] : side->swing[k];
+        cross_weight(pair->component[which][i], pair->component[which][j], normal->weight);
         UNROLL(3)
         for (int axis = 0; axis < 3; axis++)
-            ray->normal[axis] = lanes_abs(side->normal[k][axis]);
-        cross_some(search->frame[which].some[i], search->frame[which].some[j], ray->some);
+            normal->magnitude[axis] = lanes_abs(side->normal[k][axis]);
+        cross_nonzero(search->frame[which].nonzero[i], search->frame[which].nonzero[j],
+                      normal->nonzero);
         UNROLL(6)
         for (int e = 0; e < 6; e++)
-            ray->at[e] = has_edge(traits, !which, e) ? side->other[k][e] : lanes_of(0);
+            normal->at[e] = has_edge(traits, !which, e) ? side->other[k][e] : lanes_of(0);
     }
     if (across)
-        add_sums(rays, &rays[3]);
+        add_far_face(normals, &normals[3]);
     for (int k = first; k < 3; k++)
-        add_ray(pair, traits, which, false, &rays[k], search);
+        add_normal_line(pair, traits, which, false, &normals[k], search);
     if (across)
-        add_ray(pair, traits, which, true, &rays[3], search);
+        add_normal_line(pair, traits, which, true, &normals[3], search);
 }
 
 /* ---- Vertices on a wall of each frame and that of the drift ---- */
@@ -816,13 +833,13 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
     const lanes length_a = pair->size[0][i], length_b = pair->size[1][j];
     const lanes scale = length_a * length_b;
     lanes normal[3], weight[3];
-    lanes_mask some[3];
+    lanes_mask nonzero[3];
     cross(a->edge[i], b->edge[j], normal);
     cross_weight(a->length[i], b->length[j], weight);
-    cross_some(a->some[i], b->some[j], some);
+    cross_nonzero(a->nonzero[i], b->nonzero[j], nonzero);
     const struct box_vertex vertex =
         vertex_of(traits, products->edges.swing[i][j], scale * pair->half_drift_size, weight,
-                  pair->half_drift, some, search->drift, search);
+                  pair->half_drift, nonzero, search->drift, search);
     const struct slab_extent d = extent_sum(
         traits,
         extent_at_edge(traits, 0, i, side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]),
@@ -835,21 +852,21 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
     search->open |= vertex.open;
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_drift_size;
-    const lanes bends = lanes_select(search->bent, search->bends, lanes_of(0));
+    const lanes bends = lanes_select(search->left_out, search->bend_error, lanes_of(0));
     const lanes sum = ((d.high - d.low) + d.radius) + (lanes_abs(products->edges.middle[i][j]) +
                                                        lanes_abs(products->edges.swing[i][j]));
     const lanes of_m = products->error[i] + drift_scale * pair->error;
     const lanes of_n =
         value_error(traits, weight, magnitudes(normal, normal), sum, search) + scale * pair->error;
     const lanes size = lanes_abs(vertex.inverse);
-    const lanes apart =
+    const lanes edge_error =
         ((1.2 * search->relative_error) * length_b) * ((drift_scale * pair->reach) * size);
     const lanes width_of_m = (of_m + of_m) + drift_scale * bends;
     const lanes width_of_n = (of_n + of_n) + scale * bends;
-    struct box_reach reach;
+    struct box_candidate candidate;
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
-        const lanes m = b->edge[j][axis] * vertex.inverse, n = b->way[axis] * vertex.inverse;
+        const lanes m = b->edge[j][axis] * vertex.inverse, n = b->travel[axis] * vertex.inverse;
         const lanes m_size = lanes_abs(m), n_size = lanes_abs(n);
         lanes component[3];
         UNROLL(3)
@@ -857,22 +874,22 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
             component[k] = pair->component[1][k][axis];
         const struct slab_extent at =
             extent_of_crossing(traits, i, j, m, n, side, products, component);
-        const lanes along = n * products->edges.middle[i][j] - m * products->drift_middle[i];
+        const lanes offset_term = n * products->edges.middle[i][j] - m * products->drift_middle[i];
         const lanes error = m_size * of_m + n_size * of_n;
-        reach.at[0][axis] = ((at.radius - at.low) + error) + along;
-        reach.at[1][axis] = ((at.radius + at.high) + error) - along;
-        reach.width[axis] = (m_size * (width_of_m + drift_scale * search->placing) +
-                             n_size * (width_of_n + scale * search->placing)) +
-                            apart;
+        candidate.at[0][axis] = ((at.radius - at.low) + error) + offset_term;
+        candidate.at[1][axis] = ((at.radius + at.high) + error) - offset_term;
+        candidate.width[axis] = (m_size * (width_of_m + drift_scale * search->frame_error) +
+                                 n_size * (width_of_n + scale * search->frame_error)) +
+                                edge_error;
     }
-    reach.relative = vertex.fine;
-    lanes width = ((length_b * size) * width_of_m + (b->way_most * size) * width_of_n) +
-                  (2 * vertex.error) * b->own_most;
+    candidate.relative = vertex.fine;
+    lanes width = ((length_b * size) * width_of_m + (b->travel_max * size) * width_of_n) +
+                  (2 * vertex.error) * b->own_sum_max;
     if (!search->in_contact)
-        width +=
-            (((length_b * size) * drift_scale + (b->way_most * size) * scale) * search->placing) +
-            apart;
-    add_reach(traits, &reach, width, 1, search);
+        width += (((length_b * size) * drift_scale + (b->travel_max * size) * scale) *
+                  search->frame_error) +
+                 edge_error;
+    add_candidate(traits, &candidate, width, 1, search);
 }
 
 INLINE void add_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
@@ -981,15 +998,15 @@ INLINE void set_sizes(const struct pair_lanes *pair, const struct kernel_traits 
     for (int i = 0; i < component_count(traits, which); i++)
         sum[which] += lanes_abs(pair->component[which][i][axis]);
     search->size[axis] = ((sum[0] + sum[1]) + half) + lanes_abs(pair->offset[axis]);
-    search->way[axis] = (is_doubled(traits) ? apart + apart : apart) + 2 * half;
+    search->offset_sum[axis] = (is_doubled(traits) ? apart + apart : apart) + 2 * half;
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         if (!traits.simplex[which])
-            search->way[axis] += sum[which];
+            search->offset_sum[axis] += sum[which];
 }
 
 /* Of lanes in which nothing rounds: whether all numbers of the pair are multiples of g, with at =
- * 2^52 g, and the frames' own ways do not round either. */
+ * 2^52 g, and the frames' own travels do not round either. */
 INLINE lanes_mask are_multiples(const struct pair_lanes *pair, const struct kernel_traits traits,
                                 const struct box_places *places, const struct box_search *search,
                                 lanes at)
@@ -1008,7 +1025,7 @@ INLINE lanes_mask are_multiples(const struct pair_lanes *pair, const struct kern
         if (!traits.drifts)
             continue;
         const lanes v = places->velocity[which][axis], time = lanes_of(places->duration);
-        all &= is_multiple(search->frame[which].way[axis], at) &
+        all &= is_multiple(search->frame[which].travel[axis], at) &
                (product_slack(v, time, v * time) == 0);
     }
     return all;
@@ -1038,9 +1055,9 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     for (int axis = 0; axis < traits.dim; axis++)
         lengths += lanes_abs(pair->offset[axis]);
     const lanes_mask shares = places->in_contact ? pair->error != 0 : (lanes_mask){0};
-    search->placing = (2.2 * search->relative_error) * lengths + 0.1 * pair->error;
-    search->bends = lanes_select(shares, lanes_of(136), lanes_of(68)) *
-                    ((slab_rounding(traits) + 4 * search->relative_error) * pair->reach);
+    search->frame_error = (2.2 * search->relative_error) * lengths + 0.1 * pair->error;
+    search->bend_error = lanes_select(shares, lanes_of(136), lanes_of(68)) *
+                         ((slab_rounding(traits) + 4 * search->relative_error) * pair->reach);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         set_sizes(pair, traits, places, axis, search);
@@ -1072,7 +1089,7 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     tolerance = lanes_select((search->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
     search->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
     search->tolerance = tolerance - search->shared;
-    search->spans = search->open = search->bent = (lanes_mask){0};
+    search->spans = search->open = search->left_out = (lanes_mask){0};
     search->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
 
@@ -1099,14 +1116,14 @@ INLINE void add_all(const struct pair_lanes *pair, const struct kernel_traits tr
     for (int which = 0; which < 2; which++)
         set_extents(traits, pair, which, search);
     if (traits.dim == 2) {
-        add_plane_rays(pair, traits, search);
+        add_plane_normals(pair, traits, search);
         return;
     }
     struct face_products side[2];
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         set_face_products(pair, traits, which, &side[which]);
-        add_space_rays(pair, traits, which, &side[which], search);
+        add_space_normals(pair, traits, which, &side[which], search);
     }
     if (traits.drifts)
         add_crossings(pair, traits, side, search);
@@ -1122,7 +1139,7 @@ INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_
         add_all(pair, traits, &search);
         if (lanes_mask_bits(search.open) == 0)
             break;
-        search.bent = search.open;
+        search.left_out = search.open;
     }
     lanes_mask good = search.good & search.spans;
     UNROLL(3)
