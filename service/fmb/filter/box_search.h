@@ -7,111 +7,128 @@
  * contains the exact box, and each end is within the limit of fmb.h.
  *
  * Steps (search_box()):
- *   1. begin_box()       frames about the middle of the window, tolerance and slack
- *   2. set_extents()     the vertices y = 0 and y = e_k: the extents of the frames
+ *   1. begin_box(): frames about the middle of the window, tolerance and slack
+ *   2. set_extents(): the vertices y = 0 and y = e_k, the extents of the frames
  *   3. add_plane_normals() in 2D, or add_space_normals() in 3D: vertices on the normals of the
- *                        faces; each line in add_normal_line(), each vertex in
- *                        add_edge_vertex() or add_drift_vertex()
- *   4. add_crossings()   vertices of an edge of A, one of B, and the drift
+ *      faces; each line in add_normal_line(), each vertex in add_edge_vertex() or
+ *      add_drift_vertex()
+ *   4. add_crossings(): vertices of an edge of A, one of B, and the drift
  *   5. a second pass of 2 to 4 where a vertex that is not certain was left out
  *   6. outer and inner ends from the least bounds; cut_to_extent() cuts the box to both frames
  *
- * The method, and the proof of both ends, follow.
+ * The method, and the proof of both ends, follow. Frames are seen about the middle of the
+ * window, displaced by -travel to travel; u = 2^-53.
  *
- * Method. With h_A(y) = max { y . a : a in A }, the support function, and the frames about the
- * middle of the window, displaced by -travel to travel, every y bounds coordinate k of the
- * intersection:
+ * THE METHOD
  *
- *     x_k = y . x + (e_k - y) . x  <=  c(y) = h_A(y) + h_B(e_k - y) + |travel_B[k] - y . H|,
- *     H = travel_B - travel_A
+ * 1. Every y bounds coordinate k of the intersection. With h_A(y) = max { y . a : a in A }, the
+ *    support function, and H = travel_B - travel_A,
  *
- * since x is a point of A and of B at the same time. Where the frames meet, the least of these
- * bounds is the end of the box (duality of linear programs; this is the article's elimination of
- * all coordinates but one, and of the time, done on paper). c is convex and linear between walls:
+ *    x_k = y . x + (e_k - y) . x
+ *            <= c(y) = h_A(y) + h_B(e_k - y) + |travel_B[k] - y . H|,
  *
- *     y . a = 0              for the edges a of A
- *     (e_k - y) . b = 0      for the edges b of B
- *     travel_B[k] - y . H = 0   where the pair drifts.
+ *    since x is a point of A and of B at the same time. With -y the same bounds hold for -x_k.
+ * 2. Where the frames meet, the least of these bounds is the end of the box: duality of linear
+ *    programs. It is the article's elimination of all coordinates but one, and of the time, done
+ *    on paper.
+ * 3. c is convex, and linear between the walls
  *
- * If the normals of the walls at hand span the space, c has its least value in a vertex: a point in
- * which three walls with independent normals meet (in 2D two). Two walls of A meet in the line of a
- * normal of A, three in 0; the same holds for B. So the vertices are
+ *    y . a = 0                  for the edges a of A (e_k - y) . b = 0          for the edges b
+ *    of B travel_B[k] - y . H = 0    where the pair drifts.
  *
- *     y = 0 and y = e_k                      c is the end of the extent of B, of A
- *     y = l n, n a normal of A, on a wall of B: l = b[k] / (n . b), or on that of the drift
- *     e_k - y = l n, n a normal of B, on a wall of A or that of the drift
- *     a wall of A, one of B and that of the drift:
- *                y = (b[k] (H x a) + travel_B[k] (a x b)) / [a b H].
+ *    If the normals of the walls span the space, c is least at a vertex: a point in which three
+ *    walls with independent normals meet (in 2D two). Two walls of A meet in the line of a
+ *    normal of A, three in 0; the same holds for B. So the vertices are
  *
- * Which of them are corners of the polytope in space and time does not matter: c(y) is a bound for
- * all y. With -y the same vertices bound -x_k.
+ *    y = 0 and y = e_k          c is the end of the extent of B, of A y = l n
+ *    n a normal of A, on a wall of B: l = b[k] / (n . b), or on that
+ *                                   of the drift
+ *    e_k - y = l n              n a normal of B, on a wall of A or that of the drift y = (b[k]
+ *    (H x a) + travel_B[k] (a x b)) / [a b H]
+ *                                   on a wall of A, one of B and that of the drift: a crossing.
  *
- * Along a normal of a simplex with a volume, h bends at the outward one alone: opposite to it the
- * maximum is at one corner. So l n, n outward, is a vertex for the end above if l > 0, and for the
- * end below if l < 0 (set_candidate()). A volume that may be 0 has no outward side; the pair is
- * left to the exact method (turn_outward()).
+ *    Which of them are corners of the polytope in space and time does not matter, by 1.
+ * 4. Along a normal of a simplex with a volume, h bends at the outward one only: opposite to it
+ *    the maximum is at one corner. So l n, n outward, is a vertex for the upper end if l > 0,
+ *    and for the lower end if l < 0 (set_candidate()). All that follows holds for the half line
+ *    l >= 0, which ends in y = 0 or e_k. A volume that may be 0 has no outward side: the pair is
+ *    left to the exact method (turn_outward()).
  *
- * Accuracy: outer ends. What is computed is c for the l, or for the two factors of the third kind,
- * at hand, and so a bound. Let W be n with the magnitudes of its monomials. A monomial of a triple
- * product is rounded 5 times, twice more in a sum of three normals; the wall itself is left out of
- * c, and its term is at most what its determinant is off by, times l: 8 u more for a difference of
- * two edges, which is rounded once more. 17 u (8 u without a simplex) times W . (the magnitudes of
- * the vectors at hand) covers these. The offset is rounded 4 times before: 5 u times |n| . (the
- * magnitudes of what it is made of). The products, the largest being slope in all, are rounded 8
- * times on their way into c: 9 u. All of this is multiplied with |l| (value_error()), and so is
- * part of what is: own, in struct box_line. Of the coordinates that are not
- * multiplied with l, those of the frame from whose centre c is seen, none is rounded more than 8
- * times (its travel, and components at a vertex of the third kind): 9 u times the sum of their
- * magnitudes, the slack. The errors of frames, e in all, widen h by at most |y| e and |e_k - y| e,
- * |y| being at most |l| S for the scale S of n. In the third kind m (H x a) and n (a x b) take the
- * place of l n, one after the other.
+ * OUTER ENDS
  *
- * Inner ends. For each true vertex c is at least the value at hand less its error. The determinant
- * d of a vertex (n . b, n . H, [a b H]) is off by at most 8 u W . |b|, or 10 u where a frame is a
- * simplex (5 roundings, 2 of the drift, 1 of each difference, or 2 of the sum of three normals);
- * and by 3.1 t times its scale, the product of the lengths, for components that are off by t. If d
- * is more than 16 times its error the vertex is certain. The true l is then l / (1 + r), |r| at
- * most 1.1 times the relative error of d and 5 u. With f - l d for the terms of c (f coordinates, d
- * products with n), those of the true vertex are V = (f - l d + r f) / (1 + r). The sum of the |f|
- * is at most R, the reach of the frame from its centre. If V > R the bound is no less than that of
- * y = 0 or y = e_k. Else |V| <= R, since the pair is in contact and the bound that of a point of
- * the frame; what is at hand is V (1 + r) - r f, off by at most |r| (R + |V|). Or, from
- * what is at hand, by 1.1 |r| (R + its magnitude); the lesser of these counts (add_candidate()).
- * Coordinates of the wall's edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by the
- * slope times as much. n is off by at most 2.1 t S, which moves c by as much times all lengths at
- * hand; at the true vertex this is multiplied with l / (1 + r), and so is e, of which |l| S e
- * counts already: 2.2 t times these lengths and a tenth of e, times |l| S (frame_error).
- * Likewise 1.1 e stands in the slack.
+ * c is computed for the l at hand, or for the two factors of a crossing, and so is a bound by 1,
+ * except for these errors. Those of 1 to 3 are multiplied with |l| (value_error()); they are
+ * part of own in struct box_line.
  *
- * Where the frames are in contact as prepared (in_contact), frame_error seldom counts. Let E be the
- * end of the box of these frames, so that c(y) >= E for all y. With t = 0 the argument above bounds
- * E: E >= (the value at hand) - w_j for some vertex j, where w consists of twice the error of
- * rounding, of |l| S e, and of what r makes of it. At the true vertex i of the true end, the true c
- * is at least c(y_i) - 1.1 |l| S e - 1.1 e, and so at least E less these. Let W be the largest w +
- * |l| S e of all vertices: the true end is at least the value at hand less W + 1.1 W / 2, which
- * is 1.55 W (shared). At vertices for which that is beyond the tolerance, the first argument holds,
- * with frame_error. The changes by bends (below) count both at i and at j.
+ * 1. Products with n. Let W be n with the magnitudes of its monomials. A monomial of a triple
+ *    product is rounded 5 times, twice more in a sum of three normals. The wall of the vertex is
+ *    left out of c; its term is at most what its determinant is off by, times l: 8 u more for a
+ *    difference of two edges, which is rounded once more. Together at most 17 u (8 u without a
+ *    simplex) times W . (the magnitudes of the vectors at hand).
+ * 2. The offset is rounded 4 times before: 5 u times |n| . (the magnitudes of what it is made
+ *    of).
+ * 3. The products, at most slope together, are rounded 8 times on their way into c: 9 u.
+ * 4. Coordinates that are not multiplied with l belong to the frame from whose centre c is seen.
+ *    None is rounded more than 8 times (its travel, and components at a crossing): 9 u times the
+ *    sum of their magnitudes, the slack.
+ * 5. The errors of the frames, e together, widen h by at most |y| e and |e_k - y| e. |y| is at
+ *    most |l| S for the scale S of n. At a crossing m (H x a) and n (a x b) take the place of l
+ *    n, one after the other.
  *
- * A vertex that is not certain may be left out if c surely grows along a line through it, the line
- * of the other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
- * -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are not
- * certain: each is at most twice 17 times the error of a determinant, and lengths have a sum of at
- * most 2 T, so that all of them change c at a certain vertex by at most 68 (18 u + 4 t) T S |l|,
- * bend_error. Where gap(N) is below minus twice that, what is left grows at both ends, and is least
- * at a vertex that is certain, or at 0. A determinant that is exactly 0, each of its monomials
- * having a factor 0, is no vertex at all.
+ * Where nothing rounds (slabs_exact.h), 1 and 2 are 0: determinants and all products with n are
+ * exact, and only l is rounded, twice. What is left of the wall then is at most 3 u of its
+ * product with n, times l, within the 9 u that 3 counts for that product.
+ *
+ * INNER ENDS
+ *
+ * The true end is the true c at some true vertex. At each true vertex c is at least the value at
+ * hand less the errors of 1 to 4.
+ *
+ * 1. The determinant d of a vertex (n . b, n . H, [a b H]) is off by at most 8 u W . |b|, or 10
+ *    u where a frame is a simplex (5 roundings, 2 of the drift, 1 of each difference, or 2 of
+ *    the sum of three normals); and by 3.1 t times its scale, the product of the lengths, for
+ *    components that are off by t. If d is more than 16 times its error, the vertex is certain.
+ *    The true l is then l / (1 + r), |r| at most 1.1 times the relative error of d and 5 u.
+ * 2. Let f - l d be the terms of c (f coordinates, d products with n). Those of the true vertex
+ *    are V = (f - l d + r f) / (1 + r). The sum of the |f| is at most R, the extent of the frame
+ *    from its centre. If V > R the bound is no less than that of y = 0 or y = e_k. Else |V| <=
+ *    R, since the pair is in contact and the bound that of a point of the frame. The value at
+ *    hand is V (1 + r) - r f, off by at most |r| (R + |V|); or, from the value at hand, by 1.1
+ *    |r| (R + its magnitude). The lesser of these counts (add_candidate()).
+ * 3. Coordinates of the wall's edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by
+ *    the slope times as much.
+ * 4. n is off by at most 2.1 t S, which moves c by as much times all lengths at hand. At the
+ *    true vertex this is multiplied with l / (1 + r), and so is e, of which |l| S e counts
+ *    already: 2.2 t times these lengths and a tenth of e, times |l| S (frame_error). Likewise
+ *    1.1 e stands in the slack.
+ *
+ * Frames that are in contact as prepared (in_contact): frame_error seldom counts. Let E be the
+ * end of the box of these frames, so that c(y) >= E for all y.
+ *
+ * 5. With t = 0, 1 and 2 bound E: E >= (the value at hand) - w_j for some vertex j, where w is
+ *    twice the error of rounding, |l| S e, and what r makes of it.
+ * 6. At the true vertex i of the true end, the true c is at least c(y_i) - 1.1 |l| S e - 1.1 e,
+ *    and so at least E less these.
+ * 7. Let W be the largest w + |l| S e of all vertices. The true end is at least the value at
+ *    hand less W + 1.1 W / 2, which is 1.55 W (shared). For vertices at which that is beyond the
+ *    tolerance, 1 to 4 hold. The changes by bends (8) count both at i and at j.
+ *
+ * Vertices that are not certain:
+ *
+ * 8. Such a vertex may be left out if c surely grows along a line through it, the line of the
+ *    other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
+ *    -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are
+ *    not certain: each is at most twice 17 times the error of a determinant, and lengths have a
+ *    sum of at most 2 T, so that all of them change c at a certain vertex by at most 68 (18 u +
+ *    4 t) T S |l|, bend_error. Where gap(N) is below minus twice that, what is left grows at
+ *    both ends, and is least at a vertex that is certain, or at 0.
+ * 9. A determinant that is exactly 0, each of its monomials having a factor 0, is no vertex at
+ *    all. One vertex that is certain makes the normals span the space.
  *
  * Widths, the sums of these errors, are bounded once for all axes. Within the tolerance they are
- * allowed for at the end; few vertices need them one by one.
- *
- * On the line of an outward normal all of this holds of its half l >= 0, which ends in y = 0 or
- * e_k.
- *
- * Something certain makes the normals span the space. Where nothing rounds (slabs_exact.h),
- * determinants and all products with n are exact, and l alone is rounded, twice: what is left of
- * the wall is at most 3 u of its product with n, times l, within the 9 u of that product. NAN
- * bounds nothing, and stands for what is not certain. Underflow: as in slabs.c; some component is
- * at least 2^-200, and 2^-49 of it far above all that is lost. */
+ * allowed for at the end; few vertices need them one by one. NAN bounds nothing, and stands for
+ * what is not certain. Underflow: as in slabs.c; some component is at least 2^-200, and 2^-49 of
+ * it far above all that is lost. */
 #ifndef FMB_BOX_SEARCH_H
 #define FMB_BOX_SEARCH_H
 
