@@ -24,7 +24,7 @@ static const struct scenario {
 } scenarios[] = {{"random, meet", .in_contact = true},
                  {"random, apart"},
                  {"gap 1e-9", "gap-1e-9", 1e-9},
-                 {"random, by 1e-6", .gap = -1e-6, .which = BUT_BOXES},
+                 {"shallow, 1e-6", .gap = -1e-6, .which = BUT_BOXES},
                  {"overlap 1e-6", "overlap-1e-6", -1e-6},
                  {"overlap 1e-9", "overlap-1e-9", -1e-9},
                  {"touch, vertex", .which = BUT_BOXES, .touches = 1},

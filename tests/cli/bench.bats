@@ -10,11 +10,11 @@ setup() {
 # Certified verdicts are right; the other methods are right about random pairs, not about all; what
 # other libraries have here is nearly right about random pairs.
 contacts() {
-    jq -e '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 137' "$JSON"
+    jq -e '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 140' "$JSON"
     jq -e 'all(.contacts[]; [.methods[].name] | contains(["batch", "batch+box", "single", "query",
                                                           "sat", "seidel"]))' "$JSON"
     jq -e '[.contacts[] | select([.methods[].name] | index("gpr")) | [.dim, .moving, .shapes]]
-           | length == 10 and unique == [[3, false, "TT"]]' "$JSON"
+           | length == 11 and unique == [[3, false, "TT"]]' "$JSON"
     jq -e 'all(.contacts[].methods[]; .ns > 0 and .wrong >= 0 and .wrong <= 1)' "$JSON"
     jq -e 'all(.contacts[].methods[] | select(.name | test("batch|single|query")); .wrong == 0)' "$JSON"
     jq -e '[.contacts[] | select(.pairs_are | startswith("random")) | .methods[]]
