@@ -423,6 +423,7 @@ and beside each other, with nothing else in common, are
 # ---- The terminal ------------------------------------------------------------------------------
 
 @test "on a terminal it shows how far it is, elsewhere it does not" {
+    script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     "$MAKE_MESH" --faces 100000 large.ply
     script -qfc "$FMB mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
     script=$!

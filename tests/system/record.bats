@@ -478,6 +478,7 @@ resolves() {
 # ---- The terminal ----------------------------------------------------------------------------
 
 @test "on a terminal it shows how it goes, elsewhere it does not" {
+    script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     mkfifo "$BATS_TEST_TMPDIR/keys"
     script -qfc "$FMB record --json $log > $report" "$BATS_TEST_TMPDIR/screen" \
         < "$BATS_TEST_TMPDIR/keys" > /dev/null 3>&- &

@@ -402,7 +402,7 @@ static void test_the_others_have_no_answer(void **state)
     relay->before = die;
     struct relay_truth truth;
     relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.02, 2);
+    struct fmb_client *client = relay_client(relay, 0.3, 1);
     struct fmb_client_scene scene = listed();
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, relay_check, &truth), FMB_OK);
@@ -987,7 +987,7 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
         relay->pair_lie = lie[i];
         struct fmb_client_answer answer;
         relay_open(relay, 2000);
-        struct fmb_client *client = relay_client(relay, 0.03, 1);
+        struct fmb_client *client = relay_client(relay, 0.3, 1);
         relay_draw(placement, 2, 3, 1, 1, 1);
         assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer),
                          FMB_CLIENT_NO_SERVICE);
