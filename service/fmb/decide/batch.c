@@ -266,6 +266,11 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
 
 /* ---- Results ---- */
 
+static bool is_contact(unsigned char verdict)
+{
+    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
+}
+
 static void put_no_box(const struct fmb_batch *batch, size_t i)
 {
     for (int k = 0; k < 2 * FMB_DIM_MAX && batch->boxes; k++)
@@ -411,36 +416,55 @@ static void put_boxes(struct batch_block *block, kernel_function *boxes, bool in
     }
 }
 
-/* Computes the boxes of all pairs in contact, whose verdicts are known, in four groups: those at
- * rest and those in which a frame moves, that the filter decides and that it leaves unsure. */
-static void put_all_boxes(struct batch_block *block, const struct batch_job *job, size_t start,
-                          size_t end)
+/* Which pairs in contact have their boxes computed together. */
+struct box_group {
+    bool moving; /* a frame moves; else both are at rest */
+    bool unsure; /* the filter does not decide them; else it does */
+};
+
+/* Computes the boxes of a group. Returns how many pairs in contact do not move or rest as the group
+ * does. */
+static size_t put_group(struct batch_block *block, const struct batch_job *job,
+                        const struct box_group group, size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
-    const bool any_unsure = memchr(block->outcome + start, SLABS_UNSURE, end - start) != NULL;
     struct contacts contacts;
-    for (int group = 0; group < (any_unsure ? 4 : 2); group++) {
-        const bool moving = group & 1, unsure = group & 2;
-        enum kernel_kind kind = 0;
-        contacts.count = 0;
-        for (size_t k = start; k < end; k++) {
-            const size_t i = block->first + block->slot[k];
-            const struct fmb_prepared *const *pair = block->pair[k];
-            bool swapped;
-            if (batch->verdicts[i] != FMB_TOUCHING && batch->verdicts[i] != FMB_OVERLAPPING) {
-                put_no_box(batch, i);
-                continue;
-            }
-            const enum kernel_kind own =
-                kernel_box_kind(pair[0], pair[1], batch->duration, &swapped);
-            if (!(own & KERNEL_DRIFTS) != !moving || (block->outcome[k] == SLABS_UNSURE) != unsure)
-                continue;
-            kind = own;
-            contacts.pair[contacts.count][0] = pair[swapped];
-            contacts.pair[contacts.count][1] = pair[!swapped];
-            contacts.index[contacts.count++] = k;
-        }
-        put_boxes(block, job->kernels.boxes[kind], !unsure, &contacts);
+    enum kernel_kind kind = 0;
+    size_t others = 0;
+    contacts.count = 0;
+    for (size_t k = start; k < end; k++) {
+        const size_t i = block->first + block->slot[k];
+        const struct fmb_prepared *const *pair = block->pair[k];
+        bool swapped;
+        if (!is_contact(batch->verdicts[i]))
+            continue;
+        const enum kernel_kind own = kernel_box_kind(pair[0], pair[1], batch->duration, &swapped);
+        const bool moving = own & KERNEL_DRIFTS;
+        others += moving != group.moving;
+        if (moving != group.moving || (block->outcome[k] == SLABS_UNSURE) != group.unsure)
+            continue;
+        kind = own;
+        contacts.pair[contacts.count][0] = pair[swapped];
+        contacts.pair[contacts.count][1] = pair[!swapped];
+        contacts.index[contacts.count++] = k;
+    }
+    put_boxes(block, job->kernels.boxes[kind], !group.unsure, &contacts);
+    return others;
+}
+
+/* Computes the boxes of all pairs in contact, whose verdicts are known. */
+static void put_all_boxes(struct batch_block *block, const struct batch_job *job,
+                          enum kernel_kind kind, size_t start, size_t end)
+{
+    const bool any_unsure = memchr(block->outcome + start, SLABS_UNSURE, end - start) != NULL;
+    for (size_t k = start; k < end; k++)
+        if (!is_contact(block->batch->verdicts[block->first + block->slot[k]]))
+            put_no_box(block->batch, block->first + block->slot[k]);
+    for (int unsure = 0; unsure < (any_unsure ? 2 : 1); unsure++) {
+        const bool moving = kind & KERNEL_DRIFTS;
+        const struct box_group same = {moving, unsure}, others = {!moving, unsure};
+        if (put_group(block, job, same, start, end) > 0)
+            put_group(block, job, others, start, end);
     }
 }
 
@@ -488,7 +512,7 @@ static void filter_kind(struct batch_block *block, const struct batch_job *job,
     else
         put_verdicts(block, start, end);
     if (batch->boxes)
-        put_all_boxes(block, job, start, end);
+        put_all_boxes(block, job, kind, start, end);
 }
 
 /* ---- Pairs that the filter does not take, and pairs that are refused ---- */
@@ -579,8 +603,7 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
     struct fmb_gap *gap = &batch->gaps[i];
     unsigned char *verdict = &batch->verdicts[i];
     enum gap_outcome outcome = GAP_FAR;
-    const bool contact = *verdict == FMB_TOUCHING || *verdict == FMB_OVERLAPPING;
-    if (contact || (*verdict == FMB_SEPARATED && !block->far[slot]))
+    if (is_contact(*verdict) || (*verdict == FMB_SEPARATED && !block->far[slot]))
         outcome = gap_of(&batch->frames[batch->pairs[i][0]], &batch->frames[batch->pairs[i][1]],
                          batch->duration, (enum fmb_verdict) * verdict, job->farthest,
                          batch->open != NULL, gap);

@@ -33,19 +33,25 @@
  *    on paper.
  * 3. c is convex, and linear between the walls
  *
- *    y . a = 0                  for the edges a of A (e_k - y) . b = 0          for the edges b
- *    of B travel_B[k] - y . H = 0    where the pair drifts.
+ *    y . a = 0                  for the edges a of A
+ *
+ *    (e_k - y) . b = 0          for the edges b of B
+ *
+ *    travel_B[k] - y . H = 0    where the pair drifts.
  *
  *    If the normals of the walls span the space, c is least at a vertex: a point in which three
  *    walls with independent normals meet (in 2D two). Two walls of A meet in the line of a
  *    normal of A, three in 0; the same holds for B. So the vertices are
  *
- *    y = 0 and y = e_k          c is the end of the extent of B, of A y = l n
- *    n a normal of A, on a wall of B: l = b[k] / (n . b), or on that
- *                                   of the drift
- *    e_k - y = l n              n a normal of B, on a wall of A or that of the drift y = (b[k]
- *    (H x a) + travel_B[k] (a x b)) / [a b H]
- *                                   on a wall of A, one of B and that of the drift: a crossing.
+ *    y = 0, y = e_k    c is the end of the extent of B, of A
+ *
+ *    y = l n           n a normal of A, on a wall of B: l = b[k] / (n . b), or that of the drift
+ *
+ *    e_k - y = l n     n a normal of B, on a wall of A or that of the drift
+ *
+ *    y = (b[k] (H x a) + travel_B[k] (a x b)) / [a b H]
+ *
+ *    The last is a crossing: on a wall of A, one of B and that of the drift.
  *
  *    Which of them are corners of the polytope in space and time does not matter, by 1.
  * 4. Along a normal of a simplex with a volume, h bends at the outward one only: opposite to it
@@ -172,7 +178,7 @@ struct box_places {
 struct box_frame {
     lanes edge[6][3];
     lanes length[6][3];            /* magnitudes of the components that an edge is made of */
-    lanes_mask nonzero[6][3];      /* where the coordinate of an edge may not be 0 */
+    lanes_mask inexact[3];         /* along an axis, the coordinates of edges may be off */
     lanes centre[3];               /* of the reference point, in the middle of the window */
     lanes travel[3];               /* half of the displacement */
     lanes sum[3];                  /* of the magnitudes of all that a coordinate is made of */
@@ -184,7 +190,6 @@ struct box_frame {
 struct box_normal {
     lanes scale;                   /* S */
     lanes magnitude[3], weight[3]; /* of n, and of its monomials */
-    lanes_mask nonzero[3];         /* of n, as of edges */
     lanes own;    /* n . c of the component that is not across n, or of all of them */
     lanes at[6];  /* n . edges of the other frame */
     lanes middle; /* n . (reference point of the other frame - that of this one) */
@@ -193,10 +198,8 @@ struct box_normal {
 
 /* The determinant of a vertex. */
 struct box_vertex {
-    lanes inverse;   /* NAN where it may be 0 */
-    lanes error;     /* relative, from rounding */
-    lanes fine;      /* relative, from the monomials of the determinant and from t */
-    lanes_mask open; /* it may be 0, and is not surely 0 */
+    lanes inverse;        /* NAN where it may be 0 */
+    lanes_mask uncertain; /* it may be 0 */
 };
 
 /* What c gives at a vertex: how far the intersection reaches from the centre of a frame at most,
@@ -241,7 +244,7 @@ INLINE lanes_mask is_not(lanes_mask mask)
     return mask == 0;
 }
 
-/* Whether a monomial of u x v, of [u v], of u . v, may not be 0. */
+/* Whether a monomial of u x v, of u . v, may not be 0. */
 INLINE void cross_nonzero(const lanes_mask u[3], const lanes_mask v[3], lanes_mask out[3])
 {
     out[0] = (u[1] & v[2]) | (u[2] & v[1]);
@@ -279,6 +282,17 @@ INLINE lanes_mask has_bit(lanes_bits summary, unsigned bit)
     return (summary & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * bit) != 0;
 }
 
+/* The sum of the magnitudes of the components along an axis. */
+INLINE lanes magnitudes_along(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              int which, int axis)
+{
+    lanes sum = lanes_abs(pair->component[which][0][axis]);
+    UNROLL(2)
+    for (int i = 1; i < component_count(traits, which); i++)
+        sum += lanes_abs(pair->component[which][i][axis]);
+    return sum;
+}
+
 /* Zeros become positive: their sign decides to which end a vertex at l = 0 belongs. */
 INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
                           int which, const struct box_places *places, struct box_frame *out)
@@ -287,7 +301,7 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
     const double twice = is_doubled(traits) ? 2 : 1;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        const lanes_mask inexact =
+        out->inexact[axis] =
             is_not(has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis));
         const lanes at = twice * places->origin[which][axis];
         out->travel[axis] =
@@ -296,10 +310,9 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
                 : lanes_of(0);
         out->centre[axis] =
             (traits.simplex[which] ? at : at + shift_of(traits, c, axis)) + out->travel[axis];
-        out->own_sum[axis] = lanes_abs(out->travel[axis]);
-        UNROLL(3)
-        for (int i = 0; i < component_count(traits, which); i++)
-            out->own_sum[axis] += lanes_abs(c[i][axis]);
+        out->own_sum[axis] = magnitudes_along(pair, traits, which, axis);
+        if (traits.drifts)
+            out->own_sum[axis] += lanes_abs(out->travel[axis]);
         out->sum[axis] = lanes_abs(at) + 2 * out->own_sum[axis];
         out->own_sum_max = axis ? lanes_max(out->own_sum[axis], out->own_sum_max) : out->own_sum[0];
         const lanes way = lanes_abs(out->travel[axis]);
@@ -311,7 +324,6 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
             const lanes to = e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis];
             out->edge[e][axis] = e < traits.dim ? to + 0.0 : to - from;
             out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
-            out->nonzero[e][axis] = (out->edge[e][axis] != 0) | inexact;
         }
     }
 }
@@ -325,12 +337,13 @@ INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_tr
     for (int axis = 0; axis < traits.dim; axis++) {
         const lanes centre = frame->centre[axis];
         lanes farthest = lanes_abs(centre);
-        UNROLL(3)
-        for (int i = 0; i < component_count(traits, which); i++) {
-            const lanes c = pair->component[which][i][axis];
-            farthest = traits.simplex[which] ? lanes_max(lanes_abs(centre + c), farthest)
-                                             : farthest + lanes_abs(c);
+        if (!traits.simplex[which]) {
+            largest = lanes_max(farthest + frame->own_sum[axis], largest);
+            continue;
         }
+        UNROLL(3)
+        for (int i = 0; i < component_count(traits, which); i++)
+            farthest = lanes_max(lanes_abs(centre + pair->component[which][i][axis]), farthest);
         largest = lanes_max(farthest + lanes_abs(frame->travel[axis]), largest);
     }
     return (1 - 0x1p-40) * largest;
@@ -375,33 +388,74 @@ INLINE lanes weight_of(const struct kernel_traits traits, const lanes weight[3],
     return traits.dim == 2 ? plane : plane + weight[2] * lanes_abs(v[2]);
 }
 
-/* weight: of the vector whose product with v is the determinant, nonzero of both as of edges;
- * scale: the product of the lengths. */
+/* The error of a determinant, from its monomials and from t. weight: of the vector whose product
+ * with v it is; scale: the product of the lengths. */
+INLINE lanes determinant_error(const struct kernel_traits traits, lanes scale,
+                               const lanes weight[3], const lanes v[3],
+                               const struct box_search *search)
+{
+    return lanes_select(search->exact, lanes_of(0),
+                        determinant_rounding(traits) * weight_of(traits, weight, v) +
+                            (3.1 * search->relative_error) * scale);
+}
+
+/* relative in struct box_candidate; arguments as above. */
+INLINE lanes relative_width(const struct kernel_traits traits, lanes inverse, lanes scale,
+                            const lanes weight[3], const lanes v[3],
+                            const struct box_search *search)
+{
+    return (1.2 * determinant_error(traits, scale, weight, v, search)) * lanes_abs(inverse) +
+           0x1p-50;
+}
+
 INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det, lanes scale,
                                    const lanes weight[3], const lanes v[3],
-                                   const lanes_mask nonzero_weight[3],
-                                   const lanes_mask nonzero_v[3], struct box_search *search)
+                                   struct box_search *search)
 {
     struct box_vertex out;
-    const lanes_mask none = {0};
-    out.open = none;
-    const lanes error = search->determinant * scale;
-    const lanes fine = lanes_select(search->exact, lanes_of(0),
-                                    determinant_rounding(traits) * weight_of(traits, weight, v) +
-                                        (3.1 * search->relative_error) * scale);
-    lanes_mask certain = lanes_abs(det) > 16 * error;
-    if (!lanes_all(certain)) {
-        certain = lanes_abs(det) > 16 * fine;
+    out.uncertain = (lanes_mask){0};
+    const lanes error = (16 * search->determinant) * scale;
+    if (lanes_greater_bits(lanes_abs(det), error) == (1u << LANES) - 1) {
+        search->spans = is_not((lanes_mask){0});
+    } else {
+        const lanes fine = 16 * determinant_error(traits, scale, weight, v, search);
+        const lanes_mask certain = lanes_abs(det) > fine;
+        search->spans |= certain;
+        out.uncertain = is_not(certain);
         det = lanes_select(certain, det, lanes_of(NAN));
-        out.open = is_not(certain) & dot_nonzero(traits, nonzero_weight, nonzero_v) &
-                   is_not(search->exact);
     }
     out.inverse = 1 / det;
-    const lanes size = lanes_abs(out.inverse);
-    out.error = (1.2 * search->rounding * scale) * size + 0x1p-50;
-    out.fine = (1.2 * fine) * size + 0x1p-50;
-    search->spans |= certain;
     return out;
+}
+
+/* Where the coordinates of an edge may not be 0. */
+INLINE void edge_nonzero(const struct box_frame *frame, int e, lanes_mask out[3])
+{
+    UNROLL(3)
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = (frame->edge[e][axis] != 0) | frame->inexact[axis];
+}
+
+/* Where the coordinates of a normal may not be 0: in 2D of edge k, in 3D of face k, of which 3 is
+ * the one across from the origin. */
+INLINE void normal_nonzero(const struct kernel_traits traits, const struct box_frame *frame, int k,
+                           lanes_mask out[3])
+{
+    lanes_mask u[3], v[3], own[3];
+    if (traits.dim == 2) {
+        edge_nonzero(frame, k, u);
+        out[0] = u[1];
+        out[1] = u[0];
+        return;
+    }
+    out[0] = out[1] = out[2] = (lanes_mask){0};
+    for (int face = k % 3; face < (k == 3 ? 3 : k + 1); face++) {
+        edge_nonzero(frame, next(face), u);
+        edge_nonzero(frame, next(next(face)), v);
+        cross_nonzero(u, v, own);
+        for (int axis = 0; axis < 3; axis++)
+            out[axis] |= own[axis];
+    }
 }
 
 /* ---- Vertices y = 0 and y = e_k: extents ---- */
@@ -418,8 +472,10 @@ INLINE void set_extents(const struct kernel_traits traits, const struct pair_lan
             at[i] = pair->component[which][i][axis];
         const struct slab_extent own = extent_of_frame(traits, which, at);
         const lanes way = lanes_abs(search->frame[which].travel[axis]);
-        search->bounds[which].outer[0][axis] = (own.radius - own.low) + way;
-        search->bounds[which].outer[1][axis] = (own.radius + own.high) + way;
+        const lanes below = reach_below(traits, which, own),
+                    above = reach_above(traits, which, own);
+        search->bounds[which].outer[0][axis] = traits.drifts ? below + way : below;
+        search->bounds[which].outer[1][axis] = traits.drifts ? above + way : above;
         search->bounds[which].inner[0][axis] = search->bounds[which].inner[1][axis] =
             lanes_of(INFINITY);
     }
@@ -477,6 +533,21 @@ INLINE lanes_mask is_inside(const struct kernel_traits traits, struct slab_exten
     return gap_of(traits, d, middle, swing) + scale * (2 * search->bend_error + 2 * pair->unit) < 0;
 }
 
+/* The length of the extent of D along a normal; of two cuboids half of it. */
+INLINE lanes breadth_of(const struct kernel_traits traits, struct slab_extent d)
+{
+    if (!traits.simplex[0] && !traits.simplex[1])
+        return d.radius;
+    const lanes between = d.high - d.low;
+    return traits.simplex[0] && traits.simplex[1] ? between : between + d.radius;
+}
+
+/* The largest magnitude of the offset along a normal over the window. */
+INLINE lanes offset_reach(const struct kernel_traits traits, lanes middle, lanes swing)
+{
+    return traits.drifts ? lanes_abs(middle) + lanes_abs(swing) : lanes_abs(middle);
+}
+
 /* What c is off by on the line of a vector n, for the parameter 1: products with n, those of the
  * offset, and what is made of them; sum: of the magnitudes of these products. */
 INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3],
@@ -494,6 +565,7 @@ struct box_line {
     lanes own;    /* what the frame of the normal adds to both, its error included */
     lanes width;  /* of what c gives, for l = 1, frame_error left out */
     lanes frame_error, slope; /* for l = 1; no less than the slope of c */
+    lanes relative;           /* what the error of the determinant adds to the width, for l = 1 */
 };
 
 /* Whether only one of n and -n is the normal of a face with points of its frame behind it: that of
@@ -527,23 +599,22 @@ INLINE lanes with_sign_of(lanes x, lanes sign)
 #endif
 }
 
-/* What c gives along an axis at the vertex l of a line; other: the extent of the other frame along
- * e_k - l n, turned over with it where the normal is one-sided, and what its travel adds to both
- * ends. */
+/* What c gives along an axis at the vertex l of a line; d: the extent of the other frame along
+ * e_k - l n, turned over with it where the normal is one-sided; both: what is added at both ends.
+ */
 INLINE void set_candidate(const struct kernel_traits traits, int which, const struct box_line *line,
-                          lanes l, struct slab_extent other, lanes way, int axis,
+                          lanes l, struct slab_extent d, lanes both, int axis,
                           struct box_candidate *out)
 {
-    const lanes both = lanes_abs(l) * line->own + way;
     if (is_one_sided(traits, which)) {
-        const lanes candidate = (other.high + other.radius) + both;
+        const lanes candidate = reach_above(traits, !which, d) + both;
         out->at[0][axis] = choose_by_sign(l, candidate, lanes_of(INFINITY));
         out->at[1][axis] = choose_by_sign(l, lanes_of(INFINITY), candidate);
         return;
     }
     const lanes offset_term = l * line->middle;
-    out->at[0][axis] = ((other.radius - other.low) + both) + offset_term;
-    out->at[1][axis] = ((other.radius + other.high) + both) - offset_term;
+    out->at[0][axis] = (reach_below(traits, !which, d) + both) + offset_term;
+    out->at[1][axis] = (reach_above(traits, !which, d) + both) - offset_term;
 }
 
 /* What e_k - l n makes of component i of the other frame. */
@@ -565,8 +636,8 @@ INLINE void add_edge_vertex(const struct pair_lanes *pair, const struct kernel_t
     const struct box_normal *normal = line->normal;
     const struct box_frame *frame = &search->frame[other];
     const lanes l_max = pair->size[other][e] * lanes_abs(vertex->inverse);
-    const lanes edge_error = (1.2 * search->relative_error) * (line->slope * l_max);
-    struct box_candidate candidate = {.relative = vertex->fine};
+    const lanes edge_error = (1.2 * search->relative_error) * line->slope;
+    struct box_candidate candidate;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         const lanes l = frame->edge[e][axis] * vertex->inverse;
@@ -575,26 +646,30 @@ INLINE void add_edge_vertex(const struct pair_lanes *pair, const struct kernel_t
             two ? extent_of_two(traits.simplex[other], x,
                                 product_at(traits, which, frame, normal, q, axis, l))
                 : extent_of_one(traits.simplex[other], x);
-        const lanes way =
-            traits.drifts ? lanes_abs(frame->travel[axis] - l * normal->swing) : lanes_of(0);
-        set_candidate(traits, which, line, l, d, way, axis, &candidate);
-        candidate.width[axis] = lanes_abs(l) * (line->width + line->frame_error) + edge_error;
+        lanes both = lanes_abs(l) * line->own;
+        if (traits.drifts)
+            both += lanes_abs(frame->travel[axis] - l * normal->swing);
+        set_candidate(traits, which, line, l, d, both, axis, &candidate);
+        candidate.width[axis] =
+            lanes_abs(l) * (line->width + line->frame_error) + edge_error * l_max;
     }
-    lanes width = l_max * line->width + (2 * vertex->error) * frame->own_sum_max;
+    candidate.relative =
+        relative_width(traits, vertex->inverse, normal->scale * pair->size[other][e],
+                       normal->weight, frame->length[e], search);
+    lanes width = line->width + line->relative;
     if (!search->in_contact)
-        width += l_max * line->frame_error + edge_error;
-    add_candidate(traits, &candidate, width, other, search);
+        width += line->frame_error + edge_error;
+    add_candidate(traits, &candidate, l_max * width + 0x1p-49 * frame->own_sum_max, other, search);
 }
 
 /* The vertex of a line on the wall of the drift. */
-INLINE void add_drift_vertex(const struct kernel_traits traits, int which,
-                             const struct box_line *line, const struct box_vertex *vertex,
-                             struct box_search *search)
+INLINE void add_drift_vertex(const struct pair_lanes *pair, const struct kernel_traits traits,
+                             int which, const struct box_line *line,
+                             const struct box_vertex *vertex, struct box_search *search)
 {
     const int other = !which;
     const struct box_frame *frame = &search->frame[other];
-    const lanes l_max = frame->travel_max * lanes_abs(vertex->inverse);
-    struct box_candidate candidate = {.relative = vertex->fine};
+    struct box_candidate candidate;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         const lanes l = frame->travel[axis] * vertex->inverse;
@@ -602,14 +677,19 @@ INLINE void add_drift_vertex(const struct kernel_traits traits, int which,
         UNROLL(3)
         for (int i = 0; i < component_count(traits, other); i++)
             at[i] = product_at(traits, which, frame, line->normal, i, axis, l);
-        set_candidate(traits, which, line, l, extent_of_frame(traits, other, at), lanes_of(0), axis,
-                      &candidate);
+        set_candidate(traits, which, line, l, extent_of_frame(traits, other, at),
+                      lanes_abs(l) * line->own, axis, &candidate);
         candidate.width[axis] = lanes_abs(l) * (line->width + line->frame_error);
     }
-    lanes width = l_max * line->width + (2 * vertex->error) * frame->own_sum_max;
-    if (!search->in_contact)
-        width += l_max * line->frame_error;
-    add_candidate(traits, &candidate, width, other, search);
+    candidate.relative =
+        relative_width(traits, vertex->inverse, line->normal->scale * pair->half_drift_size,
+                       line->normal->weight, pair->half_drift, search);
+    const lanes width = search->in_contact ? line->width : line->width + line->frame_error;
+    add_candidate(traits, &candidate,
+                  lanes_abs(vertex->inverse) *
+                          (frame->travel_max * width + pair->half_drift_size * line->relative) +
+                      0x1p-49 * frame->own_sum_max,
+                  other, search);
 }
 
 /* Turns the normal of a simplex outward: its frame does not reach beyond 0 along it, or is as far
@@ -631,31 +711,50 @@ INLINE void turn_outward(const struct pair_lanes *pair, const struct kernel_trai
             normal->at[e] = with_sign_of(normal->at[e], sign);
 }
 
-/* across: the face does not hold the origin of its frame. */
+/* Of the vertices of a line, on walls of the other frame and that of the drift: the lanes in which
+ * a determinant may be 0, and is not surely 0. k: the number of the normal, as in normal_nonzero().
+ */
+INLINE lanes_mask open_of_line(const struct kernel_traits traits, int which, int k, int walls,
+                               const struct box_vertex vertex[7], const struct box_search *search)
+{
+    const struct box_frame *other = &search->frame[!which];
+    lanes_mask nonzero[3], edge[3], open = {0};
+    normal_nonzero(traits, &search->frame[which], k, nonzero);
+    for (int index = 0; index < walls; index++) {
+        edge_nonzero(other, edge_at(traits, !which, index), edge);
+        open |= vertex[index].uncertain & dot_nonzero(traits, nonzero, edge);
+    }
+    if (traits.drifts)
+        open |= vertex[walls].uncertain & dot_nonzero(traits, nonzero, search->drift);
+    return open & is_not(search->exact);
+}
+
+/* k: the number of the normal, as in normal_nonzero(). across: the face does not hold the origin of
+ * its frame. */
 INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_traits traits,
-                            int which, bool across, struct box_normal *normal,
+                            int which, int k, bool across, struct box_normal *normal,
                             struct box_search *search)
 {
     const int other = !which, walls = traits.dim == 2 && which ? 0 : edge_count(traits, other);
     const struct box_frame *frame = &search->frame[other];
     struct box_vertex vertex[7];
-    lanes_mask open = {0};
+    lanes_mask uncertain = {0}, open = {0};
     if (is_one_sided(traits, which))
         turn_outward(pair, traits, which, across, normal, search);
     UNROLL(6)
     for (int index = 0; index < walls; index++) {
         const int e = edge_at(traits, other, index);
-        vertex[index] =
-            vertex_of(traits, normal->at[e], normal->scale * pair->size[other][e], normal->weight,
-                      frame->length[e], normal->nonzero, frame->nonzero[e], search);
-        open |= vertex[index].open;
+        vertex[index] = vertex_of(traits, normal->at[e], normal->scale * pair->size[other][e],
+                                  normal->weight, frame->length[e], search);
+        uncertain |= vertex[index].uncertain;
     }
     if (traits.drifts) {
-        vertex[walls] =
-            vertex_of(traits, normal->swing, normal->scale * pair->half_drift_size, normal->weight,
-                      pair->half_drift, normal->nonzero, search->drift, search);
-        open |= vertex[walls].open;
+        vertex[walls] = vertex_of(traits, normal->swing, normal->scale * pair->half_drift_size,
+                                  normal->weight, pair->half_drift, search);
+        uncertain |= vertex[walls].uncertain;
     }
+    if (lanes_mask_bits(uncertain))
+        open = open_of_line(traits, which, k, walls, vertex, search);
     const struct slab_extent own = extent_of_one(traits.simplex[which], normal->own);
     const struct slab_extent of_other = extent_of_frame(traits, other, normal->at);
     const struct slab_extent d =
@@ -667,21 +766,21 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
             is_not(open) | is_inside(traits, d, which ? -normal->middle : normal->middle,
                                      normal->swing, normal->scale, pair, search);
     struct box_line line = {.normal = normal};
-    line.slope =
-        ((d.high - d.low) + d.radius) + (lanes_abs(normal->middle) + lanes_abs(normal->swing));
+    line.slope = breadth_of(traits, d) + offset_reach(traits, normal->middle, normal->swing);
     const lanes error = value_error(traits, normal->weight, normal->magnitude, line.slope, search) +
                         normal->scale * pair->error;
     line.frame_error = normal->scale * search->frame_error;
     line.width = (error + error) + lanes_select(open | search->left_out,
                                                 normal->scale * search->bend_error, lanes_of(0));
+    line.relative = (2.4 * search->rounding) * normal->scale * frame->own_sum_max;
     line.middle = normal->middle;
-    line.own = error + (traits.simplex[which] ? own.high : own.radius);
+    line.own = error + reach_above(traits, which, own);
     if (is_one_sided(traits, which))
         line.own -= normal->middle;
     if (traits.drifts) { /* many vertices: unrolled they gain nothing */
         for (int index = 0; index < walls; index++)
             add_edge_vertex(pair, traits, which, &line, index, &vertex[index], search);
-        add_drift_vertex(traits, which, &line, &vertex[walls], search);
+        add_drift_vertex(pair, traits, which, &line, &vertex[walls], search);
         return;
     }
     UNROLL(6)
@@ -700,17 +799,15 @@ INLINE void add_plane_normals(const struct pair_lanes *pair, const struct kernel
         UNROLL(3)
         for (int e = 0; e < edge_count(traits, which); e++) {
             const lanes *length = search->frame[which].length[e];
-            const lanes_mask *nonzero = search->frame[which].nonzero[e];
             struct box_normal normal = {.scale = pair->size[which][e],
                                         .magnitude = {length[1], length[0]},
                                         .weight = {length[1], length[0]},
-                                        .nonzero = {nonzero[1], nonzero[0]},
                                         .own = e == 0 ? area : -area,
                                         .at = {edges.other[e][0], edges.other[e][1]},
                                         .middle = which ? -edges.middle[e] : edges.middle[e],
                                         .swing = which ? -edges.swing[e] : edges.swing[e]};
             normal.at[2] = normal.at[1] - normal.at[0];
-            add_normal_line(pair, traits, which, e == 2, &normal, search);
+            add_normal_line(pair, traits, which, e, e == 2, &normal, search);
         }
     }
 }
@@ -727,8 +824,6 @@ INLINE void add_far_face(const struct box_normal normals[3], struct box_normal *
         out->at[i] = (normals[0].at[i] + normals[1].at[i]) + normals[2].at[i];
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
-        out->nonzero[axis] =
-            (normals[0].nonzero[axis] | normals[1].nonzero[axis]) | normals[2].nonzero[axis];
         out->weight[axis] =
             (normals[0].weight[axis] + normals[1].weight[axis]) + normals[2].weight[axis];
         out->magnitude[axis] =
@@ -755,8 +850,6 @@ INLINE void add_space_normals(const struct pair_lanes *pair, const struct kernel
         UNROLL(3)
         for (int axis = 0; axis < 3; axis++)
             normal->magnitude[axis] = lanes_abs(side->normal[k][axis]);
-        cross_nonzero(search->frame[which].nonzero[i], search->frame[which].nonzero[j],
-                      normal->nonzero);
         UNROLL(6)
         for (int e = 0; e < 6; e++)
             normal->at[e] = has_edge(traits, !which, e) ? side->other[k][e] : lanes_of(0);
@@ -764,9 +857,9 @@ INLINE void add_space_normals(const struct pair_lanes *pair, const struct kernel
     if (across)
         add_far_face(normals, &normals[3]);
     for (int k = first; k < 3; k++)
-        add_normal_line(pair, traits, which, false, &normals[k], search);
+        add_normal_line(pair, traits, which, k, false, &normals[k], search);
     if (across)
-        add_normal_line(pair, traits, which, true, &normals[3], search);
+        add_normal_line(pair, traits, which, 3, true, &normals[3], search);
 }
 
 /* ---- Vertices on a wall of each frame and that of the drift ---- */
@@ -805,9 +898,8 @@ INLINE void set_drift_slabs(const struct pair_lanes *pair, const struct kernel_t
         cross(pair->half_drift, search->frame[0].edge[e], normal);
         cross_weight(pair->half_drift, search->frame[0].length[e], weight);
         products->drift_middle[e] = middle[e];
-        products->error[e] =
-            value_error(traits, weight, magnitudes(normal, normal),
-                        ((d.high - d.low) + d.radius) + lanes_abs(middle[e]), search);
+        products->error[e] = value_error(traits, weight, magnitudes(normal, normal),
+                                         breadth_of(traits, d) + lanes_abs(middle[e]), search);
     }
 }
 
@@ -850,28 +942,33 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
     const lanes length_a = pair->size[0][i], length_b = pair->size[1][j];
     const lanes scale = length_a * length_b;
     lanes normal[3], weight[3];
-    lanes_mask nonzero[3];
     cross(a->edge[i], b->edge[j], normal);
     cross_weight(a->length[i], b->length[j], weight);
-    cross_nonzero(a->nonzero[i], b->nonzero[j], nonzero);
     const struct box_vertex vertex =
         vertex_of(traits, products->edges.swing[i][j], scale * pair->half_drift_size, weight,
-                  pair->half_drift, nonzero, search->drift, search);
+                  pair->half_drift, search);
     const struct slab_extent d = extent_sum(
         traits,
         extent_at_edge(traits, 0, i, side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]),
         extent_at_edge(traits, 1, j, side[1].other[0][i], side[1].other[1][i],
                        side[1].other[2][i]));
-    if (lanes_mask_bits(vertex.open))
-        search->good &= is_not(vertex.open) | products->inside[0][i] | products->inside[1][j] |
+    if (lanes_mask_bits(vertex.uncertain)) {
+        lanes_mask nonzero_a[3], nonzero_b[3], nonzero[3];
+        edge_nonzero(a, i, nonzero_a);
+        edge_nonzero(b, j, nonzero_b);
+        cross_nonzero(nonzero_a, nonzero_b, nonzero);
+        const lanes_mask open =
+            vertex.uncertain & dot_nonzero(traits, nonzero, search->drift) & is_not(search->exact);
+        search->good &= is_not(open) | products->inside[0][i] | products->inside[1][j] |
                         is_inside(traits, d, products->edges.middle[i][j],
                                   products->edges.swing[i][j], scale, pair, search);
-    search->open |= vertex.open;
+        search->open |= open;
+    }
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_drift_size;
     const lanes bends = lanes_select(search->left_out, search->bend_error, lanes_of(0));
-    const lanes sum = ((d.high - d.low) + d.radius) + (lanes_abs(products->edges.middle[i][j]) +
-                                                       lanes_abs(products->edges.swing[i][j]));
+    const lanes sum = breadth_of(traits, d) + offset_reach(traits, products->edges.middle[i][j],
+                                                           products->edges.swing[i][j]);
     const lanes of_m = products->error[i] + drift_scale * pair->error;
     const lanes of_n =
         value_error(traits, weight, magnitudes(normal, normal), sum, search) + scale * pair->error;
@@ -899,9 +996,11 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
                                  n_size * (width_of_n + scale * search->frame_error)) +
                                 edge_error;
     }
-    candidate.relative = vertex.fine;
+    candidate.relative = relative_width(traits, vertex.inverse, scale * pair->half_drift_size,
+                                        weight, pair->half_drift, search);
+    const lanes error = (1.2 * search->rounding * (scale * pair->half_drift_size)) * size + 0x1p-50;
     lanes width = ((length_b * size) * width_of_m + (b->travel_max * size) * width_of_n) +
-                  (2 * vertex.error) * b->own_sum_max;
+                  (2 * error) * b->own_sum_max;
     if (!search->in_contact)
         width += (((length_b * size) * drift_scale + (b->travel_max * size) * scale) *
                   search->frame_error) +
@@ -934,16 +1033,11 @@ INLINE void add_crossings(const struct pair_lanes *pair, const struct kernel_tra
  * normal number is between one and two units in its last place; sums that are not normal are exact.
  */
 
-INLINE lanes sum_below(lanes x, lanes y)
-{
-    const lanes sum = x + y;
-    const lanes_mask above = (sum - x > y) | (sum - y > x);
-    return lanes_select(above, sum - 0x1p-52 * lanes_abs(sum), sum);
-}
-
 INLINE lanes sum_above(lanes x, lanes y)
 {
-    return -sum_below(-x, -y);
+    const lanes sum = x + y;
+    const lanes_mask below = (sum - x < y) | (sum - y < x);
+    return lanes_select(below, sum + 0x1p-52 * lanes_abs(sum), sum);
 }
 
 INLINE lanes upper_half(lanes x)
@@ -965,39 +1059,43 @@ INLINE lanes product_slack(lanes x, lanes y, lanes product)
     return lanes_select(exact, lanes_of(0), 0x1p-52 * lanes_abs(product) + 0x1p-950);
 }
 
-/* Cuts the box, in the lengths of the world. */
+/* Adds the end of a component, at x from the origin, to the ends of a frame: [0] how far it reaches
+ * below 0, [1] above. Of a cuboid, x is added to the end on its side. */
+INLINE void add_component(bool simplex, lanes origin, lanes x, lanes ends[2])
+{
+    const lanes from = simplex ? with_sign_of(origin, x) : choose_by_sign(x, ends[0], ends[1]);
+    const lanes to = sum_above(from, lanes_abs(x));
+    ends[0] = choose_by_sign(x, simplex ? lanes_max(to, ends[0]) : to, ends[0]);
+    ends[1] = choose_by_sign(x, ends[1], simplex ? lanes_max(to, ends[1]) : to);
+}
+
+/* Cuts the box, in the lengths of the world; ends: as in add_component(). */
 INLINE void cut_to_extent(const struct pair_lanes *pair, const struct kernel_traits traits,
-                          int which, const struct box_places *places, int axis, lanes box[2][3])
+                          int which, const struct box_places *places, int axis, lanes ends[2])
 {
     const bool twice = is_doubled(traits) && traits.simplex[which];
     const lanes origin = places->origin[which][axis];
-    lanes low = origin, high = origin;
+    lanes own[2] = {-origin, origin};
     UNROLL(3)
     for (int i = 0; i < component_count(traits, which); i++) {
-        const lanes c = (twice ? 0.5 : 1.0) * pair->component[which][i][axis];
-        if (traits.simplex[which]) {
-            low = lanes_min(sum_below(origin, c), low);
-            high = lanes_max(sum_above(origin, c), high);
-        } else {
-            low = sum_below(low, lanes_min(c, lanes_of(0)));
-            high = sum_above(high, lanes_max(c, lanes_of(0)));
-        }
+        const lanes c = pair->component[which][i][axis];
+        add_component(traits.simplex[which], origin, twice ? 0.5 * c : c, own);
     }
     if (traits.drifts) {
         const lanes velocity = places->velocity[which][axis], time = lanes_of(places->duration);
         const lanes way = velocity * time, slack = product_slack(velocity, time, way);
-        low = sum_below(low, lanes_min(way - slack, lanes_of(0)));
-        high = sum_above(high, lanes_max(way + slack, lanes_of(0)));
+        own[0] = sum_above(own[0], lanes_max(slack - way, lanes_of(0)));
+        own[1] = sum_above(own[1], lanes_max(way + slack, lanes_of(0)));
     }
     const lanes_mask inexact =
         is_not(has_bit(places->summary[which], (unsigned) PREPARED_EXACT_X << axis));
     if (lanes_mask_bits(inexact)) {
         const lanes error = lanes_select(inexact, places->error[which], lanes_of(0));
-        low = sum_below(low, -error);
-        high = sum_above(high, error);
+        own[0] = sum_above(own[0], error);
+        own[1] = sum_above(own[1], error);
     }
-    box[0][axis] = lanes_max(low, box[0][axis]);
-    box[1][axis] = lanes_min(high, box[1][axis]);
+    ends[0] = lanes_min(own[0], ends[0]);
+    ends[1] = lanes_min(own[1], ends[1]);
 }
 
 /* ---- All of it ---- */
@@ -1007,15 +1105,16 @@ INLINE void set_sizes(const struct pair_lanes *pair, const struct kernel_traits 
                       const struct box_places *places, int axis, struct box_search *search)
 {
     const lanes apart = lanes_abs(places->origin[1][axis] - places->origin[0][axis]);
-    const lanes half = traits.drifts ? lanes_abs(pair->half_drift[axis]) : lanes_of(0);
-    lanes sum[2] = {lanes_of(0), lanes_of(0)};
-    UNROLL(2)
-    for (int which = 0; which < 2; which++)
-        UNROLL(3)
-    for (int i = 0; i < component_count(traits, which); i++)
-        sum[which] += lanes_abs(pair->component[which][i][axis]);
-    search->size[axis] = ((sum[0] + sum[1]) + half) + lanes_abs(pair->offset[axis]);
-    search->offset_sum[axis] = (is_doubled(traits) ? apart + apart : apart) + 2 * half;
+    const lanes half = lanes_abs(pair->half_drift[axis]);
+    const lanes sum[2] = {magnitudes_along(pair, traits, 0, axis),
+                          magnitudes_along(pair, traits, 1, axis)};
+    lanes size = sum[0] + sum[1], offset_sum = is_doubled(traits) ? apart + apart : apart;
+    if (traits.drifts) {
+        size += half;
+        offset_sum += 2 * half;
+    }
+    search->size[axis] = size + lanes_abs(pair->offset[axis]);
+    search->offset_sum[axis] = offset_sum;
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         if (!traits.simplex[which])
@@ -1159,8 +1258,10 @@ INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_
         search.left_out = search.open;
     }
     lanes_mask good = search.good & search.spans;
+    const bool any_unit = lanes_mask_bits(search.unit != 0);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
+        lanes ends[2];
         UNROLL(2)
         for (int end = 0; end < 2; end++) {
             lanes outer = lanes_of(INFINITY), inner = lanes_of(INFINITY);
@@ -1176,16 +1277,17 @@ INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_
                                   inner);
             }
             good &= outer - inner <= BOX_LIMIT * search.largest;
-            const lanes snap =
-                (is_doubled(traits) ? 0.5 : 1.0) * snapped(outer, inner, search.unit);
-            box[end][axis] = end ? snap : -snap;
+            if (any_unit)
+                outer = snapped(outer, inner, search.unit);
+            if (is_doubled(traits))
+                outer *= 0.5;
+            ends[end] = outer;
         }
         UNROLL(2)
         for (int which = 0; which < 2; which++)
-            cut_to_extent(pair, traits, which, places, axis, box);
-        UNROLL(2)
-        for (int end = 0; end < 2; end++)
-            box[end][axis] += 0.0; /* never -0 */
+            cut_to_extent(pair, traits, which, places, axis, ends);
+        box[0][axis] = 0.0 - ends[0]; /* never -0 */
+        box[1][axis] = ends[1] + 0.0;
     }
     return good;
 }

@@ -47,6 +47,8 @@ INLINE lanes_mask nothing_rounds(const struct kernel_traits traits, const struct
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         out &= is_multiple(scale * a->origin[axis], at) & is_multiple(scale * b->origin[axis], at);
+        if (lanes_mask_bits(out) == 0)
+            break;
         UNROLL(2)
         for (int which = 0; which < 2; which++)
             UNROLL(3)
