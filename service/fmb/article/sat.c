@@ -3,21 +3,20 @@
  * each (Eberly and Schneider, the article's reference 1). A moving body sweeps a convex body too:
  * its drift over the window is one more edge. These axes are the normals of the slabs of the pair
  * (slabs.h). The kernels of the filter decide what they are sure of; of other pairs the slabs are
- * listed, and their numbers are taken as they are, without the bounds on their errors.
+ * listed, and their numbers are taken as they are, as if they had no errors.
  *
- * Accuracy: none is guaranteed. Rounding decides near contact, but only there. The normal of nearly
- * parallel edges consists of rounding errors. It is a direction all the same, and extents along it
- * are as accurate as along any other. */
+ * Accuracy: none is guaranteed. Rounding decides near contact, but only there. */
 #include "inexact.h"
 #include "kernel.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Whether the slab has a width: that of parallel edges, whose normal is 0, has none. */
+/* Whether the slab is wider than the error of its numbers. That of edges that are parallel, or
+ * nearly so, is not: its normal consists of rounding errors, and it says nothing. */
 static bool has_width(const struct slab_value *slab)
 {
-    return slab->low < slab->high;
+    return slab->high - slab->low > slab->error;
 }
 
 static enum fmb_verdict verdict_of(const struct slab_value *slab, int count)
@@ -25,9 +24,11 @@ static enum fmb_verdict verdict_of(const struct slab_value *slab, int count)
     enum fmb_verdict verdict = FMB_OVERLAPPING;
     for (int i = 0; i < count; i++) {
         const double gap = slab_gap(&slab[i]);
+        if (!has_width(&slab[i]))
+            continue;
         if (gap > 0)
             return FMB_SEPARATED;
-        if (gap == 0 && has_width(&slab[i]))
+        if (gap == 0)
             verdict = FMB_TOUCHING;
     }
     return verdict;
@@ -42,7 +43,7 @@ static void set_contact(const struct slab_value *slab, int count, double duratio
     for (int i = 0; i < count; i++) {
         struct inequality side[2];
         slab_inequalities(&slab[i], side);
-        for (int k = 0; k < 2; k++) {
+        for (int k = 0; k < 2 && has_width(&slab[i]); k++) {
             const double at = -side[k].c / side[k].g;
             if (side[k].g > 0)
                 bounds.strict[0] = fmax(at, bounds.strict[0]);
@@ -64,7 +65,7 @@ static enum fmb_status decide_by_list(const struct fmb_prepared *a, const struct
     struct slab_value slab[SLABS_MAX];
     if (!slabs_prepare(a, b, duration, &pair))
         return FMB_CANNOT_DECIDE;
-    const int count = slabs_list(&pair, false, slab);
+    const int count = slabs_list(&pair, true, slab);
     answer->verdict = verdict_of(slab, count);
     if (answer->verdict != FMB_SEPARATED)
         set_contact(slab, count, duration, answer);
