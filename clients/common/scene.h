@@ -73,20 +73,4 @@ struct scene_cursor {
 bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor,
                      struct scene_pair *out);
 
-/* Finds indices by ids in O(log n). Making it takes O(n log n). */
-struct scene_ids {
-    size_t count;
-    struct scene_id *sorted; /* owned */
-};
-
-void scene_ids_make(const struct scene *scene, struct scene_ids *out);
-void scene_ids_clear(struct scene_ids *ids);
-
-/* On output: true and *index, or false: no body has this id. */
-bool scene_ids_find(const struct scene_ids *ids, int64_t id, size_t *index);
-
-/* Returns false if all ids are unique. Otherwise returns true, and the indices *first < *second of
- * two bodies with the same id, *second being the smallest possible. */
-bool scene_ids_repeated(const struct scene_ids *ids, size_t *first, size_t *second);
-
 #endif
