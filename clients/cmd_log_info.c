@@ -31,7 +31,7 @@ static const char usage[] =
 /* On output: NULL, or why it could not be read to its end. */
 static const char *read_all(struct log_reader *reader, struct log_info *info)
 {
-    struct progress progress = progress_begin_of("bytes", (uint64_t) log_size(reader));
+    struct progress progress = progress_begin("bytes", log_size(reader));
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
@@ -40,7 +40,7 @@ static const char *read_all(struct log_reader *reader, struct log_info *info)
             log_info_event(info, &event);
         else
             log_info_damage(info, &damage);
-        progress_to(&progress, (uint64_t) (outcome == LOG_EVENT ? event.offset : damage.offset));
+        progress_to(&progress, outcome == LOG_EVENT ? event.offset : damage.offset, progress.total);
     }
     const int error = errno;
     progress_end(&progress);

@@ -199,11 +199,6 @@ static void report_command(const struct log_query *query)
 
 /* ---- The command ---- */
 
-static void on_progress(void *user, int64_t bytes, int64_t of)
-{
-    progress_to_of(user, (uint64_t) bytes, (uint64_t) of);
-}
-
 static int print_scene(struct log_query *query)
 {
     struct scene scene;
@@ -221,8 +216,8 @@ static int run_scene(struct log_scene_options *options)
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
                                   [LOG_QUERY_FAILED] = ARGS_USAGE};
     struct log_query *query = allocate(1, sizeof *query);
-    struct progress progress = progress_begin_of("bytes", 0);
-    options->query.progress = on_progress;
+    struct progress progress = progress_begin("bytes", 0);
+    options->query.progress = progress_to;
     options->query.user = &progress;
     const enum log_query_outcome outcome = log_query(&options->query, query);
     progress_end(&progress);

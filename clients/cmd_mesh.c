@@ -220,13 +220,13 @@ static bool check(const struct args *args, const struct mesh_options *options)
 
 static void on_progress(void *progress, uint64_t done, uint64_t total)
 {
-    progress_to_of(progress, done, total);
+    progress_to(progress, (int64_t) done, (int64_t) total);
 }
 
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
-    struct progress progress = progress_begin_of("bytes", 0);
+    struct progress progress = progress_begin("bytes", 0);
     const struct mesh_progress watch = {on_progress, &progress};
     const bool good = mesh_read(path, &watch, out, error);
     progress_end(&progress);
@@ -271,7 +271,7 @@ static int tell(const struct mesh_options *options, const struct mesh_report *re
 static int meet(const struct mesh_options *options, const struct mesh *a, const struct mesh *b,
                 char **names)
 {
-    struct progress progress = progress_begin_of("faces", 0);
+    struct progress progress = progress_begin("faces", 0);
     const struct mesh_query question = {
         .a = a,
         .b = b,

@@ -122,7 +122,7 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
         if (run->report[i])
             run->report[i]->pair(run->report[i], scene, &checked);
     run->undecided = run->undecided || checked.error;
-    progress_step(&run->progress);
+    progress_to(&run->progress, run->progress.done + 1, run->progress.total);
 }
 
 /* The bus is opened for the first scene: a bad one is reported without a bus. */
@@ -140,7 +140,9 @@ static void answer_scene(struct query_run *run, const struct scene *scene)
     for (int i = 0; i < 2; i++)
         if (run->report[i])
             run->report[i]->begin(run->report[i], scene);
-    run->progress = progress_begin(scene_count_pairs(scene));
+    run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(scene));
+    if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
+        run->progress.enabled = false;
     if (run->options->local)
         answers_local(&run->options->question, scene, take_outcome, run);
     else

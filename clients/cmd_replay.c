@@ -19,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
@@ -144,7 +143,7 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 static void on_progress(void *user, int64_t bytes)
 {
     struct replay_run *run = user;
-    progress_to(&run->progress, (uint64_t) bytes);
+    progress_to(&run->progress, bytes, run->progress.total);
 }
 
 /* ---- Before and after ---- */
@@ -302,8 +301,7 @@ static int replay(struct replay_run *run, int64_t size, struct tally *tally)
     const struct replay_arguments *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
-    run->progress = progress_begin_of("bytes", (uint64_t) size);
-    run->progress.enabled = isatty(STDERR_FILENO); /* what is printed comes when it has ended */
+    run->progress = progress_begin("bytes", size);
     bool good = replay_run(&options->replay, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
