@@ -2,7 +2,6 @@
 #include "commands.h"
 
 #include "args.h"
-#include "bus_client.h"
 #include "clock.h"
 #include "complain.h"
 #include "fmb_client_raw.h"
@@ -316,7 +315,7 @@ static bool open_bus(struct recording *recording, const struct args_bus *args)
 {
     const bool others = recording->options->all || recording->options->channel;
     recording->channels = log_channels(args->prefix);
-    recording->client = bus_client_open(args, (struct fmb_client_options){0});
+    recording->client = args_open_client(args, (struct fmb_client_options){0});
     if (!recording->client)
         return false;
     const bool good = fmb_client_raw_listen(recording->client, others, on_message, recording);

@@ -160,17 +160,14 @@ int cmd_status(int argc, char **argv)
         {.name = NULL},
     };
     struct args args = {"status", usage, own, .operand = NULL};
-    struct listener listener;
     struct heartbeat heartbeat = {.received = false};
     const struct fmb_client_watcher watcher = {
         .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &heartbeat};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!listen_open(&args.bus, &watcher, &listener))
-        return ARGS_FAILED;
-    enum listen_end end = listen_until(&listener, &heartbeat.received, options.timeout);
-    listen_close(&listener);
+    const enum listen_end end =
+        listen_until(&args.bus, &watcher, &heartbeat.received, options.timeout);
     if (end == LISTEN_ENOUGH)
         return print_heartbeat(&options, &heartbeat.status);
     if (end == LISTEN_TIMEOUT)

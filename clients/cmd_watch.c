@@ -223,13 +223,8 @@ int cmd_watch(int argc, char **argv)
     struct watch watch = {.options = &options, .columns = report_columns()};
     const struct fmb_client_watcher watcher = {
         .pair = on_pair, .scene = on_scene, .malformed = on_malformed, .user = &watch};
-    struct listener listener;
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!listen_open(&args.bus, &watcher, &listener))
-        return ARGS_FAILED;
-    enum listen_end end = listen_until(&listener, &watch.enough, -1);
-    listen_close(&listener);
-    return end_of_watch(&watch, end);
+    return end_of_watch(&watch, listen_until(&args.bus, &watcher, &watch.enough, -1));
 }

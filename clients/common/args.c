@@ -1,7 +1,6 @@
 #include "args.h"
 
 #include "complain.h"
-#include "fmb_client.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -179,4 +178,15 @@ const char *args_bus_name(const struct args_bus *bus)
 {
     const char *url = bus->url ? bus->url : getenv("LCM_DEFAULT_URL");
     return url && *url ? url : "the usual bus of this host";
+}
+
+struct fmb_client *args_open_client(const struct args_bus *bus, struct fmb_client_options options)
+{
+    char why[FMB_CLIENT_WHY_MAX];
+    options.url = bus->url;
+    options.prefix = bus->prefix;
+    struct fmb_client *client = fmb_client_open(&options, why, sizeof why);
+    if (!client)
+        complain("%s", why);
+    return client;
 }

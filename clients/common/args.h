@@ -2,6 +2,8 @@
 #ifndef ARGS_H
 #define ARGS_H
 
+#include "fmb_client.h"
+
 #include <getopt.h>
 #include <stdbool.h>
 
@@ -71,5 +73,9 @@ bool args_integer(const struct args *args, long low, long high, long *out);
 
 /* Returns the URL of a bus for messages; valid as long as the options. */
 const char *args_bus_name(const struct args_bus *bus);
+
+/* Opens a client with these options, and the URL and prefix of the bus. Returns NULL after an
+ * error, which was reported on stderr. */
+struct fmb_client *args_open_client(const struct args_bus *bus, struct fmb_client_options options);
 
 #endif

@@ -1,7 +1,6 @@
 #include "answers.h"
 
 #include "allocate.h"
-#include "bus_client.h"
 #include "complain.h"
 
 #include <inttypes.h>
@@ -34,7 +33,7 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
     answers->bus = *bus;
     answers->question = *question;
     answers->patience = timeout * (retries + 1);
-    answers->client = bus_client_open(bus, options);
+    answers->client = args_open_client(bus, options);
     if (!answers->client)
         complain("to decide without a bus: fmb query --local");
     return answers;
