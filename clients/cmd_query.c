@@ -9,7 +9,6 @@
 #include "progress.h"
 #include "report.h"
 #include "svg.h"
-#include "verify.h"
 
 #include <errno.h>
 #include <fcntl.h>
