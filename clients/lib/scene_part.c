@@ -57,7 +57,7 @@ int32_t part_pairs_before(const struct part *part, int32_t a)
 /* ---- What a result says ---- */
 
 /* A result against the part that it answers. */
-struct taking {
+struct matching {
     const struct part *part;
     const struct fmb_client_scene *scene;
     const struct scene_result *result;
@@ -70,13 +70,13 @@ static bool is_contact(int verdict)
 }
 
 /* The number of the pair of a verdict; -1: the result names a pair that is not of the query. */
-static int32_t number_of(const struct taking *taking, int32_t k)
+static int32_t number_of(const struct matching *matching, int32_t k)
 {
-    const struct part *part = taking->part;
+    const struct part *part = matching->part;
     if (part->which == QUERY_PAIRS_LISTED)
-        return taking->first + k;
+        return matching->first + k;
     const unsigned placements = (unsigned) part->placement_count, split = (unsigned) part->split;
-    const unsigned a = taking->result->pair[k][0], b = taking->result->pair[k][1];
+    const unsigned a = matching->result->pair[k][0], b = matching->result->pair[k][1];
     const bool across = part->which == QUERY_PAIRS_ACROSS;
     const unsigned partners = across ? split : a + 1;
     if (a >= (across ? split : placements) || b < partners || b >= placements)
@@ -85,42 +85,42 @@ static int32_t number_of(const struct taking *taking, int32_t k)
 }
 
 /* Each pair that is named is of the query, comes once, in order, and is a contact or near. */
-static bool fits_named(const struct taking *taking)
+static bool fits_named(const struct matching *matching)
 {
-    const struct scene_result *result = taking->result;
-    int32_t before = taking->first - 1;
+    const struct scene_result *result = matching->result;
+    int32_t before = matching->first - 1;
     if (result->names_pairs != (result->verdict_count > 0))
         return false;
     for (int32_t k = 0; k < result->verdict_count; k++) {
-        const int32_t number = number_of(taking, k);
+        const int32_t number = number_of(matching, k);
         if (number <= before || number >= result->end_pair)
             return false;
         if (result->verdict[k] == FMB_SEPARATED &&
-            !(result->has_gaps && part_is_near(taking->scene, &result->gap[k])))
+            !(result->has_gaps && part_is_near(matching->scene, &result->gap[k])))
             return false;
         before = number;
     }
     return true;
 }
 
-static bool fits(const struct taking *taking)
+static bool fits(const struct matching *matching)
 {
-    const struct scene_result *result = taking->result;
-    const struct part *part = taking->part;
+    const struct scene_result *result = matching->result;
+    const struct part *part = matching->part;
     const bool listed = part->which == QUERY_PAIRS_LISTED;
-    if (result->end_pair <= taking->first || result->end_pair > part->total)
+    if (result->end_pair <= matching->first || result->end_pair > part->total)
         return false;
-    const bool times = taking->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
+    const bool times = matching->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
     if (result->has_times != times)
         return false;
-    if (result->has_gaps != (wants_gaps(taking->scene) && result->verdict_count > 0) ||
-        (result->has_boxes && !(taking->scene->want & FMB_CLIENT_WANT_BOX)) ||
-        (result->dim > 0 && result->dim != taking->scene->placements[0].dim))
+    if (result->has_gaps != (wants_gaps(matching->scene) && result->verdict_count > 0) ||
+        (result->has_boxes && !(matching->scene->want & FMB_CLIENT_WANT_BOX)) ||
+        (result->dim > 0 && result->dim != matching->scene->placements[0].dim))
         return false;
     if (listed &&
-        (result->names_pairs || result->verdict_count != result->end_pair - taking->first))
+        (result->names_pairs || result->verdict_count != result->end_pair - matching->first))
         return false;
-    return listed || fits_named(taking);
+    return listed || fits_named(matching);
 }
 
 static bool reserve(struct part_answers *answers, size_t more)
@@ -162,7 +162,7 @@ void part_read_answer(const struct scene_result *result, int32_t k, int32_t *con
 }
 
 /* Whether the pair is not merely separated. */
-static bool says_more(const struct scene_result *result, int32_t k)
+static bool is_stored(const struct scene_result *result, int32_t k)
 {
     return result->verdict[k] != FMB_SEPARATED ||
            (result->has_gaps && query_has_gap(&result->gap[k]));
@@ -171,20 +171,20 @@ static bool says_more(const struct scene_result *result, int32_t k)
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers)
 {
-    const struct taking taking = {part, scene, result, answers->answered};
+    const struct matching matching = {part, scene, result, answers->answered};
     int32_t contact = 0;
-    if (!fits(&taking))
+    if (!fits(&matching))
         return PART_MALFORMED;
     size_t found = 0;
     for (int32_t k = 0; k < result->verdict_count; k++)
-        found += says_more(result, k);
+        found += is_stored(result, k);
     if (!reserve(answers, found))
         return PART_NO_MEMORY;
     for (int32_t k = 0; k < result->verdict_count; k++) {
-        if (!says_more(result, k))
+        if (!is_stored(result, k))
             continue;
         struct part_answer *out = &answers->answer[answers->count++];
-        *out = (struct part_answer){.number = number_of(&taking, k)};
+        *out = (struct part_answer){.number = number_of(&matching, k)};
         part_read_answer(result, k, &contact, &out->answer);
     }
     answers->answered = result->end_pair;

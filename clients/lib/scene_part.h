@@ -14,7 +14,7 @@ struct part {
     unsigned placement[QUERY_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
     uint16_t pair[QUERY_PAIRS_MAX][2];        /* LISTED: [total][a, b], indices in the part */
     size_t bytes;                             /* of the query, without ignored pairs */
-    size_t row, column;                       /* for cut.h and order.h */
+    size_t row, column;                       /* for division.h and order.h */
 };
 
 /* A pair that is not separated, or has a gap. */
@@ -28,9 +28,9 @@ struct part_answers {
     int32_t answered; /* the first so many pairs; those not listed in answer are separated */
     int status;       /* of the other pairs, once no more answers will come */
     char text[QUERY_TEXT_MAX];
-    struct part_answer *answer;    /* owned, [count], in order */
-    size_t count, capacity, given; /* given: index of the first not delivered yet */
-    char *certificate;             /* owned; NULL: none */
+    struct part_answer *answer;        /* owned, [count], in order */
+    size_t count, capacity, delivered; /* delivered: index of the first not delivered yet */
+    char *certificate;                 /* owned; NULL: none */
 };
 
 void part_answers_clear(struct part_answers *answers);

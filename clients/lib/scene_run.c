@@ -31,13 +31,13 @@ static void whole_placement(const struct part_run *part, int32_t i, unsigned cha
 
 /* The entry of the i-th placement of the part in the table of held bodies; NULL: it is anonymous.
  */
-static struct held_body *held_of(const struct part_run *part, int32_t i)
+static struct held_body *entry_of(const struct part_run *part, int32_t i)
 {
     struct scene_run *run = part->run;
-    const struct cut_body *body = &run->cut->body[part->part.placement[i]];
+    const struct division_body *body = &run->division->body[part->part.placement[i]];
     struct placement placement;
-    if (!body->held || body->held->serial == body->serial)
-        return body->held;
+    if (!body->entry || body->entry->serial == body->serial)
+        return body->entry;
     unsigned char *scratch = run->geometry + QUERY_BYTES_MAX;
     whole_placement(part, i, scratch, &placement);
     return held_find(run->held, &placement.geometry);
@@ -48,7 +48,7 @@ static struct held_body *held_of(const struct part_run *part, int32_t i)
 static void write_placement(struct part_run *part, int32_t i, unsigned char *geometry,
                             struct placement *out)
 {
-    const struct held_body *body = part->unknown < UNKNOWN_MAX ? held_of(part, i) : NULL;
+    const struct held_body *body = part->unknown < UNKNOWN_MAX ? entry_of(part, i) : NULL;
     part->whole[i] = !body || !body->held;
     whole_placement(part, i, geometry, out);
     if (!part->whole[i])
@@ -108,7 +108,7 @@ static size_t write_definitions(struct part_run *part, unsigned char *out)
     const bool may = part->unknown < UNKNOWN_MAX && part->definitions < part->part.placement_count;
     memset(part->whole, 0, sizeof part->whole);
     for (int32_t i = 0; i < part->part.placement_count && may; i++) {
-        const struct held_body *body = held_of(part, i);
+        const struct held_body *body = entry_of(part, i);
         if (!body || body->held)
             continue;
         struct placement *placement = &query->placement[query->placement_count];
@@ -144,8 +144,8 @@ static size_t write_scene(struct part_run *part, unsigned char *out)
         query->pair[i / 2][i % 2] = of->pair[i / 2][i % 2];
     /* Where there is no space for all of them, order.c drops the answers. */
     query->ignored_count =
-        2 * cut_ignored(part->run->cut, of, (int32_t) ((max - bytes) / WIRE_PAIR_BYTES),
-                        query->ignored);
+        2 * division_ignored(part->run->division, of, (int32_t) ((max - bytes) / WIRE_PAIR_BYTES),
+                             query->ignored);
     return wire_write_scene_query(query, out);
 }
 
@@ -183,7 +183,7 @@ static bool take_handles(const struct part_run *part, const bool *whole,
     const int32_t count = pair ? 2 : result->scene->handle_count;
     int32_t used = 0;
     for (int32_t i = 0; i < part->part.placement_count; i++) {
-        struct held_body *body = whole[i] ? held_of(part, i) : NULL;
+        struct held_body *body = whole[i] ? entry_of(part, i) : NULL;
         if (!body && !pair) /* results of scenes have no handle for it */
             continue;
         if (used == count || !handle_equal(body ? &body->handle : &none, &handle[used++]))
@@ -198,7 +198,7 @@ static bool take_handles(const struct part_run *part, const bool *whole,
 static bool forget(const struct part_run *part, int32_t i)
 {
     struct held_body *body =
-        i < part->part.placement_count && !part->whole[i] ? held_of(part, i) : NULL;
+        i < part->part.placement_count && !part->whole[i] ? entry_of(part, i) : NULL;
     if (!body)
         return false;
     body->held = false;
@@ -246,7 +246,7 @@ static enum request_taken write_next(struct part_run *part, struct request *requ
 {
     if (write_query(part, request))
         return taken;
-    part->run->recut = part->run->cut->by_handle;
+    part->run->divide_again = part->run->division->by_handle;
     return refuse(part, FMB_OVER_LIMIT, "the bodies of a pair do not fit into one datagram");
 }
 
@@ -332,19 +332,19 @@ static void begin_part(struct scene_run *run, struct part_run *part, size_t byte
     if (write_next(part, request, REQUEST_NEXT) == REQUEST_NEXT)
         request_send(run->requests, request);
     else
-        request_cancel(run->requests, request);
+        request_end(run->requests, request);
 }
 
 /* On output: false once there are no more parts. */
-static bool fill_window(struct scene_run *run, struct cut *cut)
+static bool fill_window(struct scene_run *run, struct division *division)
 {
     while (run->next - run->oldest < FMB_CLIENT_RAW_WINDOW) {
         struct part_run *part = part_of(run, run->next);
-        if (!run->is_cut && !cut_next(cut, run->pairs_max, &part->part))
+        if (!run->has_next && !division_next(division, run->pairs_max, &part->part))
             return false;
         const size_t bytes = bytes_of(run, &part->part);
-        run->is_cut = run->status == FMB_OK && !requests_ready(run->requests, bytes);
-        if (run->is_cut)
+        run->has_next = run->status == FMB_OK && !requests_ready(run->requests, bytes);
+        if (run->has_next)
             return true;
         begin_part(run, part, bytes);
     }
@@ -355,7 +355,7 @@ static void deliver(struct scene_run *run, struct order *order)
 {
     while (run->oldest < run->next && part_of(run, run->oldest)->done) {
         struct part_run *part = part_of(run, run->oldest++);
-        if (run->recut)
+        if (run->divide_again)
             part_answers_clear(&part->answers);
         else
             order_take(order, &part->part, &part->answers);
@@ -372,14 +372,14 @@ static void wait_for_results(struct scene_run *run)
 }
 
 static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
-                  const struct cut *cut)
+                  const struct division *division)
 {
     const double most = 1e9; /* seconds: some 30 years are no limit */
     const double within = scene->within > 0 && scene->within < most ? scene->within : most;
     if (run->pairs_max == 0 || run->method != scene->method || run->want != scene->want)
         run->pairs_max = PAIRS_FIRST;
-    run->recut = false;
-    run->cut = cut;
+    run->divide_again = false;
+    run->division = division;
     run->scene = scene;
     run->method = scene->method;
     run->want = scene->want;
@@ -388,25 +388,25 @@ static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
 }
 
 /* What is complete is delivered before more is received: the caller may take long over it. */
-static void run_parts(struct scene_run *run, struct cut *cut, struct order *order)
+static void run_parts(struct scene_run *run, struct division *division, struct order *order)
 {
     bool more = true;
     while (more || run->oldest < run->next) {
-        more = more && fill_window(run, cut);
+        more = more && fill_window(run, division);
         deliver(run, order);
         if (run->requests->count > 0)
             wait_for_results(run);
     }
 }
 
-static int run_cut(struct scene_run *run, const struct fmb_client_scene *scene, struct cut *cut,
-                   fmb_client_sink *sink, void *user)
+static int run_division(struct scene_run *run, const struct fmb_client_scene *scene,
+                        struct division *division, fmb_client_sink *sink, void *user)
 {
     struct order order;
-    if (!order_begin(cut, sink, user, &order))
+    if (!order_begin(division, sink, user, &order))
         return FMB_CLIENT_NO_MEMORY;
-    begin(run, scene, cut);
-    run_parts(run, cut, &order);
+    begin(run, scene, division);
+    run_parts(run, division, &order);
     order_end(&order);
     return FMB_OK;
 }
@@ -415,12 +415,13 @@ int scene_run(struct scene_run *run, const struct fmb_client_scene *scene, bool 
               fmb_client_sink *sink, void *user)
 {
     int status;
-    run->recut = false;
+    run->divide_again = false;
     do {
-        struct cut cut;
-        const bool begun = cut_begin(scene, single, run->recut, run->held, run->geometry, &cut);
-        status = begun ? run_cut(run, scene, &cut, sink, user) : FMB_CLIENT_NO_MEMORY;
-        cut_end(&cut);
-    } while (run->recut && status == FMB_OK);
+        struct division division;
+        const bool begun =
+            division_begin(scene, single, run->divide_again, run->held, run->geometry, &division);
+        status = begun ? run_division(run, scene, &division, sink, user) : FMB_CLIENT_NO_MEMORY;
+        division_end(&division);
+    } while (run->divide_again && status == FMB_OK);
     return status;
 }

@@ -1,5 +1,5 @@
-/* Runs a scene through the request engine: divides it into parts (cut.h) of one datagram, keeps
- * several under way, and passes the answers on in the order of the pairs (order.h).
+/* Runs a scene through the request engine: divides it into parts (division.h) of one datagram,
+ * keeps several under way, and passes the answers on in the order of the pairs (order.h).
  *
  * A part may take several queries, one after the other: if a result had no space for all answers,
  * or the service did not hold a body. If the bodies that it does not hold do not fit a datagram
@@ -7,7 +7,7 @@
 #ifndef SCENE_RUN_H
 #define SCENE_RUN_H
 
-#include "cut.h"
+#include "division.h"
 #include "request.h"
 
 /* A part under way. */
@@ -27,12 +27,12 @@ struct scene_run {
     struct requests *requests;
     struct held *held;
     const struct fmb_client_scene *scene;
-    const struct cut *cut;
+    const struct division *division;
     int status;            /* not 0: the remaining pairs are given up with it */
     int64_t until;         /* time limit of the whole scene; clock_ns() */
     uint64_t oldest, next; /* parts: first not delivered, first not begun */
-    bool is_cut;           /* the next part is in its slot already */
-    bool recut;            /* the only part has to be divided: nothing is delivered */
+    bool has_next;         /* the next part is in its slot already */
+    bool divide_again;     /* the only part has to be divided: nothing is delivered */
     struct part_run part[FMB_CLIENT_RAW_WINDOW]; /* [part % FMB_CLIENT_RAW_WINDOW] */
     /* Most pairs listed in a query, so that the queries under way are decided within half a
      * timeout; estimated from the compute times of results, for this method and want. */
