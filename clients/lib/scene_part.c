@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a pair, with a certificate of usual length. */
+/* Bytes of the result of a pair with a certificate of usual length. */
 enum { SINGLE_RESULT_BYTES = 1400 };
 
 void part_answers_clear(struct part_answers *answers)
@@ -28,7 +28,7 @@ static bool wants_gaps(const struct fmb_client_scene *scene)
     return scene->want & FMB_CLIENT_WANT_GAP || scene->margin > 0;
 }
 
-/* Eight bytes a number. */
+/* Returns the bytes of a contact: 8 for each number. */
 static size_t contact_bytes(const struct fmb_client_scene *scene)
 {
     const size_t times = scene->want & FMB_CLIENT_WANT_TIMES ? 2 : 0;
@@ -54,9 +54,9 @@ int32_t part_pairs_before(const struct part *part, int32_t a)
     return a * n - a * (a + 1) / 2;
 }
 
-/* ---- What a result says ---- */
+/* ---- Results ---- */
 
-/* A result against the part that it answers. */
+/* A result, and the part that it should match. */
 struct matching {
     const struct part *part;
     const struct fmb_client_scene *scene;
@@ -69,7 +69,7 @@ static bool is_contact(int verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* The number of the pair of a verdict; -1: the result names a pair that is not of the query. */
+/* Returns the number of the pair of verdict k; -1: the query does not have this pair. */
 static int32_t number_of(const struct matching *matching, int32_t k)
 {
     const struct part *part = matching->part;
@@ -84,7 +84,8 @@ static int32_t number_of(const struct matching *matching, int32_t k)
     return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
 }
 
-/* Each pair that is named is of the query, comes once, in order, and is a contact or near. */
+/* Whether each pair that the result names is in the query, comes once, in order, and is a contact or
+ * near. */
 static bool fits_named(const struct matching *matching)
 {
     const struct scene_result *result = matching->result;
@@ -138,7 +139,7 @@ static bool reserve(struct part_answers *answers, size_t more)
     return true;
 }
 
-/* Of the contact with this number among the contacts. */
+/* contact: its number among the contacts of the result. */
 static void fill_contact(const struct scene_result *result, int32_t contact, struct fmb_answer *out)
 {
     const int dim = result->dim;
@@ -161,7 +162,7 @@ void part_read_answer(const struct scene_result *result, int32_t k, int32_t *con
         out->gap = result->gap[k];
 }
 
-/* Whether the pair is not merely separated. */
+/* Whether the answer is kept: it is more than that the pair is separated. */
 static bool is_stored(const struct scene_result *result, int32_t k)
 {
     return result->verdict[k] != FMB_SEPARATED ||
@@ -191,7 +192,8 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
     return PART_TAKEN;
 }
 
-/* A box of a contact, and a certificate, only where they were wanted; a gap where it was. */
+/* Whether the result has a gap if and only if it was wanted; and a box, which only a contact has, and
+ * a certificate, only if they were wanted. */
 static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
