@@ -84,8 +84,8 @@ static int32_t number_of(const struct matching *matching, int32_t k)
     return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
 }
 
-/* Whether each pair that the result names is in the query, comes once, in order, and is a contact or
- * near. */
+/* Whether each pair that the result names is in the query, comes once, in order, and is a contact
+ * or near. */
 static bool fits_named(const struct matching *matching)
 {
     const struct scene_result *result = matching->result;
@@ -192,8 +192,8 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
     return PART_TAKEN;
 }
 
-/* Whether the result has a gap if and only if it was wanted; and a box, which only a contact has, and
- * a certificate, only if they were wanted. */
+/* Whether the result has a gap if and only if it was wanted; and a box, which only a contact has,
+ * and a certificate, only if they were wanted. */
 static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;

@@ -52,8 +52,8 @@ size_t part_result_bytes(const struct part *part, const struct fmb_client_scene 
  * part. */
 int32_t part_pairs_before(const struct part *part, int32_t a);
 
-/* Adds the answers of a result with FMB_OK to those of the pairs before it. Returns MALFORMED if the
- * result does not match the query; nothing is added then, nor with NO_MEMORY. */
+/* Adds the answers of a result with FMB_OK to those of the pairs before it. Returns MALFORMED if
+ * the result does not match the query; nothing is added then, nor with NO_MEMORY. */
 enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers);

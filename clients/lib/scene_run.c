@@ -7,11 +7,12 @@
 #include <string.h>
 
 enum {
-    /* Pairs listed in a query, before it is known how long they take, and at least. */
+    /* Pairs listed in a query: before it is known how long they take; at least; and the factor by
+     * which the number grows at most. */
     PAIRS_FIRST = 256,
     PAIRS_LEAST = 16,
     PAIRS_GROWTH = 4,
-    /* After this many results with bodies that were not held, all are sent whole. */
+    /* After this many results that name bodies not held, a part sends all its bodies whole. */
     UNKNOWN_MAX = 2
 };
 
@@ -22,15 +23,15 @@ static struct part_run *part_of(struct scene_run *run, uint64_t part)
 
 /* ---- Queries ---- */
 
-/* The i-th placement of the part, whole, with its frames in geometry. */
+/* Converts the i-th placement of the part, with its frames in geometry. */
 static void whole_placement(const struct part_run *part, int32_t i, unsigned char *geometry,
                             struct placement *out)
 {
     client_scene_placement(&part->run->scene->placements[part->part.placement[i]], geometry, out);
 }
 
-/* The entry of the i-th placement of the part in the table of held bodies; NULL: it is anonymous.
- */
+/* Returns the entry of the i-th placement of the part in the table of bodies; NULL: it is
+ * anonymous. */
 static struct held_body *entry_of(const struct part_run *part, int32_t i)
 {
     struct scene_run *run = part->run;
@@ -43,8 +44,8 @@ static struct held_body *entry_of(const struct part_run *part, int32_t i)
     return held_find(run->held, &placement.geometry);
 }
 
-/* A body that the service holds is written by handle; others whole, with their frames in geometry.
- */
+/* Converts the i-th placement for a query: by handle if the service holds the body; else with its
+ * frames in geometry. */
 static void write_placement(struct part_run *part, int32_t i, unsigned char *geometry,
                             struct placement *out)
 {
@@ -55,7 +56,8 @@ static void write_placement(struct part_run *part, int32_t i, unsigned char *geo
         client_scene_use_handle(out, &body->handle, part->run->none);
 }
 
-/* Writes the placements. Returns their bytes; or more than max, and not all of them are written. */
+/* Converts the placements. Returns their bytes; a number above max means that not all of them were
+ * converted. */
 static size_t write_placements(struct part_run *part, size_t max, struct placement *out)
 {
     unsigned char *geometry = part->run->geometry;
@@ -69,7 +71,7 @@ static size_t write_placements(struct part_run *part, size_t max, struct placeme
     return bytes;
 }
 
-/* Returns 0 if the query is too large. */
+/* Writes a pair query. Returns its size, or 0 if it is too large. */
 static size_t write_pair(struct part_run *part, unsigned char *out)
 {
     const struct fmb_client_scene *scene = part->run->scene;
@@ -99,7 +101,8 @@ static struct scene_query *begin_query(const struct part_run *part)
     return query;
 }
 
-/* Only bodies that the service is to hold, as many as fit. Returns 0 if there are none. */
+/* Writes a scene query without pairs, with bodies that the service does not hold, as many as fit.
+ * Returns its size, or 0 if there are none. */
 static size_t write_definitions(struct part_run *part, unsigned char *out)
 {
     struct scene_query *query = begin_query(part);
@@ -142,7 +145,7 @@ static size_t write_scene(struct part_run *part, unsigned char *out)
     query->index_count = listed ? 2 * of->total : 0;
     for (int32_t i = 0; i < query->index_count; i++)
         query->pair[i / 2][i % 2] = of->pair[i / 2][i % 2];
-    /* Where there is no space for all of them, order.c drops the answers. */
+    /* If there is no space for all of them, order.c drops their answers. */
     query->ignored_count =
         2 * division_ignored(part->run->division, of, (int32_t) ((max - bytes) / WIRE_PAIR_BYTES),
                              query->ignored);
@@ -157,7 +160,7 @@ static void count_placements(struct fmb_client_counts *counts, const struct part
     }
 }
 
-/* Requests what the part has no answers to yet. Returns false if no query can be written. */
+/* Writes a query for the pairs that have no answers yet. Returns false if that is not possible. */
 static bool write_query(struct part_run *part, struct request *request)
 {
     memcpy(part->whole_earlier, part->whole, sizeof part->whole);
@@ -172,8 +175,8 @@ static bool write_query(struct part_run *part, struct request *request)
 
 /* ---- Handles in results ---- */
 
-/* The handles of a result are those of the bodies that were sent whole: the service holds them. On
- * output: false where they are others. */
+/* A result has the handles of the bodies that were sent whole, which the service then holds.
+ * Returns false if its handles are others. */
 static bool take_handles(const struct part_run *part, const bool *whole,
                          const struct request_result *result)
 {
@@ -194,7 +197,8 @@ static bool take_handles(const struct part_run *part, const bool *whole,
     return used == count;
 }
 
-/* On output: false where the i-th placement was not sent by handle. */
+/* Notes that the service does not hold the i-th body. Returns false if it was not sent by handle.
+ */
 static bool forget(const struct part_run *part, int32_t i)
 {
     struct held_body *body =
@@ -205,11 +209,11 @@ static bool forget(const struct part_run *part, int32_t i)
     return true;
 }
 
-/* Bodies that are not held. On output: false where the result names others than were sent by
- * handle. */
+/* Notes the bodies that the service does not hold. Returns false if the result names a body that
+ * was not sent by handle. */
 static bool take_unknown(const struct part_run *part, const struct request_result *result)
 {
-    if (result->kind == FMB_CLIENT_PAIR) { /* which of the two is not said */
+    if (result->kind == FMB_CLIENT_PAIR) { /* it does not say which of the two */
         const bool first = forget(part, 0), second = forget(part, 1);
         return first || second;
     }
@@ -228,8 +232,8 @@ static enum request_taken refuse(struct part_run *part, int status, const char *
     return REQUEST_COMPLETE;
 }
 
-/* Adapts the pairs of a query to how long pairs take, so that all queries under way are decided
- * within half a timeout. */
+/* Adapts the number of pairs in a query to the time that pairs take, so that all queries under way
+ * are decided within half a timeout. */
 static void adapt_pairs(struct scene_run *run, int32_t pairs, int64_t compute_ns)
 {
     const double share = (double) run->requests->timeout_ns / (2 * FMB_CLIENT_RAW_WINDOW);
@@ -250,7 +254,7 @@ static enum request_taken write_next(struct part_run *part, struct request *requ
     return refuse(part, FMB_OVER_LIMIT, "the bodies of a pair do not fit into one datagram");
 }
 
-/* The result of a query that only has bodies. */
+/* Processes the result of a query that only has bodies. */
 static enum request_taken take_definitions(struct part_run *part, struct request *request,
                                            const struct request_result *result)
 {
@@ -291,7 +295,7 @@ static enum request_taken take_result(void *user, struct request *request,
 {
     struct part_run *part = user;
     if (result->status < FMB_OK) {
-        if (result->bytes) /* of a message: those numbers are the library's own */
+        if (result->bytes) /* no service sends the status numbers of this library */
             return REQUEST_MALFORMED;
         if (result->status != FMB_CLIENT_NO_ANSWER)
             part->run->status = result->status;
@@ -335,7 +339,7 @@ static void begin_part(struct scene_run *run, struct part_run *part, size_t byte
         request_end(run->requests, request);
 }
 
-/* On output: false once there are no more parts. */
+/* Begins parts while there is space for their queries. Returns false after the last part. */
 static bool fill_window(struct scene_run *run, struct division *division)
 {
     while (run->next - run->oldest < FMB_CLIENT_RAW_WINDOW) {
@@ -351,6 +355,7 @@ static bool fill_window(struct scene_run *run, struct division *division)
     return true;
 }
 
+/* Delivers the parts that are complete, up to the first that is not. */
 static void deliver(struct scene_run *run, struct order *order)
 {
     while (run->oldest < run->next && part_of(run, run->oldest)->done) {
@@ -387,7 +392,7 @@ static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
     run->until = clock_ns() + (int64_t) (within * 1e9);
 }
 
-/* What is complete is delivered before more is received: the caller may take long over it. */
+/* Complete parts are delivered before more results are received: sink may take long. */
 static void run_parts(struct scene_run *run, struct division *division, struct order *order)
 {
     bool more = true;
