@@ -67,7 +67,7 @@ static const char usage[] =
 
 struct query_options {
     bool local, json;
-    struct answers_question question;
+    struct answers_options wanted;
     const char *svg; /* NULL: no picture */
     double timeout;
     long retries;
@@ -115,7 +115,7 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
     struct query_run *run = user;
     struct outcome checked = *outcome;
     char refutation[VERIFY_TEXT_MAX];
-    if (run->options->question.certificate && !outcome->error)
+    if (run->options->wanted.certificate && !outcome->error)
         verify_outcome(scene, run->options->local ? "the" : "the service's", &checked, refutation);
     for (int i = 0; i < 2; i++)
         if (run->report[i])
@@ -129,7 +129,7 @@ static void answer_on_bus(struct query_run *run, const struct scene *scene)
 {
     const struct query_options *options = run->options;
     if (!run->bus)
-        run->bus = answers_bus_open(run->bus_options, &options->question, options->timeout,
+        run->bus = answers_bus_open(run->bus_options, &options->wanted, options->timeout,
                                     (int) options->retries);
     answers_bus_scene(run->bus, scene, take_outcome, run);
 }
@@ -143,7 +143,7 @@ static void answer_scene(struct query_run *run, const struct scene *scene)
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
         run->progress.enabled = false;
     if (run->options->local)
-        answers_local(&run->options->question, scene, take_outcome, run);
+        answers_local(&run->options->wanted, scene, take_outcome, run);
     else
         answer_on_bus(run, scene);
     progress_end(&run->progress);
@@ -185,7 +185,7 @@ static int run_query(const struct query_options *options, const struct args_bus 
                      const char *file, int fd)
 {
     struct report_json json = report_json(stdout);
-    struct report_text text = report_text(stdout, options->question.box, options->question.gap);
+    struct report_text text = report_text(stdout, options->wanted.box, options->wanted.gap);
     struct svg *svg = options->svg ? svg_open() : NULL;
     struct query_run run = {
         .options = options,
@@ -204,14 +204,14 @@ static int run_query(const struct query_options *options, const struct args_bus 
 int cmd_query(int argc, char **argv)
 {
     struct query_options options = {.timeout = 0.5, .retries = 5};
-    struct answers_question *question = &options.question;
+    struct answers_options *wanted = &options.wanted;
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &options.local},
         {"json", ARGS_FLAG, .out = &options.json},
-        {"box", ARGS_FLAG, .out = &question->box},
-        {"gap", ARGS_FLAG, .out = &question->gap},
-        {"certificate", ARGS_FLAG, .out = &question->certificate},
-        {"method", ARGS_OTHER, &question->method, .take = take_method},
+        {"box", ARGS_FLAG, .out = &wanted->box},
+        {"gap", ARGS_FLAG, .out = &wanted->gap},
+        {"certificate", ARGS_FLAG, .out = &wanted->certificate},
+        {"method", ARGS_OTHER, &wanted->method, .take = take_method},
         {"svg", ARGS_TEXT, .out = &options.svg},
         {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
         {"retries", ARGS_INTEGER, &options.retries, .high = 1000},
@@ -221,7 +221,7 @@ int cmd_query(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    question->box = question->box || options.svg;
+    wanted->box = wanted->box || options.svg;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;

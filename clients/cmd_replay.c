@@ -244,53 +244,41 @@ static void report_all(struct replay_run *run, const struct tally *all, int code
 
 /* ---- The end of a replay through a live service ---- */
 
-static void report_never(const struct answer_bus_options *options, double patience)
-{
-    const struct args_bus where = {options->url, options->prefix};
-    complain("no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s within %g s",
-             options->prefix, options->prefix, args_bus_name(&where), patience);
-}
-
-static void report_no_more(const struct tally_bus *bus, double patience, char *const *log)
-{
-    char answered[NUMBER_TEXT_MAX];
-    complain("fmbd answered %s queries, and then nothing for %g s; the next one is event %" PRId64
-             " (offset %" PRId64 ") of %s",
-             number_grouped(bus->answered, answered), patience, bus->number, bus->offset,
-             log[bus->log]);
-}
-
 /* No service has answered at all, or none does any more. */
 static void report_no_service(const struct tally_bus *bus, const struct answer_bus_options *options,
                               char *const *log)
 {
     const double patience = options->timeout * (options->retries + 1);
+    const struct args_bus where = {options->url, options->prefix};
+    char answered[NUMBER_TEXT_MAX];
     if (bus->services == 0)
-        report_never(options, patience);
+        complain("no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s within %g s",
+                 options->prefix, options->prefix, args_bus_name(&where), patience);
     else
-        report_no_more(bus, patience, log);
+        complain(
+            "fmbd answered %s queries, and then nothing for %g s; the next one is event %" PRId64
+            " (offset %" PRId64 ") of %s",
+            number_grouped(bus->answered, answered), patience, bus->number, bus->offset,
+            log[bus->log]);
     if (bus->malformed > 0)
         complain("%" PRId64 " results could not be read: another version of fmbd?", bus->malformed);
     complain("start one with 'fmbd%s%s &', or replay in this process: leave out --bus",
              *options->prefix ? " --prefix " : "", options->prefix);
 }
 
-static void report_signal(const struct tally_bus *bus)
-{
-    char answered[NUMBER_TEXT_MAX];
-    complain("ended by a signal; counts are of %s queries, answered so far",
-             number_grouped(bus->answered, answered));
-}
-
 /* Reports why not all queries were answered, if so, and what to do. */
 static void report_end(const struct tally_bus *bus, const struct answer_bus_options *options,
                        char *const *log)
 {
+    char answered[NUMBER_TEXT_MAX];
     switch ((enum answer_bus_end) bus->end) {
     case ANSWER_BUS_NO_END: break;
-    case ANSWER_BUS_SIGNAL: report_signal(bus); break;
+    case ANSWER_BUS_SIGNAL:
+        complain("ended by a signal; counts are of %s queries, answered so far",
+                 number_grouped(bus->answered, answered));
+        break;
     case ANSWER_BUS_NO_SERVICE: report_no_service(bus, options, log); break;
-    case ANSWER_BUS_FAILED: fputs("fmb: the bus has failed\n", stderr); break;
+    case ANSWER_BUS_FAILED: complain("the bus has failed"); break;
     }
 }
 

@@ -99,14 +99,6 @@ uint64_t scene_count_pairs(const struct scene *scene)
     return count < 2 ? 0 : count * (count - 1) / 2 - scene->ignored_count;
 }
 
-static bool next_of_all(const struct scene *scene, struct scene_cursor *cursor)
-{
-    if (++cursor->b < scene->body_count)
-        return true;
-    cursor->b = ++cursor->a + 1;
-    return cursor->b < scene->body_count;
-}
-
 /* Ignored pairs come in the same order. */
 static bool is_next_ignored(const struct scene *scene, const struct scene_cursor *cursor)
 {
@@ -123,7 +115,9 @@ bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor, str
         return true;
     }
     do {
-        if (!next_of_all(scene, cursor))
+        if (++cursor->b >= scene->body_count)
+            cursor->b = ++cursor->a + 1;
+        if (cursor->b >= scene->body_count)
             return false;
     } while (is_next_ignored(scene, cursor) && ++cursor->next);
     *out = (struct scene_pair){cursor->a, cursor->b};
