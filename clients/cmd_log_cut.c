@@ -6,7 +6,6 @@
 #include "json_write.h"
 #include "log_cut.h"
 #include "number.h"
-#include "output.h"
 #include "progress.h"
 #include "query.h"
 

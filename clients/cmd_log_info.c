@@ -5,7 +5,6 @@
 #include "complain.h"
 #include "log_info.h"
 #include "log_info_report.h"
-#include "output.h"
 #include "progress.h"
 
 #include <errno.h>

@@ -6,7 +6,6 @@
 #include "args.h"
 #include "complain.h"
 #include "log_query.h"
-#include "output.h"
 #include "progress.h"
 #include "scene_json.h"
 #include "scene_of_query.h"

@@ -7,7 +7,6 @@
 #include "mesh_page.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
-#include "output.h"
 #include "progress.h"
 
 #include <float.h>

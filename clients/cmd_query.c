@@ -5,7 +5,6 @@
 #include "args.h"
 #include "complain.h"
 #include "json.h"
-#include "output.h"
 #include "progress.h"
 #include "report.h"
 #include "svg.h"

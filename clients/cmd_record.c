@@ -7,7 +7,6 @@
 #include "fmb_client_raw.h"
 #include "log_choice.h"
 #include "log_write.h"
-#include "output.h"
 #include "record_report.h"
 #include "signals.h"
 

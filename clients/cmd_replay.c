@@ -9,7 +9,6 @@
 #include "input.h"
 #include "listing.h"
 #include "number.h"
-#include "output.h"
 #include "progress.h"
 #include "replay_output.h"
 

@@ -75,8 +75,8 @@ void report_answer_json(struct json_writer *json, int dim, const struct outcome 
 void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns);
 
-/* Writes an interval, such as "0.25 to 0.5 s", into text, and returns text. */
+/* Writes the contact interval, such as "0.25 to 0.5 s", into text. Returns the number of digits. */
 enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
-const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
+int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
 
 #endif

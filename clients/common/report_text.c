@@ -45,18 +45,12 @@ static int widen(int *width, int digits, const char *text)
     return *width;
 }
 
-static int write_contact(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
 {
     char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
     int digits = number_ends(answer->contact[0], answer->contact[1], first, last);
     snprintf(text, REPORT_TEXT_MAX, "%s to %s s", first, last);
     return digits;
-}
-
-const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
-{
-    write_contact(answer, text);
-    return text;
 }
 
 /* Prints one number where the bounds have the same digits. */
@@ -93,7 +87,7 @@ void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
         fputs(verdict, out);
         return;
     }
-    int digits = answer->has_contact ? write_contact(answer, text) : 0;
+    int digits = answer->has_contact ? report_contact_text(answer, text) : 0;
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
             answer->has_gap || answer->has_box ? widen(&columns->contact, digits, text) : 0, text);
     if (answer->has_gap) {

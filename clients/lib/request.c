@@ -107,20 +107,14 @@ static int64_t total_timeout(const struct requests *requests)
     return requests->outage ? requests->timeout_ns : requests->timeout_ns * requests->tries;
 }
 
-/* A later query of a request may be larger than the first. */
-static void raise_charge(struct requests *requests, struct request *request)
-{
-    const size_t charge = charge_of(request->size);
-    if (charge <= request->charge)
-        return;
-    requests->charge += charge - request->charge;
-    request->charge = charge;
-}
-
 void request_send(struct requests *requests, struct request *request)
 {
     const int64_t retry = requests->pace[request->kind].retry;
-    raise_charge(requests, request);
+    const size_t charge = charge_of(request->size);
+    if (charge > request->charge) { /* a later query of a request may be larger than the first */
+        requests->charge += charge - request->charge;
+        request->charge = charge;
+    }
     request->number = requests->next_number++;
     big_endian_put_64(request->query + CLIENT_ID_AT, (uint64_t) requests->client_id);
     big_endian_put_64(request->query + NUMBER_AT, (uint64_t) request->number);

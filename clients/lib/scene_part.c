@@ -124,19 +124,15 @@ static bool fits(const struct matching *matching)
     return listed || fits_named(matching);
 }
 
+/* Makes space for more answers. A part has few results, so that no space for later ones is needed.
+ */
 static bool reserve(struct part_answers *answers, size_t more)
 {
-    if (answers->count + more <= answers->capacity)
-        return true;
-    size_t capacity = 2 * answers->capacity;
-    if (capacity < answers->count + more)
-        capacity = answers->count + more;
-    struct part_answer *answer = realloc(answers->answer, capacity * sizeof *answer);
-    if (!answer)
-        return false;
-    answers->answer = answer;
-    answers->capacity = capacity;
-    return true;
+    struct part_answer *answer =
+        realloc(answers->answer, (answers->count + more + 1) * sizeof *answer);
+    if (answer)
+        answers->answer = answer;
+    return answer != NULL;
 }
 
 /* contact: its number among the contacts of the result. */

@@ -28,9 +28,9 @@ struct part_answers {
     int32_t answered; /* number of pairs, from the first on; those not in `answer` are separated */
     int status;       /* of the other pairs, once the part is complete */
     char text[QUERY_TEXT_MAX];
-    struct part_answer *answer;        /* owned, [count], in order */
-    size_t count, capacity, delivered; /* delivered: index of the first not delivered yet */
-    char *certificate;                 /* owned; NULL: none */
+    struct part_answer *answer; /* owned, [count], in order */
+    size_t count, delivered;    /* delivered: index of the first not delivered yet */
+    char *certificate;          /* owned; NULL: none */
 };
 
 void part_answers_clear(struct part_answers *answers);

@@ -392,18 +392,6 @@ static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
     run->until = clock_ns() + (int64_t) (within * 1e9);
 }
 
-/* Complete parts are delivered before more results are received: sink may take long. */
-static void run_parts(struct scene_run *run, struct division *division, struct order *order)
-{
-    bool more = true;
-    while (more || run->oldest < run->next) {
-        more = more && fill_window(run, division);
-        deliver(run, order);
-        if (run->requests->count > 0)
-            wait_for_results(run);
-    }
-}
-
 static int run_division(struct scene_run *run, const struct fmb_client_scene *scene,
                         struct division *division, fmb_client_sink *sink, void *user)
 {
@@ -411,7 +399,12 @@ static int run_division(struct scene_run *run, const struct fmb_client_scene *sc
     if (!order_begin(division, sink, user, &order))
         return FMB_CLIENT_NO_MEMORY;
     begin(run, scene, division);
-    run_parts(run, division, &order);
+    for (bool more = true; more || run->oldest < run->next;) {
+        more = more && fill_window(run, division);
+        deliver(run, &order); /* before results are received: sink may take long */
+        if (run->requests->count > 0)
+            wait_for_results(run);
+    }
     order_end(&order);
     return FMB_OK;
 }

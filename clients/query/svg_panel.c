@@ -81,12 +81,10 @@ static void draw_grid_lines(const struct drawing *drawing, int axis, double step
         if (view->dim == 3)
             continue;
         number_short(k * step + 0.0, text); /* no -0 */
-        if (axis == 0)
-            draw_text(drawing, start.x, start.y + 14, "class=\"tick\" text-anchor=\"middle\"",
-                      text);
-        else
-            draw_text(drawing, start.x - 6, start.y + 4, "class=\"tick\" text-anchor=\"end\"",
-                      text);
+        draw_text(
+            drawing, start.x - (axis ? 6 : 0), start.y + (axis ? 4 : 14),
+            axis ? "class=\"tick\" text-anchor=\"end\"" : "class=\"tick\" text-anchor=\"middle\"",
+            text);
     }
 }
 
@@ -309,8 +307,10 @@ static void draw_box_title(const struct drawing *drawing, const struct panel_box
     fputs(" and ", drawing->out);
     write_label(drawing, &body[box->pair.b]);
     fprintf(drawing->out, ": %s", verdict_text(box->answer.verdict));
-    if (box->answer.has_contact)
-        fprintf(drawing->out, ", %s", report_contact_text(&box->answer, text));
+    if (box->answer.has_contact) {
+        report_contact_text(&box->answer, text);
+        fprintf(drawing->out, ", %s", text);
+    }
     fputs("</title>\n", drawing->out);
 }
 

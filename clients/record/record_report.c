@@ -71,12 +71,6 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
 
 /* ---- For people ------------------------------------------------------------------------------ */
 
-static void print_count(const char *name, int64_t count)
-{
-    char text[NUMBER_TEXT_MAX];
-    printf("  %-16s %15s\n", name, number_grouped(count, text));
-}
-
 static void print_where(const struct log_parts *parts)
 {
     const char *path = parts->options.path;
@@ -97,12 +91,12 @@ void record_report_text(const struct recorded *recorded, const struct log_parts 
            recorded->seconds, number_grouped(recorded->bytes, bytes));
     for (int kind = 0; kind < LOG_KINDS; kind++)
         if (recorded->received[kind] > 0 || kind <= LOG_STATUS)
-            print_count(names[kind].text, recorded->received[kind]);
+            number_print(names[kind].text, recorded->received[kind]);
     if (recorded->malformed > 0)
-        print_count("malformed", recorded->malformed);
+        number_print("malformed", recorded->malformed);
     if (recorded->bodies.defined > 0)
-        print_count("bodies defined", recorded->bodies.defined);
-    print_count("lost", (int64_t) recorded->bus.dropped);
+        number_print("bodies defined", recorded->bodies.defined);
+    number_print("lost", (int64_t) recorded->bus.dropped);
 }
 
 /* ---- Losses ---------------------------------------------------------------------------------- */
@@ -123,10 +117,9 @@ static void suggest(long receive_buffer)
             "  sudo sysctl net.core.rmem_max=%d",
             number_grouped(receive_buffer, text), RECEIVE_BUFFER_TO_SET);
     else
-        fputs(
-            "fmb: this machine or its disk was too busy; to be scheduled before others, run:\n"
-            "fmb:   sudo chrt -f 10 fmb record ...\n",
-            stderr);
+        complain(
+            "this machine or its disk was too busy; to be scheduled before others, run:\n"
+            "  sudo chrt -f 10 fmb record ...");
 }
 
 void record_report_losses(const struct recorded *recorded)
