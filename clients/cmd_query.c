@@ -1,4 +1,4 @@
-/* fmb query: scenes in, answers out. */
+/* fmb query: reads scenes and prints the answers to their pairs. */
 #include "commands.h"
 
 #include "answers.h"
@@ -76,13 +76,13 @@ struct query_options {
 
 enum { METHOD_NAMES_MAX = 80 };
 
-/* "exact, fmb and sat": the table's names. */
+/* Returns the names of the methods: "exact, fmb and sat". */
 static const char *method_names(char out[METHOD_NAMES_MAX])
 {
     size_t used = 0;
     for (size_t i = 0; fmb_method_at(i) && used < METHOD_NAMES_MAX; i++) {
-        const char *between = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
-        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", between,
+        const char *separator = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
+        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", separator,
                                   fmb_method_at(i)->name);
     }
     return out;
@@ -97,16 +97,16 @@ static bool take_method(const struct args *args, void *out)
            args_error(args, "--method: there are %s, not '%s'", method_names(names), optarg);
 }
 
-/* ---- The run --------------------------------------------------------------------------------- */
+/* ---- Answers --------------------------------------------------------------------------------- */
 
 struct query_run {
     const struct query_options *options;
     const struct args_bus *bus_options;
     const char *input_name;
     struct report *report[2]; /* the printed one, and the picture or NULL */
-    struct answers_bus *bus;  /* NULL: not needed so far */
+    struct answers_bus *bus;  /* NULL: not opened yet */
     struct progress progress;
-    bool undecided; /* a pair got no verdict */
+    bool undecided; /* a pair has no verdict */
 };
 
 static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
@@ -123,28 +123,23 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
     progress_to(&run->progress, run->progress.done + 1, run->progress.total);
 }
 
-/* The bus is opened for the first scene: a bad one is reported without a bus. */
-static void answer_on_bus(struct query_run *run, const struct scene *scene)
-{
-    const struct query_options *options = run->options;
-    if (!run->bus)
-        run->bus = answers_bus_open(run->bus_options, &options->wanted, options->timeout,
-                                    (int) options->retries);
-    answers_bus_scene(run->bus, scene, take_outcome, run);
-}
-
+/* The bus is opened for the first scene: an invalid one is reported without a bus. */
 static void answer_scene(struct query_run *run, const struct scene *scene)
 {
+    const struct query_options *options = run->options;
     for (int i = 0; i < 2; i++)
         if (run->report[i])
             run->report[i]->begin(run->report[i], scene);
     run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(scene));
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
         run->progress.enabled = false;
-    if (run->options->local)
-        answers_local(&run->options->wanted, scene, take_outcome, run);
+    if (!options->local && !run->bus)
+        run->bus = answers_bus_open(run->bus_options, &options->wanted, options->timeout,
+                                    (int) options->retries);
+    if (options->local)
+        answers_local(&options->wanted, scene, take_outcome, run);
     else
-        answer_on_bus(run, scene);
+        answers_bus_scene(run->bus, scene, take_outcome, run);
     progress_end(&run->progress);
     for (int i = 0; i < 2; i++)
         if (run->report[i])

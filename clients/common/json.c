@@ -124,14 +124,6 @@ struct key {
     bool optional;
 };
 
-static int key_index(const struct key *keys, int count, const char *name)
-{
-    for (int i = 0; i < count; i++)
-        if (strcmp(keys[i].name, name) == 0)
-            return i;
-    return -1;
-}
-
 static bool check_present(const struct place *member)
 {
     return member->item || refuse(member->parent, "missing key \"%s\"", member->key);
@@ -147,8 +139,10 @@ static bool read_object(const struct place *at, const struct key *keys, int coun
     for (int i = 0; i < count; i++)
         member[i] = (struct place){at->reader, at, NULL, keys[i].name, 0};
     for (const cJSON *child = at->item->child; child; child = child->next) {
-        int i = key_index(keys, count, child->string);
-        if (i < 0)
+        int i = 0;
+        while (i < count && strcmp(keys[i].name, child->string) != 0)
+            i++;
+        if (i == count)
             return refuse(at, "unknown key \"%s\"", quoted(child->string, text));
         if (member[i].item)
             return refuse(at, "repeated key \"%s\"", keys[i].name);

@@ -43,11 +43,10 @@ static bool check_frame(struct scene_error *error, size_t placement, size_t i, i
 {
     char field[64];
     const int count = geometry_number_count(dim, frame->shape) - dim;
-    if (!fmb_shape_name(frame->shape))
-        return refuse(error, FMB_UNKNOWN_SHAPE, "placements[%zu].frames[%zu].shape", placement, i);
-    if (count < 0)
-        return refuse(error, FMB_WRONG_DIMENSION, "placements[%zu].frames[%zu].shape", placement,
-                      i);
+    const bool known = fmb_shape_name(frame->shape);
+    if (!known || count < 0)
+        return refuse(error, known ? FMB_WRONG_DIMENSION : FMB_UNKNOWN_SHAPE,
+                      "placements[%zu].frames[%zu].shape", placement, i);
     snprintf(field, sizeof field, "frames[%zu].origin", i);
     if (!check_numbers(error, placement, field, frame->origin, dim))
         return false;
