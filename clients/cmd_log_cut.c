@@ -1,4 +1,4 @@
-/* fmb log cut: a part of a log, as a log. */
+/* fmb log cut: copies a part of a log into a new log. */
 #include "commands.h"
 
 #include "args.h"
@@ -66,7 +66,7 @@ static bool take_body(const struct args *args, void *choice)
 
 /* ---- Reports ---- */
 
-/* Damaged places that are printed; others are counted. */
+/* Most damaged places that are printed; the others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
 struct cut_run {

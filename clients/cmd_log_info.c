@@ -1,4 +1,4 @@
-/* fmb log info: what is in event logs. */
+/* fmb log info: prints the contents of event logs. */
 #include "commands.h"
 
 #include "args.h"
@@ -27,7 +27,7 @@ static const char usage[] =
     "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is\n"
     "printed; 2 wrong usage, or a file that cannot be read or is not a log.\n";
 
-/* On output: NULL, or why it could not be read to its end. */
+/* Reads a log. Returns NULL, or why it could not be read to its end. */
 static const char *read_all(struct log_reader *reader, struct log_info *info)
 {
     struct progress progress = progress_begin("bytes", log_size(reader));

@@ -1,4 +1,4 @@
-/* fmb replay: the queries of a log, answered again. */
+/* fmb replay: answers the queries of a log again. */
 #include "commands.h"
 
 #include "allocate.h"
@@ -90,9 +90,9 @@ struct replay_arguments {
     const char *junit, *html;
 };
 
-/* ---- While it goes ---- */
+/* ---- Callbacks ---- */
 
-/* Complaints that are printed; the others are counted. */
+/* Most complaints that are printed; the others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
 struct replay_run {
@@ -115,7 +115,7 @@ static void on_found(void *user, const struct located_difference *found)
     listing_put(run->differences, found);
 }
 
-/* Whether one more may be printed. */
+/* Counts a complaint. Returns whether it may be printed. */
 static bool complains(struct replay_run *run)
 {
     progress_end(&run->progress);
@@ -145,9 +145,9 @@ static void on_progress(void *user, int64_t bytes)
     progress_to(&run->progress, bytes, run->progress.total);
 }
 
-/* ---- Before and after ---- */
+/* ---- Files and outcome ---- */
 
-/* As many files at a time as the system grants: each log is one. */
+/* Raises the limit of open files as far as the system allows: each log is one. */
 static void open_many(void)
 {
     struct rlimit limit;
@@ -176,7 +176,7 @@ static bool write_page(const struct replay_arguments *options)
     return output_close(file, options->html);
 }
 
-/* Why nothing was compared, for people; NULL: something was, or nothing had to be. */
+/* Returns the reason why nothing was compared; NULL: something was, or nothing had to be. */
 static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
@@ -187,7 +187,7 @@ static const char *why_nothing(const struct replay_arguments *options, const str
     return "there are no results to compare with";
 }
 
-/* The exit code, of a replay that went well as such. */
+/* Returns the exit code of a replay that reached its end. */
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
     const char *nothing = why_nothing(options, all);
@@ -216,7 +216,7 @@ static void report_one(void *user, const struct located_difference *found)
     putchar('\n');
 }
 
-/* Without a bus, or a service on it, counts say nothing. */
+/* Whether counts have a meaning: not without a bus, nor without a service on it. */
 static bool has_counts(const struct replay_run *run, const struct tally *all)
 {
     return !run->options->live || all->bus.answered > 0 ||
@@ -342,7 +342,7 @@ static bool check_options(const struct args *args, const struct replay_arguments
     return check_report(args, "junit", options->junit) && check_report(args, "html", options->html);
 }
 
-/* Options of answers in this process, and of those of a service. */
+/* Checks the options that apply only with --bus, or only without. */
 static bool check_bus(const struct args *args, const struct replay_arguments *options)
 {
     if (options->live && options->frames > 0)
@@ -353,7 +353,7 @@ static bool check_bus(const struct args *args, const struct replay_arguments *op
     return true;
 }
 
-/* Those that were not given. */
+/* Sets the options that were not given. */
 static void complete(struct replay_arguments *options)
 {
     struct answer_bus_options *bus = &options->bus;

@@ -1,4 +1,4 @@
-/* fmb status: the next heartbeat of the service. */
+/* fmb status: prints the next heartbeat of the service. */
 #include "commands.h"
 
 #include "args.h"
@@ -30,7 +30,7 @@ struct heartbeat {
     struct fmb_client_heartbeat status;
     char version[32];
     bool received;
-    const char *malformed; /* error of the last one that could not be read */
+    const char *malformed; /* error of the last heartbeat that could not be read; NULL: none */
 };
 
 static void on_heartbeat(void *user, const struct fmb_client_heartbeat *status)

@@ -43,7 +43,7 @@ bool args_integer(const struct args *args, long low, long high, long *out)
                       low, high, optarg);
 }
 
-/* ---- Options -------------------------------------------------------------------------------- */
+/* ---- Options --------------------------------------------------------------------------------- */
 
 static bool take_prefix(const struct args *args, void *out)
 {

@@ -608,7 +608,7 @@ static bool read_scene(struct json_reader *reader, const cJSON *item, struct sce
 
 /* ---- The input ------------------------------------------------------------------------------- */
 
-/* Without memory the program ends; to the parser it would be invalid JSON. */
+/* Exits if memory is exhausted; the parser would report invalid JSON. */
 static void *allocate_bytes(size_t size)
 {
     return allocate(size, 1);

@@ -8,7 +8,7 @@
 
 static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 
-/* The clock is read once in so many steps. */
+/* Calls of progress_to() for each reading of the clock. */
 enum { STEPS = 64 };
 
 struct progress progress_begin(const char *unit, int64_t total)

@@ -99,7 +99,7 @@ uint64_t scene_count_pairs(const struct scene *scene)
     return count < 2 ? 0 : count * (count - 1) / 2 - scene->ignored_count;
 }
 
-/* Ignored pairs come in the same order. */
+/* Whether the pair is ignored. Ignored pairs are in the order of the iteration. */
 static bool is_next_ignored(const struct scene *scene, const struct scene_cursor *cursor)
 {
     return cursor->next < scene->ignored_count && scene->ignored[cursor->next].a == cursor->a &&

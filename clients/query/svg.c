@@ -74,7 +74,7 @@ static void clear_panel(struct panel *panel)
     free(panel->box);
 }
 
-/* Returns whether both have the same bodies, by id, and so may be steps of time. */
+/* Whether both have the same bodies, by id: they are considered steps in time. */
 static bool same_bodies(const struct panel *panel, const struct panel *first)
 {
     if (panel->dim != first->dim || panel->body_count != first->body_count)
@@ -162,8 +162,9 @@ static struct paper panel_paper(const struct sheet *sheet, size_t index)
                           sheet->panel_height};
 }
 
-/* The sheet has a ground of its own, light or dark as the reader likes it, so that it can be read
- * on any page. */
+/* The sheet has a background, light or dark as the reader prefers, so that it is legible on any
+ * page.
+ */
 static const char style[] =
     "<style>\n"
     "text{font-family:'DejaVu Sans',Verdana,system-ui,sans-serif;font-size:12px;fill:#2a2f36}\n"
@@ -272,7 +273,8 @@ static void draw_legend(const struct sheet *sheet, FILE *out)
 
 /* ---- The picture ----------------------------------------------------------------------------- */
 
-/* What the panel shows: its own bounds, or those of all its steps of time. */
+/* Returns the visible region of a panel: the union of the bounds of all panels with the same
+ * bodies. */
 static struct view_bounds bounds_of(const struct svg *svg, size_t index)
 {
     struct view_bounds bounds = svg->panel[index].bounds;

@@ -13,8 +13,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-/* What the kernel grants where a bus may have all that it requests, bytes; and what to set for
- * that.
+/* Bytes: the size of a receive buffer that the kernel has not limited; and the limit to set for it.
  */
 enum { RECEIVE_BUFFER_ENOUGH = 8 << 20, RECEIVE_BUFFER_TO_SET = 4 << 20 };
 
@@ -133,7 +132,8 @@ void record_report_losses(const struct recorded *recorded)
     warn_count(recorded->bodies.dropped, "bodies were dropped since there were too many");
 }
 
-/* ---- While it runs --------------------------------------------------------------------------- */
+/* ---- The progress line
+ * --------------------------------------------------------------------------- */
 
 static const int64_t every_ns = 250000000;
 
@@ -151,7 +151,7 @@ static int terminal_width(void)
                                                                            : USUAL_WIDTH;
 }
 
-/* Cut where the terminal ends: a line that goes on in the next row could not be replaced. */
+/* Shortened to the width of the terminal: a line that wraps could not be replaced. */
 static void show(const char *text)
 {
     fprintf(stderr, "\r%.*s\033[K", terminal_width() - 1, text);
