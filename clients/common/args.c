@@ -8,15 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ARGS_WHO_MAX = 64 };
-
 bool args_error(const struct args *args, const char *format, ...)
 {
     va_list list;
-    char who[ARGS_WHO_MAX];
-    snprintf(who, sizeof who, "fmb %s", args->command);
     va_start(list, format);
-    complain_as(who, format, list);
+    complain_as(args->command, format, list);
     va_end(list);
     fprintf(stderr, "Try 'fmb %s --help'.\n", args->command);
     return false;

@@ -30,11 +30,12 @@ void complain(const char *format, ...)
         print_line("fmb", line);
 }
 
-void complain_as(const char *who, const char *format, va_list list)
+void complain_as(const char *command, const char *format, va_list list)
 {
     char text[COMPLAIN_MAX];
     vsnprintf(text, sizeof text, format, list);
-    print_line(who, text);
+    fputs("fmb ", stderr);
+    print_line(command, text);
 }
 
 static bool failed(const char *name)

@@ -10,8 +10,8 @@
 /* Prints each line of the text after "fmb: ". */
 __attribute__((format(printf, 1, 2))) void complain(const char *format, ...);
 
-/* Prints a text as one line, after who and ": ". */
-void complain_as(const char *who, const char *format, va_list list);
+/* Prints a text as one line, after "fmb ", the name of a command and ": ". */
+void complain_as(const char *command, const char *format, va_list list);
 
 /* Prints a text within a line. */
 void complain_text(const char *text);

@@ -120,11 +120,6 @@ static void write_label(FILE *out, int width, const struct scene_body *body)
     fprintf(out, "  %*s%s", width - label_width(body), "", scene_label(body, text));
 }
 
-static const char *plural(uint64_t count)
-{
-    return count == 1 ? "" : "s";
-}
-
 static void write_headings(const struct report_text *text, bool gap)
 {
     fprintf(text->out, "  %*s  %*s  %-*s  %-*s", text->id_width, "a", text->id_width, "b",
@@ -149,7 +144,7 @@ static void text_begin(struct report *report, const struct scene *scene)
     fprintf(text->out, "%sscene %zu: %zu bod%s in %dD, %s pair%s, 0 to %s s\n",
             text->scenes > 0 ? "\n" : "", text->scenes + 1, scene->body_count,
             scene->body_count == 1 ? "y" : "ies", scene->dim,
-            number_grouped((int64_t) count, pairs), plural(count),
+            number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
             number_short(scene->duration, duration));
     text->scenes++;
     if (count > 0)

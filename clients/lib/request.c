@@ -28,6 +28,17 @@ enum {
 
 static const int64_t ns_per_ms = 1000000, ns_per_s = 1000000000;
 
+const char *fmb_client_status_text(int status)
+{
+    switch (status) {
+#define X(name, number, text) \
+    case number: return text;
+        FMB_CLIENT_STATUS_MAP(X)
+#undef X
+    }
+    return fmb_status_text(status);
+}
+
 void requests_forget_pace(struct requests *requests)
 {
     for (int kind = 0; kind < FMB_CLIENT_KINDS; kind++) {

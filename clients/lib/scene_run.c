@@ -44,29 +44,21 @@ static struct held_body *entry_of(const struct part_run *part, int32_t i)
     return held_find(run->held, &placement.geometry);
 }
 
-/* Converts the i-th placement for a query: by handle if the service holds the body; else with its
- * frames in geometry. */
-static void write_placement(struct part_run *part, int32_t i, unsigned char *geometry,
-                            struct placement *out)
-{
-    const struct held_body *body = part->unknown < UNKNOWN_MAX ? entry_of(part, i) : NULL;
-    part->whole[i] = !body || !body->held;
-    whole_placement(part, i, geometry, out);
-    if (!part->whole[i])
-        client_scene_use_handle(out, &body->handle, part->run->none);
-}
-
-/* Converts the placements. Returns their bytes; a number above max means that not all of them were
- * converted. */
+/* Converts the placements: by handle if the service holds the body, else with frames. Returns their
+ * bytes; a number above max means that not all of them were converted. */
 static size_t write_placements(struct part_run *part, size_t max, struct placement *out)
 {
     unsigned char *geometry = part->run->geometry;
     size_t bytes = 0;
     for (int32_t i = 0; i < part->part.placement_count && bytes <= max; i++) {
-        write_placement(part, i, geometry, &out[i]);
-        bytes += wire_placement_bytes(&out[i]);
+        const struct held_body *body = part->unknown < UNKNOWN_MAX ? entry_of(part, i) : NULL;
+        part->whole[i] = !body || !body->held;
+        whole_placement(part, i, geometry, &out[i]);
         if (part->whole[i])
             geometry += out[i].geometry.size;
+        else
+            client_scene_use_handle(&out[i], &body->handle, part->run->none);
+        bytes += wire_placement_bytes(&out[i]);
     }
     return bytes;
 }
@@ -152,25 +144,18 @@ static size_t write_scene(struct part_run *part, unsigned char *out)
     return wire_write_scene_query(query, out);
 }
 
-static void count_placements(struct fmb_client_counts *counts, const struct part_run *part)
-{
-    for (int32_t i = 0; i < part->part.placement_count; i++) {
-        counts->whole += part->whole[i];
-        counts->by_handle += !part->whole[i] && !part->defining;
-    }
-}
-
 /* Writes a query for the pairs that have no answers yet. Returns false if that is not possible. */
 static bool write_query(struct part_run *part, struct request *request)
 {
+    struct fmb_client_counts *counts = &part->run->requests->counts;
     memcpy(part->whole_earlier, part->whole, sizeof part->whole);
     part->defining = false;
-    const size_t size = (part->part.single ? write_pair : write_scene)(part, request->query);
-    if (size > 0) {
-        request->size = size;
-        count_placements(&part->run->requests->counts, part);
+    request->size = (part->part.single ? write_pair : write_scene)(part, request->query);
+    for (int32_t i = 0; i < part->part.placement_count && request->size > 0; i++) {
+        counts->whole += part->whole[i];
+        counts->by_handle += !part->whole[i] && !part->defining;
     }
-    return size > 0;
+    return request->size > 0;
 }
 
 /* ---- Handles in results ---- */
@@ -254,15 +239,6 @@ static enum request_taken write_next(struct part_run *part, struct request *requ
     return refuse(part, FMB_OVER_LIMIT, "the bodies of a pair do not fit into one datagram");
 }
 
-/* Processes the result of a query that only has bodies. */
-static enum request_taken take_definitions(struct part_run *part, struct request *request,
-                                           const struct request_result *result)
-{
-    if (result->scene->end_pair != 0 || result->scene->verdict_count != 0)
-        return REQUEST_MALFORMED;
-    return write_next(part, request, REQUEST_NEXT);
-}
-
 static enum request_taken take_answers(struct part_run *part, struct request *request,
                                        const struct request_result *result)
 {
@@ -272,8 +248,10 @@ static enum request_taken take_answers(struct part_run *part, struct request *re
     const int32_t before = answers->answered;
     if (!take_handles(part, whole, result))
         return REQUEST_MALFORMED;
-    if (part->defining && result->number == request->number)
-        return take_definitions(part, request, result);
+    if (part->defining && result->number == request->number) {
+        const bool empty = result->scene->end_pair == 0 && result->scene->verdict_count == 0;
+        return empty ? write_next(part, request, REQUEST_NEXT) : REQUEST_MALFORMED;
+    }
     const enum part_taken taken =
         result->kind == FMB_CLIENT_PAIR
             ? part_take_pair(run->scene, result->pair, answers)
@@ -313,12 +291,6 @@ static enum request_taken take_result(void *user, struct request *request,
 
 /* ---- The window of parts ---- */
 
-static size_t bytes_of(const struct scene_run *run, const struct part *part)
-{
-    const size_t result = part_result_bytes(part, run->scene);
-    return part->bytes > result ? part->bytes : result;
-}
-
 static void begin_part(struct scene_run *run, struct part_run *part, size_t bytes)
 {
     const enum fmb_client_kind kind = part->part.single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE;
@@ -346,7 +318,8 @@ static bool fill_window(struct scene_run *run, struct division *division)
         struct part_run *part = part_of(run, run->next);
         if (!run->has_next && !division_next(division, run->pairs_max, &part->part))
             return false;
-        const size_t bytes = bytes_of(run, &part->part);
+        const size_t query = part->part.bytes, result = part_result_bytes(&part->part, run->scene);
+        const size_t bytes = query > result ? query : result;
         run->has_next = run->status == FMB_OK && !requests_ready(run->requests, bytes);
         if (run->has_next)
             return true;
