@@ -1,4 +1,4 @@
-/* fmb log cut: a part of a log, as a log. */
+/* fmb log cut: copies a part of a log into a new log. */
 #include "commands.h"
 
 #include "args.h"
@@ -6,7 +6,6 @@
 #include "json_write.h"
 #include "log_cut.h"
 #include "number.h"
-#include "output.h"
 #include "progress.h"
 #include "query.h"
 
@@ -67,7 +66,7 @@ static bool take_body(const struct args *args, void *choice)
 
 /* ---- Reports ---- */
 
-/* Damaged places that are printed; others are counted. */
+/* Most damaged places that are printed; the others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
 struct cut_run {
@@ -88,7 +87,7 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
     struct cut_run *run = user;
-    progress_to_of(&run->progress, (uint64_t) bytes, (uint64_t) of);
+    progress_to(&run->progress, bytes, of);
 }
 
 static void print_count(const char *name, int64_t count, const char *what)
@@ -156,7 +155,7 @@ static int code_of(const struct cut_run *run, const struct log_cut_counts *count
 
 static int run_cut(const struct log_cut_arguments *options)
 {
-    struct cut_run run = {.options = options, .progress = progress_begin_of("bytes", 0)};
+    struct cut_run run = {.options = options, .progress = progress_begin("bytes", 0)};
     const struct log_cut_sink sink = {on_damage, on_progress, &run};
     struct log_cut_counts counts;
     const bool good = log_cut(&options->cut, &sink, &counts);

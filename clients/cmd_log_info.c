@@ -1,11 +1,10 @@
-/* fmb log info: what is in event logs. */
+/* fmb log info: prints the contents of event logs. */
 #include "commands.h"
 
 #include "args.h"
 #include "complain.h"
 #include "log_info.h"
 #include "log_info_report.h"
-#include "output.h"
 #include "progress.h"
 
 #include <errno.h>
@@ -28,10 +27,10 @@ static const char usage[] =
     "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is\n"
     "printed; 2 wrong usage, or a file that cannot be read or is not a log.\n";
 
-/* On output: NULL, or why it could not be read to its end. */
+/* Reads a log. Returns NULL, or why it could not be read to its end. */
 static const char *read_all(struct log_reader *reader, struct log_info *info)
 {
-    struct progress progress = progress_begin_of("bytes", (uint64_t) log_size(reader));
+    struct progress progress = progress_begin("bytes", log_size(reader));
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
@@ -40,7 +39,7 @@ static const char *read_all(struct log_reader *reader, struct log_info *info)
             log_info_event(info, &event);
         else
             log_info_damage(info, &damage);
-        progress_to(&progress, (uint64_t) (outcome == LOG_EVENT ? event.offset : damage.offset));
+        progress_to(&progress, outcome == LOG_EVENT ? event.offset : damage.offset, progress.total);
     }
     const int error = errno;
     progress_end(&progress);

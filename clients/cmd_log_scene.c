@@ -1,4 +1,4 @@
-/* fmb log scene: a query of a log, as a scene that can be queried again. */
+/* fmb log scene: prints a query of a log as a scene that can be queried again. */
 #include "commands.h"
 
 #include "allocate.h"
@@ -6,7 +6,6 @@
 #include "args.h"
 #include "complain.h"
 #include "log_query.h"
-#include "output.h"
 #include "progress.h"
 #include "scene_json.h"
 #include "scene_of_query.h"
@@ -80,9 +79,10 @@ static bool check_options(const struct args *args, struct log_scene_options *opt
     return true;
 }
 
-/* ---- Whether the service takes it ---- */
+/* ---- Whether the service accepts the query ---- */
 
-/* Bodies that the query names by handle: the service holds those that it takes. */
+/* Adds the bodies that the query names by handle to the cache, as far as the service accepts them.
+ */
 static void keep_bodies(struct answerer *answerer, struct logged_query *query)
 {
     int32_t count;
@@ -98,9 +98,9 @@ static void keep_bodies(struct answerer *answerer, struct logged_query *query)
     }
 }
 
-/* The status of a pair that its method cannot decide is no fault of the query. */
-static bool takes_pair(struct answerer *answerer, const struct log_query *query,
-                       char detail[QUERY_TEXT_MAX])
+/* A query is accepted even if its method cannot decide the pair. */
+static bool accepts_pair(struct answerer *answerer, const struct log_query *query,
+                         char detail[QUERY_TEXT_MAX])
 {
     struct pair_result single, *result = &single;
     struct pair_job *job = pair_job_create();
@@ -113,31 +113,31 @@ static bool takes_pair(struct answerer *answerer, const struct log_query *query,
         result = pair_job_end(job, answerer);
     }
     snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
-    const bool taken = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
+    const bool accepted = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
     pair_job_destroy(job);
-    return taken;
+    return accepted;
 }
 
-/* The first pairs show it. */
-static bool takes_scene(struct answerer *answerer, const struct log_query *query,
-                        char detail[QUERY_TEXT_MAX])
+/* The query is accepted if its first pairs are answered. */
+static bool accepts_scene(struct answerer *answerer, const struct log_query *query,
+                          char detail[QUERY_TEXT_MAX])
 {
     struct scene_job *job = scene_job_create();
     if (!job)
         allocate_failed();
-    bool taken = scene_job_begin(job, query->bytes, query->size) == NULL;
-    while (taken && !scene_job_has_answers(job) && !scene_job_step(job, answerer))
+    bool accepted = scene_job_begin(job, query->bytes, query->size) == NULL;
+    while (accepted && !scene_job_has_answers(job) && !scene_job_step(job, answerer))
         continue;
-    if (taken && !scene_job_has_answers(job)) {
+    if (accepted && !scene_job_has_answers(job)) {
         const struct scene_result *result = scene_job_result(job);
-        taken = result->status == FMB_OK;
+        accepted = result->status == FMB_OK;
         snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
     }
     scene_job_destroy(job);
-    return taken;
+    return accepted;
 }
 
-static bool takes(struct log_query *query, char detail[QUERY_TEXT_MAX])
+static bool is_accepted(struct log_query *query, char detail[QUERY_TEXT_MAX])
 {
     const struct answerer_options options = {.frames = FMB_FRAMES_MAX, .secret = {1, 1}};
     struct answerer *answerer = answerer_create(&options);
@@ -145,10 +145,10 @@ static bool takes(struct log_query *query, char detail[QUERY_TEXT_MAX])
         allocate_failed();
     struct logged_query *any = &query->query;
     keep_bodies(answerer, any);
-    const bool taken = any->kind == LOG_PAIR_QUERY ? takes_pair(answerer, query, detail)
-                                                   : takes_scene(answerer, query, detail);
+    const bool accepted = any->kind == LOG_PAIR_QUERY ? accepts_pair(answerer, query, detail)
+                                                      : accepts_scene(answerer, query, detail);
     answerer_destroy(answerer);
-    return taken;
+    return accepted;
 }
 
 static bool check_query(struct log_query *query)
@@ -156,13 +156,13 @@ static bool check_query(struct log_query *query)
     char detail[QUERY_TEXT_MAX] = "";
     if (query->size > QUERY_BYTES_MAX)
         snprintf(detail, sizeof detail, "longer than %d bytes", QUERY_BYTES_MAX);
-    else if (takes(query, detail))
+    else if (is_accepted(query, detail))
         return true;
     complain("event %" PRId64 ": the service refuses it: %s", query->number, detail);
     return false;
 }
 
-/* ---- What is reported besides the scene ---- */
+/* ---- Reports on stderr ---- */
 
 static void report_ids(struct logged_query *query, const struct scene *scene)
 {
@@ -199,11 +199,6 @@ static void report_command(const struct log_query *query)
 
 /* ---- The command ---- */
 
-static void on_progress(void *user, int64_t bytes, int64_t of)
-{
-    progress_to_of(user, (uint64_t) bytes, (uint64_t) of);
-}
-
 static int print_scene(struct log_query *query)
 {
     struct scene scene;
@@ -221,8 +216,8 @@ static int run_scene(struct log_scene_options *options)
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
                                   [LOG_QUERY_FAILED] = ARGS_USAGE};
     struct log_query *query = allocate(1, sizeof *query);
-    struct progress progress = progress_begin_of("bytes", 0);
-    options->query.progress = on_progress;
+    struct progress progress = progress_begin("bytes", 0);
+    options->query.progress = progress_to;
     options->query.user = &progress;
     const enum log_query_outcome outcome = log_query(&options->query, query);
     progress_end(&progress);

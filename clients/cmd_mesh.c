@@ -1,4 +1,4 @@
-/* fmb mesh: which faces of two meshes meet. */
+/* fmb mesh: which faces of two meshes intersect. */
 #include "commands.h"
 
 #include "args.h"
@@ -7,7 +7,6 @@
 #include "mesh_page.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
-#include "output.h"
 #include "progress.h"
 
 #include <float.h>
@@ -67,7 +66,7 @@ static const char usage[] =
     "Exit codes: 0 answered, 1 it could not be answered, 2 wrong usage, or a file\n"
     "that cannot be read.\n";
 
-/* What is said of one mesh. */
+/* The options of one mesh. */
 struct placed {
     struct mesh_transform transform;
     bool moving;
@@ -85,7 +84,7 @@ struct mesh_options {
 
 /* ---- Options --------------------------------------------------------------------------------- */
 
-/* "X,Y,Z", as many numbers as there are places; the next character after them, or NULL. */
+/* Reads "X,Y,Z", a list of `count` finite numbers. Returns the position after it, or NULL. */
 static const char *read_numbers(const char *text, int count, double *out)
 {
     for (int i = 0; i < count; i++) {
@@ -107,8 +106,8 @@ static bool take_vector(const struct args *args, double out[3])
            args_error(args, "--%s: expected three numbers X,Y,Z, found '%s'", args->option, optarg);
 }
 
-/* Whether an option is about this mesh: it is after it, or before the first one. */
-static bool is_about(const struct args *args, int which)
+/* Whether an option applies to this mesh: it comes after the mesh, or before the first one. */
+static bool applies_to(const struct args *args, int which)
 {
     return args->operand_count == 0 || args->operand_count == which + 1;
 }
@@ -117,7 +116,7 @@ static bool add_step(const struct args *args, const struct mesh_step *step, stru
 {
     for (int which = 0; which < 2; which++) {
         struct mesh_transform *transform = &placed[which].transform;
-        if (!is_about(args, which))
+        if (!applies_to(args, which))
             continue;
         if (transform->count == MESH_STEPS_MAX)
             return args_error(args, "more than %d steps for a mesh", MESH_STEPS_MAX);
@@ -176,7 +175,7 @@ static bool take_velocity(const struct args *args, void *out)
     if (!take_vector(args, velocity))
         return false;
     for (int which = 0; which < 2; which++)
-        if (is_about(args, which)) {
+        if (applies_to(args, which)) {
             placed[which].moving = true;
             memcpy(placed[which].velocity, velocity, sizeof velocity);
         }
@@ -200,7 +199,7 @@ static bool take_method(const struct args *args, void *out)
     return true;
 }
 
-/* What goes together, and how many files. */
+/* Checks the combination of options, and the number of files. */
 static bool check(const struct args *args, const struct mesh_options *options)
 {
     const int wanted = options->self ? 1 : 2;
@@ -220,13 +219,13 @@ static bool check(const struct args *args, const struct mesh_options *options)
 
 static void on_progress(void *progress, uint64_t done, uint64_t total)
 {
-    progress_to_of(progress, done, total);
+    progress_to(progress, (int64_t) done, (int64_t) total);
 }
 
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
-    struct progress progress = progress_begin_of("bytes", 0);
+    struct progress progress = progress_begin("bytes", 0);
     const struct mesh_progress watch = {on_progress, &progress};
     const bool good = mesh_read(path, &watch, out, error);
     progress_end(&progress);
@@ -242,11 +241,11 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
     return false;
 }
 
-/* ---- The run --------------------------------------------------------------------------------- */
+/* ---- Answers --------------------------------------------------------------------------------- */
 
 typedef void write_function(FILE *out, const struct mesh_report *report);
 
-/* name: NULL: not wanted. */
+/* Writes a file. name: NULL: none is wanted. */
 static bool write_file(const char *name, write_function *write, const struct mesh_report *report)
 {
     FILE *out = name ? output_open(name) : NULL;
@@ -256,7 +255,7 @@ static bool write_file(const char *name, write_function *write, const struct mes
     return output_close(out, name);
 }
 
-static int tell(const struct mesh_options *options, const struct mesh_report *report)
+static int print_answer(const struct mesh_options *options, const struct mesh_report *report)
 {
     if (options->json)
         mesh_report_json(stdout, report);
@@ -268,11 +267,11 @@ static int tell(const struct mesh_options *options, const struct mesh_report *re
     return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
-static int meet(const struct mesh_options *options, const struct mesh *a, const struct mesh *b,
-                char **names)
+static int intersect(const struct mesh_options *options, const struct mesh *a, const struct mesh *b,
+                     char **names)
 {
-    struct progress progress = progress_begin_of("faces", 0);
-    const struct mesh_query question = {
+    struct progress progress = progress_begin("faces", 0);
+    const struct mesh_query query = {
         .a = a,
         .b = b,
         .as = options->as,
@@ -282,8 +281,8 @@ static int meet(const struct mesh_options *options, const struct mesh *a, const 
         .method = options->method,
         .report = on_progress,
         .context = &progress};
-    struct mesh_intersection meeting;
-    const enum fmb_status status = mesh_intersect(&question, &meeting);
+    struct mesh_intersection intersection;
+    const enum fmb_status status = mesh_intersect(&query, &intersection);
     progress_end(&progress);
     if (status != FMB_OK) {
         complain("%s", status == FMB_NOT_FINITE
@@ -291,12 +290,12 @@ static int meet(const struct mesh_options *options, const struct mesh *a, const 
                            : fmb_status_text((int) status));
         return ARGS_FAILED;
     }
-    const struct mesh_report report = {.query = &question,
+    const struct mesh_report report = {.query = &query,
                                        .mesh = {a, b},
                                        .name = {names[0], names[a != b]},
-                                       .intersection = &meeting};
-    const int code = tell(options, &report);
-    mesh_intersection_free(&meeting);
+                                       .intersection = &intersection};
+    const int code = print_answer(options, &report);
+    mesh_intersection_free(&intersection);
     return code;
 }
 
@@ -334,7 +333,7 @@ int cmd_mesh(int argc, char **argv)
     code = ARGS_USAGE;
     if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&
         (options.self || read_mesh(args.operands[1], &options.placed[1], &mesh[1])))
-        code = meet(&options, &mesh[0], &mesh[!options.self], args.operands);
+        code = intersect(&options, &mesh[0], &mesh[!options.self], args.operands);
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
     return code;

@@ -1,15 +1,13 @@
-/* fmb query: scenes in, answers out. */
+/* fmb query: reads scenes and prints the answers to their pairs. */
 #include "commands.h"
 
 #include "answers.h"
 #include "args.h"
 #include "complain.h"
 #include "json.h"
-#include "output.h"
 #include "progress.h"
 #include "report.h"
 #include "svg.h"
-#include "verify.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -68,7 +66,7 @@ static const char usage[] =
 
 struct query_options {
     bool local, json;
-    struct answers_question question;
+    struct answers_options wanted;
     const char *svg; /* NULL: no picture */
     double timeout;
     long retries;
@@ -78,13 +76,13 @@ struct query_options {
 
 enum { METHOD_NAMES_MAX = 80 };
 
-/* "exact, fmb and sat": the table's names. */
+/* Returns the names of the methods: "exact, fmb and sat". */
 static const char *method_names(char out[METHOD_NAMES_MAX])
 {
     size_t used = 0;
     for (size_t i = 0; fmb_method_at(i) && used < METHOD_NAMES_MAX; i++) {
-        const char *between = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
-        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", between,
+        const char *separator = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
+        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", separator,
                                   fmb_method_at(i)->name);
     }
     return out;
@@ -99,16 +97,16 @@ static bool take_method(const struct args *args, void *out)
            args_error(args, "--method: there are %s, not '%s'", method_names(names), optarg);
 }
 
-/* ---- The run --------------------------------------------------------------------------------- */
+/* ---- Answers --------------------------------------------------------------------------------- */
 
 struct query_run {
     const struct query_options *options;
     const struct args_bus *bus_options;
     const char *input_name;
     struct report *report[2]; /* the printed one, and the picture or NULL */
-    struct answers_bus *bus;  /* NULL: not needed so far */
+    struct answers_bus *bus;  /* NULL: not opened yet */
     struct progress progress;
-    bool undecided; /* a pair got no verdict */
+    bool undecided; /* a pair has no verdict */
 };
 
 static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
@@ -116,35 +114,32 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
     struct query_run *run = user;
     struct outcome checked = *outcome;
     char refutation[VERIFY_TEXT_MAX];
-    if (run->options->question.certificate && !outcome->error)
+    if (run->options->wanted.certificate && !outcome->error)
         verify_outcome(scene, run->options->local ? "the" : "the service's", &checked, refutation);
     for (int i = 0; i < 2; i++)
         if (run->report[i])
             run->report[i]->pair(run->report[i], scene, &checked);
     run->undecided = run->undecided || checked.error;
-    progress_step(&run->progress);
+    progress_to(&run->progress, run->progress.done + 1, run->progress.total);
 }
 
-/* The bus is opened for the first scene: a bad one is reported without a bus. */
-static void answer_on_bus(struct query_run *run, const struct scene *scene)
-{
-    const struct query_options *options = run->options;
-    if (!run->bus)
-        run->bus = answers_bus_open(run->bus_options, &options->question, options->timeout,
-                                    (int) options->retries);
-    answers_bus_scene(run->bus, scene, take_outcome, run);
-}
-
+/* The bus is opened for the first scene: an invalid one is reported without a bus. */
 static void answer_scene(struct query_run *run, const struct scene *scene)
 {
+    const struct query_options *options = run->options;
     for (int i = 0; i < 2; i++)
         if (run->report[i])
             run->report[i]->begin(run->report[i], scene);
-    run->progress = progress_begin(scene_count_pairs(scene));
-    if (run->options->local)
-        answers_local(&run->options->question, scene, take_outcome, run);
+    run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(scene));
+    if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
+        run->progress.enabled = false;
+    if (!options->local && !run->bus)
+        run->bus = answers_bus_open(run->bus_options, &options->wanted, options->timeout,
+                                    (int) options->retries);
+    if (options->local)
+        answers_local(&options->wanted, scene, take_outcome, run);
     else
-        answer_on_bus(run, scene);
+        answers_bus_scene(run->bus, scene, take_outcome, run);
     progress_end(&run->progress);
     for (int i = 0; i < 2; i++)
         if (run->report[i])
@@ -184,7 +179,7 @@ static int run_query(const struct query_options *options, const struct args_bus 
                      const char *file, int fd)
 {
     struct report_json json = report_json(stdout);
-    struct report_text text = report_text(stdout, options->question.box, options->question.gap);
+    struct report_text text = report_text(stdout, options->wanted.box, options->wanted.gap);
     struct svg *svg = options->svg ? svg_open() : NULL;
     struct query_run run = {
         .options = options,
@@ -203,14 +198,14 @@ static int run_query(const struct query_options *options, const struct args_bus 
 int cmd_query(int argc, char **argv)
 {
     struct query_options options = {.timeout = 0.5, .retries = 5};
-    struct answers_question *question = &options.question;
+    struct answers_options *wanted = &options.wanted;
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &options.local},
         {"json", ARGS_FLAG, .out = &options.json},
-        {"box", ARGS_FLAG, .out = &question->box},
-        {"gap", ARGS_FLAG, .out = &question->gap},
-        {"certificate", ARGS_FLAG, .out = &question->certificate},
-        {"method", ARGS_OTHER, &question->method, .take = take_method},
+        {"box", ARGS_FLAG, .out = &wanted->box},
+        {"gap", ARGS_FLAG, .out = &wanted->gap},
+        {"certificate", ARGS_FLAG, .out = &wanted->certificate},
+        {"method", ARGS_OTHER, &wanted->method, .take = take_method},
         {"svg", ARGS_TEXT, .out = &options.svg},
         {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
         {"retries", ARGS_INTEGER, &options.retries, .high = 1000},
@@ -220,7 +215,7 @@ int cmd_query(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    question->box = question->box || options.svg;
+    wanted->box = wanted->box || options.svg;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;

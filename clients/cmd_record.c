@@ -1,14 +1,12 @@
-/* fmb record: what passes on the bus, into a log. */
+/* fmb record: writes the messages on the bus to a log. */
 #include "commands.h"
 
 #include "args.h"
-#include "bus_client.h"
 #include "clock.h"
 #include "complain.h"
 #include "fmb_client_raw.h"
 #include "log_choice.h"
 #include "log_write.h"
-#include "output.h"
 #include "record_report.h"
 #include "signals.h"
 
@@ -66,7 +64,7 @@ struct recording {
     const struct record_options *options;
     struct fmb_client *client;
     struct log_channels channels;
-    struct log_choice others; /* channels of no service that are recorded too */
+    struct log_choice others; /* other channels that are recorded too */
     struct log_parts parts;
     struct record_bodies *bodies;
     struct record_line line;
@@ -99,7 +97,7 @@ static int complete(const struct args *args, struct record_options *options)
 
 /* ---- Messages -------------------------------------------------------------------------------- */
 
-/* An event of the time of the newest message. */
+/* Writes an event with the time of the newest message. */
 static bool write_event(struct recording *recording, const char *channel, const void *bytes,
                         size_t size)
 {
@@ -120,7 +118,8 @@ static bool write_definition(void *user, const void *bytes, size_t size)
     return write_event(recording, recording->channels.name[LOG_DEFINITION], bytes, size);
 }
 
-/* Definitions come before the message, and in the same file. */
+/* Writes the definitions that must precede a message in its file, and begins a new file if there is
+ * no space for both. */
 static bool prepare(struct recording *recording, size_t channel_length, size_t size)
 {
     const long number = recording->parts.number;
@@ -159,7 +158,7 @@ static void on_message(void *user, const struct bus_message *message)
     recording->enough = recording->events == recording->options->count;
 }
 
-/* ---- While it runs --------------------------------------------------------------------------- */
+/* ---- Recording ------------------------------------------------------------------------------- */
 
 static const int64_t line_ns = 250000000, check_ns = 1000000000;
 
@@ -205,8 +204,8 @@ static int64_t least(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Until the recording is complete, the log fails, or a signal comes. Returns false if the bus has
- * failed, which was reported. */
+/* Records until the recording is complete, the log fails, or a signal arrives. Returns false if the
+ * bus has failed, which was reported. */
 static bool run(struct recording *recording, int signals)
 {
     const double duration = recording->options->duration;
@@ -234,14 +233,14 @@ static bool run(struct recording *recording, int signals)
     return true;
 }
 
-/* What was under way at the end: until something comes that was sent later, or nothing for some
- * time, but no longer than a second. */
-static bool receive_rest(struct recording *recording)
+/* Receives the messages that are under way at the end: until a message arrives that was sent later,
+ * or none arrives for 20 ms, but for a second at most. */
+static bool receive_remaining(struct recording *recording)
 {
-    const int64_t quiet_ns = 20000000, asked_utime = clock_utime(), asked_ns = clock_ns();
-    int64_t now_ns = asked_ns, until_ns = now_ns + quiet_ns;
+    const int64_t quiet_ns = 20000000, begin_utime = clock_utime(), begin_ns = clock_ns();
+    int64_t now_ns = begin_ns, until_ns = now_ns + quiet_ns;
     uint64_t received = 0;
-    while (!recording->enough && !recording->error && recording->utime <= asked_utime &&
+    while (!recording->enough && !recording->error && recording->utime <= begin_utime &&
            now_ns < until_ns) {
         if (!step(recording, -1, until_ns))
             return bus_failed(recording);
@@ -249,7 +248,7 @@ static bool receive_rest(struct recording *recording)
         received = fmb_client_raw_bus_counts(recording->client).received;
         now_ns = clock_ns();
         if (received != before)
-            until_ns = least(now_ns + quiet_ns, asked_ns + 1000000000);
+            until_ns = least(now_ns + quiet_ns, begin_ns + 1000000000);
     }
     return true;
 }
@@ -276,7 +275,7 @@ static int end_of_recording(struct recording *recording, bool good)
     return output_flush() && !recording->error && good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
-/* A file that may not grow is an error, not a signal. */
+/* With SIGXFSZ ignored, a file that may not grow is an error. */
 static int record(struct recording *recording, int signals)
 {
     signal(SIGXFSZ, SIG_IGN);
@@ -285,13 +284,13 @@ static int record(struct recording *recording, int signals)
     recording->line = record_line_begin(recording->begin_ns);
     complain("recording to %s, with a receive buffer of %ld bytes", recording->parts.name,
              fmb_client_raw_bus_counts(recording->client).receive_buffer);
-    const bool good = run(recording, signals) && receive_rest(recording);
+    const bool good = run(recording, signals) && receive_remaining(recording);
     const int code = end_of_recording(recording, good);
     record_bodies_close(recording->bodies);
     return code;
 }
 
-/* The bus is open, and what comes waits there. */
+/* To be called with the bus open: messages wait in its receive buffer. */
 static int record_from_bus(struct recording *recording)
 {
     int code = ARGS_FAILED;
@@ -316,7 +315,7 @@ static bool open_bus(struct recording *recording, const struct args_bus *args)
 {
     const bool others = recording->options->all || recording->options->channel;
     recording->channels = log_channels(args->prefix);
-    recording->client = bus_client_open(args, (struct fmb_client_options){0});
+    recording->client = args_open_client(args, (struct fmb_client_options){0});
     if (!recording->client)
         return false;
     const bool good = fmb_client_raw_listen(recording->client, others, on_message, recording);

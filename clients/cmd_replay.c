@@ -1,4 +1,4 @@
-/* fmb replay: the queries of a log, answered again. */
+/* fmb replay: answers the queries of a log again. */
 #include "commands.h"
 
 #include "allocate.h"
@@ -9,7 +9,6 @@
 #include "input.h"
 #include "listing.h"
 #include "number.h"
-#include "output.h"
 #include "progress.h"
 #include "replay_output.h"
 
@@ -19,7 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
@@ -92,9 +90,9 @@ struct replay_arguments {
     const char *junit, *html;
 };
 
-/* ---- While it goes ---- */
+/* ---- Callbacks ---- */
 
-/* Complaints that are printed; the others are counted. */
+/* Most complaints that are printed; the others are counted. */
 enum { COMPLAINTS_MAX = 20 };
 
 struct replay_run {
@@ -117,7 +115,7 @@ static void on_found(void *user, const struct located_difference *found)
     listing_put(run->differences, found);
 }
 
-/* Whether one more may be printed. */
+/* Counts a complaint. Returns whether it may be printed. */
 static bool complains(struct replay_run *run)
 {
     progress_end(&run->progress);
@@ -144,12 +142,12 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 static void on_progress(void *user, int64_t bytes)
 {
     struct replay_run *run = user;
-    progress_to(&run->progress, (uint64_t) bytes);
+    progress_to(&run->progress, bytes, run->progress.total);
 }
 
-/* ---- Before and after ---- */
+/* ---- Files and outcome ---- */
 
-/* As many files at a time as the system grants: each log is one. */
+/* Raises the limit of open files as far as the system allows: each log is one. */
 static void open_many(void)
 {
     struct rlimit limit;
@@ -178,7 +176,7 @@ static bool write_page(const struct replay_arguments *options)
     return output_close(file, options->html);
 }
 
-/* Why nothing was compared, for people; NULL: something was, or nothing had to be. */
+/* Returns the reason why nothing was compared; NULL: something was, or nothing had to be. */
 static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
@@ -189,7 +187,7 @@ static const char *why_nothing(const struct replay_arguments *options, const str
     return "there are no results to compare with";
 }
 
-/* The exit code, of a replay that went well as such. */
+/* Returns the exit code of a replay that reached its end. */
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
     const char *nothing = why_nothing(options, all);
@@ -218,7 +216,7 @@ static void report_one(void *user, const struct located_difference *found)
     putchar('\n');
 }
 
-/* Without a bus, or a service on it, counts say nothing. */
+/* Whether counts have a meaning: not without a bus, nor without a service on it. */
 static bool has_counts(const struct replay_run *run, const struct tally *all)
 {
     return !run->options->live || all->bus.answered > 0 ||
@@ -245,53 +243,41 @@ static void report_all(struct replay_run *run, const struct tally *all, int code
 
 /* ---- The end of a replay through a live service ---- */
 
-static void report_never(const struct answer_bus_options *options, double patience)
-{
-    const struct args_bus where = {options->url, options->prefix};
-    complain("no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s within %g s",
-             options->prefix, options->prefix, args_bus_name(&where), patience);
-}
-
-static void report_no_more(const struct tally_bus *bus, double patience, char *const *log)
-{
-    char answered[NUMBER_TEXT_MAX];
-    complain("fmbd answered %s queries, and then nothing for %g s; the next one is event %" PRId64
-             " (offset %" PRId64 ") of %s",
-             number_grouped(bus->answered, answered), patience, bus->number, bus->offset,
-             log[bus->log]);
-}
-
 /* No service has answered at all, or none does any more. */
 static void report_no_service(const struct tally_bus *bus, const struct answer_bus_options *options,
                               char *const *log)
 {
     const double patience = options->timeout * (options->retries + 1);
+    const struct args_bus where = {options->url, options->prefix};
+    char answered[NUMBER_TEXT_MAX];
     if (bus->services == 0)
-        report_never(options, patience);
+        complain("no fmbd answered on %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s within %g s",
+                 options->prefix, options->prefix, args_bus_name(&where), patience);
     else
-        report_no_more(bus, patience, log);
+        complain(
+            "fmbd answered %s queries, and then nothing for %g s; the next one is event %" PRId64
+            " (offset %" PRId64 ") of %s",
+            number_grouped(bus->answered, answered), patience, bus->number, bus->offset,
+            log[bus->log]);
     if (bus->malformed > 0)
         complain("%" PRId64 " results could not be read: another version of fmbd?", bus->malformed);
     complain("start one with 'fmbd%s%s &', or replay in this process: leave out --bus",
              *options->prefix ? " --prefix " : "", options->prefix);
 }
 
-static void report_signal(const struct tally_bus *bus)
-{
-    char answered[NUMBER_TEXT_MAX];
-    complain("ended by a signal; counts are of %s queries, answered so far",
-             number_grouped(bus->answered, answered));
-}
-
 /* Reports why not all queries were answered, if so, and what to do. */
 static void report_end(const struct tally_bus *bus, const struct answer_bus_options *options,
                        char *const *log)
 {
+    char answered[NUMBER_TEXT_MAX];
     switch ((enum answer_bus_end) bus->end) {
     case ANSWER_BUS_NO_END: break;
-    case ANSWER_BUS_SIGNAL: report_signal(bus); break;
+    case ANSWER_BUS_SIGNAL:
+        complain("ended by a signal; counts are of %s queries, answered so far",
+                 number_grouped(bus->answered, answered));
+        break;
     case ANSWER_BUS_NO_SERVICE: report_no_service(bus, options, log); break;
-    case ANSWER_BUS_FAILED: fputs("fmb: the bus has failed\n", stderr); break;
+    case ANSWER_BUS_FAILED: complain("the bus has failed"); break;
     }
 }
 
@@ -302,8 +288,7 @@ static int replay(struct replay_run *run, int64_t size, struct tally *tally)
     const struct replay_arguments *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
-    run->progress = progress_begin_of("bytes", (uint64_t) size);
-    run->progress.enabled = isatty(STDERR_FILENO); /* what is printed comes when it has ended */
+    run->progress = progress_begin("bytes", size);
     bool good = replay_run(&options->replay, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
@@ -357,7 +342,7 @@ static bool check_options(const struct args *args, const struct replay_arguments
     return check_report(args, "junit", options->junit) && check_report(args, "html", options->html);
 }
 
-/* Options of answers in this process, and of those of a service. */
+/* Checks the options that apply only with --bus, or only without. */
 static bool check_bus(const struct args *args, const struct replay_arguments *options)
 {
     if (options->live && options->frames > 0)
@@ -368,7 +353,7 @@ static bool check_bus(const struct args *args, const struct replay_arguments *op
     return true;
 }
 
-/* Those that were not given. */
+/* Sets the options that were not given. */
 static void complete(struct replay_arguments *options)
 {
     struct answer_bus_options *bus = &options->bus;

@@ -1,4 +1,4 @@
-/* fmb status: the next heartbeat of the service. */
+/* fmb status: prints the next heartbeat of the service. */
 #include "commands.h"
 
 #include "args.h"
@@ -6,7 +6,6 @@
 #include "json_write.h"
 #include "listen.h"
 #include "number.h"
-#include "output.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -31,7 +30,7 @@ struct heartbeat {
     struct fmb_client_heartbeat status;
     char version[32];
     bool received;
-    const char *malformed; /* error of the last one that could not be read */
+    const char *malformed; /* error of the last heartbeat that could not be read; NULL: none */
 };
 
 static void on_heartbeat(void *user, const struct fmb_client_heartbeat *status)
@@ -70,12 +69,6 @@ static void print_json(const struct fmb_client_heartbeat *status)
     json_line_end(&json);
 }
 
-static void print_count(const char *name, int64_t count)
-{
-    char text[NUMBER_TEXT_MAX];
-    printf("  %-16s %15s\n", name, number_grouped(count, text));
-}
-
 static void print_duration(int64_t microseconds)
 {
     int64_t seconds = microseconds / 1000000;
@@ -101,32 +94,32 @@ static void print_text(const struct fmb_client_heartbeat *status)
     printf("fmbd %s, server %" PRId64 ", up ", status->version, status->server_id);
     print_duration(status->uptime_us);
     puts("\nqueries");
-    print_count("received", status->received);
-    print_count("  scenes", status->scenes);
-    print_count("  definitions", status->definitions);
-    print_count("answered", status->answered);
-    print_count("pairs decided", status->pairs);
+    number_print("received", status->received);
+    number_print("  scenes", status->scenes);
+    number_print("  definitions", status->definitions);
+    number_print("answered", status->answered);
+    number_print("pairs decided", status->pairs);
     print_refusals(status);
-    print_count("not sent", status->unsent);
-    print_count("malformed", status->malformed);
-    print_count("waiting", status->waiting);
-    print_count("  at most", status->most_waiting);
+    number_print("not sent", status->unsent);
+    number_print("malformed", status->malformed);
+    number_print("waiting", status->waiting);
+    number_print("  at most", status->most_waiting);
     puts("bodies");
-    print_count("held", status->bodies);
-    print_count("frames", status->frames);
-    print_count("  at most", status->frame_capacity);
-    print_count("ids", status->ids);
-    print_count("hits", status->hits);
-    print_count("misses", status->misses);
-    print_count("evicted", status->evictions);
+    number_print("held", status->bodies);
+    number_print("frames", status->frames);
+    number_print("  at most", status->frame_capacity);
+    number_print("ids", status->ids);
+    number_print("hits", status->hits);
+    number_print("misses", status->misses);
+    number_print("evicted", status->evictions);
     puts("time to decide");
     printf("  %-16s %15.1f us\n", "p50", 1e-3 * (double) status->compute_p50_ns);
     printf("  %-16s %15.1f us\n", "p99", 1e-3 * (double) status->compute_p99_ns);
     printf("  %-16s %15.1f us\n", "longest", 1e-3 * (double) status->compute_max_ns);
     puts("bus");
-    print_count("receive buffer", status->receive_buffer);
-    print_count("dropped", status->dropped);
-    print_count("foreign", status->foreign);
+    number_print("receive buffer", status->receive_buffer);
+    number_print("dropped", status->dropped);
+    number_print("foreign", status->foreign);
 }
 
 static void advise(const struct status_options *options, const struct args_bus *bus,
@@ -160,17 +153,14 @@ int cmd_status(int argc, char **argv)
         {.name = NULL},
     };
     struct args args = {"status", usage, own, .operand = NULL};
-    struct listener listener;
     struct heartbeat heartbeat = {.received = false};
     const struct fmb_client_watcher watcher = {
         .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &heartbeat};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!listen_open(&args.bus, &watcher, &listener))
-        return ARGS_FAILED;
-    enum listen_end end = listen_until(&listener, &heartbeat.received, options.timeout);
-    listen_close(&listener);
+    const enum listen_end end =
+        listen_until(&args.bus, &watcher, &heartbeat.received, options.timeout);
     if (end == LISTEN_ENOUGH)
         return print_heartbeat(&options, &heartbeat.status);
     if (end == LISTEN_TIMEOUT)

@@ -1,4 +1,4 @@
-/* fmb watch: the results on the bus. */
+/* fmb watch: prints the results on the bus. */
 #include "commands.h"
 
 #include "args.h"
@@ -35,14 +35,14 @@ struct watch_options {
 struct watch {
     const struct watch_options *options;
     struct report_columns columns;
-    long seen;
+    long printed;
     uint64_t malformed;
     bool enough;
 };
 
 /* ---- Results of pairs ---- */
 
-/* The members that results of pairs and of scenes have in common. */
+/* Writes the members that results of pairs and of scenes have in common. */
 static void begin_json(struct json_writer *json, int64_t utime, int64_t client_id,
                        int64_t sequence_number, int64_t server_id, int64_t compute_ns)
 {
@@ -76,8 +76,8 @@ static void print_pair_json(const struct fmb_client_pair_result *result)
     end_json(&json);
 }
 
-/* How each line begins. */
-static void print_head(int64_t client_id, int64_t sequence_number, int64_t compute_ns)
+/* Prints the start of a line. */
+static void print_start(int64_t client_id, int64_t sequence_number, int64_t compute_ns)
 {
     printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  ", client_id, sequence_number,
            1e-3 * (double) compute_ns);
@@ -86,7 +86,7 @@ static void print_head(int64_t client_id, int64_t sequence_number, int64_t compu
 static void print_pair_text(const struct fmb_client_pair_result *result,
                             struct report_columns *columns)
 {
-    print_head(result->client_id, result->sequence_number, result->compute_ns);
+    print_start(result->client_id, result->sequence_number, result->compute_ns);
     printf("%4" PRId64 " %4" PRId64 "  ", result->body_id[0], result->body_id[1]);
     if (result->status == FMB_OK)
         report_answer_text(stdout, result->dim, &result->answer, columns);
@@ -97,7 +97,7 @@ static void print_pair_text(const struct fmb_client_pair_result *result,
 
 /* ---- Results of scenes ---- */
 
-/* The pairs of a result, which names them by their places in the query: it holds no ids. */
+/* Writes the pairs of a result. It has their positions in the query, but no ids. */
 static void write_scene_pairs(struct json_writer *json,
                               const struct fmb_client_scene_result *result)
 {
@@ -148,7 +148,7 @@ static void print_scene_json(const struct fmb_client_scene_result *result)
 
 static void print_scene_text(const struct fmb_client_scene_result *result)
 {
-    print_head(result->client_id, result->sequence_number, result->compute_ns);
+    print_start(result->client_id, result->sequence_number, result->compute_ns);
     if (result->status != FMB_OK) {
         printf("not decided: %s\n", result->text);
         return;
@@ -166,8 +166,8 @@ static void print_scene_text(const struct fmb_client_scene_result *result)
 
 static void count(struct watch *watch)
 {
-    watch->seen++;
-    if (fflush(stdout) != 0 || watch->seen == watch->options->count)
+    watch->printed++;
+    if (fflush(stdout) != 0 || watch->printed == watch->options->count)
         watch->enough = true;
 }
 
@@ -223,13 +223,8 @@ int cmd_watch(int argc, char **argv)
     struct watch watch = {.options = &options, .columns = report_columns()};
     const struct fmb_client_watcher watcher = {
         .pair = on_pair, .scene = on_scene, .malformed = on_malformed, .user = &watch};
-    struct listener listener;
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!listen_open(&args.bus, &watcher, &listener))
-        return ARGS_FAILED;
-    enum listen_end end = listen_until(&listener, &watch.enough, -1);
-    listen_close(&listener);
-    return end_of_watch(&watch, end);
+    return end_of_watch(&watch, listen_until(&args.bus, &watcher, &watch.enough, -1));
 }

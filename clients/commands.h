@@ -7,10 +7,9 @@ int cmd_watch(int argc, char **argv);
 int cmd_record(int argc, char **argv);
 int cmd_status(int argc, char **argv);
 int cmd_replay(int argc, char **argv);
-int cmd_log(int argc, char **argv);
 int cmd_mesh(int argc, char **argv);
 
-/* Those of fmb log; argv[0] is "info", ... */
+/* The commands of fmb log; argv[0] is "info", ... */
 int cmd_log_info(int argc, char **argv);
 int cmd_log_cut(int argc, char **argv);
 int cmd_log_scene(int argc, char **argv);

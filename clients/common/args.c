@@ -1,7 +1,6 @@
 #include "args.h"
 
 #include "complain.h"
-#include "fmb_client.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -9,15 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ARGS_WHO_MAX = 64 };
-
 bool args_error(const struct args *args, const char *format, ...)
 {
     va_list list;
-    char who[ARGS_WHO_MAX];
-    snprintf(who, sizeof who, "fmb %s", args->command);
     va_start(list, format);
-    complain_as(who, format, list);
+    complain_as(args->command, format, list);
     va_end(list);
     fprintf(stderr, "Try 'fmb %s --help'.\n", args->command);
     return false;
@@ -44,7 +39,7 @@ bool args_integer(const struct args *args, long low, long high, long *out)
                       low, high, optarg);
 }
 
-/* ---- Options, one after the other ------------------------------------------------------------ */
+/* ---- Options --------------------------------------------------------------------------------- */
 
 static bool take_prefix(const struct args *args, void *out)
 {
@@ -56,14 +51,14 @@ static bool take_prefix(const struct args *args, void *out)
     return true;
 }
 
-/* As getopt_long() takes them. */
+/* The options for getopt_long(). */
 enum { COMMON_OPTIONS = 3, ALL_MAX = ARGS_OPTIONS_MAX + COMMON_OPTIONS };
 struct getopt_options {
     struct option option[ALL_MAX + 1];
     char letters[2 * ALL_MAX + 3];
 };
 
-enum { FIRST = 256 }; /* value of the first long option */
+enum { FIRST = 256 }; /* value of the first option, if it has no letter */
 
 /* A '-' before the letters makes getopt_long() return operands in order, as AN_OPERAND. */
 enum { AN_OPERAND = 1 };
@@ -78,7 +73,8 @@ static void list_options(const struct args_option *options, bool in_order,
     *letter++ = ':';
     for (int i = 0; options[i].name; i++) {
         const bool has_value = options[i].kind != ARGS_FLAG;
-        out->option[i] = (struct option){options[i].name, has_value, NULL, FIRST + i};
+        const int value = options[i].letter ? options[i].letter : FIRST + i;
+        out->option[i] = (struct option){options[i].name, has_value, NULL, value};
         if (!options[i].letter)
             continue;
         *letter++ = options[i].letter;
@@ -87,18 +83,8 @@ static void list_options(const struct args_option *options, bool in_order,
     }
 }
 
-/* value: of an option that is in the list, from getopt_long(). */
-static const struct args_option *find(const struct args_option *options, int value)
-{
-    if (value >= FIRST)
-        return &options[value - FIRST];
-    while (options->letter != value)
-        options++;
-    return options;
-}
-
-/* After an option of '?' or ':' from getopt_long(). A long option stands in argv[optind - 1]; of
- * short ones, which may share a word, getopt keeps the letter. */
+/* Reports an option that getopt_long() refused with '?' or ':'. A long option is argv[optind - 1].
+ * Short ones may share a word, but optopt is the letter. */
 static bool refuse(const struct args *args, int option, char **argv)
 {
     const char letter[] = {'-', (char) optopt, '\0'};
@@ -124,7 +110,7 @@ static bool take_option(struct args *args, const struct args_option *option)
     }
 }
 
-/* Reads the arguments after the options. */
+/* Checks the number of operands. */
 static bool take_operands(struct args *args, int count)
 {
     args->operand_count = count;
@@ -159,10 +145,13 @@ int args_parse(struct args *args, int argc, char **argv)
     optind = 1;
     opterr = 0;
     while ((option = getopt_long(argc, argv, list.letters, list.option, NULL)) != -1) {
+        int i = 0;
+        while (list.option[i].name && list.option[i].val != option)
+            i++;
         if (args->in_order && option == AN_OPERAND)
-            args->operands[args->operand_count++] = optarg; /* over words that are done with */
-        else if (option == '?' || option == ':' ? !refuse(args, option, argv)
-                                                : !take_option(args, find(options, option)))
+            args->operands[args->operand_count++] = optarg; /* overwrites words already read */
+        else if (list.option[i].name ? !take_option(args, &options[i])
+                                     : !refuse(args, option, argv))
             return ARGS_USAGE;
     }
     memmove(args->operands + args->operand_count, argv + optind,
@@ -179,4 +168,15 @@ const char *args_bus_name(const struct args_bus *bus)
 {
     const char *url = bus->url ? bus->url : getenv("LCM_DEFAULT_URL");
     return url && *url ? url : "the usual bus of this host";
+}
+
+struct fmb_client *args_open_client(const struct args_bus *bus, struct fmb_client_options options)
+{
+    char why[FMB_CLIENT_WHY_MAX];
+    options.url = bus->url;
+    options.prefix = bus->prefix;
+    struct fmb_client *client = fmb_client_open(&options, why, sizeof why);
+    if (!client)
+        complain("%s", why);
+    return client;
 }

@@ -2,6 +2,8 @@
 #ifndef ARGS_H
 #define ARGS_H
 
+#include "fmb_client.h"
+
 #include <getopt.h>
 #include <stdbool.h>
 
@@ -46,7 +48,7 @@ struct args {
     const char *usage;   /* text of --help */
     /* The command's own options, at most ARGS_OPTIONS_MAX; ends with an option without a name. */
     const struct args_option *options;
-    const char *operand; /* name of the operands in messages: "FILE"; NULL: none allowed */
+    const char *operand; /* name of an operand in messages: "FILE"; NULL: none are allowed */
     int operands_max;
     bool in_order; /* operand_count is the number of operands before the option when take is called
                     */
@@ -71,5 +73,9 @@ bool args_integer(const struct args *args, long low, long high, long *out);
 
 /* Returns the URL of a bus for messages; valid as long as the options. */
 const char *args_bus_name(const struct args_bus *bus);
+
+/* Opens a client with these options, and the URL and prefix of the bus. Returns NULL after an
+ * error, which was reported on stderr. */
+struct fmb_client *args_open_client(const struct args_bus *bus, struct fmb_client_options options);
 
 #endif

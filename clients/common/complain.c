@@ -2,7 +2,7 @@
 
 #include "escape.h"
 
-#include <stdio.h>
+#include <errno.h>
 #include <string.h>
 
 enum { COMPLAIN_MAX = 8192 }; /* bytes: twice the longest path */
@@ -12,6 +12,13 @@ void complain_text(const char *text)
     escape(stderr, ESCAPE_TERMINAL, text, strlen(text));
 }
 
+static void print_line(const char *who, const char *line)
+{
+    fprintf(stderr, "%s: ", who);
+    complain_text(line);
+    putc('\n', stderr);
+}
+
 void complain(const char *format, ...)
 {
     char text[COMPLAIN_MAX];
@@ -19,22 +26,39 @@ void complain(const char *format, ...)
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    for (char *line = text; *line;) {
-        char *end = line + strcspn(line, "\n");
-        const bool last = !*end;
-        *end = '\0';
-        fputs("fmb: ", stderr);
-        complain_text(line);
-        putc('\n', stderr);
-        line = end + !last;
-    }
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
+        print_line("fmb", line);
 }
 
-void complain_as(const char *who, const char *format, va_list list)
+void complain_as(const char *command, const char *format, va_list list)
 {
     char text[COMPLAIN_MAX];
     vsnprintf(text, sizeof text, format, list);
-    fprintf(stderr, "%s: ", who);
-    complain_text(text);
-    putc('\n', stderr);
+    fputs("fmb ", stderr);
+    print_line(command, text);
+}
+
+static bool failed(const char *name)
+{
+    complain("%s: %s", name, strerror(errno));
+    return false;
+}
+
+FILE *output_open(const char *path)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        failed(path);
+    return file;
+}
+
+bool output_close(FILE *file, const char *path)
+{
+    const bool good = !ferror(file);
+    return (fclose(file) == 0 && good) || failed(path);
+}
+
+bool output_flush(void)
+{
+    return (fflush(stdout) == 0 && !ferror(stdout)) || failed("standard output");
 }

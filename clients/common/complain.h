@@ -1,17 +1,26 @@
-/* Messages on stderr. Names and texts of others may be in them: characters that a terminal would
- * obey are written as \xNN. */
+/* Messages on stderr, and output whose errors are reported there. Messages may contain names and
+ * texts from outside: control characters are written as \xNN. */
 #ifndef COMPLAIN_H
 #define COMPLAIN_H
 
 #include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
 
 /* Prints each line of the text after "fmb: ". */
 __attribute__((format(printf, 1, 2))) void complain(const char *format, ...);
 
-/* Prints one message after who and ": ". */
-void complain_as(const char *who, const char *format, va_list list);
+/* Prints a text as one line, after "fmb ", the name of a command and ": ". */
+void complain_as(const char *command, const char *format, va_list list);
 
 /* Prints a text within a line. */
 void complain_text(const char *text);
+
+/* Opens a file to overwrite it. Returns NULL after an error. */
+FILE *output_open(const char *path);
+
+/* Both return false if not all was written. */
+bool output_close(FILE *file, const char *path);
+bool output_flush(void); /* standard output */
 
 #endif

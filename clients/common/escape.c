@@ -5,7 +5,7 @@
 
 static const uint32_t replacement = 0xfffd;
 
-/* Length of the UTF-8 sequence that begins with this byte; 0: none does. */
+/* Returns the length of the UTF-8 sequence that begins with this byte; 0: no sequence does. */
 static size_t sequence_length(unsigned char first)
 {
     if (first < 0x80)
@@ -15,7 +15,8 @@ static size_t sequence_length(unsigned char first)
     return first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
 }
 
-/* Returns the bytes taken, at least 1. On output: *code is the character they are, or U+FFFD. */
+/* Decodes the character at the start of a text. Returns its bytes and *code; or 1 and U+FFFD if the
+ * text does not begin with valid UTF-8. */
 static size_t decode(const unsigned char *text, size_t size, uint32_t *code)
 {
     static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000}; /* [length], else overlong */
@@ -36,7 +37,8 @@ static size_t decode(const unsigned char *text, size_t size, uint32_t *code)
     return length;
 }
 
-/* NULL: the character stays. Others than ASCII are one or two units of UTF-16. */
+/* These functions return the replacement of a character; NULL: it is written as it is. In JSON it
+ * is one or two units of UTF-16, unless it is printable ASCII. */
 static const char *json_of(uint32_t code, char text[16])
 {
     if (code == '"' || code == '\\')
@@ -78,16 +80,6 @@ static const char *terminal_of(uint32_t code, char text[16])
     return text;
 }
 
-static const char *escaped_of(enum escape form, uint32_t code, char text[16])
-{
-    switch (form) {
-    case ESCAPE_JSON: return json_of(code, text);
-    case ESCAPE_XML: return xml_of(code);
-    case ESCAPE_TERMINAL: return terminal_of(code, text);
-    }
-    return NULL;
-}
-
 void escape(FILE *out, enum escape form, const char *text, size_t size)
 {
     const unsigned char *at = (const unsigned char *) text, *end = at + size, *kept = at;
@@ -95,7 +87,9 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
         char buffer[16];
         uint32_t code;
         const size_t length = decode(at, (size_t) (end - at), &code);
-        const char *escaped = escaped_of(form, code, buffer);
+        const char *escaped = form == ESCAPE_JSON  ? json_of(code, buffer)
+                              : form == ESCAPE_XML ? xml_of(code)
+                                                   : terminal_of(code, buffer);
         if (escaped) {
             fwrite(kept, 1, (size_t) (at - kept), out);
             fputs(escaped, out);

@@ -1,4 +1,4 @@
-/* Text in UTF-8: checks it, and escapes it for JSON and XML. */
+/* Checks text in UTF-8, and escapes it for JSON, XML and terminals. */
 #ifndef ESCAPE_H
 #define ESCAPE_H
 
@@ -19,7 +19,7 @@ void escape(FILE *out, enum escape form, const char *text, size_t size);
 /* Whether the text is valid UTF-8 without control characters. */
 bool escape_is_text(const char *text);
 
-/* The number of its characters. */
+/* Returns the number of characters of a valid text. */
 size_t escape_characters(const char *text);
 
 #endif

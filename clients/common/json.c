@@ -1,15 +1,16 @@
-/* text.c splits the input into objects; cJSON parses each into a tree, and decides what is JSON;
- * the tree is checked and copied into a scene, and freed.
+/* text.c splits the input into objects. cJSON parses each into a tree, and decides what is JSON.
+ * The tree is checked, copied into a scene, and freed.
  *
- * Properties of cJSON 1.7 that matter here: access to an array by index walks its list, so lists
- * are walked once; the look-up of a key takes the first match and ignores case, so keys are
- * compared here; 1e999 reads as infinite, so every number is checked. Numbers are read by strtod(),
+ * Properties of cJSON 1.7 that matter here: access to an array by index traverses its list, so each
+ * list is traversed once. The look-up of a key takes the first match and ignores case, so keys are
+ * compared here. 1e999 reads as infinite, so every number is checked. Numbers are read by strtod(),
  * rounded correctly, in the C locale. */
 #include "json.h"
 
 #include "allocate.h"
 #include "escape.h"
 #include "fmb_client.h"
+#include "keyed_hash.h"
 #include "number.h"
 #include "text.h"
 #include "turned_box.h"
@@ -29,45 +30,57 @@ static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
 struct json_reader {
     struct text text;
     size_t scene_number; /* of the object that is being read, from 1 */
+    int dim;             /* of its scene, once that is known */
     char error[ERROR_MAX];
 };
 
-/* ---- Where in the tree: printed only if something is wrong there ----------------------------- */
+/* ---- Places in the tree: printed only if something is wrong there ---------------------------- */
 
-/* A value's path in the one that holds it: a key, or an index where key is NULL. */
-struct json_path {
-    const struct json_path *parent; /* NULL: the scene itself */
+/* A value, and its path in the one that contains it: a key, or an index where key is NULL. */
+struct place {
+    struct json_reader *reader;
+    const struct place *parent; /* NULL: the scene itself */
+    const cJSON *item;          /* NULL: an optional member that is missing */
     const char *key;
     size_t index;
 };
 
-static void write_path(FILE *out, const struct json_path *path)
+static struct place first_element(const struct place *array)
 {
-    if (path->parent)
-        write_path(out, path->parent);
-    if (!path->key)
-        fprintf(out, "[%zu]", path->index);
-    else
-        fprintf(out, "%s%s", path->parent ? "." : "", path->key);
+    return (struct place){array->reader, array, array->item->child, NULL, 0};
 }
 
-static bool refuse(struct json_reader *reader, const struct json_path *path, const char *format,
-                   ...) __attribute__((format(printf, 3, 4)));
-
-/* Always false. path: NULL for the scene itself. */
-static bool refuse(struct json_reader *reader, const struct json_path *path, const char *format,
-                   ...)
+static void next_element(struct place *at)
 {
+    at->item = at->item->next;
+    at->index++;
+}
+
+static void write_path(FILE *out, const struct place *at)
+{
+    if (!at->parent)
+        return;
+    write_path(out, at->parent);
+    if (!at->key)
+        fprintf(out, "[%zu]", at->index);
+    else
+        fprintf(out, "%s%s", at->parent->parent ? "." : "", at->key);
+}
+
+/* Sets the reader's error. Always returns false. */
+__attribute__((format(printf, 2, 3))) static bool refuse(const struct place *at, const char *format,
+                                                         ...)
+{
+    struct json_reader *reader = at->reader;
     memset(reader->error, 0, sizeof reader->error);
     FILE *out = fmemopen(reader->error, sizeof reader->error - 1, "w");
     if (!out)
         allocate_failed();
     if (reader->scene_number > 1)
         fprintf(out, "scene %zu: ", reader->scene_number);
-    if (path) {
-        write_path(out, path);
+    write_path(out, at);
+    if (at->parent)
         fputs(": ", out);
-    }
     va_list list;
     va_start(list, format);
     vfprintf(out, format, list);
@@ -76,7 +89,7 @@ static bool refuse(struct json_reader *reader, const struct json_path *path, con
     return false;
 }
 
-/* Text of the input, fit for a line on any terminal: cut, and in printable ASCII. */
+/* Copies text of the input for a message: at most QUOTED_MAX characters, in printable ASCII. */
 static const char *quoted(const char *text, char out[QUOTED_MAX + 4])
 {
     size_t i = 0;
@@ -99,10 +112,9 @@ static const char *kind_name(const cJSON *item)
     return cJSON_IsNull(item) ? "null" : "a boolean";
 }
 
-static bool refuse_kind(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                        const char *expected)
+static bool refuse_kind(const struct place *at, const char *expected)
 {
-    return refuse(reader, path, "expected %s, found %s", expected, kind_name(item));
+    return refuse(at, "expected %s, found %s", expected, kind_name(at->item));
 }
 
 /* ---- Objects --------------------------------------------------------------------------------- */
@@ -112,155 +124,156 @@ struct key {
     bool optional;
 };
 
-static int key_index(const struct key *keys, int count, const char *name)
+static bool check_present(const struct place *member)
 {
-    for (int i = 0; i < count; i++)
-        if (strcmp(keys[i].name, name) == 0)
-            return i;
-    return -1;
+    return member->item || refuse(member->parent, "missing key \"%s\"", member->key);
 }
 
-/* On output: found[i] is the value of keys[i], NULL where an optional one is missing. */
-static bool read_object(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                        const struct key *keys, int count, const cJSON **found)
+/* On output: member[i] is the value of keys[i]; its item is NULL if an optional one is missing. */
+static bool read_object(const struct place *at, const struct key *keys, int count,
+                        struct place *member)
 {
     char text[QUOTED_MAX + 4];
-    if (!cJSON_IsObject(item))
-        return refuse_kind(reader, path, item, "an object");
+    if (!cJSON_IsObject(at->item))
+        return refuse_kind(at, "an object");
     for (int i = 0; i < count; i++)
-        found[i] = NULL;
-    for (const cJSON *child = item->child; child; child = child->next) {
-        int i = key_index(keys, count, child->string);
-        if (i < 0)
-            return refuse(reader, path, "unknown key \"%s\"", quoted(child->string, text));
-        if (found[i])
-            return refuse(reader, path, "repeated key \"%s\"", keys[i].name);
-        found[i] = child;
+        member[i] = (struct place){at->reader, at, NULL, keys[i].name, 0};
+    for (const cJSON *child = at->item->child; child; child = child->next) {
+        int i = 0;
+        while (i < count && strcmp(keys[i].name, child->string) != 0)
+            i++;
+        if (i == count)
+            return refuse(at, "unknown key \"%s\"", quoted(child->string, text));
+        if (member[i].item)
+            return refuse(at, "repeated key \"%s\"", keys[i].name);
+        member[i].item = child;
     }
     for (int i = 0; i < count; i++)
-        if (!found[i] && !keys[i].optional)
-            return refuse(reader, path, "missing key \"%s\"", keys[i].name);
+        if (!keys[i].optional && !check_present(&member[i]))
+            return false;
     return true;
 }
 
 /* ---- Arrays and numbers ---------------------------------------------------------------------- */
 
-static bool check_array(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                        size_t count, const char *what)
+static bool check_array(const struct place *at, size_t count, const char *what)
 {
-    if (!cJSON_IsArray(item))
-        return refuse(reader, path, "expected %zu %s, found %s", count, what, kind_name(item));
-    size_t found = (size_t) cJSON_GetArraySize(item);
-    return found == count || refuse(reader, path, "expected %zu %s, found %zu", count, what, found);
+    if (!cJSON_IsArray(at->item))
+        return refuse(at, "expected %zu %s, found %s", count, what, kind_name(at->item));
+    size_t found = (size_t) cJSON_GetArraySize(at->item);
+    return found == count || refuse(at, "expected %zu %s, found %zu", count, what, found);
 }
 
-/* Always false. */
-static bool refuse_value(struct json_reader *reader, const struct json_path *path, double value,
-                         const char *expected)
+/* Refuses a number. */
+static bool refuse_value(const struct place *at, double value, const char *expected)
 {
     char text[NUMBER_TEXT_MAX];
     if (isfinite(value))
-        return refuse(reader, path, "expected %s, found %s", expected, number_exact(value, text));
-    return refuse(reader, path, "expected %s, found %sinfinity (doubles end at 1.8e308)", expected,
+        return refuse(at, "expected %s, found %s", expected, number_exact(value, text));
+    return refuse(at, "expected %s, found %sinfinity (doubles end at 1.8e308)", expected,
                   value < 0 ? "-" : "");
 }
 
-static bool read_number(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                        double *out)
+static bool read_number(const struct place *at, double *out)
 {
-    if (!cJSON_IsNumber(item))
-        return refuse_kind(reader, path, item, "a number");
-    *out = item->valuedouble;
-    return isfinite(*out) || refuse_value(reader, path, *out, "a finite number");
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, "a number");
+    *out = at->item->valuedouble;
+    return isfinite(*out) || refuse_value(at, *out, "a finite number");
 }
 
-static bool read_vector(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                        int dim, double *out)
+static bool read_numbers(const struct place *array, int count, double *out)
 {
-    if (!check_array(reader, path, item, (size_t) dim, "numbers"))
+    if (!check_array(array, (size_t) count, "numbers"))
         return false;
-    struct json_path at = {path, NULL, 0};
-    for (const cJSON *child = item->child; child; child = child->next, at.index++)
-        if (!read_number(reader, &at, child, &out[at.index]))
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (!read_number(&at, &out[at.index]))
             return false;
     return true;
 }
 
-static bool read_id(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                    int64_t *out)
+static bool read_vector(const struct place *at, double *out)
 {
-    if (!cJSON_IsNumber(item))
-        return refuse_kind(reader, path, item, EXPECTED_ID);
-    double id = item->valuedouble;
+    return read_numbers(at, at->reader->dim, out);
+}
+
+/* An optional vector: if it is missing, *out is unchanged. */
+static bool maybe_vector(const struct place *at, double *out)
+{
+    return !at->item || read_vector(at, out);
+}
+
+static bool read_id(const struct place *at, int64_t *out)
+{
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, EXPECTED_ID);
+    double id = at->item->valuedouble;
     if (id > id_max) /* its digits are lost */
-        return refuse(reader, path, "expected " EXPECTED_ID ", found a larger number");
+        return refuse(at, "expected " EXPECTED_ID ", found a larger number");
     if (!(id >= 1 && id <= id_max && id == floor(id)))
-        return refuse_value(reader, path, id, EXPECTED_ID);
+        return refuse_value(at, id, EXPECTED_ID);
     *out = (int64_t) id;
     return true;
 }
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-static bool read_shape(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                       int dim, int *out)
+static bool read_shape(const struct place *at, int *out)
 {
+    const int dim = at->reader->dim;
     char text[QUOTED_MAX + 4];
-    if (!cJSON_IsString(item))
-        return refuse_kind(reader, path, item, "a string");
+    if (!cJSON_IsString(at->item))
+        return refuse_kind(at, "a string");
     for (int shape = FMB_CUBOID; fmb_shape_name(shape); shape++) {
-        if (strcmp(item->valuestring, fmb_shape_name(shape)) != 0)
+        if (strcmp(at->item->valuestring, fmb_shape_name(shape)) != 0)
             continue;
         *out = shape;
         return fmb_component_count(dim, shape) > 0 ||
-               refuse(reader, path, "there is no %s in %dD", fmb_shape_name(shape), dim);
+               refuse(at, "there is no %s in %dD", fmb_shape_name(shape), dim);
     }
-    return refuse(reader, path, "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box)",
-                  quoted(item->valuestring, text));
+    return refuse(at, "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box)",
+                  quoted(at->item->valuestring, text));
 }
 
-static bool read_components(struct json_reader *reader, const struct json_path *path,
-                            const cJSON *item, int dim, int shape, double *out)
+static bool read_components(const struct place *array, int shape, double *out)
 {
-    size_t count = (size_t) fmb_component_count(dim, shape);
-    if (!check_array(reader, path, item, count, "vectors"))
+    const int dim = array->reader->dim;
+    if (!check_array(array, (size_t) fmb_component_count(dim, shape), "vectors"))
         return false;
-    struct json_path at = {path, NULL, 0};
-    for (const cJSON *child = item->child; child; child = child->next, at.index++)
-        if (!read_vector(reader, &at, child, dim, out + at.index * (size_t) dim))
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (!read_vector(&at, out + at.index * (size_t) dim))
             return false;
     return true;
 }
 
-static bool read_size(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                      int dim, double *out)
+static bool read_size(const struct place *array, double *out)
 {
-    if (!read_vector(reader, path, item, dim, out))
+    if (!read_vector(array, out))
         return false;
-    for (int axis = 0; axis < dim; axis++) {
-        struct json_path at = {path, NULL, (size_t) axis};
-        if (out[axis] < 0)
-            return refuse_value(reader, &at, out[axis], "a number of at least 0");
-    }
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (out[at.index] < 0)
+            return refuse_value(&at, out[at.index], "a number of at least 0");
     return true;
 }
 
-/* Whether the engine takes it. item: NULL for none. */
-static bool read_orientation(struct json_reader *reader, const struct json_path *path,
-                             const cJSON *item, int dim, double out[4], int *count)
+/* Reads an optional quaternion that the engine accepts. */
+static bool read_orientation(const struct place *at, double out[4], int *count)
 {
     static const double size[FMB_DIM_MAX] = {1, 1, 1};
+    const int dim = at->reader->dim;
     struct fmb_body body;
-    *count = item ? (dim == 2 ? 2 : 4) : 0;
-    if (item && !read_vector(reader, path, item, *count, out))
+    *count = at->item ? (dim == 2 ? 2 : 4) : 0;
+    if (!at->item)
+        return true;
+    if (!read_numbers(at, *count, out))
         return false;
-    if (item && out[0] == 0 && out[1] == 0 && (dim == 2 || (out[2] == 0 && out[3] == 0)))
-        return refuse(reader, path, "a quaternion of zeros is no rotation");
+    if (out[0] == 0 && out[1] == 0 && (dim == 2 || (out[2] == 0 && out[3] == 0)))
+        return refuse(at, "a quaternion of zeros is no rotation");
     fmb_body_make(dim, FMB_BOX, size, (size_t) dim, &body);
     struct fmb_placement placement = {.body = &body, .orientation_count = *count};
     memcpy(placement.orientation, out, (size_t) *count * sizeof *out);
     return fmb_placement_check(&placement) == FMB_OK ||
-           refuse(reader, path, "the numbers differ in size by more than 2^200");
+           refuse(at, "the numbers differ in size by more than 2^200");
 }
 
 /* The keys of a frame come first: a body may be one. */
@@ -280,34 +293,13 @@ static const struct key body_keys[BODY_KEYS] = {
     [FRAMES] = {"frames", true},
 };
 
-/* An object, its values by key, and their places. */
-struct members {
-    struct json_path path[BODY_KEYS];
-    const cJSON *value[BODY_KEYS];
-};
-
-static bool read_members(struct json_reader *reader, const struct json_path *path,
-                         const cJSON *item, int keys, struct members *out)
-{
-    for (int i = 0; i < keys; i++)
-        out->path[i] = (struct json_path){path, body_keys[i].name, 0};
-    return read_object(reader, path, item, body_keys, keys, out->value);
-}
-
-/* Refuses the first of the keys that is there: of things that have no such member. */
-static bool check_absent(struct json_reader *reader, const struct json_path *path,
-                         const struct members *of, const int *keys, int count, const char *what)
+/* Refuses the first of these keys that is present. what: the kind of object, which has none. */
+static bool check_absent(const struct place *member, const int *keys, int count, const char *what)
 {
     for (int i = 0; i < count; i++)
-        if (of->value[keys[i]])
-            return refuse(reader, path, "%s has no \"%s\"", what, body_keys[keys[i]].name);
+        if (member[keys[i]].item)
+            return refuse(member->parent, "%s has no \"%s\"", what, member[keys[i]].key);
     return true;
-}
-
-static bool check_present(struct json_reader *reader, const struct json_path *path,
-                          const struct members *of, int key)
-{
-    return of->value[key] || refuse(reader, path, "missing key \"%s\"", body_keys[key].name);
 }
 
 /* A frame being read: its shape, and its numbers as fmb_frame_make() takes them. */
@@ -317,42 +309,32 @@ struct frame_numbers {
     size_t count;
 };
 
-static bool read_box(struct json_reader *reader, const struct json_path *path,
-                     const struct members *of, int dim, struct frame_numbers *out)
+static bool read_box(const struct place *member, int dim, struct frame_numbers *out)
 {
     static const int others[] = {ORIGIN, COMPONENTS};
     out->count = 2 * (size_t) dim;
-    return check_absent(reader, path, of, others, 2, "a box") &&
-           check_present(reader, path, of, SIZE) &&
-           read_size(reader, &of->path[SIZE], of->value[SIZE], dim, out->number + dim);
+    return check_absent(member, others, 2, "a box") && check_present(&member[SIZE]) &&
+           read_size(&member[SIZE], out->number + dim);
 }
 
-/* Of a frame of components. Without "origin" it is 0. */
-static bool read_parts(struct json_reader *reader, const struct json_path *path,
-                       const struct members *of, int dim, struct frame_numbers *out)
+/* Reads a frame of components. */
+static bool read_parts(const struct place *member, int dim, struct frame_numbers *out)
 {
     static const int others[] = {SIZE};
     out->count = (size_t) (dim + dim * fmb_component_count(dim, out->shape));
-    if (!check_absent(reader, path, of, others, 1, "a frame of components") ||
-        !check_present(reader, path, of, COMPONENTS))
-        return false;
-    return (!of->value[ORIGIN] ||
-            read_vector(reader, &of->path[ORIGIN], of->value[ORIGIN], dim, out->number)) &&
-           read_components(reader, &of->path[COMPONENTS], of->value[COMPONENTS], dim, out->shape,
-                           out->number + dim);
+    return check_absent(member, others, 1, "a frame of components") &&
+           check_present(&member[COMPONENTS]) && maybe_vector(&member[ORIGIN], out->number) &&
+           read_components(&member[COMPONENTS], out->shape, out->number + dim);
 }
 
-static bool read_numbers(struct json_reader *reader, const struct json_path *path,
-                         const struct members *of, int dim, struct frame_numbers *out)
+static bool read_frame_numbers(const struct place *member, struct frame_numbers *out)
 {
     *out = (struct frame_numbers){.shape = 0};
-    if (!check_present(reader, path, of, SHAPE) ||
-        !read_shape(reader, &of->path[SHAPE], of->value[SHAPE], dim, &out->shape))
-        return false;
-    return (out->shape == FMB_BOX ? read_box : read_parts)(reader, path, of, dim, out);
+    return check_present(&member[SHAPE]) && read_shape(&member[SHAPE], &out->shape) &&
+           (out->shape == FMB_BOX ? read_box : read_parts)(member, member->reader->dim, out);
 }
 
-/* Whether any number beyond the first is not 0. */
+/* Whether a quaternion turns: any number beyond the first is not 0. */
 static bool turns(const double *orientation, int count)
 {
     for (int i = 1; i < count; i++)
@@ -361,17 +343,14 @@ static bool turns(const double *orientation, int count)
     return false;
 }
 
-/* Where a box lies in its body. One that is turned there becomes a cuboid. */
-static bool read_box_place(struct json_reader *reader, const struct members *of, int dim,
-                           struct frame_numbers *box)
+/* Reads the pose of a box in its body. A box that is turned there becomes a cuboid. */
+static bool read_box_pose(const struct place *member, struct frame_numbers *box)
 {
+    const int dim = member->reader->dim;
     double orientation[4] = {0}, centre_size[2 * FMB_DIM_MAX];
     int count;
-    if (of->value[POSITION] &&
-        !read_vector(reader, &of->path[POSITION], of->value[POSITION], dim, box->number))
-        return false;
-    if (!read_orientation(reader, &of->path[ORIENTATION], of->value[ORIENTATION], dim, orientation,
-                          &count))
+    if (!maybe_vector(&member[POSITION], box->number) ||
+        !read_orientation(&member[ORIENTATION], orientation, &count))
         return false;
     if (!turns(orientation, count))
         return true;
@@ -382,27 +361,29 @@ static bool read_box_place(struct json_reader *reader, const struct members *of,
     return true;
 }
 
-/* An element of "frames". */
-static bool read_frame(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                       int dim, struct fmb_frame *out)
+/* Returns true if the engine accepted what was read at this place. */
+static bool accept(const struct place *at, enum fmb_status status)
+{
+    return status == FMB_OK || refuse(at, "%s", fmb_status_text(status));
+}
+
+/* Reads an element of "frames". */
+static bool read_frame(const struct place *at, struct fmb_frame *out)
 {
     static const int others[] = {POSITION, ORIENTATION};
-    struct members members;
+    struct place member[FRAME_KEYS];
     struct frame_numbers frame;
-    if (!read_members(reader, path, item, FRAME_KEYS, &members) ||
-        !read_numbers(reader, path, &members, dim, &frame))
+    if (!read_object(at, body_keys, FRAME_KEYS, member) || !read_frame_numbers(member, &frame))
         return false;
-    if (frame.shape == FMB_BOX
-            ? !read_box_place(reader, &members, dim, &frame)
-            : !check_absent(reader, path, &members, others, 2, "a frame of components"))
+    if (frame.shape == FMB_BOX ? !read_box_pose(member, &frame)
+                               : !check_absent(member, others, 2, "a frame of components"))
         return false;
-    const enum fmb_status status = fmb_frame_make(dim, frame.shape, frame.number, frame.count, out);
-    return status == FMB_OK || refuse(reader, path, "%s", fmb_status_text(status));
+    return accept(at, fmb_frame_make(at->reader->dim, frame.shape, frame.number, frame.count, out));
 }
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
 
-/* Bytes in a message: a shape, and 8 for each number. */
+/* Returns bytes in a message: 1 for each shape, and 8 for each number. */
 static size_t frames_bytes(const struct fmb_frame *frames, size_t count)
 {
     size_t bytes = 0;
@@ -413,95 +394,80 @@ static size_t frames_bytes(const struct fmb_frame *frames, size_t count)
     return bytes;
 }
 
-static bool read_frames(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                        int dim, struct scene_body *out)
+static bool read_frames(const struct place *array, struct scene_body *out)
 {
-    if (!cJSON_IsArray(item))
-        return refuse_kind(reader, path, item, "an array");
-    const size_t count = (size_t) cJSON_GetArraySize(item);
+    if (!cJSON_IsArray(array->item))
+        return refuse_kind(array, "an array");
+    const size_t count = (size_t) cJSON_GetArraySize(array->item);
     out->frames = allocate(count, sizeof *out->frames);
-    struct json_path at = {path, NULL, 0};
-    for (const cJSON *child = item->child; child; child = child->next, at.index++)
-        if (!read_frame(reader, &at, child, dim, &out->frames[at.index]))
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (!read_frame(&at, &out->frames[at.index]))
             return false;
     const size_t bytes = frames_bytes(out->frames, count);
     if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
-        return refuse(reader, path, "%s: %zu bytes in a message, which has space for %d",
+        return refuse(array, "%s: %zu bytes in a message, which has space for %d",
                       fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
-    const enum fmb_status status = fmb_body_make_frames(out->frames, count, &out->body);
-    return status == FMB_OK || refuse(reader, path, "%s", fmb_status_text(status));
+    return accept(array, fmb_body_make_frames(out->frames, count, &out->body));
 }
 
-/* A body that is one frame. Its "origin", if it has neither "position" nor "orientation", is its
- * position. */
-static bool read_only_frame(struct json_reader *reader, const struct json_path *path,
-                            const struct members *of, int dim, struct scene_body *out)
+/* Reads a body that is one frame. Its "origin", if it has neither "position" nor "orientation", is
+ * its position. */
+static bool read_only_frame(const struct place *member, struct scene_body *out)
 {
+    const int dim = member->reader->dim;
     struct frame_numbers frame;
-    if (!read_numbers(reader, path, of, dim, &frame))
+    if (!read_frame_numbers(member, &frame))
         return false;
-    if (frame.shape != FMB_BOX && !of->value[POSITION] && !of->value[ORIENTATION]) {
-        if (!check_present(reader, path, of, ORIGIN))
+    if (frame.shape != FMB_BOX && !member[POSITION].item && !member[ORIENTATION].item) {
+        if (!check_present(&member[ORIGIN]))
             return false;
         memcpy(out->position, frame.number, (size_t) dim * sizeof *frame.number);
         memset(frame.number, 0, (size_t) dim * sizeof *frame.number);
     }
-    const enum fmb_status status =
-        fmb_body_make(dim, frame.shape, frame.number, frame.count, &out->body);
-    return status == FMB_OK || refuse(reader, path, "%s", fmb_status_text(status));
+    return accept(member->parent,
+                  fmb_body_make(dim, frame.shape, frame.number, frame.count, &out->body));
 }
 
-static bool read_name(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                      char out[SCENE_NAME_MAX + 1])
+static bool read_name(const struct place *at, char out[SCENE_NAME_MAX + 1])
 {
-    if (!item)
+    if (!at->item)
         return true;
-    if (!cJSON_IsString(item))
-        return refuse_kind(reader, path, item, "a string");
-    if (strlen(item->valuestring) > SCENE_NAME_MAX)
-        return refuse(reader, path, "expected at most %d bytes, found %zu", (int) SCENE_NAME_MAX,
-                      strlen(item->valuestring));
-    if (!escape_is_text(item->valuestring))
-        return refuse(reader, path, "expected UTF-8 without control characters");
-    strcpy(out, item->valuestring);
+    if (!cJSON_IsString(at->item))
+        return refuse_kind(at, "a string");
+    const char *name = at->item->valuestring;
+    if (strlen(name) > SCENE_NAME_MAX)
+        return refuse(at, "expected at most %d bytes, found %zu", (int) SCENE_NAME_MAX,
+                      strlen(name));
+    if (!escape_is_text(name))
+        return refuse(at, "expected UTF-8 without control characters");
+    strcpy(out, name);
     return true;
 }
 
-static bool read_body(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                      int dim, struct scene_body *out)
+static bool read_body(const struct place *at, struct scene_body *out)
 {
     static const int of_frames[] = {SHAPE, ORIGIN, COMPONENTS, SIZE};
-    struct members members;
-    if (!read_members(reader, path, item, BODY_KEYS, &members))
+    struct place member[BODY_KEYS];
+    if (!read_object(at, body_keys, BODY_KEYS, member) || !read_id(&member[ID], &out->id) ||
+        !read_name(&member[NAME], out->name))
         return false;
-    const struct json_path *at = members.path;
-    const cJSON *const *value = members.value;
-    if (!read_id(reader, &at[ID], value[ID], &out->id) ||
-        !read_name(reader, &at[NAME], value[NAME], out->name))
-        return false;
-    const bool good = value[FRAMES] ? check_absent(reader, path, &members, of_frames, 4,
-                                                   "a body of \"frames\"") &&
-                                          read_frames(reader, &at[FRAMES], value[FRAMES], dim, out)
-                                    : read_only_frame(reader, path, &members, dim, out);
-    return good &&
-           (!value[POSITION] ||
-            read_vector(reader, &at[POSITION], value[POSITION], dim, out->position)) &&
-           read_orientation(reader, &at[ORIENTATION], value[ORIENTATION], dim, out->orientation,
-                            &out->orientation_count) &&
-           (!value[VELOCITY] ||
-            read_vector(reader, &at[VELOCITY], value[VELOCITY], dim, out->velocity));
+    const bool good = member[FRAMES].item
+                          ? check_absent(member, of_frames, 4, "a body of \"frames\"") &&
+                                read_frames(&member[FRAMES], out)
+                          : read_only_frame(member, out);
+    return good && maybe_vector(&member[POSITION], out->position) &&
+           read_orientation(&member[ORIENTATION], out->orientation, &out->orientation_count) &&
+           maybe_vector(&member[VELOCITY], out->velocity);
 }
 
-static bool read_bodies(struct json_reader *reader, const cJSON *item, struct scene *out)
+static bool read_bodies(const struct place *array, struct scene *out)
 {
-    struct json_path path = {NULL, "bodies", 0};
-    if (!cJSON_IsArray(item))
-        return refuse_kind(reader, &path, item, "an array");
-    out->body = allocate((size_t) cJSON_GetArraySize(item), sizeof *out->body);
-    struct json_path at = {&path, NULL, 0};
-    for (const cJSON *child = item->child; child; child = child->next, at.index++) {
+    if (!cJSON_IsArray(array->item))
+        return refuse_kind(array, "an array");
+    out->body = allocate((size_t) cJSON_GetArraySize(array->item), sizeof *out->body);
+    for (struct place at = first_element(array); at.item; next_element(&at)) {
         out->body_count++;
-        if (!read_body(reader, &at, child, out->dim, &out->body[at.index]))
+        if (!read_body(&at, &out->body[at.index]))
             return false;
     }
     return true;
@@ -509,112 +475,108 @@ static bool read_bodies(struct json_reader *reader, const cJSON *item, struct sc
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
-static bool read_pair(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                      const struct scene_ids *ids, struct scene_pair *out)
+/* A table of the bodies by id. */
+struct body_id {
+    UT_hash_handle hh;
+    int64_t id;
+    size_t index;
+};
+
+static const struct body_id *find_id(const struct body_id *ids, int64_t id)
 {
-    if (!check_array(reader, path, item, 2, "ids"))
+    const struct body_id *found;
+    HASH_FIND(hh, ids, &id, sizeof id, found);
+    return found;
+}
+
+/* Fills the table with entries, which has as many as there are bodies. Refuses a repeated id. */
+static bool add_ids(const struct place *bodies, const struct scene *scene, struct body_id *entry,
+                    struct body_id **ids)
+{
+    for (size_t i = 0; i < scene->body_count; i++) {
+        const struct body_id *first = find_id(*ids, scene->body[i].id);
+        if (first) {
+            const struct place body = {bodies->reader, bodies, NULL, NULL, i};
+            const struct place id = {bodies->reader, &body, NULL, "id", 0};
+            return refuse(&id, "%lld is the id of bodies[%zu] already", (long long) first->id,
+                          first->index);
+        }
+        entry[i].id = scene->body[i].id;
+        entry[i].index = i;
+        HASH_ADD(hh, *ids, id, sizeof entry[i].id, &entry[i]);
+    }
+    return true;
+}
+
+static bool read_pair(const struct place *array, const struct body_id *ids, struct scene_pair *out)
+{
+    if (!check_array(array, 2, "ids"))
         return false;
     size_t index[2];
     int64_t id = 0;
-    struct json_path at = {path, NULL, 0};
-    for (const cJSON *child = item->child; child; child = child->next, at.index++) {
-        if (!read_id(reader, &at, child, &id))
+    for (struct place at = first_element(array); at.item; next_element(&at)) {
+        if (!read_id(&at, &id))
             return false;
-        if (!scene_ids_find(ids, id, &index[at.index]))
-            return refuse(reader, &at, "no body has the id %lld", (long long) id);
+        const struct body_id *body = find_id(ids, id);
+        if (!body)
+            return refuse(&at, "no body has the id %lld", (long long) id);
+        index[at.index] = body->index;
     }
     *out = (struct scene_pair){index[0], index[1]};
     return out->a != out->b ||
-           refuse(reader, path, "a body is no pair with itself (%lld)", (long long) id);
+           refuse(array, "a body is no pair with itself (%lld)", (long long) id);
 }
 
-static bool read_list(struct json_reader *reader, const struct json_path *path, const cJSON *item,
-                      const struct scene_ids *ids, struct scene_pair **list, size_t *count)
+/* Reads an optional list. */
+static bool read_list(const struct place *array, const struct body_id *ids,
+                      struct scene_pair **list, size_t *count)
 {
-    if (!cJSON_IsArray(item))
-        return refuse_kind(reader, path, item, "an array");
-    *list = allocate((size_t) cJSON_GetArraySize(item), sizeof **list);
-    struct json_path at = {path, NULL, 0};
-    for (const cJSON *child = item->child; child; child = child->next, at.index++) {
-        if (!read_pair(reader, &at, child, ids, &(*list)[at.index]))
+    if (!array->item)
+        return true;
+    if (!cJSON_IsArray(array->item))
+        return refuse_kind(array, "an array");
+    *list = allocate((size_t) cJSON_GetArraySize(array->item), sizeof **list);
+    for (struct place at = first_element(array); at.item; next_element(&at), ++*count)
+        if (!read_pair(&at, ids, &(*list)[at.index]))
             return false;
-        ++*count;
-    }
     return true;
 }
 
-/* No listed pair is ignored. */
-static bool check_listed(struct json_reader *reader, const struct json_path *pairs,
-                         const struct scene *scene)
+static bool read_pairs(const struct place *pairs, const struct place *ignore,
+                       const struct body_id *ids, struct scene *out)
 {
-    for (size_t i = 0; i < scene->pair_count; i++) {
-        struct json_path at = {pairs, NULL, i};
-        if (scene_ignores(scene, scene->pair[i]))
-            return refuse(reader, &at, "\"ignore\" has this pair too");
-    }
-    return true;
-}
-
-static bool read_pairs(struct json_reader *reader, const cJSON *pairs, const cJSON *ignore,
-                       const struct scene_ids *ids, struct scene *out)
-{
-    const struct json_path of_pairs = {NULL, "pairs", 0}, of_ignore = {NULL, "ignore", 0};
-    out->all_pairs = !pairs;
-    if (pairs && !read_list(reader, &of_pairs, pairs, ids, &out->pair, &out->pair_count))
-        return false;
-    if (ignore && !read_list(reader, &of_ignore, ignore, ids, &out->ignored, &out->ignored_count))
+    out->all_pairs = !pairs->item;
+    if (!read_list(pairs, ids, &out->pair, &out->pair_count) ||
+        !read_list(ignore, ids, &out->ignored, &out->ignored_count))
         return false;
     scene_sort_ignored(out);
-    if (!check_listed(reader, &of_pairs, out))
-        return false;
+    for (size_t i = 0; i < out->pair_count; i++) {
+        const struct place at = {pairs->reader, pairs, NULL, NULL, i};
+        if (scene_ignores(out, out->pair[i]))
+            return refuse(&at, "\"ignore\" has this pair too");
+    }
     out->ignored_count = out->all_pairs ? out->ignored_count : 0;
     return true;
 }
 
-static bool refuse_repeated_id(struct json_reader *reader, const struct scene *scene, size_t first,
-                               size_t second)
-{
-    struct json_path bodies = {NULL, "bodies", 0};
-    struct json_path body = {&bodies, NULL, second};
-    struct json_path id = {&body, "id", 0};
-    return refuse(reader, &id, "%lld is the id of bodies[%zu] already",
-                  (long long) scene->body[second].id, first);
-}
-
-static bool link_pairs(struct json_reader *reader, const cJSON *pairs, const cJSON *ignore,
-                       struct scene *out)
-{
-    struct scene_ids ids;
-    size_t first, second;
-    scene_ids_make(out, &ids);
-    bool unique = !scene_ids_repeated(&ids, &first, &second);
-    bool good = unique ? read_pairs(reader, pairs, ignore, &ids, out)
-                       : refuse_repeated_id(reader, out, first, second);
-    scene_ids_clear(&ids);
-    return good;
-}
-
 /* ---- The scene ------------------------------------------------------------------------------- */
 
-static bool read_dim(struct json_reader *reader, const cJSON *item, struct scene *out)
+static bool read_dim(const struct place *at, int *out)
 {
-    struct json_path path = {NULL, "dim", 0};
-    if (!cJSON_IsNumber(item))
-        return refuse_kind(reader, &path, item, "2 or 3");
-    if (item->valuedouble != 2 && item->valuedouble != 3)
-        return refuse_value(reader, &path, item->valuedouble, "2 or 3");
-    out->dim = (int) item->valuedouble;
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, "2 or 3");
+    if (at->item->valuedouble != 2 && at->item->valuedouble != 3)
+        return refuse_value(at, at->item->valuedouble, "2 or 3");
+    *out = (int) at->item->valuedouble;
     return true;
 }
 
-/* On input: *out is its value where it is left out. */
-static bool read_from_0(struct json_reader *reader, const char *key, const cJSON *item, double *out)
+/* Reads an optional number of at least 0: if it is missing, *out is unchanged. */
+static bool read_from_0(const struct place *at, double *out)
 {
-    struct json_path path = {NULL, key, 0};
-    if (!item)
+    if (!at->item)
         return true;
-    return read_number(reader, &path, item, out) &&
-           (*out >= 0 || refuse_value(reader, &path, *out, "a number of at least 0"));
+    return read_number(at, out) && (*out >= 0 || refuse_value(at, *out, "a number of at least 0"));
 }
 
 enum { DIM, DURATION, MARGIN, BODIES, PAIRS, IGNORE, SCENE_KEYS };
@@ -626,19 +588,27 @@ static const struct key scene_keys[SCENE_KEYS] = {
 
 static bool read_scene(struct json_reader *reader, const cJSON *item, struct scene *out)
 {
-    const cJSON *value[SCENE_KEYS];
+    const struct place root = {.reader = reader, .item = item};
+    struct place member[SCENE_KEYS];
     out->duration = 1;
-    return read_object(reader, NULL, item, scene_keys, SCENE_KEYS, value) &&
-           read_dim(reader, value[DIM], out) &&
-           read_from_0(reader, "duration", value[DURATION], &out->duration) &&
-           read_from_0(reader, "margin", value[MARGIN], &out->margin) &&
-           read_bodies(reader, value[BODIES], out) &&
-           link_pairs(reader, value[PAIRS], value[IGNORE], out);
+    if (!read_object(&root, scene_keys, SCENE_KEYS, member) ||
+        !read_dim(&member[DIM], &reader->dim) || !read_from_0(&member[DURATION], &out->duration) ||
+        !read_from_0(&member[MARGIN], &out->margin))
+        return false;
+    out->dim = reader->dim;
+    if (!read_bodies(&member[BODIES], out))
+        return false;
+    struct body_id *ids = NULL, *entry = allocate(out->body_count, sizeof *entry);
+    const bool good = add_ids(&member[BODIES], out, entry, &ids) &&
+                      read_pairs(&member[PAIRS], &member[IGNORE], ids, out);
+    HASH_CLEAR(hh, ids);
+    free(entry);
+    return good;
 }
 
 /* ---- The input ------------------------------------------------------------------------------- */
 
-/* Without memory the program ends; to the parser it would be invalid JSON. */
+/* Exits if memory is exhausted; the parser would report invalid JSON. */
 static void *allocate_bytes(size_t size)
 {
     return allocate(size, 1);
@@ -664,9 +634,10 @@ const char *json_error(const struct json_reader *reader)
     return reader->error;
 }
 
-static enum json_outcome bad_text(struct json_reader *reader, enum json_outcome outcome)
+static enum json_outcome fail(struct json_reader *reader, enum json_outcome outcome,
+                              const char *why)
 {
-    refuse(reader, NULL, "%s", reader->text.error);
+    refuse(&(struct place){.reader = reader}, "%s", why);
     return outcome;
 }
 
@@ -686,7 +657,7 @@ static enum json_outcome read_object_text(struct json_reader *reader, const char
     if (parsed)
         return JSON_BAD;
     text_refuse(&reader->text, (size_t) (end - object), "invalid JSON");
-    return bad_text(reader, JSON_BAD);
+    return fail(reader, JSON_BAD, reader->text.error);
 }
 
 enum json_outcome json_next(struct json_reader *reader, struct scene *out)
@@ -696,12 +667,11 @@ enum json_outcome json_next(struct json_reader *reader, struct scene *out)
     memset(out, 0, sizeof *out);
     switch (text_next(&reader->text, &object, &length)) {
     case TEXT_OBJECT: return read_object_text(reader, object, length, out);
-    case TEXT_FAILED: return bad_text(reader, JSON_FAILED);
-    case TEXT_BAD: return bad_text(reader, JSON_BAD);
+    case TEXT_FAILED: return fail(reader, JSON_FAILED, reader->text.error);
+    case TEXT_BAD: return fail(reader, JSON_BAD, reader->text.error);
     case TEXT_END: break;
     }
     if (reader->scene_number > 1)
         return JSON_END;
-    refuse(reader, NULL, "the input is empty: expected a scene");
-    return JSON_BAD;
+    return fail(reader, JSON_BAD, "the input is empty: expected a scene");
 }

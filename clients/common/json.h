@@ -1,5 +1,5 @@
-/* Scenes out of JSON text. The reading is strict: what is not understood in full is refused with
- * one line that names the place. The form:
+/* Reads scenes from JSON text. Text that is not a scene in every detail is refused, with one line
+ * that names the place. The form:
  *
  *     {"dim": 3, "duration": 1.0, "margin": 0.001,
  *      "bodies": [{"id": 1, "name": "table", "shape": "box", "size": [2,1,0.25],
@@ -14,12 +14,12 @@
  *      "ignore": [[1,3]]}
  *
  * dim (2 or 3) and bodies are required, and each body's id. A body has frames, or is one frame
- * itself. A frame is a box of full size, or has components. Numbers are taken as the doubles they
- * read as, ids too: 1e0 is the id 1, and no integer beyond 2^53 - 1, which two texts may share, is
- * an id. Keys may come in any order, but once. What is missing:
+ * itself. A frame is a box of full size, or has components. All numbers are read as doubles, ids
+ * too: 1e0 is the id 1. An integer beyond 2^53 - 1 is no id, since several texts read as the same
+ * double. Keys may come in any order, each at most once. The values of missing keys:
  *
  * - duration: 1. margin: 0.
- * - pairs: all but those to ignore, in body order.
+ * - pairs: all except those to ignore, in body order.
  * - position and origin: 0. (A body that is one frame of components needs one of position,
  *   orientation and origin.)
  * - orientation: not turned. velocity: at rest.
@@ -37,22 +37,24 @@
 
 struct json_reader;
 
-/* On input: an open file, read from where it stands in growing pieces; not owned. */
+/* Returns a reader of an open file, from its current position; the file is not owned. Exits with
+ * status 1 if memory is exhausted. */
 struct json_reader *json_open(int fd);
 void json_close(struct json_reader *reader);
 
 enum json_outcome {
     JSON_SCENE, /* *out, to be cleared by the caller */
     JSON_END,   /* no more objects, after one at least */
-    JSON_BAD,   /* the text is not a scene; json_error() says why */
-    JSON_FAILED /* the file cannot be read; json_error() says why */
+    JSON_BAD,   /* the text is not a scene: json_error() */
+    JSON_FAILED /* the file cannot be read: json_error() */
 };
 
-/* The next scene. Returns as soon as the object is complete, whatever follows it. After any other
- * outcome than JSON_SCENE nothing more is read. */
+/* Reads the next scene. Returns as soon as its object is complete, without waiting for more input.
+ * After any outcome but JSON_SCENE there is no next call. */
 enum json_outcome json_next(struct json_reader *reader, struct scene *out);
 
-/* After JSON_BAD and JSON_FAILED, one line without its end, lives as long as the reader:
+/* After JSON_BAD and JSON_FAILED: returns the reason, one line without a line feed, valid as long
+ * as the reader:
  *
  *     bodies[3].components[1]: expected 3 numbers, found 2
  *     line 3, column 14: invalid JSON

@@ -8,7 +8,7 @@
 
 static const int64_t integer_max = (INT64_C(1) << 53) - 1;
 
-/* What precedes a value. */
+/* Writes what precedes a value: comma, space and key. */
 static void begin_value(struct json_writer *json, const char *key)
 {
     if (json->comma)

@@ -17,7 +17,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* To begin a text: out (not owned), page if wanted, and all else 0. */
+/* The caller sets out (not owned) and page; all else is 0 at first. */
 struct json_writer {
     FILE *out;
     bool page;         /* for scripts: no spaces, and integers beyond +-(2^53 - 1) as strings */

@@ -37,8 +37,7 @@ static int first_place(double value)
     return (int) floor(log10(value));
 }
 
-/* Returns the number of digits that shows three digits of the difference of the ends; if they are
- * equal, three digits after the decimal point. */
+/* Returns the number of digits for number_ends(). */
 static int digits_for(double low, double high)
 {
     double difference = high - low, largest = fmax(fabs(low), fabs(high));
@@ -71,4 +70,10 @@ const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX])
     }
     *out = '\0';
     return text;
+}
+
+void number_print(const char *name, int64_t count)
+{
+    char text[NUMBER_TEXT_MAX];
+    printf("  %-16s %15s\n", name, number_grouped(count, text));
 }

@@ -6,23 +6,25 @@
 
 enum { NUMBER_TEXT_MAX = 40 };
 
-/* The fewest of 15, 16 or 17 digits that read back as the same bits: "0.5", "1",
- * "0.10000000000000001" only where "0.1" is another double. JSON has no infinite numbers and no
- * NaN: these become "null". Returns text. */
+/* The fewest of 15, 16 or 17 digits that read back as the same bits: "0.5", "1";
+ * "0.10000000000000001" only if "0.1" is another double. Infinite numbers and NaN, which JSON does
+ * not have, become "null". Returns text. */
 const char *number_exact(double value, char text[NUMBER_TEXT_MAX]);
 
 /* Six digits, for people: "0.333333". Returns text. */
 const char *number_short(double value, char text[NUMBER_TEXT_MAX]);
 
-/* The ends of an interval, low <= high, for people: with six digits, or as many more, up to 17, as
- * it takes to show three digits of their difference, or three after the decimal point if they are
- * equal.
- * Returns how many. */
+/* The ends of an interval, low <= high, for people. They have six digits, or more, up to 17, if it
+ * takes more to show three digits of their difference; if they are equal, up to 12, to show three
+ * digits after the decimal point. Returns the number of digits. */
 enum { NUMBER_SHORT_DIGITS = 6 };
 int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
                 char high_text[NUMBER_TEXT_MAX]);
 
 /* With a comma between thousands, for people: "4,194,304". Returns text. */
 const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX]);
+
+/* Prints a row of a table of counts on standard output. */
+void number_print(const char *name, int64_t count);
 
 #endif

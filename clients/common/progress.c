@@ -8,55 +8,31 @@
 
 static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 
-/* The clock is looked at once in so many steps. */
+/* Calls of progress_to() for each reading of the clock. */
 enum { STEPS = 64 };
 
-static struct progress begin(bool enabled, const char *unit, uint64_t total)
+struct progress progress_begin(const char *unit, int64_t total)
 {
     return (struct progress){
-        .enabled = enabled, .unit = unit, .total = total, .started_at = clock_ns()};
+        .enabled = isatty(STDERR_FILENO), .unit = unit, .total = total, .started_at = clock_ns()};
 }
 
-struct progress progress_begin(uint64_t total)
+void progress_to(void *of, int64_t done, int64_t total)
 {
-    return begin(isatty(STDERR_FILENO) && !isatty(STDOUT_FILENO), "pairs", total);
-}
-
-struct progress progress_begin_of(const char *unit, uint64_t total)
-{
-    return begin(isatty(STDERR_FILENO), unit, total);
-}
-
-static void show(struct progress *progress)
-{
-    char done[NUMBER_TEXT_MAX], total[NUMBER_TEXT_MAX];
-    fprintf(stderr, "\rfmb: %s of %s %s", number_grouped((int64_t) progress->done, done),
-            number_grouped((int64_t) progress->total, total), progress->unit);
-    fflush(stderr);
-    progress->shown = true;
-}
-
-void progress_to(struct progress *progress, uint64_t done)
-{
+    struct progress *progress = of;
+    char done_text[NUMBER_TEXT_MAX], total_text[NUMBER_TEXT_MAX];
     progress->done = done;
+    progress->total = total;
     if (!progress->enabled || ++progress->steps % STEPS != 0)
         return;
     int64_t time = clock_ns();
     if (time - progress->started_at < first_after_ns || time - progress->shown_at < every_ns)
         return;
     progress->shown_at = time;
-    show(progress);
-}
-
-void progress_to_of(struct progress *progress, uint64_t done, uint64_t total)
-{
-    progress->total = total;
-    progress_to(progress, done);
-}
-
-void progress_step(struct progress *progress)
-{
-    progress_to(progress, progress->done + 1);
+    progress->shown = true;
+    fprintf(stderr, "\rfmb: %s of %s %s", number_grouped(done, done_text),
+            number_grouped(total, total_text), progress->unit);
+    fflush(stderr);
 }
 
 void progress_end(struct progress *progress)

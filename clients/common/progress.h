@@ -6,28 +6,21 @@
 #include <stdint.h>
 
 struct progress {
-    bool shown; /* something stands on the line */
+    bool shown; /* the line has text on it */
     bool enabled;
     const char *unit; /* "pairs" */
-    uint64_t steps, done, total;
+    uint64_t steps;   /* calls of progress_to() */
+    int64_t done, total;
     int64_t started_at, shown_at; /* clock_ns() */
 };
 
-/* Begins a count of pairs. Shows nothing unless standard error is a terminal and standard output is
- * not: on a terminal the answers themselves show the progress. */
-struct progress progress_begin(uint64_t total);
+/* Begins a count of things such as "bytes". Nothing is shown unless standard error is a terminal.
+ * unit must live as long as the progress. */
+struct progress progress_begin(const char *unit, int64_t total);
 
-/* Begins a count of other things, such as "bytes", where nothing is printed before the end:
- * standard output may be a terminal too. unit must live as long as the progress. */
-struct progress progress_begin_of(const char *unit, uint64_t total);
-
-/* Like progress_to(), and sets the total, which may be known only now. */
-void progress_to_of(struct progress *progress, uint64_t done, uint64_t total);
-
-/* Adds one to what is done, or sets it. The line is shown after the first second, then a few times
- * a second. */
-void progress_step(struct progress *progress);
-void progress_to(struct progress *progress, uint64_t done);
+/* Sets what is done, and the total. The line is shown after the first second, then a few times a
+ * second. progress: a struct progress; the type is that of a callback. */
+void progress_to(void *progress, int64_t done, int64_t total);
 
 /* Clears the line. */
 void progress_end(struct progress *progress);

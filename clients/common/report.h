@@ -1,4 +1,4 @@
-/* Prints answers: one struct report for each form. */
+/* Prints answers. A struct report is an output format. */
 #ifndef REPORT_H
 #define REPORT_H
 
@@ -10,12 +10,12 @@
 
 struct outcome {
     struct scene_pair pair;
-    const char *error;        /* why the pair could not be decided; NULL where it was */
-    struct fmb_answer answer; /* all 0 where it was not */
-    const char *certificate;  /* of the verdict; NULL where there is none, or none was wanted */
+    const char *error;        /* why the pair could not be decided; NULL: it was decided */
+    struct fmb_answer answer; /* all 0 if there is an error */
+    const char *certificate;  /* of the verdict; NULL: none */
 };
 
-/* Called for each scene: begin, pair for each pair in the order of the query, end. */
+/* For each scene, begin is called, then pair for each pair in the order of the query, then end. */
 struct report {
     void (*begin)(struct report *report, const struct scene *scene);
     void (*pair)(struct report *report, const struct scene *scene, const struct outcome *outcome);
@@ -51,11 +51,12 @@ struct report_columns {
 struct report_columns report_columns(void);
 
 /* A table for people, and counts at its end. Numbers have six digits, or more where the ends of an
- * interval would have the same digits. Certificates stand below their rows, long ones cut. */
+ * interval would have the same digits. Certificates are printed below their rows, long ones
+ * shortened. */
 struct report_text {
     struct report report;
     FILE *out;
-    bool box, gap; /* wanted: a column each */
+    bool box, gap; /* wanted; each has a column */
     size_t scenes;
     int id_width;                        /* of names, or else ids */
     struct report_columns columns;       /* of the scene */
@@ -65,18 +66,18 @@ struct report_text {
 
 struct report_text report_text(FILE *out, bool box, bool gap);
 
-/* The members of one answer as report_json writes them, without braces: "verdict": ..., or
- * "error": ... Used wherever answers are printed as JSON; the pair is not looked at. */
+/* Writes the members of an answer as report_json does, without braces: "verdict": ..., or
+ * "error": ... outcome->pair is not used. */
 void report_answer_json(struct json_writer *json, int dim, const struct outcome *outcome);
 
-/* Verdict, contact, gap and box for people, in columns, without the end of the line:
+/* Prints verdict, contact, gap and box for people, in columns, without a line feed:
  *
  *     overlapping  0.25 to 0.5 s         -0.5          x        0 .. 1         y     -0.5 .. 0.5 */
 void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns);
 
-/* Writes an interval, such as "0.25 to 0.5 s", into text, and returns text. */
+/* Writes the contact interval, such as "0.25 to 0.5 s", into text. Returns the number of digits. */
 enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
-const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
+int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
 
 #endif

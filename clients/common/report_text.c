@@ -7,10 +7,10 @@
 
 enum { VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12 };
 
-/* How much is shown of a certificate: all of most, but some have thousands of digits. */
+/* Characters of a certificate that are printed. Most are shorter; some have thousands of digits. */
 enum { CERTIFICATE_WIDTH = 200 };
 
-/* Of one end of a box: for small numbers, and for those that %g would write with an exponent. */
+/* Widths of one end of a box: for small numbers, and for those that %g prints with an exponent. */
 enum { END_WIDTH = 8, LARGE_END_WIDTH = 12 };
 static const double large_end = 1e5;
 
@@ -33,10 +33,8 @@ static struct report_columns columns_for(const struct scene *scene)
     return columns;
 }
 
-/* Returns the width to print text with. If it has more digits than usual, the following rows
- * probably have too: the column becomes wider. Any other number that is too long exceeds its
- * column.
- */
+/* Returns the width to print text with. If it has more digits than usual, the rows below probably
+ * have too: the column becomes wider. Any other text that is too long exceeds its column. */
 static int widen(int *width, int digits, const char *text)
 {
     int length = (int) strlen(text);
@@ -45,7 +43,7 @@ static int widen(int *width, int digits, const char *text)
     return *width;
 }
 
-static int write_contact(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
 {
     char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
     int digits = number_ends(answer->contact[0], answer->contact[1], first, last);
@@ -53,13 +51,7 @@ static int write_contact(const struct fmb_answer *answer, char text[REPORT_TEXT_
     return digits;
 }
 
-const char *report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
-{
-    write_contact(answer, text);
-    return text;
-}
-
-/* Prints one number where the bounds have the same digits. */
+/* Writes one number if the bounds have the same digits. */
 static int write_gap(const struct fmb_gap *gap, char text[REPORT_TEXT_MAX])
 {
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
@@ -70,8 +62,8 @@ static int write_gap(const struct fmb_gap *gap, char text[REPORT_TEXT_MAX])
     return same ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
 }
 
-/* The ends stand in columns, so that boxes below each other can be compared. No blanks at the end
- * of a line. */
+/* The ends are aligned in columns, so that boxes in successive rows can be compared. There are no
+ * blanks at the end of the line. */
 static void write_box(FILE *out, int dim, const struct fmb_answer *answer,
                       struct report_columns *columns)
 {
@@ -93,7 +85,7 @@ void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
         fputs(verdict, out);
         return;
     }
-    int digits = answer->has_contact ? write_contact(answer, text) : 0;
+    int digits = answer->has_contact ? report_contact_text(answer, text) : 0;
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
             answer->has_gap || answer->has_box ? widen(&columns->contact, digits, text) : 0, text);
     if (answer->has_gap) {
@@ -104,7 +96,7 @@ void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
         write_box(out, dim, answer, columns);
 }
 
-/* Below the verdict that it is of. */
+/* Prints a certificate below its verdict. */
 static void write_certificate(FILE *out, int column, const char *certificate)
 {
     char length[NUMBER_TEXT_MAX];
@@ -115,7 +107,7 @@ static void write_certificate(FILE *out, int column, const char *certificate)
     putc('\n', out);
 }
 
-/* In characters. */
+/* Returns the width of the name or id of a body, in characters. */
 static int label_width(const struct scene_body *body)
 {
     char text[SCENE_LABEL_MAX];
@@ -128,12 +120,7 @@ static void write_label(FILE *out, int width, const struct scene_body *body)
     fprintf(out, "  %*s%s", width - label_width(body), "", scene_label(body, text));
 }
 
-static const char *plural(uint64_t count)
-{
-    return count == 1 ? "" : "s";
-}
-
-static void write_heads(const struct report_text *text, bool gap)
+static void write_headings(const struct report_text *text, bool gap)
 {
     fprintf(text->out, "  %*s  %*s  %-*s  %-*s", text->id_width, "a", text->id_width, "b",
             VERDICT_WIDTH, "verdict", gap || text->box ? text->columns.contact : 0, "contact");
@@ -157,11 +144,11 @@ static void text_begin(struct report *report, const struct scene *scene)
     fprintf(text->out, "%sscene %zu: %zu bod%s in %dD, %s pair%s, 0 to %s s\n",
             text->scenes > 0 ? "\n" : "", text->scenes + 1, scene->body_count,
             scene->body_count == 1 ? "y" : "ies", scene->dim,
-            number_grouped((int64_t) count, pairs), plural(count),
+            number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
             number_short(scene->duration, duration));
     text->scenes++;
     if (count > 0)
-        write_heads(text, text->gap || scene->margin > 0);
+        write_headings(text, text->gap || scene->margin > 0);
 }
 
 static void text_pair(struct report *report, const struct scene *scene,

@@ -7,11 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct scene_id {
-    int64_t id;
-    size_t index;
-};
-
 /* ---- Bodies ---- */
 
 struct scene_body scene_body_copy(const struct scene_body *body)
@@ -104,15 +99,7 @@ uint64_t scene_count_pairs(const struct scene *scene)
     return count < 2 ? 0 : count * (count - 1) / 2 - scene->ignored_count;
 }
 
-static bool next_of_all(const struct scene *scene, struct scene_cursor *cursor)
-{
-    if (++cursor->b < scene->body_count)
-        return true;
-    cursor->b = ++cursor->a + 1;
-    return cursor->b < scene->body_count;
-}
-
-/* Ignored pairs come in the same order. */
+/* Whether the pair is ignored. Ignored pairs are in the order of the iteration. */
 static bool is_next_ignored(const struct scene *scene, const struct scene_cursor *cursor)
 {
     return cursor->next < scene->ignored_count && scene->ignored[cursor->next].a == cursor->a &&
@@ -128,65 +115,11 @@ bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor, str
         return true;
     }
     do {
-        if (!next_of_all(scene, cursor))
+        if (++cursor->b >= scene->body_count)
+            cursor->b = ++cursor->a + 1;
+        if (cursor->b >= scene->body_count)
             return false;
     } while (is_next_ignored(scene, cursor) && ++cursor->next);
     *out = (struct scene_pair){cursor->a, cursor->b};
     return true;
-}
-
-/* ---- Ids ---- */
-
-/* By id, then by index: of equal ids the first body comes first. */
-static int compare(const void *left, const void *right)
-{
-    const struct scene_id *a = left, *b = right;
-    if (a->id != b->id)
-        return a->id < b->id ? -1 : 1;
-    return (a->index > b->index) - (a->index < b->index);
-}
-
-void scene_ids_make(const struct scene *scene, struct scene_ids *out)
-{
-    out->count = scene->body_count;
-    out->sorted = allocate(out->count, sizeof *out->sorted);
-    for (size_t i = 0; i < out->count; i++)
-        out->sorted[i] = (struct scene_id){scene->body[i].id, i};
-    qsort(out->sorted, out->count, sizeof *out->sorted, compare);
-}
-
-void scene_ids_clear(struct scene_ids *ids)
-{
-    free(ids->sorted);
-    memset(ids, 0, sizeof *ids);
-}
-
-bool scene_ids_find(const struct scene_ids *ids, int64_t id, size_t *index)
-{
-    size_t low = 0, high = ids->count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (ids->sorted[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low == ids->count || ids->sorted[low].id != id)
-        return false;
-    *index = ids->sorted[low].index;
-    return true;
-}
-
-bool scene_ids_repeated(const struct scene_ids *ids, size_t *first, size_t *second)
-{
-    bool found = false;
-    for (size_t i = 1; i < ids->count; i++) {
-        const struct scene_id *before = &ids->sorted[i - 1], *here = &ids->sorted[i];
-        if (before->id != here->id || (found && here->index > *second))
-            continue;
-        *first = before->index;
-        *second = here->index;
-        found = true;
-    }
-    return found;
 }

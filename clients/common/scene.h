@@ -1,5 +1,5 @@
-/* A scene as people write it: bodies, and which pairs of them to decide. Knows neither JSON nor
- * the bus. */
+/* A scene as a user writes it: bodies, and the pairs to be decided. Independent of JSON and of the
+ * bus. */
 #ifndef SCENE_H
 #define SCENE_H
 
@@ -15,7 +15,7 @@ struct scene_body {
     int64_t id;                    /* 1 to 2^53-1, unique in the scene */
     char name[SCENE_NAME_MAX + 1]; /* UTF-8 without control characters; "": none */
     struct fmb_body body;          /* of one frame, or of those in frames */
-    struct fmb_frame *frames;      /* owned; NULL: one, held in body */
+    struct fmb_frame *frames;      /* owned; NULL: one, inside body */
     double position[FMB_DIM_MAX];
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];
@@ -41,21 +41,22 @@ struct scene_pair {
 struct scene {
     int dim;         /* 2 or 3, of all bodies */
     double duration; /* seconds, >= 0 */
-    double margin; /* >= 0; other than 0: separated pairs no farther apart have gaps, as contacts */
+    /* >= 0. If not 0, contacts have gaps, and so have separated pairs that are no farther apart. */
+    double margin;
     size_t body_count;
     struct scene_body *body; /* owned */
-    bool all_pairs;          /* i before j, in body order, minus ignored; not stored */
+    bool all_pairs;          /* (i, j), i < j, in body order, except ignored; not stored */
     size_t pair_count;       /* of those listed; 0 with all_pairs */
     struct scene_pair *pair; /* owned; NULL with all_pairs */
-    /* With all_pairs, those that are left out: a < b, in the order of (a, b), each once. */
+    /* With all_pairs: pairs that are left out, a < b, in the order of (a, b), each once. */
     size_t ignored_count;
     struct scene_pair *ignored; /* owned */
 };
 
-/* Frees what the scene owns and leaves it empty. All 0 is an empty scene. */
+/* Frees what the scene owns, and sets it to {0}, an empty scene. */
 void scene_clear(struct scene *scene);
 
-/* Sorts the ignored pairs as above; each has two different indices, in any order. */
+/* Brings the ignored pairs into the order above. On input each has two different indices. */
 void scene_sort_ignored(struct scene *scene);
 
 /* Whether the pair is among the ignored ones, in either order. */
@@ -63,30 +64,14 @@ bool scene_ignores(const struct scene *scene, struct scene_pair pair);
 
 uint64_t scene_count_pairs(const struct scene *scene);
 
-/* Iterates over the pairs in the order of the scene; all 0 at first. */
+/* Iterates over the pairs in the order of the scene; {0} at first. */
 struct scene_cursor {
     size_t next; /* index of the next listed pair, or of the next ignored one */
-    size_t a, b; /* all pairs: the last one */
+    size_t a, b; /* all pairs: the last pair */
 };
 
-/* On output: true and *out, or false after the last one. */
+/* Returns true and the next pair, or false after the last one. */
 bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor,
                      struct scene_pair *out);
-
-/* Finds indices by ids in O(log n). Making it takes O(n log n). */
-struct scene_ids {
-    size_t count;
-    struct scene_id *sorted; /* owned */
-};
-
-void scene_ids_make(const struct scene *scene, struct scene_ids *out);
-void scene_ids_clear(struct scene_ids *ids);
-
-/* On output: true and *index, or false: no body has this id. */
-bool scene_ids_find(const struct scene_ids *ids, int64_t id, size_t *index);
-
-/* Returns false if all ids are unique. Otherwise returns true, and the indices *first < *second of
- * two bodies with the same id, *second being the smallest possible. */
-bool scene_ids_repeated(const struct scene_ids *ids, size_t *first, size_t *second);
 
 #endif

@@ -12,7 +12,7 @@ static void write_components(struct json_writer *json, const struct fmb_frame *f
     json_end(json, ']');
 }
 
-/* Whether the numbers are what they are read as where they are left out: not so -0. */
+/* Whether all numbers are +0, the value of a missing vector. */
 static bool is_zero(const double *numbers, int count)
 {
     for (int i = 0; i < count; i++)
@@ -57,8 +57,8 @@ static void write_frames(struct json_writer *json, const struct fmb_body *body)
     json_end(json, ']');
 }
 
-/* A body of one frame with nothing between their coordinates is written as that frame: of
- * components with its position as origin, unless it is turned. */
+/* A body of one frame whose origin or centre is 0 is written as that frame. A frame of components
+ * then has the position of the body as its origin, unless the body is turned. */
 static void write_only_frame(struct json_writer *json, const struct scene_body *body)
 {
     const struct fmb_frame *frame = fmb_body_frame(&body->body, 0);

@@ -24,7 +24,7 @@ void text_close(struct text *text)
 
 /* ---- Positions and errors -------------------------------------------------------------------- */
 
-/* Moves begin, and counts lines and columns on the way. */
+/* Moves begin forward, and counts lines and columns. */
 static void advance(struct text *text, size_t count)
 {
     for (; count > 0; count--) {
@@ -90,38 +90,24 @@ static ssize_t read_more(struct text *text)
 
 enum scan { SCAN_MORE, SCAN_DONE, SCAN_DEEP };
 
-static enum scan scan_open(struct text *text, bool object)
-{
-    if (text->depth == TEXT_DEPTH_MAX)
-        return SCAN_DEEP;
-    text->depth++;
-    text->objects = text->objects << 1 | object;
-    return SCAN_MORE;
-}
-
-/* A bracket that does not match ends the object too: cJSON will say where it is. */
-static enum scan scan_close(struct text *text, bool object)
-{
-    const bool matches = (text->objects & 1) == object;
-    text->depth = matches ? text->depth - 1 : 0;
-    text->objects >>= 1;
-    return text->depth > 0 ? SCAN_MORE : SCAN_DONE;
-}
-
+/* A bracket that does not match ends the object too: cJSON reports its place. */
 static enum scan scan_byte(struct text *text, char byte)
 {
+    const bool brace = byte == '{' || byte == '}';
     if (text->in_string) {
         text->in_string = byte != '"' || text->escaped;
         text->escaped = byte == '\\' && !text->escaped;
-        return SCAN_MORE;
-    }
-    switch (byte) {
-    case '{': return scan_open(text, true);
-    case '[': return scan_open(text, false);
-    case '}': return scan_close(text, true);
-    case ']': return scan_close(text, false);
-    case '"': text->in_string = true; break;
-    default: break;
+    } else if (byte == '"') {
+        text->in_string = true;
+    } else if (byte == '{' || byte == '[') {
+        if (text->depth == TEXT_DEPTH_MAX)
+            return SCAN_DEEP;
+        text->depth++;
+        text->braces = text->braces << 1 | brace;
+    } else if (byte == '}' || byte == ']') {
+        text->depth = (text->braces & 1) == brace ? text->depth - 1 : 0;
+        text->braces >>= 1;
+        return text->depth > 0 ? SCAN_MORE : SCAN_DONE;
     }
     return SCAN_MORE;
 }
@@ -141,7 +127,8 @@ static enum scan scan_object(struct text *text)
     return result;
 }
 
-/* Skips a byte order mark at the start of the input. A failed read is left to the next one. */
+/* Skips a byte order mark at the start of the input. A read that fails is repeated by
+ * find_object(). */
 static void skip_mark(struct text *text)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};

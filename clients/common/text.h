@@ -1,8 +1,7 @@
-/* Splits an input into the texts of its JSON objects, one after the other, while the input may
- * still grow.
+/* Splits an input, which may still grow, into the texts of its JSON objects.
  *
  * An object ends where its first brace closes: brackets outside of strings are counted, nothing
- * else is looked at. A UTF-8 byte order mark at the start is skipped. Whether the text in between
+ * else matters. A UTF-8 byte order mark at the start is skipped. Whether the text in between
  * is JSON is for cJSON to decide (json.c). */
 #ifndef TEXT_H
 #define TEXT_H
@@ -25,12 +24,12 @@ struct text {
     char *bytes; /* owned */
     size_t used, capacity;
     size_t begin;        /* of the current object, or of the white space before it */
-    size_t scanned;      /* bytes before this one have been looked at */
+    size_t scanned;      /* number of bytes scanned */
     size_t line, column; /* of bytes[begin], from 1; columns are characters of UTF-8 */
     size_t object_max;   /* TEXT_OBJECT_MAX */
     int depth;
-    uint64_t objects; /* bit d: of the open brackets, the d-th from the innermost is a brace */
-    bool started;     /* the first bytes have been looked at */
+    uint64_t braces; /* bit d: of the open brackets, the d-th from the innermost is a brace */
+    bool started;    /* a byte order mark has been skipped, if there is one */
     bool in_string, escaped;
     char error[TEXT_ERROR_MAX];
 };

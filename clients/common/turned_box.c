@@ -4,7 +4,7 @@
 #include <gmp.h>
 #include <math.h>
 
-/* The orientation, squared and multiplied out: [row][column] of R(q) |q|^2, and |q|^2. */
+/* A rotation without division: entry is R(q) |q|^2, [row][column]; norm is |q|^2. */
 struct rotation {
     mpq_t entry[3][3], norm;
 };
@@ -21,7 +21,7 @@ static void add_product(mpq_t out, int sign, const double x, const double y)
     mpq_clears(a, b, NULL);
 }
 
-/* In the plane it is the rotation about z. */
+/* A rotation in 2D is one about z. */
 static void set_rotation(int dim, const double *orientation, struct rotation *out)
 {
     const double w = orientation[0], z = orientation[dim == 2 ? 1 : 3];
@@ -54,7 +54,9 @@ static void clear_rotation(struct rotation *rotation)
             mpq_clear(rotation->entry[i][j]);
 }
 
-/* The nearest double; of two, the one nearer to 0. mpq_get_d() rounds towards 0. */
+/* Returns the nearest double; halfway between two, the one nearer to 0. mpq_get_d() rounds towards
+ * 0.
+ */
 static double round_once(const mpq_t value)
 {
     const double near = mpq_get_d(value);

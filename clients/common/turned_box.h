@@ -1,5 +1,5 @@
-/* A box that is turned within its body is a cuboid: its corners are computed exactly, in rational
- * numbers, and each number is rounded once. */
+/* Converts a box that is turned within its body to a cuboid. Its numbers are computed exactly, as
+ * rationals, and each is rounded once. */
 #ifndef TURNED_BOX_H
 #define TURNED_BOX_H
 

@@ -1,10 +1,10 @@
 /* Prints scenes for fmb query: a robot arm that swings over a table with parts on it, in six
  * steps of a quarter of a second, one scene and one line each.
  *
- * Within a step a body does not turn: each link has the orientation that its joints have at the
- * start of the step, and moves straight to where its middle is at the end. The table, and what
- * rests on it, have positions and sizes in multiples of 1/64 m, which doubles hold exactly: so what
- * rests touches. Neighbouring links always meet at their joint: these pairs are ignored. */
+ * Within a step a body does not turn: a link keeps its orientation at the start of the step, and
+ * its middle moves straight to its position at the end. The table and the parts on it have
+ * positions and sizes in multiples of 1/64 m, which doubles hold exactly, so that they touch.
+ * Neighbouring links always meet at their joint: these pairs are ignored. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -83,31 +83,31 @@ static const struct link {
 
 static const double shoulder[3] = {0, 0, 0.93};
 
-/* Degrees: the waist from the x axis; the links above the horizontal. */
+/* Angles in degrees: the waist from the x axis; the links above the horizontal. */
 struct pose {
     double waist, pitch[LINKS];
 };
 
-/* The pose at the start of a step: the arm swings round, and down to the parts. */
+/* Returns the pose at the start of a step: the arm swings round, and down to the parts. */
 static struct pose pose_at(int step)
 {
-    double along = (double) step / STEPS; /* 0 to 1 */
-    double dip = sin(90 * degree * fmin(1, 1.5 * along));
-    return (struct pose){.waist = -52 + 98 * along,
+    double progress = (double) step / STEPS; /* 0 to 1 */
+    double dip = sin(90 * degree * fmin(1, 1.5 * progress));
+    return (struct pose){.waist = -52 + 98 * progress,
                          .pitch = {56 - 8 * dip, -30 - 6 * dip, -78 - 6 * dip}};
 }
 
-/* The link begins at *joint, turned by the pitch about y, then by the waist about z; moves *joint
- * to its end. */
+/* Returns a link that begins at joint, turned by the pitch about y, then by the waist about z.
+ * Moves joint to its end. */
 static struct body place_link(const struct link *link, double waist, double pitch, double joint[3])
 {
     const double a = waist * degree, p = pitch * degree;
-    const double along[3] = {cos(a) * cos(p), sin(a) * cos(p), sin(p)};
+    const double direction[3] = {cos(a) * cos(p), sin(a) * cos(p), sin(p)};
     struct body body = {.id = link->id, .name = link->name};
     memcpy(body.size, link->size, sizeof body.size);
     for (int axis = 0; axis < 3; axis++) {
-        body.position[axis] = joint[axis] + along[axis] * link->size[0] / 2;
-        joint[axis] += along[axis] * link->size[0];
+        body.position[axis] = joint[axis] + direction[axis] * link->size[0] / 2;
+        joint[axis] += direction[axis] * link->size[0];
     }
     body.orientation[0] = cos(a / 2) * cos(p / 2);
     body.orientation[1] = sin(a / 2) * sin(p / 2);
@@ -123,7 +123,7 @@ static void place_arm(const struct pose *pose, struct body out[LINKS])
         out[i] = place_link(&links[i], pose->waist, pose->pitch[i], joint);
 }
 
-/* The links at the start of the step, with the velocities that take them to the next one. */
+/* Returns the links at the start of a step, with the velocities that take them to the next one. */
 static void make_arm(int step, struct body out[LINKS])
 {
     struct body next[LINKS];
@@ -135,7 +135,8 @@ static void make_arm(int step, struct body out[LINKS])
             out[i].velocity[axis] = (next[i].position[axis] - out[i].position[axis]) / step_s;
 }
 
-/* What slides has come further, by whole 64ths of a metre. */
+/* A part at the start of a step. One that slides has moved by a whole number of 64ths of a metre.
+ */
 static struct body still_at(int index, int step)
 {
     struct body body = still[index];
@@ -174,17 +175,14 @@ static void print_body(const struct body *body)
 
 static void print_scene(int step)
 {
-    struct body arm[LINKS];
-    make_arm(step, arm);
+    struct body body[STILL + LINKS];
+    for (int i = 0; i < STILL; i++)
+        body[i] = still_at(i, step);
+    make_arm(step, body + STILL);
     printf("{\"dim\": 3, \"duration\": %.17g, \"bodies\": [", step_s);
-    for (int i = 0; i < STILL; i++) {
-        struct body body = still_at(i, step);
-        print_body(&body);
-        printf(", ");
-    }
-    for (int i = 0; i < LINKS; i++) {
-        print_body(&arm[i]);
-        printf("%s", i + 1 < LINKS ? ", " : "");
+    for (int i = 0; i < STILL + LINKS; i++) {
+        printf("%s", i ? ", " : "");
+        print_body(&body[i]);
     }
     printf("], \"ignore\": [");
     for (int i = 0; i < IGNORED; i++)

@@ -1,12 +1,12 @@
 /* netns CMD [ARG...]: runs a command where LCM's multicast stays on this machine.
  *
- * In a network namespace of its own, with a loopback that carries multicast: so a bare
- * machine, root and a plain user are one case, and runs side by side do not hear each other.
- * Root needs no more; anybody else gets a user namespace with it.
+ * The command gets a network namespace of its own, with a loopback interface that carries
+ * multicast. So it does not matter which routes the machine has, and commands that run at the same
+ * time do not receive each other's messages. A user other than root also gets a user namespace.
  *
- * Where namespaces are forbidden: in place, if there is a route for multicast, on a random
- * port and with ttl=0 (LCM_DEFAULT_URL): then no message leaves the machine, though the group
- * memberships (IGMP) do, which is said. Without a route: exit code 77, nothing is run.
+ * Where namespaces are forbidden, the command runs in place if there is a route for multicast, on a
+ * random port and with ttl=0 (LCM_DEFAULT_URL). No message leaves the machine then, but the group
+ * memberships (IGMP) do, which is reported. Without a route nothing is run; the exit code is 77.
  *
  * FMB_NETNS tells the command which it is: "own" or "in place". */
 #define _GNU_SOURCE

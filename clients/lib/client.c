@@ -2,14 +2,7 @@
 
 #include "clock.h"
 #include "random_id.h"
-
-#include "fmb_msgs_definition_query_t.h"
-#include "fmb_msgs_definition_t.h"
-#include "fmb_msgs_pair_query_t.h"
-#include "fmb_msgs_pair_result_t.h"
-#include "fmb_msgs_scene_query_t.h"
-#include "fmb_msgs_scene_result_t.h"
-#include "fmb_msgs_status_t.h"
+#include "wire_type.h"
 
 #include <assert.h>
 #include <math.h>
@@ -33,8 +26,8 @@ static_assert((int) FMB_CLIENT_WANT_BOX == QUERY_WANT_BOX &&
 
 enum {
     TRIES = 6,
-    /* Calls of bus_receive(): some 16,000 datagrams, more than a buffer of 4 MB holds. So another
-     * client's flood cannot keep this one from sending. */
+    /* Most calls of bus_receive() in a row: some 16,000 datagrams, more than a buffer of 4 MB
+     * holds. A flood of datagrams from another client cannot keep this one from sending. */
     BATCHES_MAX = 256,
     HANDLE_MAX_S = 1000000
 };
@@ -117,13 +110,13 @@ bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
     return true;
 }
 
-/* Results of other clients are read only for the watcher. */
+/* Whether a result is read: results of other clients only for the watcher. */
 static bool is_for(const struct fmb_client *client, const struct query_header *header, bool watched)
 {
     return watched || header->client_id == client->requests.client_id;
 }
 
-/* The result in a message, which is for this client or another one. */
+/* Passes a result to the request engine if it is for this client. */
 static void take(struct fmb_client *client, const struct bus_message *message,
                  const struct query_header *header, struct request_result result)
 {
@@ -223,7 +216,7 @@ static void on_message(void *user, const struct bus_message *message)
     struct fmb_client *client = user;
     if (client->tap)
         client->tap(client->tap_user, message);
-    if (message->listener >= client->listener_count) /* received only for the tap */
+    if (message->listener >= client->listener_count) /* only the tap receives it */
         return;
     const char *error = channels[client->channel[message->listener]].read(client, message);
     if (!error)
@@ -246,7 +239,8 @@ bool client_listen(struct fmb_client *client, int channel)
     return true;
 }
 
-/* A message belongs to the first listener for its channel: those of the library come first. */
+/* A message belongs to the first listener for its channel. Those of the library come first, so that
+ * the tap does not take messages from them. */
 bool fmb_client_raw_listen(struct fmb_client *client, bool every, bus_handler *tap, void *user)
 {
     bool good = true;
@@ -335,17 +329,12 @@ struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client)
 
 /* ---- Opening and closing ---- */
 
-/* The generated code computes each one when it is first used, and keeps it: two threads must not do
- * that at once. */
+/* The generated code computes the fingerprint of a type at its first use, and stores it: two
+ * threads must not do that at the same time. No type has the fingerprint 0, so this computes all of
+ * them. */
 static void compute_fingerprints(void)
 {
-    __fmb_msgs_definition_query_t_get_hash();
-    __fmb_msgs_definition_t_get_hash();
-    __fmb_msgs_pair_query_t_get_hash();
-    __fmb_msgs_pair_result_t_get_hash();
-    __fmb_msgs_scene_query_t_get_hash();
-    __fmb_msgs_scene_result_t_get_hash();
-    __fmb_msgs_status_t_get_hash();
+    wire_type_name(0);
 }
 
 static bool set_options(struct fmb_client *client, const struct fmb_client_options *options,

@@ -1,4 +1,4 @@
-/* The state of a client. Private to the library. */
+/* The state of a client, private to the library. Not thread-safe (fmb_client.h). */
 #ifndef CLIENT_H
 #define CLIENT_H
 
@@ -14,12 +14,12 @@ enum { CLIENT_STATUS = FMB_CLIENT_KINDS, CLIENT_CHANNELS };
 struct fmb_client {
     struct bus *bus;
     bool failed; /* the bus has failed */
-    bool inside; /* a callback may be running */
+    bool inside; /* a call that may run callbacks is under way */
     char prefix[BUS_PREFIX_MAX + 1];
     char query_channel[FMB_CLIENT_KINDS][BUS_CHANNEL_MAX];
     int listener_count;
     int channel[CLIENT_CHANNELS]; /* [number of the bus_listen() call]: CLIENT_STATUS or a kind */
-    bus_handler *tap;             /* NULL: none */
+    bus_handler *tap;             /* fmb_client_raw_listen(); NULL: none */
     void *tap_user;
     struct fmb_client_watcher watcher;
     struct hasher *hasher;
@@ -35,7 +35,7 @@ struct fmb_client {
     } received;
 };
 
-/* Receives the channel from now on. False: the bus cannot, and client->why is the reason. */
+/* Receives a channel from now on. Returns false if the bus cannot; client->why is the reason. */
 bool client_listen(struct fmb_client *client, int channel);
 
 #endif

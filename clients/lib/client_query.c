@@ -9,14 +9,14 @@ const char *fmb_client_why(const struct fmb_client *client)
     return client->why;
 }
 
-/* A status of the whole scene. */
+/* Sets the reason of a status of the whole scene. Returns the status. */
 static int fail(struct fmb_client *client, int status)
 {
     snprintf(client->why, sizeof client->why, "%s", fmb_client_status_text(status));
     return status;
 }
 
-/* single: each pair is a query of its own. */
+/* single: each pair is a separate query. */
 static int query(struct fmb_client *client, const struct fmb_client_scene *scene, bool single,
                  fmb_client_sink *sink, void *user)
 {
@@ -39,6 +39,7 @@ int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *s
     return query(client, scene, scene->want & FMB_CLIENT_WANT_CERTIFICATE, sink, user);
 }
 
+/* The sink of fmb_client_query_pair(): copies the answer and its texts into the client. */
 static void keep_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct fmb_client *client = user;

@@ -10,8 +10,9 @@ bool fmb_client_raw_ready(const struct fmb_client *client, size_t bytes)
     return requests_ready(&client->requests, bytes);
 }
 
-static enum request_taken give_raw(void *user, struct request *request,
-                                   const struct request_result *result)
+/* The handler of raw requests. */
+static enum request_taken deliver_raw(void *user, struct request *request,
+                                      const struct request_result *result)
 {
     const struct fmb_client_raw_result out = {result->status, result->bytes, result->size};
     request->raw_sink(user, &out);
@@ -31,7 +32,7 @@ int fmb_client_raw_send(struct fmb_client *client, enum fmb_client_kind kind,
     if (client->failed || !client_listen(client, (int) kind))
         return FMB_CLIENT_NO_BUS;
     client->inside = true;
-    struct request *request = request_begin(&client->requests, kind, bytes, give_raw, user);
+    struct request *request = request_begin(&client->requests, kind, bytes, deliver_raw, user);
     request->raw_sink = sink;
     request->size = size;
     memcpy(request->query, message, size);

@@ -8,12 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where a scene is wrong. */
+/* The first error of a scene: its status, and text about its place. */
 struct scene_error {
     char *why;
     int status;
 };
 
+/* Sets the error. Always returns false. format: the place. */
 __attribute__((format(printf, 3, 4))) static bool refuse(struct scene_error *error, int status,
                                                          const char *format, ...)
 {
@@ -42,11 +43,10 @@ static bool check_frame(struct scene_error *error, size_t placement, size_t i, i
 {
     char field[64];
     const int count = geometry_number_count(dim, frame->shape) - dim;
-    if (!fmb_shape_name(frame->shape))
-        return refuse(error, FMB_UNKNOWN_SHAPE, "placements[%zu].frames[%zu].shape", placement, i);
-    if (count < 0)
-        return refuse(error, FMB_WRONG_DIMENSION, "placements[%zu].frames[%zu].shape", placement,
-                      i);
+    const bool known = fmb_shape_name(frame->shape);
+    if (!known || count < 0)
+        return refuse(error, known ? FMB_WRONG_DIMENSION : FMB_UNKNOWN_SHAPE,
+                      "placements[%zu].frames[%zu].shape", placement, i);
     snprintf(field, sizeof field, "frames[%zu].origin", i);
     if (!check_numbers(error, placement, field, frame->origin, dim))
         return false;
@@ -74,8 +74,7 @@ static bool check_frames(struct scene_error *error, const struct fmb_client_plac
            refuse(error, FMB_OVER_LIMIT, "placements[%zu].frame_count", i);
 }
 
-/* The rule of fmb_placement_check(): no component but 0 is more than 2^200 times smaller than the
- * largest. */
+/* The rule of fmb_placement_check(): a component is 0, or at least 2^-200 times the largest. */
 static bool is_orientation(const double *q, int count)
 {
     double largest = 0;
@@ -152,7 +151,7 @@ static bool check_pairs(struct scene_error *error, const struct fmb_client_scene
             check_list(error, scene, "pairs", scene->pairs, scene->pair_count));
 }
 
-static bool check_rest(struct scene_error *error, const struct fmb_client_scene *scene)
+static bool check_settings(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     const unsigned wants = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_CERTIFICATE |
                            FMB_CLIENT_WANT_TIMES | FMB_CLIENT_WANT_GAP;
@@ -167,7 +166,7 @@ int client_scene_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT
 {
     struct scene_error error = {.why = why};
     why[0] = '\0';
-    if (check_rest(&error, scene) && check_placements(&error, scene))
+    if (check_settings(&error, scene) && check_placements(&error, scene))
         check_pairs(&error, scene);
     return error.status;
 }
@@ -181,7 +180,7 @@ size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement)
     return bytes;
 }
 
-/* As geometry_write_frames(). */
+/* Writes the bytes that geometry_write_frames() would write. Returns how many. */
 static size_t write_frames(const struct fmb_client_placement *of, unsigned char *out)
 {
     const size_t size = client_scene_geometry_bytes(of);
@@ -236,8 +235,8 @@ void client_scene_use_handle(struct placement *placement, const struct handle *h
     placement->handle = *handle;
 }
 
-/* The first partner of placement a. */
-static size_t partners(const struct fmb_client_scene *scene, size_t a)
+/* Index of the first placement that is paired with placement a. */
+static size_t first_partner(const struct fmb_client_scene *scene, size_t a)
 {
     return scene->which == FMB_CLIENT_ACROSS ? scene->split : a + 1;
 }
@@ -253,9 +252,9 @@ bool client_scene_next_pair(const struct fmb_client_scene *scene,
     }
     const size_t firsts = scene->which == FMB_CLIENT_ACROSS ? scene->split : scene->placement_count;
     if (cursor->b == 0)
-        cursor->b = partners(scene, cursor->a);
+        cursor->b = first_partner(scene, cursor->a);
     if (cursor->b >= scene->placement_count && ++cursor->a < firsts)
-        cursor->b = partners(scene, cursor->a);
+        cursor->b = first_partner(scene, cursor->a);
     if (cursor->a >= firsts || cursor->b >= scene->placement_count)
         return false;
     out[0] = (unsigned) cursor->a;

@@ -5,22 +5,25 @@
 #include "fmb_client.h"
 #include "query.h"
 
-/* Checks a scene. Returns FMB_OK; or a status, and why has the place and the reason. */
+/* Checks a scene. Returns FMB_OK and why is ""; or a status, and why names the place and the
+ * reason.
+ */
 int client_scene_check(const struct fmb_client_scene *scene, char why[FMB_CLIENT_WHY_MAX]);
 
 /* Bytes of the encoded frames of a checked placement. */
 size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement);
 
-/* On input: a checked placement; as many bytes of geometry. On output: *out with frames, which are
- * encoded in geometry. */
+/* Converts a checked placement. geometry: memory of client_scene_geometry_bytes(of). On output:
+ * *out has the frames, encoded in geometry, which must outlive it. */
 void client_scene_placement(const struct fmb_client_placement *of, unsigned char *geometry,
                             struct placement *out);
 
-/* Replaces the frames by a handle. geometry: as in geometry_write_none(), of the dimension. */
+/* Replaces the frames by a handle. geometry: memory for geometry_write_none(), which must outlive
+ * the placement. */
 void client_scene_use_handle(struct placement *placement, const struct handle *handle,
                              unsigned char geometry[GEOMETRY_NONE_BYTES]);
 
-/* Iterates over the pairs in order, ignored ones included; all 0 at first. */
+/* Iterates over the pairs in order, including ignored ones; {0} at first. */
 struct client_scene_cursor {
     size_t next; /* listed pairs: index of the next one */
     size_t a, b; /* else: the next pair; b is 0 before the first */

@@ -12,8 +12,9 @@ static inline uint64_t digest_word(uint64_t state, uint64_t word)
     return state ^ state >> 29;
 }
 
-/* On input: state: the digest of the bytes before these, 0 at first. Four words at a time, so that
- * their multiplications overlap: a robot's frames have tens of kilobytes. */
+/* Returns the digest of `size` more bytes. state: the digest of the bytes before them; 0: there are
+ * none. Takes four words at a time, so that their multiplications overlap: the frames of a robot
+ * have tens of kilobytes. */
 static inline uint64_t digest(uint64_t state, const unsigned char *bytes, size_t size)
 {
     uint64_t word[4], lane[4] = {state ^ size, 1, 2, 3};

@@ -13,7 +13,8 @@
  *     fmb_client_query(client, &scene, sink, NULL);
  *     fmb_client_close(client);
  *
- * (sink is a function of yours that gets the answers; clients/examples/ask_scene.c is complete.)
+ * (sink is a function of the caller that receives the answers; clients/examples/ask_scene.c is a
+ * complete program.)
  *
  * fmb.h defines frames, poses, verdicts, intervals, boxes and gaps. The answers are those of
  * libfmb, bit for bit. Link with pkg-config's fmb-client (liblcm and GLib); libfmb and GMP are not
@@ -22,8 +23,7 @@
  * A scene may have any number of bodies and pairs. The library divides it into queries of one
  * datagram each, keeps several under way (no more than a default receive buffer holds), repeats
  * what was lost, and pauses where the service is busy. A body with an id is sent whole until a
- * result shows that the service holds it; then by its handle, wherever it is and however it is
- * turned.
+ * result shows that the service holds it, and from then on by its handle, in any pose.
  *
  * Threads: a client may be used by one thread at a time. Different clients share nothing, and may
  * be used by different threads at once. A callback may only call functions that take the same
@@ -83,7 +83,7 @@ struct fmb_client_options {
 /* Bytes of an error text, final 0 included: one or two lines without a final line feed. */
 enum { FMB_CLIENT_WHY_MAX = 512 };
 
-/* Opens a client with a random id. The caller closes it.
+/* Opens a client with a random id. The caller closes it with fmb_client_close().
  * On input: options, which are copied, or NULL; why has size bytes (NULL if size is 0).
  * Returns NULL if the bus cannot be opened, an option is wrong, or memory is exhausted; why is then
  * the reason, and what to run if there is no multicast route.
@@ -101,12 +101,12 @@ bool fmb_client_prefix_ok(const char *prefix);
 /* A frame in body coordinates. Numbers beyond those of the shape and dim are not read. */
 struct fmb_client_frame {
     int shape;                             /* enum fmb_shape */
-    double origin[FMB_DIM_MAX];            /* of a box its centre */
-    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box [axis], its full
+    double origin[FMB_DIM_MAX];            /* of a box: its centre */
+    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box: [axis], its full
                                               size */
 };
 
-/* A rigid body at a place. */
+/* A rigid body, its pose and its velocity. */
 struct fmb_client_placement {
     int64_t body_id;                       /* 1 to 2^53 - 1; 0: anonymous, always sent whole */
     int dim;                               /* 2 or 3 */
@@ -137,7 +137,7 @@ enum {
     FMB_CLIENT_WANT_GAP = 8,   /* not with the methods fmb and sat */
 };
 
-/* A scene to query. Nothing of it is used after the call. */
+/* A scene to query. The library keeps no pointer to it after the call. */
 struct fmb_client_scene {
     const struct fmb_client_placement *placements; /* [placement_count], all of one dimension */
     size_t placement_count;                        /* less than 2^31 */
@@ -163,7 +163,7 @@ struct fmb_client_answer {
     int status;               /* FMB_OK, or why there is no verdict */
     const char *text;         /* text of the status, "" if FMB_OK. Valid during the callback */
     struct fmb_answer answer; /* all 0 unless FMB_OK; contact, box and gap as wanted */
-    /* Where wanted; NULL if it has 60,000 characters or more. Valid during the callback. */
+    /* NULL if not wanted, or of 60,000 characters or more. Valid during the callback. */
     const char *certificate;
 };
 
@@ -198,7 +198,8 @@ int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *s
 int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
                           double duration, unsigned want, struct fmb_client_answer *out);
 
-/* What is wrong with the last scene: "placements[3].position[1]: not a finite number"; or "". */
+/* Returns what is wrong with the last scene: "placements[3].position[1]: not a finite number"; or
+ * "". Valid until the next call that is not const. */
 const char *fmb_client_why(const struct fmb_client *client);
 
 /* Counts since fmb_client_open(). */
@@ -249,13 +250,13 @@ struct fmb_client_scene_result {
     const void *internal; /* for fmb_client_next_answer() */
 };
 
-/* How far the answers of a result have been read; {0}: none. */
+/* Position of fmb_client_next_answer() in a result; {0} at first. */
 struct fmb_client_cursor {
     int32_t answers, contacts;
 };
 
-/* Reads the answers that a scene's result holds, one a call, in the order of the pairs; within the
- * callback that got the result.
+/* Reads the answers in the result of a scene, one per call, in the order of the pairs. To be called
+ * during the callback that receives the result.
  * On input: *cursor is {0} before the first call.
  * On output: true and *out; or false, after the last answer. Where names_pairs, a and b are the
  * indices of the placements in the query; otherwise both are the number of the pair in the query's
@@ -303,7 +304,7 @@ struct fmb_client_watcher {
     void (*pair)(void *user, const struct fmb_client_pair_result *result);
     void (*scene)(void *user, const struct fmb_client_scene_result *result);
     void (*heartbeat)(void *user, const struct fmb_client_heartbeat *heartbeat);
-    /* A message on one of these channels could not be decoded; what: the reason. */
+    /* A message on one of these channels could not be decoded. what: the reason. */
     void (*malformed)(void *user, const char *what);
     void *user;
 };

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Without memory the body is not recognized again, and sent whole. */
+/* Without memory the geometry is not stored: the body is then not found again, and sent whole. */
 static void enter(struct held *held, const struct geometry *geometry, struct held_body *out)
 {
     unsigned char *copy = realloc(out->geometry, geometry->size);

@@ -1,22 +1,24 @@
-/* Passes the answers to the parts of a scene to the caller, in the order of its pairs. Answers to
- * listed pairs are passed at once; those to blocks are kept until their row is complete. */
+/* Delivers the answers to the parts of a scene to the caller, in the order of its pairs. Answers to
+ * listed pairs are delivered at once; those to blocks when their row is complete. */
 #ifndef ORDER_H
 #define ORDER_H
 
-#include "cut.h"
+#include "division.h"
 
 struct order {
-    const struct cut *cut;
+    const struct division *division;
     fmb_client_sink *sink;
     void *user;
     struct part_answers *row; /* owned, [block_count]: the current row, by column */
 };
 
-/* On input: a cut, which must outlive the order. False: out of memory. */
-bool order_begin(const struct cut *cut, fmb_client_sink *sink, void *user, struct order *out);
+/* The division must outlive the order. Returns false if out of memory. */
+bool order_begin(const struct division *division, fmb_client_sink *sink, void *user,
+                 struct order *out);
 void order_end(struct order *order);
 
-/* Takes the answers to the next part, in the order of the cut, and what they own. */
+/* Takes the answers to the next part, and what they own; *answers is empty afterwards. Parts come
+ * in the order of the division. */
 void order_take(struct order *order, const struct part *part, struct part_answers *answers);
 
 #endif

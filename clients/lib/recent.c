@@ -4,7 +4,7 @@
 #include "digest.h"
 #include "query.h"
 
-/* Where parts of messages stand. */
+/* Positions in messages, bytes. */
 enum {
     PAIR_STATUS_AT = 8 + 6 * 8 + 2 * HANDLE_BYTES,
     SCENE_STATUS_AT = 8 + 4 * 8,
@@ -17,7 +17,7 @@ static bool is_comparable(const struct request_result *result)
            result->status != FMB_UNKNOWN_BODY;
 }
 
-/* Behind a counted list. */
+/* Returns the position after a counted list at `at`. each: bytes of an element. */
 static size_t skip_list(const unsigned char *bytes, size_t at, size_t each)
 {
     return at + 4 + each * big_endian_32(bytes + at);

@@ -1,4 +1,4 @@
-/* Results, and those of recent queries kept to detect second results that contradict them. */
+/* Results, and a record of recent ones that detects a second result which contradicts the first. */
 #ifndef RECENT_H
 #define RECENT_H
 
@@ -9,7 +9,8 @@
 
 enum { RECENT_MAX = 256 };
 
-/* A well-formed result; or none, if status is negative (enum fmb_client_status). */
+/* A well-formed result; or the end of a request without one: status is negative (enum
+ * fmb_client_status). */
 struct request_result {
     enum fmb_client_kind kind;
     int status;
@@ -20,7 +21,7 @@ struct request_result {
     };
     const unsigned char *bytes; /* of the message; NULL: there is no result */
     size_t size;
-    int64_t number;
+    int64_t number; /* sequence number of the query */
 };
 
 /* All 0: none. */
@@ -37,9 +38,9 @@ struct recent {
 /* Records the result of the query with this number. */
 void recent_note(struct recent *recent, const struct request_result *result, int64_t number);
 
-/* Whether a second result contradicts the first. Service, handles and compute time are not
- * compared. Refusals that depend on the moment (BUSY, UNKNOWN_BODY), scene results with different
- * end_pair, and definitions contradict nothing. */
+/* Whether a result contradicts the recorded one of the same query. Service, handles and compute
+ * time are not compared. Refusals that depend on the state of the service (BUSY, UNKNOWN_BODY),
+ * results of scenes with different end_pair, and definitions contradict nothing. */
 bool recent_contradicts(const struct recent *recent, const struct request_result *result);
 
 #endif

@@ -6,27 +6,38 @@
 #include <string.h>
 
 enum {
-    /* A busy service is queried again after 10, 20, 40, ... 320, 320, ... milliseconds, a minute in
-     * all; then its refusal is the result. */
+    /* Pauses before a busy service is queried again: 10, 20, 40, ... 320, 320, ... milliseconds, a
+     * minute in all. After them its refusal is the result. */
     BUSY_PAUSE_MS = 10,
     BUSY_DOUBLINGS = 5,
     BUSY_MAX = 200,
-    /* Retry: this long after the usual time; and as long as this before that is known. Scenes may
-     * take long to decide, and a repeated one is decided again. */
+    /* Intervals before the first repeat: this margin after the usual response time; and where that
+     * is not known yet. Scenes may take long to decide, and a repeated one is decided again. */
     MARGIN_MS = 8,
     FIRST_RETRY_MS = 10,
     FIRST_SCENE_RETRY_MS = 40,
-    /* A stock receive buffer has 212,992 bytes, and it also holds what came from others. A datagram
-     * takes at most twice its bytes there, and some for itself; the largest take 70,000. */
+    /* A default receive buffer has 212,992 bytes, and also holds datagrams of other senders. A
+     * datagram takes at most twice its bytes there, plus a constant; the largest take 70,000. */
     CHARGE_MAX = 150000,
     CHARGE_LARGEST = 70000,
     CHARGE_EACH = 1024,
-    /* Where the ids stand that the engine writes: after fingerprint and utime. */
+    /* Positions of the ids in a query, bytes: after fingerprint and utime. */
     CLIENT_ID_AT = 16,
     NUMBER_AT = 24
 };
 
 static const int64_t ns_per_ms = 1000000, ns_per_s = 1000000000;
+
+const char *fmb_client_status_text(int status)
+{
+    switch (status) {
+#define X(name, number, text) \
+    case number: return text;
+        FMB_CLIENT_STATUS_MAP(X)
+#undef X
+    }
+    return fmb_status_text(status);
+}
 
 void requests_forget_pace(struct requests *requests)
 {
@@ -44,20 +55,28 @@ static size_t charge_of(size_t bytes)
     return charge < CHARGE_LARGEST ? charge : CHARGE_LARGEST;
 }
 
-/* While the service is silent, one request at a time finds out whether it still is. */
+/* During an outage one request at a time tests whether it has ended. */
 bool requests_ready(const struct requests *requests, size_t bytes)
 {
     if (requests->count == 0)
         return true;
-    return !requests->silent && requests->count < FMB_CLIENT_RAW_WINDOW &&
+    return !requests->outage && requests->count < FMB_CLIENT_RAW_WINDOW &&
            requests->charge + charge_of(bytes) <= CHARGE_MAX;
 }
 
-static void end(struct requests *requests, struct request *request)
+void request_end(struct requests *requests, struct request *request)
 {
     request->under_way = false;
     requests->count--;
     requests->charge -= request->charge;
+}
+
+/* Ends a request without a result. */
+static void fail(struct requests *requests, struct request *request, int status)
+{
+    const struct request_result none = {.kind = request->kind, .status = status, .detail = ""};
+    request_end(requests, request);
+    request->handler(request->user, request, &none);
 }
 
 /* ---- Sending ---- */
@@ -93,31 +112,20 @@ static void publish(struct requests *requests, struct request *request)
     request->deadline = request->sent_at + request->interval;
 }
 
-/* How long a request waits for its result, in all. */
-static int64_t patience(const struct requests *requests)
+/* Returns how long a request waits for its result in all, nanoseconds. */
+static int64_t total_timeout(const struct requests *requests)
 {
-    return requests->silent ? requests->timeout_ns : requests->timeout_ns * requests->tries;
-}
-
-void request_cancel(struct requests *requests, struct request *request)
-{
-    end(requests, request);
-}
-
-/* A query that follows another of the same request may be larger than that. */
-static void raise_charge(struct requests *requests, struct request *request)
-{
-    const size_t charge = charge_of(request->size);
-    if (charge <= request->charge)
-        return;
-    requests->charge += charge - request->charge;
-    request->charge = charge;
+    return requests->outage ? requests->timeout_ns : requests->timeout_ns * requests->tries;
 }
 
 void request_send(struct requests *requests, struct request *request)
 {
     const int64_t retry = requests->pace[request->kind].retry;
-    raise_charge(requests, request);
+    const size_t charge = charge_of(request->size);
+    if (charge > request->charge) { /* a later query of a request may be larger than the first */
+        requests->charge += charge - request->charge;
+        request->charge = charge;
+    }
     request->number = requests->next_number++;
     big_endian_put_64(request->query + CLIENT_ID_AT, (uint64_t) requests->client_id);
     big_endian_put_64(request->query + NUMBER_AT, (uint64_t) request->number);
@@ -126,11 +134,11 @@ void request_send(struct requests *requests, struct request *request)
     requests->counts.queries++;
     publish(requests, request);
     request->first_at = request->sent_at;
-    request->give_up_at = request->sent_at + patience(requests);
+    request->give_up_at = request->sent_at + total_timeout(requests);
 }
 
-/* The next queries begin with the interval that this one has come to, until one is answered without
- * being repeated. */
+/* Until a query gets its result without being repeated, the next ones begin with the interval that
+ * this one has reached. */
 static void repeat(struct requests *requests, struct request *request)
 {
     struct request_pace *pace = &requests->pace[request->kind];
@@ -141,7 +149,7 @@ static void repeat(struct requests *requests, struct request *request)
         if (request->interval > pace->retry)
             pace->retry = request->interval;
     } else {
-        request->give_up_at = clock_ns() + patience(requests);
+        request->give_up_at = clock_ns() + total_timeout(requests);
     }
     request->repeated = true;
     requests->counts.repeated++;
@@ -150,17 +158,18 @@ static void repeat(struct requests *requests, struct request *request)
 
 /* ---- Results ---- */
 
-/* A service is there, even if the result is not of a query that is still under way. */
-static void note_heard(struct requests *requests, enum fmb_client_kind kind)
+/* Any result shows that a service is there, also one of a query that is not under way any more. */
+static void note_received(struct requests *requests, enum fmb_client_kind kind)
 {
-    requests->heard_at = requests->pace[kind].heard_at = clock_ns();
-    requests->silent = false;
+    requests->received_at = requests->pace[kind].received_at = clock_ns();
+    requests->outage = false;
 }
 
-/* The result of a repeated query may be that of its first sending: it is no measure. */
+/* The result of a repeated query is not measured: which of its sendings it answers is unknown. */
 static void measure(struct request_pace *pace, const struct request *request)
 {
-    const int64_t begin = request->sent_at > pace->heard_at ? request->sent_at : pace->heard_at;
+    const int64_t begin =
+        request->sent_at > pace->received_at ? request->sent_at : pace->received_at;
     const int64_t time = clock_ns() - begin;
     if (request->first_at > pace->overtaken_at)
         pace->overtaken_at = request->first_at;
@@ -177,7 +186,7 @@ static void measure(struct request_pace *pace, const struct request *request)
     pace->retry = pace->mean + 4 * pace->deviation + MARGIN_MS * ns_per_ms;
 }
 
-/* NULL: none is under way that the result is of. */
+/* Returns the request under way that the result belongs to; NULL: none. */
 static struct request *find(struct requests *requests, const struct request_result *result)
 {
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
@@ -199,24 +208,14 @@ static void pause_request(struct request *request)
     request->deadline = clock_ns() + ns_per_ms * (BUSY_PAUSE_MS << doublings);
 }
 
-/* The handler has said what comes next. */
-static void proceed(struct requests *requests, struct request *request, enum request_taken taken)
-{
-    request->earlier = taken == REQUEST_WHOLE ? request->number : -1;
-    if (taken == REQUEST_COMPLETE)
-        end(requests, request);
-    else
-        request_send(requests, request);
-}
-
 void requests_take(struct requests *requests, const struct request_result *result)
 {
     struct request *request = find(requests, result);
     if (!request) {
         requests->counts.contradicting += recent_contradicts(&requests->recent, result);
-        note_heard(requests, result->kind);
+        note_received(requests, result->kind);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
-        note_heard(requests, result->kind);
+        note_received(requests, result->kind);
         pause_request(request);
     } else {
         const int64_t number = request->number;
@@ -226,12 +225,16 @@ void requests_take(struct requests *requests, const struct request_result *resul
             return;
         }
         measure(&requests->pace[request->kind], request);
-        note_heard(requests, request->kind);
+        note_received(requests, request->kind);
         requests->counts.answered++;
         recent_note(&requests->recent, result, result->number);
         if (number != result->number)
             recent_note(&requests->recent, result, number);
-        proceed(requests, request, taken);
+        request->earlier = taken == REQUEST_WHOLE ? number : -1;
+        if (taken == REQUEST_COMPLETE)
+            request_end(requests, request);
+        else
+            request_send(requests, request);
     }
 }
 
@@ -239,43 +242,35 @@ void requests_take(struct requests *requests, const struct request_result *resul
 
 void requests_give_up(struct requests *requests, int status)
 {
-    for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
-        struct request *request = &requests->request[i];
-        const struct request_result none = {.kind = request->kind, .status = status, .detail = ""};
-        if (!request->under_way)
-            continue;
-        end(requests, request);
-        request->handler(request->user, request, &none);
-    }
+    for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
+        if (requests->request[i].under_way)
+            fail(requests, &requests->request[i], status);
 }
 
 static void give_up(struct requests *requests, struct request *request)
 {
-    const struct request_result none = {
-        .kind = request->kind, .status = FMB_CLIENT_NO_ANSWER, .detail = ""};
-    if (requests->heard_at < request->first_at) {
-        requests->counts.outages += !requests->silent;
-        requests->silent = true;
-        requests_forget_pace(requests);
-        requests_give_up(requests, FMB_CLIENT_NO_SERVICE);
+    if (requests->received_at >= request->first_at) {
+        fail(requests, request, FMB_CLIENT_NO_ANSWER);
         return;
     }
-    end(requests, request);
-    request->handler(request->user, request, &none);
+    requests->counts.outages += !requests->outage;
+    requests->outage = true;
+    requests_forget_pace(requests);
+    requests_give_up(requests, FMB_CLIENT_NO_SERVICE);
 }
 
-/* Whether the service may not have reached the request yet: results of others come in, or none
- * comes and an older one is repeated in its place; and no request has its result that was sent
- * later. */
-static bool is_in_line(const struct request_pace *pace, const struct request *request, int64_t time)
+/* Whether the service may still have the request in its queue: results of other requests come in,
+ * or an older request is repeated first; and no request that was sent later has its result. */
+static bool is_queued(const struct request_pace *pace, const struct request *request, int64_t time)
 {
     const bool expected =
-        time < pace->heard_at + request->interval || request->number > pace->oldest;
+        time < pace->received_at + request->interval || request->number > pace->oldest;
     return expected && request->sent_at >= pace->overtaken_at;
 }
 
-/* A caller that was away for long has not repeated the query: it is given another timeout. */
-static bool is_given_up(const struct requests *requests, struct request *request, int64_t time)
+/* Whether to give a request up. A caller that was away for long has not repeated the query: the
+ * request then gets another timeout. */
+static bool is_overdue(const struct requests *requests, struct request *request, int64_t time)
 {
     if (request->pausing || time < request->give_up_at)
         return false;
@@ -285,17 +280,17 @@ static bool is_given_up(const struct requests *requests, struct request *request
     return false;
 }
 
-static void look_after(struct requests *requests, struct request *request, int64_t time)
+static void check_deadline(struct requests *requests, struct request *request, int64_t time)
 {
     const struct request_pace *pace = &requests->pace[request->kind];
-    const int64_t heard_at = pace->heard_at;
+    const int64_t received_at = pace->received_at;
     if (!request->under_way || time < request->deadline)
         return;
-    if (is_given_up(requests, request, time))
+    if (is_overdue(requests, request, time))
         give_up(requests, request);
-    else if (!request->pausing && is_in_line(pace, request, time))
+    else if (!request->pausing && is_queued(pace, request, time))
         request->deadline =
-            request->interval + (heard_at + request->interval > time ? heard_at : time);
+            request->interval + (received_at + request->interval > time ? received_at : time);
     else
         repeat(requests, request);
     if (!request->pausing && request->deadline > request->give_up_at)
@@ -314,8 +309,8 @@ static void note_oldest(struct requests *requests)
     }
 }
 
-/* Milliseconds to the next deadline, rounded up; at most a second, so that a clock that jumps
- * cannot make this wait forever. */
+/* Returns milliseconds to the next deadline, rounded up; at most a second, so that a clock that
+ * jumps cannot cause an endless wait. */
 static int wait_ms(const struct requests *requests, int64_t until)
 {
     const int64_t time = clock_ns();
@@ -328,7 +323,7 @@ static int wait_ms(const struct requests *requests, int64_t until)
     return earliest > time ? (int) ((earliest - time + ns_per_ms - 1) / ns_per_ms) : 0;
 }
 
-/* Results that wait are read before queries are repeated: the caller may have been away. */
+/* Pending results are read before queries are repeated: the caller may have been away. */
 void requests_step(struct requests *requests, int other_fd, int64_t until)
 {
     const struct request_transport *transport = &requests->transport;
@@ -340,5 +335,5 @@ void requests_step(struct requests *requests, int other_fd, int64_t until)
     const int64_t time = clock_ns();
     note_oldest(requests);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
-        look_after(requests, &requests->request[i], time);
+        check_deadline(requests, &requests->request[i], time);
 }

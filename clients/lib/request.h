@@ -1,14 +1,15 @@
-/* Requests: queries under way, each sent until its result comes.
+/* Requests: queries under way, each of which is sent until its result comes.
  *
- * LCM loses datagrams without notice. So a query without a result is sent again, with the same
- * sequence number: first some milliseconds after the usual response time (pace, below), then after
- * twice the time each, up to the client's timeout. A busy service is queried again after a pause. A
- * second result of a query is ignored, but compared with the first (recent.h).
+ * LCM loses datagrams without notice. A query without a result is therefore sent again, with the
+ * same sequence number: first some milliseconds after the usual response time (struct
+ * request_pace), then at intervals that double, up to the client's timeout. A busy service is
+ * queried again after a pause. A second result of a query is ignored, but compared with the first
+ * (recent.h).
  *
- * Queries under way are limited in number and bytes, so that the receive buffers of both ends can
- * hold them.
+ * The number and the bytes of queries under way are limited, so that the receive buffers of both
+ * ends can hold them.
  *
- * This module distinguishes kinds of messages; handlers process their contents. */
+ * This module handles kinds of messages. Their contents are processed by handlers. */
 #ifndef REQUEST_H
 #define REQUEST_H
 
@@ -17,22 +18,22 @@
 
 #include <stdint.h>
 
-/* What a handler decided about a result. */
+/* What a handler returns about a result. */
 enum request_taken {
     REQUEST_MALFORMED, /* it does not match the query, and is ignored */
     REQUEST_COMPLETE,
     REQUEST_NEXT, /* the handler has written another query into the request, to be sent */
-    /* As NEXT, but the other query has the same meaning, with frames in place of handles. A result
-     * of the first query with status OK, from another service, is accepted too. */
+    /* Like NEXT, but the other query is the same one with frames in place of handles. A result of
+     * the first query with status OK, from another service, is accepted too. */
     REQUEST_WHOLE
 };
 
-/* A query begins with fingerprint, utime and the ids that the engine writes: so many bytes. */
+/* Bytes at the start of each query: fingerprint, utime, and the ids that this module writes. */
 enum { REQUEST_IDS_END = 32 };
 
 struct request;
 
-/* On input: a result of the request; or none, and the request ends. Private to the library. */
+/* Called with a result of the request; or without one (recent.h), when the request has ended. */
 typedef enum request_taken request_handler(void *user, struct request *request,
                                            const struct request_result *result);
 
@@ -63,12 +64,12 @@ struct request {
 struct request_pace {
     int64_t mean, deviation; /* 0: no result so far */
     int64_t retry;           /* first interval of the next query */
-    int64_t heard_at;        /* time of the last result */
-    int64_t overtaken_at;    /* requests sent before this are older than one that has its result */
+    int64_t received_at;     /* time of the last result */
+    int64_t overtaken_at;    /* newest time of first sending among the requests that have results */
     int64_t oldest;          /* number of the oldest request under way */
 };
 
-/* How requests reach the bus. The owner of the requests supplies it. */
+/* The functions by which requests reach the bus, from the owner of the requests. */
 struct request_transport {
     void *user;
     /* Returns false if the query could not be sent. */
@@ -80,7 +81,7 @@ struct request_transport {
     bool (*receive)(void *user);
 };
 
-/* transport to tries are set by the owner; then requests_forget_pace() completes the start. */
+/* The owner sets transport to tries, and calls requests_forget_pace(); all else is 0 at first. */
 struct requests {
     struct request_transport transport;
     int64_t client_id;
@@ -92,8 +93,8 @@ struct requests {
     int count;           /* under way */
     size_t charge;       /* of all of them */
     int64_t next_number; /* sequence number of the next query */
-    int64_t heard_at;    /* time of the last result; clock_ns() */
-    bool silent;         /* the service stopped answering */
+    int64_t received_at; /* time of the last result; clock_ns() */
+    bool outage;         /* the service stopped answering */
     struct request_pace pace[FMB_CLIENT_KINDS];
 };
 
@@ -108,14 +109,14 @@ struct request *request_begin(struct requests *requests, enum fmb_client_kind ki
                               request_handler *handler, void *user);
 void request_send(struct requests *requests, struct request *request);
 
-/* Ends a request that was begun and not sent. The handler is not called. */
-void request_cancel(struct requests *requests, struct request *request);
+/* Ends a request. The handler is not called. */
+void request_end(struct requests *requests, struct request *request);
 
-/* Waits until a datagram comes, a deadline or the time until (clock_ns()) is reached, or other_fd
- * (-1: none) is readable. Receives pending datagrams, then repeats or gives up what is due. */
+/* Waits until a datagram comes, a deadline is reached, other_fd (-1: none) is readable, or it is
+ * `until` (clock_ns()). Then receives pending datagrams, and repeats or gives up what is due. */
 void requests_step(struct requests *requests, int other_fd, int64_t until);
 
-/* Ends all requests without a result. */
+/* Ends all requests without a result, with this status. */
 void requests_give_up(struct requests *requests, int status);
 
 /* Processes a result for this client. */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a pair, with a certificate of usual length. */
+/* Bytes of the result of a pair with a certificate of usual length. */
 enum { SINGLE_RESULT_BYTES = 1400 };
 
 void part_answers_clear(struct part_answers *answers)
@@ -28,7 +28,7 @@ static bool wants_gaps(const struct fmb_client_scene *scene)
     return scene->want & FMB_CLIENT_WANT_GAP || scene->margin > 0;
 }
 
-/* Eight bytes a number. */
+/* Returns the bytes of a contact: 8 for each number. */
 static size_t contact_bytes(const struct fmb_client_scene *scene)
 {
     const size_t times = scene->want & FMB_CLIENT_WANT_TIMES ? 2 : 0;
@@ -54,10 +54,10 @@ int32_t part_pairs_before(const struct part *part, int32_t a)
     return a * n - a * (a + 1) / 2;
 }
 
-/* ---- What a result says ---- */
+/* ---- Results ---- */
 
-/* A result against the part that it answers. */
-struct taking {
+/* A result, and the part that it should match. */
+struct matching {
     const struct part *part;
     const struct fmb_client_scene *scene;
     const struct scene_result *result;
@@ -69,14 +69,14 @@ static bool is_contact(int verdict)
     return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
 }
 
-/* The number of the pair of a verdict; -1: the result names a pair that is not of the query. */
-static int32_t number_of(const struct taking *taking, int32_t k)
+/* Returns the number of the pair of verdict k; -1: the query does not have this pair. */
+static int32_t number_of(const struct matching *matching, int32_t k)
 {
-    const struct part *part = taking->part;
+    const struct part *part = matching->part;
     if (part->which == QUERY_PAIRS_LISTED)
-        return taking->first + k;
+        return matching->first + k;
     const unsigned placements = (unsigned) part->placement_count, split = (unsigned) part->split;
-    const unsigned a = taking->result->pair[k][0], b = taking->result->pair[k][1];
+    const unsigned a = matching->result->pair[k][0], b = matching->result->pair[k][1];
     const bool across = part->which == QUERY_PAIRS_ACROSS;
     const unsigned partners = across ? split : a + 1;
     if (a >= (across ? split : placements) || b < partners || b >= placements)
@@ -84,61 +84,58 @@ static int32_t number_of(const struct taking *taking, int32_t k)
     return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
 }
 
-/* Each pair that is named is of the query, comes once, in order, and is a contact or near. */
-static bool fits_named(const struct taking *taking)
+/* Whether each pair that the result names is in the query, comes once, in order, and is a contact
+ * or near. */
+static bool fits_named(const struct matching *matching)
 {
-    const struct scene_result *result = taking->result;
-    int32_t before = taking->first - 1;
+    const struct scene_result *result = matching->result;
+    int32_t before = matching->first - 1;
     if (result->names_pairs != (result->verdict_count > 0))
         return false;
     for (int32_t k = 0; k < result->verdict_count; k++) {
-        const int32_t number = number_of(taking, k);
+        const int32_t number = number_of(matching, k);
         if (number <= before || number >= result->end_pair)
             return false;
         if (result->verdict[k] == FMB_SEPARATED &&
-            !(result->has_gaps && part_is_near(taking->scene, &result->gap[k])))
+            !(result->has_gaps && part_is_near(matching->scene, &result->gap[k])))
             return false;
         before = number;
     }
     return true;
 }
 
-static bool fits(const struct taking *taking)
+static bool fits(const struct matching *matching)
 {
-    const struct scene_result *result = taking->result;
-    const struct part *part = taking->part;
+    const struct scene_result *result = matching->result;
+    const struct part *part = matching->part;
     const bool listed = part->which == QUERY_PAIRS_LISTED;
-    if (result->end_pair <= taking->first || result->end_pair > part->total)
+    if (result->end_pair <= matching->first || result->end_pair > part->total)
         return false;
-    const bool times = taking->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
+    const bool times = matching->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
     if (result->has_times != times)
         return false;
-    if (result->has_gaps != (wants_gaps(taking->scene) && result->verdict_count > 0) ||
-        (result->has_boxes && !(taking->scene->want & FMB_CLIENT_WANT_BOX)) ||
-        (result->dim > 0 && result->dim != taking->scene->placements[0].dim))
+    if (result->has_gaps != (wants_gaps(matching->scene) && result->verdict_count > 0) ||
+        (result->has_boxes && !(matching->scene->want & FMB_CLIENT_WANT_BOX)) ||
+        (result->dim > 0 && result->dim != matching->scene->placements[0].dim))
         return false;
     if (listed &&
-        (result->names_pairs || result->verdict_count != result->end_pair - taking->first))
+        (result->names_pairs || result->verdict_count != result->end_pair - matching->first))
         return false;
-    return listed || fits_named(taking);
+    return listed || fits_named(matching);
 }
 
+/* Makes space for more answers. A part has few results, so that no space for later ones is needed.
+ */
 static bool reserve(struct part_answers *answers, size_t more)
 {
-    if (answers->count + more <= answers->capacity)
-        return true;
-    size_t capacity = 2 * answers->capacity;
-    if (capacity < answers->count + more)
-        capacity = answers->count + more;
-    struct part_answer *answer = realloc(answers->answer, capacity * sizeof *answer);
-    if (!answer)
-        return false;
-    answers->answer = answer;
-    answers->capacity = capacity;
-    return true;
+    struct part_answer *answer =
+        realloc(answers->answer, (answers->count + more + 1) * sizeof *answer);
+    if (answer)
+        answers->answer = answer;
+    return answer != NULL;
 }
 
-/* Of the contact with this number among the contacts. */
+/* contact: its number among the contacts of the result. */
 static void fill_contact(const struct scene_result *result, int32_t contact, struct fmb_answer *out)
 {
     const int dim = result->dim;
@@ -161,8 +158,8 @@ void part_read_answer(const struct scene_result *result, int32_t k, int32_t *con
         out->gap = result->gap[k];
 }
 
-/* Whether the pair is not merely separated. */
-static bool says_more(const struct scene_result *result, int32_t k)
+/* Whether the answer is kept: it is more than that the pair is separated. */
+static bool is_stored(const struct scene_result *result, int32_t k)
 {
     return result->verdict[k] != FMB_SEPARATED ||
            (result->has_gaps && query_has_gap(&result->gap[k]));
@@ -171,27 +168,28 @@ static bool says_more(const struct scene_result *result, int32_t k)
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers)
 {
-    const struct taking taking = {part, scene, result, answers->answered};
+    const struct matching matching = {part, scene, result, answers->answered};
     int32_t contact = 0;
-    if (!fits(&taking))
+    if (!fits(&matching))
         return PART_MALFORMED;
     size_t found = 0;
     for (int32_t k = 0; k < result->verdict_count; k++)
-        found += says_more(result, k);
+        found += is_stored(result, k);
     if (!reserve(answers, found))
         return PART_NO_MEMORY;
     for (int32_t k = 0; k < result->verdict_count; k++) {
-        if (!says_more(result, k))
+        if (!is_stored(result, k))
             continue;
         struct part_answer *out = &answers->answer[answers->count++];
-        *out = (struct part_answer){.number = number_of(&taking, k)};
+        *out = (struct part_answer){.number = number_of(&matching, k)};
         part_read_answer(result, k, &contact, &out->answer);
     }
     answers->answered = result->end_pair;
     return PART_TAKEN;
 }
 
-/* A box of a contact, and a certificate, only where they were wanted; a gap where it was. */
+/* Whether the result has a gap if and only if it was wanted; and a box, which only a contact has,
+ * and a certificate, only if they were wanted. */
 static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;

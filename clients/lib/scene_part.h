@@ -1,4 +1,4 @@
-/* A part of a scene that fits a datagram, and its answers. */
+/* A part of a scene that fits a datagram, and its answers. No shared state. */
 #ifndef SCENE_PART_H
 #define SCENE_PART_H
 
@@ -14,28 +14,28 @@ struct part {
     unsigned placement[QUERY_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
     uint16_t pair[QUERY_PAIRS_MAX][2];        /* LISTED: [total][a, b], indices in the part */
     size_t bytes;                             /* of the query, without ignored pairs */
-    size_t row, column;                       /* for cut.h and order.h */
+    size_t row, column;                       /* for division.h and order.h */
 };
 
-/* A pair that is not separated, or has a gap. */
+/* The answer to a pair that is not separated, or has a gap. */
 struct part_answer {
-    int32_t number;           /* in the part, in its order */
-    struct fmb_answer answer; /* with verdict 0: the method cannot decide it */
+    int32_t number;           /* of the pair in the part, from 0 */
+    struct fmb_answer answer; /* verdict 0: the method cannot decide the pair */
 };
 
 /* All 0: none yet. */
 struct part_answers {
-    int32_t answered; /* the first so many pairs; those not listed in answer are separated */
-    int status;       /* of the other pairs, once no more answers will come */
+    int32_t answered; /* number of pairs, from the first on; those not in `answer` are separated */
+    int status;       /* of the other pairs, once the part is complete */
     char text[QUERY_TEXT_MAX];
-    struct part_answer *answer;    /* owned, [count], in order */
-    size_t count, capacity, given; /* given: index of the first not delivered yet */
-    char *certificate;             /* owned; NULL: none */
+    struct part_answer *answer; /* owned, [count], in order */
+    size_t count, delivered;    /* delivered: index of the first not delivered yet */
+    char *certificate;          /* owned; NULL: none */
 };
 
 void part_answers_clear(struct part_answers *answers);
 
-/* Sets the status of all pairs not answered. text: NULL or "" for that of the status. */
+/* Sets the status of all pairs without an answer. text: NULL or "": the text of the status. */
 void part_answers_refuse(struct part_answers *answers, int status, const char *text);
 
 /* Whether a separated pair is near. */
@@ -44,21 +44,23 @@ static inline bool part_is_near(const struct fmb_client_scene *scene, const stru
     return scene->margin > 0 && gap->bounds[0] <= scene->margin;
 }
 
-/* Most bytes of the result. */
+/* Returns an upper bound of the bytes of a result, for a pair query with a certificate of usual
+ * length. */
 size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene);
 
-/* With ALL and ACROSS: number of the first pair of placement a of the part. */
+/* ALL and ACROSS: returns the number of pairs whose first placement comes before placement a of the
+ * part. */
 int32_t part_pairs_before(const struct part *part, int32_t a);
 
-/* Adds the answers of a result with FMB_OK, for the pairs from answers->answered on. MALFORMED: the
- * result does not match the part; nothing was added. */
+/* Adds the answers of a result with FMB_OK to those of the pairs before it. Returns MALFORMED if
+ * the result does not match the query; nothing is added then, nor with NO_MEMORY. */
 enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers);
 enum part_taken part_take_pair(const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers);
 
-/* The answer number k of a result, whose contacts before it number *contact, which is kept up. */
+/* Reads answer k of a result. *contact: the number of contacts before it; updated. */
 void part_read_answer(const struct scene_result *result, int32_t k, int32_t *contact,
                       struct fmb_answer *out);
 

@@ -7,11 +7,12 @@
 #include <string.h>
 
 enum {
-    /* Pairs listed in a query, before it is known how long they take, and at least. */
+    /* Pairs listed in a query: before it is known how long they take; at least; and the factor by
+     * which the number grows at most. */
     PAIRS_FIRST = 256,
     PAIRS_LEAST = 16,
     PAIRS_GROWTH = 4,
-    /* After this many results with bodies that were not held, all are sent whole. */
+    /* After this many results that name bodies not held, a part sends all its bodies whole. */
     UNKNOWN_MAX = 2
 };
 
@@ -22,54 +23,47 @@ static struct part_run *part_of(struct scene_run *run, uint64_t part)
 
 /* ---- Queries ---- */
 
-/* The i-th placement of the part, whole, with its frames in geometry. */
+/* Converts the i-th placement of the part, with its frames in geometry. */
 static void whole_placement(const struct part_run *part, int32_t i, unsigned char *geometry,
                             struct placement *out)
 {
     client_scene_placement(&part->run->scene->placements[part->part.placement[i]], geometry, out);
 }
 
-/* The entry of the i-th placement of the part in the table of held bodies; NULL: it is anonymous.
- */
-static struct held_body *held_of(const struct part_run *part, int32_t i)
+/* Returns the entry of the i-th placement of the part in the table of bodies; NULL: it is
+ * anonymous. */
+static struct held_body *entry_of(const struct part_run *part, int32_t i)
 {
     struct scene_run *run = part->run;
-    const struct cut_body *body = &run->cut->body[part->part.placement[i]];
+    const struct division_body *body = &run->division->body[part->part.placement[i]];
     struct placement placement;
-    if (!body->held || body->held->serial == body->serial)
-        return body->held;
+    if (!body->entry || body->entry->serial == body->serial)
+        return body->entry;
     unsigned char *scratch = run->geometry + QUERY_BYTES_MAX;
     whole_placement(part, i, scratch, &placement);
     return held_find(run->held, &placement.geometry);
 }
 
-/* A body that the service holds is written by handle; others whole, with their frames in geometry.
- */
-static void write_placement(struct part_run *part, int32_t i, unsigned char *geometry,
-                            struct placement *out)
-{
-    const struct held_body *body = part->unknown < UNKNOWN_MAX ? held_of(part, i) : NULL;
-    part->whole[i] = !body || !body->held;
-    whole_placement(part, i, geometry, out);
-    if (!part->whole[i])
-        client_scene_use_handle(out, &body->handle, part->run->none);
-}
-
-/* Writes the placements. Returns their bytes; or more than max, and not all of them are written. */
+/* Converts the placements: by handle if the service holds the body, else with frames. Returns their
+ * bytes; a number above max means that not all of them were converted. */
 static size_t write_placements(struct part_run *part, size_t max, struct placement *out)
 {
     unsigned char *geometry = part->run->geometry;
     size_t bytes = 0;
     for (int32_t i = 0; i < part->part.placement_count && bytes <= max; i++) {
-        write_placement(part, i, geometry, &out[i]);
-        bytes += wire_placement_bytes(&out[i]);
+        const struct held_body *body = part->unknown < UNKNOWN_MAX ? entry_of(part, i) : NULL;
+        part->whole[i] = !body || !body->held;
+        whole_placement(part, i, geometry, &out[i]);
         if (part->whole[i])
             geometry += out[i].geometry.size;
+        else
+            client_scene_use_handle(&out[i], &body->handle, part->run->none);
+        bytes += wire_placement_bytes(&out[i]);
     }
     return bytes;
 }
 
-/* Returns 0 if the query is too large. */
+/* Writes a pair query. Returns its size, or 0 if it is too large. */
 static size_t write_pair(struct part_run *part, unsigned char *out)
 {
     const struct fmb_client_scene *scene = part->run->scene;
@@ -99,7 +93,8 @@ static struct scene_query *begin_query(const struct part_run *part)
     return query;
 }
 
-/* Only bodies that the service is to hold, as many as fit. Returns 0 if there are none. */
+/* Writes a scene query without pairs, with bodies that the service does not hold, as many as fit.
+ * Returns its size, or 0 if there are none. */
 static size_t write_definitions(struct part_run *part, unsigned char *out)
 {
     struct scene_query *query = begin_query(part);
@@ -108,7 +103,7 @@ static size_t write_definitions(struct part_run *part, unsigned char *out)
     const bool may = part->unknown < UNKNOWN_MAX && part->definitions < part->part.placement_count;
     memset(part->whole, 0, sizeof part->whole);
     for (int32_t i = 0; i < part->part.placement_count && may; i++) {
-        const struct held_body *body = held_of(part, i);
+        const struct held_body *body = entry_of(part, i);
         if (!body || body->held)
             continue;
         struct placement *placement = &query->placement[query->placement_count];
@@ -142,38 +137,31 @@ static size_t write_scene(struct part_run *part, unsigned char *out)
     query->index_count = listed ? 2 * of->total : 0;
     for (int32_t i = 0; i < query->index_count; i++)
         query->pair[i / 2][i % 2] = of->pair[i / 2][i % 2];
-    /* Where there is no space for all of them, order.c drops the answers. */
+    /* If there is no space for all of them, order.c drops their answers. */
     query->ignored_count =
-        2 * cut_ignored(part->run->cut, of, (int32_t) ((max - bytes) / WIRE_PAIR_BYTES),
-                        query->ignored);
+        2 * division_ignored(part->run->division, of, (int32_t) ((max - bytes) / WIRE_PAIR_BYTES),
+                             query->ignored);
     return wire_write_scene_query(query, out);
 }
 
-static void count_placements(struct fmb_client_counts *counts, const struct part_run *part)
+/* Writes a query for the pairs that have no answers yet. Returns false if that is not possible. */
+static bool write_query(struct part_run *part, struct request *request)
 {
-    for (int32_t i = 0; i < part->part.placement_count; i++) {
+    struct fmb_client_counts *counts = &part->run->requests->counts;
+    memcpy(part->whole_earlier, part->whole, sizeof part->whole);
+    part->defining = false;
+    request->size = (part->part.single ? write_pair : write_scene)(part, request->query);
+    for (int32_t i = 0; i < part->part.placement_count && request->size > 0; i++) {
         counts->whole += part->whole[i];
         counts->by_handle += !part->whole[i] && !part->defining;
     }
-}
-
-/* Requests what the part has no answers to yet. Returns false if no query can be written. */
-static bool write_query(struct part_run *part, struct request *request)
-{
-    memcpy(part->whole_earlier, part->whole, sizeof part->whole);
-    part->defining = false;
-    const size_t size = (part->part.single ? write_pair : write_scene)(part, request->query);
-    if (size > 0) {
-        request->size = size;
-        count_placements(&part->run->requests->counts, part);
-    }
-    return size > 0;
+    return request->size > 0;
 }
 
 /* ---- Handles in results ---- */
 
-/* The handles of a result are those of the bodies that were sent whole: the service holds them. On
- * output: false where they are others. */
+/* A result has the handles of the bodies that were sent whole, which the service then holds.
+ * Returns false if its handles are others. */
 static bool take_handles(const struct part_run *part, const bool *whole,
                          const struct request_result *result)
 {
@@ -183,7 +171,7 @@ static bool take_handles(const struct part_run *part, const bool *whole,
     const int32_t count = pair ? 2 : result->scene->handle_count;
     int32_t used = 0;
     for (int32_t i = 0; i < part->part.placement_count; i++) {
-        struct held_body *body = whole[i] ? held_of(part, i) : NULL;
+        struct held_body *body = whole[i] ? entry_of(part, i) : NULL;
         if (!body && !pair) /* results of scenes have no handle for it */
             continue;
         if (used == count || !handle_equal(body ? &body->handle : &none, &handle[used++]))
@@ -194,22 +182,23 @@ static bool take_handles(const struct part_run *part, const bool *whole,
     return used == count;
 }
 
-/* On output: false where the i-th placement was not sent by handle. */
+/* Notes that the service does not hold the i-th body. Returns false if it was not sent by handle.
+ */
 static bool forget(const struct part_run *part, int32_t i)
 {
     struct held_body *body =
-        i < part->part.placement_count && !part->whole[i] ? held_of(part, i) : NULL;
+        i < part->part.placement_count && !part->whole[i] ? entry_of(part, i) : NULL;
     if (!body)
         return false;
     body->held = false;
     return true;
 }
 
-/* Bodies that are not held. On output: false where the result names others than were sent by
- * handle. */
+/* Notes the bodies that the service does not hold. Returns false if the result names a body that
+ * was not sent by handle. */
 static bool take_unknown(const struct part_run *part, const struct request_result *result)
 {
-    if (result->kind == FMB_CLIENT_PAIR) { /* which of the two is not said */
+    if (result->kind == FMB_CLIENT_PAIR) { /* it does not say which of the two */
         const bool first = forget(part, 0), second = forget(part, 1);
         return first || second;
     }
@@ -228,8 +217,8 @@ static enum request_taken refuse(struct part_run *part, int status, const char *
     return REQUEST_COMPLETE;
 }
 
-/* Adapts the pairs of a query to how long pairs take, so that all queries under way are decided
- * within half a timeout. */
+/* Adapts the number of pairs in a query to the time that pairs take, so that all queries under way
+ * are decided within half a timeout. */
 static void adapt_pairs(struct scene_run *run, int32_t pairs, int64_t compute_ns)
 {
     const double share = (double) run->requests->timeout_ns / (2 * FMB_CLIENT_RAW_WINDOW);
@@ -246,17 +235,8 @@ static enum request_taken write_next(struct part_run *part, struct request *requ
 {
     if (write_query(part, request))
         return taken;
-    part->run->recut = part->run->cut->by_handle;
+    part->run->divide_again = part->run->division->by_handle;
     return refuse(part, FMB_OVER_LIMIT, "the bodies of a pair do not fit into one datagram");
-}
-
-/* The result of a query that only has bodies. */
-static enum request_taken take_definitions(struct part_run *part, struct request *request,
-                                           const struct request_result *result)
-{
-    if (result->scene->end_pair != 0 || result->scene->verdict_count != 0)
-        return REQUEST_MALFORMED;
-    return write_next(part, request, REQUEST_NEXT);
 }
 
 static enum request_taken take_answers(struct part_run *part, struct request *request,
@@ -268,8 +248,10 @@ static enum request_taken take_answers(struct part_run *part, struct request *re
     const int32_t before = answers->answered;
     if (!take_handles(part, whole, result))
         return REQUEST_MALFORMED;
-    if (part->defining && result->number == request->number)
-        return take_definitions(part, request, result);
+    if (part->defining && result->number == request->number) {
+        const bool empty = result->scene->end_pair == 0 && result->scene->verdict_count == 0;
+        return empty ? write_next(part, request, REQUEST_NEXT) : REQUEST_MALFORMED;
+    }
     const enum part_taken taken =
         result->kind == FMB_CLIENT_PAIR
             ? part_take_pair(run->scene, result->pair, answers)
@@ -291,7 +273,7 @@ static enum request_taken take_result(void *user, struct request *request,
 {
     struct part_run *part = user;
     if (result->status < FMB_OK) {
-        if (result->bytes) /* of a message: those numbers are the library's own */
+        if (result->bytes) /* no service sends the status numbers of this library */
             return REQUEST_MALFORMED;
         if (result->status != FMB_CLIENT_NO_ANSWER)
             part->run->status = result->status;
@@ -308,12 +290,6 @@ static enum request_taken take_result(void *user, struct request *request,
 }
 
 /* ---- The window of parts ---- */
-
-static size_t bytes_of(const struct scene_run *run, const struct part *part)
-{
-    const size_t result = part_result_bytes(part, run->scene);
-    return part->bytes > result ? part->bytes : result;
-}
 
 static void begin_part(struct scene_run *run, struct part_run *part, size_t bytes)
 {
@@ -332,30 +308,32 @@ static void begin_part(struct scene_run *run, struct part_run *part, size_t byte
     if (write_next(part, request, REQUEST_NEXT) == REQUEST_NEXT)
         request_send(run->requests, request);
     else
-        request_cancel(run->requests, request);
+        request_end(run->requests, request);
 }
 
-/* On output: false once there are no more parts. */
-static bool fill_window(struct scene_run *run, struct cut *cut)
+/* Begins parts while there is space for their queries. Returns false after the last part. */
+static bool fill_window(struct scene_run *run, struct division *division)
 {
     while (run->next - run->oldest < FMB_CLIENT_RAW_WINDOW) {
         struct part_run *part = part_of(run, run->next);
-        if (!run->is_cut && !cut_next(cut, run->pairs_max, &part->part))
+        if (!run->has_next && !division_next(division, run->pairs_max, &part->part))
             return false;
-        const size_t bytes = bytes_of(run, &part->part);
-        run->is_cut = run->status == FMB_OK && !requests_ready(run->requests, bytes);
-        if (run->is_cut)
+        const size_t query = part->part.bytes, result = part_result_bytes(&part->part, run->scene);
+        const size_t bytes = query > result ? query : result;
+        run->has_next = run->status == FMB_OK && !requests_ready(run->requests, bytes);
+        if (run->has_next)
             return true;
         begin_part(run, part, bytes);
     }
     return true;
 }
 
+/* Delivers the parts that are complete, up to the first that is not. */
 static void deliver(struct scene_run *run, struct order *order)
 {
     while (run->oldest < run->next && part_of(run, run->oldest)->done) {
         struct part_run *part = part_of(run, run->oldest++);
-        if (run->recut)
+        if (run->divide_again)
             part_answers_clear(&part->answers);
         else
             order_take(order, &part->part, &part->answers);
@@ -372,14 +350,14 @@ static void wait_for_results(struct scene_run *run)
 }
 
 static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
-                  const struct cut *cut)
+                  const struct division *division)
 {
     const double most = 1e9; /* seconds: some 30 years are no limit */
     const double within = scene->within > 0 && scene->within < most ? scene->within : most;
     if (run->pairs_max == 0 || run->method != scene->method || run->want != scene->want)
         run->pairs_max = PAIRS_FIRST;
-    run->recut = false;
-    run->cut = cut;
+    run->divide_again = false;
+    run->division = division;
     run->scene = scene;
     run->method = scene->method;
     run->want = scene->want;
@@ -387,26 +365,19 @@ static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
     run->until = clock_ns() + (int64_t) (within * 1e9);
 }
 
-/* What is complete is delivered before more is received: the caller may take long over it. */
-static void run_parts(struct scene_run *run, struct cut *cut, struct order *order)
+static int run_division(struct scene_run *run, const struct fmb_client_scene *scene,
+                        struct division *division, fmb_client_sink *sink, void *user)
 {
-    bool more = true;
-    while (more || run->oldest < run->next) {
-        more = more && fill_window(run, cut);
-        deliver(run, order);
+    struct order order;
+    if (!order_begin(division, sink, user, &order))
+        return FMB_CLIENT_NO_MEMORY;
+    begin(run, scene, division);
+    for (bool more = true; more || run->oldest < run->next;) {
+        more = more && fill_window(run, division);
+        deliver(run, &order); /* before results are received: sink may take long */
         if (run->requests->count > 0)
             wait_for_results(run);
     }
-}
-
-static int run_cut(struct scene_run *run, const struct fmb_client_scene *scene, struct cut *cut,
-                   fmb_client_sink *sink, void *user)
-{
-    struct order order;
-    if (!order_begin(cut, sink, user, &order))
-        return FMB_CLIENT_NO_MEMORY;
-    begin(run, scene, cut);
-    run_parts(run, cut, &order);
     order_end(&order);
     return FMB_OK;
 }
@@ -415,12 +386,13 @@ int scene_run(struct scene_run *run, const struct fmb_client_scene *scene, bool 
               fmb_client_sink *sink, void *user)
 {
     int status;
-    run->recut = false;
+    run->divide_again = false;
     do {
-        struct cut cut;
-        const bool begun = cut_begin(scene, single, run->recut, run->held, run->geometry, &cut);
-        status = begun ? run_cut(run, scene, &cut, sink, user) : FMB_CLIENT_NO_MEMORY;
-        cut_end(&cut);
-    } while (run->recut && status == FMB_OK);
+        struct division division;
+        const bool begun =
+            division_begin(scene, single, run->divide_again, run->held, run->geometry, &division);
+        status = begun ? run_division(run, scene, &division, sink, user) : FMB_CLIENT_NO_MEMORY;
+        division_end(&division);
+    } while (run->divide_again && status == FMB_OK);
     return status;
 }

@@ -1,13 +1,13 @@
-/* Runs a scene through the request engine: divides it into parts (cut.h) of one datagram, keeps
- * several under way, and passes the answers on in the order of the pairs (order.h).
+/* Queries a scene: divides it into parts of one datagram (division.h), keeps several under way
+ * (request.h), and delivers the answers in the order of the pairs (order.h).
  *
- * A part may take several queries, one after the other: if a result had no space for all answers,
- * or the service did not hold a body. If the bodies that it does not hold do not fit a datagram
+ * A part may take several queries, one after the other: if a result has no space for all answers,
+ * or the service does not hold a body. If the bodies that it does not hold do not fit a datagram
  * together with the remainder of the part, they are sent first, in queries without pairs. */
 #ifndef SCENE_RUN_H
 #define SCENE_RUN_H
 
-#include "cut.h"
+#include "division.h"
 #include "request.h"
 
 /* A part under way. */
@@ -15,24 +15,25 @@ struct part_run {
     struct scene_run *run;
     struct part part;
     struct part_answers answers;
-    bool done, defining; /* defining: the last query only has bodies */
-    int definitions;     /* number of such queries */
-    int unknown;         /* number of results with status UNKNOWN_BODY */
-    /* [placement of the part]: sent with frames, in the last query and in the one before it. */
+    bool done;       /* no more answers will come */
+    bool defining;   /* the last query only has bodies */
+    int definitions; /* number of such queries */
+    int unknown;     /* number of results with status UNKNOWN_BODY */
+    /* [placement of the part]: sent with frames in the last query, and in the one before it. */
     bool whole[QUERY_PLACEMENTS_MAX], whole_earlier[QUERY_PLACEMENTS_MAX];
 };
 
-/* requests and held are set by the owner, the others are 0 at first. */
+/* The owner sets requests and held; all else is 0 at first. */
 struct scene_run {
     struct requests *requests;
     struct held *held;
     const struct fmb_client_scene *scene;
-    const struct cut *cut;
+    const struct division *division;
     int status;            /* not 0: the remaining pairs are given up with it */
     int64_t until;         /* time limit of the whole scene; clock_ns() */
     uint64_t oldest, next; /* parts: first not delivered, first not begun */
-    bool is_cut;           /* the next part is in its slot already */
-    bool recut;            /* the only part has to be divided: nothing is delivered */
+    bool has_next;         /* the next part is in its slot already */
+    bool divide_again;     /* the only part has to be divided: nothing is delivered */
     struct part_run part[FMB_CLIENT_RAW_WINDOW]; /* [part % FMB_CLIENT_RAW_WINDOW] */
     /* Most pairs listed in a query, so that the queries under way are decided within half a
      * timeout; estimated from the compute times of results, for this method and want. */
@@ -40,7 +41,7 @@ struct scene_run {
     int method;
     unsigned want;
     struct scene_query query; /* being written */
-    /* The frames of its placements, and of one more; and those of a handle. */
+    /* The encoded frames of its placements, and of one more; and the encoding of no frames. */
     unsigned char geometry[2 * QUERY_BYTES_MAX], none[GEOMETRY_NONE_BYTES];
 };
 

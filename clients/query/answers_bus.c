@@ -1,7 +1,6 @@
 #include "answers.h"
 
 #include "allocate.h"
-#include "bus_client.h"
 #include "complain.h"
 
 #include <inttypes.h>
@@ -10,37 +9,37 @@
 
 struct answers_bus {
     struct args_bus bus;
-    struct answers_question question;
+    struct answers_options options;
     struct fmb_client *client; /* NULL: could not be opened */
     double patience;           /* seconds until a query is given up */
     uint64_t advised;          /* outages that have been reported */
 };
 
-/* A scene being answered. */
+/* A scene, and the state of its answers. */
 struct bus_scene {
     const struct scene *scene;
-    struct scene_cursor given; /* pairs so far */
-    bool certificate;          /* wanted */
+    struct scene_cursor delivered; /* pairs so far */
+    bool certificate;              /* wanted */
     answers_sink *sink;
     void *user;
 };
 
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
-                                     const struct answers_question *question, double timeout,
+                                     const struct answers_options *options, double timeout,
                                      int retries)
 {
     struct answers_bus *answers = allocate(1, sizeof *answers);
-    const struct fmb_client_options options = {.timeout = timeout, .tries = retries + 1};
     answers->bus = *bus;
-    answers->question = *question;
+    answers->options = *options;
     answers->patience = timeout * (retries + 1);
-    answers->client = bus_client_open(bus, options);
+    answers->client = args_open_client(
+        bus, (struct fmb_client_options){.timeout = timeout, .tries = retries + 1});
     if (!answers->client)
         complain("to decide without a bus: fmb query --local");
     return answers;
 }
 
-/* The first result of a query has been used. */
+/* Reports contradicting results. The answers are those of the first results. */
 static void report_contradictions(const struct fmb_client *client)
 {
     const uint64_t count = client ? fmb_client_get_counts(client).contradicting : 0;
@@ -60,7 +59,7 @@ void answers_bus_close(struct answers_bus *answers)
 
 /* ---- The query ---- */
 
-/* The numbers that the frame was made from. */
+/* Sets the numbers that the frame was made from. */
 static void set_frame(const struct fmb_frame *frame, struct fmb_client_frame *out)
 {
     const bool box = frame->shape == FMB_BOX;
@@ -111,41 +110,36 @@ static struct client_bodies client_bodies_of(const struct scene *scene)
     return out;
 }
 
-/* Of all pairs, the library answers only contacts and near ones: if each pair gets a gap, all are
- * listed. */
-static unsigned (*list_pairs(const struct scene *scene))[2]
+/* Copies pairs of a scene for the library: those to be queried if they are listed, else those to be
+ * ignored. The caller frees them. */
+static unsigned (*copy_pairs(const struct scene *scene, bool listed, size_t *count))[2]
 {
-    unsigned(*pair)[2] = allocate((size_t) scene_count_pairs(scene), sizeof *pair);
+    *count = listed ? (size_t) scene_count_pairs(scene) : scene->ignored_count;
+    unsigned(*pair)[2] = allocate(*count, sizeof *pair);
     struct scene_cursor cursor = {0};
     struct scene_pair next;
-    for (size_t i = 0; scene_next_pair(scene, &cursor, &next); i++) {
+    for (size_t i = 0; i < *count; i++) {
+        if (!listed)
+            next = scene->ignored[i];
+        else if (!scene_next_pair(scene, &cursor, &next))
+            break;
         pair[i][0] = (unsigned) next.a;
         pair[i][1] = (unsigned) next.b;
     }
     return pair;
 }
 
-static unsigned (*list_ignored(const struct scene *scene))[2]
+static unsigned want_of(const struct answers_options *options)
 {
-    unsigned(*pair)[2] = allocate(scene->ignored_count, sizeof *pair);
-    for (size_t i = 0; i < scene->ignored_count; i++) {
-        pair[i][0] = (unsigned) scene->ignored[i].a;
-        pair[i][1] = (unsigned) scene->ignored[i].b;
-    }
-    return pair;
-}
-
-static unsigned want_of(const struct answers_question *question)
-{
-    return FMB_CLIENT_WANT_TIMES | (question->box ? FMB_CLIENT_WANT_BOX : 0) |
-           (question->certificate ? FMB_CLIENT_WANT_CERTIFICATE : 0) |
-           (question->gap ? FMB_CLIENT_WANT_GAP : 0);
+    return FMB_CLIENT_WANT_TIMES | (options->box ? FMB_CLIENT_WANT_BOX : 0) |
+           (options->certificate ? FMB_CLIENT_WANT_CERTIFICATE : 0) |
+           (options->gap ? FMB_CLIENT_WANT_GAP : 0);
 }
 
 /* ---- The answers ---- */
 
-/* With all pairs, those that the library leaves out are separated. */
-static void give_separated(const struct bus_scene *run, struct scene_pair pair)
+/* Of all pairs, those that the library leaves out are separated. */
+static void deliver_separated(const struct bus_scene *run, struct scene_pair pair)
 {
     const struct outcome outcome = {.pair = pair, .answer.verdict = FMB_SEPARATED};
     run->sink(run->user, run->scene, &outcome);
@@ -164,9 +158,9 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct bus_scene *run = user;
     struct outcome outcome = {.error = error_of(run, answer)};
-    while (scene_next_pair(run->scene, &run->given, &outcome.pair) &&
+    while (scene_next_pair(run->scene, &run->delivered, &outcome.pair) &&
            (outcome.pair.a != answer->a || outcome.pair.b != answer->b))
-        give_separated(run, outcome.pair);
+        deliver_separated(run, outcome.pair);
     if (!outcome.error) {
         outcome.answer = answer->answer;
         outcome.certificate = answer->certificate;
@@ -174,18 +168,18 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     run->sink(run->user, run->scene, &outcome);
 }
 
-/* The remaining pairs. error: why no query was sent; NULL if one was. */
-static void give_remaining(struct bus_scene *run, const char *error)
+/* Delivers the remaining pairs. error: why no query was sent; NULL: one was. */
+static void deliver_remaining(struct bus_scene *run, const char *error)
 {
     struct outcome outcome = {.error = error};
-    while (scene_next_pair(run->scene, &run->given, &outcome.pair))
+    while (scene_next_pair(run->scene, &run->delivered, &outcome.pair))
         if (error)
             run->sink(run->user, run->scene, &outcome);
         else
-            give_separated(run, outcome.pair);
+            deliver_separated(run, outcome.pair);
 }
 
-/* Once for each outage. */
+/* Reports each outage once. */
 static void advise(struct answers_bus *answers)
 {
     const char *prefix = answers->bus.prefix;
@@ -194,7 +188,7 @@ static void advise(struct answers_bus *answers)
         return;
     answers->advised = counts.outages;
     complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s", prefix,
-             answers->question.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
+             answers->options.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
              answers->patience);
     if (counts.malformed > 0)
         complain("%" PRIu64 " results could not be read: another version of fmbd?",
@@ -203,33 +197,34 @@ static void advise(struct answers_bus *answers)
              *prefix ? " --prefix " : "", prefix);
 }
 
+/* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
+ * gap. */
 static void query(struct answers_bus *answers, struct bus_scene *run)
 {
-    const struct answers_question *question = &answers->question;
+    const struct answers_options *options = &answers->options;
     const struct scene *scene = run->scene;
     const struct client_bodies bodies = client_bodies_of(scene);
-    const bool listed = !scene->all_pairs || question->gap;
-    unsigned(*pair)[2] = listed ? list_pairs(scene) : NULL;
-    unsigned(*ignored)[2] = list_ignored(scene);
+    const bool listed = !scene->all_pairs || options->gap;
+    size_t count;
+    unsigned(*pair)[2] = copy_pairs(scene, listed, &count);
     const struct fmb_client_scene queried = {
         .placements = bodies.placement,
         .placement_count = scene->body_count,
         .which = listed ? FMB_CLIENT_LISTED : FMB_CLIENT_ALL,
         .pairs = (const unsigned(*)[2]) pair,
-        .pair_count = listed ? (size_t) scene_count_pairs(scene) : 0,
-        .ignored = (const unsigned(*)[2]) ignored,
-        .ignored_count = listed ? 0 : scene->ignored_count,
+        .pair_count = listed ? count : 0,
+        .ignored = (const unsigned(*)[2]) pair,
+        .ignored_count = listed ? 0 : count,
         .duration = scene->duration,
         .margin = scene->margin,
-        .want = want_of(question),
-        .method = question->method ? question->method->number : 0,
+        .want = want_of(options),
+        .method = options->method ? options->method->number : 0,
     };
     const int status = fmb_client_query(answers->client, &queried, take_answer, run);
-    give_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
+    deliver_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
     free(bodies.placement);
     free(bodies.frame);
     free(pair);
-    free(ignored);
     advise(answers);
 }
 
@@ -237,9 +232,9 @@ void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, a
                        void *user)
 {
     struct bus_scene run = {
-        .scene = scene, .certificate = answers->question.certificate, .sink = sink, .user = user};
+        .scene = scene, .certificate = answers->options.certificate, .sink = sink, .user = user};
     if (answers->client)
         query(answers, &run);
     else
-        give_remaining(&run, "no bus");
+        deliver_remaining(&run, "no bus");
 }

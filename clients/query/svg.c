@@ -14,13 +14,84 @@ struct svg {
     struct panel panel[SVG_PANELS_MAX];
 };
 
-/* ---- Taking scenes in ------------------------------------------------------------------------ */
+/* ---- The data of a panel ----------------------------------------------------------------------
+ */
+
+static void add_to_bounds(struct panel *panel, const struct scene_body *body)
+{
+    for (unsigned frame = 0; frame < body->body.frame_count; frame++)
+        for (int end = 0; end < 2; end++) {
+            struct outline outline = outline_make(body, frame, end ? panel->duration : 0);
+            view_add(&panel->bounds, &outline, panel->dim);
+        }
+}
+
+static void keep_scene(struct panel *panel, const struct scene *scene)
+{
+    panel->dim = scene->dim;
+    panel->duration = scene->duration;
+    panel->body_count = scene->body_count < SVG_BODIES_MAX ? scene->body_count : SVG_BODIES_MAX;
+    panel->bodies_left_out = scene->body_count - panel->body_count;
+    panel->body = allocate(panel->body_count, sizeof *panel->body);
+    panel->verdict = allocate(panel->body_count, sizeof *panel->verdict);
+    panel->bounds = view_nothing();
+    for (size_t i = 0; i < panel->body_count; i++) {
+        panel->body[i] = scene_body_copy(&scene->body[i]);
+        add_to_bounds(panel, &panel->body[i]);
+    }
+}
+
+static void note_verdict(struct panel *panel, size_t body, enum fmb_verdict verdict)
+{
+    if (body < panel->body_count && verdict > panel->verdict[body])
+        panel->verdict[body] = verdict;
+}
+
+static void keep_outcome(struct panel *panel, const struct outcome *outcome)
+{
+    const struct fmb_answer *answer = &outcome->answer;
+    panel->count[answer->verdict]++;
+    note_verdict(panel, outcome->pair.a, answer->verdict);
+    note_verdict(panel, outcome->pair.b, answer->verdict);
+    if (!answer->has_box)
+        return;
+    if (panel->box_count == SVG_BOXES_MAX || outcome->pair.a >= panel->body_count ||
+        outcome->pair.b >= panel->body_count) {
+        panel->boxes_left_out++;
+        return;
+    }
+    panel->box =
+        allocate_grow(panel->box, &panel->box_capacity, panel->box_count + 1, sizeof *panel->box);
+    panel->box[panel->box_count++] = (struct panel_box){outcome->pair, *answer};
+}
+
+static void clear_panel(struct panel *panel)
+{
+    for (size_t i = 0; i < panel->body_count; i++)
+        scene_body_clear(&panel->body[i]);
+    free(panel->body);
+    free(panel->verdict);
+    free(panel->box);
+}
+
+/* Whether both have the same bodies, by id: they are considered steps in time. */
+static bool same_bodies(const struct panel *panel, const struct panel *first)
+{
+    if (panel->dim != first->dim || panel->body_count != first->body_count)
+        return false;
+    for (size_t i = 0; i < panel->body_count; i++)
+        if (panel->body[i].id != first->body[i].id)
+            return false;
+    return true;
+}
+
+/* ---- The report ------------------------------------------------------------------------------ */
 
 static void svg_begin(struct report *report, const struct scene *scene)
 {
     struct svg *svg = (struct svg *) report;
     if (svg->panel_count + svg->panels_left_out < SVG_PANELS_MAX)
-        panel_take_scene(&svg->panel[svg->panel_count++], scene, SVG_BODIES_MAX);
+        keep_scene(&svg->panel[svg->panel_count++], scene);
     else
         svg->panels_left_out++;
 }
@@ -31,7 +102,7 @@ static void svg_pair(struct report *report, const struct scene *scene,
     struct svg *svg = (struct svg *) report;
     (void) scene;
     if (svg->panels_left_out == 0)
-        panel_take_outcome(&svg->panel[svg->panel_count - 1], outcome, SVG_BOXES_MAX);
+        keep_outcome(&svg->panel[svg->panel_count - 1], outcome);
 }
 
 static void svg_end(struct report *report, const struct scene *scene)
@@ -52,7 +123,7 @@ void svg_close(struct svg *svg)
     if (!svg)
         return;
     for (size_t i = 0; i < svg->panel_count; i++)
-        panel_clear(&svg->panel[i]);
+        clear_panel(&svg->panel[i]);
     free(svg);
 }
 
@@ -91,8 +162,9 @@ static struct paper panel_paper(const struct sheet *sheet, size_t index)
                           sheet->panel_height};
 }
 
-/* The sheet has a ground of its own, light or dark as the reader likes it, so that it can be read
- * on any page. */
+/* The sheet has a background, light or dark as the reader prefers, so that it is legible on any
+ * page.
+ */
 static const char style[] =
     "<style>\n"
     "text{font-family:'DejaVu Sans',Verdana,system-ui,sans-serif;font-size:12px;fill:#2a2f36}\n"
@@ -201,12 +273,13 @@ static void draw_legend(const struct sheet *sheet, FILE *out)
 
 /* ---- The picture ----------------------------------------------------------------------------- */
 
-/* What the panel shows: its own bounds, or those of all its steps of time. */
+/* Returns the visible region of a panel: the union of the bounds of all panels with the same
+ * bodies. */
 static struct view_bounds bounds_of(const struct svg *svg, size_t index)
 {
     struct view_bounds bounds = svg->panel[index].bounds;
     for (size_t i = 0; i < svg->panel_count; i++)
-        if (panel_is_step_of(&svg->panel[i], &svg->panel[index]))
+        if (same_bodies(&svg->panel[i], &svg->panel[index]))
             view_join(&bounds, &svg->panel[i].bounds);
     return bounds;
 }

@@ -44,7 +44,7 @@ static void draw_text(const struct drawing *drawing, double x, double y, const c
 
 /* ---- The grid: the floor in 3D, the plane in 2D ---------------------------------------------- */
 
-/* 1, 2 or 5 times a power of ten; some five steps in the range. */
+/* Returns 1, 2 or 5 times a power of ten, such that the range has some five steps. */
 static double nice_step(double range)
 {
     double rough = range / 5, power = pow(10, floor(log10(rough)));
@@ -52,7 +52,7 @@ static double nice_step(double range)
     return power * (times < 1.5 ? 1 : times < 3.5 ? 2 : times < 7.5 ? 5 : 10);
 }
 
-/* Can lines be told apart in doubles? */
+/* Whether doubles can distinguish the lines of the grid. */
 static bool has_grid(const struct view *view)
 {
     double largest = 0;
@@ -81,12 +81,10 @@ static void draw_grid_lines(const struct drawing *drawing, int axis, double step
         if (view->dim == 3)
             continue;
         number_short(k * step + 0.0, text); /* no -0 */
-        if (axis == 0)
-            draw_text(drawing, start.x, start.y + 14, "class=\"tick\" text-anchor=\"middle\"",
-                      text);
-        else
-            draw_text(drawing, start.x - 6, start.y + 4, "class=\"tick\" text-anchor=\"end\"",
-                      text);
+        draw_text(
+            drawing, start.x - (axis ? 6 : 0), start.y + (axis ? 4 : 14),
+            axis ? "class=\"tick\" text-anchor=\"end\"" : "class=\"tick\" text-anchor=\"middle\"",
+            text);
     }
 }
 
@@ -127,7 +125,8 @@ static void draw_triad(const struct drawing *drawing)
     }
 }
 
-/* ---- Faces, far ones first ------------------------------------------------------------------- */
+/* ---- Faces, from back to front
+ * ------------------------------------------------------------------- */
 
 struct facet {
     size_t body, order; /* order: of being made, so that sorting is the same everywhere */
@@ -145,8 +144,8 @@ static int by_depth(const void *left, const void *right)
     return (a->order > b->order) - (a->order < b->order);
 }
 
-/* The face is turned to the viewer: its normal, pointed away from the body's centre, comes out of
- * the paper. */
+/* Whether the face is turned to the viewer: its outward normal points out of the paper. face, body:
+ * their middles. */
 static bool is_front(const struct facet *facet, struct point face, struct point body)
 {
     const struct point *p = facet->point;
@@ -205,7 +204,7 @@ static struct facet *make_facets(const struct drawing *drawing, size_t *count)
     return facets;
 }
 
-/* The middle of a body's frames at this time. */
+/* Returns the middle of the frames of a body at a time. */
 static struct point middle_of(const struct drawing *drawing, size_t body, double time)
 {
     const struct scene_body *of = &drawing->panel->body[body];
@@ -259,7 +258,7 @@ static void draw_facets(const struct drawing *drawing)
 
 /* ---- Motion ---------------------------------------------------------------------------------- */
 
-static bool goes_anywhere(const struct panel *panel, const struct scene_body *body)
+static bool is_moving(const struct panel *panel, const struct scene_body *body)
 {
     bool still = true;
     for (int axis = 0; axis < panel->dim; axis++)
@@ -267,7 +266,7 @@ static bool goes_anywhere(const struct panel *panel, const struct scene_body *bo
     return panel->duration > 0 && !still;
 }
 
-/* An arrow shorter than its head is none. */
+/* A shorter arrow, which would be shorter than its head, is not drawn. */
 static const double arrow_min_px = 5;
 
 static void draw_ghost(const struct drawing *drawing, size_t body, unsigned frame)
@@ -297,7 +296,7 @@ static void draw_motion(const struct drawing *drawing, size_t body)
 
 /* ---- Boxes and labels ------------------------------------------------------------------------ */
 
-/* A box smaller than this gets a ring, to be found. */
+/* A box smaller than this is marked by a ring. */
 static const double ring_below_px = 7;
 
 static void draw_box_title(const struct drawing *drawing, const struct panel_box *box)
@@ -309,8 +308,10 @@ static void draw_box_title(const struct drawing *drawing, const struct panel_box
     fputs(" and ", drawing->out);
     write_label(drawing, &body[box->pair.b]);
     fprintf(drawing->out, ": %s", verdict_text(box->answer.verdict));
-    if (box->answer.has_contact)
-        fprintf(drawing->out, ", %s", report_contact_text(&box->answer, text));
+    if (box->answer.has_contact) {
+        report_contact_text(&box->answer, text);
+        fprintf(drawing->out, ", %s", text);
+    }
     fputs("</title>\n", drawing->out);
 }
 
@@ -350,7 +351,8 @@ static bool collides(const struct label *a, const struct label *b)
            fabs(a->y - b->y) < LABEL_HEIGHT;
 }
 
-/* The first place near the wanted one where no label stands yet; else the wanted one. */
+/* Returns the first position near the wanted one without a collision; if there is none, the wanted
+ * one. */
 static struct label place_label(struct label wanted, const struct label *placed, size_t count)
 {
     static const double offset[][2] = {{0, 0},     {0, -13},  {0, 13},   {15, 0},
@@ -402,7 +404,7 @@ static void draw_bodies(const struct drawing *drawing)
     for (size_t i = 0; i < panel->box_count; i++)
         draw_box(drawing, &panel->box[i]);
     for (size_t i = 0; i < panel->body_count; i++)
-        if (goes_anywhere(panel, &panel->body[i]))
+        if (is_moving(panel, &panel->body[i]))
             draw_motion(drawing, i);
     draw_labels(drawing);
 }

@@ -6,7 +6,7 @@
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-/* Corner k of a cuboid: bit i of k tells whether component i is added. */
+/* Corner k of a cuboid is the origin plus the components i whose bit i of k is set. */
 static const struct outline_face cuboid_3d[] = {
     {4, {0, 2, 6, 4}}, {4, {1, 3, 7, 5}}, {4, {0, 1, 5, 4}},
     {4, {2, 3, 7, 6}}, {4, {0, 1, 3, 2}}, {4, {4, 5, 7, 6}},
@@ -119,7 +119,7 @@ struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double 
 /* Where the viewer stands: 58 degrees to the right of looking along y, 24 degrees above. */
 static const double azimuth = -1.012, elevation = 0.419;
 
-/* Where the light comes from; of length 1. */
+/* Direction to the light; of length 1. */
 static const double light[FMB_DIM_MAX] = {0.36, -0.48, 0.8};
 
 struct view_bounds view_nothing(void)
@@ -136,7 +136,7 @@ static double clamp(double value, double low, double high)
     return value > high ? high : value >= low ? value : low;
 }
 
-/* Unit coordinates to the plane of the paper: x right, y up. */
+/* Projects unit coordinates to the plane of the paper: x right, y up. */
 static struct point project(int dim, const double u[FMB_DIM_MAX])
 {
     if (dim == 2)
@@ -180,7 +180,7 @@ void view_join(struct view_bounds *bounds, const struct view_bounds *other)
     }
 }
 
-/* Room around the bounds, as a part of the radius. */
+/* Space around the bounds, relative to the radius. */
 static const double margin = 0.04;
 
 static void set_units(const struct view_bounds *bounds, struct view *out)
@@ -202,7 +202,7 @@ static void set_units(const struct view_bounds *bounds, struct view *out)
     }
 }
 
-/* The corners of the floor, or of the whole plane. */
+/* Adds the corners of the floor, or in 2D of the visible region. */
 static void add_floor(const struct view *view, double low[2], double high[2])
 {
     for (int k = 0; k < 4; k++) {
@@ -234,10 +234,10 @@ struct view view_make(int dim, const struct view_bounds *bounds, struct paper pa
 {
     struct view view = {.dim = dim, .paper = paper};
     set_units(bounds, &view);
-    struct paper seen = projected_bounds(&view, bounds);
-    view.scale = fmin(paper.width / seen.width, paper.height / seen.height);
-    view.x = paper.x + paper.width / 2 - view.scale * (seen.x + seen.width / 2);
-    view.y = paper.y + paper.height / 2 + view.scale * (seen.y + seen.height / 2);
+    struct paper visible = projected_bounds(&view, bounds);
+    view.scale = fmin(paper.width / visible.width, paper.height / visible.height);
+    view.x = paper.x + paper.width / 2 - view.scale * (visible.x + visible.width / 2);
+    view.y = paper.y + paper.height / 2 + view.scale * (visible.y + visible.height / 2);
     return view;
 }
 
@@ -248,7 +248,7 @@ struct point view_unit_point(const struct view *view, const double unit[FMB_DIM_
                           point.depth};
 }
 
-/* (p - centre) / radius, cut at the bounds. */
+/* Returns (p - centre) / radius, clipped to the bounds. */
 static double unit_of(const struct view *view, double world, int axis)
 {
     double p = clamp(world, -DBL_MAX, DBL_MAX);

@@ -1,9 +1,9 @@
 /* Projects the world to the paper.
  *
  * 2D: the plane, y up. 3D: an axonometric projection, seen from the front, right and above, z up.
- * Both keep the same scale along all axes. Numbers of any size: coordinates are first brought to
- * [-1, 1] around the middle of the visible region, with halves rather than sums, which could be
- * infinite; what lies further out, infinite ends of boxes too, is cut there. */
+ * Both have the same scale along all axes. Numbers may have any size: coordinates are first mapped
+ * to [-1, 1] about the middle of the visible region, by halves, since sums could be infinite. What
+ * lies outside, such as an infinite end of a box, is clipped. */
 #ifndef VIEW_H
 #define VIEW_H
 
@@ -37,7 +37,7 @@ struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double 
 /* The visible region: in the world, and of its projection, right and up on the paper. */
 struct view_bounds {
     double low[FMB_DIM_MAX], high[FMB_DIM_MAX];
-    double paper_low[2], paper_high[2]; /* a quarter of it, so that no sum is infinite */
+    double paper_low[2], paper_high[2]; /* divided by 4, so that no sum is infinite */
 };
 
 struct view_bounds view_nothing(void);
@@ -64,10 +64,10 @@ struct point {
     double x, y, depth;
 };
 
-/* Returns the projection of a point of the world. */
+/* Returns the projection of a point of the world, clipped to the visible region. */
 struct point view_point(const struct view *view, const double world[FMB_DIM_MAX]);
 
-/* The same for a point in [-1, 1], which is not cut. */
+/* The same for a point in unit coordinates, [-1, 1], without clipping. */
 struct point view_unit_point(const struct view *view, const double unit[FMB_DIM_MAX]);
 
 /* Returns the cosine, 0 to 1, of the angle between the light and the normal of a face with the

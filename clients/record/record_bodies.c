@@ -9,13 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Sets of handles --------------------------------------------------------------------------
- */
+/* ---- Sets of handles ---- */
 
 struct handle_entry {
     UT_hash_handle hh;
     struct handle handle;
-    bool requested; /* of wanted ones */
+    bool requested; /* wanted handles: a request has been sent */
 };
 
 static struct handle_entry *set_find(struct handle_entry *set, const struct handle *handle)
@@ -25,7 +24,7 @@ static struct handle_entry *set_find(struct handle_entry *set, const struct hand
     return entry;
 }
 
-/* Returns the entry, which may be there already. */
+/* Returns the entry of a handle, which is added if it is not in the set. */
 static struct handle_entry *set_add(struct handle_entry **set, const struct handle *handle)
 {
     struct handle_entry *entry = set_find(*set, handle);
@@ -49,39 +48,40 @@ static void set_clear(struct handle_entry **set)
         set_remove(set, *set);
 }
 
-/* ---- State ------------------------------------------------------------------------------------
- */
+/* ---- State ---- */
 
-/* Queries with unknown handles whose results are awaited: the newest so many. */
+/* Queries with unknown handles that wait for their results, at most; the newest ones. */
 enum { WAITING_MAX = 256 };
 
-/* Handles that are wanted, and those that a file defines, at most. Beyond that a handle counts as
- * unresolved at once; a file defines bodies anew. */
+/* Most handles that are wanted: more of them count as unresolved at once. Most handles that a file
+ * is known to define: after more of them the file defines its bodies again. */
 enum { WANTED_MAX = 1 << 16, DEFINED_MAX = 1 << 20 };
+
+struct handle_list {
+    struct handle *handle; /* owned, [count] */
+    size_t count, capacity;
+};
 
 struct waiting {
     struct query_header query;
-    struct handle *handle; /* owned; NULL: free */
-    size_t count;
+    struct handle_list unknown; /* count 0: a free entry */
 };
 
 struct record_bodies {
     int64_t client_id;
-    bool own; /* the message that was taken last is a request of this recorder, or its answer */
-    struct definitions *young, *old; /* each up to half of the bytes */
-    size_t used_again;               /* bodies of the old ones that are among the young too */
-    struct handle_entry *defined;    /* set: by the file */
-    struct handle_entry *wanted;     /* set */
+    bool own; /* the last message is a request of this recorder, or the answer to one */
+    struct definitions *young, *old; /* the known bodies: each up to half of the bytes */
+    size_t used_again;               /* number of old bodies that are also in young */
+    struct handle_entry *defined;    /* set: handles that the file defines */
+    struct handle_entry *wanted;     /* set: handles to be requested, or under way */
     struct waiting waiting[WAITING_MAX];
     int next_waiting, waiting_count;
-    struct definition_query query; /* the last request */
-    int64_t requested_ns;          /* its time */
-    bool under_way;                /* its result has not come */
-    bool more;                     /* another page follows */
-    bool wants;                    /* there may be wanted handles that were not requested */
-    /* Handles that the message that was taken last names: of known bodies, and of others. */
-    struct handle *named, *unknown;
-    size_t named_count, named_capacity, unknown_count, unknown_capacity;
+    struct definition_query query;     /* the last request */
+    int64_t requested_ns;              /* its time */
+    bool under_way;                    /* its result has not come */
+    bool more;                         /* the next request continues query.first */
+    bool wants;                        /* wanted handles may not have been requested */
+    struct handle_list named, unknown; /* in the last message: of known bodies, and of others */
     struct record_bodies_counts counts;
     struct hasher *hasher;
     union {
@@ -95,7 +95,7 @@ struct record_bodies {
     struct definition_writer writer;
 };
 
-/* The first request, of zeros, is for all bodies. */
+/* The first request, all zeros, is for all bodies. */
 struct record_bodies *record_bodies_open(int64_t client_id)
 {
     struct record_bodies *bodies = allocate(1, sizeof *bodies);
@@ -112,21 +112,20 @@ struct record_bodies *record_bodies_open(int64_t client_id)
 void record_bodies_close(struct record_bodies *bodies)
 {
     for (int i = 0; i < WAITING_MAX; i++)
-        free(bodies->waiting[i].handle);
+        free(bodies->waiting[i].unknown.handle);
     definitions_close(bodies->young);
     definitions_close(bodies->old);
     set_clear(&bodies->defined);
     set_clear(&bodies->wanted);
     hasher_destroy(bodies->hasher);
-    free(bodies->named);
-    free(bodies->unknown);
+    free(bodies->named.handle);
+    free(bodies->unknown.handle);
     free(bodies);
 }
 
-/* ---- What is known ----------------------------------------------------------------------------
- */
+/* ---- Known bodies ---- */
 
-/* Half of the memory is full: what was not used since the last time is dropped. */
+/* If young is full, drops the old bodies: they have not been used since young was empty. */
 static void make_space(struct record_bodies *bodies)
 {
     if (definitions_bytes(bodies->young) < RECORD_BODIES_BYTES / 2)
@@ -145,7 +144,7 @@ static void add_body(struct record_bodies *bodies, const struct geometry *geomet
     make_space(bodies);
 }
 
-/* Returns the geometry, valid until the next body is added; NULL: it is not known. */
+/* Returns the geometry of a known body, valid until the next body is added; or NULL. */
 static const struct geometry *find_body(const struct record_bodies *bodies,
                                         const struct handle *handle)
 {
@@ -153,7 +152,7 @@ static const struct geometry *find_body(const struct record_bodies *bodies,
     return geometry ? geometry : definitions_find(bodies->old, handle);
 }
 
-/* Returns whether the body is known; it counts as used. */
+/* Returns whether the body is known. A known body counts as used. */
 static bool use_body(struct record_bodies *bodies, const struct handle *handle)
 {
     if (definitions_find(bodies->young, handle))
@@ -166,35 +165,25 @@ static bool use_body(struct record_bodies *bodies, const struct handle *handle)
     return true;
 }
 
-/* ---- Queries ----------------------------------------------------------------------------------
- */
+/* ---- Queries ---- */
 
-static void append_handle(struct handle **list, size_t *count, size_t *capacity,
-                          const struct handle *handle)
+static void list_append(struct handle_list *list, const struct handle *handle)
 {
-    *list = allocate_grow(*list, capacity, *count + 1, sizeof **list);
-    (*list)[(*count)++] = *handle;
-}
-
-static void note_handle(struct record_bodies *bodies, const struct handle *handle)
-{
-    if (use_body(bodies, handle))
-        append_handle(&bodies->named, &bodies->named_count, &bodies->named_capacity, handle);
-    else
-        append_handle(&bodies->unknown, &bodies->unknown_count, &bodies->unknown_capacity, handle);
+    list->handle =
+        allocate_grow(list->handle, &list->capacity, list->count + 1, sizeof *list->handle);
+    list->handle[list->count++] = *handle;
 }
 
 static void await_result(struct record_bodies *bodies, const struct query_header *query)
 {
     struct waiting *waiting = &bodies->waiting[bodies->next_waiting];
-    if (bodies->unknown_count == 0)
+    if (bodies->unknown.count == 0)
         return;
     bodies->next_waiting = (bodies->next_waiting + 1) % WAITING_MAX;
-    bodies->waiting_count += !waiting->handle;
-    free(waiting->handle);
-    *waiting = (struct waiting){*query, bodies->unknown, bodies->unknown_count};
-    bodies->unknown = NULL;
-    bodies->unknown_capacity = 0;
+    bodies->waiting_count += waiting->unknown.count == 0;
+    free(waiting->unknown.handle);
+    *waiting = (struct waiting){*query, bodies->unknown};
+    bodies->unknown = (struct handle_list){.count = 0};
 }
 
 static void take_query(struct record_bodies *bodies, struct logged_query *query)
@@ -203,7 +192,8 @@ static void take_query(struct record_bodies *bodies, struct logged_query *query)
     const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
         if (placement_by_handle(&placement[i]))
-            note_handle(bodies, &placement[i].handle);
+            list_append(use_body(bodies, &placement[i].handle) ? &bodies->named : &bodies->unknown,
+                        &placement[i].handle);
         else if (definitions_add_placement(bodies->young, &placement[i]))
             make_space(bodies);
     }
@@ -211,24 +201,25 @@ static void take_query(struct record_bodies *bodies, struct logged_query *query)
                  query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header);
 }
 
-/* An answered query: the service holds what it names. */
+/* Processes the result of an answered query: the service holds the bodies that the query names. */
 static void take_answer(struct record_bodies *bodies, const struct query_header *result)
 {
     for (int i = 0; i < WAITING_MAX && bodies->waiting_count > 0; i++) {
         struct waiting *waiting = &bodies->waiting[i];
-        if (!waiting->handle || waiting->query.client_id != result->client_id ||
+        if (waiting->unknown.count == 0 || waiting->query.client_id != result->client_id ||
             waiting->query.sequence_number != result->sequence_number)
             continue;
-        for (size_t k = 0; k < waiting->count; k++) {
-            if (find_body(bodies, &waiting->handle[k]))
+        for (size_t k = 0; k < waiting->unknown.count; k++) {
+            const struct handle *handle = &waiting->unknown.handle[k];
+            if (find_body(bodies, handle))
                 continue;
             if (HASH_COUNT(bodies->wanted) < WANTED_MAX)
-                bodies->wants |= !set_add(&bodies->wanted, &waiting->handle[k])->requested;
+                bodies->wants |= !set_add(&bodies->wanted, handle)->requested;
             else
                 bodies->counts.unresolved++;
         }
-        free(waiting->handle);
-        waiting->handle = NULL;
+        free(waiting->unknown.handle);
+        waiting->unknown = (struct handle_list){.count = 0};
         bodies->waiting_count--;
     }
 }
@@ -243,7 +234,7 @@ static void take_definition(struct record_bodies *bodies, const struct definitio
             set_add(&bodies->defined, handle);
         struct handle_entry *wanted = set_find(bodies->wanted, handle);
         if (wanted && bodies->own)
-            append_handle(&bodies->named, &bodies->named_count, &bodies->named_capacity, handle);
+            list_append(&bodies->named, handle);
         if (wanted)
             set_remove(&bodies->wanted, wanted);
     }
@@ -254,7 +245,7 @@ static bool is_answered(int32_t status)
     return status == FMB_OK || status == FMB_CANNOT_DECIDE;
 }
 
-/* The message that was read. */
+/* Processes the message that was read. */
 static void take_message(struct record_bodies *bodies, enum log_kind kind)
 {
     const struct pair_result *pair = &bodies->message.pair_result;
@@ -294,7 +285,7 @@ const char *record_bodies_take(struct record_bodies *bodies, enum log_kind kind,
                                const unsigned char *bytes, size_t size)
 {
     const char *error = read_message(bodies, kind, bytes, (uint32_t) size);
-    bodies->named_count = bodies->unknown_count = 0;
+    bodies->named.count = bodies->unknown.count = 0;
     bodies->own = false;
     if (!error && size <= QUERY_BYTES_MAX)
         take_message(bodies, kind);
@@ -306,16 +297,15 @@ bool record_bodies_is_own(const struct record_bodies *bodies)
     return bodies->own;
 }
 
-/* ---- What a file defines ----------------------------------------------------------------------
- */
+/* ---- Definitions in files ---- */
 
 size_t record_bodies_needed(const struct record_bodies *bodies)
 {
     const size_t each = (size_t) log_event_bytes(BUS_CHANNEL_MAX, DEFINITION_BYTES + HANDLE_BYTES);
     size_t bytes = 0;
-    for (size_t i = 0; i < bodies->named_count; i++)
-        if (!set_find(bodies->defined, &bodies->named[i]))
-            bytes += each + find_body(bodies, &bodies->named[i])->size;
+    for (size_t i = 0; i < bodies->named.count; i++)
+        if (!set_find(bodies->defined, &bodies->named.handle[i]))
+            bytes += each + find_body(bodies, &bodies->named.handle[i])->size;
     return bytes;
 }
 
@@ -325,8 +315,8 @@ bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, v
     bodies->writer.user = user;
     if (HASH_COUNT(bodies->defined) > DEFINED_MAX)
         set_clear(&bodies->defined);
-    for (size_t i = 0; i < bodies->named_count; i++) {
-        const struct handle *handle = &bodies->named[i];
+    for (size_t i = 0; i < bodies->named.count; i++) {
+        const struct handle *handle = &bodies->named.handle[i];
         if (set_find(bodies->defined, handle))
             continue;
         if (!definition_writer_add(&bodies->writer, handle, find_body(bodies, handle)))
@@ -342,8 +332,7 @@ void record_bodies_begin_file(struct record_bodies *bodies)
     set_clear(&bodies->defined);
 }
 
-/* ---- Requests ---------------------------------------------------------------------------------
- */
+/* ---- Requests ---- */
 
 int64_t record_bodies_due(const struct record_bodies *bodies)
 {
@@ -352,7 +341,7 @@ int64_t record_bodies_due(const struct record_bodies *bodies)
                                                                  : INT64_MAX;
 }
 
-/* On output: false if all wanted handles were requested before. */
+/* Chooses wanted handles for the next request. Returns false if all were requested before. */
 static bool choose_handles(struct record_bodies *bodies)
 {
     enum { HANDLES = 1024 };
@@ -383,7 +372,7 @@ size_t record_bodies_request(struct record_bodies *bodies, int64_t now_ns,
     return wire_write_definition_query(&bodies->query, out);
 }
 
-/* The bodies were taken before: the result is a message on the bus. */
+/* record_bodies_take() has processed the bodies, since the result is a message on the bus. */
 void record_bodies_take_result(void *user, const struct fmb_client_raw_result *result)
 {
     struct record_bodies *bodies = user;

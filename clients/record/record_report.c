@@ -13,8 +13,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-/* What the kernel grants where a bus may have all that it requests, bytes; and what to set for
- * that.
+/* Bytes: the size of a receive buffer that the kernel has not limited; and the limit to set for it.
  */
 enum { RECEIVE_BUFFER_ENOUGH = 8 << 20, RECEIVE_BUFFER_TO_SET = 4 << 20 };
 
@@ -71,12 +70,6 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
 
 /* ---- For people ------------------------------------------------------------------------------ */
 
-static void print_count(const char *name, int64_t count)
-{
-    char text[NUMBER_TEXT_MAX];
-    printf("  %-16s %15s\n", name, number_grouped(count, text));
-}
-
 static void print_where(const struct log_parts *parts)
 {
     const char *path = parts->options.path;
@@ -97,12 +90,12 @@ void record_report_text(const struct recorded *recorded, const struct log_parts 
            recorded->seconds, number_grouped(recorded->bytes, bytes));
     for (int kind = 0; kind < LOG_KINDS; kind++)
         if (recorded->received[kind] > 0 || kind <= LOG_STATUS)
-            print_count(names[kind].text, recorded->received[kind]);
+            number_print(names[kind].text, recorded->received[kind]);
     if (recorded->malformed > 0)
-        print_count("malformed", recorded->malformed);
+        number_print("malformed", recorded->malformed);
     if (recorded->bodies.defined > 0)
-        print_count("bodies defined", recorded->bodies.defined);
-    print_count("lost", (int64_t) recorded->bus.dropped);
+        number_print("bodies defined", recorded->bodies.defined);
+    number_print("lost", (int64_t) recorded->bus.dropped);
 }
 
 /* ---- Losses ---------------------------------------------------------------------------------- */
@@ -123,10 +116,9 @@ static void suggest(long receive_buffer)
             "  sudo sysctl net.core.rmem_max=%d",
             number_grouped(receive_buffer, text), RECEIVE_BUFFER_TO_SET);
     else
-        fputs(
-            "fmb: this machine or its disk was too busy; to be scheduled before others, run:\n"
-            "fmb:   sudo chrt -f 10 fmb record ...\n",
-            stderr);
+        complain(
+            "this machine or its disk was too busy; to be scheduled before others, run:\n"
+            "  sudo chrt -f 10 fmb record ...");
 }
 
 void record_report_losses(const struct recorded *recorded)
@@ -140,7 +132,8 @@ void record_report_losses(const struct recorded *recorded)
     warn_count(recorded->bodies.dropped, "bodies were dropped since there were too many");
 }
 
-/* ---- While it runs --------------------------------------------------------------------------- */
+/* ---- The progress line
+ * --------------------------------------------------------------------------- */
 
 static const int64_t every_ns = 250000000;
 
@@ -158,7 +151,7 @@ static int terminal_width(void)
                                                                            : USUAL_WIDTH;
 }
 
-/* Cut where the terminal ends: a line that goes on in the next row could not be replaced. */
+/* Shortened to the width of the terminal: a line that wraps could not be replaced. */
 static void show(const char *text)
 {
     fprintf(stderr, "\r%.*s\033[K", terminal_width() - 1, text);

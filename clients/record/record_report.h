@@ -1,4 +1,4 @@
-/* Shows a recording: a line on a terminal while it runs, and a report at its end. */
+/* The progress line of a recording, and the report at its end. */
 #ifndef RECORD_REPORT_H
 #define RECORD_REPORT_H
 

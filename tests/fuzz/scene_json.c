@@ -211,13 +211,13 @@ static void check_outcome(void *user, const struct scene *scene, const struct ou
 
 static void check_decided(const struct scene *scene)
 {
-    const struct answers_question question = {.box = true};
+    const struct answers_options options = {.box = true};
     uint64_t count = 0, frames = 0;
     for (size_t i = 0; i < scene->body_count; i++)
         frames += scene->body[i].body.frame_count;
     if (scene_count_pairs(scene) > DECIDED_PAIRS_MAX || frames > DECIDED_FRAMES_MAX)
         return;
-    answers_local(&question, scene, check_outcome, &count);
+    answers_local(&options, scene, check_outcome, &count);
     FUZZ_CHECK(count == scene_count_pairs(scene));
 }
 

@@ -174,13 +174,13 @@ static void on_pair(void *user, const struct scene *scene, const struct outcome 
 static int64_t decide_found(void)
 {
     const bool is_pair = found.query.kind == LOG_PAIR_QUERY;
-    const struct answers_question question = {
+    const struct answers_options options = {
         .method =
             fmb_method_by_number(is_pair ? found.query.pair.method : found.query.scene.method),
         .box = true};
     struct scene scene = scene_of_found();
     struct walk walk = {.pair = 0};
-    answers_local(&question, &scene, is_pair ? on_pair : on_scene_pair, &walk);
+    answers_local(&options, &scene, is_pair ? on_pair : on_scene_pair, &walk);
     if (!is_pair)
         assert_int_equal(walk.verdict, recorded.scene.verdict_count);
     scene_clear(&scene);

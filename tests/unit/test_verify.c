@@ -1,5 +1,5 @@
 /* A verdict that its certificate does not show becomes an error. */
-#include "verify.h"
+#include "answers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
