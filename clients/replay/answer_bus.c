@@ -77,13 +77,6 @@ struct answer_bus {
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-/* Frees an item that will not be answered, unless the table owns it. NULL: none. */
-static void free_unowned(struct match_item *item)
-{
-    if (item && !item->in_table)
-        match_free(item);
-}
-
 static bool is_running(const struct answer_bus *bus)
 {
     return bus->counts.end == ANSWER_BUS_NO_END;
@@ -158,7 +151,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     }
     slot->bus = NULL;
     if (!is_running(bus))
-        free_unowned(item);
+        match_drop(item);
     else if (item)
         deliver(bus, item, &answered);
 }
@@ -246,7 +239,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    free_unowned(item);
+    match_drop(item);
 }
 
 /* Answers a query that the engine does not send, with the status of a service: it is too long, or
@@ -286,7 +279,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
     if (!is_running(bus)) {
-        free_unowned(item);
+        match_drop(item);
         return;
     }
     bus->counts.whole += item->sent_whole;
@@ -336,7 +329,7 @@ void answer_bus_close(struct answer_bus *bus)
         return;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         if (bus->slot[i].bus)
-            free_unowned(bus->slot[i].item);
+            match_drop(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

@@ -9,48 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Reports what cannot be read or written; the replay continues. */
-void replay_fail(struct replay *replay, const char *what)
-{
-    if (!replay->failed)
-        complain("%s: %s", what, strerror(errno));
-    replay->failed = true;
-}
-
-void replay_fail_log(struct replay *replay, int log)
-{
-    replay_fail(replay, log < replay->options->log_count ? replay->options->log[log]
-                                                         : replay->options->golden);
-}
-
-struct tally_channel *replay_channel(struct replay *replay, const struct match_key *key,
-                                     const struct match_place *place)
-{
-    /* results of the golden log are counted with the first log */
-    const int log = place->log < replay->options->log_count ? place->log : 0;
-    return &replay->tally[log].channel[tally_channel_of((enum log_kind) key->kind)];
-}
-
-void replay_refuse(struct replay *replay, enum log_kind kind, const struct message *message,
-                   const char *error)
-{
-    replay_channel(replay, &message->key, &message->place)->unreadable[log_kind_is_result(kind)]++;
-    replay->sink->unreadable(replay->sink->user, &message->place, replay->channels.name[kind],
-                             error);
-}
-
-/* Reads a message again into bytes. */
-bool replay_read_again(struct replay *replay, const struct match_key *key,
-                       const struct match_place *place, unsigned char bytes[LOG_DATA_MAX],
-                       struct message *out)
-{
-    *out = (struct message){*key, *place, bytes, 0};
-    if (event_reader_read(replay->rereader, place->log, place->offset, bytes, &out->size))
-        return true;
-    replay_fail_log(replay, place->log);
-    return false;
-}
-
 /* ---- The golden log: results in the order of their queries ---- */
 
 static void fail_golden(struct replay *replay, int64_t offset, const char *what)
@@ -79,8 +37,7 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
                                        .utime = event->utime}};
     const char *error = read_key(kind, event, &result);
     if (!error)
-        error = comparison_read(replay->comparison, (enum log_kind) result.key.kind, result.bytes,
-                                result.size);
+        error = replay_read_result(replay, &result);
     if (error) {
         fail_golden(replay, event->offset, error);
         return;
@@ -236,11 +193,6 @@ static bool open_replay(struct replay *replay)
     replay->defined_end = &replay->defined;
     replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
-    replay->pending = pending_open();
-    const struct comparison_options judging = {options->compare, options->log,  replay->sink,
-                                               replay->tally,    options->page, replay->definitions,
-                                               replay->rereader};
-    replay->comparison = comparison_open(&judging);
     return true;
 }
 
@@ -250,9 +202,8 @@ static void close_replay(struct replay *replay)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
-    comparison_close(replay->comparison);
     pending_free_list(replay->defined);
-    pending_close(replay->pending);
+    pending_close(&replay->pending);
     match_close(replay->match);
     event_reader_close(replay->rereader);
     hasher_destroy(replay->hasher);
@@ -302,8 +253,6 @@ static void finish(struct replay *replay)
     while (replay->golden && take_next_golden(replay))
         continue;
     replay_finish_answers(replay);
-    if (!replay_has_ended(replay))
-        replay_finish_pending(replay);
     if (replay_has_ended(replay)) {
         replay->failed = true;
         return;
