@@ -1,7 +1,6 @@
 #include "page_event.h"
 
 #include "logged_query.h"
-#include "page_pairs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -135,7 +134,7 @@ static void write_scene_result(struct json_writer *out, const char *key,
         json_null(out, key);
         return;
     }
-    page_pairs_count(query, result, count);
+    replayed_count(query, result, count);
     begin_result(out, key, result->status, result->detail, result->method, result->compute_ns);
     json_integer(out, "end", result->end_pair);
     json_begin(out, "count", '[');
@@ -179,47 +178,70 @@ static void write_gap(struct json_writer *out, int dim, const struct fmb_gap *ga
     json_end(out, ']');
 }
 
-static void write_side(struct json_writer *out, const struct page_side *side)
+static void write_side(struct json_writer *out, const struct replayed_side *side)
 {
+    static const double none[2] = {NAN, NAN};
+    const struct fmb_answer *answer = &side->answer;
     if (!side->answered) {
         json_null(out, NULL);
         return;
     }
-    if (!side->has_times && side->dim == 0 && side->gap_dim == 0) {
-        json_integer(out, NULL, side->verdict);
+    if (!answer->has_contact && !answer->has_box && !answer->has_gap) {
+        json_integer(out, NULL, answer->verdict);
         return;
     }
-    const double none[2] = {NAN, NAN};
     json_begin(out, NULL, '[');
-    json_integer(out, NULL, side->verdict);
-    write_numbers(out, side->has_times ? side->times : none, 2);
-    for (int end = 0; end < 2; end++)
-        for (int axis = 0; axis < side->dim; axis++)
-            write_end(out, side->box[end][axis], end);
-    if (side->gap_dim > 0)
-        write_gap(out, side->gap_dim, side->gap);
+    json_integer(out, NULL, answer->verdict);
+    write_numbers(out, answer->has_contact ? answer->contact : none, 2);
+    for (int i = 0; i < 2 * side->dim && answer->has_box; i++)
+        write_end(out, answer->box[i / side->dim][i % side->dim], i / side->dim);
+    if (answer->has_gap)
+        write_gap(out, side->dim, &answer->gap);
     json_end(out, ']');
 }
 
-static void write_pair(struct json_writer *out, const struct page_pair *pair)
+/* Equal, or both NaN. */
+static bool same_numbers(const double *a, const double *b, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!(a[i] == b[i] || (isnan(a[i]) && isnan(b[i]))))
+            return false;
+    return true;
+}
+
+static bool same(const struct fmb_answer *a, const struct fmb_answer *b)
+{
+    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
+           a->has_box == b->has_box && a->has_gap == b->has_gap &&
+           same_numbers(a->contact, b->contact, 2) &&
+           same_numbers(a->box[0], b->box[0], 2 * FMB_DIM_MAX) && query_same_gap(&a->gap, &b->gap);
+}
+
+/* Whether both results answer the pair, differently. */
+static bool differs(const struct replayed_pair *pair)
+{
+    return pair->then.answered && pair->now.answered &&
+           (pair->then.dim != pair->now.dim || !same(&pair->then.answer, &pair->now.answer));
+}
+
+static void write_pair(struct json_writer *out, const struct replayed_pair *pair)
 {
     json_begin(out, NULL, '[');
     json_integer(out, NULL, pair->a);
     json_integer(out, NULL, pair->b);
     write_side(out, &pair->then);
-    if (pair->differs || pair->then.answered != pair->now.answered)
+    if (differs(pair) || pair->then.answered != pair->now.answered)
         write_side(out, &pair->now);
     json_end(out, ']');
 }
 
 enum { RANK_DIFFERS, RANK_CONTACT, RANK_OTHER, RANK_COUNT };
 
-static int rank(const struct page_pair *pair)
+static int rank(const struct replayed_pair *pair)
 {
-    if (pair->differs)
-        return RANK_DIFFERS;
-    return pair->then.verdict >= FMB_TOUCHING || pair->now.verdict >= FMB_TOUCHING ? RANK_CONTACT
-                                                                                   : RANK_OTHER;
+    const bool contact =
+        pair->then.answer.verdict >= FMB_TOUCHING || pair->now.answer.verdict >= FMB_TOUCHING;
+    return differs(pair) ? RANK_DIFFERS : contact ? RANK_CONTACT : RANK_OTHER;
 }
 
 static void write_pairs(const struct replayed *replayed, struct json_writer *out)
@@ -227,10 +249,10 @@ static void write_pairs(const struct replayed *replayed, struct json_writer *out
     int64_t seen = 0, kept = 0;
     json_begin(out, "pairs", '[');
     for (int of_rank = 0; of_rank < RANK_COUNT; of_rank++) {
-        struct page_pairs pairs;
-        struct page_pair pair;
-        page_pairs_begin(replayed, &pairs);
-        while (page_pairs_next(&pairs, &pair)) {
+        struct replayed_pairs pairs;
+        struct replayed_pair pair;
+        replayed_pairs_begin(replayed, &pairs);
+        while (replayed_pairs_next(&pairs, &pair)) {
             if (rank(&pair) != of_rank)
                 continue;
             if (seen++ >= PAGE_PAIRS_MAX)

@@ -320,6 +320,7 @@ static void test_ends_of_boxes(void **state)
 static void set_gap(struct pair_result *result, int bound, double value)
 {
     struct fmb_gap *gap = &result->answer.gap;
+    result->dim = 3;
     result->answer.verdict = FMB_SEPARATED;
     result->answer.has_contact = false;
     result->answer.has_gap = gap->has_witness = true;
