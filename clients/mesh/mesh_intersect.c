@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "clock.h"
-#include "mesh_face.h"
 #include "mesh_adjacency.h"
 
 #include <stdlib.h>

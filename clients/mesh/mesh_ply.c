@@ -2,9 +2,8 @@
  * values in the order of its properties. */
 #include "mesh_ply.h"
 
-#include "mesh_formats.h"
-
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool read_coordinate(struct ply *ply, const struct ply_property *property, double *out)
@@ -105,10 +104,10 @@ static bool allocate_element(struct ply *ply, const struct ply_element *element,
     if (element->kind == PLY_OTHERS || element->count == 0)
         return true;
     if (element->kind == PLY_VERTICES) {
-        out->vertex = mesh_allocate(element->count, sizeof *out->vertex);
+        out->vertex = calloc(element->count, sizeof *out->vertex);
         out->vertex_count = element->count;
     } else {
-        out->face = mesh_allocate(element->count, sizeof *out->face);
+        out->face = calloc(element->count, sizeof *out->face);
         out->face_count = element->count;
     }
     if (element->kind == PLY_VERTICES ? !!out->vertex : !!out->face)

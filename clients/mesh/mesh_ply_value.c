@@ -1,8 +1,5 @@
 #include "mesh_ply.h"
 
-#include "mesh_bits.h"
-#include "mesh_number.h"
-
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,12 +43,6 @@ static bool text_value(struct ply *ply, double *value)
 {
     const unsigned char *begin = mesh_skip_blanks(ply->source->at);
     return is_number(ply, begin, mesh_number(begin, value));
-}
-
-static bool text_skip(struct ply *ply)
-{
-    double value;
-    return text_value(ply, &value);
 }
 
 bool ply_begin_record(struct ply *ply)
@@ -121,5 +112,6 @@ bool ply_value(struct ply *ply, enum ply_type type, double *value)
 
 bool ply_skip(struct ply *ply, enum ply_type type)
 {
-    return ply->format == PLY_ASCII ? text_skip(ply) : binary_skip(ply, ply_size(type));
+    double value;
+    return ply->format == PLY_ASCII ? text_value(ply, &value) : binary_skip(ply, ply_size(type));
 }

@@ -67,11 +67,6 @@ const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
     return text;
 }
 
-void *mesh_allocate(size_t count, size_t size)
-{
-    return count > SIZE_MAX / size ? NULL : malloc(count * size);
-}
-
 void mesh_skip_line(struct mesh_source *source)
 {
     const unsigned char *end = memchr(source->at, '\n', mesh_left(source));
