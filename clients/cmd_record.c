@@ -10,7 +10,7 @@
 #include "log_write.h"
 #include "output.h"
 #include "record_report.h"
-#include "signals.h"
+#include "process.h"
 
 #include <errno.h>
 #include <poll.h>

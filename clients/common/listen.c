@@ -3,7 +3,7 @@
 #include "bus_client.h"
 #include "clock.h"
 #include "complain.h"
-#include "signals.h"
+#include "process.h"
 
 #include <errno.h>
 #include <poll.h>

@@ -1,7 +1,7 @@
 #include "client.h"
 
 #include "clock.h"
-#include "random_id.h"
+#include "process.h"
 
 #include "fmb_msgs_definition_query_t.h"
 #include "fmb_msgs_definition_t.h"

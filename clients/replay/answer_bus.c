@@ -31,7 +31,7 @@
 #include "clock.h"
 #include "complain.h"
 #include "fmb_client_raw.h"
-#include "signals.h"
+#include "process.h"
 #include "wire.h"
 
 #include <math.h>

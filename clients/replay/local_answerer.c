@@ -3,7 +3,7 @@
 #include "allocate.h"
 #include "answer.h"
 #include "clock.h"
-#include "random_id.h"
+#include "process.h"
 #include "scene_of_query.h"
 #include "wire.h"
 
