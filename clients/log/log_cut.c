@@ -25,14 +25,7 @@ struct cutter {
     struct definition_writer definitions;
 };
 
-/* Reports a file that cannot be read or written; only the first time. */
-static void fail(struct cutter *cut, const char *what, int error)
-{
-    if (!cut->failed)
-        complain("%s: %s", what, strerror(error));
-    cut->failed = true;
-}
-
+/* Reports an error of the output, or of the current input; only the first error. */
 static void fail_output(struct cutter *cut, int error)
 {
     if (!cut->failed)
@@ -40,10 +33,11 @@ static void fail_output(struct cutter *cut, int error)
     cut->failed = true;
 }
 
-/* Reports an error of the current input. */
 static void fail_input(struct cutter *cut, int error)
 {
-    fail(cut, cut->options->log[cut->input.log], error);
+    if (!cut->failed)
+        complain("%s: %s", cut->options->log[cut->input.log], strerror(error));
+    cut->failed = true;
 }
 
 /* The logs are read twice, so that progress counts half of the bytes read. */
@@ -164,11 +158,8 @@ static bool writes_into_log(const struct log_cut_options *options)
 static bool open_cut(struct cutter *cut)
 {
     const struct log_cut_options *options = cut->options;
-    char why[LOG_WHY_MAX];
-    if (!input_open(&cut->input, options->log, options->log_count, why)) {
-        complain("%s", why);
+    if (!input_open(&cut->input, options->log, options->log_count))
         return false;
-    }
     if (writes_into_log(options)) {
         complain("%s: is one of the logs that are cut", options->output);
         return false;

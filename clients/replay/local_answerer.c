@@ -4,7 +4,6 @@
 #include "answer.h"
 #include "clock.h"
 #include "process.h"
-#include "scene_of_query.h"
 #include "wire.h"
 
 #include <stdlib.h>

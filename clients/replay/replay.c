@@ -178,11 +178,8 @@ static bool open_answers(struct replay *replay)
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
-    char why[LOG_WHY_MAX];
-    if (!input_open(&replay->input, options->log, options->log_count, why)) {
-        complain("%s", why);
+    if (!input_open(&replay->input, options->log, options->log_count))
         return false;
-    }
     replay->definitions = definitions_open();
     if (!open_answers(replay) || !open_goldens(replay))
         return false;
@@ -283,14 +280,11 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
 bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime)
 {
     struct input input;
-    char why[LOG_WHY_MAX];
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    if (!input_open(&input, options->log, options->log_count, why)) {
-        complain("%s", why);
+    if (!input_open(&input, options->log, options->log_count))
         return false;
-    }
     while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
         continue;
     *size = input_size(&input);

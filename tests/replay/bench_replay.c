@@ -104,9 +104,8 @@ static void read_scenes(char *path, struct scenes *scenes)
     struct input input;
     struct log_event event;
     struct log_damage damage;
-    char why[LOG_WHY_MAX];
-    if (!input_open(&input, &path, 1, why))
-        fail(why);
+    if (!input_open(&input, &path, 1))
+        fail(path);
     while (scenes->count < SCENES_MAX && input_next(&input, &event, &damage) == LOG_EVENT) {
         if (log_kind_of(&channels, &event) != LOG_SCENE_QUERY ||
             wire_read_scene_query(event.data, (uint32_t) event.kept, &query))
