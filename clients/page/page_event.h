@@ -17,6 +17,9 @@ void page_json_open(struct page_json *out);
 void page_json_flush(struct page_json *page);
 void page_json_close(struct page_json *page);
 
+/* Writes a list of integers. */
+void page_integers(struct json_writer *json, const char *key, const int64_t *number, int count);
+
 /* Copies the text, as of the last page_json_flush(). */
 void page_json_write(const struct page_json *page, FILE *out);
 
