@@ -59,11 +59,12 @@ static void prepare(const struct placement *placement, struct definitions *defin
     const struct geometry *geometry = &placement->geometry;
     struct geometry_frame frame;
     double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
-    int dim;
     if (placement_by_handle(placement) &&
         !(geometry = definitions_find(definitions, &placement->handle)))
         fail("a handle that the log does not define");
-    if (!geometry_read(geometry, &dim, &frame))
+    struct geometry_reader reader = geometry_begin(geometry);
+    const int dim = reader.dim;
+    if (!geometry_next(&reader, &frame))
         fail("a frame of the log is none");
     const int count = geometry_number_count(dim, frame.shape);
     memcpy(numbers, frame.origin, (size_t) dim * sizeof *numbers);
