@@ -23,8 +23,8 @@ bool check_refuse(struct check_context *context, enum fmb_status status, const c
     return false;
 }
 
-static bool refuse_at(struct check_context *context, enum fmb_status status, const char *list,
-                      int i, const char *reason)
+bool check_refuse_at(struct check_context *context, enum fmb_status status, const char *list, int i,
+                     const char *reason)
 {
     char field[32];
     snprintf(field, sizeof field, "%s[%d]", list, i);
@@ -52,7 +52,7 @@ static bool check_finite(struct check_context *context, const char *list, const 
 {
     for (int i = 0; i < count; i++)
         if (!isfinite(number[i]))
-            return refuse_at(context, FMB_NOT_FINITE, list, i, NULL);
+            return check_refuse_at(context, FMB_NOT_FINITE, list, i, NULL);
     return true;
 }
 
@@ -79,7 +79,7 @@ static bool check_shapes(struct check_context *context, const struct placement *
         if (count == 0)
             return fmb_shape_name(shape[i])
                        ? check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
-                       : refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+                       : check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
         numbers += count;
     }
     return check_count(context, "num_numbers", numbers, placement->number_count);
@@ -89,7 +89,7 @@ static bool check_numbers(struct check_context *context, const struct placement 
 {
     for (int32_t i = 0; i < placement->number_count; i++)
         if (!isfinite(number_at(placement, i)))
-            return refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
+            return check_refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
     return true;
 }
 
@@ -102,7 +102,7 @@ static bool check_sizes(struct check_context *context, const struct placement *p
     for (int32_t i = 0; i < placement->frame_count; i++) {
         for (int32_t k = number + dim; shape[i] == FMB_BOX && k < number + 2 * dim; k++)
             if (number_at(placement, k) < 0)
-                return refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
+                return check_refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
         number += geometry_number_count(dim, shape[i]);
     }
     return true;
