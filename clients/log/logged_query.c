@@ -163,8 +163,8 @@ static int compare(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* The lowest free id from *id on. In: sorted[count], of which *next is the first that is not below
- * *id. On output: *id and *next for the next call. */
+/* Returns the lowest id from *id on that is not in sorted[count]. *next: index of the first element
+ * that is *id or more. Advances both for the next call. */
 static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_t *id)
 {
     for (; *next < count && sorted[*next] <= *id; ++*next)

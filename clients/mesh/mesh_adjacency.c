@@ -310,9 +310,8 @@ static bool end_at_edge(const struct mesh_adjacency *adjacency, const struct com
         const double *r = common->own_count[f] ? at(adjacency, common->own[f][0]) : p;
         const bool here = is_between(p, r, q), past_p = !here && is_between(r, p, q);
         const bool past_q = !here && is_between(p, q, r);
-        if (!here && !past_p &&
-            !past_q) /* this face has an area; as the faces overlap, so has the other */
-            return false;
+        if (!here && !past_p && !past_q)
+            return false; /* this face has an area, and so has the other, which overlaps it */
         beyond_p = beyond_p && past_p;
         beyond_q = beyond_q && past_q;
     }

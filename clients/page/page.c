@@ -128,7 +128,7 @@ static void write_elements(struct json_writer *json, const char *key,
                            const struct page_json *elements)
 {
     json_begin(json, key, '[');
-    page_json_write(elements, json->out);
+    fwrite(elements->bytes, 1, elements->used, json->out);
     json_end(json, ']');
 }
 

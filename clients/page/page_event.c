@@ -40,11 +40,6 @@ void page_integers(struct json_writer *json, const char *key, const int64_t *num
     json_end(json, ']');
 }
 
-void page_json_write(const struct page_json *page, FILE *out)
-{
-    fwrite(page->bytes, 1, page->used, out);
-}
-
 /* ---- Shapes ---------------------------------------------------------------------------------- */
 
 struct page_shape {
@@ -93,7 +88,8 @@ static void write_shape(struct json_writer *json, const struct geometry *geometr
     json_end(json, '}');
 }
 
-size_t page_shapes_index(struct page_shapes *shapes, const struct geometry *geometry)
+/* Adds a geometry if it is new. In: all its frames are valid. Returns its index. */
+static size_t index_of_shape(struct page_shapes *shapes, const struct geometry *geometry)
 {
     struct page_shape *found;
     HASH_FIND(hh, shapes->shape, geometry->bytes, geometry->size, found);
@@ -171,7 +167,7 @@ static void write_placement(const struct placement *placement, struct page_shape
     json_begin(out, NULL, '[');
     json_integer(out, NULL, placement->body_id);
     if (is_drawable(placement)) {
-        json_integer(out, NULL, (int64_t) page_shapes_index(shapes, &placement->geometry));
+        json_integer(out, NULL, (int64_t) index_of_shape(shapes, &placement->geometry));
         json_numbers(out, NULL, placement->position, placement->dim);
         json_numbers(out, NULL, placement->orientation, placement->orientation_count);
         json_numbers(out, NULL, placement->velocity, placement->velocity_count);

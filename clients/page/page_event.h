@@ -20,9 +20,6 @@ void page_json_close(struct page_json *page);
 /* Writes a list of integers. */
 void page_integers(struct json_writer *json, const char *key, const int64_t *number, int count);
 
-/* Copies the text, as of the last page_json_flush(). */
-void page_json_write(const struct page_json *page, FILE *out);
-
 /* Bodies in body coordinates, each stored once: a rigid body has the same frames in every query. */
 struct page_shapes {
     struct page_json json; /* {"dim": ..., "frames": [[shape, numbers...], ...]}, ... */
@@ -30,12 +27,9 @@ struct page_shapes {
     struct page_shape *shape; /* owned: hash table by encoding; NULL: empty */
 };
 
-/* Opens an empty set. Exits with status 1 if memory is exhausted, as page_shapes_index() does. */
+/* Opens an empty set. Exits with status 1 if memory is exhausted. */
 void page_shapes_open(struct page_shapes *out);
 void page_shapes_close(struct page_shapes *shapes);
-
-/* Adds a geometry if it is new. In: all its frames are valid. Returns its index. */
-size_t page_shapes_index(struct page_shapes *shapes, const struct geometry *geometry);
 
 /* Limit on the pairs of one query. Pairs that differ are kept first, then those in contact, then
  * the others. */

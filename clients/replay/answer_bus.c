@@ -2,8 +2,7 @@
  *
  * In: answer_bus_query() for each query of the log, in the order of the log, and
  * answer_bus_supply() for bodies that the service has to hold before a query. Out: one call of the
- * sink for each query, with the encoded result as a recorded one: with the ids of the query in the
- * log.
+ * sink for each query, with the encoded result, which has the ids of the query in the log.
  *
  * Steps of a query:
  *   1. wait_for_turn() handles results until the query is due at the pace of the log (due_at()),

@@ -23,9 +23,8 @@ static bool same_bits(const double *a, const double *b, int count)
     return memcmp(a, b, (size_t) count * sizeof *a) == 0;
 }
 
-/* Whether numbers differ by at most limit. If the difference is infinite or NaN, they do not,
- * unless their bits are the same. Without a tolerance the bits are compared, so that 0 and -0
- * differ. */
+/* Whether each number has the same bits in both lists or differs by at most limit. Without a
+ * tolerance only the bits count, so that 0 and -0 differ. */
 static bool within(const struct compare_options *options, const double *a, const double *b,
                    int count, double limit)
 {

@@ -226,8 +226,8 @@ void replay_take_definition(struct replay *replay, const struct log_event *event
 
 /* ---- Queries ---- */
 
-/* Registers a query that cannot be decoded, or is outside the range of time: it may have a result
- * all the same. */
+/* Registers a query that cannot be decoded, or is outside the range of time: the log may have its
+ * result. */
 static void skip_query(struct replay *replay, struct message *query, bool unreadable)
 {
     query->place.in_range = false;
