@@ -47,12 +47,6 @@ bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, co
     return false;
 }
 
-bool mesh_refuse_memory(struct mesh_source *source, uint64_t count, const char *what)
-{
-    snprintf(source->error, MESH_ERROR_MAX, "there is no memory for %" PRIu64 " %s", count, what);
-    return false;
-}
-
 const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
                       char text[MESH_WORD_MAX])
 {

@@ -42,9 +42,6 @@ bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, co
                       uint64_t index, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* Sets the error for exhausted memory. Returns false. */
-bool mesh_refuse_memory(struct mesh_source *source, uint64_t count, const char *what);
-
 /* Copies the word at this position for an error text, shortened and with other bytes than printable
  * ASCII replaced. Returns text. */
 enum { MESH_WORD_MAX = 32 };
