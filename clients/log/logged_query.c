@@ -28,16 +28,16 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                                   : wire_read_scene_query(bytes, size, &out->scene);
 }
 
-static int32_t least(int32_t a, int32_t b)
+/* The number of placements in the struct. */
+static int32_t placement_count(const struct scene_query *query)
 {
-    return a < b ? a : b;
+    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                         : QUERY_PLACEMENTS_MAX;
 }
 
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
-    *count = query->kind == LOG_PAIR_QUERY
-                 ? 2
-                 : least(query->scene.placement_count, QUERY_PLACEMENTS_MAX);
+    *count = query->kind == LOG_PAIR_QUERY ? 2 : placement_count(&query->scene);
     return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
 }
 
@@ -82,13 +82,6 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
         return 0;
     return query->kind == LOG_PAIR_QUERY ? wire_write_pair_query(&query->pair, out)
                                          : wire_write_scene_query(&query->scene, out);
-}
-
-/* The number of placements in the struct. */
-static int64_t placement_count(const struct scene_query *query)
-{
-    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                         : QUERY_PLACEMENTS_MAX;
 }
 
 int64_t logged_query_pairs(const struct scene_query *query)

@@ -58,21 +58,14 @@ static bool check_finite(struct check_context *context, const char *list, const 
 
 /* ---- Frames ---- */
 
-/* The lists of a geometry in its encoding (placement_t.lcm): dim, count of shapes, shapes, count of
- * numbers, numbers. Counts and dim have 4 bytes, a number 8. */
-static const unsigned char *shapes_of(const struct placement *placement)
+static double number_at(const struct geometry_reader *reader, int32_t i)
 {
-    return placement->geometry.bytes + 4 + 4;
-}
-
-static double number_at(const struct placement *placement, int32_t i)
-{
-    return cursor_double_at(shapes_of(placement) + placement->frame_count + 4 + 8 * (size_t) i);
+    return cursor_double_at(reader->number + 8 * (size_t) i);
 }
 
 static bool check_shapes(struct check_context *context, const struct placement *placement)
 {
-    const unsigned char *shape = shapes_of(placement);
+    const unsigned char *shape = geometry_begin(&placement->geometry).shape;
     int64_t numbers = 0;
     for (int32_t i = 0; i < placement->frame_count; i++) {
         const int count = geometry_number_count(placement->dim, shape[i]);
@@ -87,8 +80,9 @@ static bool check_shapes(struct check_context *context, const struct placement *
 
 static bool check_numbers(struct check_context *context, const struct placement *placement)
 {
+    const struct geometry_reader reader = geometry_begin(&placement->geometry);
     for (int32_t i = 0; i < placement->number_count; i++)
-        if (!isfinite(number_at(placement, i)))
+        if (!isfinite(number_at(&reader, i)))
             return check_refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
     return true;
 }
@@ -96,14 +90,14 @@ static bool check_numbers(struct check_context *context, const struct placement 
 /* Boxes must not have negative sizes. On input: shapes and numbers have been checked. */
 static bool check_sizes(struct check_context *context, const struct placement *placement)
 {
-    const unsigned char *shape = shapes_of(placement);
+    const struct geometry_reader reader = geometry_begin(&placement->geometry);
     const int dim = placement->dim;
     int32_t number = 0;
     for (int32_t i = 0; i < placement->frame_count; i++) {
-        for (int32_t k = number + dim; shape[i] == FMB_BOX && k < number + 2 * dim; k++)
-            if (number_at(placement, k) < 0)
+        for (int32_t k = number + dim; reader.shape[i] == FMB_BOX && k < number + 2 * dim; k++)
+            if (number_at(&reader, k) < 0)
                 return check_refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
-        number += geometry_number_count(dim, shape[i]);
+        number += geometry_number_count(dim, reader.shape[i]);
     }
     return true;
 }
