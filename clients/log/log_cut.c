@@ -362,21 +362,12 @@ static void take_damage(struct cutter *cut, const struct log_damage *damage)
 
 /* ---- The cut ---- */
 
-/* Whether the output is one of the logs, by any name: it would be truncated before it is read. */
-static bool writes_into_log(const struct log_cut_options *options)
-{
-    for (int i = 0; i < options->log_count; i++)
-        if (log_is_same_file(options->output, options->log[i]))
-            return true;
-    return false;
-}
-
 static bool open_cut(struct cutter *cut)
 {
     const struct log_cut_options *options = cut->options;
     if (!input_open(&cut->input, options->log, options->log_count))
         return false;
-    if (writes_into_log(options)) {
+    if (log_is_one_of(options->output, options->log, options->log_count)) {
         complain("%s: is one of the logs that are cut", options->output);
         return false;
     }

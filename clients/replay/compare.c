@@ -6,15 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-const char *difference_name(enum difference_kind kind)
-{
-    static const char *const name[DIFFERENT_KINDS] = {
-        [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
-        [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
-        [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
-    };
-    return name[kind];
-}
+const char *const difference_name[DIFFERENT_KINDS] = {
+    [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
+    [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
+    [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
+};
 
 /* ---- Numbers ---- */
 

@@ -22,8 +22,7 @@ enum difference_kind {
     DIFFERENT_KINDS
 };
 
-/* For example "verdict"; static. */
-const char *difference_name(enum difference_kind kind);
+extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdict" */
 
 /* One of the two answers to a pair. */
 struct difference_side {

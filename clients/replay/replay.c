@@ -136,14 +136,6 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- Opening and closing ---- */
 
-static bool is_read(const struct replay_options *options, const char *path)
-{
-    for (int log = 0; log < options->log_count; log++)
-        if (log_is_same_file(options->log[log], path))
-            return true;
-    return options->golden && log_is_same_file(options->golden, path);
-}
-
 static bool open_goldens(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
@@ -152,7 +144,9 @@ static bool open_goldens(struct replay *replay)
         complain("%s: %s", options->golden, why);
         return false;
     }
-    if (options->write_golden && is_read(options, options->write_golden)) {
+    if (options->write_golden &&
+        (log_is_one_of(options->write_golden, options->log, options->log_count) ||
+         (options->golden && log_is_same_file(options->write_golden, options->golden)))) {
         complain("%s: it is read: write elsewhere", options->write_golden);
         return false;
     }

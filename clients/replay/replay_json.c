@@ -40,7 +40,7 @@ static void write_difference(struct json_writer *json, const struct difference *
         json_integer(json, NULL, difference->placement[1]);
         json_end(json, ']');
     }
-    json_string(json, "kind", difference_name(difference->kind));
+    json_string(json, "kind", difference_name[difference->kind]);
     if (difference->whole) {
         write_status(json, "then", difference->then.status);
         write_status(json, "now", difference->now.status);
@@ -82,8 +82,7 @@ static void write_counts(struct json_writer *json, const struct tally_channel *c
     json_integer(json, "unreadable_results", channel->unreadable[1]);
     json_begin(json, "different_in", '{');
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
-        json_integer(json, difference_name((enum difference_kind) kind),
-                     channel->differences[kind]);
+        json_integer(json, difference_name[kind], channel->differences[kind]);
     json_end(json, '}');
 }
 

@@ -94,7 +94,7 @@ void replay_line(const struct located_difference *located, const char *log, int6
     snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
              log ? log : "", log ? ": " : "", located->place.number,
              ((double) located->place.utime - (double) first_utime) / 1e6, bodies,
-             difference_name(difference->kind), then, now);
+             difference_name[difference->kind], then, now);
 }
 
 /* ---- Counts ---- */
@@ -135,8 +135,7 @@ static void print_kinds(FILE *out, const struct tally *tally)
         char text[NUMBER_TEXT_MAX];
         if (count == 0)
             continue;
-        fprintf(out, "%s%s %s", before, number_grouped(count, text),
-                difference_name((enum difference_kind) kind));
+        fprintf(out, "%s%s %s", before, number_grouped(count, text), difference_name[kind]);
         before = ", ";
     }
     if (before[0] == ',')

@@ -916,7 +916,7 @@ static void test_names(void **state)
 {
     (void) state;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
-        assert_true(strlen(difference_name((enum difference_kind) kind)) > 2);
+        assert_true(strlen(difference_name[kind]) > 2);
 }
 
 int main(void)
