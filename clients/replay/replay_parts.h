@@ -39,7 +39,7 @@ struct replay {
     /* Buffers for messages read again: a query to be answered, and a result that a callback reads
      * meanwhile. */
     unsigned char query_bytes[LOG_DATA_MAX], result_bytes[LOG_DATA_MAX];
-    unsigned char whole[QUERY_BYTES_MAX];
+    unsigned char whole[QUERY_BYTES_MAX]; /* a query to be sent with the frames of its bodies */
     /* The comparison in progress: its query, as in the table and decoded, and both results. */
     const struct match_item *item;
     struct logged_query compared;
