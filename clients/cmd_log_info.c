@@ -4,7 +4,6 @@
 #include "args.h"
 #include "complain.h"
 #include "log_info.h"
-#include "log_info_report.h"
 #include "progress.h"
 
 #include <errno.h>

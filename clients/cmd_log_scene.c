@@ -8,7 +8,7 @@
 #include "log_query.h"
 #include "progress.h"
 #include "scene_json.h"
-#include "scene_of_query.h"
+#include "logged_query.h"
 
 #include <inttypes.h>
 #include <stdio.h>

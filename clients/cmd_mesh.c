@@ -4,7 +4,6 @@
 #include "args.h"
 #include "complain.h"
 #include "mesh_intersect.h"
-#include "mesh_page.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
 #include "progress.h"

@@ -8,7 +8,7 @@
 #include "log_choice.h"
 #include "log_write.h"
 #include "record_report.h"
-#include "signals.h"
+#include "process.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -103,8 +103,8 @@ static bool write_event(struct recording *recording, const char *channel, const 
 {
     if (recording->error)
         return false;
-    if (log_parts_append(&recording->parts, recording->utime, channel, strlen(channel), bytes,
-                         size)) {
+    if (log_append(recording->parts.writer, recording->utime, channel, strlen(channel), bytes,
+                   size)) {
         recording->recorded.events++;
         return true;
     }
@@ -194,7 +194,7 @@ static bool step(struct recording *recording, int signals, int64_t until_ns)
     if (fmb_client_raw_step(recording->client, signals, left_ns > 0 ? 1e-9 * (double) left_ns : 0) <
         0)
         return false;
-    if (!recording->error && !log_parts_flush(&recording->parts))
+    if (!recording->error && !log_flush(recording->parts.writer))
         recording->error = errno;
     return true;
 }
@@ -226,7 +226,7 @@ static bool run(struct recording *recording, int signals)
             line_at_ns = now_ns + line_ns;
         }
         if (now_ns >= check_at_ns && !recording->error) {
-            recording->error = log_parts_check(&recording->parts) ? 0 : errno;
+            recording->error = log_check(recording->parts.writer) ? 0 : errno;
             check_at_ns = now_ns + check_ns;
         }
     }

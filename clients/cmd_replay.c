@@ -104,9 +104,11 @@ struct replay_run {
     struct json_writer json;
 };
 
+/* The path of a log; the golden log comes after the others. */
 static const char *log_name(const struct replay_run *run, int log)
 {
-    return run->options->replay.log[log];
+    const struct replay_options *replay = &run->options->replay;
+    return log < replay->log_count ? replay->log[log] : replay->golden;
 }
 
 static void on_found(void *user, const struct located_difference *found)

@@ -5,20 +5,22 @@
 #include "clock.h"
 #include "confine.h"
 #include "fmb.h"
-#include "notify.h"
-#include "random_id.h"
-#include "stderr_ready.h"
+#include "process.h"
 #include "server.h"
-#include "signals.h"
 
 #include <inttypes.h>
 #include <poll.h>
 #include <sched.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/random.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <time.h>
+#include <unistd.h>
 
 /* Most batches read in a row, so that a flood of datagrams does not prevent answers. */
 enum { BATCHES_MAX = 4 };
@@ -30,10 +32,17 @@ static const int64_t poll_ns = 10000000;
  * yield_pause_ns. */
 static const int64_t long_yield_ns = 1000000, yield_pause_ns = 1000000000, nap_ns = 100000;
 
+/* The service manager (protocol of sd_notify: datagrams to the socket NOTIFY_SOCKET). */
+struct manager {
+    int fd;              /* -1: there is no manager */
+    int64_t watchdog_ns; /* interval of watchdog messages, half of the limit; 0: none */
+    int64_t due_ns;      /* when the next one is due (clock_ns()) */
+};
+
 struct daemon {
     struct bus *bus;
     struct server *server;
-    struct notify notify;
+    struct manager manager;
     int signals;
     int64_t poll_at_ns, yield_at_ns;
     bool failed; /* the bus failed; the reason is on stderr */
@@ -48,6 +57,66 @@ static bool publish(void *user, const char *channel, const unsigned char *bytes,
 static void on_message(void *user, const struct bus_message *message)
 {
     server_receive(user, (enum server_kind) message->listener, message->bytes, message->size);
+}
+
+/* ---- The service manager ---- */
+
+static int connect_to(const char *path)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    const size_t length = path ? strlen(path) : 0;
+    if (length < 2 || length >= sizeof address.sun_path || (path[0] != '/' && path[0] != '@'))
+        return -1;
+    memcpy(address.sun_path, path, length);
+    if (path[0] == '@') /* of the abstract namespace */
+        address.sun_path[0] = '\0';
+    const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const socklen_t size = (socklen_t) (offsetof(struct sockaddr_un, sun_path) + length);
+    if (fd >= 0 && connect(fd, (const struct sockaddr *) &address, size) == 0)
+        return fd;
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+static int64_t watchdog_ns(void)
+{
+    const char *pid = getenv("WATCHDOG_PID"), *limit_us = getenv("WATCHDOG_USEC");
+    if (!limit_us || (pid && strtol(pid, NULL, 10) != (long) getpid()))
+        return 0;
+    const int64_t half_us = strtoll(limit_us, NULL, 10) / 2;
+    return half_us > 0 && half_us < INT64_MAX / 1000 ? half_us * 1000 : 0;
+}
+
+static void notify(const struct manager *manager, const char *text)
+{
+    if (manager->fd >= 0)
+        send(manager->fd, text, strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+/* Opens the socket that the environment names (NOTIFY_SOCKET), and reads the watchdog's interval
+ * (WATCHDOG_USEC, WATCHDOG_PID). Without a manager the functions below have no effect. None of them
+ * blocks. */
+static void notify_open(struct manager *manager)
+{
+    *manager = (struct manager){.fd = connect_to(getenv("NOTIFY_SOCKET"))};
+    if (manager->fd >= 0)
+        manager->watchdog_ns = watchdog_ns();
+}
+
+/* Sends the watchdog message, if it is due. Returns the milliseconds until the next one, rounded
+ * down, or most_ms if that is less or there is no watchdog. */
+static int notify_alive(struct manager *manager, int most_ms)
+{
+    if (!manager->watchdog_ns)
+        return most_ms;
+    const int64_t now_ns = clock_ns();
+    if (now_ns >= manager->due_ns) {
+        notify(manager, "WATCHDOG=1");
+        manager->due_ns = now_ns + manager->watchdog_ns;
+    }
+    const int64_t left_ms = (manager->due_ns - now_ns) / 1000000;
+    return left_ms < most_ms ? (int) left_ms : most_ms;
 }
 
 /* ---- Serving ---- */
@@ -93,7 +162,7 @@ static bool poll_events(struct daemon *daemon)
     if (now_ns < daemon->poll_at_ns)
         return true;
     daemon->poll_at_ns = now_ns + poll_ns;
-    notify_alive(&daemon->notify, 0);
+    notify_alive(&daemon->manager, 0);
     return !signal_pending(daemon);
 }
 
@@ -101,7 +170,7 @@ static bool poll_events(struct daemon *daemon)
  * a signal arrived. */
 static bool sleep_until_due(struct daemon *daemon)
 {
-    const int due_ms = notify_alive(&daemon->notify, server_heartbeat_due_ms(daemon->server));
+    const int due_ms = notify_alive(&daemon->manager, server_heartbeat_due_ms(daemon->server));
     const int ready = bus_wait(daemon->bus, daemon->signals, due_ms);
     if (ready < 0)
         fail(daemon);
@@ -203,10 +272,10 @@ static bool serve_until_signal(struct daemon *daemon, const struct daemon_option
     if (!confine_user(options->user))
         return false;
     confine_calls();
-    notify_ready(&daemon->notify);
+    notify(&daemon->manager, "READY=1");
     report_ready(daemon, options, server_id);
     serve(daemon);
-    notify_stopping(&daemon->notify);
+    notify(&daemon->manager, "STOPPING=1");
     return !daemon->failed;
 }
 
@@ -214,12 +283,13 @@ int daemon_run(const struct daemon_options *options)
 {
     struct daemon daemon = {0};
     const int64_t server_id = random_id();
-    notify_open(&daemon.notify);
+    notify_open(&daemon.manager);
     const bool ended_well = open_server(&daemon, options, server_id) &&
                             open_bus(&daemon, options) &&
                             serve_until_signal(&daemon, options, server_id);
     server_destroy(daemon.server);
     bus_close(daemon.bus);
-    notify_close(&daemon.notify);
+    if (daemon.manager.fd >= 0)
+        close(daemon.manager.fd);
     return ended_well ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,7 +1,7 @@
 #include "malformed.h"
 
 #include "clock.h"
-#include "stderr_ready.h"
+#include "process.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -11,7 +11,7 @@
 #include "jobs.h"
 #include "malformed.h"
 #include "queue.h"
-#include "stderr_ready.h"
+#include "process.h"
 #include "scheduler.h"
 #include "wire.h"
 

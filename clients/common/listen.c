@@ -2,7 +2,7 @@
 
 #include "clock.h"
 #include "complain.h"
-#include "signals.h"
+#include "process.h"
 
 #include <errno.h>
 #include <poll.h>

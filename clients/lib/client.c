@@ -1,7 +1,7 @@
 #include "client.h"
 
 #include "clock.h"
-#include "random_id.h"
+#include "process.h"
 #include "wire_type.h"
 
 #include <assert.h>

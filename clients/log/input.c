@@ -1,27 +1,21 @@
 #include "input.h"
 
 #include "allocate.h"
+#include "complain.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void prepend_path(const char *path, char why[LOG_WHY_MAX])
+bool input_open(struct input *input, char *const *path, int count)
 {
-    char reason[LOG_WHY_MAX];
-    memcpy(reason, why, sizeof reason);
-    snprintf(why, LOG_WHY_MAX, "%.160s: %.90s", path, reason);
-}
-
-bool input_open(struct input *input, char *const *path, int count, char why[LOG_WHY_MAX])
-{
+    char why[LOG_WHY_MAX];
     *input = (struct input){.reader = allocate((size_t) count, sizeof *input->reader),
                             .begin = allocate((size_t) count + 1, sizeof *input->begin)};
     for (; input->count < count; input->count++) {
         struct log_reader *reader = log_open(path[input->count], why);
         if (!reader) {
-            prepend_path(path[input->count], why);
+            complain("%s: %s", path[input->count], why);
             input_close(input);
             return false;
         }

@@ -12,9 +12,9 @@ struct input {
     int64_t passed; /* bytes read by input_next() */
 };
 
-/* Opens all logs. Returns false if one cannot be opened; why names it and the reason. The caller
+/* Opens all logs. Returns false if one cannot be opened, which was reported on stderr. The caller
  * calls input_close() after success. */
-bool input_open(struct input *input, char *const *path, int count, char why[LOG_WHY_MAX]);
+bool input_open(struct input *input, char *const *path, int count);
 void input_close(struct input *input);
 
 /* Total bytes of the logs. */

@@ -10,7 +10,8 @@
  * its queries name by handle and that no copied event defines earlier. They come from anywhere in
  * the logs. Handles that the logs do not define are counted.
  *
- * The logs are read twice: once to choose, once to copy. log_survey.h states the memory needed. */
+ * The logs are read twice: once to choose, once to copy. Memory: a bit for each event, the
+ * unmatched queries and results, and each distinct body. */
 #ifndef LOG_CUT_H
 #define LOG_CUT_H
 

@@ -25,23 +25,6 @@ void log_info_close(struct log_info *info)
 
 /* ---- Tallies --------------------------------------------------------------------------------- */
 
-static void count_event(struct log_tally *tally, const struct log_event *event)
-{
-    if (tally->events == 0)
-        *tally = (struct log_tally){
-            .least = event->size, .most = event->size, .begin = event->utime, .end = event->utime};
-    tally->events++;
-    tally->bytes += (int64_t) event->size;
-    if (event->size < tally->least)
-        tally->least = event->size;
-    if (event->size > tally->most)
-        tally->most = event->size;
-    if (event->utime < tally->begin)
-        tally->begin = event->utime;
-    if (event->utime > tally->end)
-        tally->end = event->utime;
-}
-
 static void add(struct log_tally *sum, const struct log_tally *tally)
 {
     if (tally->events == 0)
@@ -118,7 +101,12 @@ void log_info_event(struct log_info *info, const struct log_event *event)
     struct log_tally *tally = tally_of(info, event);
     info->backward += event->utime < info->utime;
     info->utime = event->utime;
-    count_event(tally, event);
+    add(tally, &(struct log_tally){.events = 1,
+                                   .bytes = (int64_t) event->size,
+                                   .least = event->size,
+                                   .most = event->size,
+                                   .begin = event->utime,
+                                   .end = event->utime});
 }
 
 void log_info_damage(struct log_info *info, const struct log_damage *damage)

@@ -1,4 +1,4 @@
-#include "log_info_report.h"
+#include "log_info.h"
 
 #include "cursor.h"
 #include "escape.h"

@@ -145,22 +145,6 @@ bool log_parts_prepare(struct log_parts *parts, int64_t bytes)
     return !is_full(parts, bytes) || next_file(parts);
 }
 
-bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
-                      size_t channel_length, const void *data, size_t size)
-{
-    return log_append(parts->writer, utime, channel, channel_length, data, size);
-}
-
-bool log_parts_flush(struct log_parts *parts)
-{
-    return log_flush(parts->writer);
-}
-
-bool log_parts_check(struct log_parts *parts)
-{
-    return log_check(parts->writer);
-}
-
 int64_t log_parts_written(const struct log_parts *parts)
 {
     return parts->finished + (parts->writer ? log_written(parts->writer) : 0);

@@ -17,11 +17,12 @@ struct log_parts_options {
 
 struct log_parts {
     struct log_parts_options options;
-    struct log_writer *writer; /* NULL: none is open */
-    int previous;              /* the previous file, perhaps not on disk yet; -1: none */
-    char *name;                /* of the current file, or of the one that failed */
-    long first, number;        /* of the oldest file left, and of the current one */
-    int64_t finished;          /* bytes of all earlier files, deleted ones included */
+    struct log_writer
+        *writer;        /* of the current file, for log_append(), log_flush() and log_check() */
+    int previous;       /* the previous file, perhaps not on disk yet; -1: none */
+    char *name;         /* of the current file, or of the one that failed */
+    long first, number; /* of the oldest file left, and of the current one */
+    int64_t finished;   /* bytes of all earlier files, deleted ones included */
 };
 
 /* Opens the first file. Returns false on error: errno, and in out->name the file if it is not FILE.
@@ -33,13 +34,6 @@ bool log_parts_open(const struct log_parts_options *options, struct log_parts *o
  * file is closed without waiting for the disk; errors of the disk are reported when the next file
  * is full, or at the end. */
 bool log_parts_prepare(struct log_parts *parts, int64_t bytes);
-
-/* As log_append(), log_flush() and log_check(). After one returned false, none of these may be
- * called. */
-bool log_parts_append(struct log_parts *parts, int64_t utime, const char *channel,
-                      size_t channel_length, const void *data, size_t size);
-bool log_parts_flush(struct log_parts *parts);
-bool log_parts_check(struct log_parts *parts);
 
 /* Bytes of all files so far, deleted ones included; as log_written(). */
 int64_t log_parts_written(const struct log_parts *parts);

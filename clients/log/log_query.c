@@ -267,14 +267,11 @@ enum log_query_outcome log_query(const struct log_query_options *options, struct
 {
     struct query_search search = {
         .options = options, .out = out, .channels = log_channels(options->prefix)};
-    char why[LOG_WHY_MAX];
     out->definitions = definitions_open();
-    if (input_open(&search.input, options->log, options->log_count, why)) {
+    if (input_open(&search.input, options->log, options->log_count))
         run(&search);
-    } else {
-        complain("%s", why);
+    else
         search.outcome = LOG_QUERY_FAILED;
-    }
     input_close(&search.input);
     return search.outcome;
 }

@@ -49,6 +49,14 @@ bool log_is_same_file(const char *path, const char *other)
            a.st_ino == b.st_ino;
 }
 
+bool log_is_one_of(const char *path, char *const *other, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (log_is_same_file(path, other[i]))
+            return true;
+    return false;
+}
+
 int64_t log_event_bytes(size_t channel_length, size_t size)
 {
     return LOG_HEADER_BYTES + (int64_t) channel_length + (int64_t) size;

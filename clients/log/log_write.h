@@ -16,8 +16,10 @@ struct log_writer;
  * if force is true; otherwise it is an error (EEXIST). Returns NULL on error: errno. */
 struct log_writer *log_create(const char *path, bool force);
 
-/* Whether both exist and are one file: a log must not be written over one that is read. */
+/* Whether path and another path exist and are one file. A log must not be written over one that is
+ * read, which would be truncated before. */
 bool log_is_same_file(const char *path, const char *other);
+bool log_is_one_of(const char *path, char *const *other, int count);
 
 /* Appends an event. Events are numbered from 0. In: utime: time of receipt, microseconds since
  * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. Returns false on error:

@@ -1,7 +1,11 @@
 #include "logged_query.h"
 
+#include "allocate.h"
+#include "scene.h"
 #include "wire.h"
 
+#include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *read_header(struct logged_query *out, const unsigned char *bytes, uint32_t size)
@@ -24,16 +28,16 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                                   : wire_read_scene_query(bytes, size, &out->scene);
 }
 
-static int32_t least(int32_t a, int32_t b)
+/* The number of placements in the struct. */
+static int32_t placement_count(const struct scene_query *query)
 {
-    return a < b ? a : b;
+    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                         : QUERY_PLACEMENTS_MAX;
 }
 
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
-    *count = query->kind == LOG_PAIR_QUERY
-                 ? 2
-                 : least(query->scene.placement_count, QUERY_PLACEMENTS_MAX);
+    *count = query->kind == LOG_PAIR_QUERY ? 2 : placement_count(&query->scene);
     return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
 }
 
@@ -80,13 +84,6 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
                                          : wire_write_scene_query(&query->scene, out);
 }
 
-/* The number of placements in the struct. */
-static int64_t placement_count(const struct scene_query *query)
-{
-    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                         : QUERY_PLACEMENTS_MAX;
-}
-
 int64_t logged_query_pairs(const struct scene_query *query)
 {
     const int64_t n = placement_count(query);
@@ -101,4 +98,177 @@ int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, un
     if (query->which == QUERY_PAIRS_ACROSS)
         return first * (n - query->split) + second - query->split;
     return first * n - first * (first + 1) / 2 + second - (first + 1);
+}
+
+/* ---- As a scene: bodies ---- */
+
+/* The caller frees what *out owns, even if this returns false. */
+static bool read_body(const struct geometry *geometry, struct scene_body *out)
+{
+    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_frame frame;
+    const size_t count = (size_t) reader.frames_left;
+    const bool several = count > 1;
+    if (several)
+        out->frames = allocate(count, sizeof *out->frames);
+    for (size_t i = 0; i < count; i++) {
+        double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
+        if (!geometry_next(&reader, &frame))
+            return false;
+        const int used = geometry_number_count(reader.dim, frame.shape);
+        memcpy(numbers, frame.origin, (size_t) reader.dim * sizeof *numbers);
+        memcpy(numbers + reader.dim, frame.components,
+               (size_t) (used - reader.dim) * sizeof *numbers);
+        const enum fmb_status status =
+            several
+                ? fmb_frame_make(reader.dim, frame.shape, numbers, (size_t) used, &out->frames[i])
+                : fmb_body_make(reader.dim, frame.shape, numbers, (size_t) used, &out->body);
+        if (status != FMB_OK)
+            return false;
+    }
+    if (reader.numbers_left > 0)
+        return false;
+    return !several ? count == 1 : fmb_body_make_frames(out->frames, count, &out->body) == FMB_OK;
+}
+
+bool scene_takes(const struct geometry *geometry)
+{
+    struct scene_body body = {.id = 0};
+    const bool taken = read_body(geometry, &body);
+    scene_body_clear(&body);
+    return taken;
+}
+
+static void set_body(const struct placement *placement, struct scene_body *out)
+{
+    const bool taken = read_body(&placement->geometry, out);
+    assert(taken);
+    (void) taken;
+    memcpy(out->position, placement->position, sizeof out->position);
+    memcpy(out->velocity, placement->velocity, sizeof out->velocity);
+    memcpy(out->orientation, placement->orientation, sizeof out->orientation);
+    out->orientation_count = placement->orientation_count;
+}
+
+static int compare(const void *left, const void *right)
+{
+    const int64_t a = *(const int64_t *) left, b = *(const int64_t *) right;
+    return (a > b) - (a < b);
+}
+
+/* Returns the lowest id from *id on that is not in sorted[count]. *next: index of the first element
+ * that is *id or more. Advances both for the next call. */
+static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_t *id)
+{
+    for (; *next < count && sorted[*next] <= *id; ++*next)
+        if (sorted[*next] == *id)
+            ++*id;
+    return (*id)++;
+}
+
+/* Whether an earlier placement has the same id. Quadratic, but scenes are small. */
+static bool is_repeated(const struct placement *placement, size_t i)
+{
+    for (size_t before = 0; before < i; before++)
+        if (placement[before].body_id == placement[i].body_id)
+            return true;
+    return false;
+}
+
+static void set_ids(const struct placement *placement, struct scene *scene)
+{
+    int64_t *sorted = allocate(scene->body_count, sizeof *sorted), id = 1;
+    size_t next = 0;
+    for (size_t i = 0; i < scene->body_count; i++)
+        sorted[i] = placement[i].body_id;
+    qsort(sorted, scene->body_count, sizeof *sorted, compare);
+    for (size_t i = 0; i < scene->body_count; i++)
+        scene->body[i].id = placement[i].body_id == 0 || is_repeated(placement, i)
+                                ? free_id(sorted, scene->body_count, &next, &id)
+                                : placement[i].body_id;
+    free(sorted);
+}
+
+static void set_bodies(const struct placement *placement, size_t count, struct scene *scene)
+{
+    scene->dim = count > 0 ? placement[0].dim : FMB_DIM_MAX;
+    scene->body_count = count;
+    scene->body = allocate(count, sizeof *scene->body);
+    for (size_t i = 0; i < count; i++)
+        set_body(&placement[i], &scene->body[i]);
+    set_ids(placement, scene);
+}
+
+/* ---- As a scene: pairs ---- */
+
+struct list {
+    struct scene *scene;
+    size_t capacity;
+    int32_t skip; /* number of pairs still to skip */
+};
+
+static void add(struct list *list, size_t a, size_t b)
+{
+    struct scene *scene = list->scene;
+    if (list->skip > 0) {
+        list->skip--;
+        return;
+    }
+    if (scene_ignores(scene, (struct scene_pair){a, b}))
+        return;
+    scene->pair =
+        allocate_grow(scene->pair, &list->capacity, scene->pair_count + 1, sizeof *scene->pair);
+    scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
+}
+
+static void list_across(struct list *list, size_t split)
+{
+    for (size_t a = 0; a < split; a++)
+        for (size_t b = split; b < list->scene->body_count; b++)
+            add(list, a, b);
+}
+
+static void list_all(struct list *list)
+{
+    for (size_t a = 0; a < list->scene->body_count; a++)
+        for (size_t b = a + 1; b < list->scene->body_count; b++)
+            add(list, a, b);
+}
+
+static void set_ignored(const struct scene_query *query, struct scene *scene)
+{
+    scene->ignored_count = (size_t) (query->ignored_count / 2);
+    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
+    for (size_t k = 0; k < scene->ignored_count; k++)
+        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
+    scene_sort_ignored(scene);
+}
+
+static void set_pairs(const struct scene_query *query, struct scene *scene)
+{
+    struct list list = {.scene = scene, .skip = query->first_pair};
+    scene->all_pairs = query->which == QUERY_PAIRS_ALL && query->first_pair == 0;
+    set_ignored(query, scene);
+    if (query->which == QUERY_PAIRS_ACROSS)
+        list_across(&list, (size_t) query->split);
+    else if (query->which == QUERY_PAIRS_LISTED)
+        for (int32_t k = 0; k < query->index_count / 2; k++)
+            add(&list, query->pair[k][0], query->pair[k][1]);
+    else if (!scene->all_pairs)
+        list_all(&list);
+    scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
+}
+
+void scene_of_query(const struct logged_query *query, struct scene *out)
+{
+    *out = (struct scene){.all_pairs = true};
+    if (query->kind == LOG_PAIR_QUERY) {
+        out->duration = query->pair.duration;
+        set_bodies(query->pair.placement, 2, out);
+        return;
+    }
+    out->duration = query->scene.duration;
+    out->margin = query->scene.margin;
+    set_bodies(query->scene.placement, (size_t) query->scene.placement_count, out);
+    set_pairs(&query->scene, out);
 }

@@ -91,6 +91,12 @@ void match_free(struct match_item *item)
     free(item);
 }
 
+void match_drop(struct match_item *item)
+{
+    if (item && !item->in_table)
+        match_free(item);
+}
+
 struct match_item *match_any(const struct match *match)
 {
     return match->always.hh.next;

@@ -62,6 +62,9 @@ struct match_item *match_new(const struct match_key *key, const struct match_pla
 void match_remove(struct match *match, struct match_item *item);
 void match_free(struct match_item *item);
 
+/* Frees an item unless it is in the table, which owns it. item may be NULL. */
+void match_drop(struct match_item *item);
+
 /* Some item in the table that is the first with its key; NULL: the table is empty. */
 struct match_item *match_any(const struct match *match);
 

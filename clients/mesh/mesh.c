@@ -1,7 +1,7 @@
 #define _FILE_OFFSET_BITS 64
 #include "mesh.h"
 
-#include "mesh_formats.h"
+#include "mesh_source.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -16,14 +16,13 @@
  * degenerate faces overlap; they have more than pq in common if and only if both extend beyond p,
  * or both beyond q.
  *
- * Most pairs are decided by their projections (mesh_flat.h). Orientations in space are computed in
+ * Most pairs are decided by their projections (below). Orientations in space are computed in
  * doubles with an error bound. The engine decides the cases that the bound leaves open, with
  * triangles, and with segments as degenerate triangles. */
 #include "mesh_adjacency.h"
 
 #include "allocate.h"
 #include "mesh_face.h"
-#include "mesh_flat.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -71,6 +70,120 @@ void mesh_adjacency_close(struct mesh_adjacency *adjacency)
     free(adjacency->first);
 }
 
+/* ---- Projections ----
+ *
+ * Adjacent triangles, projected along a coordinate axis: in a plane, the exact side of a line on
+ * which a point lies is cheap to compute. If the projections of F and G intersect in nothing but
+ * one point or edge, and the projection of F has an area, so that no two points of F project to
+ * one, then F and G intersect in nothing else either.
+ *
+ * Method. The projections of F and G are cones with apex a, each spanned by two directions. If both
+ * directions of G lie on the opposite side of a line through one direction of F than F does, or on
+ * that line but opposite to the direction, the cones have no common point but a.
+ *
+ * Accuracy. The sign of the cross product x y - z w is exact if the vectors are. Rounding is
+ * monotonic, so the rounded products x y and z w are in the order of the exact ones, or equal; if
+ * they are equal, the difference of their rounding errors decides, which are doubles if nothing
+ * underflows. The vectors are differences of points, exact if their own rounding errors are 0. If
+ * they are not, a cross product is off by at most 4.01 u of the sum of the magnitudes of its
+ * products: 2 roundings in its factors, 1 in each product and 1 in their difference. The bound
+ * 2^-50 is 8 u. */
+
+struct vector {
+    double x, y;
+    bool exact;
+};
+
+enum { UNKNOWN = 2 }; /* besides the signs -1, 0, 1 */
+
+static bool is_exact(double x, double y, double difference)
+{
+    const double part = difference - x;
+    return (x - (difference - part)) - (y + part) == 0;
+}
+
+static struct vector vector(const double *from, const double *to, int x, int y)
+{
+    const double dx = to[x] - from[x], dy = to[y] - from[y];
+    return (struct vector){dx, dy, is_exact(to[x], from[x], dx) && is_exact(to[y], from[y], dy)};
+}
+
+static int sign(double x)
+{
+    return (x > 0) - (x < 0);
+}
+
+/* Whether a product is 0, or finite and so large that its rounding error is a double. */
+static bool has_exact_error(double x, double y)
+{
+    const double product = fabs(x * y);
+    return x == 0 || y == 0 || (product > 0x1p-900 && product < 0x1p1000);
+}
+
+static int flat_side(struct vector u, struct vector v)
+{
+    const double one = u.x * v.y, other = u.y * v.x;
+    if (!has_exact_error(u.x, v.y) || !has_exact_error(u.y, v.x))
+        return UNKNOWN;
+    if (!u.exact || !v.exact)
+        return fabs(one - other) > 0x1p-50 * (fabs(one) + fabs(other)) ? sign(one - other)
+                                                                       : UNKNOWN;
+    return one != other ? sign(one - other) : sign(fma(u.x, v.y, -one) - fma(u.y, v.x, -other));
+}
+
+/* On input: two collinear vectors. */
+static bool are_opposite(struct vector u, struct vector v)
+{
+    return sign(u.x) * sign(v.x) < 0 || sign(u.y) * sign(v.y) < 0;
+}
+
+/* Whether w lies strictly on the other side of the line of u than the cone, which is on side `own`,
+ * or on that line but opposite to u. */
+static bool is_beyond(struct vector u, int own, struct vector w)
+{
+    const int side = flat_side(u, w);
+    return side == -own || (side == 0 && are_opposite(u, w));
+}
+
+/* Whether the line of u or that of v separates the cone of u and v from that of w and t. */
+static bool separates(struct vector u, struct vector v, struct vector w, struct vector t)
+{
+    const int own = flat_side(u, v);
+    if (own == 0 || own == UNKNOWN)
+        return false;
+    return (is_beyond(u, own, w) && is_beyond(u, own, t)) ||
+           (is_beyond(v, -own, w) && is_beyond(v, -own, t));
+}
+
+/* Whether F = conv(a, b, c) and G = conv(a, d, e) certainly have no common point but a. False: not
+ * known. Points are [axis]. */
+static bool flat_share_vertex(const double *a, const double *b, const double *c, const double *d,
+                              const double *e)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+        const struct vector u = vector(a, b, x, y), v = vector(a, c, x, y);
+        const struct vector w = vector(a, d, x, y), t = vector(a, e, x, y);
+        if (separates(u, v, w, t) || separates(w, t, u, v))
+            return true;
+    }
+    return false;
+}
+
+/* Whether conv(p, q, r) and conv(p, q, s) certainly have no common point outside the segment pq.
+ * False: not known. Points are [axis]. */
+static bool flat_share_edge(const double *p, const double *q, const double *r, const double *s)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+        const struct vector edge = vector(p, q, x, y);
+        const int of_r = flat_side(edge, vector(p, r, x, y));
+        if (of_r != UNKNOWN && of_r != 0 && flat_side(edge, vector(p, s, x, y)) == -of_r)
+            return true;
+    }
+    return false;
+}
+
 /* ---- Orientations ---- */
 
 /* The sign of (q - p) x (r - p) . (s - p); 0 if doubles cannot decide it.
@@ -95,9 +208,7 @@ static int side_of(const double *p, const double *q, const double *r, const doub
         permanent += fabs(w[i]) * (fabs(x) + fabs(y));
         far += fabs(w[i]);
     }
-    if (!(fabs(determinant) > 0x1p-49 * permanent + 0x1p-1070 * far))
-        return 0;
-    return determinant > 0 ? 1 : -1;
+    return fabs(determinant) > 0x1p-49 * permanent + 0x1p-1070 * far ? sign(determinant) : 0;
 }
 
 /* Whether the segment de certainly misses the triangle. False: not known. */
@@ -199,9 +310,8 @@ static bool end_at_edge(const struct mesh_adjacency *adjacency, const struct com
         const double *r = common->own_count[f] ? at(adjacency, common->own[f][0]) : p;
         const bool here = is_between(p, r, q), past_p = !here && is_between(r, p, q);
         const bool past_q = !here && is_between(p, q, r);
-        if (!here && !past_p &&
-            !past_q) /* this face has an area; as the faces overlap, so has the other */
-            return false;
+        if (!here && !past_p && !past_q)
+            return false; /* this face has an area, and so has the other, which overlaps it */
         beyond_p = beyond_p && past_p;
         beyond_q = beyond_q && past_q;
     }
@@ -216,7 +326,7 @@ static enum mesh_relation relation_by_edge(const struct mesh_adjacency *adjacenc
     if (common->own_count[0] && common->own_count[1]) {
         const double *p = at(adjacency, common->shared[0]), *q = at(adjacency, common->shared[1]);
         const double *r = at(adjacency, common->own[0][0]), *s = at(adjacency, common->own[1][0]);
-        if (mesh_flat_share_edge(p, q, r, s) || side_of(p, q, r, s) != 0)
+        if (flat_share_edge(p, q, r, s) || side_of(p, q, r, s) != 0)
             return MESH_SHARE_EDGE;
     }
     for (int f = 0; f < 2; f++)
@@ -236,9 +346,9 @@ static enum mesh_relation relation_by_vertex(const struct mesh_adjacency *adjace
     const double *end[2][2];
     bool open[2], intersect = false;
     if (common->own_count[0] == 2 && common->own_count[1] == 2 &&
-        mesh_flat_share_vertex(at(adjacency, common->shared[0]), at(adjacency, common->own[0][0]),
-                               at(adjacency, common->own[0][1]), at(adjacency, common->own[1][0]),
-                               at(adjacency, common->own[1][1])))
+        flat_share_vertex(at(adjacency, common->shared[0]), at(adjacency, common->own[0][0]),
+                          at(adjacency, common->own[0][1]), at(adjacency, common->own[1][0]),
+                          at(adjacency, common->own[1][1])))
         return MESH_SHARE_VERTEX;
     for (int f = 0; f < 2; f++)
         mesh_face_vertices(adjacency->mesh, face[f], corner[f]);

@@ -3,7 +3,8 @@
 #ifndef MESH_ADJACENCY_H
 #define MESH_ADJACENCY_H
 
-#include "mesh_intersect.h"
+#include "fmb.h"
+#include "mesh.h"
 
 /* Identifies vertices with equal coordinates. */
 struct mesh_adjacency {

@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "clock.h"
-#include "mesh_face.h"
 #include "mesh_adjacency.h"
 
 #include <stdlib.h>
@@ -141,12 +140,6 @@ static void decide_pair(struct mesh_search *search, const unsigned face[2])
         search->status = status;
 }
 
-static void decide_pairs(struct mesh_search *search)
-{
-    for (size_t i = 0; i < search->count; i++)
-        decide_pair(search, search->face[i]);
-}
-
 static void decide_block(struct mesh_search *search)
 {
     static const double none[2] = {0, 0};
@@ -196,10 +189,10 @@ static void decide_candidates(struct mesh_search *search)
     if (is_self(search->query))
         remove_adjacent(search);
     search->intersection->candidates += search->count;
-    if (search->query->method)
-        decide_pairs(search);
-    else if (search->count > 0)
+    if (!search->query->method && search->count > 0)
         decide_block(search);
+    for (size_t i = 0; search->query->method && i < search->count; i++)
+        decide_pair(search, search->face[i]);
 }
 
 /* Converts a number of nodes of the first tree to about as many faces. */

@@ -6,7 +6,7 @@
  * other numbers are passed to strtod(), which also rounds correctly.
  *
  * w is exact for up to 19 digits, as 10^19 < 2^64. With more digits w is not used. */
-#include "mesh_number.h"
+#include "mesh_source.h"
 
 #include <float.h>
 #include <math.h>

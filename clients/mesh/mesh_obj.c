@@ -1,8 +1,7 @@
 /* OBJ parser. A statement is a line, continued on the next one by a backslash at its end. v defines
  * a vertex, f a face. Statements that define no surface are skipped; those that define a surface
  * other than f are an error. */
-#include "mesh_formats.h"
-#include "mesh_number.h"
+#include "mesh_source.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "mesh_page.h"
+#include "mesh_report.h"
 
 #include "json_write.h"
 #include "page_template.h"

@@ -58,20 +58,4 @@ size_t ply_size(enum ply_type type);
  * that a mesh needs. Returns false on error. */
 bool ply_header(struct ply *ply);
 
-/* Reports an error at a value. Returns false. */
-bool ply_refuse(struct ply *ply, const unsigned char *where, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-/* Reads the next value; ply_skip() accepts any number, NaN included. Return false on error. */
-bool ply_value(struct ply *ply, enum ply_type type, double *value);
-bool ply_skip(struct ply *ply, enum ply_type type);
-
-/* Call before and after the values of each vertex, face or other element. In ASCII files a record
- * is a line. */
-bool ply_begin_record(struct ply *ply);
-bool ply_end_record(struct ply *ply);
-
-/* Position of the next value. In ASCII files there may be none. */
-const unsigned char *ply_place(const struct ply *ply);
-
 #endif

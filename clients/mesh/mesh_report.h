@@ -1,4 +1,5 @@
-/* Reports of an intersection of meshes: text, JSON and PLY. */
+/* Reports of an intersection of meshes: text, JSON, PLY and HTML. On output: ferror(out) is set if
+ * writing failed; the caller also checks fclose(). */
 #ifndef MESH_REPORT_H
 #define MESH_REPORT_H
 
@@ -25,7 +26,18 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list);
  * "sharing_edge" and "sharing_vertex" precede the pairs. */
 void mesh_report_json(FILE *out, const struct mesh_report *report);
 
+/* Writes a mesh as binary little-endian PLY with double coordinates, so that reading it gives the
+ * same bits. face_colour: red, green, blue of each face; NULL: none. */
+void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*face_colour)[3]);
+
 /* Writes both meshes as one PLY file, with colours by verdict. */
 void mesh_report_ply(FILE *out, const struct mesh_report *report);
+
+/* Writes an HTML page: a picture of both meshes that can be rotated, with overlapping and touching
+ * faces in colours, and a list of the pairs, MESH_PAGE_PAIRS_MAX at most. The page contains all its
+ * data, some 26 bytes for each face, and fetches nothing. The coordinates of the picture are
+ * rounded to single precision, relative to the centre. */
+enum { MESH_PAGE_PAIRS_MAX = 20000 };
+void mesh_page_write(FILE *out, const struct mesh_report *report);
 
 #endif

@@ -47,12 +47,6 @@ bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, co
     return false;
 }
 
-bool mesh_refuse_memory(struct mesh_source *source, uint64_t count, const char *what)
-{
-    snprintf(source->error, MESH_ERROR_MAX, "there is no memory for %" PRIu64 " %s", count, what);
-    return false;
-}
-
 const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
                       char text[MESH_WORD_MAX])
 {
@@ -65,11 +59,6 @@ const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
     if (!mesh_ends_word(source, at))
         memcpy(text + MESH_WORD_MAX - 4, "...", 4);
     return text;
-}
-
-void *mesh_allocate(size_t count, size_t size)
-{
-    return count > SIZE_MAX / size ? NULL : malloc(count * size);
 }
 
 void mesh_skip_line(struct mesh_source *source)

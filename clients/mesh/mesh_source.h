@@ -1,8 +1,11 @@
-/* The bytes of a mesh file during parsing, and functions for errors and progress. */
+/* Parsers of mesh files, one for each format, and what they share: the bytes of the file, errors,
+ * progress, and numbers. Private to mesh*.c. */
 #ifndef MESH_SOURCE_H
 #define MESH_SOURCE_H
 
 #include "mesh.h"
+
+#include <string.h>
 
 struct mesh_source {
     const unsigned char *begin, *end;  /* *end is readable, and 0 */
@@ -39,17 +42,11 @@ bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, co
                       uint64_t index, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* Sets the error for exhausted memory. Returns false. */
-bool mesh_refuse_memory(struct mesh_source *source, uint64_t count, const char *what);
-
 /* Copies the word at this position for an error text, shortened and with other bytes than printable
  * ASCII replaced. Returns text. */
 enum { MESH_WORD_MAX = 32 };
 const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
                       char text[MESH_WORD_MAX]);
-
-/* Allocates count elements. Returns NULL if memory is exhausted. The caller frees it. */
-void *mesh_allocate(size_t count, size_t size);
 
 /* Advances to the end of the line, which is not consumed, or to the end of the file. */
 void mesh_skip_line(struct mesh_source *source);
@@ -100,6 +97,61 @@ static inline const unsigned char *mesh_skip_spaces(const unsigned char *at)
 static inline bool mesh_ends_word(const struct mesh_source *source, const unsigned char *at)
 {
     return mesh_is_space(*at) || at == source->end;
+}
+
+/* ---- Formats ---- */
+
+/* Each parser reads from the beginning of the source to its end into an empty mesh. Returns true;
+ * or false, with the error in the source and a partial mesh that the caller frees. */
+bool mesh_ply(struct mesh_source *source, struct mesh *out);
+bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out);
+bool mesh_stl_binary(struct mesh_source *source, struct mesh *out);
+bool mesh_obj(struct mesh_source *source, struct mesh *out);
+
+/* Whether the file has the size that its facet count requires as binary STL. */
+bool mesh_is_stl_binary(const struct mesh_source *source);
+
+/* Whether the word at this position is one of the common keywords of OBJ. */
+bool mesh_is_obj_statement(const unsigned char *at);
+
+/* ---- Numbers ---- */
+
+/* Parses a decimal number to the nearest double. In: text terminated by a 0, without white space
+ * before the number. Returns the position after the number, and *value; or NULL if there is no
+ * number.
+ *
+ * A number consists of digits, with an optional sign, decimal point and exponent: "-1.5e-3", ".5",
+ * "5."; or it is nan, inf or infinity in any case. Its value is the nearest double (ties to even),
+ * or infinity from where the largest double is no longer the nearest. The number of digits is not
+ * limited. The caller checks what follows the number.
+ *
+ * Requires the C locale, in which a program starts: it must not call setlocale(). */
+const unsigned char *mesh_number(const unsigned char *at, double *value);
+
+/* Numbers of binary files, in either byte order. Inline: meshes have millions of them. */
+
+/* An unsigned integer of size bytes, 1 to 8. */
+static inline uint64_t mesh_bits(const unsigned char *bytes, size_t size, bool big_endian)
+{
+    uint64_t bits = 0;
+    for (size_t i = 0; i < size; i++)
+        bits = bits << 8 | bytes[big_endian ? i : size - 1 - i];
+    return bits;
+}
+
+/* The IEEE 754 number with these bits. */
+static inline float mesh_float(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static inline double mesh_double(uint64_t bits)
+{
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
 }
 
 #endif

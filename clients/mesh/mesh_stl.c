@@ -9,9 +9,7 @@
  * and endsolid NAME; in any case, with any white space between words. Several solids in one file
  * become one mesh. */
 #include "keyed_hash.h"
-#include "mesh_bits.h"
-#include "mesh_formats.h"
-#include "mesh_number.h"
+#include "mesh_source.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -89,28 +87,15 @@ static bool take(struct mesh_source *source, const char *word)
     return true;
 }
 
-/* Skips three numbers of any value: some programs write normals that are NaN. */
-static bool skip_normal(struct mesh_source *source)
-{
-    double value;
-    for (int axis = 0; axis < 3; axis++) {
-        source->at = mesh_skip_spaces(source->at);
-        const unsigned char *end = mesh_number(source->at, &value);
-        if (!end || !mesh_ends_word(source, end))
-            return refuse_next(source, "a number");
-        source->at = end;
-    }
-    return true;
-}
-
-static bool read_position(struct mesh_source *source, double out[3])
+/* Reads three numbers. finite: others are an error. */
+static bool read_numbers(struct mesh_source *source, bool finite, double out[3])
 {
     for (int axis = 0; axis < 3; axis++) {
         source->at = mesh_skip_spaces(source->at);
         const unsigned char *end = mesh_number(source->at, &out[axis]);
         if (!end || !mesh_ends_word(source, end))
             return refuse_next(source, "a number");
-        if (!isfinite(out[axis]))
+        if (finite && !isfinite(out[axis]))
             return mesh_refuse_line(source, source->at, "%c is not finite", "xyz"[axis]);
         source->at = end;
     }
@@ -126,7 +111,7 @@ static bool read_loop(struct weld *weld)
         if (i > 0 && is_next(source, "endloop"))
             return mesh_refuse_line(source, source->at, "a facet of %d vertices: remove it first",
                                     i);
-        if (!take(source, "vertex") || !read_position(source, position) ||
+        if (!take(source, "vertex") || !read_numbers(source, true, position) ||
             !weld_vertex(weld, position, &corner[i]))
             return false;
     }
@@ -136,10 +121,12 @@ static bool read_loop(struct weld *weld)
     return mesh_add_face(weld->build, corner);
 }
 
+/* The normal is ignored: some programs write NaN. */
 static bool read_facet(struct weld *weld)
 {
     struct mesh_source *source = weld->build->source;
-    return take(source, "facet") && take(source, "normal") && skip_normal(source) &&
+    double normal[3];
+    return take(source, "facet") && take(source, "normal") && read_numbers(source, false, normal) &&
            take(source, "outer") && take(source, "loop") && read_loop(weld) &&
            take(source, "endloop") && take(source, "endfacet");
 }

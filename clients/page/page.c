@@ -10,6 +10,13 @@
 
 enum { OUTCOMES = REPLAY_OUTCOMES };
 
+/* A set of queries. */
+struct page_span {
+    int64_t count[OUTCOMES]; /* [enum replay_outcome] */
+    int64_t total;
+    int64_t time[2]; /* of the first and the last one, microseconds since 1970 */
+};
+
 struct page {
     char *title;                /* owned */
     int64_t begin;              /* of the logs, microseconds since 1970 */
@@ -17,12 +24,9 @@ struct page {
     char **log;                 /* owned */
     struct page_json events;
     struct page_shapes shapes;
-    int64_t count[OUTCOMES];    /* of all queries */
-    int64_t first, last;        /* microseconds since 1970; of all queries */
-    int64_t kept, kept_further; /* within the limits, and differences beyond them */
-    size_t bytes_within;        /* when the limits were reached */
-    int64_t left_out[OUTCOMES];
-    int64_t left_first, left_last; /* as first and last, of those left out */
+    struct page_span all, left_out; /* all queries, and those left out */
+    int64_t kept, kept_further;     /* within the limits, and differences beyond them */
+    size_t bytes_within;            /* when the limits were reached */
 };
 
 /* ---- Adding ---------------------------------------------------------------------------------- */
@@ -67,18 +71,14 @@ static size_t log_index(struct page *page, const char *path)
     return page->log_count++;
 }
 
-static int64_t total(const int64_t count[OUTCOMES])
+static void add(struct page_span *span, const struct replayed *replayed)
 {
-    int64_t sum = 0;
-    for (int i = 0; i < OUTCOMES; i++)
-        sum += count[i];
-    return sum;
-}
-
-static void extend(int64_t *first, int64_t *last, int64_t utime, bool is_first)
-{
-    *first = is_first || utime < *first ? utime : *first;
-    *last = is_first || utime > *last ? utime : *last;
+    const bool is_first = span->total++ == 0;
+    span->count[replayed->outcome]++;
+    if (is_first || replayed->utime < span->time[0])
+        span->time[0] = replayed->utime;
+    if (is_first || replayed->utime > span->time[1])
+        span->time[1] = replayed->utime;
 }
 
 static size_t bytes(const struct page *page)
@@ -99,12 +99,6 @@ static bool may_keep(const struct page *page, enum replay_outcome outcome)
             bytes(page) - page->bytes_within < PAGE_DIFFERENCES_BYTES_MAX);
 }
 
-static void omit(struct page *page, const struct replayed *replayed)
-{
-    extend(&page->left_first, &page->left_last, replayed->utime, total(page->left_out) == 0);
-    page->left_out[replayed->outcome]++;
-}
-
 static void keep(struct page *page, const struct replayed *replayed)
 {
     if (is_within(page))
@@ -121,37 +115,20 @@ static void keep(struct page *page, const struct replayed *replayed)
 void page_take(struct page *page, const struct replayed *replayed)
 {
     assert((int) replayed->outcome >= 0 && (int) replayed->outcome < OUTCOMES);
-    extend(&page->first, &page->last, replayed->utime, total(page->count) == 0);
-    page->count[replayed->outcome]++;
+    add(&page->all, replayed);
     if (may_keep(page, replayed->outcome))
         keep(page, replayed);
     else
-        omit(page, replayed);
+        add(&page->left_out, replayed);
 }
 
 /* ---- Writing --------------------------------------------------------------------------------- */
-
-static void write_counts(struct json_writer *json, const char *key, const int64_t count[OUTCOMES])
-{
-    json_begin(json, key, '[');
-    for (int i = 0; i < OUTCOMES; i++)
-        json_integer(json, NULL, count[i]);
-    json_end(json, ']');
-}
-
-static void write_span(struct json_writer *json, const char *key, int64_t first, int64_t last)
-{
-    json_begin(json, key, '[');
-    json_integer(json, NULL, first);
-    json_integer(json, NULL, last);
-    json_end(json, ']');
-}
 
 static void write_elements(struct json_writer *json, const char *key,
                            const struct page_json *elements)
 {
     json_begin(json, key, '[');
-    page_json_write(elements, json->out);
+    fwrite(elements->bytes, 1, elements->used, json->out);
     json_end(json, ']');
 }
 
@@ -166,10 +143,10 @@ static void write_data(const struct page *page, FILE *out)
         json_string(&json, NULL, page->log[i]);
     json_end(&json, ']');
     json_integer(&json, "begin", page->begin);
-    write_counts(&json, "count", page->count);
-    write_span(&json, "span", page->first, page->last);
-    write_counts(&json, "left_out", page->left_out);
-    write_span(&json, "left_span", page->left_first, page->left_last);
+    page_integers(&json, "count", page->all.count, OUTCOMES);
+    page_integers(&json, "span", page->all.time, 2);
+    page_integers(&json, "left_out", page->left_out.count, OUTCOMES);
+    page_integers(&json, "left_span", page->left_out.time, 2);
     write_elements(&json, "shapes", &page->shapes.json);
     write_elements(&json, "events", &page->events);
     json_end(&json, '}');

@@ -1,11 +1,107 @@
 #include "page_event.h"
 
+#include "keyed_hash.h"
 #include "logged_query.h"
-#include "page_pairs.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* ---- JSON in memory -------------------------------------------------------------------------- */
+
+void page_json_flush(struct page_json *page)
+{
+    if (fflush(page->json.out) != 0 || ferror(page->json.out))
+        allocate_failed();
+}
+
+void page_json_open(struct page_json *out)
+{
+    memset(out, 0, sizeof *out);
+    FILE *stream = open_memstream(&out->bytes, &out->used);
+    if (!stream)
+        allocate_failed();
+    out->json = (struct json_writer){.out = stream, .page = true};
+    page_json_flush(out); /* so that bytes is not NULL */
+}
+
+void page_json_close(struct page_json *page)
+{
+    fclose(page->json.out);
+    free(page->bytes);
+    memset(page, 0, sizeof *page);
+}
+
+void page_integers(struct json_writer *json, const char *key, const int64_t *number, int count)
+{
+    json_begin(json, key, '[');
+    for (int i = 0; i < count; i++)
+        json_integer(json, NULL, number[i]);
+    json_end(json, ']');
+}
+
+/* ---- Shapes ---------------------------------------------------------------------------------- */
+
+struct page_shape {
+    size_t index;
+    UT_hash_handle hh;
+    unsigned char bytes[]; /* the key: the encoded geometry */
+};
+
+void page_shapes_open(struct page_shapes *out)
+{
+    memset(out, 0, sizeof *out);
+    page_json_open(&out->json);
+}
+
+void page_shapes_close(struct page_shapes *shapes)
+{
+    struct page_shape *at = shapes->shape, *next;
+    HASH_CLEAR(hh, shapes->shape);
+    for (; at; at = next) {
+        next = at->hh.next;
+        free(at);
+    }
+    page_json_close(&shapes->json);
+}
+
+static void write_frame(struct json_writer *json, int dim, const struct geometry_frame *frame)
+{
+    json_begin(json, NULL, '[');
+    json_integer(json, NULL, frame->shape);
+    for (int i = 0; i < geometry_number_count(dim, frame->shape); i++)
+        json_number(json, NULL, i < dim ? frame->origin[i] : frame->components[i - dim]);
+    json_end(json, ']');
+}
+
+static void write_shape(struct json_writer *json, const struct geometry *geometry)
+{
+    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_frame frame;
+    json_break(json, "\n");
+    json_begin(json, NULL, '{');
+    json_integer(json, "dim", reader.dim);
+    json_begin(json, "frames", '[');
+    while (geometry_next(&reader, &frame))
+        write_frame(json, reader.dim, &frame);
+    json_end(json, ']');
+    json_end(json, '}');
+}
+
+/* Adds a geometry if it is new. In: all its frames are valid. Returns its index. */
+static size_t index_of_shape(struct page_shapes *shapes, const struct geometry *geometry)
+{
+    struct page_shape *found;
+    HASH_FIND(hh, shapes->shape, geometry->bytes, geometry->size, found);
+    if (found)
+        return found->index;
+    found = allocate(1, sizeof *found + geometry->size);
+    memcpy(found->bytes, geometry->bytes, geometry->size);
+    found->index = shapes->count++;
+    HASH_ADD_KEYPTR(hh, shapes->shape, found->bytes, geometry->size, found);
+    write_shape(&shapes->json.json, geometry);
+    return found->index;
+}
 
 /* ---- Placements ------------------------------------------------------------------------------ */
 
@@ -71,7 +167,7 @@ static void write_placement(const struct placement *placement, struct page_shape
     json_begin(out, NULL, '[');
     json_integer(out, NULL, placement->body_id);
     if (is_drawable(placement)) {
-        json_integer(out, NULL, (int64_t) page_shapes_index(shapes, &placement->geometry));
+        json_integer(out, NULL, (int64_t) index_of_shape(shapes, &placement->geometry));
         json_numbers(out, NULL, placement->position, placement->dim);
         json_numbers(out, NULL, placement->orientation, placement->orientation_count);
         json_numbers(out, NULL, placement->velocity, placement->velocity_count);
@@ -135,13 +231,10 @@ static void write_scene_result(struct json_writer *out, const char *key,
         json_null(out, key);
         return;
     }
-    page_pairs_count(query, result, count);
+    replayed_count(query, result, count);
     begin_result(out, key, result->status, result->detail, result->method, result->compute_ns);
     json_integer(out, "end", result->end_pair);
-    json_begin(out, "count", '[');
-    for (int i = 0; i <= FMB_OVERLAPPING; i++)
-        json_integer(out, NULL, count[i]);
-    json_end(out, ']');
+    page_integers(out, "count", count, FMB_OVERLAPPING + 1);
     json_end(out, '}');
 }
 
@@ -179,47 +272,70 @@ static void write_gap(struct json_writer *out, int dim, const struct fmb_gap *ga
     json_end(out, ']');
 }
 
-static void write_side(struct json_writer *out, const struct page_side *side)
+static void write_side(struct json_writer *out, const struct replayed_side *side)
 {
+    static const double none[2] = {NAN, NAN};
+    const struct fmb_answer *answer = &side->answer;
     if (!side->answered) {
         json_null(out, NULL);
         return;
     }
-    if (!side->has_times && side->dim == 0 && side->gap_dim == 0) {
-        json_integer(out, NULL, side->verdict);
+    if (!answer->has_contact && !answer->has_box && !answer->has_gap) {
+        json_integer(out, NULL, answer->verdict);
         return;
     }
-    const double none[2] = {NAN, NAN};
     json_begin(out, NULL, '[');
-    json_integer(out, NULL, side->verdict);
-    write_numbers(out, side->has_times ? side->times : none, 2);
-    for (int end = 0; end < 2; end++)
-        for (int axis = 0; axis < side->dim; axis++)
-            write_end(out, side->box[end][axis], end);
-    if (side->gap_dim > 0)
-        write_gap(out, side->gap_dim, side->gap);
+    json_integer(out, NULL, answer->verdict);
+    write_numbers(out, answer->has_contact ? answer->contact : none, 2);
+    for (int i = 0; i < 2 * side->dim && answer->has_box; i++)
+        write_end(out, answer->box[i / side->dim][i % side->dim], i / side->dim);
+    if (answer->has_gap)
+        write_gap(out, side->dim, &answer->gap);
     json_end(out, ']');
 }
 
-static void write_pair(struct json_writer *out, const struct page_pair *pair)
+/* Equal, or both NaN. */
+static bool same_numbers(const double *a, const double *b, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!(a[i] == b[i] || (isnan(a[i]) && isnan(b[i]))))
+            return false;
+    return true;
+}
+
+static bool same(const struct fmb_answer *a, const struct fmb_answer *b)
+{
+    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
+           a->has_box == b->has_box && a->has_gap == b->has_gap &&
+           same_numbers(a->contact, b->contact, 2) &&
+           same_numbers(a->box[0], b->box[0], 2 * FMB_DIM_MAX) && query_same_gap(&a->gap, &b->gap);
+}
+
+/* Whether both results answer the pair, differently. */
+static bool differs(const struct replayed_pair *pair)
+{
+    return pair->then.answered && pair->now.answered &&
+           (pair->then.dim != pair->now.dim || !same(&pair->then.answer, &pair->now.answer));
+}
+
+static void write_pair(struct json_writer *out, const struct replayed_pair *pair)
 {
     json_begin(out, NULL, '[');
     json_integer(out, NULL, pair->a);
     json_integer(out, NULL, pair->b);
     write_side(out, &pair->then);
-    if (pair->differs || pair->then.answered != pair->now.answered)
+    if (differs(pair) || pair->then.answered != pair->now.answered)
         write_side(out, &pair->now);
     json_end(out, ']');
 }
 
 enum { RANK_DIFFERS, RANK_CONTACT, RANK_OTHER, RANK_COUNT };
 
-static int rank(const struct page_pair *pair)
+static int rank(const struct replayed_pair *pair)
 {
-    if (pair->differs)
-        return RANK_DIFFERS;
-    return pair->then.verdict >= FMB_TOUCHING || pair->now.verdict >= FMB_TOUCHING ? RANK_CONTACT
-                                                                                   : RANK_OTHER;
+    const bool contact =
+        pair->then.answer.verdict >= FMB_TOUCHING || pair->now.answer.verdict >= FMB_TOUCHING;
+    return differs(pair) ? RANK_DIFFERS : contact ? RANK_CONTACT : RANK_OTHER;
 }
 
 static void write_pairs(const struct replayed *replayed, struct json_writer *out)
@@ -227,10 +343,10 @@ static void write_pairs(const struct replayed *replayed, struct json_writer *out
     int64_t seen = 0, kept = 0;
     json_begin(out, "pairs", '[');
     for (int of_rank = 0; of_rank < RANK_COUNT; of_rank++) {
-        struct page_pairs pairs;
-        struct page_pair pair;
-        page_pairs_begin(replayed, &pairs);
-        while (page_pairs_next(&pairs, &pair)) {
+        struct replayed_pairs pairs;
+        struct replayed_pair pair;
+        replayed_pairs_begin(replayed, &pairs);
+        while (replayed_pairs_next(&pairs, &pair)) {
             if (rank(&pair) != of_rank)
                 continue;
             if (seen++ >= PAGE_PAIRS_MAX)

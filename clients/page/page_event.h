@@ -1,9 +1,35 @@
-/* A query and its results, as the page holds them. */
+/* The data of a page: queries with their results, and the shapes of bodies. */
 #ifndef PAGE_EVENT_H
 #define PAGE_EVENT_H
 
-#include "page_shapes.h"
+#include "json_write.h"
 #include "replayed.h"
+
+/* JSON text in memory, escaped for a <script> element. */
+struct page_json {
+    struct json_writer json; /* the writer of the elements, each on its own line */
+    char *bytes;             /* owned; `used` of them, as of the last page_json_flush() */
+    size_t used;
+};
+
+/* Open a text, and bring bytes up to date. Exit with status 1 if memory is exhausted. */
+void page_json_open(struct page_json *out);
+void page_json_flush(struct page_json *page);
+void page_json_close(struct page_json *page);
+
+/* Writes a list of integers. */
+void page_integers(struct json_writer *json, const char *key, const int64_t *number, int count);
+
+/* Bodies in body coordinates, each stored once: a rigid body has the same frames in every query. */
+struct page_shapes {
+    struct page_json json; /* {"dim": ..., "frames": [[shape, numbers...], ...]}, ... */
+    size_t count;
+    struct page_shape *shape; /* owned: hash table by encoding; NULL: empty */
+};
+
+/* Opens an empty set. Exits with status 1 if memory is exhausted. */
+void page_shapes_open(struct page_shapes *out);
+void page_shapes_close(struct page_shapes *shapes);
 
 /* Limit on the pairs of one query. Pairs that differ are kept first, then those in contact, then
  * the others. */

@@ -1,4 +1,5 @@
-/* A query of a log with its recorded and its new result. */
+/* A query of a log with its recorded result (then) and the new one (now), and an iteration over its
+ * pairs. No shared state. */
 #ifndef REPLAYED_H
 #define REPLAYED_H
 
@@ -29,5 +30,44 @@ struct replayed {
     const struct scene_query *scene;
     const struct scene_result *scene_now, *scene_then;
 };
+
+/* ---- Pairs ---- */
+
+/* What one result states about a pair. */
+struct replayed_side {
+    bool answered;            /* false: nothing, and the other members are 0 */
+    int dim;                  /* of box and gap; 0: there is neither */
+    struct fmb_answer answer; /* verdict 0: the method could not decide */
+};
+
+struct replayed_pair {
+    unsigned a, b; /* indices of placements; in a hostile log perhaps out of range */
+    struct replayed_side then, now;
+};
+
+/* Position of an iteration in one of the results. */
+struct replayed_place {
+    const struct scene_result *result; /* NULL: none, or it answers nothing */
+    int32_t verdict, contact;          /* the next ones */
+};
+
+struct replayed_pairs {
+    const struct replayed *replayed; /* not owned */
+    bool pair_given;
+    struct replayed_place then, now;
+};
+
+/* Begins an iteration: over the pair of a pair query; over listed pairs that a result answers; over
+ * pairs of all or across that a result names, since all others are separated. */
+void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs *out);
+
+/* Returns true and the next pair, or false after the last one. Pairs come in the order of the
+ * query. */
+bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out);
+
+/* Counts the pairs that the result answers with each verdict, including those it does not name. In:
+ * a result to the query, or NULL. */
+void replayed_count(const struct scene_query *query, const struct scene_result *result,
+                    int64_t count[FMB_OVERLAPPING + 1]);
 
 #endif

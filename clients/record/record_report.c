@@ -4,7 +4,7 @@
 #include "escape.h"
 #include "json_write.h"
 #include "number.h"
-#include "stderr_ready.h"
+#include "process.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,7 @@
  *
  * In: answer_bus_query() for each query of the log, in the order of the log, and
  * answer_bus_supply() for bodies that the service has to hold before a query. Out: one call of the
- * sink for each query, with the encoded result as a recorded one: with the ids of the query in the
- * log.
+ * sink for each query, with the encoded result, which has the ids of the query in the log.
  *
  * Steps of a query:
  *   1. wait_for_turn() handles results until the query is due at the pace of the log (due_at()),
@@ -31,7 +30,7 @@
 #include "clock.h"
 #include "complain.h"
 #include "fmb_client_raw.h"
-#include "signals.h"
+#include "process.h"
 #include "wire.h"
 
 #include <math.h>
@@ -76,13 +75,6 @@ struct answer_bus {
     } result;
     unsigned char bytes[QUERY_BYTES_MAX];
 };
-
-/* Frees an item that will not be answered, unless the table owns it. NULL: none. */
-static void free_unowned(struct match_item *item)
-{
-    if (item && !item->in_table)
-        match_free(item);
-}
 
 static bool is_running(const struct answer_bus *bus)
 {
@@ -158,7 +150,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     }
     slot->bus = NULL;
     if (!is_running(bus))
-        free_unowned(item);
+        match_drop(item);
     else if (item)
         deliver(bus, item, &answered);
 }
@@ -246,7 +238,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    free_unowned(item);
+    match_drop(item);
 }
 
 /* Answers a query that the engine does not send, with the status of a service: it is too long, or
@@ -286,7 +278,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
     if (!is_running(bus)) {
-        free_unowned(item);
+        match_drop(item);
         return;
     }
     bus->counts.whole += item->sent_whole;
@@ -336,7 +328,7 @@ void answer_bus_close(struct answer_bus *bus)
         return;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         if (bus->slot[i].bus)
-            free_unowned(bus->slot[i].item);
+            match_drop(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

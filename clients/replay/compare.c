@@ -6,15 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-const char *difference_name(enum difference_kind kind)
-{
-    static const char *const name[DIFFERENT_KINDS] = {
-        [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
-        [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
-        [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
-    };
-    return name[kind];
-}
+const char *const difference_name[DIFFERENT_KINDS] = {
+    [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
+    [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
+    [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
+};
 
 /* ---- Numbers ---- */
 
@@ -23,9 +19,8 @@ static bool same_bits(const double *a, const double *b, int count)
     return memcmp(a, b, (size_t) count * sizeof *a) == 0;
 }
 
-/* Whether numbers differ by at most limit. If the difference is infinite or NaN, they do not,
- * unless their bits are the same. Without a tolerance the bits are compared, so that 0 and -0
- * differ. */
+/* Whether each number has the same bits in both lists or differs by at most limit. Without a
+ * tolerance only the bits count, so that 0 and -0 differ. */
 static bool within(const struct compare_options *options, const double *a, const double *b,
                    int count, double limit)
 {
@@ -135,16 +130,24 @@ static int dim_of(const struct placement *placement)
     return placement->dim == 2 ? 2 : 3;
 }
 
+/* A box or gap of another dimension than the query's is ignored. */
+static struct fmb_answer answer_of(const struct fmb_answer *answer, int dim, int query_dim)
+{
+    struct fmb_answer out = *answer;
+    out.has_box = answer->has_box && dim == query_dim;
+    out.has_gap = answer->has_gap && dim == query_dim;
+    if (!out.has_gap)
+        memset(&out.gap, 0, sizeof out.gap);
+    return out;
+}
+
 /* ---- Pairs ---- */
 
-/* A box or gap of another dimension than the query's is ignored. */
 static struct difference_side side_of_pair(const struct pair_result *result, int dim)
 {
-    struct difference_side side = {
-        .status = result->status, .answer = result->answer, .certificate = result->certificate};
-    side.answer.has_box = side.answer.has_box && result->dim == dim;
-    side.answer.has_gap = side.answer.has_gap && result->dim == dim;
-    return side;
+    return (struct difference_side){.status = result->status,
+                                    .answer = answer_of(&result->answer, result->dim, dim),
+                                    .certificate = result->certificate};
 }
 
 enum replay_outcome compare_pairs(const struct compare_options *options,
@@ -168,110 +171,39 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
 
 /* ---- Scenes ---- */
 
-/* A cursor over the answers of a result. */
-struct answers {
-    const struct scene_query *query;
-    const struct scene_result *result;
-    int32_t next;    /* index of the next verdict */
-    int32_t contact; /* index of the next contact, in times and boxes */
-};
-
-static bool is_contact(unsigned char verdict)
+static struct difference difference_of(const struct scene_query *query,
+                                       const struct replayed_pair *pair)
 {
-    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
-}
-
-/* The number of the next pair among all pairs of the query; INT32_MAX at the end. */
-static int32_t number_at(const struct answers *answers)
-{
-    if (answers->next >= answers->result->verdict_count)
-        return INT32_MAX;
-    if (!answers->result->names_pairs)
-        return answers->query->first_pair + answers->next;
-    const unsigned *pair = answers->result->pair[answers->next];
-    return (int32_t) logged_query_pair_number(answers->query, pair[0], pair[1]);
-}
-
-/* Copies the box of a contact, if it has the query's dimension. */
-static void take_box(const struct answers *answers, int32_t contact, struct fmb_answer *out)
-{
-    const int dim = answers->result->dim;
-    out->has_box = answers->result->has_boxes && dim == dim_of(&answers->query->placement[0]);
-    for (int i = 0; i < 2 * dim && out->has_box; i++)
-        out->box[i / dim][i % dim] = answers->result->boxes[2 * dim * contact + i];
-}
-
-/* Copies the gap of a verdict, if it has the query's dimension. */
-static void take_gap(const struct answers *answers, int32_t verdict, struct fmb_answer *out)
-{
-    const struct scene_result *result = answers->result;
-    out->has_gap = result->has_gaps && query_has_gap(&result->gap[verdict]) &&
-                   result->dim == dim_of(&answers->query->placement[0]);
-    if (out->has_gap)
-        out->gap = result->gap[verdict];
-}
-
-/* Returns the next answer, and advances the cursor. */
-static struct fmb_answer take(struct answers *answers)
-{
-    const struct scene_result *result = answers->result;
-    struct fmb_answer answer = {.verdict = (enum fmb_verdict) result->verdict[answers->next]};
-    take_gap(answers, answers->next++, &answer);
-    if (!is_contact((unsigned char) answer.verdict))
-        return answer;
-    const int32_t contact = answers->contact++;
-    answer.has_contact = result->has_times;
-    for (int end = 0; end < 2 && answer.has_contact; end++)
-        answer.contact[end] = result->times[2 * contact + end];
-    take_box(answers, contact, &answer);
-    return answer;
-}
-
-/* The answer to the pair with this number: the one that the result names, or separated. Advances
- * the cursor past it. */
-static struct fmb_answer answer_to(struct answers *answers, int32_t number)
-{
-    if (number_at(answers) == number)
-        return take(answers);
-    return (struct fmb_answer){.verdict = FMB_SEPARATED};
-}
-
-/* The placements of the pair at the cursor. */
-static const unsigned *pair_at(const struct answers *answers)
-{
-    return answers->result->names_pairs ? answers->result->pair[answers->next]
-                                        : answers->query->pair[number_at(answers)];
-}
-
-static struct difference difference_of(const struct scene_query *query, const unsigned pair[2])
-{
-    struct difference difference = {.dim = dim_of(&query->placement[0])};
+    struct difference difference = {.dim = dim_of(&query->placement[0]),
+                                    .placement = {pair->a, pair->b}};
     for (int f = 0; f < 2; f++) {
-        difference.placement[f] = pair[f];
-        if (pair[f] < (unsigned) query->placement_count && pair[f] < QUERY_PLACEMENTS_MAX)
-            difference.body_id[f] = query->placement[pair[f]].body_id;
+        const unsigned i = difference.placement[f];
+        if (i < (unsigned) query->placement_count && i < QUERY_PLACEMENTS_MAX)
+            difference.body_id[f] = query->placement[i].body_id;
     }
+    difference.then.answer = answer_of(&pair->then.answer, pair->then.dim, difference.dim);
+    difference.now.answer = answer_of(&pair->now.answer, pair->now.dim, difference.dim);
     return difference;
 }
 
-static bool compare_answers(const struct compare_options *options, struct answers *then,
-                            struct answers *now, int32_t end, difference_sink *sink, void *user)
+/* Compares the pairs that both results answer. */
+static enum replay_outcome compare_answers(const struct compare_options *options,
+                                           const struct replayed *scene, difference_sink *sink,
+                                           void *user)
 {
-    bool same = true;
-    for (;;) {
-        const int32_t next_then = number_at(then), next_now = number_at(now);
-        const int32_t number = next_then < next_now ? next_then : next_now;
-        if (number >= end)
-            return same;
-        struct difference difference =
-            difference_of(now->query, pair_at(next_then == number ? then : now));
-        difference.then.answer = answer_to(then, number);
-        difference.now.answer = answer_to(now, number);
-        if (!find_difference(options, now->query->duration, &difference))
-            continue;
-        sink(user, &difference);
-        same = false;
+    enum replay_outcome outcome = REPLAY_SAME;
+    struct replayed_pairs pairs;
+    struct replayed_pair pair;
+    replayed_pairs_begin(scene, &pairs);
+    while (replayed_pairs_next(&pairs, &pair)) {
+        struct difference difference = difference_of(scene->scene, &pair);
+        if (pair.then.answered && pair.now.answered &&
+            find_difference(options, scene->scene->duration, &difference)) {
+            sink(user, &difference);
+            outcome = REPLAY_DIFFERENT;
+        }
     }
+    return outcome;
 }
 
 /* Whether the result is consistent with the query, so that its answers can be iterated. Always true
@@ -326,11 +258,8 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
         return REPLAY_SAME;
     if (!is_consistent(query, then) || !is_consistent(query, now))
         return report_scene_difference(then, now, sink, user);
-    struct answers of_then = {.query = query, .result = then};
-    struct answers of_now = {.query = query, .result = now};
-    const int32_t end = then->end_pair < now->end_pair ? then->end_pair : now->end_pair;
-    const bool same = compare_answers(options, &of_then, &of_now, end, sink, user);
-    return same ? REPLAY_SAME : REPLAY_DIFFERENT;
+    const struct replayed scene = {.scene = query, .scene_then = then, .scene_now = now};
+    return compare_answers(options, &scene, sink, user);
 }
 
 /* ---- Encoded results ----

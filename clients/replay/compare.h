@@ -7,7 +7,7 @@
 #ifndef COMPARE_H
 #define COMPARE_H
 
-#include "log_kind.h"
+#include "match.h"
 #include "query.h"
 #include "replayed.h"
 
@@ -22,8 +22,7 @@ enum difference_kind {
     DIFFERENT_KINDS
 };
 
-/* For example "verdict"; static. */
-const char *difference_name(enum difference_kind kind);
+extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdict" */
 
 /* One of the two answers to a pair. */
 struct difference_side {
@@ -39,6 +38,14 @@ struct difference {
     unsigned placement[2]; /* indices in the query */
     int dim;
     struct difference_side then, now;
+};
+
+/* A difference, with the position of its query in the logs. */
+struct located_difference {
+    struct match_place place; /* of the query */
+    enum log_kind kind;       /* of the query */
+    int64_t client_id, sequence_number;
+    struct difference difference;
 };
 
 struct compare_options {

@@ -56,8 +56,8 @@ static char *copy_of(const char *certificate)
 {
     if (!certificate)
         return NULL;
-    char *copy = allocate(DIFFERENCE_TEXT_MAX, 1);
-    strncpy(copy, certificate, DIFFERENCE_TEXT_MAX - 1);
+    char *copy = allocate(LISTING_CERTIFICATE_MAX, 1);
+    strncpy(copy, certificate, LISTING_CERTIFICATE_MAX - 1);
     return copy;
 }
 

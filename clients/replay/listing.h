@@ -4,9 +4,12 @@
 #ifndef LISTING_H
 #define LISTING_H
 
-#include "located_difference.h"
+#include "compare.h"
 
 struct listing;
+
+/* Most bytes kept of a certificate, final 0 included. */
+enum { LISTING_CERTIFICATE_MAX = 200 };
 
 /* limit: most differences kept, from 0. Exits with status 1 if memory is exhausted. */
 struct listing *listing_open(int64_t limit);
@@ -19,6 +22,7 @@ void listing_put(struct listing *list, const struct located_difference *located)
 int64_t listing_beyond(const struct listing *list);
 
 /* Calls the sink for each difference kept, sorted. None may be added after that. */
+typedef void located_difference_sink(void *user, const struct located_difference *located);
 void listing_each(struct listing *list, located_difference_sink *sink, void *user);
 
 #endif

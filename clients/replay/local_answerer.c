@@ -3,8 +3,7 @@
 #include "allocate.h"
 #include "answer.h"
 #include "clock.h"
-#include "random_id.h"
-#include "scene_of_query.h"
+#include "process.h"
 #include "wire.h"
 
 #include <stdlib.h>
@@ -95,15 +94,17 @@ static bool supply_undefined(struct local_answerer *local, struct new_result *ou
     return missing < 0;
 }
 
-/* ---- Pairs ---- */
+/* ---- Answers ---- */
 
 /* Decides a pair; a job does so if the bodies have several frames. */
-static const struct pair_result *decide_pair(struct local_answerer *local,
-                                             const unsigned char *bytes, uint32_t size,
-                                             struct new_result *out)
+static const char *decide_pair(struct local_answerer *local, const unsigned char *bytes,
+                               uint32_t size, struct new_result *out)
 {
-    const int64_t begin = clock_ns();
     struct pair_result *result = &local->pair;
+    const char *error = logged_query_read(&local->query, LOG_PAIR_QUERY, bytes, size);
+    if (error)
+        return error;
+    const int64_t begin = clock_ns();
     if (!answer_pair(local->answerer, &local->query.pair, result)) {
         pair_job_begin(local->pair_job, local->answerer, bytes, size);
         while (!pair_job_step(local->pair_job))
@@ -113,25 +114,11 @@ static const struct pair_result *decide_pair(struct local_answerer *local,
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
     out->pairs = out->status == FMB_OK;
-    return result;
-}
-
-static const char *answer_one_pair(struct local_answerer *local, const unsigned char *bytes,
-                                   uint32_t size, struct new_result *out)
-{
-    const char *error = logged_query_read(&local->query, LOG_PAIR_QUERY, bytes, size);
-    if (error)
-        return error;
     out->placement = local->query.pair.placement;
     out->placement_count = 2;
-    const struct pair_result *result = decide_pair(local, bytes, size, out);
-    if (out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
-        result = decide_pair(local, bytes, size, out);
     out->size = wire_write_pair_result(result, local->bytes);
     return NULL;
 }
-
-/* ---- Scenes ---- */
 
 static const char *decide_scene(struct local_answerer *local, const unsigned char *bytes,
                                 uint32_t size, struct new_result *out)
@@ -150,22 +137,16 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     out->placement = query->placement;
     out->placement_count = query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
                                                                          : QUERY_PLACEMENTS_MAX;
+    out->size = wire_write_scene_result(result, local->bytes);
     return NULL;
 }
 
-static const char *answer_one_scene(struct local_answerer *local, const unsigned char *bytes,
-                                    uint32_t size, struct new_result *out)
+static const char *decide(struct local_answerer *local, enum log_kind kind,
+                          const unsigned char *bytes, uint32_t size, struct new_result *out)
 {
-    const char *error = decide_scene(local, bytes, size, out);
-    if (error)
-        return error;
-    if (out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
-        decide_scene(local, bytes, size, out);
-    out->size = wire_write_scene_result(scene_job_result(local->job), local->bytes);
-    return NULL;
+    return kind == LOG_PAIR_QUERY ? decide_pair(local, bytes, size, out)
+                                  : decide_scene(local, bytes, size, out);
 }
-
-/* ---- Either ---- */
 
 /* Answers a query that is too long as a service does, which reads only its header. */
 static const char *refuse(struct local_answerer *local, enum log_kind kind,
@@ -178,11 +159,11 @@ static const char *refuse(struct local_answerer *local, enum log_kind kind,
     if (kind == LOG_PAIR_QUERY) {
         answer_pair_refused(local->answerer, &local->query.pair, FMB_OVER_LIMIT, &local->pair);
         out->size = wire_write_pair_result(&local->pair, local->bytes);
-        return NULL;
+    } else {
+        answer_scene_refused(local->answerer, &local->query.scene.header, FMB_OVER_LIMIT,
+                             &local->refused);
+        out->size = wire_write_scene_result(&local->refused, local->bytes);
     }
-    answer_scene_refused(local->answerer, &local->query.scene.header, FMB_OVER_LIMIT,
-                         &local->refused);
-    out->size = wire_write_scene_result(&local->refused, local->bytes);
     return NULL;
 }
 
@@ -194,8 +175,9 @@ const char *local_answer(struct local_answerer *local, enum log_kind kind,
     *out = (struct new_result){.bytes = local->bytes};
     if (size > QUERY_BYTES_MAX)
         return refuse(local, kind, bytes, size, out);
-    const char *error = kind == LOG_PAIR_QUERY ? answer_one_pair(local, bytes, size, out)
-                                               : answer_one_scene(local, bytes, size, out);
+    const char *error = decide(local, kind, bytes, size, out);
+    if (!error && out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
+        decide(local, kind, bytes, size, out);
     out->all_held = out->status == FMB_OK && cache_counts(cache).misses == misses;
     return error;
 }

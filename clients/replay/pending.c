@@ -8,29 +8,18 @@ struct pending_handle {
     UT_hash_handle hh;
 };
 
-struct pending_queries {
-    struct pending_handle *handles;
-};
-
-struct pending_queries *pending_open(void)
-{
-    return allocate(1, sizeof(struct pending_queries));
-}
-
 void pending_free_list(struct match_item *first)
 {
     for (struct match_item *item = first, *next; item; item = next) {
         next = item->pending;
-        if (!item->in_table)
-            match_free(item);
+        match_drop(item);
     }
 }
 
 void pending_close(struct pending_queries *pending)
 {
-    while (pending && !pending_is_empty(pending))
+    while (!pending_is_empty(pending))
         pending_free_list(pending_take(pending, NULL));
-    free(pending);
 }
 
 bool pending_is_empty(const struct pending_queries *pending)

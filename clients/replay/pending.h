@@ -5,16 +5,18 @@
 #include "handle.h"
 #include "match.h"
 
-struct pending_queries;
+/* All 0: empty. */
+struct pending_queries {
+    struct pending_handle *handles; /* owned: hash table; NULL: empty */
+};
 
-/* Exits with status 1 if memory is exhausted. */
-struct pending_queries *pending_open(void);
-/* pending may be NULL. Frees the items that are no longer in the table of match.h. */
+/* Frees the items that are no longer in the table of match.h. */
 void pending_close(struct pending_queries *pending);
 
 bool pending_is_empty(const struct pending_queries *pending);
 
-/* Adds an item that needs this handle. The item is not copied. */
+/* Adds an item that needs this handle. The item is not copied. Exits with status 1 if memory is
+ * exhausted. */
 void pending_add(struct pending_queries *pending, const struct handle *handle,
                  struct match_item *item);
 

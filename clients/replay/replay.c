@@ -9,48 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Reports what cannot be read or written; the replay continues. */
-void replay_fail(struct replay *replay, const char *what)
-{
-    if (!replay->failed)
-        complain("%s: %s", what, strerror(errno));
-    replay->failed = true;
-}
-
-void replay_fail_log(struct replay *replay, int log)
-{
-    replay_fail(replay, log < replay->options->log_count ? replay->options->log[log]
-                                                         : replay->options->golden);
-}
-
-struct tally_channel *replay_channel(struct replay *replay, const struct match_key *key,
-                                     const struct match_place *place)
-{
-    /* results of the golden log are counted with the first log */
-    const int log = place->log < replay->options->log_count ? place->log : 0;
-    return &replay->tally[log].channel[tally_channel_of((enum log_kind) key->kind)];
-}
-
-void replay_refuse(struct replay *replay, enum log_kind kind, const struct message *message,
-                   const char *error)
-{
-    replay_channel(replay, &message->key, &message->place)->unreadable[log_kind_is_result(kind)]++;
-    replay->sink->unreadable(replay->sink->user, &message->place, replay->channels.name[kind],
-                             error);
-}
-
-/* Reads a message again into bytes. */
-bool replay_read_again(struct replay *replay, const struct match_key *key,
-                       const struct match_place *place, unsigned char bytes[LOG_DATA_MAX],
-                       struct message *out)
-{
-    *out = (struct message){*key, *place, bytes, 0};
-    if (event_reader_read(replay->rereader, place->log, place->offset, bytes, &out->size))
-        return true;
-    replay_fail_log(replay, place->log);
-    return false;
-}
-
 /* ---- The golden log: results in the order of their queries ---- */
 
 static void fail_golden(struct replay *replay, int64_t offset, const char *what)
@@ -79,8 +37,7 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
                                        .utime = event->utime}};
     const char *error = read_key(kind, event, &result);
     if (!error)
-        error = comparison_read(replay->comparison, (enum log_kind) result.key.kind, result.bytes,
-                                result.size);
+        error = replay_read_result(replay, &result);
     if (error) {
         fail_golden(replay, event->offset, error);
         return;
@@ -179,14 +136,6 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- Opening and closing ---- */
 
-static bool is_read(const struct replay_options *options, const char *path)
-{
-    for (int log = 0; log < options->log_count; log++)
-        if (log_is_same_file(options->log[log], path))
-            return true;
-    return options->golden && log_is_same_file(options->golden, path);
-}
-
 static bool open_goldens(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
@@ -195,7 +144,9 @@ static bool open_goldens(struct replay *replay)
         complain("%s: %s", options->golden, why);
         return false;
     }
-    if (options->write_golden && is_read(options, options->write_golden)) {
+    if (options->write_golden &&
+        (log_is_one_of(options->write_golden, options->log, options->log_count) ||
+         (options->golden && log_is_same_file(options->write_golden, options->golden)))) {
         complain("%s: it is read: write elsewhere", options->write_golden);
         return false;
     }
@@ -221,11 +172,8 @@ static bool open_answers(struct replay *replay)
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
-    char why[LOG_WHY_MAX];
-    if (!input_open(&replay->input, options->log, options->log_count, why)) {
-        complain("%s", why);
+    if (!input_open(&replay->input, options->log, options->log_count))
         return false;
-    }
     replay->definitions = definitions_open();
     if (!open_answers(replay) || !open_goldens(replay))
         return false;
@@ -236,11 +184,6 @@ static bool open_replay(struct replay *replay)
     replay->defined_end = &replay->defined;
     replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
-    replay->pending = pending_open();
-    const struct comparison_options judging = {options->compare, options->log,  replay->sink,
-                                               replay->tally,    options->page, replay->definitions,
-                                               replay->rereader};
-    replay->comparison = comparison_open(&judging);
     return true;
 }
 
@@ -250,9 +193,8 @@ static void close_replay(struct replay *replay)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
-    comparison_close(replay->comparison);
     pending_free_list(replay->defined);
-    pending_close(replay->pending);
+    pending_close(&replay->pending);
     match_close(replay->match);
     event_reader_close(replay->rereader);
     hasher_destroy(replay->hasher);
@@ -302,8 +244,6 @@ static void finish(struct replay *replay)
     while (replay->golden && take_next_golden(replay))
         continue;
     replay_finish_answers(replay);
-    if (!replay_has_ended(replay))
-        replay_finish_pending(replay);
     if (replay_has_ended(replay)) {
         replay->failed = true;
         return;
@@ -334,14 +274,11 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
 bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime)
 {
     struct input input;
-    char why[LOG_WHY_MAX];
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    if (!input_open(&input, options->log, options->log_count, why)) {
-        complain("%s", why);
+    if (!input_open(&input, options->log, options->log_count))
         return false;
-    }
     while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
         continue;
     *size = input_size(&input);

@@ -4,7 +4,21 @@
 #define REPLAY_H
 
 #include "answer_bus.h"
-#include "comparison.h"
+#include "input.h"
+#include "page.h"
+
+/* Callbacks for the progress and the findings of a replay. None may be NULL. */
+struct replay_sink {
+    void (*difference)(void *user, const struct located_difference *located);
+    /* A message that cannot be decoded, and why; or a second result that contradicts the first. */
+    void (*unreadable)(void *user, const struct match_place *place, const char *channel,
+                       const char *what);
+    /* Damage of a log. */
+    void (*damage)(void *user, int log, const struct log_damage *damage);
+    /* So many bytes of the logs have been read. */
+    void (*progress)(void *user, int64_t bytes);
+    void *user;
+};
 
 struct replay_options {
     char *const *log; /* [log_count] paths, read as one log */

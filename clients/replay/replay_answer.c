@@ -1,3 +1,5 @@
+/* Answers queries, in this process or on the bus; those with handles that are not defined so far
+ * are answered after their definition. */
 #include "replay_parts.h"
 
 #include "allocate.h"
@@ -61,7 +63,7 @@ static void answer_here(struct replay *replay, struct match_item *query,
     if (handle_is_none(&answered->undefined))
         take_answer(replay, query, answered);
     else
-        pending_add(replay->pending, &answered->undefined, query);
+        pending_add(&replay->pending, &answered->undefined, query);
 }
 
 /* last: answers it even if handles are not defined. */
@@ -141,7 +143,7 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
     struct placement *placement = logged_query_placements(&replay->query, &count);
     const int32_t missing = definitions_missing(replay->definitions, placement, count);
     if (missing >= 0 && !last) {
-        pending_add(replay->pending, &placement[missing].handle, query);
+        pending_add(&replay->pending, &placement[missing].handle, query);
         return;
     }
     fill_frames(replay, placement, count);
@@ -157,14 +159,15 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
 
 /* ---- Definitions ---- */
 
-/* Schedules the queries that needed this body. */
-static void schedule_defined(struct replay *replay, const struct handle *handle)
+/* Schedules the queries that need this body (NULL: some body). Returns false if there are none. */
+static bool schedule_pending(struct replay *replay, const struct handle *handle)
 {
-    struct match_item *query = pending_take(replay->pending, handle), *next;
-    for (; query; query = next) {
+    struct match_item *first = pending_take(&replay->pending, handle), *next;
+    for (struct match_item *query = first; query; query = next) {
         next = query->pending;
         schedule(replay, query);
     }
+    return first;
 }
 
 /* Registers the bodies that a service caches: those with frames and an id. */
@@ -173,10 +176,10 @@ static void define(struct replay *replay, const struct placement *placement, int
     for (int32_t i = 0; i < count; i++) {
         const struct geometry *geometry = &placement[i].geometry;
         if (!definitions_add_placement(replay->definitions, &placement[i]) ||
-            pending_is_empty(replay->pending))
+            pending_is_empty(&replay->pending))
             continue;
         const struct handle handle = hasher_handle(replay->hasher, geometry->bytes, geometry->size);
-        schedule_defined(replay, &handle);
+        schedule_pending(replay, &handle);
     }
 }
 
@@ -217,20 +220,18 @@ void replay_take_definition(struct replay *replay, const struct log_event *event
     replay->tally[place->log].definitions++;
     for (int32_t i = 0; i < definition->body_count; i++)
         if (definitions_add(replay->definitions, &definition->body[i].geometry))
-            schedule_defined(replay, &definition->body[i].handle);
+            schedule_pending(replay, &definition->body[i].handle);
     answer_defined(replay, false);
 }
 
 /* ---- Queries ---- */
 
-/* Registers a query that cannot be decoded, or is outside the range of time: it may have a result
- * all the same. */
+/* Registers a query that cannot be decoded, or is outside the range of time: the log may have its
+ * result. */
 static void skip_query(struct replay *replay, struct message *query, bool unreadable)
 {
     query->place.in_range = false;
-    struct match_item *item = replay_begin_query(replay, query, unreadable);
-    if (!item->in_table)
-        match_free(item);
+    match_drop(replay_begin_query(replay, query, unreadable));
 }
 
 /* Decodes the query, and answers it or sends it to the service. */
@@ -280,15 +281,9 @@ static void finish_answers(struct replay *replay, bool last)
 void replay_finish_answers(struct replay *replay)
 {
     finish_answers(replay, false);
-}
-
-/* Answers the queries that need handles without a definition: none will follow. */
-void replay_finish_pending(struct replay *replay)
-{
-    for (struct match_item *query, *next; (query = pending_take(replay->pending, NULL));)
-        for (; query; query = next) {
-            next = query->pending;
-            schedule(replay, query);
-        }
+    if (replay_has_ended(replay))
+        return;
+    while (schedule_pending(replay, NULL)) /* no definition will follow */
+        continue;
     finish_answers(replay, true);
 }

@@ -1,9 +1,6 @@
 #include "replay_output.h"
 
 #include "report.h"
-#include "wire.h"
-
-static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
 struct json_writer replay_json_begin(FILE *out)
 {
@@ -43,7 +40,7 @@ static void write_difference(struct json_writer *json, const struct difference *
         json_integer(json, NULL, difference->placement[1]);
         json_end(json, ']');
     }
-    json_string(json, "kind", difference_name(difference->kind));
+    json_string(json, "kind", difference_name[difference->kind]);
     if (difference->whole) {
         write_status(json, "then", difference->then.status);
         write_status(json, "now", difference->now.status);
@@ -62,7 +59,7 @@ void replay_json_found(struct json_writer *json, const struct located_difference
     json_integer(json, "offset", located->place.offset);
     json_integer(json, "utime", located->place.utime);
     json_number(json, "time", ((double) located->place.utime - (double) first_utime) / 1e6);
-    json_string(json, "channel", channel_name[tally_channel_of(located->kind)]);
+    json_string(json, "channel", tally_channel_name[tally_channel_of(located->kind)]);
     json_integer(json, "client_id", located->client_id);
     json_integer(json, "sequence_number", located->sequence_number);
     write_difference(json, &located->difference);
@@ -85,8 +82,7 @@ static void write_counts(struct json_writer *json, const struct tally_channel *c
     json_integer(json, "unreadable_results", channel->unreadable[1]);
     json_begin(json, "different_in", '{');
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
-        json_integer(json, difference_name((enum difference_kind) kind),
-                     channel->differences[kind]);
+        json_integer(json, difference_name[kind], channel->differences[kind]);
     json_end(json, '}');
 }
 
@@ -129,7 +125,7 @@ static void write_channels(struct json_writer *json, const struct tally *tally)
     write_counts(json, &all);
     json_begin(json, "channels", '{');
     for (int i = 0; i < TALLY_CHANNELS; i++) {
-        json_begin(json, channel_name[i], '{');
+        json_begin(json, tally_channel_name[i], '{');
         write_counts(json, &tally->channel[i]);
         json_end(json, '}');
     }

@@ -1,15 +1,12 @@
 #include "replay_output.h"
 
 #include "escape.h"
-#include "wire.h"
 
 #include <inttypes.h>
 #include <string.h>
 
 /* Lines in a failed test case. */
 enum { LINES_MAX = 100 };
-
-static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
 static void write_xml(FILE *out, const char *text)
 {
@@ -57,7 +54,7 @@ static void write_channel(FILE *out, const char *log, int index, int channel_ind
                           struct listing *list, const struct tally_channel *channel,
                           int64_t first_utime)
 {
-    begin_case(out, log, channel_name[channel_index]);
+    begin_case(out, log, tally_channel_name[channel_index]);
     if (channel->outcome[REPLAY_DIFFERENT] > 0) {
         fprintf(out,
                 "      <failure message=\"%" PRId64 " of %" PRId64

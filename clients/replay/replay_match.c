@@ -1,3 +1,4 @@
+/* Matches queries with their recorded results. */
 #include "replay_parts.h"
 
 static void refuse_result(struct replay *replay, const struct message *result, const char *error)
@@ -8,14 +9,6 @@ static void refuse_result(struct replay *replay, const struct message *result, c
 
 /* ---- Query and result ---- */
 
-/* Compares a query that has its new result with the decoded result, and frees it. */
-static void compare_and_free(struct replay *replay, struct match_item *query)
-{
-    if (!comparison_run(replay->comparison, query))
-        replay_fail_log(replay, query->place.log);
-    match_free(query);
-}
-
 /* Compares a query that was removed from the table with its recorded result, which could be read
  * before. */
 void replay_compare_recorded(struct replay *replay, struct match_item *query)
@@ -23,11 +16,9 @@ void replay_compare_recorded(struct replay *replay, struct match_item *query)
     struct message result;
     if (query->place.in_range &&
         replay_read_again(replay, &query->key, &query->then, replay->result_bytes, &result) &&
-        !comparison_read(replay->comparison, (enum log_kind) query->key.kind, result.bytes,
-                         result.size))
-        compare_and_free(replay, query);
-    else
-        match_free(query);
+        !replay_read_result(replay, &result))
+        replay_compare(replay, query);
+    match_free(query);
 }
 
 /* Closes a query: no other result is accepted for it. It is compared now if it is answered,
@@ -73,15 +64,12 @@ static void compare_second(struct replay *replay, const struct message *result,
 {
     const struct match_place first = {.log = note->result_log, .offset = note->result_offset};
     struct message earlier;
-    const char *error = comparison_read(replay->comparison, (enum log_kind) result->key.kind,
-                                        result->bytes, result->size);
+    const char *error = replay_read_result(replay, result);
     if (error)
         refuse_result(replay, result, error);
     else if (result->place.in_range &&
-             replay_read_again(replay, &result->key, &first, replay->result_bytes, &earlier) &&
-             !comparison_second(replay->comparison, note, &result->place, earlier.bytes,
-                                earlier.size))
-        replay_fail_log(replay, result->place.log);
+             replay_read_again(replay, &result->key, &first, replay->result_bytes, &earlier))
+        replay_compare_second(replay, note, result, &earlier);
 }
 
 /* Keeps a result of a query that has no answer yet, or a transient result: the query stays in the
@@ -89,8 +77,7 @@ static void compare_second(struct replay *replay, const struct message *result,
 static void keep_result(struct replay *replay, struct match_item *query,
                         const struct message *result)
 {
-    const bool transient =
-        comparison_is_transient(replay->comparison, (enum log_kind) query->key.kind);
+    const bool transient = replay_is_transient(replay, (enum log_kind) query->key.kind);
     if (!query->has_recorded || !transient)
         query->then = result->place;
     query->has_recorded = true;
@@ -104,27 +91,24 @@ static void complete_query(struct replay *replay, struct match_item *query,
 {
     match_remove(replay->match, query);
     match_note(replay->match, query, &result->place);
-    if (is_compared)
-        match_free(query);
-    else
-        compare_and_free(replay, query);
+    if (!is_compared)
+        replay_compare(replay, query);
+    match_free(query);
 }
 
 static void take_result_of(struct replay *replay, struct match_item *query,
                            const struct message *result)
 {
     const enum log_kind kind = (enum log_kind) query->key.kind;
-    const bool is_same =
-        query->now && comparison_same_bytes(replay->comparison, query, result->bytes, result->size);
-    const char *error =
-        is_same ? NULL : comparison_read(replay->comparison, kind, result->bytes, result->size);
+    const bool is_same = query->now && replay_same_bytes(replay, query, result);
+    const char *error = is_same ? NULL : replay_read_result(replay, result);
     if (error) {
         refuse_result(replay, result, error);
         return;
     }
     replay_channel(replay, &result->key, &result->place)->results_again +=
         query->has_recorded && result->place.in_range;
-    if (is_same || (query->now && !comparison_is_transient(replay->comparison, kind)))
+    if (is_same || (query->now && !replay_is_transient(replay, kind)))
         complete_query(replay, query, result, is_same);
     else
         keep_result(replay, query, result);
@@ -133,8 +117,7 @@ static void take_result_of(struct replay *replay, struct match_item *query,
 /* Keeps a result that precedes its query, or has none. */
 static void keep_early_result(struct replay *replay, const struct message *result)
 {
-    const char *error = comparison_read(replay->comparison, (enum log_kind) result->key.kind,
-                                        result->bytes, result->size);
+    const char *error = replay_read_result(replay, result);
     if (error)
         refuse_result(replay, result, error);
     else
@@ -184,8 +167,7 @@ void replay_finish_matches(struct replay *replay)
     match_finish(replay->match, on_matched, replay);
     for (struct match_item *query; (query = match_any(replay->match));) {
         match_remove(replay->match, query);
-        if (!comparison_unrecorded(replay->comparison, query))
-            replay_fail_log(replay, query->place.log);
+        replay_unrecorded(replay, query);
         match_free(query);
     }
 }

@@ -1,7 +1,6 @@
 #include "replay_output.h"
 
 #include "number.h"
-#include "wire.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -10,6 +9,9 @@
 
 /* ---- One difference ---- */
 
+/* Bytes of one side of a difference, for example "touching". */
+enum { SIDE_MAX = 320 };
+
 static const char *end_text(double value, char text[NUMBER_TEXT_MAX])
 {
     if (!isinf(value))
@@ -17,29 +19,29 @@ static const char *end_text(double value, char text[NUMBER_TEXT_MAX])
     return strcpy(text, value < 0 ? "-inf" : "inf");
 }
 
-static void interval_text(const struct fmb_answer *answer, char text[REPLAY_SIDE_MAX])
+static void interval_text(const struct fmb_answer *answer, char text[SIDE_MAX])
 {
     char ends[2][NUMBER_TEXT_MAX];
     if (answer->has_contact)
-        snprintf(text, REPLAY_SIDE_MAX, "%s to %s s", end_text(answer->contact[0], ends[0]),
+        snprintf(text, SIDE_MAX, "%s to %s s", end_text(answer->contact[0], ends[0]),
                  end_text(answer->contact[1], ends[1]));
     else
         strcpy(text, "none");
 }
 
-static void box_text(const struct fmb_answer *answer, int dim, char text[REPLAY_SIDE_MAX])
+static void box_text(const struct fmb_answer *answer, int dim, char text[SIDE_MAX])
 {
     static const char axis_name[] = "xyz";
     char ends[2][NUMBER_TEXT_MAX];
     size_t used = 0;
     strcpy(text, "none");
     for (int axis = 0; axis < dim && answer->has_box; axis++)
-        used += (size_t) snprintf(
-            text + used, REPLAY_SIDE_MAX - used, "%s%c %s..%s", axis ? "  " : "", axis_name[axis],
-            end_text(answer->box[0][axis], ends[0]), end_text(answer->box[1][axis], ends[1]));
+        used += (size_t) snprintf(text + used, SIDE_MAX - used, "%s%c %s..%s", axis ? "  " : "",
+                                  axis_name[axis], end_text(answer->box[0][axis], ends[0]),
+                                  end_text(answer->box[1][axis], ends[1]));
 }
 
-static void gap_text(const struct fmb_answer *answer, int dim, char text[REPLAY_SIDE_MAX])
+static void gap_text(const struct fmb_answer *answer, int dim, char text[SIDE_MAX])
 {
     char number[2][NUMBER_TEXT_MAX];
     const struct fmb_gap *gap = &answer->gap;
@@ -47,22 +49,22 @@ static void gap_text(const struct fmb_answer *answer, int dim, char text[REPLAY_
     if (!answer->has_gap)
         return;
     size_t used =
-        (size_t) snprintf(text, REPLAY_SIDE_MAX, "%s..%s along",
-                          end_text(gap->bounds[0], number[0]), end_text(gap->bounds[1], number[1]));
+        (size_t) snprintf(text, SIDE_MAX, "%s..%s along", end_text(gap->bounds[0], number[0]),
+                          end_text(gap->bounds[1], number[1]));
     for (int axis = 0; axis < dim; axis++)
-        used += (size_t) snprintf(text + used, REPLAY_SIDE_MAX - used, " %s",
+        used += (size_t) snprintf(text + used, SIDE_MAX - used, " %s",
                                   number_exact(gap->direction[axis], number[0]));
 }
 
-static void status_text(const struct difference_side *side, char text[REPLAY_SIDE_MAX])
+static void status_text(const struct difference_side *side, char text[SIDE_MAX])
 {
     const char *verdict = fmb_verdict_name((int) side->answer.verdict);
     const char *said = side->status == FMB_OK ? "decided" : fmb_status_text(side->status);
-    snprintf(text, REPLAY_SIDE_MAX, "%s", side->status == FMB_OK && verdict ? verdict : said);
+    snprintf(text, SIDE_MAX, "%s", side->status == FMB_OK && verdict ? verdict : said);
 }
 
-void replay_side_text(const struct difference *difference, const struct difference_side *side,
-                      char text[REPLAY_SIDE_MAX])
+static void side_text(const struct difference *difference, const struct difference_side *side,
+                      char text[SIDE_MAX])
 {
     const char *verdict = fmb_verdict_name((int) side->answer.verdict);
     switch (difference->kind) {
@@ -70,10 +72,10 @@ void replay_side_text(const struct difference *difference, const struct differen
     case DIFFERENT_BOX: box_text(&side->answer, difference->dim, text); break;
     case DIFFERENT_GAP: gap_text(&side->answer, difference->dim, text); break;
     case DIFFERENT_CERTIFICATE:
-        snprintf(text, REPLAY_SIDE_MAX, "%.200s", side->certificate ? side->certificate : "none");
+        snprintf(text, SIDE_MAX, "%.200s", side->certificate ? side->certificate : "none");
         break;
     case DIFFERENT_VERDICT:
-        snprintf(text, REPLAY_SIDE_MAX, "%s", verdict ? verdict : "not decided");
+        snprintf(text, SIDE_MAX, "%s", verdict ? verdict : "not decided");
         break;
     default: status_text(side, text); break;
     }
@@ -83,21 +85,19 @@ void replay_line(const struct located_difference *located, const char *log, int6
                  char line[REPLAY_LINE_MAX])
 {
     const struct difference *difference = &located->difference;
-    char then[REPLAY_SIDE_MAX], now[REPLAY_SIDE_MAX], bodies[64] = "the scene";
-    replay_side_text(difference, &difference->then, then);
-    replay_side_text(difference, &difference->now, now);
+    char then[SIDE_MAX], now[SIDE_MAX], bodies[64] = "the scene";
+    side_text(difference, &difference->then, then);
+    side_text(difference, &difference->now, now);
     if (!difference->whole)
         snprintf(bodies, sizeof bodies, "bodies %" PRId64 " %" PRId64, difference->body_id[0],
                  difference->body_id[1]);
     snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
              log ? log : "", log ? ": " : "", located->place.number,
              ((double) located->place.utime - (double) first_utime) / 1e6, bodies,
-             difference_name(difference->kind), then, now);
+             difference_name[difference->kind], then, now);
 }
 
 /* ---- Counts ---- */
-
-static const char *const channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
 static void print_row(FILE *out, const char *name, const struct tally_channel *channel)
 {
@@ -123,7 +123,7 @@ static void print_channels(FILE *out, const struct tally *tally)
     fprintf(out, "%-16s %12s %12s %12s %12s %12s %12s %12s %12s %12s\n", "", "queries", "pairs",
             "same", "different", "busy", "unknown body", "not defined", "no result", "unreadable");
     for (int i = 0; i < TALLY_CHANNELS; i++)
-        print_row(out, channel_name[i], &tally->channel[i]);
+        print_row(out, tally_channel_name[i], &tally->channel[i]);
 }
 
 static void print_kinds(FILE *out, const struct tally *tally)
@@ -135,8 +135,7 @@ static void print_kinds(FILE *out, const struct tally *tally)
         char text[NUMBER_TEXT_MAX];
         if (count == 0)
             continue;
-        fprintf(out, "%s%s %s", before, number_grouped(count, text),
-                difference_name((enum difference_kind) kind));
+        fprintf(out, "%s%s %s", before, number_grouped(count, text), difference_name[kind]);
         before = ", ";
     }
     if (before[0] == ',')

@@ -1,5 +1,9 @@
 #include "tally.h"
 
+#include "wire.h"
+
+const char *const tally_channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
+
 int tally_channel_of(enum log_kind kind)
 {
     return kind == LOG_SCENE_QUERY || kind == LOG_SCENE_RESULT ? TALLY_SCENES : TALLY_PAIRS;

@@ -19,6 +19,7 @@ struct tally_channel {
 };
 
 enum { TALLY_PAIRS, TALLY_SCENES, TALLY_CHANNELS };
+extern const char *const tally_channel_name[TALLY_CHANNELS]; /* of the queries */
 
 /* Counts of a replay through a service on the bus (answer_bus.h). */
 struct tally_bus {

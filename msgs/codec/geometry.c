@@ -66,11 +66,6 @@ void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES])
 
 /* ---- Reading ---- */
 
-int geometry_shape(const struct geometry *geometry)
-{
-    return big_endian_32(geometry->bytes + FRAMES_AT) > 0 ? geometry->bytes[SHAPES_AT] : 0;
-}
-
 struct geometry_reader geometry_begin(const struct geometry *geometry)
 {
     const unsigned char *bytes = geometry->bytes;
@@ -103,11 +98,4 @@ bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out)
     reader->number += 8 * count;
     reader->numbers_left -= count;
     return true;
-}
-
-bool geometry_read(const struct geometry *geometry, int *dim, struct geometry_frame *out)
-{
-    struct geometry_reader reader = geometry_begin(geometry);
-    *dim = reader.dim;
-    return geometry_next(&reader, out);
 }

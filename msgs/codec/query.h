@@ -136,12 +136,6 @@ struct geometry_reader geometry_begin(const struct geometry *geometry);
  */
 bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out);
 
-/* Reads the first frame. *dim: its dimension. Returns false if geometry_next() does. */
-bool geometry_read(const struct geometry *geometry, int *dim, struct geometry_frame *out);
-
-/* Shape of the first frame; 0: there is none. */
-int geometry_shape(const struct geometry *geometry);
-
 struct pair_query {
     QUERY_HEADER;
     double duration; /* seconds */

@@ -142,21 +142,13 @@ are_valid_pairs(const unsigned (*restrict pair)[2], unsigned placements)
     return !bad;
 }
 
-static bool refuse_pair(struct check_context *context, const char *field, int32_t index,
-                        const char *reason)
-{
-    char place[32];
-    snprintf(place, sizeof place, "%s[%d]", field, (int) index);
-    return check_refuse(context, FMB_BAD_PAIR, place, reason);
-}
-
 static bool check_pair_at(struct check_context *context, const char *field, const unsigned pair[2],
                           int32_t i, unsigned placements)
 {
     const bool inside = pair[0] < placements && pair[1] < placements;
     return (inside && pair[0] != pair[1]) ||
-           refuse_pair(context, field, 2 * i + (pair[0] < placements),
-                       inside ? "a placement against itself" : "no placement has this index");
+           check_refuse_at(context, FMB_BAD_PAIR, field, 2 * i + (pair[0] < placements),
+                           inside ? "a placement against itself" : "no placement has this index");
 }
 
 /* Checks count pairs: whole groups of PAIR_GROUP at once, the pairs of an invalid group and the
@@ -198,7 +190,7 @@ static bool check_ignored(struct check_context *context, struct scene_job *job)
             (unsigned char) (1u << bit_of(query->ignored[i]) % 8);
     for (int32_t i = 0; i < query->index_count / 2; i++)
         if (job->ignored[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
-            return refuse_pair(context, "indices", 2 * i, "a pair to ignore");
+            return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair to ignore");
     return true;
 }
 

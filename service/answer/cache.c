@@ -188,8 +188,8 @@ void cache_prefault(struct cache *cache)
  * of 64 bits collide for at most a fraction 2 / buckets of all odd numbers (Dietzfelbinger,
  * Hagerup, Katajainen, Penttonen, "A Reliable Randomized Algorithm for the Closest-Pair Problem",
  * 1997), whatever the client knows of this code. Results and counters depend on the secret only
- * through which ids are known. Hence each of n bodies
- * or ids that a client has chosen is, on average, compared with fewer than 1 + 2 n / buckets.
+ * through which ids are known. Hence each of n bodies or ids that a client has chosen is, on
+ * average, compared with fewer than 1 + 2 n / buckets.
  *
  * For a handle, x is its first half. Handles are hashes themselves: two bodies with the same first
  * half take some 2^32 hashes to find, three some 2^43, and a set that would make a long chain is

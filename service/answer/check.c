@@ -23,8 +23,8 @@ bool check_refuse(struct check_context *context, enum fmb_status status, const c
     return false;
 }
 
-static bool refuse_at(struct check_context *context, enum fmb_status status, const char *list,
-                      int i, const char *reason)
+bool check_refuse_at(struct check_context *context, enum fmb_status status, const char *list, int i,
+                     const char *reason)
 {
     char field[32];
     snprintf(field, sizeof field, "%s[%d]", list, i);
@@ -52,34 +52,27 @@ static bool check_finite(struct check_context *context, const char *list, const 
 {
     for (int i = 0; i < count; i++)
         if (!isfinite(number[i]))
-            return refuse_at(context, FMB_NOT_FINITE, list, i, NULL);
+            return check_refuse_at(context, FMB_NOT_FINITE, list, i, NULL);
     return true;
 }
 
 /* ---- Frames ---- */
 
-/* The lists of a geometry in its encoding (placement_t.lcm): dim, count of shapes, shapes, count of
- * numbers, numbers. Counts and dim have 4 bytes, a number 8. */
-static const unsigned char *shapes_of(const struct placement *placement)
+static double number_at(const struct geometry_reader *reader, int32_t i)
 {
-    return placement->geometry.bytes + 4 + 4;
-}
-
-static double number_at(const struct placement *placement, int32_t i)
-{
-    return cursor_double_at(shapes_of(placement) + placement->frame_count + 4 + 8 * (size_t) i);
+    return cursor_double_at(reader->number + 8 * (size_t) i);
 }
 
 static bool check_shapes(struct check_context *context, const struct placement *placement)
 {
-    const unsigned char *shape = shapes_of(placement);
+    const unsigned char *shape = geometry_begin(&placement->geometry).shape;
     int64_t numbers = 0;
     for (int32_t i = 0; i < placement->frame_count; i++) {
         const int count = geometry_number_count(placement->dim, shape[i]);
         if (count == 0)
             return fmb_shape_name(shape[i])
                        ? check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
-                       : refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+                       : check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
         numbers += count;
     }
     return check_count(context, "num_numbers", numbers, placement->number_count);
@@ -87,23 +80,24 @@ static bool check_shapes(struct check_context *context, const struct placement *
 
 static bool check_numbers(struct check_context *context, const struct placement *placement)
 {
+    const struct geometry_reader reader = geometry_begin(&placement->geometry);
     for (int32_t i = 0; i < placement->number_count; i++)
-        if (!isfinite(number_at(placement, i)))
-            return refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
+        if (!isfinite(number_at(&reader, i)))
+            return check_refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
     return true;
 }
 
 /* Boxes must not have negative sizes. On input: shapes and numbers have been checked. */
 static bool check_sizes(struct check_context *context, const struct placement *placement)
 {
-    const unsigned char *shape = shapes_of(placement);
+    const struct geometry_reader reader = geometry_begin(&placement->geometry);
     const int dim = placement->dim;
     int32_t number = 0;
     for (int32_t i = 0; i < placement->frame_count; i++) {
-        for (int32_t k = number + dim; shape[i] == FMB_BOX && k < number + 2 * dim; k++)
-            if (number_at(placement, k) < 0)
-                return refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
-        number += geometry_number_count(dim, shape[i]);
+        for (int32_t k = number + dim; reader.shape[i] == FMB_BOX && k < number + 2 * dim; k++)
+            if (number_at(&reader, k) < 0)
+                return check_refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
+        number += geometry_number_count(dim, reader.shape[i]);
     }
     return true;
 }

@@ -19,6 +19,10 @@ struct check_context {
 bool check_refuse(struct check_context *context, enum fmb_status status, const char *field,
                   const char *reason);
 
+/* The same for element i of a list of the part. */
+bool check_refuse_at(struct check_context *context, enum fmb_status status, const char *list, int i,
+                     const char *reason);
+
 /* The functions below return true if the fields are valid; otherwise they refuse the query and
  * return false. */
 

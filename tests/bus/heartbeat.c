@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "fmb.h"
-#include "random_id.h"
+#include "process.h"
 #include "server.h"
 #include "wire.h"
 

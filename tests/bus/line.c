@@ -7,7 +7,7 @@
 #include "clock.h"
 #include "echo.h"
 #include "guard.h"
-#include "random_id.h"
+#include "process.h"
 
 /* Results begin with fingerprint, utime, client id, sequence number and server id; a pair's goes on
  * with two ids and two handles. compute_ns is the last field. */

@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "random_id.h"
+#include "process.h"
 
 /* The echo and its client get as large a receive buffer as fmbd requests, up to the limit of the
  * system. */

@@ -249,6 +249,14 @@ xpath() {
     [ "$(xpath '//testsuite/@errors')" = 1 ]
 }
 
+@test "a second result in the golden that contradicts the first" {
+    edit --repeat 4 --flip 5 arm.log
+    replay --golden spoiled.log arm.log
+    ended 1
+    counts '.same == 72 and .different == 0 and .contradictions == 1 and .results == 73'
+    [[ $stderr == *'spoiled.log: event '*': contradicts an earlier result of the same query' ]]
+}
+
 @test "several logs are one" {
     for at in 1 30 31 77 145; do
         "$EDIT" --events 0 $at clients.log a.log

@@ -5,8 +5,8 @@
 #include "fuzz.h"
 
 #include "mesh.h"
-#include "mesh_number.h"
-#include "mesh_write.h"
+#include "mesh_source.h"
+#include "mesh_report.h"
 
 #include <ctype.h>
 #include <math.h>

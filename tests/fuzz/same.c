@@ -31,8 +31,6 @@ static bool same_frames(const struct geometry *geometry, const fmb_msgs_body_t *
     struct geometry_reader reader = geometry_begin(geometry);
     struct geometry_frame frame;
     int32_t number = 0, f = 0;
-    if (geometry_shape(geometry) != (message->num_frames > 0 ? message->shapes[0] : 0))
-        return false;
     for (; f < message->num_frames; f++) {
         const int shape = message->shapes[f];
         const int32_t count = numbers_of(dim, shape);

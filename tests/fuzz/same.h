@@ -13,7 +13,7 @@
 /* The bits of count numbers, NaNs and zeros included. */
 bool same_doubles(const double *a, const double *b, size_t count);
 
-/* Of a body the fields from dim on. Also checks geometry_read() and geometry_shape(). */
+/* Of a body the fields from dim on. */
 bool same_geometry(const struct geometry *geometry, const fmb_msgs_body_t *message);
 
 bool same_placement(const struct placement *placement, const fmb_msgs_placement_t *message);

@@ -59,11 +59,12 @@ static void prepare(const struct placement *placement, struct definitions *defin
     const struct geometry *geometry = &placement->geometry;
     struct geometry_frame frame;
     double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
-    int dim;
     if (placement_by_handle(placement) &&
         !(geometry = definitions_find(definitions, &placement->handle)))
         fail("a handle that the log does not define");
-    if (!geometry_read(geometry, &dim, &frame))
+    struct geometry_reader reader = geometry_begin(geometry);
+    const int dim = reader.dim;
+    if (!geometry_next(&reader, &frame))
         fail("a frame of the log is none");
     const int count = geometry_number_count(dim, frame.shape);
     memcpy(numbers, frame.origin, (size_t) dim * sizeof *numbers);
@@ -104,9 +105,8 @@ static void read_scenes(char *path, struct scenes *scenes)
     struct input input;
     struct log_event event;
     struct log_damage damage;
-    char why[LOG_WHY_MAX];
-    if (!input_open(&input, &path, 1, why))
-        fail(why);
+    if (!input_open(&input, &path, 1))
+        fail(path);
     while (scenes->count < SCENES_MAX && input_next(&input, &event, &damage) == LOG_EVENT) {
         if (log_kind_of(&channels, &event) != LOG_SCENE_QUERY ||
             wire_read_scene_query(event.data, (uint32_t) event.kept, &query))

@@ -56,9 +56,9 @@ static struct handle keep(int dim, int n)
 /* What the body was kept with. */
 static int number_of(const struct query_body *body)
 {
+    struct geometry_reader reader = geometry_begin(&body->geometry);
     struct geometry_frame frame;
-    int dim;
-    assert_true(geometry_read(&body->geometry, &dim, &frame));
+    assert_true(geometry_next(&reader, &frame));
     return (int) frame.components[0] - 1;
 }
 

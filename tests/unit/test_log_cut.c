@@ -171,8 +171,7 @@ struct reading {
 
 static void open_reading(struct reading *reading, char *const *log, int count)
 {
-    char why[LOG_WHY_MAX];
-    assert_true(input_open(&reading->input, log, count, why));
+    assert_true(input_open(&reading->input, log, count));
 }
 
 static bool read_next(struct reading *reading)

@@ -8,7 +8,7 @@
 #include "log_world.h"
 #include "sample_placement.h"
 #include "scene_json.h"
-#include "scene_of_query.h"
+#include "logged_query.h"
 #include "wire.h"
 
 #include <fcntl.h>

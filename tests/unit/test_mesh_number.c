@@ -1,5 +1,5 @@
 /* Numbers of text against strtod(), which rounds as it should. */
-#include "mesh_number.h"
+#include "mesh_source.h"
 
 #include <inttypes.h>
 #include <math.h>

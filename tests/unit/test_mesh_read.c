@@ -3,7 +3,7 @@
 
 #include "bumpy.h"
 #include "formats.h"
-#include "mesh_write.h"
+#include "mesh_report.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -8,7 +8,6 @@
 #include "logged_query.h"
 #include "page.h"
 #include "page_event.h"
-#include "page_pairs.h"
 
 #include <cjson/cJSON.h>
 #include <float.h>
@@ -720,16 +719,16 @@ static void verdicts_of_a_scene_are_counted(void **state)
     result_then.end_pair = 6;
     add_verdict(&result_then, 0, 2, FMB_TOUCHING);
     add_verdict(&result_then, 1, 2, FMB_OVERLAPPING);
-    page_pairs_count(&scene, &result_then, count);
+    replayed_count(&scene, &result_then, count);
     assert_int_equal(count[0], 0);
     assert_int_equal(count[FMB_SEPARATED], 3);
     assert_int_equal(count[FMB_TOUCHING], 1);
     assert_int_equal(count[FMB_OVERLAPPING], 1);
     assert_int_equal(logged_query_pairs(&scene), 6);
-    page_pairs_count(&scene, NULL, count);
+    replayed_count(&scene, NULL, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
     make_scene(QUERY_PAIRS_LISTED, 1);
-    page_pairs_count(&scene, &result_then, count);
+    replayed_count(&scene, &result_then, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
     assert_int_equal(logged_query_pairs(&scene), 0);
     make_scene(QUERY_PAIRS_ALL, 0);

@@ -153,13 +153,13 @@ static void log_definition(int64_t utime, const double *edges)
 static double edge_of(const struct placement *placement)
 {
     struct geometry_frame frame;
-    int dim;
     for (double edge = 0.25; placement_by_handle(placement); edge += 0.25) {
         const struct handle of = handle(edge);
         if (handle_equal(&of, &placement->handle))
             return edge;
     }
-    assert_true(geometry_read(&placement->geometry, &dim, &frame));
+    struct geometry_reader reader = geometry_begin(&placement->geometry);
+    assert_true(geometry_next(&reader, &frame));
     return frame.components[0];
 }
 

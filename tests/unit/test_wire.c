@@ -239,15 +239,14 @@ static void test_geometry_round_trip(void **state)
         for (int shape = FMB_CUBOID; shape <= FMB_BOX; shape++) {
             unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
             struct geometry_frame read;
-            int read_dim;
             if (geometry_number_count(dim, shape) == 0)
                 continue;
             const struct geometry_frame frame = sample_frame(dim, shape);
             const struct geometry geometry = {bytes, geometry_write(dim, &frame, bytes)};
             assert_int_equal(geometry.size, geometry_size(dim, &frame, 1));
-            assert_int_equal(geometry_shape(&geometry), shape);
-            assert_true(geometry_read(&geometry, &read_dim, &read));
-            assert_int_equal(read_dim, dim);
+            struct geometry_reader reader = geometry_begin(&geometry);
+            assert_int_equal(reader.dim, dim);
+            assert_true(geometry_next(&reader, &read));
             assert_memory_equal(&frame, &read, sizeof frame);
         }
 }
@@ -303,7 +302,6 @@ static void test_geometry_that_does_not_fit(void **state)
     struct geometry_frame frame = {.shape = FMB_CUBOID};
     const size_t size = geometry_write(3, &frame, bytes);
     struct geometry geometry = {other, size};
-    int dim;
     const struct {
         size_t at;
         unsigned char byte;
@@ -313,9 +311,9 @@ static void test_geometry_that_does_not_fit(void **state)
         other[changes[i].at] = changes[i].byte;
         if (changes[i].at == 7) /* no frame: the list of numbers begins a byte earlier */
             geometry_write_none(3, other);
-        assert_false(geometry_read(&geometry, &dim, &frame));
+        struct geometry_reader reader = geometry_begin(&geometry);
+        assert_false(geometry_next(&reader, &frame));
     }
-    assert_int_equal(geometry_shape(&geometry), 0);
 }
 
 /* The second frame has one number less than it needs. */

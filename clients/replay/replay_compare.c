@@ -1,0 +1,218 @@
+/* Reads messages again, compares recorded results with new ones, counts the outcomes, and reports
+ * differences and failures. */
+#include "replay_parts.h"
+
+#include "big_endian.h"
+#include "complain.h"
+#include "wire.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <string.h>
+
+void replay_fail(struct replay *replay, const char *what)
+{
+    if (!replay->failed)
+        complain("%s: %s", what, strerror(errno));
+    replay->failed = true;
+}
+
+void replay_fail_log(struct replay *replay, int log)
+{
+    replay_fail(replay, log < replay->options->log_count ? replay->options->log[log]
+                                                         : replay->options->golden);
+}
+
+/* Results of the golden log are counted with the first log. */
+static struct tally *tally_of(struct replay *replay, const struct match_place *place)
+{
+    return &replay->tally[place->log < replay->options->log_count ? place->log : 0];
+}
+
+struct tally_channel *replay_channel(struct replay *replay, const struct match_key *key,
+                                     const struct match_place *place)
+{
+    return &tally_of(replay, place)->channel[tally_channel_of((enum log_kind) key->kind)];
+}
+
+void replay_refuse(struct replay *replay, enum log_kind kind, const struct message *message,
+                   const char *error)
+{
+    replay_channel(replay, &message->key, &message->place)->unreadable[log_kind_is_result(kind)]++;
+    replay->sink->unreadable(replay->sink->user, &message->place, replay->channels.name[kind],
+                             error);
+}
+
+/* ---- Reading ---- */
+
+bool replay_read_again(struct replay *replay, const struct match_key *key,
+                       const struct match_place *place, unsigned char bytes[LOG_DATA_MAX],
+                       struct message *out)
+{
+    *out = (struct message){*key, *place, bytes, 0};
+    if (event_reader_read(replay->rereader, place->log, place->offset, bytes, &out->size))
+        return true;
+    replay_fail_log(replay, place->log);
+    return false;
+}
+
+static const char *read_result(int64_t kind, const unsigned char *bytes, uint32_t size,
+                               union decoded_result *out)
+{
+    return kind == LOG_PAIR_QUERY ? wire_read_pair_result(bytes, size, &out->pair)
+                                  : wire_read_scene_result(bytes, size, &out->scene);
+}
+
+const char *replay_read_result(struct replay *replay, const struct message *result)
+{
+    return read_result(result->key.kind, result->bytes, result->size, &replay->then);
+}
+
+bool replay_is_transient(const struct replay *replay, enum log_kind kind)
+{
+    return compare_status_is_transient(kind == LOG_PAIR_QUERY ? replay->then.pair.status
+                                                              : replay->then.scene.status);
+}
+
+/* Reads the query of a comparison again, which could be decoded before. */
+static bool read_query(struct replay *replay, const struct match_key *key,
+                       const struct match_place *place)
+{
+    struct message query;
+    if (!replay_read_again(replay, key, place, replay->compared_bytes, &query))
+        return false;
+    if (!logged_query_read(&replay->compared, (enum log_kind) key->kind, query.bytes, query.size))
+        return true;
+    errno = EIO;
+    replay_fail_log(replay, place->log);
+    return false;
+}
+
+static bool read_both(struct replay *replay, const struct match_item *item)
+{
+    const char *error = read_result(item->key.kind, item->now, item->now_size, &replay->now);
+    assert(!error); /* encoded by this process, or decoded before */
+    (void) error;
+    return read_query(replay, &item->key, &item->place);
+}
+
+/* ---- For the page ---- */
+
+static void add_to_page(struct replay *replay, const struct match_item *item, bool has_recorded,
+                        enum replay_outcome outcome)
+{
+    struct replayed replayed = {.log = replay->options->log[item->place.log],
+                                .event_number = item->place.number,
+                                .offset = item->place.offset,
+                                .utime = item->place.utime,
+                                .outcome = outcome};
+    int32_t count;
+    struct placement *placement = logged_query_placements(&replay->compared, &count);
+    definitions_fill(replay->definitions, placement, count);
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]) && placement[i].geometry.size > GEOMETRY_NONE_BYTES)
+            placement[i].frame_count = geometry_begin(&placement[i].geometry).frames_left;
+    if (item->key.kind == LOG_PAIR_QUERY) {
+        replayed.pair = &replay->compared.pair;
+        replayed.pair_now = &replay->now.pair;
+        replayed.pair_then = has_recorded ? &replay->then.pair : NULL;
+    } else {
+        replayed.scene = &replay->compared.scene;
+        replayed.scene_now = &replay->now.scene;
+        replayed.scene_then = has_recorded ? &replay->then.scene : NULL;
+    }
+    page_take(replay->options->page, &replayed);
+}
+
+/* ---- Comparing ---- */
+
+static void on_difference(void *user, const struct difference *difference)
+{
+    struct replay *replay = user;
+    const struct match_item *query = replay->item;
+    const struct located_difference located = {query->place, (enum log_kind) query->key.kind,
+                                               query->key.client_id, query->key.sequence_number,
+                                               *difference};
+    replay_channel(replay, &query->key, &query->place)->differences[difference->kind]++;
+    replay->sink->difference(replay->sink->user, &located);
+}
+
+static enum replay_outcome compare(struct replay *replay, difference_sink *sink)
+{
+    const struct compare_options *options = &replay->options->compare;
+    if (replay->compared.kind == LOG_PAIR_QUERY)
+        return compare_pairs(options, &replay->compared.pair, &replay->then.pair, &replay->now.pair,
+                             sink, replay);
+    return compare_scenes(options, &replay->compared.scene, &replay->then.scene, &replay->now.scene,
+                          sink, replay);
+}
+
+static void count(struct replay *replay, const struct match_item *query,
+                  enum replay_outcome outcome, int64_t then_ns)
+{
+    replay_channel(replay, &query->key, &query->place)->outcome[outcome]++;
+    if (then_ns > 0 && (outcome == REPLAY_SAME || outcome == REPLAY_DIFFERENT))
+        histogram_add(&tally_of(replay, &query->place)->then, then_ns);
+}
+
+/* Results of both types end with compute_ns. */
+bool replay_same_bytes(struct replay *replay, const struct match_item *query,
+                       const struct message *result)
+{
+    const unsigned char *end = result->bytes + result->size;
+    if (replay->options->page || !compare_bytes_same((enum log_kind) query->key.kind, result->bytes,
+                                                     result->size, query->now, query->now_size))
+        return false;
+    count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(end - sizeof(int64_t)));
+    return true;
+}
+
+void replay_compare(struct replay *replay, const struct match_item *query)
+{
+    if (!query->place.in_range || !read_both(replay, query))
+        return;
+    replay->item = query;
+    const enum replay_outcome outcome = compare(replay, on_difference);
+    count(replay, query, outcome,
+          query->key.kind == LOG_PAIR_QUERY ? replay->then.pair.compute_ns
+                                            : replay->then.scene.compute_ns);
+    if (replay->options->page)
+        add_to_page(replay, query, true, outcome);
+}
+
+void replay_unrecorded(struct replay *replay, const struct match_item *query)
+{
+    if (!query->place.in_range)
+        return;
+    count(replay, query, REPLAY_UNRECORDED, 0);
+    if (replay->options->page && read_both(replay, query))
+        add_to_page(replay, query, false, REPLAY_UNRECORDED);
+}
+
+/* ---- Second results ---- */
+
+static void no_difference(void *user, const struct difference *difference)
+{
+    (void) user;
+    (void) difference;
+}
+
+void replay_compare_second(struct replay *replay, const struct match_note *note,
+                           const struct message *second, const struct message *first)
+{
+    const struct match_place query = {.log = note->query_log, .offset = note->query_offset};
+    struct tally_channel *tally = replay_channel(replay, &second->key, &second->place);
+    const enum log_kind kind = log_kind_result_of((enum log_kind) second->key.kind);
+    if (!read_query(replay, &note->key, &query))
+        return;
+    if (read_result(first->key.kind, first->bytes, first->size, &replay->now)) {
+        errno = EIO; /* it could be decoded before */
+        replay_fail_log(replay, first->place.log);
+    } else if (compare(replay, no_difference) != REPLAY_DIFFERENT) {
+        tally->results_again++;
+    } else {
+        tally->contradictions++;
+        replay->sink->unreadable(replay->sink->user, &second->place, replay->channels.name[kind],
+                                 "contradicts an earlier result of the same query");
+    }
+}
