@@ -103,21 +103,27 @@
  *    |r| (R + its magnitude). The lesser of these counts (add_candidate()).
  * 3. Coordinates of the wall's edge that are off by t |b| move l by 1.1 t |b| / |d|, and c by
  *    the slope times as much.
- * 4. n is off by at most 2.1 t S, which moves c by as much times all lengths at hand. At the
- *    true vertex this is multiplied with l / (1 + r), and so is e, of which |l| S e counts
- *    already: 2.2 t times these lengths and a tenth of e, times |l| S (frame_error). Likewise
- *    1.1 e stands in the slack.
+ * 4. n is off by at most (2 t + t^2) S, which moves c by as much times all lengths at hand. At
+ *    the true vertex this is multiplied with l / (1 + r), which is at most 1.07 l: 2.2 t times
+ *    these lengths, times |l| S. The same holds for e, of which |l| S e counts already, so that a
+ *    tenth of e remains (frame_error). Likewise 1.1 e stands in the slack.
  *
  * Frames that are in contact as prepared (in_contact): frame_error seldom counts. Let E be the
  * end of the box of these frames, so that c(y) >= E for all y.
  *
- * 5. With t = 0, 1 and 2 bound E: E >= (the value at hand) - w_j for some vertex j, where w is
- *    twice the error of rounding, |l| S e, and what r makes of it.
- * 6. At the true vertex i of the true end, the true c is at least c(y_i) - 1.1 |l| S e - 1.1 e,
- *    and so at least E less these.
- * 7. Let W be the largest w + |l| S e of all vertices. The true end is at least the value at
- *    hand less W + 1.1 W / 2, which is 1.55 W (shared). For vertices at which that is beyond the
- *    tolerance, 1 to 4 hold. The changes by bends (8) count both at i and at j.
+ * 5. The numbers of these frames are exact, so that 1 and 2 with t = 0 bound E: E >= (the value at
+ *    hand) - w_j for some vertex j, where w is twice the error of rounding, |l| S e, and what r
+ *    makes of it.
+ * 6. Let y be the true vertex i that gives the true end. The support functions of the true frames
+ *    differ from those of the prepared ones by at most |y| e and |e_k - y| e, and c(y) >= E for
+ *    every y, whether a vertex of these frames or not. So the true end is at least E less 1.1
+ *    |l_i| S e and 1.1 e. The latter is part of the slack.
+ * 7. Let W be the largest w + |l| S e of all vertices within the tolerance. Twice |l| S e is part
+ *    of it. If i and j are within the tolerance, the true end is at least the value at hand less W
+ *    + 1.1 W / 2 = 1.55 W. The tolerance for W is 0.64 of the whole, and 0.64 * 1.55 < 1. If only
+ *    j is beyond it, 1 to 4 bound E, and 0.55 * 0.64 < 0.36 remains for i (shared). If i is beyond
+ *    it, 1 to 4 bound the true end. The changes by bends (8) count twice: at j for E, at i for the
+ *    true end.
  *
  * Vertices that are not certain:
  *
