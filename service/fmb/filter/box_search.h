@@ -130,10 +130,12 @@
  * 8. Such a vertex may be left out if c surely grows along a line through it, the line of the
  *    other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
  *    -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are
- *    not certain: each is at most twice 17 times the error of a determinant, and lengths have a
- *    sum of at most 2 T, so that all of them change c at a certain vertex by at most 68 (18 u +
- *    4 t) T S |l|, bend_error. Where gap(N) is below minus twice that, what is left grows at
- *    both ends, and is least at a vertex that is certain, or at 0.
+ *    not certain. That of a wall with the determinant d changes c by at most 2 |d l|, and |d| is
+ *    at most the value at hand and its error. On the line of the vertex itself these are added
+ *    up (open_of_line()). Anywhere else |d| is at most 17 times its error, and lengths have a sum
+ *    of at most 2 T, so that all bends change c by at most 68 (18 u + 4 t) T S |l|, bend_error.
+ *    Where gap(N) is below minus twice that, what is left grows at both ends, and is least at a
+ *    vertex that is certain, or at 0.
  * 9. A determinant that is exactly 0, each of its monomials having a factor 0, is no vertex at
  *    all. One vertex that is certain makes the normals span the space.
  *
@@ -184,7 +186,7 @@ struct box_places {
 struct box_frame {
     lanes edge[6][3];
     lanes length[6][3];            /* magnitudes of the components that an edge is made of */
-    lanes_mask inexact[3];         /* along an axis, the coordinates of edges may be off */
+    lanes inexact[3];              /* 1 if components may be off along an axis, else 0 */
     lanes centre[3];               /* of the reference point, in the middle of the window */
     lanes travel[3];               /* half of the displacement */
     lanes sum[3];                  /* of the magnitudes of all that a coordinate is made of */
@@ -206,6 +208,7 @@ struct box_normal {
 struct box_vertex {
     lanes inverse;        /* NAN where it may be 0 */
     lanes_mask uncertain; /* it may be 0 */
+    lanes bend;           /* no less than its magnitude there, else 0 */
 };
 
 /* What c gives at a vertex: how far the intersection reaches from the centre of a frame at most,
@@ -228,6 +231,7 @@ struct box_search {
     lanes relative_error; /* t */
     lanes frame_error;    /* 2.2 t times all lengths, and e / 10 */
     lanes bend_error;     /* 68 (18 u + 4 t) T, twice that where it counts twice */
+    lanes bend_count;     /* 2, or 4 there */
     lanes size[3],
         offset_sum[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
     lanes slack[2][3]; /* of what is seen from the centre of each frame */
@@ -307,8 +311,9 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
     const double twice = is_doubled(traits) ? 2 : 1;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        out->inexact[axis] =
-            is_not(has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis));
+        out->inexact[axis] = lanes_select(
+            has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis),
+            lanes_of(0), lanes_of(1));
         const lanes at = twice * places->origin[which][axis];
         out->travel[axis] =
             traits.drifts
@@ -420,44 +425,57 @@ INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det,
 {
     struct box_vertex out;
     out.uncertain = (lanes_mask){0};
+    out.bend = lanes_of(0);
     const lanes error = (16 * search->determinant) * scale;
     if (lanes_greater_bits(lanes_abs(det), error) == (1u << LANES) - 1) {
         search->spans = is_not((lanes_mask){0});
     } else {
-        const lanes fine = 16 * determinant_error(traits, scale, weight, v, search);
-        const lanes_mask certain = lanes_abs(det) > fine;
+        const lanes fine = determinant_error(traits, scale, weight, v, search);
+        const lanes_mask certain = lanes_abs(det) > 16 * fine;
         search->spans |= certain;
         out.uncertain = is_not(certain);
+        out.bend = lanes_select(certain, lanes_of(0), lanes_abs(det) + fine);
         det = lanes_select(certain, det, lanes_of(NAN));
     }
     out.inverse = 1 / det;
     return out;
 }
 
-/* Where the coordinates of an edge may not be 0. */
-INLINE void edge_nonzero(const struct box_frame *frame, int e, lanes_mask out[3])
+/* Where the coordinates of an edge may not be 0. Of a component of a frame that is rotated about an
+ * axis, the two coordinates that may be off are 0 if both are so as prepared (prepared.h). In
+ * numbers: gcc 12 does not compile the masks. */
+INLINE void edge_nonzero(const struct kernel_traits traits, const struct box_frame *frame, int e,
+                         lanes_mask out[3])
 {
+    const lanes *inexact = frame->inexact, *edge = frame->edge[e];
+    lanes off = inexact[0] * inexact[1] * (traits.dim == 3 ? inexact[2] : lanes_of(1));
     UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = (frame->edge[e][axis] != 0) | frame->inexact[axis];
+    for (int axis = 0; axis < traits.dim; axis++)
+        off += e < traits.dim ? lanes_abs(edge[axis]) * inexact[axis] : lanes_of(1);
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++)
+        out[axis] = lanes_abs(edge[axis]) + off * inexact[axis] != 0;
 }
 
 /* Where the coordinates of a normal may not be 0: in 2D of edge k, in 3D of face k, of which 3 is
  * the one across from the origin. */
-INLINE void normal_nonzero(const struct kernel_traits traits, const struct box_frame *frame, int k,
-                           lanes_mask out[3])
+INLINE void normal_nonzero(const struct kernel_traits traits, int which,
+                           const struct box_frame *frame, int k, lanes_mask out[3])
 {
     lanes_mask u[3], v[3], own[3];
     if (traits.dim == 2) {
-        edge_nonzero(frame, k, u);
+        edge_nonzero(traits, frame, k, u);
         out[0] = u[1];
         out[1] = u[0];
         return;
     }
     out[0] = out[1] = out[2] = (lanes_mask){0};
-    for (int face = k % 3; face < (k == 3 ? 3 : k + 1); face++) {
-        edge_nonzero(frame, next(face), u);
-        edge_nonzero(frame, next(next(face)), v);
+    UNROLL(3)
+    for (int face = first_plane(traits, which); face < 3; face++) {
+        if (k != face && k != 3)
+            continue;
+        edge_nonzero(traits, frame, next(face), u);
+        edge_nonzero(traits, frame, next(next(face)), v);
         cross_nonzero(u, v, own);
         for (int axis = 0; axis < 3; axis++)
             out[axis] |= own[axis];
@@ -719,20 +737,29 @@ INLINE void turn_outward(const struct pair_lanes *pair, const struct kernel_trai
 
 /* Of the vertices of a line, on walls of the other frame and that of the drift: the lanes in which
  * a determinant may be 0, and is not surely 0. k: the number of the normal, as in normal_nonzero().
+ * Out: bends, what the bends of c by all walls that are not certain change it by at most, for l
+ * = 1.
  */
 INLINE lanes_mask open_of_line(const struct kernel_traits traits, int which, int k, int walls,
-                               const struct box_vertex vertex[7], const struct box_search *search)
+                               const struct box_vertex vertex[7], const struct box_search *search,
+                               lanes *bends)
 {
     const struct box_frame *other = &search->frame[!which];
     lanes_mask nonzero[3], edge[3], open = {0};
-    normal_nonzero(traits, &search->frame[which], k, nonzero);
+    lanes sum = lanes_of(0);
+    normal_nonzero(traits, which, &search->frame[which], k, nonzero);
     for (int index = 0; index < walls; index++) {
-        edge_nonzero(other, edge_at(traits, !which, index), edge);
+        edge_nonzero(traits, other, edge_at(traits, !which, index), edge);
         open |= vertex[index].uncertain & dot_nonzero(traits, nonzero, edge);
+        sum += vertex[index].bend;
     }
-    if (traits.drifts)
+    if (traits.drifts) {
         open |= vertex[walls].uncertain & dot_nonzero(traits, nonzero, search->drift);
-    return open & is_not(search->exact);
+        sum += vertex[walls].bend;
+    }
+    open &= is_not(search->exact);
+    *bends = lanes_select(open, search->bend_count * sum, lanes_of(0));
+    return open;
 }
 
 /* k: the number of the normal, as in normal_nonzero(). across: the face does not hold the origin of
@@ -759,8 +786,9 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
                                   normal->weight, pair->half_drift, search);
         uncertain |= vertex[walls].uncertain;
     }
+    lanes bends = lanes_of(0);
     if (lanes_mask_bits(uncertain))
-        open = open_of_line(traits, which, k, walls, vertex, search);
+        open = open_of_line(traits, which, k, walls, vertex, search, &bends);
     const struct slab_extent own = extent_of_one(traits.simplex[which], normal->own);
     const struct slab_extent of_other = extent_of_frame(traits, other, normal->at);
     const struct slab_extent d =
@@ -776,8 +804,8 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
     const lanes error = value_error(traits, normal->weight, normal->magnitude, line.slope, search) +
                         normal->scale * pair->error;
     line.frame_error = normal->scale * search->frame_error;
-    line.width = (error + error) + lanes_select(open | search->left_out,
-                                                normal->scale * search->bend_error, lanes_of(0));
+    line.width =
+        (error + error) + lanes_select(search->left_out, normal->scale * search->bend_error, bends);
     line.relative = (2.4 * search->rounding) * normal->scale * frame->own_sum_max;
     line.middle = normal->middle;
     line.own = error + reach_above(traits, which, own);
@@ -960,8 +988,8 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
                        side[1].other[2][i]));
     if (lanes_mask_bits(vertex.uncertain)) {
         lanes_mask nonzero_a[3], nonzero_b[3], nonzero[3];
-        edge_nonzero(a, i, nonzero_a);
-        edge_nonzero(b, j, nonzero_b);
+        edge_nonzero(traits, a, i, nonzero_a);
+        edge_nonzero(traits, b, j, nonzero_b);
         cross_nonzero(nonzero_a, nonzero_b, nonzero);
         const lanes_mask open =
             vertex.uncertain & dot_nonzero(traits, nonzero, search->drift) & is_not(search->exact);
@@ -1178,7 +1206,8 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
         lengths += lanes_abs(pair->offset[axis]);
     const lanes_mask shares = places->in_contact ? pair->error != 0 : (lanes_mask){0};
     search->frame_error = (2.2 * search->relative_error) * lengths + 0.1 * pair->error;
-    search->bend_error = lanes_select(shares, lanes_of(136), lanes_of(68)) *
+    search->bend_count = lanes_select(shares, lanes_of(4), lanes_of(2));
+    search->bend_error = (34 * search->bend_count) *
                          ((slab_rounding(traits) + 4 * search->relative_error) * pair->reach);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {

@@ -193,8 +193,9 @@ static uint64_t summary_of(const struct fmb_frame *frame, const struct rotation_
         summary &= ~in_summary(PREPARED_PLAIN);
     if (rotation->exact)
         return summary;
+    const bool in_range = rotates_in_range(frame, rotation);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        summary &= rotation->axis_exact[axis]
+        summary &= rotation->axis_exact[axis] && in_range
                        ? summary
                        : ~in_summary((unsigned) PREPARED_COMPONENTS_EXACT_X << axis);
     summary &= ~in_summary(PREPARED_AXIS_ALIGNED | (frame->sturdy ? 0 : PREPARED_USABLE));

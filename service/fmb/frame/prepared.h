@@ -30,7 +30,10 @@ enum {
     PREPARED_VALID = 1 << 7,        /* the frame is prepared */
     /* The error does not affect the x coordinates: they are exact. The next two bits: y and z. */
     PREPARED_EXACT_X = 1 << 8,
-    /* The x coordinates of the components are exact. The next two bits: y and z. */
+    /* The x coordinates of the components are exact. The next two bits: y and z. If some of the
+     * three bits are set, and not all, the frame is rotated about that axis, and no coordinate was
+     * trimmed. The other two coordinates of a component are then off by less than 18.3 u of the
+     * length that the two have together (rotation.h, 4 and 5): if both are 0, they truly are. */
     PREPARED_COMPONENTS_EXACT_X = 1 << 11
 };
 
