@@ -186,7 +186,7 @@ struct box_places {
 struct box_frame {
     lanes edge[6][3];
     lanes length[6][3];            /* magnitudes of the components that an edge is made of */
-    lanes inexact[3];              /* 1 if components may be off along an axis, else 0 */
+    lanes_bits summary;            /* prepared.h */
     lanes centre[3];               /* of the reference point, in the middle of the window */
     lanes travel[3];               /* half of the displacement */
     lanes sum[3];                  /* of the magnitudes of all that a coordinate is made of */
@@ -309,11 +309,9 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
 {
     const lanes(*c)[3] = pair->component[which];
     const double twice = is_doubled(traits) ? 2 : 1;
+    out->summary = places->summary[which];
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        out->inexact[axis] = lanes_select(
-            has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis),
-            lanes_of(0), lanes_of(1));
         const lanes at = twice * places->origin[which][axis];
         out->travel[axis] =
             traits.drifts
@@ -447,11 +445,17 @@ INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det,
 INLINE void edge_nonzero(const struct kernel_traits traits, const struct box_frame *frame, int e,
                          lanes_mask out[3])
 {
-    const lanes *inexact = frame->inexact, *edge = frame->edge[e];
-    lanes off = inexact[0] * inexact[1] * (traits.dim == 3 ? inexact[2] : lanes_of(1));
+    const lanes *edge = frame->edge[e];
+    lanes inexact[3], all = lanes_of(1), off = lanes_of(e < traits.dim ? 0 : 1);
     UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++)
-        off += e < traits.dim ? lanes_abs(edge[axis]) * inexact[axis] : lanes_of(1);
+    for (int axis = 0; axis < traits.dim; axis++) {
+        inexact[axis] =
+            lanes_select(has_bit(frame->summary, (unsigned) PREPARED_COMPONENTS_EXACT_X << axis),
+                         lanes_of(0), lanes_of(1));
+        all *= inexact[axis];
+        off += lanes_abs(edge[axis]) * inexact[axis];
+    }
+    off += all;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++)
         out[axis] = lanes_abs(edge[axis]) + off * inexact[axis] != 0;
