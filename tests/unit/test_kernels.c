@@ -1030,6 +1030,59 @@ static void zeros_of_either_sign_give_the_same_box(void **state)
     }
 }
 
+/* The second pass leaves this pair unsure, the kernel of times does not, and the box depends on
+ * which of them runs. */
+static void boxes_do_not_depend_on_whether_contacts_are_wanted(void **state)
+{
+    (void) state;
+    static const double number[2][12] = {
+        {-0x1.45c44e4935218p-2, 0x1.91f67f4617b42p-1, -0x1.a2ca9c8c8c53cp-1, -0x1.f5fea06e9bcfp-3,
+         -0x1.f35b51d72c5bp-4, 0x1.88475c7383e28p-1, -0x1.6b42d144a7c9p-3, -0x1.43488d7e5693p-7,
+         -0x1.5e557ed623006p-1, -0x1.cac61495858f2p-1, 0x1.149c54539327cp-1, -0x1.7423f99f37322p-1},
+        {0x1.b5d2fe42f2724p-1, -0x1.3ca82aa5082cep-1, -0x1.271f2a5fc1042p-1, -0x1.cb98f97d1ffb6p-1,
+         -0x1.428f29c368ea2p-1, 0x1.ecae003741fcp-2, 0x1.09235ce1c7d9p-2, 0x1.68b46c83f2eeep-2,
+         0x1.c3cb2c70c1086p-2, 0x1.43cb23784baa4p-1, -0x1.18a6ad5689d7ep-1, 0x1.03bf34cdf2a4ap-1}};
+    struct fmb_placement placement[2] = {
+        {.position = {0x1.f23b1853f347bp+0, -0x1.bc288aa00bb3p-2, 0x1.cd8ed53f989b7p+0},
+         .orientation = {-0x1.a195bbb3445fp-1, -0x1.8418703c3db1p-2, -0x1.741f2cd7d4facp-1,
+                         -0x1.a9220000d2348p-2},
+         .orientation_count = 4,
+         .velocity = {-0x1.54f5014a7dd9ap-1, 0x1.becaa4e65216p-5, 0x1.d1f716251fa14p-1}},
+        {.position = {0x1.187608102b054p+1, -0x1.8c4071e2c8f2cp-1, 0x1.e681e24d64737p+0},
+         .orientation = {-0x1.de8662cdfd044p-1, 0x1.d1552750c11bap-1, -0x1.5623cc4a95f4p-6,
+                         0x1.7593390e37402p-1},
+         .orientation_count = 4,
+         .velocity = {0x1.25231e35d7fdp-4, -0x1.49920a08bf648p-1, -0x1.8282b249702b6p-1}}};
+    static const unsigned pairs[1][2] = {{0, 1}};
+    struct fmb_body body[2];
+    struct fmb_prepared frame[2];
+    struct fmb_answer answer;
+    unsigned char verdict[1];
+    double contact[1][2], box[1][2][FMB_DIM_MAX];
+    for (int f = 0; f < 2; f++) {
+        const int shape = f == 0 ? FMB_TETRAHEDRON : FMB_CUBOID;
+        assert_int_equal(fmb_body_make(3, shape, number[f], 12, &body[f]), FMB_OK);
+        placement[f].body = &body[f];
+        assert_int_equal(fmb_prepare(&placement[f], 0, 1, &frame[f]), FMB_OK);
+    }
+    assert_int_equal(
+        fmb_decide(fmb_method_default(), &placement[0], &placement[1], 1, FMB_WANT_BOX, &answer),
+        FMB_OK);
+    assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+    for (int wanted = 0; wanted < 2; wanted++) {
+        const struct fmb_batch batch = {.frames = frame,
+                                        .frame_count = 2,
+                                        .pairs = pairs,
+                                        .pair_count = 1,
+                                        .duration = 1,
+                                        .verdicts = verdict,
+                                        .contacts = wanted ? contact : NULL,
+                                        .boxes = box};
+        assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
+        assert_memory_equal(box[0], answer.box, sizeof answer.box);
+    }
+}
+
 /* ---- What doubles can say nothing of ---- */
 
 /* At whatever place in the lanes, nothing wrong is said, and nothing is known of times and boxes
@@ -1138,6 +1191,7 @@ int main(void)
         cmocka_unit_test(ends_of_the_time_are_covered),
         cmocka_unit_test(boxes_hold_the_exact_ones),
         cmocka_unit_test(zeros_of_either_sign_give_the_same_box),
+        cmocka_unit_test(boxes_do_not_depend_on_whether_contacts_are_wanted),
         cmocka_unit_test(ends_of_the_range),
         cmocka_unit_test(quick_decisions_need_no_wide_integers),
     };

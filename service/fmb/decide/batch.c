@@ -7,7 +7,7 @@
  *
  *   1. set_block()      looks up the frames and sorts the pairs by kind (kernel.h)
  *   2. filter_kind()    runs the filter on the pairs of one kind, several at a time, then its
- *                       second pass on those that are unsure (second_pass())
+ *                       second pass on those that are unsure (next_pass())
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
  *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
  *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
@@ -468,12 +468,13 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
     }
 }
 
-/* Runs the second pass on the pairs of a kind that the first leaves unsure, KERNEL_LANES at a time.
- * Two faces that may have parallel planes stay unsure. */
-static void second_pass(kernel_function *exact, bool faces, const struct kernel_call *first)
+/* Runs a kernel on the pairs of a kind that the kernels before leave unsure, KERNEL_LANES at a
+ * time. Two faces that may have parallel planes stay unsure. */
+static void next_pass(kernel_function *kernel, bool faces, const struct kernel_call *first)
 {
     unsigned char index[BLOCK], outcome[BLOCK + KERNEL_LANES];
     const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
+    double contact[BLOCK + KERNEL_LANES][2]; /* not used */
     size_t count = 0;
     if (!memchr(first->outcomes, SLABS_UNSURE, first->count))
         return;
@@ -486,14 +487,21 @@ static void second_pass(kernel_function *exact, bool faces, const struct kernel_
     }
     for (size_t n = count; n < count + KERNEL_LANES; n++)
         pair[n][0] = pair[n][1] = &missing;
-    const struct kernel_call call = {
-        .pairs = pair, .count = count, .duration = first->duration, .outcomes = outcome};
-    exact(&call);
+    const struct kernel_call call = {.pairs = pair,
+                                     .count = count,
+                                     .duration = first->duration,
+                                     .outcomes = outcome,
+                                     .contacts = contact};
+    kernel(&call);
     for (size_t n = 0; n < count; n++)
         if (!faces || outcome[n] != SLABS_TOUCHING)
             first->outcomes[index[n]] = outcome[n];
 }
 
+/* Sets the outcomes of a kind. The kernel of times decides some pairs that the second pass leaves
+ * unsure. Boxes depend on whether the filter decides a pair (kernel_call.in_contact): where boxes
+ * are wanted, that kernel runs even if contacts are not. Then the boxes are the same in both cases,
+ * and those of fmb_decide(). */
 static void filter_kind(struct batch_block *block, const struct batch_job *job,
                         enum kernel_kind kind)
 {
@@ -506,7 +514,9 @@ static void filter_kind(struct batch_block *block, const struct batch_job *job,
                                      .contacts = &block->contact[start]};
     const bool times = batch->contacts && kind & KERNEL_DRIFTS;
     (times ? job->kernels.times : job->kernels.verdicts)[kind](&call);
-    second_pass(job->kernels.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &call);
+    next_pass(job->kernels.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &call);
+    if (batch->boxes && kind & KERNEL_DRIFTS && !times)
+        next_pass(job->kernels.times[kind], false, &call);
     if (batch->contacts)
         put_contacts(block, kind, start, end);
     else

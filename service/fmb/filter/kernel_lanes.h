@@ -32,9 +32,9 @@
 #include "slabs_evaluate.h"
 
 #ifdef KERNEL_TIMES
-enum { TIMES = 1, SWAP_INVARIANT = 1 };
+enum { TIMES = 1 };
 #else
-enum { TIMES = 0, SWAP_INVARIANT = 0 };
+enum { TIMES = 0 };
 #endif
 #ifdef KERNEL_BOXES
 enum { BOXES = 1 };
@@ -47,6 +47,9 @@ enum { EXACT = 1 };
 enum { EXACT = 0 };
 #endif
 enum { ROUGH = !TIMES && !EXACT && !BOXES };
+/* What the filter decides in the end must not depend on the order of the pair: boxes depend on it
+ * (kernel_call.in_contact). */
+enum { SWAP_INVARIANT = TIMES || EXACT };
 
 /* ---- The gather ----
  *
