@@ -18,7 +18,7 @@ struct vector {
     bool exact;
 };
 
-enum { UNKNOWN = 2 }; /* besides the signs -1, 0, 1 */
+enum { UNKNOWN = 2 }; /* besides the signs -1, 0, 1; -UNKNOWN is never returned */
 
 static bool is_exact(double x, double y, double difference)
 {
@@ -98,7 +98,7 @@ bool mesh_flat_share_edge(const double *p, const double *q, const double *r, con
         const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const struct vector edge = vector(p, q, x, y);
         const int of_r = side_of(edge, vector(p, r, x, y));
-        if (of_r != UNKNOWN && of_r != 0 && side_of(edge, vector(p, s, x, y)) == -of_r)
+        if (of_r != 0 && side_of(edge, vector(p, s, x, y)) == -of_r)
             return true;
     }
     return false;
