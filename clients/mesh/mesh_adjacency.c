@@ -94,7 +94,7 @@ struct vector {
     bool exact;
 };
 
-enum { UNKNOWN = 2 }; /* besides the signs -1, 0, 1 */
+enum { UNKNOWN = 2 }; /* besides the signs -1, 0, 1; -UNKNOWN is never returned */
 
 static bool is_exact(double x, double y, double difference)
 {
@@ -178,7 +178,7 @@ static bool flat_share_edge(const double *p, const double *q, const double *r, c
         const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const struct vector edge = vector(p, q, x, y);
         const int of_r = flat_side(edge, vector(p, r, x, y));
-        if (of_r != UNKNOWN && of_r != 0 && flat_side(edge, vector(p, s, x, y)) == -of_r)
+        if (of_r != 0 && flat_side(edge, vector(p, s, x, y)) == -of_r)
             return true;
     }
     return false;

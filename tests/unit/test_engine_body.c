@@ -261,6 +261,39 @@ static void no_vertex_is_beyond_the_radius(void **state)
     assert_true(body.radius == frames[1].radius);
 }
 
+/* The three edges at the origin enclose a volume of `thickness`; offset: of the origin along z. */
+static struct fmb_frame make_thin(double thickness, double offset)
+{
+    const double vertex[12] = {0, 0, offset, 1, 0, 0, 1, thickness, 0, 0, 0, 1};
+    struct fmb_frame frame;
+    assert_int_equal(fmb_frame_make_vertices(3, FMB_TETRAHEDRON, vertex, 12, &frame), FMB_OK);
+    assert_true(frame.rounded == (offset != 0));
+    return frame;
+}
+
+/* Rounding might turn a thin frame inside out: doubles decide it only if nothing is rounded. */
+static void thin_frames_are_not_sturdy(void **state)
+{
+    (void) state;
+    for (int rounded = 0; rounded < 2; rounded++) {
+        const double offset = rounded ? 0x1p-60 : 0;
+        const struct fmb_frame thick = make_thin(0x1p-43, offset);
+        const struct fmb_frame thin = make_thin(0x1p-45, offset);
+        assert_true(thick.sturdy && thick.in_range);
+        assert_true(!thin.sturdy && thin.in_range == !rounded);
+    }
+}
+
+/* 2^600 + 2^547 is no double. */
+static void radii_of_large_frames_are_rounded_up(void **state)
+{
+    (void) state;
+    static const double number[9] = {0x1p600, 0, 0, 0x1p547, 0, 0, 0x1p547, 0, 0};
+    struct fmb_frame frame;
+    assert_int_equal(fmb_frame_make(3, FMB_FACE, number, 9, &frame), FMB_OK);
+    assert_true(frame.radius > 0x1p600);
+}
+
 static void bodies_that_are_refused(void **state)
 {
     (void) state;
@@ -477,6 +510,8 @@ int main(void)
         cmocka_unit_test(vertices_are_exact),
         cmocka_unit_test(bodies_of_one_frame_hold_it),
         cmocka_unit_test(no_vertex_is_beyond_the_radius),
+        cmocka_unit_test(thin_frames_are_not_sturdy),
+        cmocka_unit_test(radii_of_large_frames_are_rounded_up),
         cmocka_unit_test(bodies_that_are_refused),
         cmocka_unit_test(placements_without_a_body_are_refused),
         cmocka_unit_test(placements_that_are_not_finite_are_refused),

@@ -988,9 +988,34 @@ static void pairs_at_the_ends_of_the_doubles(void **state)
     assert_true(asked > 0);
 }
 
+/* The first face is rotated into the plane z = 0, where the second lies. The integers are rows of
+ * the matrix of the rotation. Rounded, the planes cross. */
+static void rotated_faces_share_their_plane(void **state)
+{
+    (void) state;
+    static const double flat[9] = {-0.5, -0.5, 0, 2, 0, 0, 0, 2, 0};
+    for (int x = 1; x < 6; x++)
+        for (int y = 1; y < 6; y++) {
+            const int w = 1, z = 7;
+            const double number[6] = {w * w + x * x - y * y - z * z, 2 * (x * y - w * z),
+                                      2 * (x * z + w * y),           2 * (x * y + w * z),
+                                      w * w - x * x + y * y - z * z, 2 * (y * z - w * x)};
+            struct fmb_body body[2];
+            assert_int_equal(fmb_body_make(3, FMB_FACE, number, 6, &body[0]), FMB_OK);
+            assert_int_equal(fmb_body_make(3, FMB_FACE, flat, 9, &body[1]), FMB_OK);
+            const struct fmb_placement a = {
+                .body = &body[0], .orientation = {w, x, y, z}, .orientation_count = 4};
+            const struct fmb_placement b = {.body = &body[1]};
+            struct fmb_answer answer;
+            assert_int_equal(fmb_decide(fmb_method_default(), &a, &b, 0, 0, &answer), FMB_OK);
+            assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rotated_faces_share_their_plane),
         cmocka_unit_test(pairs_at_rest_are_what_their_vertices_say),
         cmocka_unit_test(moving_pairs_are_what_their_vertices_say),
         cmocka_unit_test(batches_decide_rounded_faces),
