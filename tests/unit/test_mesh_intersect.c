@@ -16,7 +16,6 @@
 #include "bumpy.h"
 #include "draw.h"
 #include "mesh_face.h"
-#include "mesh_flat.h"
 #include "mesh_intersect.h"
 #include "mesh_adjacency.h"
 #include "mesh_transform.h"
@@ -558,6 +557,15 @@ static const struct near_case near_cases[] = {
        {0x1.46646661f4670p+49, 0x1.a6fd4b81130cap+51, -0x1.fd799c11d4288p+50}}},
      MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
+    /* The cone of the second face contains that of the first. Of a product of theirs the rounding
+     * error is less than any double. */
+    {"faces in one plane, whose products have tiny errors",
+     {{{0, 0, 0}, {(1 + 0x1p-52) * 0x1p-500, 0x1p-500, 0}, {0x1p-500, 0, 0}},
+      {{0, 0, 0},
+       {-(1 + 5 * 0x1p-52) * 0x1p-500, -(1 + 4 * 0x1p-52) * 0x1p-500, 0},
+       {(1 + 2 * 0x1p-52) * 0x1p300, (1 + 0x1p-52) * 0x1p300, 0}}},
+     MESH_SHARE_AND_INTERSECT,
+     FMB_OVERLAPPING},
 };
 
 static void cases_of_two_faces(void **state)
@@ -583,18 +591,6 @@ static void cases_of_two_faces(void **state)
         mesh_adjacency_close(&near);
         mesh_free(&mesh);
     }
-}
-
-/* The cone of d and f contains that of b and c: b x d = -4 2^-104 and b x f = 2^-104, relative to
- * their lengths. The rounding error of a product of b and d is less than any double. */
-static void cones_whose_products_have_tiny_errors(void **state)
-{
-    (void) state;
-    const double e = DBL_EPSILON, s = 0x1p-500;
-    const double apex[3] = {0}, b[3] = {(1 + e) * s, s, 0}, c[3] = {s, 0, 0};
-    const double d[3] = {-(1 + 5 * e) * s, -(1 + 4 * e) * s, 0};
-    const double f[3] = {(1 + 2 * e) * 0x1p300, (1 + e) * 0x1p300, 0};
-    assert_false(mesh_flat_share_vertex(apex, b, c, d, f));
 }
 
 /* ---- Tetrahedra ---- */
@@ -902,7 +898,6 @@ int main(void)
         cmocka_unit_test(faces_nearly_on_lines),
         cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
         cmocka_unit_test(cases_of_two_faces),
-        cmocka_unit_test(cones_whose_products_have_tiny_errors),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
         cmocka_unit_test(normals_beyond_the_doubles_are_told),
         cmocka_unit_test(progress_goes_on_to_its_end),
