@@ -1030,6 +1030,19 @@ static void zeros_of_either_sign_give_the_same_box(void **state)
     }
 }
 
+/* Makes two bodies of 12 numbers, and prepares their placements. */
+static void prepare_two(int shape_a, int shape_b, const double number[2][12],
+                        struct fmb_body body[2], struct fmb_placement placement[2],
+                        struct fmb_prepared frame[2])
+{
+    for (int f = 0; f < 2; f++) {
+        assert_int_equal(fmb_body_make(3, f == 0 ? shape_a : shape_b, number[f], 12, &body[f]),
+                         FMB_OK);
+        placement[f].body = &body[f];
+        assert_int_equal(fmb_prepare(&placement[f], 0, 1, &frame[f]), FMB_OK);
+    }
+}
+
 /* The second pass leaves this pair unsure, the kernel of times does not, and the box depends on
  * which of them runs. */
 static void boxes_do_not_depend_on_whether_contacts_are_wanted(void **state)
@@ -1059,12 +1072,7 @@ static void boxes_do_not_depend_on_whether_contacts_are_wanted(void **state)
     struct fmb_answer answer;
     unsigned char verdict[1];
     double contact[1][2], box[1][2][FMB_DIM_MAX];
-    for (int f = 0; f < 2; f++) {
-        const int shape = f == 0 ? FMB_TETRAHEDRON : FMB_CUBOID;
-        assert_int_equal(fmb_body_make(3, shape, number[f], 12, &body[f]), FMB_OK);
-        placement[f].body = &body[f];
-        assert_int_equal(fmb_prepare(&placement[f], 0, 1, &frame[f]), FMB_OK);
-    }
+    prepare_two(FMB_TETRAHEDRON, FMB_CUBOID, number, body, placement, frame);
     assert_int_equal(
         fmb_decide(fmb_method_default(), &placement[0], &placement[1], 1, FMB_WANT_BOX, &answer),
         FMB_OK);
@@ -1080,6 +1088,131 @@ static void boxes_do_not_depend_on_whether_contacts_are_wanted(void **state)
                                         .boxes = box};
         assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
         assert_memory_equal(box[0], answer.box, sizeof answer.box);
+    }
+}
+
+/* The second pass once decided this pair in one order, and not in the other. */
+static void the_second_pass_and_boxes_do_not_depend_on_the_order(void **state)
+{
+    (void) state;
+    static const double number[2][12] = {
+        {0x1.9c5dff39a3f48p-1, 0x1.5e5ec47d71066p-1, -0x1.d262740e711e4p-2, 0x1.6569a6330d254p-2,
+         -0x1.4f613f999163p-1, -0x1.85c3329c5d10cp-2, 0x1.5db1c226300ccp-4, 0x1.5dbef81324f06p-2,
+         -0x1.f284d63cfb6efp-3, -0x1.8f72bec51d8acp-2, 0x1.4d8607d5348dcp-2, -0x1.64cad75657dacp-1},
+        {-0x1.cb0c89dc19622p-1, -0x1.68b7e85bf55f4p-1, 0x1.24b032e8074f8p-3, 0x1.bb18c649d9a84p-1,
+         -0x1.e065f59633402p-1, 0x1.8d6403d196dbp-3, 0x1.6f92440eb432bp-6, -0x1.1b766fb6b277dp-2,
+         0x1.221ac24d62249p-3, -0x1.177c6996e15cp-6, 0x1.a96d72f38f5f4p-2, -0x1.32fe3937ecb5p-2}};
+    struct fmb_placement placement[2] = {
+        {.position = {0x1.980d9b6d9cbacp-2, 0x1.ae6be4d3b49p-7, 0x1.39d57e206b67p-2},
+         .orientation = {0x1.6c80f31c4bfd8p-2, -0x1.ff6b9b8e5063p-1, 0x1.0d01d1e7b9318p-3,
+                         0x1.e712d6e76fca2p-1},
+         .orientation_count = 4},
+        {.position = {0x1.3047d0e1a2eedp-2, 0x1.58e103caae3c3p-3, 0x1.77e85ae4c9979p-2},
+         .orientation = {-0x1.a25382242534p-3, -0x1.3da93c8f3e148p-2, -0x1.580286a045bfp-1,
+                         -0x1.6e5f673ce886p-2},
+         .orientation_count = 4}};
+    struct fmb_body body[2];
+    struct fmb_prepared frame[2];
+    struct fmb_answer answer[2];
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    prepare_two(FMB_CUBOID, FMB_CUBOID, number, body, placement, frame);
+    for (int s = 0; s < subjects; s++) {
+        unsigned char outcome[2][2 * KERNEL_LANES];
+        for (int f = 0; f < 2; f++) {
+            const struct fmb_prepared *pairs[KERNEL_LANES][2];
+            bool swapped;
+            for (int i = 0; i < KERNEL_LANES; i++) {
+                pairs[i][0] = &frame[f];
+                pairs[i][1] = &frame[!f];
+            }
+            const struct kernel_call call = {.pairs = pairs, .count = 1, .outcomes = outcome[f]};
+            subject[s].set.exact[kernel_kind_of(&frame[0], &frame[1], 0, &swapped)](&call);
+        }
+        assert_int_equal(outcome[0][0], outcome[1][0]);
+    }
+    for (int f = 0; f < 2; f++)
+        assert_int_equal(fmb_decide(fmb_method_default(), &placement[f], &placement[!f], 0,
+                                    FMB_WANT_BOX, &answer[f]),
+                         FMB_OK);
+    assert_memory_equal(answer[0].box, answer[1].box, sizeof answer[0].box);
+}
+
+/* Rotates v by a quaternion of any length. */
+static void rotate(const double q[4], const double v[3], double out[3])
+{
+    const double *u = q + 1, n = q[0] * q[0] + (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    const double dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double cross = u[j] * v[k] - u[k] * v[j];
+        out[i] = ((2 * q[0] * q[0] - n) * v[i] + 2 * (dot * u[i] + q[0] * cross)) / n;
+    }
+}
+
+/* Stacks of boxes, and boxes that slide on a table: rotated about the vertical axis, by angles of
+ * their own or by the same, or alike about any axis. Their boxes need no integers, and are tight.
+ */
+static void boxes_of_bodies_that_rest_need_no_integers(void **state)
+{
+    (void) state;
+    static const double size[2][3] = {{4, 3, 1}, {1, 2, 1.5}}, depth[] = {0, 1e-9, 1e-3};
+    static const double angle[][2][4] = {{{0.8, 0, 0, 0.6}, {0.96, 0, 0, 0.28}},
+                                         {{0.7, 0, 0, 0.3}, {0.7, 0, 0, 0.3}},
+                                         {{1, 0, 0, 0}, {0.9, 0, 0, 0.4}},
+                                         {{0.9, 0.1, 0.3, 0.2}, {0.9, 0.1, 0.3, 0.2}}};
+    static const unsigned pairs[1][2] = {{0, 1}};
+    for (size_t n = 0; n < 2 * (sizeof angle / sizeof *angle) * (sizeof depth / sizeof *depth);
+         n++) {
+        const double(*q)[4] = angle[n / 2 % (sizeof angle / sizeof *angle)],
+              overlap = depth[n / 2 / (sizeof angle / sizeof *angle)];
+        const bool moving = n % 2, level = q[0][1] == 0;
+        struct fmb_body body[2];
+        struct fmb_placement placement[2] = {{.orientation_count = 4}, {.orientation_count = 4}};
+        struct fmb_prepared frame[2];
+        unsigned char verdict[1];
+        double box[1][2][FMB_DIM_MAX];
+        size_t open[1], open_count;
+        struct fmb_answer exact;
+        if (!level && (overlap < 1e-6 || moving)) /* in doubles they would not touch */
+            continue;
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(fmb_body_make(3, FMB_BOX, size[f], 3, &body[f]), FMB_OK);
+            placement[f].body = &body[f];
+            memcpy(placement[f].orientation, q[f], sizeof q[f]);
+        }
+        /* Over the edge of the lower one, so that both bound the intersection. */
+        const double offset[3] = {1.7, 0.2, 1.25 - overlap};
+        if (level)
+            memcpy(placement[1].position, offset, sizeof offset);
+        else
+            rotate(q[0], offset, placement[1].position);
+        placement[1].velocity[0] = moving ? 0.3 : 0;
+        placement[1].velocity[1] = moving ? -0.2 : 0;
+        for (int f = 0; f < 2; f++)
+            assert_int_equal(fmb_prepare(&placement[f], 0, 1, &frame[f]), FMB_OK);
+        const struct fmb_batch batch = {.frames = frame,
+                                        .frame_count = 2,
+                                        .pairs = pairs,
+                                        .pair_count = 1,
+                                        .duration = 1,
+                                        .verdicts = verdict,
+                                        .boxes = box,
+                                        .open = open,
+                                        .open_count = &open_count};
+        assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
+        if (open_count > 0)
+            fail_msg("case %zu is left open", n);
+        assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &placement[0], &placement[1], 1,
+                                    FMB_WANT_BOX, &exact),
+                         FMB_OK);
+        assert_int_equal(verdict[0], exact.verdict);
+        for (int axis = 0; axis < 3; axis++) {
+            assert_true(box[0][0][axis] <= exact.box[0][axis]);
+            assert_true(box[0][0][axis] >= exact.box[0][axis] - 1e-12);
+            assert_true(box[0][1][axis] >= exact.box[1][axis]);
+            assert_true(box[0][1][axis] <= exact.box[1][axis] + 1e-12);
+        }
     }
 }
 
@@ -1192,6 +1325,8 @@ int main(void)
         cmocka_unit_test(boxes_hold_the_exact_ones),
         cmocka_unit_test(zeros_of_either_sign_give_the_same_box),
         cmocka_unit_test(boxes_do_not_depend_on_whether_contacts_are_wanted),
+        cmocka_unit_test(the_second_pass_and_boxes_do_not_depend_on_the_order),
+        cmocka_unit_test(boxes_of_bodies_that_rest_need_no_integers),
         cmocka_unit_test(ends_of_the_range),
         cmocka_unit_test(quick_decisions_need_no_wide_integers),
     };
