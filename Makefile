@@ -151,7 +151,8 @@ x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 sets := plain $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2 avx512))
 single_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
 # Where there are others, plain C is there to be compared with: it is not worth what inlining takes.
-set_plain := -DLANES=1 $(if $(x86),-DINLINED_NOT -Wno-unknown-warning-option -Wno-maybe-uninitialized)
+not_inlined := -DINLINED_NOT -Wno-unknown-warning-option -Wno-maybe-uninitialized
+set_plain := -DLANES=1 $(if $(x86),$(not_inlined))
 set_sse2 := -DLANES=2
 set_avx2 := -DLANES=4 -mavx2 -mfma
 set_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
@@ -160,6 +161,7 @@ set_single_sse2 := -DLANES=2
 set_single_avx2 := -DLANES=2 -mavx2 -mfma
 kernel_of = $(addprefix $(O)/kernels/,$(addsuffix .o,$1))
 many_kernels := $(call kernel_of,$(foreach s,$(sets),$s exact_$s times_$s boxes_$s))
+box_refinements := $(call kernel_of,$(foreach s,$(sets),refine_boxes_$s))
 single_kernels_of = $(call kernel_of,$(foreach s,$1,single_$s exact_single_$s times_single_$s))
 single_kernels := $(call single_kernels_of,$(single_sets))
 kernel_set = $(set_$(subst exact_,,$(subst times_,,$(subst boxes_,,$*))))
@@ -172,9 +174,13 @@ $(sort $(single_kernels) $(call single_kernels_of,plain)): \
 ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
 $(O)/kernels/%.o: flags += -fno-tree-dominator-opts
 endif
+compile_kernel = $(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
 $(sort $(many_kernels) $(single_kernels) $(call single_kernels_of,plain)): $(O)/kernels/%.o:
 	@mkdir -p $(@D)
-	$(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
+	$(compile_kernel)
+$(box_refinements): $(O)/kernels/refine_%.o: service/fmb/filter/box_refine.c $(O)/settings
+	@mkdir -p $(@D)
+	$(compile_kernel) $(not_inlined)
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 $(O)/service/fmb/decide/batch_openmp.o: service/fmb/decide/batch.c $(O)/settings
@@ -186,7 +192,8 @@ fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
-engine_objects := $(many_kernels) $(single_kernels) $(filter-out %/many.o %/single.o \
+engine_objects := $(many_kernels) $(box_refinements) $(single_kernels) \
+	$(filter-out %/many.o %/single.o %/box_refine.o \
 	$(if $(openmp_flag),%/batch.o),$(call objects_in,$(engine_folders))) \
 	$(if $(openmp_flag),$(O)/service/fmb/decide/batch_openmp.o)
 

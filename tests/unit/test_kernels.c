@@ -1151,22 +1151,33 @@ static void rotate(const double q[4], const double v[3], double out[3])
 }
 
 /* Stacks of boxes, and boxes that slide on a table: rotated about the vertical axis, by angles of
- * their own or by the same, or alike about any axis. Their boxes need no integers, and are tight.
- */
+ * their own or by the same, alike about any axis, or with a slight tilt. Their boxes need no
+ * integers, and are tight. */
 static void boxes_of_bodies_that_rest_need_no_integers(void **state)
 {
     (void) state;
-    static const double size[2][3] = {{4, 3, 1}, {1, 2, 1.5}}, depth[] = {0, 1e-9, 1e-3};
-    static const double angle[][2][4] = {{{0.8, 0, 0, 0.6}, {0.96, 0, 0, 0.28}},
-                                         {{0.7, 0, 0, 0.3}, {0.7, 0, 0, 0.3}},
-                                         {{1, 0, 0, 0}, {0.9, 0, 0, 0.4}},
-                                         {{0.9, 0.1, 0.3, 0.2}, {0.9, 0.1, 0.3, 0.2}}};
+    static const double size[2][3] = {{4, 3, 1}, {1, 2, 1.5}};
     static const unsigned pairs[1][2] = {{0, 1}};
-    for (size_t n = 0; n < 2 * (sizeof angle / sizeof *angle) * (sizeof depth / sizeof *depth);
-         n++) {
-        const double(*q)[4] = angle[n / 2 % (sizeof angle / sizeof *angle)],
-              overlap = depth[n / 2 / (sizeof angle / sizeof *angle)];
-        const bool moving = n % 2, level = q[0][1] == 0;
+    static const struct {
+        double orientation[2][4], overlap;
+        bool level, moves;
+    } cases[] = {
+        {{{0.8, 0, 0, 0.6}, {0.96, 0, 0, 0.28}}, 0, true, true},
+        {{{0.8, 0, 0, 0.6}, {0.96, 0, 0, 0.28}}, 1e-9, true, true},
+        {{{0.7, 0, 0, 0.3}, {0.7, 0, 0, 0.3}}, 0, true, true},
+        {{{0.7, 0, 0, 0.3}, {0.7, 0, 0, 0.3}}, 1e-3, true, true},
+        {{{1, 0, 0, 0}, {0.9, 0, 0, 0.4}}, 0, true, true},
+        {{{1, 0, 0, 0}, {0.9, 0, 0, 0.4}}, 1e-9, true, true},
+        {{{0.9, 0.1, 0.3, 0.2}, {0.9, 0.1, 0.3, 0.2}}, 1e-3, false, false},
+        {{{1, 0, 0, 0}, {0.9, 1e-4, -2e-4, 0.4}}, 1e-2, true, true},
+        {{{1, 0, 0, 0}, {0.9, 1e-6, -2e-6, 0.4}}, 1e-4, true, true},
+        {{{1, 0, 0, 0}, {0.9, 1e-10, -2e-10, 0.4}}, 1e-6, true, true},
+        {{{0.8, 2e-6, 3e-6, 0.6}, {0.9, 1e-6, -2e-6, 0.4}}, 1e-3, true, true},
+        {{{0.9, 0.1, 0.3, 0.2}, {0.9, 0.1, 0.3001, 0.2}}, 1e-2, false, false},
+    };
+    for (size_t n = 0; n < 2 * (sizeof cases / sizeof *cases); n++) {
+        const double(*q)[4] = cases[n / 2].orientation, overlap = cases[n / 2].overlap;
+        const bool moving = n % 2, level = cases[n / 2].level;
         struct fmb_body body[2];
         struct fmb_placement placement[2] = {{.orientation_count = 4}, {.orientation_count = 4}};
         struct fmb_prepared frame[2];
@@ -1174,7 +1185,7 @@ static void boxes_of_bodies_that_rest_need_no_integers(void **state)
         double box[1][2][FMB_DIM_MAX];
         size_t open[1], open_count;
         struct fmb_answer exact;
-        if (!level && (overlap < 1e-6 || moving)) /* in doubles they would not touch */
+        if (moving && !cases[n / 2].moves)
             continue;
         for (int f = 0; f < 2; f++) {
             assert_int_equal(fmb_body_make(3, FMB_BOX, size[f], 3, &body[f]), FMB_OK);

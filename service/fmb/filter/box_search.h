@@ -13,8 +13,10 @@
  *      faces; each line in add_normal_line(), each vertex in add_edge_vertex() or
  *      add_drift_vertex()
  *   4. add_crossings(): vertices of an edge of A, one of B, and the drift
- *   5. a second pass of 2 to 4 where a vertex that is not certain was left out
- *   6. outer and inner ends from the least bounds; cut_to_extent() cuts the box to both frames
+ *   5. put_box(): ends from the least bounds; cut_to_extent() cuts the box to both frames
+ *   6. are_near(): whether inner ends are as near as the limit
+ *   7. all of it once more (box_refine.c) where they are not, or a vertex that is not certain was
+ *      left out
  *
  * The method, and the proof of both ends, follow. Frames are seen about the middle of the
  * window, displaced by -travel to travel; u = 2^-53.
@@ -123,7 +125,8 @@
  *    + 1.1 W / 2 = 1.55 W. The tolerance for W is 0.64 of the whole, and 0.64 * 1.55 < 1. If only
  *    j is beyond it, 1 to 4 bound E, and 0.55 * 0.64 < 0.36 remains for i (shared). If i is beyond
  *    it, 1 to 4 bound the true end. The changes by bends (8) count twice: at j for E, at i for the
- *    true end.
+ *    true end. Along a single axis |l| is that of this axis, to which the error of b[k] adds up to
+ *    1.1 t |b| / |d| (rounded in struct box_candidate).
  *
  * Vertices that are not certain:
  *
@@ -132,12 +135,18 @@
  *    -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are
  *    not certain. That of a wall with the determinant d changes c by at most 2 |d l|, and |d| is
  *    at most the value at hand and its error. On the line of the vertex itself these are added
- *    up (open_of_line()). Anywhere else |d| is at most 17 times its error, and lengths have a sum
- *    of at most 2 T, so that all bends change c by at most 68 (18 u + 4 t) T S |l|, bend_error.
- *    Where gap(N) is below minus twice that, what is left grows at both ends, and is least at a
- *    vertex that is certain, or at 0.
+ *    up (open_of_line()). Anywhere else |d| is at most 17 times its error, 17 (18 u + 4 t) of the
+ *    product of its lengths; and lengths have a sum of at most 2 T, so that all bends change c by
+ *    at most 68 (18 u + 4 t) T S |l|, bend_error. Where gap(N) is below minus twice that, what is
+ *    left grows at both ends, and is least at a vertex that is certain, or at 0. Of two cuboids
+ *    every d is the determinant of some vertex, since any two edges of a frame have a normal: the
+ *    largest that a first pass meets takes the place of 17 (18 u + 4 t) in the second.
  * 9. A determinant that is exactly 0, each of its monomials having a factor 0, is no vertex at
  *    all. One vertex that is certain makes the normals span the space.
+ * 10. If coordinate k is 0 for all edges of A whose walls a vertex is on, and for travel_A if it
+ *    is on that of the drift, then the vertex is y = e_k: it is on these walls, and the only one.
+ *    If that holds for B, it is y = 0. The extents have its c, so that it needs no inner end,
+ *    whatever the error of its determinant. The second pass looks for such vertices.
  *
  * Widths, the sums of these errors, are bounded once for all axes. Within the tolerance they are
  * allowed for at the end; few vertices need them one by one. NAN bounds nothing, and stands for
@@ -214,13 +223,21 @@ struct box_vertex {
 /* What c gives at a vertex: how far the intersection reaches from the centre of a frame at most,
  * and how much less it may be that c gives at the true vertex. */
 struct box_candidate {
-    lanes at[2][3];           /* [below, above][axis] */
-    lanes width[3], relative; /* relative: to at, no more than own_sum of the frame */
+    lanes at[2][3]; /* [below, above][axis] */
+    /* relative: to at, no more than own_sum of the frame. rounded: of frames in contact, w and what
+     * relative is for them. */
+    lanes width[3], relative, rounded[3], relative_rounded;
 };
 
 /* The least of these. inner: less the width, where that is beyond the tolerance. */
 struct box_bounds {
     lanes outer[2][3], inner[2][3];
+};
+
+/* What the first pass leaves out. */
+struct box_left_out {
+    lanes_mask open; /* a vertex whose line has vertices of other lines */
+    lanes bend;      /* the largest |d| of vertices that are not certain, for scale 1 */
 };
 
 struct box_search {
@@ -230,7 +247,9 @@ struct box_search {
     lanes unit;           /* of the small numbers that ends are made of; 0: they are not */
     lanes relative_error; /* t */
     lanes frame_error;    /* 2.2 t times all lengths, and e / 10 */
-    lanes bend_error;     /* 68 (18 u + 4 t) T, twice that where it counts twice */
+    lanes bend;           /* the largest |d| of vertices that are not certain, for scale 1 */
+    lanes bend_limit;     /* 17 (18 u + 4 t) */
+    lanes bend_error;     /* 4 T times bend_limit or bend, twice that where it counts twice */
     lanes bend_count;     /* 2, or 4 there */
     lanes size[3],
         offset_sum[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
@@ -243,8 +262,10 @@ struct box_search {
     bool in_contact;
     struct box_bounds bounds[2]; /* about the centre of each frame */
     lanes_mask spans, good;
-    lanes_mask open;     /* a vertex is left out whose line has vertices of other lines */
-    lanes_mask left_out; /* where errors are to allow for that */
+    lanes_mask open;             /* a vertex is left out whose line has vertices of other lines */
+    lanes_mask left_out;         /* where errors are to allow for that */
+    bool careful;                /* the second pass */
+    lanes_mask nonzero[2][6][3]; /* there: coordinates of edges that may not be 0 */
 };
 
 /* ---- Masks ---- */
@@ -360,10 +381,9 @@ INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_tr
 
 /* ---- Candidates ---- */
 
-/* Takes what c gives at a vertex; what is not a number bounds nothing. width: no less than that
- * along any axis. The same for a lane whatever the others hold. */
-INLINE void add_candidate(const struct kernel_traits traits, const struct box_candidate *candidate,
-                          lanes width, int which, struct box_search *search)
+/* Takes what c gives at a vertex; what is not a number bounds nothing. */
+INLINE void add_outer(const struct kernel_traits traits, const struct box_candidate *candidate,
+                      int which, struct box_search *search)
 {
     struct box_bounds *bounds = &search->bounds[which];
     UNROLL(3)
@@ -371,18 +391,27 @@ INLINE void add_candidate(const struct kernel_traits traits, const struct box_ca
         UNROLL(2)
     for (int end = 0; end < 2; end++)
         bounds->outer[end][axis] = lanes_min(candidate->at[end][axis], bounds->outer[end][axis]);
-    if (!lanes_greater_bits(width, search->tolerance))
-        return;
-    const lanes_mask wide = width > search->tolerance;
+}
+
+/* Takes a vertex that may be beyond the tolerance along the axes wide[]. The same for a lane
+ * whatever the others hold. */
+INLINE void add_inner(const struct kernel_traits traits, const struct box_candidate *candidate,
+                      const lanes_mask wide[3], int which, struct box_search *search)
+{
+    struct box_bounds *bounds = &search->bounds[which];
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++) {
         const lanes at = candidate->at[end][axis], sum = search->frame[which].own_sum[axis];
-        const lanes inner = at - (candidate->width[axis] +
-                                  candidate->relative * (sum + lanes_min(lanes_abs(at), sum)));
+        const lanes size = sum + lanes_min(lanes_abs(at), sum);
+        const lanes inner = at - (candidate->width[axis] + candidate->relative * size);
+        lanes_mask counts = wide[axis];
+        if (search->careful && search->in_contact)
+            counts &=
+                candidate->rounded[axis] + candidate->relative_rounded * size > search->tolerance;
         bounds->inner[end][axis] =
-            lanes_min(lanes_select(wide, inner, lanes_of(INFINITY)), bounds->inner[end][axis]);
+            lanes_min(lanes_select(counts, inner, lanes_of(INFINITY)), bounds->inner[end][axis]);
     }
 }
 
@@ -400,21 +429,25 @@ INLINE lanes weight_of(const struct kernel_traits traits, const lanes weight[3],
 /* The error of a determinant, from its monomials and from t. weight: of the vector whose product
  * with v it is; scale: the product of the lengths. */
 INLINE lanes determinant_error(const struct kernel_traits traits, lanes scale,
-                               const lanes weight[3], const lanes v[3],
+                               const lanes weight[3], const lanes v[3], lanes t,
                                const struct box_search *search)
 {
-    return lanes_select(search->exact, lanes_of(0),
-                        determinant_rounding(traits) * weight_of(traits, weight, v) +
-                            (3.1 * search->relative_error) * scale);
+    return lanes_select(
+        search->exact, lanes_of(0),
+        determinant_rounding(traits) * weight_of(traits, weight, v) + (3.1 * t) * scale);
 }
 
-/* relative in struct box_candidate; arguments as above. */
-INLINE lanes relative_width(const struct kernel_traits traits, lanes inverse, lanes scale,
-                            const lanes weight[3], const lanes v[3],
-                            const struct box_search *search)
+/* Sets what the error of a determinant makes of a candidate; arguments as above. */
+INLINE void set_relative(const struct kernel_traits traits, lanes inverse, lanes scale,
+                         const lanes weight[3], const lanes v[3], const struct box_search *search,
+                         struct box_candidate *out)
 {
-    return (1.2 * determinant_error(traits, scale, weight, v, search)) * lanes_abs(inverse) +
-           0x1p-50;
+    const lanes size = 1.2 * lanes_abs(inverse);
+    out->relative =
+        size * determinant_error(traits, scale, weight, v, search->relative_error, search) +
+        0x1p-50;
+    out->relative_rounded =
+        size * determinant_error(traits, scale, weight, v, lanes_of(0), search) + 0x1p-50;
 }
 
 INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det, lanes scale,
@@ -428,11 +461,18 @@ INLINE struct box_vertex vertex_of(const struct kernel_traits traits, lanes det,
     if (lanes_greater_bits(lanes_abs(det), error) == (1u << LANES) - 1) {
         search->spans = is_not((lanes_mask){0});
     } else {
-        const lanes fine = determinant_error(traits, scale, weight, v, search);
+        const lanes fine =
+            determinant_error(traits, scale, weight, v, search->relative_error, search);
         const lanes_mask certain = lanes_abs(det) > 16 * fine;
         search->spans |= certain;
         out.uncertain = is_not(certain);
         out.bend = lanes_select(certain, lanes_of(0), lanes_abs(det) + fine);
+        const lanes bend = 1.3 * (out.bend / scale);
+        const lanes_mask known = (bend <= search->bend_limit) & (scale >= 0x1p-900);
+        if (traits.simplex[0] || traits.simplex[1])
+            search->bend = search->bend_limit;
+        else
+            search->bend = lanes_max(lanes_select(known, bend, search->bend_limit), search->bend);
         det = lanes_select(certain, det, lanes_of(NAN));
     }
     out.inverse = 1 / det;
@@ -484,6 +524,15 @@ INLINE void normal_nonzero(const struct kernel_traits traits, int which,
         for (int axis = 0; axis < 3; axis++)
             out[axis] |= own[axis];
     }
+}
+
+/* Where a coordinate of an edge of a face may not be 0; in 2D of edge k. */
+INLINE lanes_mask face_nonzero(const struct kernel_traits traits, int which, int k, int axis,
+                               const struct box_search *search)
+{
+    const int first = k == 3 ? 3 : next(k), second = k == 3 ? 4 : next(next(k));
+    const lanes_mask(*nonzero)[3] = search->nonzero[which];
+    return traits.dim == 2 ? nonzero[k][axis] : nonzero[first][axis] | nonzero[second][axis];
 }
 
 /* ---- Vertices y = 0 and y = e_k: extents ---- */
@@ -589,6 +638,7 @@ INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3
 /* A line and what is the same for all of its vertices. */
 struct box_line {
     const struct box_normal *normal;
+    int k;        /* its number, as in normal_nonzero() */
     lanes middle; /* what the offset takes from the end above for l = 1, adds to that below */
     lanes own;    /* what the frame of the normal adds to both, its error included */
     lanes width;  /* of what c gives, for l = 1, frame_error left out */
@@ -680,14 +730,26 @@ INLINE void add_edge_vertex(const struct pair_lanes *pair, const struct kernel_t
         set_candidate(traits, which, line, l, d, both, axis, &candidate);
         candidate.width[axis] =
             lanes_abs(l) * (line->width + line->frame_error) + edge_error * l_max;
+        candidate.rounded[axis] =
+            (lanes_abs(l) + (1.2 * search->relative_error) * l_max) * line->width;
     }
-    candidate.relative =
-        relative_width(traits, vertex->inverse, normal->scale * pair->size[other][e],
-                       normal->weight, frame->length[e], search);
+    set_relative(traits, vertex->inverse, normal->scale * pair->size[other][e], normal->weight,
+                 frame->length[e], search, &candidate);
     lanes width = line->width + line->relative;
     if (!search->in_contact)
         width += line->frame_error + edge_error;
-    add_candidate(traits, &candidate, l_max * width + 0x1p-49 * frame->own_sum_max, other, search);
+    width = l_max * width + 0x1p-49 * frame->own_sum_max;
+    add_outer(traits, &candidate, other, search);
+    if (!lanes_greater_bits(width, search->tolerance))
+        return;
+    lanes_mask wide[3];
+    for (int axis = 0; axis < traits.dim; axis++) {
+        wide[axis] = width > search->tolerance;
+        if (search->careful)
+            wide[axis] &= search->nonzero[other][e][axis] &
+                          face_nonzero(traits, which, line->k, axis, search);
+    }
+    add_inner(traits, &candidate, wide, other, search);
 }
 
 /* The vertex of a line on the wall of the drift. */
@@ -708,16 +770,26 @@ INLINE void add_drift_vertex(const struct pair_lanes *pair, const struct kernel_
         set_candidate(traits, which, line, l, extent_of_frame(traits, other, at),
                       lanes_abs(l) * line->own, axis, &candidate);
         candidate.width[axis] = lanes_abs(l) * (line->width + line->frame_error);
+        candidate.rounded[axis] = lanes_abs(l) * line->width;
     }
-    candidate.relative =
-        relative_width(traits, vertex->inverse, line->normal->scale * pair->half_drift_size,
-                       line->normal->weight, pair->half_drift, search);
-    const lanes width = search->in_contact ? line->width : line->width + line->frame_error;
-    add_candidate(traits, &candidate,
-                  lanes_abs(vertex->inverse) *
-                          (frame->travel_max * width + pair->half_drift_size * line->relative) +
-                      0x1p-49 * frame->own_sum_max,
-                  other, search);
+    set_relative(traits, vertex->inverse, line->normal->scale * pair->half_drift_size,
+                 line->normal->weight, pair->half_drift, search, &candidate);
+    lanes width = search->in_contact ? line->width : line->width + line->frame_error;
+    width = lanes_abs(vertex->inverse) *
+                (frame->travel_max * width + pair->half_drift_size * line->relative) +
+            0x1p-49 * frame->own_sum_max;
+    add_outer(traits, &candidate, other, search);
+    if (!lanes_greater_bits(width, search->tolerance))
+        return;
+    lanes_mask wide[3];
+    for (int axis = 0; axis < traits.dim; axis++) {
+        wide[axis] = width > search->tolerance;
+        if (search->careful)
+            wide[axis] &= (face_nonzero(traits, which, line->k, axis, search) |
+                           (search->frame[which].travel[axis] != 0)) &
+                          (frame->travel[axis] != 0);
+    }
+    add_inner(traits, &candidate, wide, other, search);
 }
 
 /* Turns the normal of a simplex outward: its frame does not reach beyond 0 along it, or is as far
@@ -803,7 +875,7 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
         search->good &=
             is_not(open) | is_inside(traits, d, which ? -normal->middle : normal->middle,
                                      normal->swing, normal->scale, pair, search);
-    struct box_line line = {.normal = normal};
+    struct box_line line = {.normal = normal, .k = k};
     line.slope = breadth_of(traits, d) + offset_reach(traits, normal->middle, normal->swing);
     const lanes error = value_error(traits, normal->weight, normal->magnitude, line.slope, search) +
                         normal->scale * pair->error;
@@ -1033,9 +1105,12 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
         candidate.width[axis] = (m_size * (width_of_m + drift_scale * search->frame_error) +
                                  n_size * (width_of_n + scale * search->frame_error)) +
                                 edge_error;
+        candidate.rounded[axis] =
+            (m_size + (1.2 * search->relative_error) * (length_b * size)) * width_of_m +
+            n_size * width_of_n;
     }
-    candidate.relative = relative_width(traits, vertex.inverse, scale * pair->half_drift_size,
-                                        weight, pair->half_drift, search);
+    set_relative(traits, vertex.inverse, scale * pair->half_drift_size, weight, pair->half_drift,
+                 search, &candidate);
     const lanes error = (1.2 * search->rounding * (scale * pair->half_drift_size)) * size + 0x1p-50;
     lanes width = ((length_b * size) * width_of_m + (b->travel_max * size) * width_of_n) +
                   (2 * error) * b->own_sum_max;
@@ -1043,7 +1118,17 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
         width += (((length_b * size) * drift_scale + (b->travel_max * size) * scale) *
                   search->frame_error) +
                  edge_error;
-    add_candidate(traits, &candidate, width, 1, search);
+    add_outer(traits, &candidate, 1, search);
+    if (!lanes_greater_bits(width, search->tolerance))
+        return;
+    lanes_mask wide[3];
+    for (int axis = 0; axis < 3; axis++) {
+        wide[axis] = width > search->tolerance;
+        if (search->careful)
+            wide[axis] &= (search->nonzero[0][i][axis] | (a->travel[axis] != 0)) &
+                          (search->nonzero[1][j][axis] | (b->travel[axis] != 0));
+    }
+    add_inner(traits, &candidate, wide, 1, search);
 }
 
 INLINE void add_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
@@ -1211,8 +1296,9 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     const lanes_mask shares = places->in_contact ? pair->error != 0 : (lanes_mask){0};
     search->frame_error = (2.2 * search->relative_error) * lengths + 0.1 * pair->error;
     search->bend_count = lanes_select(shares, lanes_of(4), lanes_of(2));
-    search->bend_error = (34 * search->bend_count) *
-                         ((slab_rounding(traits) + 4 * search->relative_error) * pair->reach);
+    search->bend = lanes_of(0);
+    search->bend_limit = 17 * (slab_rounding(traits) + 4 * search->relative_error);
+    search->bend_error = (2 * search->bend_count) * (search->bend_limit * pair->reach);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         set_sizes(pair, traits, places, axis, search);
@@ -1245,6 +1331,7 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     search->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
     search->tolerance = tolerance - search->shared;
     search->spans = search->open = search->left_out = (lanes_mask){0};
+    search->careful = false;
     search->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
 
@@ -1262,6 +1349,22 @@ INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
     is_end &= lanes_abs(snap - inner) <= near;
     is_end &= lanes_abs(middle) <= 0x1p30 * unit;
     return lanes_select(is_end, snap, outer);
+}
+
+/* Begins the second pass: what the first left out, how far c may bend there, and which coordinates
+ * of edges may not be 0. */
+INLINE void begin_second_pass(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              const struct box_left_out *left_out, struct box_search *search)
+{
+    search->careful = true;
+    search->left_out = left_out->open;
+    search->bend_error = (2 * search->bend_count) * (left_out->bend * pair->reach);
+    UNROLL(2)
+    for (int which = 0; which < 2; which++)
+        for (int index = 0; index < edge_count(traits, which); index++) {
+            const int e = edge_at(traits, which, index);
+            edge_nonzero(traits, &search->frame[which], e, search->nonzero[which][e]);
+        }
 }
 
 INLINE void add_all(const struct pair_lanes *pair, const struct kernel_traits traits,
@@ -1284,40 +1387,53 @@ INLINE void add_all(const struct pair_lanes *pair, const struct kernel_traits tr
         add_crossings(pair, traits, side, search);
 }
 
-/* Boxes and which of them are good. */
-INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_traits traits,
-                             const struct box_places *places, lanes box[2][3])
+/* How far the box reaches along an axis, below 0 (end 0) or above: outer at most, inner surely. */
+INLINE void ends_of(const struct box_search *search, int end, int axis, lanes *outer, lanes *inner)
 {
-    struct box_search search;
-    begin_box(pair, traits, places, &search);
-    for (int pass = 0; pass < 2; pass++) { /* one is enough unless a vertex is left out */
-        add_all(pair, traits, &search);
-        if (lanes_mask_bits(search.open) == 0)
-            break;
-        search.left_out = search.open;
+    *outer = *inner = lanes_of(INFINITY);
+    UNROLL(2)
+    for (int which = 0; which < 2; which++) {
+        const lanes centre =
+            end ? search->frame[which].centre[axis] : -search->frame[which].centre[axis];
+        const lanes slack = search->slack[which][axis];
+        const lanes at = centre + search->bounds[which].outer[end][axis];
+        const lanes least = centre + search->bounds[which].inner[end][axis];
+        *outer = lanes_min(at + slack, *outer);
+        *inner =
+            lanes_min(lanes_min(at - search->tolerance, least) - (slack + search->shared), *inner);
     }
-    lanes_mask good = search.good & search.spans;
-    const bool any_unit = lanes_mask_bits(search.unit != 0);
+}
+
+/* The lanes in which both ends along all axes are within the limit. */
+INLINE lanes_mask are_near(const struct kernel_traits traits, const struct box_search *search)
+{
+    lanes_mask good = search->good & search->spans;
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++)
+        UNROLL(2)
+    for (int end = 0; end < 2; end++) {
+        lanes outer, inner;
+        ends_of(search, end, axis, &outer, &inner);
+        good &= outer - inner <= BOX_LIMIT * search->largest;
+    }
+    return good;
+}
+
+/* Puts the ends in the lengths of the world, cut to both frames. */
+INLINE void put_box(const struct pair_lanes *pair, const struct kernel_traits traits,
+                    const struct box_places *places, const struct box_search *search,
+                    lanes box[2][3])
+{
+    const bool any_unit = lanes_mask_bits(search->unit != 0);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         lanes ends[2];
         UNROLL(2)
         for (int end = 0; end < 2; end++) {
-            lanes outer = lanes_of(INFINITY), inner = lanes_of(INFINITY);
-            UNROLL(2)
-            for (int which = 0; which < 2; which++) {
-                const lanes centre =
-                    end ? search.frame[which].centre[axis] : -search.frame[which].centre[axis];
-                const lanes slack = search.slack[which][axis];
-                const lanes at = centre + search.bounds[which].outer[end][axis];
-                const lanes least = centre + search.bounds[which].inner[end][axis];
-                outer = lanes_min(at + slack, outer);
-                inner = lanes_min(lanes_min(at - search.tolerance, least) - (slack + search.shared),
-                                  inner);
-            }
-            good &= outer - inner <= BOX_LIMIT * search.largest;
+            lanes outer, inner;
+            ends_of(search, end, axis, &outer, &inner);
             if (any_unit)
-                outer = snapped(outer, inner, search.unit);
+                outer = snapped(outer, inner, search->unit);
             if (is_doubled(traits))
                 outer *= 0.5;
             ends[end] = outer;
@@ -1328,7 +1444,25 @@ INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_
         box[0][axis] = 0.0 - ends[0]; /* never -0 */
         box[1][axis] = ends[1] + 0.0;
     }
-    return good;
+}
+
+/* Boxes, and in which lanes they are good. second: the second pass, which gives all boxes of the
+ * first, and more. left_out: written by the first. */
+INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_traits traits,
+                             const struct box_places *places, bool second,
+                             struct box_left_out *left_out, lanes box[2][3])
+{
+    struct box_search search;
+    begin_box(pair, traits, places, &search);
+    if (second)
+        begin_second_pass(pair, traits, left_out, &search);
+    add_all(pair, traits, &search);
+    put_box(pair, traits, places, &search, box);
+    const lanes_mask good = are_near(traits, &search);
+    if (second)
+        return good;
+    *left_out = (struct box_left_out){search.open, search.bend};
+    return good & is_not(search.open);
 }
 
 #endif

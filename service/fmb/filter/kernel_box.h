@@ -5,6 +5,19 @@
 #include "kernel_exact.h"
 #include "box_search.h"
 
+/* A pair of the second pass, and its box. */
+struct box_refinement {
+    struct kernel_traits traits;
+    struct pair_lanes pair;
+    struct box_places places;
+    struct box_left_out left_out;
+    lanes_mask good;
+    lanes box[2][3];
+};
+
+/* The second pass (box_refine.c). */
+void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement);
+
 /* NAN where doubles do not give it within its limit; 0 in axes that are not there. */
 INLINE void boxes_of(const struct kernel_traits traits, const struct pair_lanes *pair,
                      const struct frame_lanes frame[2], double duration, bool in_contact,
@@ -18,12 +31,21 @@ INLINE void boxes_of(const struct kernel_traits traits, const struct pair_lanes 
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         UNROLL(3)
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         places.origin[which][axis] = frame[which].origin[axis];
         if (traits.drifts)
             places.velocity[which][axis] = frame[which].velocity[axis];
     }
-    const lanes_mask good = pair->in_range & search_box(pair, traits, &places, box);
+    struct box_left_out left_out;
+    lanes_mask good = search_box(pair, traits, &places, false, &left_out, box);
+    if (lanes_mask_bits(good | is_not(pair->in_range)) != (1u << LANES) - 1) {
+        struct box_refinement again = {
+            .traits = traits, .pair = *pair, .places = places, .left_out = left_out};
+        KERNEL_PASTE(refine, KERNEL_NAME)(&again);
+        memcpy(box, again.box, sizeof again.box);
+        good = again.good;
+    }
+    good &= pair->in_range;
     UNROLL(2)
     for (int end = 0; end < 2; end++)
         UNROLL(3)

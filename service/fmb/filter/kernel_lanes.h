@@ -13,10 +13,10 @@
  *
  * Macros that the build sets select the job. None: the first pass, verdicts. KERNEL_EXACT: the
  * second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. KERNEL_BOXES: boxes
- * (kernel_box.h). The bits of the last three are promised. At the end of this file KERNEL_FUNCTIONS
- * defines one function for each kind of pair (dimension, shapes, motion: kernel.h), with the traits
- * as a constant. KERNEL_TABLE lists these functions in the order of the kinds, in a table whose
- * name ends in KERNEL_NAME.
+ * (kernel_box.h, box_refine.c). The bits of the last three are promised. At the end of this file
+ * KERNEL_FUNCTIONS defines one function for each kind of pair (dimension, shapes, motion:
+ * kernel.h), with the traits as a constant. KERNEL_TABLE lists these functions in the order of the
+ * kinds, in a table whose name ends in KERNEL_NAME.
  *
  * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
  * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this
