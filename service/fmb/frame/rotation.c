@@ -48,6 +48,7 @@ static void set_entry(struct rotation_matrix *out, int row, int column, double x
 void rotation_set_units(struct quaternion quaternion, struct rotation_matrix *out)
 {
     const double q[4] = {quaternion.w, quaternion.x, quaternion.y, quaternion.z};
+    bool column_exact[FMB_DIM_MAX] = {false};
     for (int i = 0; i < FMB_DIM_MAX; i++)
         for (int j = 0; j < FMB_DIM_MAX; j++) {
             const bool near_one = fabs(rotation_entry(out, i, j)) > 1 - 0x1p-40;
@@ -59,8 +60,13 @@ void rotation_set_units(struct quaternion quaternion, struct rotation_matrix *ou
                 set_entry(out, k, j, 0);
             }
             set_entry(out, i, j, unit);
-            out->axis_exact[i] = true;
+            out->axis_exact[i] = column_exact[j] = true;
             break;
         }
+    out->small = false;
+    for (int i = 0; i < FMB_DIM_MAX; i++)
+        for (int j = 0; j < FMB_DIM_MAX; j++)
+            out->small |= !out->axis_exact[i] && !column_exact[j] &&
+                          fabs(rotation_entry(out, i, j)) < 0x1p-60;
     out->exact = out->axis_exact[0] & out->axis_exact[1] & out->axis_exact[2];
 }

@@ -119,7 +119,8 @@ struct quaternion rotation_scaled(struct quaternion q);
  * given times a power of two. */
 bool rotation_is_spread_legal(struct quaternion given, struct quaternion q);
 
-/* Makes exact the rows that are plus or minus a unit vector, and the columns of their entries. */
+/* Makes exact the rows that are plus or minus a unit vector, and the columns of their entries. Sets
+ * small for the entries that remain. */
 void rotation_set_units(struct quaternion q, struct rotation_matrix *out);
 
 /* Returns whether fmb_placement_check() accepts the orientation. In: count is 2 or 4. */
