@@ -43,13 +43,15 @@ static bool on_side(double x, double y, double product, int side)
     return product >= 0x1p-900 && (side ? error <= 0 : error >= 0);
 }
 
-/* Seconds of a tau in [0,1], on the outer side: the tightest, or the double next to it. */
+/* Seconds of a tau in [0,1], on the outer side: the tightest, or the double next to it. A tau below
+ * 1 is at most 1 - 2^-53: its time is rounded to less than the duration, which is not subnormal,
+ * and the next double is within the window. */
 static double seconds(double tau, double duration, int side)
 {
     const double time = tau * duration;
     if (tau == 0 || tau == 1 || on_side(tau, duration, time, side))
         return time + 0.0;
-    return side ? fmin(nextafter(time, INFINITY), duration) : nextafter(time, 0) + 0.0;
+    return nextafter(time, side ? INFINITY : 0) + 0.0;
 }
 
 /* ---- Exact ends ---- */
