@@ -11,7 +11,11 @@
  * slab whose inner end is beyond the outer end of all. The result is the tightest doubles,
  * whichever slab gives the end, since rounding preserves order. This does not hold for frames with
  * errors: a slab that is missing in the rounded list, because its edges are parallel there, might
- * give the end. */
+ * give the end.
+ *
+ * The slabs do not give the times of two faces that stay in one plane: those along its normal are 0
+ * at all times. If operations round, their errors are above 0, so that no inner value is good; then
+ * doubles give no times, and only integers of fixed width must not be used (faces.h). */
 #include "certified.h"
 
 #include "clip.h"
