@@ -131,6 +131,12 @@ see_clients := $(addprefix clients/,query record mesh replay) $(see_clients/repl
 see_clients/demo :=
 see_clients/examples := clients/lib service/fmb
 
+# Before the rules whose prerequisites they are.
+message_names := body_t definition_query_t definition_t pair_query_t pair_result_t placement_t \
+	scene_query_t scene_result_t status_t
+message_files := $(message_names:%=msgs/%.lcm)
+message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
+
 # Evaluated when it is needed: 'make deps' may just have installed GLib.
 glib_flags = $(shell pkg-config --cflags glib-2.0)
 sees = $(addprefix -I,$(see_$(<D))) \
@@ -197,10 +203,6 @@ engine_objects := $(many_kernels) $(box_refinements) $(single_kernels) \
 	$(if $(openmp_flag),%/batch.o),$(call objects_in,$(engine_folders))) \
 	$(if $(openmp_flag),$(O)/service/fmb/decide/batch_openmp.o)
 
-message_names := body_t definition_query_t definition_t pair_query_t pair_result_t placement_t \
-	scene_query_t scene_result_t status_t
-message_files := $(message_names:%=msgs/%.lcm)
-message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 $(message_headers:.h=.c) $(message_headers) &: $(message_files)
 	@mkdir -p $(GEN)

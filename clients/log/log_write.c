@@ -104,12 +104,12 @@ static size_t whole_events(const struct log_writer *writer, size_t done)
     }
 }
 
-/* Truncates the file to its last complete event. Files that are not regular cannot be truncated,
- * and stay as they are. */
+/* Truncates the file to its last complete event; nothing is written after it. Files that are not
+ * regular cannot be truncated, and stay as they are. */
 static bool cut_back(struct log_writer *writer, int error)
 {
-    if (ftruncate(writer->fd, (off_t) writer->whole) == 0)
-        lseek(writer->fd, (off_t) writer->whole, SEEK_SET);
+    const int truncated = ftruncate(writer->fd, (off_t) writer->whole);
+    (void) truncated;
     return fail(writer, error);
 }
 

@@ -269,9 +269,9 @@ enum replay_outcome compare_scenes(const struct compare_options *options,
 
 enum { SERVER_END = 40, COMPUTE_BYTES = 8 };
 
-/* Pair results: the ids of the bodies, their handles, and all that is compared, the status first.
- */
-enum { BODIES_END = SERVER_END + 16, HANDLES_END = BODIES_END + 2 * HANDLE_BYTES };
+/* Pair results: the ids of the bodies (8 bytes each), their handles, and all that is compared, the
+ * status first. */
+enum { HANDLES_END = SERVER_END + 2 * 8 + 2 * HANDLE_BYTES };
 
 /* Scene results: status, an empty detail if the status is OK, method, number of unknown bodies (0);
  * the size of the handles and the handles; and all that is compared. */
@@ -285,7 +285,6 @@ static bool same_bytes(const unsigned char *a, const unsigned char *b, size_t be
 static bool same_pair_bytes(const unsigned char *then, const unsigned char *now, size_t size)
 {
     return size >= HANDLES_END + 4 + COMPUTE_BYTES && same_bytes(then, now, 0, 8) &&
-           same_bytes(then, now, SERVER_END, BODIES_END) &&
            !compare_status_is_transient((int32_t) big_endian_32(now + HANDLES_END)) &&
            same_bytes(then, now, HANDLES_END, size - COMPUTE_BYTES);
 }

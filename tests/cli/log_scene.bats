@@ -211,6 +211,9 @@ split_at() {
     said 'a result, whose query is not here'
     scene 1 "$log" --event 258
     said 'event 258: longer than its fields'
+    channel=$(grep -abo -m 1 FMB_STATUS "$log" | head -n 1 | cut -d : -f 1)
+    scene 1 "$log" --offset $((channel - 28))
+    said 'neither a query nor a result of this service (--prefix chooses it)'
     scene 2 "$T/nothing.log" --event 0
     [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
 }

@@ -520,6 +520,20 @@ poison_all() {
     stop_fmbd
 }
 
+@test "heartbeats come while queries arrive faster than they are answered" {
+    start_fmbd
+    "$FMB_BUILD/poke" flood scene_query 101 60 > /dev/null 3>&- &
+    flood=$!
+    started="$started $flood"
+    is_flooded() { [ "$(status_of received)" -gt 1000 ]; }
+    wait_until is_flooded
+    for _ in 1 2 3; do
+        "$FMB" status > /dev/null
+    done
+    kill $flood
+    stop_fmbd
+}
+
 @test "no route for multicast: two lines that say what to run" {
     unshare -rn true || skip "needs a network without routes"
     run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667

@@ -334,6 +334,29 @@ static void test_parts_fill_their_datagrams(void **state)
     assert_int_equal(answer_all_parts(1 + 72), parts_of(2000, 1 + 72, 0));
 }
 
+/* As many contacts as fit, then one separated pair for each byte that is left, and one more. */
+static void test_a_datagram_is_filled_to_its_last_byte(void **state)
+{
+    (void) state;
+    enum { HANDLES = 4, CONTACT_BYTES = 1 + 16 };
+    const int32_t capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * HANDLES;
+    const int32_t contacts = capacity / CONTACT_BYTES;
+    const int32_t fit = contacts + capacity % CONTACT_BYTES;
+    set_row(HANDLES);
+    query->want = QUERY_WANT_TIMES;
+    query->which = QUERY_PAIRS_LISTED;
+    query->index_count = 2 * (fit + 1);
+    for (int32_t i = 0; i <= fit; i++) {
+        query->pair[i][0] = 0;
+        query->pair[i][1] = i < contacts ? 1 : 3;
+    }
+    answer_to(query);
+    scene_assert(query, &result);
+    assert_fits();
+    assert_int_equal(result.contact_count, contacts);
+    assert_int_equal(result.end_pair, fit);
+}
+
 /* Near pairs count for the space of a result as contacts do. */
 static void test_near_pairs_fill_their_datagrams(void **state)
 {
@@ -1135,6 +1158,7 @@ int main(void)
         TEST(test_no_contact_is_lost_anywhere),
         TEST(test_every_pair_can_be_the_first),
         TEST(test_parts_fill_their_datagrams),
+        TEST(test_a_datagram_is_filled_to_its_last_byte),
         TEST(test_near_pairs_fill_their_datagrams),
         TEST(test_verdicts_of_listed_pairs_fit),
         TEST(test_empty_scenes),

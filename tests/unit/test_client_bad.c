@@ -387,6 +387,34 @@ static void test_queries_in_line_are_not_repeated(void **state)
     relay_close(relay);
 }
 
+/* Takes 85 ms for each query, so that the first is repeated after 10, 30 and 70; drops repeats. */
+static void be_slow_and_answer_once(struct relay *relay)
+{
+    const int last = relay->queries - 1;
+    const int64_t number = relay->arrival[last % RELAY_ARRIVALS].number;
+    relay->deaf = last > 0 && relay->arrival[(last - 1) % RELAY_ARRIVALS].number == number;
+    if (!relay->deaf)
+        nanosleep(&(struct timespec){0, 85000000}, NULL);
+}
+
+/* The time from the last repeat to the result of the first query is not the time that the service
+ * takes. A client that measured it would go on to repeat. */
+static void test_a_slow_service_gets_repeats_at_first_only(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    struct fmb_client_answer answer;
+    relay->before = be_slow_and_answer_once;
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 2);
+    relay_draw(placement, 2, 3, 1, 1, 1);
+    for (int i = 0; i < 20; i++)
+        assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    assert_in_range(fmb_client_get_counts(client).repeated, 1, 10);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
 /* ---- An end ---- */
 
 /* The service ends during a scene: the answers so far are given, and a status for the others. */
@@ -1304,6 +1332,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_no_service_costs_the_time_of_one_query),
         cmocka_unit_test(test_a_lost_query_is_repeated_soon_and_then_more_rarely),
         cmocka_unit_test(test_queries_in_line_are_not_repeated),
+        cmocka_unit_test(test_a_slow_service_gets_repeats_at_first_only),
         cmocka_unit_test(test_the_others_have_no_answer),
         cmocka_unit_test(test_the_time_for_all_ends_it),
         cmocka_unit_test(test_a_caller_that_takes_long_gets_all_answers),

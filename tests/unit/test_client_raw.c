@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -146,6 +147,25 @@ static void test_a_window_of_64_is_under_way(void **state)
 }
 
 /* No more bytes than a stock receive buffer holds: two of the largest datagrams. */
+/* A query is lost, and its caller comes back only when the time for all its repeats is over. */
+static void test_a_caller_that_was_away_repeats_its_query(void **state)
+{
+    (void) state;
+    struct pair pair = {0};
+    struct relay *relay = relay_new();
+    relay->lose_query = 1;
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 0.2, 2);
+    send_pair(client, 1, 2, &pair);
+    nanosleep(&(struct timespec){0, 600000000}, NULL);
+    relay->lose_query = 0;
+    finish(client);
+    assert_int_equal(pair.called, 1);
+    assert_int_equal(pair.status, FMB_OK);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
 static void test_large_queries_are_few_at_a_time(void **state)
 {
     (void) state;
@@ -389,6 +409,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_many_pairs_over_a_bad_bus),
         cmocka_unit_test(test_a_window_of_64_is_under_way),
+        cmocka_unit_test(test_a_caller_that_was_away_repeats_its_query),
         cmocka_unit_test(test_large_queries_are_few_at_a_time),
         cmocka_unit_test(test_messages_that_are_none_are_refused),
         cmocka_unit_test(test_an_idle_client_is_drained_before_a_query),

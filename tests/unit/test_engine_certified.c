@@ -418,6 +418,20 @@ static const struct named cases[] = {
       1},
      FMB_SEPARATED,
      {-1, -1}},
+    /* A part of the window, rounded to seconds, is off by less than any double, on the wrong side.
+     */
+    {"hardly_any_time_to_recede",
+     {{2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, STILL},
+      {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {369 * 0x1p1007, 0}, true},
+      173 * 0x1p-1007},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"hardly_any_time_to_arrive",
+     {{2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, STILL},
+      {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {-2, 0}, {1161 * 0x1p1006, 0}, true},
+      65 * 0x1p-1006},
+     FMB_OVERLAPPING,
+     {-1, -1}},
     /* Two edges along the same axis, each the difference of two components: their slab is noise
      * that a fast drift makes large. */
     {"noise_of_a_zero_normal",

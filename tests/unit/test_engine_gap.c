@@ -789,6 +789,51 @@ static void tiny_edges(void **state)
         }
 }
 
+/* A tetrahedron with a short edge, an edge of another across it, and both turned: the products of
+ * the short edge, from those of the components that it is the difference of, are noise. */
+static void short_edges(void **state)
+{
+    struct draw draw;
+    draw_begin(&draw, "short_edges");
+    (void) state;
+    for (long n = draw_sample(60); n > 0; n--) {
+        const double width = 0x1p-28, depth = 0x1p-31;
+        const double y = draw_uniform(&draw, -0.1, 0.1), z = draw_uniform(&draw, 0.9, 1.1);
+        struct question question = {
+            .a = {.dim = 3,
+                  .shape = FMB_TETRAHEDRON,
+                  .component = {{-0.25 - width / 2, -1, -z},
+                                {-0.25 + width / 2, -1, -z},
+                                {draw_uniform(&draw, -0.6, -0.4), -2,
+                                 draw_uniform(&draw, -0.2, 0.2)}},
+                  .local = {0.25, 1, z}},
+            .b = {.dim = 3,
+                  .shape = FMB_TETRAHEDRON,
+                  .component = {{0, 2, 0}, {1, 1 + y, -1}, {-1, 1, -z}},
+                  .local = {0, -1, depth}},
+        };
+        draw_vector(&draw, 4, any, question.a.orientation);
+        question.a.orientation_count = question.b.orientation_count = 4;
+        memcpy(question.b.orientation, question.a.orientation, sizeof question.b.orientation);
+        check(&question);
+    }
+}
+
+/* Squares of products of the longest edges overflow, and those of others do not. */
+static void long_edges(void **state)
+{
+    const struct question question = {
+        {.dim = 3, .shape = FMB_BOX, .component = {{0x1p199}, {0, 0x1p199}, {0, 0, 0x1p120}}},
+        {.dim = 3,
+         .shape = FMB_BOX,
+         .component = {{1}, {0, 1}, {0, 0, 1}},
+         .orientation = {1, 0.25, 0.5, 0.75},
+         .orientation_count = 4},
+        0};
+    (void) state;
+    check(&question);
+}
+
 /* Where two bodies move together their way may be beyond all doubles, and the gap still is small;
  * where all is at the origin there is nothing to scale by. */
 static void extreme_places(void **state)
@@ -824,6 +869,8 @@ int main(void)
         cmocka_unit_test(touching_bodies_have_no_gap),
         cmocka_unit_test(a_shared_frame_has_an_order),
         cmocka_unit_test(tiny_edges),
+        cmocka_unit_test(short_edges),
+        cmocka_unit_test(long_edges),
         cmocka_unit_test(extreme_places),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

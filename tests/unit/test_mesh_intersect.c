@@ -557,6 +557,15 @@ static const struct near_case near_cases[] = {
        {0x1.46646661f4670p+49, 0x1.a6fd4b81130cap+51, -0x1.fd799c11d4288p+50}}},
      MESH_SHARE_AND_INTERSECT,
      FMB_OVERLAPPING},
+    /* All that is rounded on the way to the side of the last vertex is off by nearly half a unit in
+     * the last place, and to the other side. */
+    {"faces in one plane, whose differences are rounded",
+     {{{-0x1p-53, -0x1p-53, 0}, {0x1.172c0ef343440p+0, 0x1.2c981056b24abp+0, 0}, {0, 1, 0}},
+      {{-0x1p-53, -0x1p-53, 0},
+       {0x1.172c0ef343440p+0, 0x1.2c981056b24abp+0, 0},
+       {0x1.125be85cf1685p+0, 0x1.27695d9bf6d2ap+0, 0}}},
+     MESH_SHARE_AND_INTERSECT,
+     FMB_OVERLAPPING},
     /* The cone of the second face contains that of the first. Of a product of theirs the rounding
      * error is less than any double. */
     {"faces in one plane, whose products have tiny errors",

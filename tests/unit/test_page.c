@@ -566,6 +566,15 @@ static void a_different_certificate_is_reported(void **state)
         assert_int_equal(cJSON_HasObjectItem(event_at(data, 0), "certificate"), i >= 2);
         cJSON_Delete(data);
     }
+    for (int refused = 0; refused < 2; refused++) { /* has no certificate to differ from */
+        struct pair_result *one = refused ? &now : &then, *other = refused ? &then : &now;
+        *one = (struct pair_result){.status = FMB_BUSY};
+        *other = overlapping();
+        other->certificate = "a";
+        cJSON *data = data_of_one(&replayed);
+        assert_false(cJSON_HasObjectItem(event_at(data, 0), "certificate"));
+        cJSON_Delete(data);
+    }
 }
 
 /* ---- Pairs of scenes ------------------------------------------------------------------------- */

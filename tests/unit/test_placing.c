@@ -584,6 +584,43 @@ static void errors_hold_all_vertices(void **state)
     assert_true(seen.worst_size > 0.999 && seen.worst_turn > 0.05);
 }
 
+/* A search found it: the origin of the frame is off by more than most, by 0.4 of the error. */
+static void the_error_holds_an_unlucky_vertex(void **state)
+{
+    (void) state;
+    static const double number[] = {-0x1.93a4a4446c833p-5,
+                                    -0x1.03a280a60335ap-1,
+                                    0x1.4b79a7628e95ep-5,
+                                    0x1p-30,
+                                    0,
+                                    0,
+                                    0,
+                                    0x1p-30,
+                                    0,
+                                    0,
+                                    0,
+                                    0x1p-30};
+    struct fmb_body body;
+    const struct fmb_placement placement = {
+        .body = &body,
+        .orientation = {0x1.7b529bd80b7eep-4, 0x1.3327ee42664ep-5, 0x1.905da2e720bb4p-1,
+                        0x1.788e4fdef11cap-1},
+        .orientation_count = 4};
+    struct fmb_prepared prepared;
+    struct rational_solid exact;
+    struct difference difference;
+    struct seen seen = {0};
+    assert_int_equal(fmb_body_make(3, FMB_TETRAHEDRON, number, COUNT(number), &body), FMB_OK);
+    assert_int_equal(fmb_prepare(&placement, 0, 1, &prepared), FMB_OK);
+    rational_solid_init(&body.one, &placement, &exact);
+    difference_init(&prepared, &exact, &difference);
+    expect_error(&placement, &prepared, &difference, &seen);
+    printf("# %.3g of the error\n", seen.worst);
+    assert_true(seen.worst > 0.35);
+    difference_clear(&difference);
+    rational_solid_clear(&exact);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -591,6 +628,7 @@ int main(void)
         cmocka_unit_test(turns_of_a_cube_are_exact),
         cmocka_unit_test(no_orientation_is_the_identity),
         cmocka_unit_test(errors_hold_all_vertices),
+        cmocka_unit_test(the_error_holds_an_unlucky_vertex),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -357,6 +357,27 @@ static void test_results_of_many_queries(void **state)
     assert_true(handle_equal(&world->request.handle[0], &recent.handle));
 }
 
+/* Handles that no service knows do not fill the memory: at most 65,536 are requested. */
+static void test_wanted_handles_are_limited(void **state)
+{
+    struct world *world = *state;
+    enum { MOST = 1 << 16, MORE = 20 };
+    int requested = 0;
+    begin(world);
+    for (int i = 0; i < MOST + MORE; i += 2) {
+        const struct body a = make_body(world, 1 + i), b = make_body(world, 2 + i);
+        receive_query(world, place_by_handle(&a), place_by_handle(&b));
+        receive_result(world, FMB_OK);
+    }
+    while (record_bodies_due(world->bodies) != INT64_MAX) {
+        pass(world, SECOND);
+        requested += world->request.handle_count;
+        receive_definition(world, &world->request, NULL, 0, 0);
+    }
+    assert_int_equal(requested, MOST);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, MOST + MORE);
+}
+
 static void test_refused_queries_need_no_bodies(void **state)
 {
     struct world *world = *state;
@@ -409,6 +430,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_bodies_of_undecided_pairs_are_requested, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(test_results_of_many_queries, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_wanted_handles_are_limited, setup, teardown),
         cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),

@@ -70,6 +70,22 @@ static void test_the_last_one_is_found(void **state)
     assert_int_equal(runs_allocate(&runs, 7), last);
 }
 
+/* Of a list, more than the first run is examined. */
+static void test_a_longer_run_of_a_list_is_found(void **state)
+{
+    (void) state;
+    static struct run_slot slot[SLOTS];
+    struct runs runs;
+    runs_init(&runs, slot, SLOTS);
+    const int32_t longer = runs_allocate(&runs, 7);
+    runs_allocate(&runs, 1);
+    const int32_t shorter = runs_allocate(&runs, 4);
+    runs_allocate(&runs, SLOTS - (7 + 1 + 4));
+    runs_free(&runs, longer);
+    runs_free(&runs, shorter);
+    assert_int_equal(runs_allocate(&runs, 5), longer);
+}
+
 /* Takes and frees at random: runs never overlap, what is free is counted, and the free run that is
  * returned reaches as far as it can. */
 static void test_against_a_map(void **state)
@@ -123,6 +139,7 @@ int main(void)
         cmocka_unit_test(test_all_slots),
         cmocka_unit_test(test_neighbours_are_merged),
         cmocka_unit_test(test_the_last_one_is_found),
+        cmocka_unit_test(test_a_longer_run_of_a_list_is_found),
         cmocka_unit_test(test_against_a_map),
     };
     return cmocka_run_group_tests_name("runs", tests, NULL, NULL);

@@ -197,12 +197,8 @@ static enum fmb_verdict verdict_in_integers(struct certified *certified, bool to
     if (!find_slabs(certified))
         return verdict_exact(certified);
     const enum fmb_verdict verdict = touching ? FMB_TOUCHING : verdict_of_slabs(certified);
-    if (!are_faces(certified))
-        return verdict;
-    if (certified->path == CERTIFIED_EXACT) {
-        certified->planes = FACES_UNDECIDED; /* they may be parallel: this was not tested */
-        return verdict;
-    }
+    if (!are_faces(certified) || certified->path == CERTIFIED_EXACT)
+        return verdict; /* contact_of() needs no planes of faces that do not fit integers */
     find_span(certified);
     return verdict == FMB_TOUCHING ? verdict_of_planes(certified) : verdict;
 }

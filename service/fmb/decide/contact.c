@@ -11,7 +11,11 @@
  * slab whose inner end is beyond the outer end of all. The result is the tightest doubles,
  * whichever slab gives the end, since rounding preserves order. This does not hold for frames with
  * errors: a slab that is missing in the rounded list, because its edges are parallel there, might
- * give the end. */
+ * give the end.
+ *
+ * The slabs do not give the times of two faces that stay in one plane: those along its normal are 0
+ * at all times. If operations round, their errors are above 0, so that no inner value is good; then
+ * doubles give no times, and only integers of fixed width must not be used (faces.h). */
 #include "certified.h"
 
 #include "clip.h"
@@ -43,13 +47,15 @@ static bool on_side(double x, double y, double product, int side)
     return product >= 0x1p-900 && (side ? error <= 0 : error >= 0);
 }
 
-/* Seconds of a tau in [0,1], on the outer side: the tightest, or the double next to it. */
+/* Seconds of a tau in [0,1], on the outer side: the tightest, or the double next to it. A tau below
+ * 1 is at most 1 - 2^-53: its time is rounded to less than the duration, which is not subnormal,
+ * and the next double is within the window. */
 static double seconds(double tau, double duration, int side)
 {
     const double time = tau * duration;
     if (tau == 0 || tau == 1 || on_side(tau, duration, time, side))
         return time + 0.0;
-    return side ? fmin(nextafter(time, INFINITY), duration) : nextafter(time, 0) + 0.0;
+    return nextafter(time, side ? INFINITY : 0) + 0.0;
 }
 
 /* ---- Exact ends ---- */
