@@ -1043,6 +1043,49 @@ static void prepare_two(int shape_a, int shape_b, const double number[2][12],
     }
 }
 
+/* An edge of the first frame, the difference of its last two components, is -0 along x, and its
+ * box is known for one sign of that zero only. */
+static void zeros_of_differences_give_the_same_box(void **state)
+{
+    (void) state;
+    static const double number[2][12] = {
+        {-0x1.09eec8b7476a4p-2, -0x1.934640cbd8e58p-3, -0x1.af6b7330027d8p-2, -0x1.9c636bcf93898p-2,
+         -0x1.827fc7900843ep-53, 0, 0, -0x1.016eaf9bc7308p-1, 0, 0, -0x1.b84ac9e5c1cb2p-65,
+         -0x1.dd165b1089f8p-6},
+        {0x1.2779480c9e324p-1, -0x1.26293054a5f78p-3, -0x1.57378e71195cp-3, -0x1.3c0b0ceef6ap-8,
+         0x1.ca50c45ceeb38p-1, 0x1.b21387d1064p-10, -0x1.090fdd909ed2p-4, -0x1.99706256e675p-1,
+         0x1.b2aec02dddcc6p-1, -0x1.7daf862bba404p-1, -0x1.1bf7cee92a94p-6, -0x1.7fe80e1e6b366p-1}};
+    struct fmb_placement placement[2] = {
+        {.position = {0x1.68f1d85c42478p-2, 0, -0x1.5c087e29918p-10},
+         .orientation = {0, 0, -0x1.42c5bb1285786p+478, -0x1.8259abead6b3p+475},
+         .orientation_count = 4},
+        {.position = {0x1.b1508c3bdd713p-2, 0x1.261bf221df9f9p-4, -0x1.34572c4586e41p-4},
+         .orientation = {0x1.34fe05b92f4bp-2, 0x1.defff32ac5344p-38, -0x1.bca57cc972b74p-1,
+                         -0x1.ad8307bfd3a5cp-2},
+         .orientation_count = 4}};
+    struct subject subject[SUBJECTS_MAX];
+    const int subjects = subjects_of_machine(subject);
+    struct fmb_body body[2];
+    struct fmb_prepared frame[2];
+    double box[2 + KERNEL_LANES][2][FMB_DIM_MAX], first[2][FMB_DIM_MAX];
+    prepare_two(FMB_TETRAHEDRON, FMB_TETRAHEDRON, number, body, placement, frame);
+    assert_true(signbit(frame[0].number[9]) && frame[0].number[9] == 0);
+    for (int s = 0; s < 2 * subjects; s++) {
+        const struct fmb_prepared *both[KERNEL_LANES][2];
+        bool swapped;
+        frame[0].number[9] = s % 2 ? -0.0 : 0.0;
+        for (int i = 0; i < KERNEL_LANES; i++)
+            for (int f = 0; f < 2; f++)
+                both[i][f] = &frame[f];
+        const struct kernel_call call = {
+            .pairs = both, .count = 1, .boxes = box, .in_contact = true};
+        subject[s / 2].set.boxes[kernel_box_kind(&frame[0], &frame[1], 0, &swapped)](&call);
+        if (s == 0)
+            memcpy(first, box[0], sizeof first);
+        assert_memory_equal(box[0], first, sizeof first);
+    }
+}
+
 /* The second pass leaves this pair unsure, the kernel of times does not, and the box depends on
  * which of them runs. */
 static void boxes_do_not_depend_on_whether_contacts_are_wanted(void **state)
@@ -1335,6 +1378,7 @@ int main(void)
         cmocka_unit_test(ends_of_the_time_are_covered),
         cmocka_unit_test(boxes_hold_the_exact_ones),
         cmocka_unit_test(zeros_of_either_sign_give_the_same_box),
+        cmocka_unit_test(zeros_of_differences_give_the_same_box),
         cmocka_unit_test(boxes_do_not_depend_on_whether_contacts_are_wanted),
         cmocka_unit_test(the_second_pass_and_boxes_do_not_depend_on_the_order),
         cmocka_unit_test(boxes_of_bodies_that_rest_need_no_integers),

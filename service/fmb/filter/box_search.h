@@ -324,7 +324,8 @@ INLINE lanes magnitudes_along(const struct pair_lanes *pair, const struct kernel
     return sum;
 }
 
-/* Zeros become positive: their sign decides to which end a vertex at l = 0 belongs. */
+/* Zeros become positive, those of differences too: their sign decides to which end a vertex at l =
+ * 0 belongs. */
 INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
                           int which, const struct box_places *places, struct box_frame *out)
 {
@@ -352,7 +353,7 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
             const int e = edge_at(traits, which, index);
             const lanes from = e < traits.dim ? lanes_of(0) : c[edge_from(traits, e)][axis];
             const lanes to = e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis];
-            out->edge[e][axis] = e < traits.dim ? to + 0.0 : to - from;
+            out->edge[e][axis] = (e < traits.dim ? to : to - from) + 0.0;
             out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
         }
     }

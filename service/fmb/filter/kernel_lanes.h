@@ -66,7 +66,7 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 {
     UNROLL(4)
     for (int w = 0; w < 4; w++)
-        words[w] = lanes_of(frame[0][first + w]);
+        words[w] = frame[0][first + w]; /* lanes_of() would lose the sign of -0 */
 }
 
 #elif LANES == 2
@@ -181,7 +181,7 @@ INLINE void set_frame_lanes(const struct kernel_traits traits, const lanes words
 INLINE lanes gather_one(const double *const frame[LANES], int word)
 {
 #if LANES == 1
-    return lanes_of(frame[0][word]);
+    return frame[0][word];
 #elif LANES == 2
     return (lanes){frame[0][word], frame[1][word]};
 #elif LANES == 4
