@@ -1,6 +1,5 @@
 #include "client.h"
 
-#include "clock.h"
 #include "process.h"
 #include "wire_type.h"
 

@@ -1,6 +1,5 @@
 #include "log_query.h"
 
-#include "allocate.h"
 #include "complain.h"
 #include "input.h"
 #include "log_kind.h"

@@ -9,7 +9,6 @@
 
 #include <assert.h>
 #include <float.h>
-#include <string.h>
 
 static_assert((int) QUERY_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
                   (int) QUERY_PAIRS_ALL == FMB_MSGS_SCENE_QUERY_T_PAIRS_ALL &&

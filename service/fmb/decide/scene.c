@@ -17,7 +17,6 @@
 #include "scene_pairs.h"
 
 #include "batch.h"
-#include "certified.h"
 #include "gap.h"
 
 #include <assert.h>

@@ -1,8 +1,6 @@
 #include "exact.h"
 #include "integer.h"
 
-#include <assert.h>
-
 void ratio_init(struct ratio *r)
 {
     mpz_inits(r->num, r->den, NULL);
