@@ -170,11 +170,7 @@ static int run_cut(const struct log_cut_arguments *options)
 
 static bool check_options(const struct args *args, const struct log_cut_arguments *options)
 {
-    if (args->operand_count == 0)
-        return args_error(args, "expected a LOG");
-    if (!options->cut.output)
-        return args_error(args, "expected -o FILE");
-    return true;
+    return options->cut.output || args_error(args, "expected -o FILE");
 }
 
 int cmd_log_cut(int argc, char **argv)
@@ -191,7 +187,8 @@ int cmd_log_cut(int argc, char **argv)
         {"json", ARGS_FLAG, .out = &options.json},
         {.name = NULL},
     };
-    struct args args = {"log cut", usage, own, .operand = "LOG", .operands_max = 4096};
+    struct args args = {"log cut",           usage, own, .operand = "LOG", .operands_min = 1,
+                        .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
     if (code == ARGS_RUN && !check_options(&args, &options))
         code = ARGS_USAGE;

@@ -94,5 +94,8 @@ void json_bytes(struct json_writer *json, const char *key, const char *bytes, si
 
 void json_string(struct json_writer *json, const char *key, const char *text)
 {
-    json_bytes(json, key, text, strlen(text));
+    if (text)
+        json_bytes(json, key, text, strlen(text));
+    else
+        json_null(json, key);
 }

@@ -46,7 +46,7 @@ void json_number(struct json_writer *json, const char *key, double value);
 /* A vector, without spaces: [0,0.5,1]. */
 void json_numbers(struct json_writer *json, const char *key, const double *numbers, int count);
 
-/* Strings, escaped by escape(). */
+/* Strings, escaped by escape(). text: NULL: null. */
 void json_string(struct json_writer *json, const char *key, const char *text);
 void json_bytes(struct json_writer *json, const char *key, const char *bytes, size_t count);
 

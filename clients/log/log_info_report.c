@@ -7,6 +7,7 @@
 #include "wire_type.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -252,13 +253,9 @@ static void write_counts(struct json_writer *json, const struct log_tally *tally
 static void write_row(struct json_writer *json, const struct log_row *row)
 {
     char text[TYPE_TEXT_MAX];
-    const char *type = type_text(row->type, text);
     json_begin(json, NULL, '{');
     json_bytes(json, "channel", row->channel, row->channel_length);
-    if (type)
-        json_string(json, "type", type);
-    else
-        json_null(json, "type");
+    json_string(json, "type", type_text(row->type, text));
     write_counts(json, &row->tally);
     json_end(json, '}');
 }
@@ -303,10 +300,7 @@ void log_report_json(FILE *out, const struct log_report *report)
     json_integer(&json, "events", all->events);
     json_integer(&json, "bytes", all->bytes);
     write_times(&json, all);
-    if (span_of(all) > 0)
-        json_number(&json, "rate", rate_of(all));
-    else
-        json_null(&json, "rate");
+    json_number(&json, "rate", span_of(all) > 0 ? rate_of(all) : NAN);
     json_integer(&json, "backward", report->info->backward);
     write_channels(&json, report->info);
     write_damage(&json, report->info);

@@ -98,7 +98,8 @@ static void write_times(struct json_writer *json, const char *key, const struct 
 
 static void write_bus(struct json_writer *json, const struct tally_bus *bus)
 {
-    static const char *const end[] = {[ANSWER_BUS_SIGNAL] = "signal",
+    static const char *const end[] = {[ANSWER_BUS_NO_END] = NULL,
+                                      [ANSWER_BUS_SIGNAL] = "signal",
                                       [ANSWER_BUS_NO_SERVICE] = "no service answers",
                                       [ANSWER_BUS_FAILED] = "the bus has failed"};
     json_begin(json, "bus", '{');
@@ -111,10 +112,7 @@ static void write_bus(struct json_writer *json, const struct tally_bus *bus)
     json_integer(json, "supplied", bus->supplied);
     json_integer(json, "services", bus->services);
     json_integer(json, "unreadable", bus->malformed);
-    if (bus->end == ANSWER_BUS_NO_END)
-        json_null(json, "end");
-    else
-        json_string(json, "end", end[bus->end]);
+    json_string(json, "end", end[bus->end]);
     json_end(json, '}');
 }
 

@@ -480,11 +480,6 @@ static void begin_block(struct fmb_scene_state *state)
 
 /* ---- Answers ---- */
 
-static bool is_contact(unsigned char verdict)
-{
-    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
-}
-
 /* Includes the gap of pair of frames k, if it is known, in that of its bodies. If both have one
  * frame, it is the gap of the bodies. */
 static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
@@ -574,7 +569,7 @@ static size_t drop_separated(struct fmb_scene_state *state, struct scene_outcome
     unsigned(*pair)[2] = state->block.out;
     size_t to = first;
     for (size_t n = first; n < end; n++) {
-        if (!is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
+        if (!batch_is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
             continue;
         if (to < n) {
             memcpy(pair[to], pair[n], sizeof pair[to]);
