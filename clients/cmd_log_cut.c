@@ -123,8 +123,7 @@ static void print_json(const struct log_cut_counts *counts, int code)
     static const char *const name[LOG_KINDS] = {
         "pair_queries", "pair_results",       "scene_queries", "scene_results",
         "statuses",     "definition_queries", "definitions",   "other_events"};
-    struct json_writer json = {.out = stdout};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(stdout);
     json_integer(&json, "exit", code);
     json_integer(&json, "events", counts->events);
     json_integer(&json, "bytes", counts->bytes);
@@ -138,8 +137,7 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "version_1", counts->version_1);
     json_integer(&json, "damages", counts->damages);
     json_integer(&json, "damaged_bytes", counts->damaged_bytes);
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }
 
 static int code_of(const struct cut_run *run, const struct log_cut_counts *counts)

@@ -293,8 +293,7 @@ static void write_damage(struct json_writer *json, const struct log_info *info)
 void log_report_json(FILE *out, const struct log_report *report)
 {
     const struct log_tally *all = &report->info->all;
-    struct json_writer json = {.out = out};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(out);
     json_string(&json, "log", report->path);
     json_integer(&json, "size", report->size);
     json_integer(&json, "events", all->events);
@@ -306,6 +305,5 @@ void log_report_json(FILE *out, const struct log_report *report)
     write_damage(&json, report->info);
     if (report->error)
         json_string(&json, "error", report->error);
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }

@@ -136,8 +136,7 @@ static void put_pair_json(struct json_writer *json, const struct mesh_pair *pair
 void mesh_report_json(FILE *out, const struct mesh_report *report)
 {
     const struct mesh_intersection *intersection = report->intersection;
-    struct json_writer json = {.out = out};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(out);
     json_integer(&json, "overlapping", (int64_t) intersection->overlapping);
     json_integer(&json, "touching", (int64_t) intersection->touching);
     json_integer(&json, "faces_a", (int64_t) intersection->faces[0]);
@@ -150,8 +149,7 @@ void mesh_report_json(FILE *out, const struct mesh_report *report)
     for (size_t i = 0; i < intersection->count; i++)
         put_pair_json(&json, &intersection->pair[i], intersection->moving);
     json_end(&json, ']');
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }
 
 /* ---- PLY ---------------------------------------------------------------------------------- */

@@ -279,7 +279,7 @@ static void write_point(struct certificate_writer *writer, struct exact_pair *ex
 static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
-    exact_pair_init(&exact, pair);
+    exact_pair_init(&exact, pair, true);
     const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
     write_text(writer, fmb_verdict_name(verdict));
     if (verdict != FMB_OVERLAPPING)

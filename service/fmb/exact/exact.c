@@ -371,9 +371,8 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
         add_triples(pair, 1, u->minus, v->minus, value);
 }
 
-/* Converts a pair. difference: the slabs of the difference are needed. The box needs only slabs of
- * single frames, and mixed triples if the pair moves, for crossings. */
-static void begin(struct exact_pair *out, const struct frame_pair *pair, bool difference)
+/* The box needs only slabs of single frames, and mixed triples if the pair moves, for crossings. */
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference)
 {
     pair_each(out, mpz_init);
     out->unit = pair_unit(pair);
@@ -382,11 +381,6 @@ static void begin(struct exact_pair *out, const struct frame_pair *pair, bool di
     exact_pair_complete(out);
     if (pair->a.frame->dim == 3) /* in 2D all vectors lie in one plane */
         set_triples(out, difference || out->moving);
-}
-
-void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
-{
-    begin(out, pair, true);
 }
 
 void exact_pair_clear(struct exact_pair *pair)
@@ -529,7 +523,7 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
 {
     struct exact_pair exact;
     double contact[2];
-    exact_pair_init(&exact, pair);
+    exact_pair_init(&exact, pair, true);
     answer->verdict = exact_verdict(&exact, pair->duration, contact);
     if (answer->verdict != FMB_SEPARATED) {
         answer->has_contact = true;
@@ -545,7 +539,7 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
 void exact_box(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
 {
     struct exact_pair exact;
-    begin(&exact, pair, false);
+    exact_pair_init(&exact, pair, false);
     exact_pair_box(&exact, box);
     exact_pair_clear(&exact);
 }

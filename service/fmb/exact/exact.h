@@ -65,8 +65,9 @@ struct exact_pair {
     mpz_t scratch[EXACT_SCRATCH];
 };
 
-/* Converts a checked pair. exact_pair_clear() frees what exact_pair_init() allocates. */
-void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair);
+/* Converts a checked pair. difference: the slabs of the difference are needed. exact_pair_clear()
+ * frees what exact_pair_init() allocates. */
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference);
 void exact_pair_clear(struct exact_pair *pair);
 
 /* Sets edges, offset and drift of a pair from its components, origins and displacements. */

@@ -531,7 +531,7 @@ void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct f
 {
     struct solver solver = {.dim = pair->a.frame->dim};
     memset(out, 0, sizeof *out);
-    exact_pair_init(&solver.pair, pair);
+    exact_pair_init(&solver.pair, pair, true);
     solver_each(&solver, mpz_init);
     round_pair(&solver.pair, solver.t[0]);
     answer(&solver, verdict, pair->duration, out);
