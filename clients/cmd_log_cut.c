@@ -123,8 +123,7 @@ static void print_json(const struct log_cut_counts *counts, int code)
     static const char *const name[LOG_KINDS] = {
         "pair_queries", "pair_results",       "scene_queries", "scene_results",
         "statuses",     "definition_queries", "definitions",   "other_events"};
-    struct json_writer json = {.out = stdout};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(stdout);
     json_integer(&json, "exit", code);
     json_integer(&json, "events", counts->events);
     json_integer(&json, "bytes", counts->bytes);
@@ -138,8 +137,7 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "version_1", counts->version_1);
     json_integer(&json, "damages", counts->damages);
     json_integer(&json, "damaged_bytes", counts->damaged_bytes);
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }
 
 static int code_of(const struct cut_run *run, const struct log_cut_counts *counts)
@@ -168,15 +166,6 @@ static int run_cut(const struct log_cut_arguments *options)
     return output_flush() ? code : ARGS_USAGE;
 }
 
-static bool check_options(const struct args *args, const struct log_cut_arguments *options)
-{
-    if (args->operand_count == 0)
-        return args_error(args, "expected a LOG");
-    if (!options->cut.output)
-        return args_error(args, "expected -o FILE");
-    return true;
-}
-
 int cmd_log_cut(int argc, char **argv)
 {
     struct log_cut_arguments options = {.cut = {.choice = log_choice_all()}};
@@ -191,9 +180,10 @@ int cmd_log_cut(int argc, char **argv)
         {"json", ARGS_FLAG, .out = &options.json},
         {.name = NULL},
     };
-    struct args args = {"log cut", usage, own, .operand = "LOG", .operands_max = 4096};
+    struct args args = {"log cut",           usage, own, .operand = "LOG", .operands_min = 1,
+                        .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
-    if (code == ARGS_RUN && !check_options(&args, &options))
+    if (code == ARGS_RUN && !options.cut.output && !args_error(&args, "expected -o FILE"))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {
         options.cut.log = args.operands;

@@ -87,14 +87,11 @@ int cmd_log_info(int argc, char **argv)
 {
     bool json = false;
     const struct args_option own[] = {{"json", ARGS_FLAG, .out = &json}, {.name = NULL}};
-    struct args args = {"log info", usage, own, .operand = "LOG", .operands_max = INT_MAX};
+    struct args args = {
+        "log info", usage, own, .operand = "LOG", .operands_min = 1, .operands_max = INT_MAX};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (args.operand_count == 0) {
-        args_error(&args, "expected a LOG");
-        return ARGS_USAGE;
-    }
     code = ARGS_ANSWERED;
     for (int i = 0; i < args.operand_count; i++) {
         if (i > 0 && !json)

@@ -67,8 +67,6 @@ static bool take_number(const struct args *args, void *out)
 static bool check_options(const struct args *args, struct log_scene_options *options)
 {
     const bool ids = options->has_client || options->has_sequence;
-    if (args->operand_count == 0)
-        return args_error(args, "expected a LOG");
     if (options->has_client != options->has_sequence)
         return args_error(args, "--client goes with --sequence");
     if (options->has_event + options->has_offset + ids != 1)
@@ -244,7 +242,8 @@ int cmd_log_scene(int argc, char **argv)
         {"sequence", ARGS_OTHER, &sequence, .take = take_number},
         {.name = NULL},
     };
-    struct args args = {"log scene", usage, own, .operand = "LOG", .operands_max = 4096};
+    struct args args = {"log scene",         usage, own, .operand = "LOG", .operands_min = 1,
+                        .operands_max = 4096};
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;

@@ -199,11 +199,6 @@ static bool step(struct recording *recording, int signals, int64_t until_ns)
     return true;
 }
 
-static int64_t least(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Records until the recording is complete, the log fails, or a signal arrives. Returns false if the
  * bus has failed, which was reported. */
 static bool run(struct recording *recording, int signals)
@@ -216,7 +211,9 @@ static bool run(struct recording *recording, int signals)
     while (!recording->enough && !recording->error && now_ns < end_ns) {
         request_bodies(recording, now_ns);
         const int64_t due_ns = record_bodies_due(recording->bodies);
-        if (!step(recording, signals, least(least(due_ns, end_ns), least(line_at_ns, check_at_ns))))
+        if (!step(recording, signals,
+                  clock_earlier(clock_earlier(due_ns, end_ns),
+                                clock_earlier(line_at_ns, check_at_ns))))
             return bus_failed(recording);
         if (poll(&signal, 1, 0) > 0)
             return true;
@@ -248,7 +245,7 @@ static bool receive_remaining(struct recording *recording)
         received = fmb_client_raw_bus_counts(recording->client).received;
         now_ns = clock_ns();
         if (received != before)
-            until_ns = least(now_ns + quiet_ns, begin_ns + 1000000000);
+            until_ns = clock_earlier(now_ns + quiet_ns, begin_ns + 1000000000);
     }
     return true;
 }

@@ -337,13 +337,6 @@ static bool check_report(const struct args *args, const char *option, const char
     return !is_log || args_error(args, "--%s: %s is an event log", option, path);
 }
 
-static bool check_options(const struct args *args, const struct replay_arguments *options)
-{
-    if (args->operand_count == 0)
-        return args_error(args, "expected a LOG");
-    return check_report(args, "junit", options->junit) && check_report(args, "html", options->html);
-}
-
 /* Checks the options that apply only with --bus, or only without. */
 static bool check_bus(const struct args *args, const struct replay_arguments *options)
 {
@@ -396,11 +389,13 @@ int cmd_replay(int argc, char **argv)
         {"retries", ARGS_INTEGER, &options.retries, .high = 1000000},
         {.name = NULL},
     };
-    struct args args = {"replay", usage, own, .operand = "LOG", .operands_max = 4096};
+    struct args args = {
+        "replay", usage, own, .operand = "LOG", .operands_min = 1, .operands_max = 4096};
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_options(&args, &options) || !check_bus(&args, &options))
+    if (!check_report(&args, "junit", options.junit) ||
+        !check_report(&args, "html", options.html) || !check_bus(&args, &options))
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;

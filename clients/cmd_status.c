@@ -52,8 +52,7 @@ static void on_malformed(void *user, const char *what)
 
 static void print_json(const struct fmb_client_heartbeat *status)
 {
-    struct json_writer json = {.out = stdout};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(stdout);
     json_integer(&json, "utime", status->utime);
     json_integer(&json, "server_id", status->server_id);
     json_string(&json, "version", status->version);
@@ -65,8 +64,7 @@ static void print_json(const struct fmb_client_heartbeat *status)
     FMB_STATUS_MAP(X)
 #undef X
     json_end(&json, '}');
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }
 
 static void print_duration(int64_t microseconds)

@@ -43,21 +43,16 @@ struct watch {
 /* ---- Results of pairs ---- */
 
 /* Writes the members that results of pairs and of scenes have in common. */
-static void begin_json(struct json_writer *json, int64_t utime, int64_t client_id,
-                       int64_t sequence_number, int64_t server_id, int64_t compute_ns)
+static struct json_writer begin_json(int64_t utime, int64_t client_id, int64_t sequence_number,
+                                     int64_t server_id, int64_t compute_ns)
 {
-    json_begin(json, NULL, '{');
-    json_integer(json, "utime", utime);
-    json_integer(json, "client_id", client_id);
-    json_integer(json, "sequence_number", sequence_number);
-    json_integer(json, "server_id", server_id);
-    json_integer(json, "compute_ns", compute_ns);
-}
-
-static void end_json(struct json_writer *json)
-{
-    json_end(json, '}');
-    json_line_end(json);
+    struct json_writer json = json_object(stdout);
+    json_integer(&json, "utime", utime);
+    json_integer(&json, "client_id", client_id);
+    json_integer(&json, "sequence_number", sequence_number);
+    json_integer(&json, "server_id", server_id);
+    json_integer(&json, "compute_ns", compute_ns);
+    return json;
 }
 
 static void print_pair_json(const struct fmb_client_pair_result *result)
@@ -65,15 +60,14 @@ static void print_pair_json(const struct fmb_client_pair_result *result)
     const struct outcome outcome = {.error = result->status == FMB_OK ? NULL : result->text,
                                     .answer = result->answer,
                                     .certificate = result->certificate};
-    struct json_writer json = {.out = stdout};
-    begin_json(&json, result->utime, result->client_id, result->sequence_number, result->server_id,
-               result->compute_ns);
+    struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
+                                         result->server_id, result->compute_ns);
     json_integer(&json, "a", result->body_id[0]);
     json_integer(&json, "b", result->body_id[1]);
     if (outcome.error)
         json_integer(&json, "status", result->status);
     report_answer_json(&json, result->dim, &outcome);
-    end_json(&json);
+    json_object_end(&json);
 }
 
 /* Prints the start of a line. */
@@ -109,10 +103,7 @@ static void write_scene_pairs(struct json_writer *json,
                                         .answer = answer.answer};
         json_begin(json, NULL, '{');
         if (result->names_pairs) {
-            json_begin(json, "placements", '[');
-            json_integer(json, NULL, answer.a);
-            json_integer(json, NULL, answer.b);
-            json_end(json, ']');
+            json_integers(json, "placements", (const int64_t[]){answer.a, answer.b}, 2);
         } else {
             json_integer(json, "pair", answer.a);
         }
@@ -124,13 +115,12 @@ static void write_scene_pairs(struct json_writer *json,
 
 static void print_scene_json(const struct fmb_client_scene_result *result)
 {
-    struct json_writer json = {.out = stdout};
-    begin_json(&json, result->utime, result->client_id, result->sequence_number, result->server_id,
-               result->compute_ns);
+    struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
+                                         result->server_id, result->compute_ns);
     if (result->status != FMB_OK) {
         json_integer(&json, "status", result->status);
         json_string(&json, "error", result->text);
-        end_json(&json);
+        json_object_end(&json);
         return;
     }
     json_integer(&json, "end_pair", result->end_pair);
@@ -143,7 +133,7 @@ static void print_scene_json(const struct fmb_client_scene_result *result)
         json_integer(&json, "undecided", result->undecided);
     }
     write_scene_pairs(&json, result);
-    end_json(&json);
+    json_object_end(&json);
 }
 
 static void print_scene_text(const struct fmb_client_scene_result *result)

@@ -1,14 +1,11 @@
 #include "anticipation.h"
 
+#include "clock.h"
+
 enum {
     FIRST_GUESS_NS = 50000, /* think time of a client that is unknown */
     SAMPLE_MAX_NS = 2000000 /* so that one long pause does not outweigh many short ones */
 };
-
-static int64_t smaller(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
 
 void anticipation_init(struct anticipation *anticipation)
 {
@@ -28,7 +25,7 @@ void anticipation_arrived(struct anticipation *anticipation, int client, int64_t
     const int64_t sample = not_before_ns > c->idle_ns ? not_before_ns - c->idle_ns : 0;
     if (!c->think_ns)
         c->think_ns = FIRST_GUESS_NS;
-    c->think_ns += (smaller(sample, SAMPLE_MAX_NS) - c->think_ns) / 8;
+    c->think_ns += (clock_earlier(sample, SAMPLE_MAX_NS) - c->think_ns) / 8;
     c->idle_ns = 0;
 }
 
@@ -40,7 +37,7 @@ bool anticipation_begin(struct anticipation *anticipation, int client, int64_t n
     if (max_ns <= 0 || think_ns > ANTICIPATION_THINK_NS || think_ns > other_ns)
         return false;
     anticipation->client = client;
-    anticipation->until_ns = now_ns + smaller(ANTICIPATION_MAX_NS, max_ns);
+    anticipation->until_ns = now_ns + clock_earlier(ANTICIPATION_MAX_NS, max_ns);
     anticipation->polled_ns = now_ns;
     anticipation->waited_ns = 0;
     return true;
@@ -48,7 +45,8 @@ bool anticipation_begin(struct anticipation *anticipation, int client, int64_t n
 
 bool anticipation_poll(struct anticipation *anticipation, int64_t now_ns)
 {
-    anticipation->waited_ns += smaller(now_ns - anticipation->polled_ns, ANTICIPATION_POLL_NS);
+    anticipation->waited_ns +=
+        clock_earlier(now_ns - anticipation->polled_ns, ANTICIPATION_POLL_NS);
     anticipation->polled_ns = now_ns;
     return now_ns < anticipation->until_ns;
 }

@@ -2,16 +2,7 @@
 
 #include "clock.h"
 
-#include <time.h>
-
-static int64_t thread_ns(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return (int64_t) time.tv_sec * 1000000000 + time.tv_nsec;
-}
-
-const struct meter_clocks meter_system_clocks = {clock_ns, thread_ns};
+const struct meter_clocks meter_system_clocks = {clock_ns, clock_thread_ns};
 
 void meter_init(struct meter *meter, const struct meter_clocks *clocks)
 {

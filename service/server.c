@@ -105,7 +105,10 @@ static void publish_pair(struct server *server, const struct pair_result *result
 {
     publish_result(server, SERVER_PAIRS, wire_write_pair_result(result, server->out),
                    result->status);
-    server->status.pairs += result->status == FMB_OK;
+    if (result->status != FMB_OK)
+        return;
+    server->status.pairs++;
+    histogram_add(&server->compute_ns, result->compute_ns);
 }
 
 static void publish_definition(struct server *server, const struct definition *result)
@@ -129,14 +132,19 @@ static void publish_scene(struct server *server, int32_t first_pair,
 {
     publish_result(server, SERVER_SCENES, wire_write_scene_result(result, server->out),
                    result->status);
-    if (result->status == FMB_OK)
-        server->status.pairs += decided(result, first_pair);
+    if (result->status != FMB_OK)
+        return;
+    server->status.pairs += decided(result, first_pair);
+    histogram_add(&server->compute_ns, result->compute_ns);
 }
 
-static void note_malformed(struct server *server, enum server_kind kind, size_t size,
-                           const char *error)
+/* Notes a query that cannot be read. error: why not; NULL: it can be. Returns whether it cannot. */
+static bool is_malformed(struct server *server, enum server_kind kind, size_t size,
+                         const char *error)
 {
-    malformed_note(&server->malformed, server->query_channel[kind], (uint32_t) size, error);
+    if (error)
+        malformed_note(&server->malformed, server->query_channel[kind], (uint32_t) size, error);
+    return error;
 }
 
 /* ---- Activity ---- */
@@ -178,18 +186,14 @@ static void process_pair(struct server *server, int client, size_t size)
 {
     struct pair_result *result = &server->pair_result;
     const char *error = wire_read_pair_query(server->datagram, (uint32_t) size, &server->pair);
-    if (error) {
-        note_malformed(server, SERVER_PAIRS, size, error);
+    if (is_malformed(server, SERVER_PAIRS, size, error))
         return;
-    }
     const int64_t begin_ns = server->clocks->wall_ns();
     if (!answer_pair(server->answerer, &server->pair, result)) {
         defer_pair(server, client, size);
         return;
     }
     result->compute_ns = server->clocks->wall_ns() - begin_ns;
-    if (result->status == FMB_OK)
-        histogram_add(&server->compute_ns, result->compute_ns);
     publish_pair(server, result);
 }
 
@@ -197,40 +201,25 @@ static void process_definition(struct server *server, size_t size)
 {
     const char *error =
         wire_read_definition_query(server->datagram, (uint32_t) size, &server->definition);
-    if (error) {
-        note_malformed(server, SERVER_DEFINITIONS, size, error);
+    if (is_malformed(server, SERVER_DEFINITIONS, size, error))
         return;
-    }
     answer_definition(server->answerer, &server->definition, &server->definition_result);
     publish_definition(server, &server->definition_result);
 }
 
 /* ---- Scenes, and pairs of bodies of several frames ---- */
 
-static void finish_pair(struct server *server, struct job *job)
-{
-    struct pair_result *result = pair_job_end(job->pair, server->answerer);
-    result->compute_ns = job->used_ns;
-    if (result->status == FMB_OK)
-        histogram_add(&server->compute_ns, result->compute_ns);
-    publish_pair(server, result);
-}
-
-static void finish_scene(struct server *server, struct job *job)
-{
-    struct scene_result *result = scene_job_result(job->scene);
-    result->compute_ns = job->used_ns;
-    if (result->status == FMB_OK)
-        histogram_add(&server->compute_ns, result->compute_ns);
-    publish_scene(server, scene_job_query(job->scene)->first_pair, result);
-}
-
 static void finish_job(struct server *server, struct job *job)
 {
-    if (job->is_pair)
-        finish_pair(server, job);
-    else
-        finish_scene(server, job);
+    if (job->is_pair) {
+        struct pair_result *result = pair_job_end(job->pair, server->answerer);
+        result->compute_ns = job->used_ns;
+        publish_pair(server, result);
+    } else {
+        struct scene_result *result = scene_job_result(job->scene);
+        result->compute_ns = job->used_ns;
+        publish_scene(server, scene_job_query(job->scene)->first_pair, result);
+    }
     jobs_give_back(&server->jobs, job);
 }
 
@@ -268,9 +257,8 @@ static struct job *begin_job(struct server *server, int client)
     const char *error =
         job->is_pair ? pair_job_begin(job->pair, server->answerer, server->datagram, next.size)
                      : scene_job_begin(job->scene, server->datagram, next.size);
-    if (!error)
+    if (!is_malformed(server, (enum server_kind) next.kind, next.size, error))
         return job;
-    note_malformed(server, (enum server_kind) next.kind, next.size, error);
     jobs_give_back(&server->jobs, job);
     return NULL;
 }
@@ -351,11 +339,6 @@ static void serve(struct server *server, int client, int64_t job_max_ns)
     update_activity(server, client);
 }
 
-static int64_t smaller(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Begins to anticipate the next query of the client just served. Requires that the client is idle,
  * that other clients have work, and that this client would be served before them. Besides, its lead
  * must exceed a slice, or the work that would begin instead must usually take longer than the next
@@ -402,7 +385,7 @@ enum server_state server_work(struct server *server)
         if (client < 0)
             return SERVER_IDLE;
         serve(server, client,
-              lead_ns < work_ns ? smaller(left_ns, lead_ns + SCHEDULER_SLICE_NS) : left_ns);
+              lead_ns < work_ns ? clock_earlier(left_ns, lead_ns + SCHEDULER_SLICE_NS) : left_ns);
         if (begin_anticipating(server, client))
             return SERVER_ANTICIPATING;
         left_ns = until_ns - server->meter.wall_ns;
@@ -421,10 +404,8 @@ static void refuse_pair(struct server *server, const unsigned char *bytes, size_
                         enum fmb_status status)
 {
     const char *error = wire_read_pair_query(bytes, (uint32_t) size, &server->pair);
-    if (error) {
-        note_malformed(server, SERVER_PAIRS, size, error);
+    if (is_malformed(server, SERVER_PAIRS, size, error))
         return;
-    }
     answer_pair_refused(server->answerer, &server->pair, status, &server->pair_result);
     publish_pair(server, &server->pair_result);
 }
@@ -491,10 +472,8 @@ static void receive_query(struct server *server, enum server_kind kind, const un
 {
     struct query_header header;
     const char *error = kinds[kind].read_header(bytes, (uint32_t) size, &header);
-    if (error) {
-        note_malformed(server, kind, size, error);
+    if (is_malformed(server, kind, size, error))
         return;
-    }
     const int client = scheduler_client(server->scheduler, header.client_id);
     const struct queue_datagram datagram = {.client = client, .kind = kind, .size = size};
     if (server->batch_count == BATCH_MAX)
@@ -571,8 +550,7 @@ static void complete_status(const struct server *server, const struct bus_counts
 
 int server_heartbeat_due_ms(const struct server *server)
 {
-    const int64_t left_ns = server->heartbeat_due_ns - clock_ns();
-    return left_ns > 0 ? (int) ((left_ns + 999999) / 1000000) : 0;
+    return clock_left_ms(server->heartbeat_due_ns);
 }
 
 void server_heartbeat(struct server *server, const struct bus_counts *bus)

@@ -9,19 +9,20 @@ see_tests/campaign := tests/oracle $(call fmb,number frame filter exact decide)
 see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact decide) \
 	clients/common
 see_tests/bench/peers := tests/bench
-see_tests/bus := tests/bench $(see_tests/bench) service $(see_service)
-see_tests/robot := tests/bus tests/bench tests/oracle service $(wire)
+see_tests/encode := msgs/codec service/fmb
+see_tests/bus := tests/encode tests/bench $(see_tests/bench) service $(see_service)
+see_tests/robot := tests/encode tests/bus tests/bench tests/oracle service $(wire)
 see_tests/hostile := $(GEN)
 see_tests/system := tests/hostile $(GEN)
 see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
-see_tests/logs := tests/campaign tests/oracle service/answer $(wire) service/fmb/frame $(GEN)
-see_tests/soak := clients/lib $(wire)
-see_tests/page := clients/page $(see_clients/replay)
+see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) service/fmb/frame $(GEN)
+see_tests/soak := tests/encode clients/lib $(wire)
+see_tests/page := tests/encode clients/page $(see_clients/replay)
 see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
-see_tests/fuzz := clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
+see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) service clients \
-	$(see_clients) tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
+	$(see_clients) tests/encode tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
 
 $(V)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
@@ -44,7 +45,7 @@ measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
 # What the programs of tests share. Those that look into the engine link its objects, the others
 # the library.
-test_folders := $(addprefix tests/,oracle hostile campaign mesh bench bus robot soak logs page)
+test_folders := $(addprefix tests/,encode oracle hostile campaign mesh bench bus robot soak logs page)
 shared := $(V)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(test_folders))) \
 		$(patsubst tests/unit/%.c,$(V)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \

@@ -158,10 +158,14 @@ int args_parse(struct args *args, int argc, char **argv)
             (size_t) (argc - optind) * sizeof *argv);
     if (!take_operands(args, args->operand_count + argc - optind))
         return ARGS_USAGE;
-    if (!help)
-        return ARGS_RUN;
-    fputs(args->usage, stdout);
-    return ARGS_ANSWERED;
+    if (help) {
+        fputs(args->usage, stdout);
+        return ARGS_ANSWERED;
+    }
+    if (args->operand_count < args->operands_min &&
+        !args_error(args, "expected a %s", args->operand))
+        return ARGS_USAGE;
+    return ARGS_RUN;
 }
 
 const char *args_bus_name(const struct args_bus *bus)

@@ -49,7 +49,7 @@ struct args {
     /* The command's own options, at most ARGS_OPTIONS_MAX; ends with an option without a name. */
     const struct args_option *options;
     const char *operand; /* name of an operand in messages: "FILE"; NULL: none are allowed */
-    int operands_max;
+    int operands_min, operands_max;
     bool in_order; /* operand_count is the number of operands before the option when take is called
                     */
 

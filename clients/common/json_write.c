@@ -47,9 +47,16 @@ void json_break(struct json_writer *json, const char *space)
     json->space = space;
 }
 
-void json_line_end(struct json_writer *json)
+struct json_writer json_object(FILE *out)
 {
-    putc('\n', json->out);
+    struct json_writer json = {.out = out};
+    json_begin(&json, NULL, '{');
+    return json;
+}
+
+void json_object_end(struct json_writer *json)
+{
+    fputs("}\n", json->out);
     json->comma = false;
 }
 
@@ -68,6 +75,14 @@ void json_integer(struct json_writer *json, const char *key, int64_t integer)
     const bool exact = integer >= -integer_max && integer <= integer_max;
     begin_value(json, key);
     fprintf(json->out, exact || !json->page ? "%" PRId64 : "\"%" PRId64 "\"", integer);
+}
+
+void json_integers(struct json_writer *json, const char *key, const int64_t *integers, int count)
+{
+    json_begin(json, key, '[');
+    for (int i = 0; i < count; i++)
+        json_integer(json, NULL, integers[i]);
+    json_end(json, ']');
 }
 
 void json_number(struct json_writer *json, const char *key, double number)
@@ -94,5 +109,8 @@ void json_bytes(struct json_writer *json, const char *key, const char *bytes, si
 
 void json_string(struct json_writer *json, const char *key, const char *text)
 {
-    json_bytes(json, key, text, strlen(text));
+    if (text)
+        json_bytes(json, key, text, strlen(text));
+    else
+        json_null(json, key);
 }

@@ -1,11 +1,9 @@
 /* Writes JSON to a stream.
  *
- *     struct json_writer json = {.out = stdout};
- *     json_begin(&json, NULL, '{');
+ *     struct json_writer json = json_object(stdout);
  *     json_integer(&json, "count", 2);              {"count": 2, "box": [0,0.5,1]}
  *     json_numbers(&json, "box", box, 3);
- *     json_end(&json, '}');
- *     json_line_end(&json);
+ *     json_object_end(&json);
  *
  * key is the name of a member, in printable ASCII that needs no escape; NULL in an array and for
  * the outermost value. The writer adds commas. Check ferror(out) for write errors. */
@@ -33,8 +31,9 @@ void json_end(struct json_writer *json, char bracket);
 /* Puts this white space, a string literal, before the next element. */
 void json_break(struct json_writer *json, const char *space);
 
-/* After a complete text: ends the line; another text may follow. */
-void json_line_end(struct json_writer *json);
+/* Begin and end a text that is one object on a line; another one may follow. */
+struct json_writer json_object(FILE *out);
+void json_object_end(struct json_writer *json);
 
 void json_null(struct json_writer *json, const char *key);
 void json_bool(struct json_writer *json, const char *key, bool value);
@@ -43,10 +42,12 @@ void json_integer(struct json_writer *json, const char *key, int64_t value);
 /* A number that reads back as the same bits; null if not finite. */
 void json_number(struct json_writer *json, const char *key, double value);
 
+void json_integers(struct json_writer *json, const char *key, const int64_t *integers, int count);
+
 /* A vector, without spaces: [0,0.5,1]. */
 void json_numbers(struct json_writer *json, const char *key, const double *numbers, int count);
 
-/* Strings, escaped by escape(). */
+/* Strings, escaped by escape(). text: NULL: null. */
 void json_string(struct json_writer *json, const char *key, const char *text);
 void json_bytes(struct json_writer *json, const char *key, const char *bytes, size_t count);
 

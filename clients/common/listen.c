@@ -10,13 +10,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/* For poll(): milliseconds until end, rounded up. */
-static int time_left_ms(int64_t end)
-{
-    int64_t left = end - clock_ns();
-    return left > 0 ? (int) ((left + 999999) / 1000000) : 0;
-}
-
 static enum listen_end listen_to(struct fmb_client *client, int signals, const bool *enough,
                                  double timeout)
 {
@@ -24,7 +17,7 @@ static enum listen_end listen_to(struct fmb_client *client, int signals, const b
     struct pollfd source[2] = {{.fd = fmb_client_fileno(client), .events = POLLIN},
                                {.fd = signals, .events = POLLIN}};
     while (!*enough) {
-        int ready = poll(source, 2, timeout < 0 ? -1 : time_left_ms(end));
+        int ready = poll(source, 2, timeout < 0 ? -1 : clock_left_ms(end));
         if (ready < 0 && errno == EINTR)
             continue;
         if (ready == 0)

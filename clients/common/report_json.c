@@ -67,8 +67,7 @@ static void end_scene(struct report *report, const struct scene *scene)
     struct json_writer *json = &((struct report_json *) report)->json;
     (void) scene;
     json_end(json, ']');
-    json_end(json, '}');
-    json_line_end(json);
+    json_object_end(json);
     fflush(json->out);
 }
 

@@ -124,8 +124,7 @@ static void write_pairs(struct json_writer *json, const struct scene *scene, con
 
 void scene_json_write(FILE *out, const struct scene *scene)
 {
-    struct json_writer json = {.out = out};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(out);
     json_integer(&json, "dim", scene->dim);
     json_number(&json, "duration", scene->duration);
     if (scene->margin > 0)
@@ -135,6 +134,5 @@ void scene_json_write(FILE *out, const struct scene *scene)
         write_pairs(&json, scene, "pairs", scene->pair, scene->pair_count);
     if (scene->ignored_count > 0)
         write_pairs(&json, scene, "ignore", scene->ignored, scene->ignored_count);
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }

@@ -1,6 +1,5 @@
 #include "turned_box.h"
 
-#include <float.h>
 #include <gmp.h>
 #include <math.h>
 

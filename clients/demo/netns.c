@@ -11,7 +11,6 @@
  * FMB_NETNS tells the command which it is: "own" or "in place". */
 #define _GNU_SOURCE
 #include <arpa/inet.h>
-#include <errno.h>
 #include <fcntl.h>
 #include <net/if.h>
 #include <net/route.h>

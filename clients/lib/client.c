@@ -1,6 +1,5 @@
 #include "client.h"
 
-#include "clock.h"
 #include "process.h"
 #include "wire_type.h"
 
@@ -104,8 +103,7 @@ bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
                                       .b = of->names_pairs ? of->pair[k][1] : number,
                                       .status = decided ? FMB_OK : FMB_CANNOT_DECIDE,
                                       .text = decided ? "" : fmb_status_text(FMB_CANNOT_DECIDE)};
-    part_read_answer(of, k, &cursor->contacts, &out->answer);
-    out->answer.has_gap = out->answer.has_gap && query_has_gap(&of->gap[k]);
+    wire_scene_answer(of, k, &cursor->contacts, &out->answer);
     cursor->answers++;
     return true;
 }

@@ -180,7 +180,7 @@ size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement)
     return bytes;
 }
 
-/* Writes the bytes that geometry_write_frames() would write. Returns how many. */
+/* Encodes the frames as the geometry of a body (placement_t.lcm). Returns the number of bytes. */
 static size_t write_frames(const struct fmb_client_placement *of, unsigned char *out)
 {
     const size_t size = client_scene_geometry_bytes(of);

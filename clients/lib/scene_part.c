@@ -64,11 +64,6 @@ struct matching {
     int32_t first; /* pair that the result begins with */
 };
 
-static bool is_contact(int verdict)
-{
-    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
-}
-
 /* Returns the number of the pair of verdict k; -1: the query does not have this pair. */
 static int32_t number_of(const struct matching *matching, int32_t k)
 {
@@ -135,29 +130,6 @@ static bool reserve(struct part_answers *answers, size_t more)
     return answer != NULL;
 }
 
-/* contact: its number among the contacts of the result. */
-static void fill_contact(const struct scene_result *result, int32_t contact, struct fmb_answer *out)
-{
-    const int dim = result->dim;
-    out->has_contact = result->has_times;
-    if (result->has_times)
-        memcpy(out->contact, &result->times[2 * contact], sizeof out->contact);
-    out->has_box = result->has_boxes;
-    for (int i = 0; i < 2 * dim && result->has_boxes; i++)
-        out->box[i / dim][i % dim] = result->boxes[2 * dim * contact + i];
-}
-
-void part_read_answer(const struct scene_result *result, int32_t k, int32_t *contact,
-                      struct fmb_answer *out)
-{
-    *out = (struct fmb_answer){.verdict = (enum fmb_verdict) result->verdict[k]};
-    if (is_contact(result->verdict[k]))
-        fill_contact(result, (*contact)++, out);
-    out->has_gap = result->has_gaps;
-    if (result->has_gaps)
-        out->gap = result->gap[k];
-}
-
 /* Whether the answer is kept: it is more than that the pair is separated. */
 static bool is_stored(const struct scene_result *result, int32_t k)
 {
@@ -182,7 +154,7 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
             continue;
         struct part_answer *out = &answers->answer[answers->count++];
         *out = (struct part_answer){.number = number_of(&matching, k)};
-        part_read_answer(result, k, &contact, &out->answer);
+        wire_scene_answer(result, k, &contact, &out->answer);
     }
     answers->answered = result->end_pair;
     return PART_TAKEN;
@@ -195,7 +167,7 @@ static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_re
     const struct fmb_answer *answer = &result->answer;
     if (answer->has_gap != wants_gaps(scene) ||
         (answer->has_box &&
-         !(is_contact((int) answer->verdict) && scene->want & FMB_CLIENT_WANT_BOX)) ||
+         !(answer->verdict >= FMB_TOUCHING && scene->want & FMB_CLIENT_WANT_BOX)) ||
         (result->dim > 0 && result->dim != scene->placements[0].dim))
         return false;
     return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;

@@ -60,8 +60,4 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
 enum part_taken part_take_pair(const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers);
 
-/* Reads answer k of a result. *contact: the number of contacts before it; updated. */
-void part_read_answer(const struct scene_result *result, int32_t k, int32_t *contact,
-                      struct fmb_answer *out);
-
 #endif

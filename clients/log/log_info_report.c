@@ -7,6 +7,7 @@
 #include "wire_type.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -252,13 +253,9 @@ static void write_counts(struct json_writer *json, const struct log_tally *tally
 static void write_row(struct json_writer *json, const struct log_row *row)
 {
     char text[TYPE_TEXT_MAX];
-    const char *type = type_text(row->type, text);
     json_begin(json, NULL, '{');
     json_bytes(json, "channel", row->channel, row->channel_length);
-    if (type)
-        json_string(json, "type", type);
-    else
-        json_null(json, "type");
+    json_string(json, "type", type_text(row->type, text));
     write_counts(json, &row->tally);
     json_end(json, '}');
 }
@@ -296,22 +293,17 @@ static void write_damage(struct json_writer *json, const struct log_info *info)
 void log_report_json(FILE *out, const struct log_report *report)
 {
     const struct log_tally *all = &report->info->all;
-    struct json_writer json = {.out = out};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(out);
     json_string(&json, "log", report->path);
     json_integer(&json, "size", report->size);
     json_integer(&json, "events", all->events);
     json_integer(&json, "bytes", all->bytes);
     write_times(&json, all);
-    if (span_of(all) > 0)
-        json_number(&json, "rate", rate_of(all));
-    else
-        json_null(&json, "rate");
+    json_number(&json, "rate", span_of(all) > 0 ? rate_of(all) : NAN);
     json_integer(&json, "backward", report->info->backward);
     write_channels(&json, report->info);
     write_damage(&json, report->info);
     if (report->error)
         json_string(&json, "error", report->error);
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }

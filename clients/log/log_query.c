@@ -1,6 +1,5 @@
 #include "log_query.h"
 
-#include "allocate.h"
 #include "complain.h"
 #include "input.h"
 #include "log_kind.h"
@@ -26,11 +25,6 @@ struct query_search {
     int64_t listed[LISTED_MAX]; /* offsets */
     enum log_kind kind;
 };
-
-static const char *last_log(const struct query_search *search)
-{
-    return search->options->log[search->options->log_count - 1];
-}
 
 static void fail(struct query_search *search, const char *what, int error)
 {
@@ -127,7 +121,7 @@ static void begin_line(const struct query_search *search)
 {
     const struct log_query_options *options = search->options;
     fputs("fmb: ", stderr);
-    complain_text(last_log(search));
+    complain_text(options->log[options->log_count - 1]);
     fputs(": ", stderr);
     if (options->by == LOG_QUERY_NUMBER)
         fprintf(stderr, "event %" PRId64, options->number);

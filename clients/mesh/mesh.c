@@ -109,15 +109,11 @@ struct half {
     uint64_t done;
 };
 
-static void report_progress(const struct half *half, uint64_t done, uint64_t total)
+static void report_progress(void *context, uint64_t done, uint64_t total)
 {
+    const struct half *half = context;
     if (half->watch)
         half->watch->report(half->watch->context, half->done + (done + 1) / 2, total);
-}
-
-static void report_from_parser(void *context, uint64_t done, uint64_t total)
-{
-    report_progress(context, done, total);
 }
 
 static bool refuse(char error[MESH_ERROR_MAX], const char *why)
@@ -126,7 +122,7 @@ static bool refuse(char error[MESH_ERROR_MAX], const char *why)
     return false;
 }
 
-static bool read_bytes(int fd, unsigned char *bytes, size_t size, const struct half *half,
+static bool read_bytes(int fd, unsigned char *bytes, size_t size, struct half *half,
                        char error[MESH_ERROR_MAX])
 {
     size_t done = 0;
@@ -149,8 +145,7 @@ static bool read_bytes(int fd, unsigned char *bytes, size_t size, const struct h
 }
 
 /* Returns the bytes, which the caller frees; or NULL, and the error. */
-static unsigned char *read_open(int fd, size_t size, const struct half *half,
-                                char error[MESH_ERROR_MAX])
+static unsigned char *read_open(int fd, size_t size, struct half *half, char error[MESH_ERROR_MAX])
 {
     unsigned char *bytes = malloc(size + 1);
     if (!bytes) {
@@ -165,7 +160,7 @@ static unsigned char *read_open(int fd, size_t size, const struct half *half,
 }
 
 /* O_NONBLOCK: a pipe is an error, and does not block. */
-static unsigned char *read_file(const char *path, size_t *size, const struct half *half,
+static unsigned char *read_file(const char *path, size_t *size, struct half *half,
                                 char error[MESH_ERROR_MAX])
 {
     struct stat about;
@@ -191,7 +186,7 @@ bool mesh_read(const char *path, const struct mesh_progress *watch, struct mesh 
 {
     size_t size = 0;
     struct half half = {.watch = watch};
-    const struct mesh_progress parser = {.report = report_from_parser, .context = &half};
+    const struct mesh_progress parser = {.report = report_progress, .context = &half};
     *out = (struct mesh){0};
     unsigned char *bytes = read_file(path, &size, &half, error);
     if (!bytes)

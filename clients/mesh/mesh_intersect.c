@@ -32,11 +32,6 @@ struct mesh_search {
     double contact[BLOCK][2];
 };
 
-static bool is_self(const struct mesh_query *query)
-{
-    return query->a == query->b;
-}
-
 static const struct mesh *mesh_of(const struct mesh_query *query, int which)
 {
     return which ? query->b : query->a;
@@ -98,7 +93,7 @@ static struct slot *slot_of(struct mesh_search *search, int which, unsigned face
 static unsigned frame_of(struct mesh_search *search, int which, unsigned face)
 {
     const struct mesh_query *query = search->query;
-    struct slot *slot = slot_of(search, is_self(query) ? 0 : which, face);
+    struct slot *slot = slot_of(search, mesh_is_self(query) ? 0 : which, face);
     if (slot->block == search->block)
         return slot->frame;
     struct mesh_placed_face *placed = &search->placed[search->frame_count];
@@ -107,7 +102,7 @@ static unsigned frame_of(struct mesh_search *search, int which, unsigned face)
     if (mesh_face_place(mesh_of(query, which), query->as, face, query->velocity[which], placed))
         fmb_prepare(&placed->placement, 0, 1, out);
     *slot = (struct slot){face, (unsigned) search->frame_count, search->block,
-                          is_self(query) ? 0 : which};
+                          mesh_is_self(query) ? 0 : which};
     return (unsigned) search->frame_count++;
 }
 
@@ -186,7 +181,7 @@ static void remove_adjacent(struct mesh_search *search)
 
 static void decide_candidates(struct mesh_search *search)
 {
-    if (is_self(search->query))
+    if (mesh_is_self(search->query))
         remove_adjacent(search);
     search->intersection->candidates += search->count;
     if (!search->query->method && search->count > 0)
@@ -209,7 +204,7 @@ static void decide_all(struct mesh_search *search)
     struct fmb_tree_place place = {0};
     for (clear_block(search);
          search->status == FMB_OK &&
-         fmb_tree_pairs(&search->tree[0], &search->tree[!is_self(query)], &place, search->face,
+         fmb_tree_pairs(&search->tree[0], &search->tree[!mesh_is_self(query)], &place, search->face,
                         BLOCK, &search->count) == FMB_OK &&
          search->count > 0;
          clear_block(search)) {
@@ -247,7 +242,7 @@ static void mark_faces(const struct mesh_query *query, struct mesh_intersection 
 {
     intersection->worst[0] = allocate(query->a->face_count, 1);
     intersection->worst[1] =
-        is_self(query) ? intersection->worst[0] : allocate(query->b->face_count, 1);
+        mesh_is_self(query) ? intersection->worst[0] : allocate(query->b->face_count, 1);
     for (size_t i = 0; i < intersection->count; i++) {
         const struct mesh_pair *pair = &intersection->pair[i];
         mark(&intersection->worst[0][pair->a], pair->verdict);
@@ -264,7 +259,7 @@ enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_inter
 {
     struct mesh_search *search = allocate(1, sizeof *search);
     void *memory[2] = {NULL, NULL};
-    const bool self = is_self(query);
+    const bool self = mesh_is_self(query);
     memset(out, 0, sizeof *out);
     out->moving = query->velocity[0] || query->velocity[1];
     search->query = query;

@@ -16,6 +16,11 @@ struct mesh_query {
     void *context;
 };
 
+static inline bool mesh_is_self(const struct mesh_query *query)
+{
+    return query->a == query->b;
+}
+
 struct mesh_pair {
     unsigned a, b; /* indices of faces; of one mesh a < b */
     enum fmb_verdict verdict;

@@ -3,7 +3,6 @@
  * other than f are an error. */
 #include "mesh_source.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 

@@ -212,7 +212,7 @@ void mesh_page_write(FILE *out, const struct mesh_report *report)
 {
     const size_t pairs = report->intersection->count;
     struct mesh_page page = {.report = report,
-                             .count = report->mesh[0] == report->mesh[1] ? 1 : 2,
+                             .count = mesh_is_self(report->query) ? 1 : 2,
                              .pairs = pairs < MESH_PAGE_PAIRS_MAX ? pairs : MESH_PAGE_PAIRS_MAX};
     page.units = units_of(&page);
     page_template_begin(&page_template_mesh, out);

@@ -6,7 +6,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Sets the error at a value. Returns false. */
 static bool __attribute__((format(printf, 3, 4)))

@@ -9,11 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_self(const struct mesh_report *report)
-{
-    return report->mesh[0] == report->mesh[1];
-}
-
 /* ---- For people ------------------------------------------------------------------------------ */
 
 static void put_count(FILE *out, uint64_t count, const char *what)
@@ -108,7 +103,7 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
     put_count(out, intersection->touching, "touch");
     fputs("in them are\n", out);
     put_faces(out, report, 0);
-    if (is_self(report)) {
+    if (mesh_is_self(report->query)) {
         fputs("and beside each other, with nothing else in common, are\n", out);
         put_count(out, intersection->sharing_edge, "pairs that share an edge");
         put_count(out, intersection->sharing_vertex, "pairs that share a vertex");
@@ -117,7 +112,7 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
     }
     if (intersection->moving && intersection->count > 0)
         put_times(out, intersection);
-    if (intersection->count == 0 && !is_self(report))
+    if (intersection->count == 0 && !mesh_is_self(report->query))
         put_hint(out, report);
 }
 
@@ -141,13 +136,12 @@ static void put_pair_json(struct json_writer *json, const struct mesh_pair *pair
 void mesh_report_json(FILE *out, const struct mesh_report *report)
 {
     const struct mesh_intersection *intersection = report->intersection;
-    struct json_writer json = {.out = out};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(out);
     json_integer(&json, "overlapping", (int64_t) intersection->overlapping);
     json_integer(&json, "touching", (int64_t) intersection->touching);
     json_integer(&json, "faces_a", (int64_t) intersection->faces[0]);
     json_integer(&json, "faces_b", (int64_t) intersection->faces[1]);
-    if (is_self(report)) {
+    if (mesh_is_self(report->query)) {
         json_integer(&json, "sharing_edge", (int64_t) intersection->sharing_edge);
         json_integer(&json, "sharing_vertex", (int64_t) intersection->sharing_vertex);
     }
@@ -155,8 +149,7 @@ void mesh_report_json(FILE *out, const struct mesh_report *report)
     for (size_t i = 0; i < intersection->count; i++)
         put_pair_json(&json, &intersection->pair[i], intersection->moving);
     json_end(&json, ']');
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }
 
 /* ---- PLY ---------------------------------------------------------------------------------- */
@@ -235,7 +228,7 @@ static const unsigned char *colour_of(const struct mesh_report *report, int whic
 /* Concatenates both meshes. The caller frees the mesh and *face_colour. */
 static struct mesh concatenate(const struct mesh_report *report, colour **face_colour)
 {
-    const int meshes = is_self(report) ? 1 : 2;
+    const int meshes = mesh_is_self(report->query) ? 1 : 2;
     struct mesh out = {0};
     for (int m = 0; m < meshes; m++) {
         out.vertex_count += report->mesh[m]->vertex_count;

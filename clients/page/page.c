@@ -143,10 +143,10 @@ static void write_data(const struct page *page, FILE *out)
         json_string(&json, NULL, page->log[i]);
     json_end(&json, ']');
     json_integer(&json, "begin", page->begin);
-    page_integers(&json, "count", page->all.count, OUTCOMES);
-    page_integers(&json, "span", page->all.time, 2);
-    page_integers(&json, "left_out", page->left_out.count, OUTCOMES);
-    page_integers(&json, "left_span", page->left_out.time, 2);
+    json_integers(&json, "count", page->all.count, OUTCOMES);
+    json_integers(&json, "span", page->all.time, 2);
+    json_integers(&json, "left_out", page->left_out.count, OUTCOMES);
+    json_integers(&json, "left_span", page->left_out.time, 2);
     write_elements(&json, "shapes", &page->shapes.json);
     write_elements(&json, "events", &page->events);
     json_end(&json, '}');

@@ -32,14 +32,6 @@ void page_json_close(struct page_json *page)
     memset(page, 0, sizeof *page);
 }
 
-void page_integers(struct json_writer *json, const char *key, const int64_t *number, int count)
-{
-    json_begin(json, key, '[');
-    for (int i = 0; i < count; i++)
-        json_integer(json, NULL, number[i]);
-    json_end(json, ']');
-}
-
 /* ---- Shapes ---------------------------------------------------------------------------------- */
 
 struct page_shape {
@@ -234,7 +226,7 @@ static void write_scene_result(struct json_writer *out, const char *key,
     replayed_count(query, result, count);
     begin_result(out, key, result->status, result->detail, result->method, result->compute_ns);
     json_integer(out, "end", result->end_pair);
-    page_integers(out, "count", count, FMB_OVERLAPPING + 1);
+    json_integers(out, "count", count, FMB_OVERLAPPING + 1);
     json_end(out, '}');
 }
 

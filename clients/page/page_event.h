@@ -17,9 +17,6 @@ void page_json_open(struct page_json *out);
 void page_json_flush(struct page_json *page);
 void page_json_close(struct page_json *page);
 
-/* Writes a list of integers. */
-void page_integers(struct json_writer *json, const char *key, const int64_t *number, int count);
-
 /* Bodies in body coordinates, each stored once: a rigid body has the same frames in every query. */
 struct page_shapes {
     struct page_json json; /* {"dim": ..., "frames": [[shape, numbers...], ...]}, ... */

@@ -1,6 +1,7 @@
 #include "replayed.h"
 
 #include "logged_query.h"
+#include "wire.h"
 
 #include <string.h>
 
@@ -45,24 +46,9 @@ static bool has_verdict(const struct replayed_place *place)
 static struct replayed_side take(struct replayed_place *place)
 {
     const struct scene_result *result = place->result;
-    const int32_t verdict = place->verdict++;
     struct replayed_side side = {.answered = true};
-    struct fmb_answer *answer = &side.answer;
-    answer->verdict = (enum fmb_verdict) result->verdict[verdict];
-    answer->has_gap = result->has_gaps && query_has_gap(&result->gap[verdict]);
-    if (answer->has_gap)
-        answer->gap = result->gap[verdict];
-    if (answer->verdict >= FMB_TOUCHING && place->contact < result->contact_count) {
-        const int32_t contact = place->contact++;
-        answer->has_contact = result->has_times;
-        answer->has_box = result->has_boxes;
-        if (answer->has_contact)
-            memcpy(answer->contact, &result->times[2 * contact], sizeof answer->contact);
-        for (int i = 0; i < 2 * result->dim && answer->has_box; i++)
-            answer->box[i / result->dim][i % result->dim] =
-                result->boxes[2 * result->dim * contact + i];
-    }
-    side.dim = answer->has_box || answer->has_gap ? result->dim : 0;
+    wire_scene_answer(result, place->verdict++, &place->contact, &side.answer);
+    side.dim = side.answer.has_box || side.answer.has_gap ? result->dim : 0;
     return side;
 }
 

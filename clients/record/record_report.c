@@ -48,8 +48,7 @@ static void write_files(struct json_writer *json, const struct log_parts *parts)
 
 void record_report_json(const struct recorded *recorded, const struct log_parts *parts)
 {
-    struct json_writer json = {.out = stdout};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(stdout);
     write_files(&json, parts);
     json_integer(&json, "events", recorded->events);
     json_integer(&json, "bytes", recorded->bytes);
@@ -64,8 +63,7 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
     json_integer(&json, "dropped_bodies", recorded->bodies.dropped);
     json_integer(&json, "unresolved_handles", recorded->bodies.unresolved);
     json_integer(&json, "receive_buffer", recorded->bus.receive_buffer);
-    json_end(&json, '}');
-    json_line_end(&json);
+    json_object_end(&json);
 }
 
 /* ---- For people ------------------------------------------------------------------------------ */

@@ -7,7 +7,6 @@
 #include "wire.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Any constant. */
 enum { SERVER_ID = 1 };

@@ -2,12 +2,9 @@
 
 #include "allocate.h"
 #include "complain.h"
-#include "wire.h"
 
 #include <errno.h>
 #include <inttypes.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- The golden log: results in the order of their queries ---- */
 

@@ -4,8 +4,7 @@
 
 struct json_writer replay_json_begin(FILE *out)
 {
-    struct json_writer json = {.out = out};
-    json_begin(&json, NULL, '{');
+    struct json_writer json = json_object(out);
     json_begin(&json, "differences", '[');
     return json;
 }
@@ -35,10 +34,8 @@ static void write_difference(struct json_writer *json, const struct difference *
     if (!difference->whole) {
         json_integer(json, "a", difference->body_id[0]);
         json_integer(json, "b", difference->body_id[1]);
-        json_begin(json, "placements", '[');
-        json_integer(json, NULL, difference->placement[0]);
-        json_integer(json, NULL, difference->placement[1]);
-        json_end(json, ']');
+        json_integers(json, "placements",
+                      (const int64_t[]){difference->placement[0], difference->placement[1]}, 2);
     }
     json_string(json, "kind", difference_name[difference->kind]);
     if (difference->whole) {
@@ -98,7 +95,8 @@ static void write_times(struct json_writer *json, const char *key, const struct 
 
 static void write_bus(struct json_writer *json, const struct tally_bus *bus)
 {
-    static const char *const end[] = {[ANSWER_BUS_SIGNAL] = "signal",
+    static const char *const end[] = {[ANSWER_BUS_NO_END] = NULL,
+                                      [ANSWER_BUS_SIGNAL] = "signal",
                                       [ANSWER_BUS_NO_SERVICE] = "no service answers",
                                       [ANSWER_BUS_FAILED] = "the bus has failed"};
     json_begin(json, "bus", '{');
@@ -111,10 +109,7 @@ static void write_bus(struct json_writer *json, const struct tally_bus *bus)
     json_integer(json, "supplied", bus->supplied);
     json_integer(json, "services", bus->services);
     json_integer(json, "unreadable", bus->malformed);
-    if (bus->end == ANSWER_BUS_NO_END)
-        json_null(json, "end");
-    else
-        json_string(json, "end", end[bus->end]);
+    json_string(json, "end", end[bus->end]);
     json_end(json, '}');
 }
 
@@ -154,6 +149,5 @@ void replay_json_end(struct json_writer *json, const struct tally *tally, int64_
     json_end(json, '}');
     if (tally->bus.used)
         write_bus(json, &tally->bus);
-    json_end(json, '}');
-    json_line_end(json);
+    json_object_end(json);
 }

@@ -103,19 +103,6 @@ enum {
  * shape in this dimension. */
 int geometry_number_count(int dim, int shape);
 
-/* Bytes of a geometry of these frames. On input: dim; shapes of that dimension. The other fields of
- * the frames are not read. */
-size_t geometry_size(int dim, const struct geometry_frame *frames, int count);
-
-/* Encodes a body. On input: frames as for geometry_size(), with their numbers; out has
- * geometry_size() bytes. Returns this size. */
-size_t geometry_write_frames(int dim, const struct geometry_frame *frames, int count,
-                             unsigned char *out);
-
-/* The same for one frame. */
-size_t geometry_write(int dim, const struct geometry_frame *frame,
-                      unsigned char out[GEOMETRY_FRAME_BYTES_MAX]);
-
 /* Encodes the geometry of a placement that names its body by handle: dim, and no frames. */
 void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES]);
 

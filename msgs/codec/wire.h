@@ -93,6 +93,10 @@ const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher
                                  struct definition *out);
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
 
+/* Reads answer k of a result. *contact: the number of contacts before it; updated. */
+void wire_scene_answer(const struct scene_result *result, int32_t k, int32_t *contact,
+                       struct fmb_answer *out);
+
 /* Read the header of a message of the type only. On output: NULL, or what is wrong. The remainder
  * of the message is not checked. */
 const char *wire_read_pair_header(const void *bytes, uint32_t size, struct query_header *out);

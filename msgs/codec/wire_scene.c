@@ -204,6 +204,25 @@ const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scen
     return cursor_end(&cursor);
 }
 
+void wire_scene_answer(const struct scene_result *result, int32_t k, int32_t *contact,
+                       struct fmb_answer *out)
+{
+    const int dim = result->dim;
+    *out = (struct fmb_answer){.verdict = (enum fmb_verdict) result->verdict[k]};
+    out->has_gap = result->has_gaps && query_has_gap(&result->gap[k]);
+    if (out->has_gap)
+        out->gap = result->gap[k];
+    if (out->verdict < FMB_TOUCHING || *contact >= result->contact_count)
+        return;
+    const int32_t n = (*contact)++;
+    out->has_contact = result->has_times;
+    if (result->has_times)
+        memcpy(out->contact, &result->times[2 * n], sizeof out->contact);
+    out->has_box = result->has_boxes;
+    for (int i = 0; i < 2 * dim && result->has_boxes; i++)
+        out->box[i / dim][i % dim] = result->boxes[2 * dim * n + i];
+}
+
 size_t wire_write_scene_result(const struct scene_result *result,
                                unsigned char out[QUERY_BYTES_MAX])
 {

@@ -407,18 +407,13 @@ static enum answer_stage begin_pairs(struct scene_job *job)
 
 /* ---- Result ---- */
 
-static bool is_contact(unsigned char verdict)
-{
-    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
-}
-
 /* Bytes of the result that a pair with this verdict takes. */
 static long size_of(const struct scene_result *result, unsigned char verdict)
 {
     long size = result->names_pairs ? 1 + WIRE_PAIR_BYTES : 1;
-    if (is_contact(verdict) && result->has_times)
+    if (verdict >= FMB_TOUCHING && result->has_times)
         size += 2 * (long) sizeof(double);
-    if (is_contact(verdict) && result->has_boxes)
+    if (verdict >= FMB_TOUCHING && result->has_boxes)
         size += 2 * result->dim * (long) sizeof(double);
     if (result->has_gaps)
         size += wire_gap_bytes(result->dim);
@@ -451,7 +446,7 @@ static bool append(struct scene_job *job, const struct fmb_scene_answers *answer
         memcpy(result->pair[n], answers->pairs[k], sizeof result->pair[n]);
     if (result->has_gaps)
         result->gap[n] = answers->gaps[k];
-    if (is_contact(verdict))
+    if (verdict >= FMB_TOUCHING)
         append_contact(result, answers, k);
     return true;
 }
@@ -466,7 +461,7 @@ static size_t append_verdicts(struct scene_job *job, const struct fmb_scene_answ
     if (count > 0)
         memcpy(result->verdict + result->verdict_count, answers->verdicts, count);
     for (size_t k = 0; k < count; k++)
-        contacts += is_contact(answers->verdicts[k]);
+        contacts += answers->verdicts[k] >= FMB_TOUCHING;
     result->contact_count += contacts;
     result->verdict_count += (int32_t) count;
     job->capacity -= (long) count;

@@ -10,4 +10,16 @@ int64_t clock_ns(void);
 /* Wall clock: microseconds since 1970, the utime of messages. */
 int64_t clock_utime(void);
 
+/* CPU time of the calling thread: nanoseconds. */
+int64_t clock_thread_ns(void);
+
+/* Returns the earlier of two times. */
+static inline int64_t clock_earlier(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* For poll(): milliseconds until a time of clock_ns(), rounded up; 0 if it is over. */
+int clock_left_ms(int64_t until_ns);
+
 #endif

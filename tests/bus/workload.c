@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry_write.h"
 #include "guard.h"
 #include "wire.h"
 

@@ -4,6 +4,7 @@
 #include "seeds.h"
 
 #include "fuzz.h"
+#include "geometry_write.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,7 @@
 #include "parts.h"
 
+#include "geometry_write.h"
+
 void part_place(const struct solid *solid, int64_t body_id, struct placement *out)
 {
     static unsigned char bytes[PART_BODIES_MAX][GEOMETRY_FRAME_BYTES_MAX];

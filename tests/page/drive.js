@@ -184,7 +184,7 @@ async function large() {
     await mouse(all("#event-pairs button").pop());
     found.crowdMore = all("#event-pairs tbody tr").length;
     await open("empty.html");
-    found.empty = { said: text("#span"), hidden: one("#timeline").hidden };
+    found.empty = { said: text("#said"), hidden: one("#timeline").hidden };
 }
 
 /* Pairs of texts on the axis that overprint each other. */

@@ -1,5 +1,6 @@
 #include "sample_log.h"
 
+#include "geometry_write.h"
 #include "wire.h"
 
 #include <math.h>

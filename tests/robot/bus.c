@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry_write.h"
 #include "guard.h"
 #include "line.h"
 #include "parties.h"

@@ -2,6 +2,7 @@
 
 #include "bus.h"
 #include "clock.h"
+#include "geometry_write.h"
 #include "wire.h"
 
 #include <signal.h>

@@ -5,6 +5,7 @@
  * datagram takes, RATE a second; 0: as fast as it can. Prints a line of JSON. */
 #include "big_endian.h"
 #include "clock.h"
+#include "geometry_write.h"
 #include "process.h"
 #include "wire.h"
 

@@ -10,6 +10,7 @@
 #include "attack.h"
 #include "bus.h"
 #include "clock.h"
+#include "geometry_write.h"
 #include "wire.h"
 
 #include <inttypes.h>

@@ -8,6 +8,7 @@
  * Prints a line of JSON: the resident memory of process PID, which is the service's, in kB: at the
  * beginning, and at each tenth of the way. */
 #include "bus.h"
+#include "geometry_write.h"
 #include "process.h"
 #include "wire.h"
 

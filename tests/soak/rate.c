@@ -5,6 +5,7 @@
  * answer, and each answer was that of libfmb, bit for bit. */
 #include "bus.h"
 #include "clock.h"
+#include "geometry_write.h"
 #include "process.h"
 #include "same_answer.h"
 #include "wire.h"

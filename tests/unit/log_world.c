@@ -1,6 +1,7 @@
 #include "log_world.h"
 
 #include "answer.h"
+#include "geometry_write.h"
 #include "log_write.h"
 #include "wire.h"
 

@@ -2,6 +2,7 @@
 #ifndef SAMPLE_PLACEMENT_H
 #define SAMPLE_PLACEMENT_H
 
+#include "geometry_write.h"
 #include "query.h"
 
 enum {

@@ -1,6 +1,7 @@
 #include "scene_truth.h"
 
 #include "big_endian.h"
+#include "geometry_write.h"
 #include "pair_draw.h"
 #include "wire.h"
 

@@ -1,5 +1,7 @@
 #include "service.h"
 
+#include "geometry_write.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>

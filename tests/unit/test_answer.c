@@ -2,6 +2,7 @@
 #include "answer.h"
 #include "big_endian.h"
 #include "body.h"
+#include "geometry_write.h"
 #include "wire.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 /* What a definition query gets: by handle, or all bodies that are held, page by page. */
 #include "answer.h"
+#include "geometry_write.h"
 #include "scene_truth.h"
 #include "wire.h"
 

@@ -2,6 +2,7 @@
  * one datagram has space for, and the remainder on request; in steps, which may be interrupted; or
  * what is wrong, and where. */
 #include "answer.h"
+#include "geometry_write.h"
 #include "scene_truth.h"
 #include "wire.h"
 

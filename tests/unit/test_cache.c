@@ -1,5 +1,6 @@
 /* Hit, miss, eviction, ids, pages, and bodies or ids that are chosen to collide. */
 #include "cache.h"
+#include "geometry_write.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,6 @@
 /* Encoded queries through the client library's engine, as fmb replay and fmb record send them. */
 #include "fmb_client_raw.h"
+#include "geometry_write.h"
 #include "relay.h"
 #include "wire.h"
 

@@ -1,5 +1,6 @@
 /* The bodies of a log by handle: from queries and from definitions, each once. */
 #include "definitions.h"
+#include "geometry_write.h"
 
 #include "allocate.h"
 #include "wire.h"

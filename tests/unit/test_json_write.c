@@ -131,8 +131,7 @@ static void write_all(struct json_writer *json)
     fputs("AA==", json->out);
     json_end(json, '"');
     json_bytes(json, "bytes", "a\0b", 3);
-    json_end(json, '}');
-    json_line_end(json);
+    json_object_end(json);
 }
 
 static void commas_and_spaces(void **state)

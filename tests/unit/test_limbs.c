@@ -427,7 +427,7 @@ static void turned_slabs_are_gmp(void **state)
         referee_ready(&question, &ready);
         const struct frame_pair frames = pair_frames(&ready.pair);
         assert_true(limbs_prepare(&frames, limbs_span_of(&frames), &limbs));
-        exact_pair_init(&exact, &frames);
+        exact_pair_init(&exact, &frames, true);
         for (int k = 0; k < 6; k++)
             compare_posed(&question, &limbs, &exact, draw_normal(&draw, &question), seen);
         exact_pair_clear(&exact);

@@ -1,5 +1,6 @@
 /* A query of a log, taken out as a scene of JSON and decided alone, has the answers that were
  * recorded, to the bit. */
+#include "geometry_write.h"
 #include "log_query.h"
 
 #include "answers.h"

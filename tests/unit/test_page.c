@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "geometry_write.h"
 #include "logged_query.h"
 #include "page.h"
 #include "page_event.h"

@@ -1,4 +1,5 @@
 /* The bodies of a recording: what is requested, and what each file defines. */
+#include "geometry_write.h"
 #include "record_bodies.h"
 
 #include "allocate.h"

@@ -1,6 +1,7 @@
 /* Two results of a query compared: every way in which they can differ, numbers at their ends,
  * scenes against a naive model, results that lie; and that bytes which look the same are. */
 #include "compare.h"
+#include "geometry_write.h"
 
 #include "answer.h"
 #include "wire.h"

@@ -1,5 +1,6 @@
 /* Whole replays: logs of a service and its clients that are made here and then spoiled in every
  * way. Ranges of time add up to the whole, and all counts agree. */
+#include "geometry_write.h"
 #include "log_draft.h"
 #include "replay_report.h"
 

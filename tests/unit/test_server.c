@@ -1,4 +1,5 @@
 /* The server, by bytes and a callback: results, counts, hostile bytes. */
+#include "geometry_write.h"
 #include "hostile.h"
 #include "service.h"
 

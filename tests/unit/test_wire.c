@@ -1,6 +1,7 @@
 /* The codec reads back what it writes, writes what lcm-gen's encoders write, and refuses everything
  * else. */
 #include "as_lcm.h"
+#include "geometry_write.h"
 #include "hostile.h"
 #include "sample_placement.h"
 #include "wire.h"

@@ -165,23 +165,21 @@ function addMark(row, at, verdict, differs) {
     row.contacts += verdict >= TOUCHING ? 1 : 0;
 }
 
+function addToRow(rows, ids, event, verdict, differs) {
+    const key = rowKey(ids), row = rows.get(key) ?? makeRow(key);
+    rows.set(key, row);
+    addMark(row, event.at, verdict, differs);
+}
+
 /* Adds an event to the rows of its pairs. An event that differs as a whole, in no pair, differs in
  * all its rows. */
 function addEvent(rows, event) {
     const pairs = pairsOf(event);
     const whole = event.is === DIFFERENT && !pairs.some((pair) => pair.differs);
-    for (const pair of pairs) {
-        const key = rowKey(pair.ids);
-        if (!rows.has(key))
-            rows.set(key, makeRow(key));
-        addMark(rows.get(key), event.at, verdictOf(pair.now ?? pair.then), pair.differs || whole);
-    }
-    if (event.kind === KIND_PAIR && pairs.length === 0) { /* the query was refused */
-        const key = rowKey([bodyOf(event, 0), bodyOf(event, 1)]);
-        if (!rows.has(key))
-            rows.set(key, makeRow(key));
-        addMark(rows.get(key), event.at, NO_VERDICT, whole);
-    }
+    for (const pair of pairs)
+        addToRow(rows, pair.ids, event, verdictOf(pair.now ?? pair.then), pair.differs || whole);
+    if (event.kind === KIND_PAIR && pairs.length === 0) /* the query was refused */
+        addToRow(rows, [bodyOf(event, 0), bodyOf(event, 1)], event, NO_VERDICT, whole);
 }
 
 function rowRank(row) {

@@ -67,6 +67,12 @@ function verdictChips(then, now) {
 
 /* ---- Events ---- */
 
+/* The position of the pointer in an element. */
+function pointIn(id, mouse) {
+    const box = find(id).getBoundingClientRect();
+    return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
+}
+
 /* Calls begin(event) when a drag begins, and the function that it returns for each move until the
  * drag ends, even outside the element. begin() may return nothing. */
 function listenToDrags(element, begin) {

@@ -1,11 +1,6 @@
 /* Input on the stage: mouse, keyboard, and the buttons around it. Each page defines fitAll(),
  * fitPair(), redrawStage() and point(), which gets a position on the stage or null. */
 
-function stagePoint(mouse) {
-    const box = find("stage").getBoundingClientRect();
-    return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
-}
-
 /* Shows a text next to the pointer; at: null hides it. */
 function showTip(at, text) {
     const tip = find("pointed");
@@ -33,15 +28,15 @@ function dragStage(begin, point, pans) {
 function listenToStageDrag(canvas) {
     listenToDrags(canvas, (mouse) => {
         const { azimuth, elevation, camera } = stage, pans = mouse.shiftKey || mouse.button !== 0;
-        const begin = camera && { ...stagePoint(mouse), pan: camera.pan, azimuth, elevation };
+        const begin = camera && { ...pointIn("stage", mouse), pan: camera.pan, azimuth, elevation };
         point(null);
         return begin && ((moved) => {
             if (stage.camera === camera)
-                dragStage(begin, stagePoint(moved), pans);
+                dragStage(begin, pointIn("stage", moved), pans);
         });
     });
     canvas.addEventListener("pointermove", (mouse) => {
-        point(mouse.buttons ? null : stagePoint(mouse));
+        point(mouse.buttons ? null : pointIn("stage", mouse));
     });
     canvas.addEventListener("pointerleave", () => point(null));
     canvas.addEventListener("contextmenu", (mouse) => mouse.preventDefault());
@@ -60,7 +55,7 @@ function startStage() {
     listenToStageDrag(canvas);
     canvas.addEventListener("wheel", (wheel) => {
         wheel.preventDefault();
-        const { x, y } = stagePoint(wheel);
+        const { x, y } = pointIn("stage", wheel);
         if (stage.camera)
             zoomStage(1 / wheelFactor(wheel), x, y);
     }, { passive: false });

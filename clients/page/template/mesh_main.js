@@ -58,10 +58,10 @@ function listenToClicks() {
     const canvas = find("stage");
     let pressed = null;
     canvas.addEventListener("pointerdown", (mouse) => {
-        pressed = stagePoint(mouse);
+        pressed = pointIn("stage", mouse);
     });
     canvas.addEventListener("click", (mouse) => {
-        const at = stagePoint(mouse);
+        const at = pointIn("stage", mouse);
         if (pressed && Math.hypot(at.x - pressed.x, at.y - pressed.y) < STILL)
             chooseBelow(at);
     });

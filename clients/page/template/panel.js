@@ -45,7 +45,7 @@ function fillHeader() {
     const [first, last] = data.span, total = data.count.reduce((sum, count) => sum + count, 0);
     document.title = `Replay: ${data.title}`;
     show(find("title"), make("span", { class: "dim" }, "Replay "), data.title);
-    find("span").textContent = total === 0 ? "No query was replayed."
+    find("said").textContent = total === 0 ? "No query was replayed."
         : total === 1 ? dateText(first)
             : `${durationText((Number(last) - Number(first)) / 1e6)} from ${dateText(first)}; `
                 + `times below count from the beginning of the log, ${dateText(data.begin)}`;

@@ -421,11 +421,6 @@ function eventAt(row, x) {
     return row.at[!isIn && nearer ? next : i];
 }
 
-function plotPoint(mouse) {
-    const box = find("plot").getBoundingClientRect();
-    return { x: mouse.clientX - box.left, y: mouse.clientY - box.top };
-}
-
 /* Chooses the query at the pointer. A narrow run represents several queries: the worst is chosen.
  */
 function clickPlot(mouse) {
@@ -436,7 +431,7 @@ function clickPlot(mouse) {
     } else if (row) {
         const run = mouse.target.closest(".run");
         const narrow = run && Number(run.getAttribute("width")) <= SHORTEST_BAR;
-        const at = narrow ? Number(run.dataset.at) : eventAt(row, plotPoint(mouse).x);
+        const at = narrow ? Number(run.dataset.at) : eventAt(row, pointIn("plot", mouse).x);
         if (at >= 0)
             choose(at, row);
     }
@@ -457,17 +452,17 @@ function dragTo(begin, point) {
 function listenToDrag(plot) {
     let dragged = false;
     listenToDrags(plot, (mouse) => {
-        const begin = { ...plotPoint(mouse), from: timeline.from, to: timeline.to };
+        const begin = { ...pointIn("plot", mouse), from: timeline.from, to: timeline.to };
         dragged = false;
         return (moved) => {
-            const point = plotPoint(moved);
+            const point = pointIn("plot", moved);
             dragged = dragged || Math.abs(point.x - begin.x) >= 4;
             if (dragged)
                 dragTo(begin, point);
         };
     });
     plot.addEventListener("click", (mouse) => {
-        const point = plotPoint(mouse);
+        const point = pointIn("plot", mouse);
         if (dragged)
             return;
         if (point.y < OVERVIEW + 4)
@@ -486,7 +481,7 @@ function listenToPlot() {
         if (Math.abs(wheel.deltaX) > Math.abs(wheel.deltaY))
             setView(timeline.from + by, timeline.to + by);
         else
-            zoomAround(toPlace(plotPoint(wheel).x), wheelFactor(wheel));
+            zoomAround(toPlace(pointIn("plot", wheel).x), wheelFactor(wheel));
     }, { passive: false });
     plot.addEventListener("keydown", (key) => {
         const flag = key.target.closest(".flag");

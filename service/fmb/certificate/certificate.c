@@ -54,10 +54,6 @@ struct named {
     struct exact_edge edge;
 };
 
-struct normal_interval {
-    mpz_t low, high;
-};
-
 struct normal_search {
     struct exact_pair *pair;
     enum fmb_verdict verdict;
@@ -65,24 +61,18 @@ struct normal_search {
     struct named direction[DIRECTIONS_MAX];
     mpz_t z[3];
     mpz_t plane[3], normal[3];
-    mpz_t value[EXACT_VECTORS];           /* normal . each vector of the pair */
-    struct normal_interval range[2], way; /* of the normal over the frames, and over W */
-    mpz_t scratch[2];
+    mpz_t value[EXACT_VECTORS];       /* normal . each vector of the pair */
+    struct exact_range range[2], all; /* of the normal over the frames, and over S */
+    mpz_t scratch;
     char text[NORMAL_TEXT_SIZE];
 };
 
-static void interval_each(struct normal_interval *range, void (*call)(mpz_ptr))
-{
-    call(range->low);
-    call(range->high);
-}
-
 static void search_each(struct normal_search *search, void (*call)(mpz_ptr))
 {
-    for (int f = 0; f < 2; f++) {
-        interval_each(&search->range[f], call);
-        call(search->scratch[f]);
-    }
+    for (int f = 0; f < 2; f++)
+        exact_range_each(&search->range[f], call);
+    exact_range_each(&search->all, call);
+    call(search->scratch);
     for (int axis = 0; axis < 3; axis++) {
         call(search->z[axis]);
         call(search->plane[axis]);
@@ -90,7 +80,6 @@ static void search_each(struct normal_search *search, void (*call)(mpz_ptr))
     }
     for (int k = 0; k < EXACT_VECTORS; k++)
         call(search->value[k]);
-    interval_each(&search->way, call);
 }
 
 static void add_direction(struct normal_search *search, char letter, int number, int owner,
@@ -118,18 +107,7 @@ static void set_directions(struct normal_search *search, int dim)
     add_direction(search, 'd', -1, 2, (struct exact_edge){EXACT_OFFSET, -1, pair->offset});
 }
 
-static void set_ranges(struct normal_search *search)
-{
-    mpz_t *value = search->value;
-    for (int f = 0; f < 2; f++)
-        exact_extent(search->pair, f, value, search->range[f].low, search->range[f].high);
-    mpz_add(search->scratch[0], value[EXACT_OFFSET], value[EXACT_DRIFT]);
-    const bool rises = mpz_sgn(value[EXACT_DRIFT]) > 0;
-    mpz_set(rises ? search->way.low : search->way.high, value[EXACT_OFFSET]);
-    mpz_set(rises ? search->way.high : search->way.low, search->scratch[0]);
-}
-
-static bool varies(const struct normal_interval *range)
+static bool varies(const struct exact_range *range)
 {
     return mpz_cmp(range->low, range->high) != 0;
 }
@@ -137,18 +115,13 @@ static bool varies(const struct normal_interval *range)
 /* 1 if the normal proves the verdict, -1 if its opposite does, else 0. */
 static int proving_sign(struct normal_search *search)
 {
-    set_ranges(search);
-    const struct normal_interval *a = &search->range[0], *b = &search->range[1];
-    mpz_t *least = &search->scratch[0], *most = &search->scratch[1]; /* over S */
-    mpz_add(*least, search->way.low, b->low);
-    mpz_sub(*least, *least, a->high);
-    mpz_add(*most, search->way.high, b->high);
-    mpz_sub(*most, *most, a->low);
+    exact_ranges(search->pair, search->value, search->range, &search->all);
+    const int least = mpz_sgn(search->all.low), most = mpz_sgn(search->all.high);
     if (search->verdict == FMB_SEPARATED)
-        return mpz_sgn(*least) > 0 ? 1 : mpz_sgn(*most) < 0 ? -1 : 0;
-    if (!varies(a) && !varies(b))
+        return least > 0 ? 1 : most < 0 ? -1 : 0;
+    if (!varies(&search->range[0]) && !varies(&search->range[1]))
         return 0;
-    return mpz_sgn(*least) >= 0 ? 1 : mpz_sgn(*most) <= 0 ? -1 : 0;
+    return least >= 0 ? 1 : most <= 0 ? -1 : 0;
 }
 
 static void set_values(struct normal_search *search)
@@ -180,7 +153,7 @@ static void set_product_values(struct normal_search *search, const struct exact_
         exact_cross_values(search->pair, u, v, search->value);
         return;
     }
-    integer_cross(search->normal, u->vector, v->vector, search->scratch[0]);
+    integer_cross(search->normal, u->vector, v->vector, search->scratch);
     set_values(search);
 }
 
@@ -222,11 +195,11 @@ static bool try_within_plane(struct normal_search *search)
     do {
         v++;
         assert(v < u + search->directions);
-        integer_cross(search->plane, u->edge.vector, v->edge.vector, search->scratch[0]);
+        integer_cross(search->plane, u->edge.vector, v->edge.vector, search->scratch);
     } while (integer_is_zero(search->plane));
     for (int i = 0; i < search->directions; i++) {
         const struct named *w = &search->direction[i];
-        integer_cross(search->normal, search->plane, w->edge.vector, search->scratch[0]);
+        integer_cross(search->normal, search->plane, w->edge.vector, search->scratch);
         set_values(search);
         if (try_values(search, "(%s x %s) x %s", u->name, v->name, w->name))
             return true;
@@ -306,7 +279,7 @@ static void write_point(struct certificate_writer *writer, struct exact_pair *ex
 static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
-    exact_pair_init(&exact, pair);
+    exact_pair_init(&exact, pair, true);
     const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
     write_text(writer, fmb_verdict_name(verdict));
     if (verdict != FMB_OVERLAPPING)

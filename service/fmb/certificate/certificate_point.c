@@ -21,7 +21,7 @@
 #include <assert.h>
 
 /* [0] the time in seconds, [1] to [3] the place in the world. */
-enum { COORDINATES = 4 };
+enum { COORDINATES = EXACT_COORDINATES };
 
 /* ---- The simplest number ---- */
 
@@ -102,8 +102,7 @@ static void hull_each(struct hull *hull, void (*call)(mpq_ptr))
     call(hull->product);
 }
 
-/* x := x 2^exponent. */
-static void scale(mpq_t x, long exponent)
+void certificate_scale(mpq_t x, long exponent)
 {
     if (exponent < 0)
         mpq_div_2exp(x, x, (mp_bitcnt_t) -exponent);
@@ -111,21 +110,19 @@ static void scale(mpq_t x, long exponent)
         mpq_mul_2exp(x, x, (mp_bitcnt_t) exponent);
 }
 
-static void set_fraction(mpq_t out, const mpz_t num, const mpz_t den)
+void certificate_set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent)
 {
-    mpq_set_num(out, num);
-    mpq_set_den(out, den);
-    mpq_canonicalize(out);
+    mpq_set_num(x, num);
+    mpq_set_den(x, den);
+    mpq_canonicalize(x);
+    certificate_scale(x, exponent);
 }
 
 static void set_seen(struct hull *hull, const struct exact_point *point)
 {
-    set_fraction(hull->seen[0], point->tau, point->den);
+    for (int k = 0; k < COORDINATES; k++)
+        certificate_set_scaled(hull->seen[k], point->at[k], point->den, k == 0 ? 0 : hull->unit);
     mpq_mul(hull->seen[0], hull->seen[0], hull->duration);
-    for (int axis = 0; axis < 3; axis++) {
-        set_fraction(hull->seen[1 + axis], point->at[axis], point->den);
-        scale(hull->seen[1 + axis], hull->unit);
-    }
 }
 
 /* v := v - v[k] direction[k], whose coordinate k is 0. */
@@ -273,8 +270,8 @@ static void shorten_to_frame(struct chord *chord, const struct placed_frame *pla
         mpq_sub(chord->place[axis], chord->at[1 + axis], chord->place[axis]);
         mpq_mul(chord->way[axis], chord->number, chord->direction[0]);
         mpq_sub(chord->way[axis], chord->direction[1 + axis], chord->way[axis]);
-        scale(chord->place[axis], -exact->unit);
-        scale(chord->way[axis], -exact->unit);
+        certificate_scale(chord->place[axis], -exact->unit);
+        certificate_scale(chord->way[axis], -exact->unit);
         mpq_set_z(chord->number, exact->scale);
         mpq_mul(chord->place[axis], chord->place[axis], chord->number);
         mpq_mul(chord->way[axis], chord->way[axis], chord->number);

@@ -18,21 +18,9 @@
 
 #include <stdint.h>
 
-enum { COORDINATES = 4 }; /* 0: tau in windows; 1 to 3: the place in units */
+enum { COORDINATES = EXACT_COORDINATES };
 
 /* ---- Points of Q as they are ---- */
-
-/* x := num / den 2^exponent, in lowest terms. */
-static void set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent)
-{
-    mpq_set_num(x, num);
-    mpq_set_den(x, den);
-    mpq_canonicalize(x);
-    if (exponent < 0)
-        mpq_div_2exp(x, x, (mp_bitcnt_t) -exponent);
-    else
-        mpq_mul_2exp(x, x, (mp_bitcnt_t) exponent);
-}
 
 /* The prime 2^61 - 1. */
 static const uint64_t prime = (UINT64_C(1) << 61) - 1;
@@ -94,17 +82,15 @@ static bool reduce(struct sample *sample, uint64_t x[NUMBERS])
 static void take_independent(void *context, const struct exact_point *point)
 {
     struct sample *sample = context;
-    const mpz_t *number[NUMBERS] = {&point->tau, &point->at[0], &point->at[1], &point->at[2],
-                                    &point->den};
     uint64_t x[NUMBERS];
     if (sample->count == sample->most)
         return;
     for (int k = 0; k < NUMBERS; k++)
-        x[k] = mpz_fdiv_ui(*number[k], prime);
+        x[k] = mpz_fdiv_ui(k < COORDINATES ? point->at[k] : point->den, prime);
     if (!reduce(sample, x))
         return;
     for (int k = 0; k < NUMBERS; k++)
-        mpz_set(sample->number[sample->count][k], *number[k]);
+        mpz_set(sample->number[sample->count][k], k < COORDINATES ? point->at[k] : point->den);
     sample->count++;
 }
 
@@ -135,19 +121,20 @@ static void find_mean(struct certificate_point *out, struct exact_pair *exact,
     points_walk(exact, take_independent, &sample);
     set_sample_mean(&sample, exact->scratch[0]);
     mpz_mul_si(mean[0], mean[0], window.mantissa);
-    set_scaled(out->time, mean[0], mean[COORDINATES], window.mantissa ? window.exponent : 0);
+    certificate_set_scaled(out->time, mean[0], mean[COORDINATES],
+                           window.mantissa ? window.exponent : 0);
     for (int axis = 0; axis < 3; axis++)
-        set_scaled(out->place[axis], mean[1 + axis], mean[COORDINATES], exact->unit);
+        certificate_set_scaled(out->place[axis], mean[1 + axis], mean[COORDINATES], exact->unit);
     sample_each(&sample, mpz_clear);
 }
 
 /* ---- Inside ---- */
 
-/* The point (tau, at) / den, den > 0, and the chord through it along coordinate k. */
+/* The point at / den, den > 0, and the chord through it along coordinate k. */
 struct inside {
     struct exact_pair *exact;
     long bits, points;
-    mpz_t tau, at[3], den;
+    mpz_t at[COORDINATES], den;
     int k, frame;
     bool strict;     /* the point is strictly inside of all slabs so far */
     bool bounded[2]; /* whether the chord has ends, from end[0] to end[1], coordinates */
@@ -156,22 +143,14 @@ struct inside {
     mpq_t low, high;
 };
 
-static mpz_t *coordinate(struct inside *inside, int k)
-{
-    return k ? &inside->at[k - 1] : &inside->tau;
-}
-
 static void inside_each(struct inside *inside, void (*call)(mpz_ptr))
 {
     for (int k = 0; k < COORDINATES; k++)
-        call(*coordinate(inside, k));
-    for (int side = 0; side < 2; side++) {
-        call(inside->end[side].num);
-        call(inside->end[side].den);
-    }
+        call(inside->at[k]);
+    for (int side = 0; side < 2; side++)
+        ratio_each(&inside->end[side], call);
+    ratio_each(&inside->bound, call);
     call(inside->den);
-    call(inside->bound.num);
-    call(inside->bound.den);
     call(inside->value);
     call(inside->slope);
     call(inside->product);
@@ -182,35 +161,21 @@ static void add_rounded(void *context, const struct exact_point *point)
     struct inside *inside = context;
     inside->points++;
     for (int k = 0; k < COORDINATES; k++) {
-        mpz_mul_2exp(inside->product, k ? point->at[k - 1] : point->tau,
-                     (mp_bitcnt_t) inside->bits);
+        mpz_mul_2exp(inside->product, point->at[k], (mp_bitcnt_t) inside->bits);
         mpz_fdiv_q(inside->product, inside->product, point->den);
-        mpz_add(*coordinate(inside, k), *coordinate(inside, k), inside->product);
+        mpz_add(inside->at[k], inside->at[k], inside->product);
     }
 }
 
 static void set_mean(struct inside *inside, long bits)
 {
     for (int k = 0; k < COORDINATES; k++)
-        mpz_set_ui(*coordinate(inside, k), 0);
+        mpz_set_ui(inside->at[k], 0);
     inside->bits = bits;
     inside->points = 0;
     points_walk(inside->exact, add_rounded, inside);
     mpz_set_si(inside->den, inside->points);
     mpz_mul_2exp(inside->den, inside->den, (mp_bitcnt_t) bits);
-}
-
-/* Moves an end of the chord to inside->bound if that is further inside. */
-static void shorten(struct inside *inside, int side)
-{
-    struct ratio *end = &inside->end[side];
-    if (inside->bounded[side]) {
-        const int sign = ratio_compare(&inside->bound, end, inside->exact->scratch);
-        if (side ? sign >= 0 : sign <= 0)
-            return;
-    }
-    ratio_copy(end, &inside->bound);
-    inside->bounded[side] = true;
 }
 
 /* With value = den (normal . p) and slope = normal . axis k, and x the coordinate's numerator, the
@@ -227,14 +192,15 @@ static void shorten_to_slab(struct inside *inside, struct slab *slab)
         if (sign == 0)
             continue;
         mpz_sub(bound->num, bound->num, inside->value);
-        integer_add_product(bound->num, 1, *coordinate(inside, inside->k), inside->slope,
-                            inside->product);
+        integer_add_product(bound->num, 1, inside->at[inside->k], inside->slope, inside->product);
         integer_multiply(bound->den, inside->den, inside->slope);
         if (sign < 0) {
             mpz_neg(bound->num, bound->num);
             mpz_neg(bound->den, bound->den);
         }
-        shorten(inside, side);
+        ratio_tighten(&inside->end[side], inside->bounded[side], side, bound,
+                      inside->exact->scratch);
+        inside->bounded[side] = true;
     }
 }
 
@@ -248,11 +214,11 @@ static bool apply_slab(void *context, struct slab *slab)
     if (slab->pins)
         return true;
     slab_set_normal(slab, scratch[0]);
-    integer_dot(inside->value, slab->normal, inside->at, scratch[0]);
+    integer_dot(inside->value, slab->normal, inside->at + 1, scratch[0]);
     integer_dot(inside->slope, slab->normal, frame->origin, scratch[0]);
     integer_add_product(inside->value, -1, inside->slope, inside->den, scratch[0]);
     integer_dot(inside->slope, slab->normal, frame->displacement, scratch[0]);
-    integer_add_product(inside->value, -1, inside->slope, inside->tau, scratch[0]);
+    integer_add_product(inside->value, -1, inside->slope, inside->at[0], scratch[0]);
     if (inside->k)
         mpz_set(inside->slope, slab->normal[inside->k - 1]);
     else
@@ -279,7 +245,7 @@ static bool set_chord(struct inside *inside, int k)
 /* Whether times around that of the point are in Q. */
 static bool has_time(const struct inside *inside)
 {
-    return mpz_sgn(inside->tau) > 0 && mpz_cmp(inside->tau, inside->den) < 0;
+    return mpz_sgn(inside->at[0]) > 0 && mpz_cmp(inside->at[0], inside->den) < 0;
 }
 
 /* x := ratio factor 2^exponent; not in lowest terms. */
@@ -304,7 +270,7 @@ static void simplify(struct inside *inside, long long factor, long exponent, mpq
     mpz_ptr scaled = exponent < 0 ? to->num : to->den;
     mpz_mul_2exp(scaled, scaled, (mp_bitcnt_t) (exponent < 0 ? -exponent : exponent));
     for (int k = 0; k < COORDINATES; k++) {
-        mpz_t *x = coordinate(inside, k);
+        mpz_t *x = &inside->at[k];
         if (k == inside->k)
             integer_multiply(inside->product, inside->den, to->num);
         else
@@ -325,7 +291,7 @@ static bool move_inside(struct inside *inside, const struct frame_pair *pair,
         return false;
     if (time)
         simplify(inside, window.mantissa, window.exponent, out->time);
-    else if (mpz_sgn(inside->tau))
+    else if (mpz_sgn(inside->at[0]))
         mpq_set_d(out->time, pair->duration);
     for (int k = 1; k <= pair->a.frame->dim; k++) {
         set_chord(inside, k);

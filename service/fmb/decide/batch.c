@@ -266,11 +266,6 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
 
 /* ---- Results ---- */
 
-static bool is_contact(unsigned char verdict)
-{
-    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
-}
-
 static void put_no_box(const struct fmb_batch *batch, size_t i)
 {
     for (int k = 0; k < 2 * FMB_DIM_MAX && batch->boxes; k++)
@@ -436,7 +431,7 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job,
         const size_t i = block->first + block->slot[k];
         const struct fmb_prepared *const *pair = block->pair[k];
         bool swapped;
-        if (!is_contact(batch->verdicts[i]))
+        if (!batch_is_contact(batch->verdicts[i]))
             continue;
         const enum kernel_kind own = kernel_box_kind(pair[0], pair[1], batch->duration, &swapped);
         const bool moving = own & KERNEL_DRIFTS;
@@ -458,7 +453,7 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
 {
     const bool any_unsure = memchr(block->outcome + start, SLABS_UNSURE, end - start) != NULL;
     for (size_t k = start; k < end; k++)
-        if (!is_contact(block->batch->verdicts[block->first + block->slot[k]]))
+        if (!batch_is_contact(block->batch->verdicts[block->first + block->slot[k]]))
             put_no_box(block->batch, block->first + block->slot[k]);
     for (int unsure = 0; unsure < (any_unsure ? 2 : 1); unsure++) {
         const bool moving = kind & KERNEL_DRIFTS;
@@ -613,7 +608,7 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
     struct fmb_gap *gap = &batch->gaps[i];
     unsigned char *verdict = &batch->verdicts[i];
     enum gap_outcome outcome = GAP_FAR;
-    if (is_contact(*verdict) || (*verdict == FMB_SEPARATED && !block->far[slot]))
+    if (batch_is_contact(*verdict) || (*verdict == FMB_SEPARATED && !block->far[slot]))
         outcome = gap_of(&batch->frames[batch->pairs[i][0]], &batch->frames[batch->pairs[i][1]],
                          batch->duration, (enum fmb_verdict) * verdict, job->farthest,
                          batch->open != NULL, gap);

@@ -17,7 +17,6 @@
 #include "scene_pairs.h"
 
 #include "batch.h"
-#include "certified.h"
 #include "gap.h"
 
 #include <assert.h>
@@ -90,11 +89,6 @@ static size_t whole_lines(size_t bytes)
     return (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
 }
 
-static size_t chunks_max(const struct fmb_scene_limits *limits)
-{
-    return limits->frames / SCENE_CHUNK + limits->placements;
-}
-
 static void *take(char *base, size_t *at, size_t count, size_t size)
 {
     void *out = base ? base + *at : NULL;
@@ -109,10 +103,11 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
     struct scene_frames *frames = &state->frames;
     struct scene_pairs *pairs = &state->pairs;
     const size_t placements = limits->placements;
+    const size_t chunks = limits->frames / SCENE_CHUNK + placements;
     size_t at = whole_lines(sizeof *state);
     frames->slot = take(base, &at, limits->slots, sizeof *frames->slot);
     frames->frame_box = take(base, &at, limits->slots, sizeof *frames->frame_box);
-    frames->chunk = take(base, &at, chunks_max(limits), sizeof *frames->chunk);
+    frames->chunk = take(base, &at, chunks, sizeof *frames->chunk);
     frames->first_chunk = take(base, &at, placements, sizeof *frames->first_chunk);
     frames->body_box = take(base, &at, placements, sizeof *frames->body_box);
     pairs->space = take(base, &at, placements, sizeof *pairs->space);
@@ -481,11 +476,6 @@ static void begin_block(struct fmb_scene_state *state)
 
 /* ---- Answers ---- */
 
-static bool is_contact(unsigned char verdict)
-{
-    return verdict == FMB_TOUCHING || verdict == FMB_OVERLAPPING;
-}
-
 /* Includes the gap of pair of frames k, if it is known, in that of its bodies. If both have one
  * frame, it is the gap of the bodies. */
 static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
@@ -575,7 +565,7 @@ static size_t drop_separated(struct fmb_scene_state *state, struct scene_outcome
     unsigned(*pair)[2] = state->block.out;
     size_t to = first;
     for (size_t n = first; n < end; n++) {
-        if (!is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
+        if (!batch_is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
             continue;
         if (to < n) {
             memcpy(pair[to], pair[n], sizeof pair[to]);

@@ -53,6 +53,17 @@ static void set_edges(struct exact_frame *frame, int f)
     }
 }
 
+void exact_pair_complete(struct exact_pair *pair)
+{
+    struct exact_frame *a = &pair->frame[0], *b = &pair->frame[1];
+    set_edges(a, 0);
+    set_edges(b, 1);
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_sub(pair->offset[axis], b->origin[axis], a->origin[axis]);
+        mpz_sub(pair->drift[axis], b->displacement[axis], a->displacement[axis]);
+    }
+}
+
 /* ---- Orientations ----
  *
  * For a quaternion q of integers, n R(q) is a matrix of integers, n = |q|^2. All lengths of a pair
@@ -214,10 +225,8 @@ static void set_frames(struct exact_pair *out, const struct frame_pair *pair)
     for (int f = 0; f < 2; f++)
         place_frame(&out->frame[f], placed[f], pair->duration, out->unit, &turn[f],
                     same ? one : turn[!f].norm, out->scale);
-    for (int f = 0; f < 2; f++) {
+    for (int f = 0; f < 2; f++)
         turn_each(&turn[f], mpz_clear);
-        set_edges(&out->frame[f], f);
-    }
     mpz_clear(one);
 }
 
@@ -362,26 +371,16 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
         add_triples(pair, 1, u->minus, v->minus, value);
 }
 
-/* Converts a pair. difference: the slabs of the difference are needed. The box needs only slabs of
- * single frames, and mixed triples if the pair moves, for crossings. */
-static void begin(struct exact_pair *out, const struct frame_pair *pair, bool difference)
+/* The box needs only slabs of single frames, and mixed triples if the pair moves, for crossings. */
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference)
 {
     pair_each(out, mpz_init);
     out->unit = pair_unit(pair);
     out->moving = pair->duration > 0 && pair_moves(pair);
     set_frames(out, pair);
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_sub(out->offset[axis], out->frame[1].origin[axis], out->frame[0].origin[axis]);
-        mpz_sub(out->drift[axis], out->frame[1].displacement[axis],
-                out->frame[0].displacement[axis]);
-    }
+    exact_pair_complete(out);
     if (pair->a.frame->dim == 3) /* in 2D all vectors lie in one plane */
         set_triples(out, difference || out->moving);
-}
-
-void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
-{
-    begin(out, pair, true);
 }
 
 void exact_pair_clear(struct exact_pair *pair)
@@ -412,15 +411,16 @@ void exact_pair_clear(struct exact_pair *pair)
  *
  * A product of limbs takes half a nanosecond. test_engine_work.c counts the products. */
 
-/* Returns tau = num / den, in windows, as seconds. In: den > 0. */
-static double seconds(const mpz_t num, const mpz_t den, double duration,
-                      enum round_direction direction, mpz_t scratch[EXACT_SCRATCH])
+/* Returns tau, in windows, as seconds: an end of a contact (0: first, 1: last), rounded outward. */
+static double seconds(const struct ratio *tau, double duration, int end,
+                      mpz_t scratch[EXACT_SCRATCH])
 {
     struct dyadic window = dyadic_of(duration);
     if (window.mantissa == 0)
         return 0.0;
-    mpz_mul_si(scratch[2], num, window.mantissa);
-    return integer_ratio_round(scratch[2], den, window.exponent, direction, scratch);
+    mpz_mul_si(scratch[2], tau->num, window.mantissa);
+    return integer_ratio_round(scratch[2], tau->den, window.exponent, end ? ROUND_UP : ROUND_DOWN,
+                               scratch);
 }
 
 /* The path of the offset, the segment offset + tau drift, tau in [0,1], against the slabs. */
@@ -430,7 +430,7 @@ struct offset_walk {
     bool strict;                 /* for a solid one: strictly within all slabs so far */
     double duration, *contact;   /* seconds; contact may be NULL */
     mpz_t f0, f1;                /* normal . offset at tau = 0 and at tau = 1 */
-    mpz_t num, den;              /* scratch */
+    struct ratio crossing;       /* scratch */
 };
 
 static void set_path(struct offset_walk *walk, struct slab *slab)
@@ -452,14 +452,8 @@ static bool apply_to_span(void *context, struct slab *slab)
  * Rounding is monotonic: the latest of the rounded times is the latest time, rounded. */
 static void cross_bound(struct offset_walk *walk, const mpz_t bound, int end)
 {
-    mpz_sub(walk->num, bound, walk->f0);
-    mpz_sub(walk->den, walk->f1, walk->f0);
-    if (mpz_sgn(walk->den) < 0) {
-        mpz_neg(walk->num, walk->num);
-        mpz_neg(walk->den, walk->den);
-    }
-    const double time = seconds(walk->num, walk->den, walk->duration, end ? ROUND_UP : ROUND_DOWN,
-                                walk->pair->scratch);
+    ratio_cross(&walk->crossing, walk->f0, walk->f1, bound);
+    const double time = seconds(&walk->crossing, walk->duration, end, walk->pair->scratch);
     if (end ? time < walk->contact[1] : time > walk->contact[0])
         walk->contact[end] = time;
 }
@@ -500,13 +494,9 @@ static enum fmb_verdict verdict_of_flat(struct offset_walk *walk)
     enum fmb_verdict verdict = FMB_SEPARATED;
     if (slabs_walk(walk->pair, SLABS_OF_DIFFERENCE, apply_to_span, walk)) {
         verdict = clipped_segment_has_interior(&walk->span) ? FMB_OVERLAPPING : FMB_TOUCHING;
-        const struct ratio *first = clipped_segment_lower(&walk->span),
-                           *last = clipped_segment_upper(&walk->span);
-        mpz_t *scratch = walk->pair->scratch;
-        if (walk->contact) {
-            walk->contact[0] = seconds(first->num, first->den, walk->duration, ROUND_DOWN, scratch);
-            walk->contact[1] = seconds(last->num, last->den, walk->duration, ROUND_UP, scratch);
-        }
+        for (int end = 0; end < 2 && walk->contact; end++)
+            walk->contact[end] = seconds(clipped_segment_end(&walk->span, end), walk->duration, end,
+                                         walk->pair->scratch);
     }
     clipped_segment_clear(&walk->span);
     return verdict;
@@ -519,10 +509,12 @@ enum fmb_verdict exact_verdict(struct exact_pair *exact, double duration, double
         contact[0] = 0;
         contact[1] = duration + 0.0; /* never -0 */
     }
-    mpz_inits(walk.f0, walk.f1, walk.num, walk.den, NULL);
+    mpz_inits(walk.f0, walk.f1, NULL);
+    ratio_each(&walk.crossing, mpz_init);
     const bool solid = slabs_solid(exact);
     const enum fmb_verdict verdict = solid ? verdict_of_solid(&walk) : verdict_of_flat(&walk);
-    mpz_clears(walk.f0, walk.f1, walk.num, walk.den, NULL);
+    ratio_each(&walk.crossing, mpz_clear);
+    mpz_clears(walk.f0, walk.f1, NULL);
     return verdict;
 }
 
@@ -531,7 +523,7 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
 {
     struct exact_pair exact;
     double contact[2];
-    exact_pair_init(&exact, pair);
+    exact_pair_init(&exact, pair, true);
     answer->verdict = exact_verdict(&exact, pair->duration, contact);
     if (answer->verdict != FMB_SEPARATED) {
         answer->has_contact = true;
@@ -547,7 +539,7 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
 void exact_box(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
 {
     struct exact_pair exact;
-    begin(&exact, pair, false);
+    exact_pair_init(&exact, pair, false);
     exact_pair_box(&exact, box);
     exact_pair_clear(&exact);
 }

@@ -65,9 +65,13 @@ struct exact_pair {
     mpz_t scratch[EXACT_SCRATCH];
 };
 
-/* Converts a checked pair. exact_pair_clear() frees what exact_pair_init() allocates. */
-void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair);
+/* Converts a checked pair. difference: the slabs of the difference are needed. exact_pair_clear()
+ * frees what exact_pair_init() allocates. */
+void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference);
 void exact_pair_clear(struct exact_pair *pair);
+
+/* Sets edges, offset and drift of a pair from its components, origins and displacements. */
+void exact_pair_complete(struct exact_pair *pair);
 
 /* Computes the inverse of a frame of dim components, the exact ones, component + remainder. Every
  * entry is the largest double that is not above the exact one, infinite beyond the range of
@@ -88,6 +92,19 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
  * normal. */
 void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTORS], mpz_t low,
                   mpz_t high);
+
+/* The interval of a normal over a set of points. */
+struct exact_range {
+    mpz_t low, high;
+};
+
+/* Calls one of mpz_init and mpz_clear for both numbers. */
+void exact_range_each(struct exact_range *range, void (*call)(mpz_ptr));
+
+/* frame[f] := the interval over frame f with its origin at 0; all := that of all b - a over the
+ * window, for points a of frame 0 and b of frame 1. value: of the normal. */
+void exact_ranges(const struct exact_pair *pair, mpz_t value[EXACT_VECTORS],
+                  struct exact_range frame[2], struct exact_range *all);
 
 /* A slab: { w : low <= normal . w <= high }. A slab that pins has low = high: the whole polytope
  * lies in its plane, and such planes define the affine hull of the polytope. */
@@ -130,11 +147,19 @@ struct ratio {
     mpz_t num, den;
 };
 
-void ratio_init(struct ratio *r);
-void ratio_clear(struct ratio *r);
-void ratio_copy(struct ratio *out, const struct ratio *r);
+/* Calls one of mpz_init and mpz_clear for both numbers. */
+void ratio_each(struct ratio *r, void (*call)(mpz_ptr));
+
 /* Sign of x - y. */
 int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2]);
+
+/* out := (bound - f0) / (f1 - f0), where a segment from f0 to f1, which differ, crosses the bound.
+ */
+void ratio_cross(struct ratio *out, const mpz_t f0, const mpz_t f1, const mpz_t bound);
+
+/* Raises (side 0) or lowers (side 1) an end to at, if that is tighter, or if there was no bound. */
+void ratio_tighten(struct ratio *end, bool bounded, int side, const struct ratio *at,
+                   mpz_t scratch[2]);
 
 /* The part of the line segment s -> w(s), s in [0,1], that lies in the slabs applied so far. */
 struct clipped_segment {
@@ -157,18 +182,21 @@ void clipped_segment_clear(struct clipped_segment *span);
 bool clipped_segment_apply(struct clipped_segment *span, const mpz_t f0, const mpz_t f1,
                            const mpz_t low, const mpz_t high, bool pins);
 
-/* Return the ends of the closed part, within all slabs and their bounds; lower <= upper. The
- * pointers are into the segment. */
-const struct ratio *clipped_segment_lower(struct clipped_segment *span);
-const struct ratio *clipped_segment_upper(struct clipped_segment *span);
+/* Returns an end of the closed part, within all slabs and their bounds: the lower one (side 0) or
+ * the upper one (side 1), which is not below it. The pointer is into the segment. */
+const struct ratio *clipped_segment_end(struct clipped_segment *span, int side);
 
 /* Returns whether some s of the window lies strictly within all slabs that do not pin. */
 bool clipped_segment_has_interior(struct clipped_segment *span);
 
+/* Coordinates of a point in space and time: [0] tau, in windows; [1] to [3] the place, in units of
+ * 2^unit of the pair. */
+enum { EXACT_COORDINATES = 4 };
+
 /* A point in the world and a time of the window, as fractions. */
 struct exact_point {
-    mpz_t at[3], tau; /* numerators; at in units of 2^unit of the pair, tau in windows */
-    mpz_t den;        /* > 0 */
+    mpz_t at[EXACT_COORDINATES]; /* numerators */
+    mpz_t den;                   /* > 0 */
 };
 
 /* Called for each point, which is valid during the call only. */

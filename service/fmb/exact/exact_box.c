@@ -47,9 +47,7 @@ enum {
 /* The slabs of one frame, and how far the vertices of the other lie along their normals. */
 struct clipper {
     int slabs;
-    struct bounds {
-        mpz_t low, high;
-    } slab[FRAME_SLABS_MAX];
+    struct exact_range slab[FRAME_SLABS_MAX];
     /* [end of the window][slab][vertex of the other frame]: normal . w, w the vertex relative
      * to the origin of this frame. */
     mpz_t at[2][FRAME_SLABS_MAX][EXACT_VERTICES_MAX];
@@ -74,24 +72,20 @@ struct point_search {
 static void point_search_each(struct point_search *search, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++) {
-        call(search->part[f].num);
-        call(search->part[f].den);
+        ratio_each(&search->part[f], call);
         for (int s = 0; s < FRAME_SLABS_MAX; s++) {
-            call(search->clipper[f].slab[s].low);
-            call(search->clipper[f].slab[s].high);
+            exact_range_each(&search->clipper[f].slab[s], call);
             for (int v = 0; v < EXACT_VERTICES_MAX; v++) {
                 call(search->clipper[f].at[0][s][v]);
                 call(search->clipper[f].at[1][s][v]);
             }
         }
     }
-    call(search->crossing.num);
-    call(search->crossing.den);
-    for (int axis = 0; axis < 3; axis++) {
+    ratio_each(&search->crossing, call);
+    for (int axis = 0; axis < 3; axis++)
         call(search->weight[axis]);
-        call(search->found.at[axis]);
-    }
-    call(search->found.tau);
+    for (int k = 0; k < EXACT_COORDINATES; k++)
+        call(search->found.at[k]);
     call(search->found.den);
 }
 
@@ -151,13 +145,14 @@ static void visit_point(struct point_search *search, int f, int v, int w, const 
             mpz_sub(search->weight[i], search->weight[i], s);
     }
     for (int axis = 0; axis < 3; axis++) {
-        integer_multiply(found->at[axis], den, frame->origin[axis]);
-        integer_add_product(found->at[axis], 1, tau, frame->displacement[axis], search->scratch[0]);
+        mpz_t *at = &found->at[1 + axis];
+        integer_multiply(*at, den, frame->origin[axis]);
+        integer_add_product(*at, 1, tau, frame->displacement[axis], search->scratch[0]);
         for (int i = 0; i < frame->count; i++)
-            integer_add_product(found->at[axis], 1, search->weight[i], frame->component[i][axis],
+            integer_add_product(*at, 1, search->weight[i], frame->component[i][axis],
                                 search->scratch[0]);
     }
-    mpz_mul(found->tau, tau, search->pair->scale);
+    mpz_mul(found->at[0], tau, search->pair->scale);
     mpz_mul(found->den, den, search->pair->scale);
     search->visit(search->context, found);
 }
@@ -197,16 +192,8 @@ static void set_clippers(struct point_search *search)
 static void cut(struct point_search *search, int end, const mpz_t f0, const mpz_t f1,
                 const mpz_t bound)
 {
-    struct ratio *at = &search->crossing;
-    mpz_sub(at->num, bound, f0);
-    mpz_sub(at->den, f1, f0);
-    if (mpz_sgn(at->den) < 0) {
-        mpz_neg(at->num, at->num);
-        mpz_neg(at->den, at->den);
-    }
-    const int sign = ratio_compare(at, &search->part[end], search->scratch);
-    if (end ? sign < 0 : sign > 0)
-        ratio_copy(&search->part[end], at);
+    ratio_cross(&search->crossing, f0, f1, bound);
+    ratio_tighten(&search->part[end], true, end, &search->crossing, search->scratch);
 }
 
 /* Sets search->part of the segment on which normal . w goes from f0 to f1 for each slab; returns
@@ -220,7 +207,7 @@ static int clip(struct point_search *search, const struct clipper *clipper, int 
     }
     for (int pass = 0; pass < 2; pass++) /* signs alone leave few segments to be cut */
         for (int s = 0; s < clipper->slabs; s++) {
-            const struct bounds *slab = &clipper->slab[s];
+            const struct exact_range *slab = &clipper->slab[s];
             const mpz_t *f0 = &clipper->at[end_v][s][v], *f1 = &clipper->at[end_w][s][w];
             const bool below0 = mpz_cmp(*f0, slab->low) < 0, below1 = mpz_cmp(*f1, slab->low) < 0;
             const bool above0 = mpz_cmp(*f0, slab->high) > 0, above1 = mpz_cmp(*f1, slab->high) > 0;
@@ -258,12 +245,6 @@ static void visit_edges(struct point_search *search, int f, int end)
                 visit_segment(search, f, v, end, w, end);
 }
 
-static void visit_paths(struct point_search *search, int f)
-{
-    for (int v = 0; v < search->vertices[f]; v++)
-        visit_segment(search, f, v, 0, v, 1);
-}
-
 /* ---- Kind 3 ----
  *
  * The crossing of an edge p + s e of A with an edge q + u f + offset + tau drift of B, with
@@ -297,11 +278,6 @@ static void crossing_each(struct crossing *crossing, void (*call)(mpz_ptr))
     call(crossing->tau);
 }
 
-static bool in_unit(const mpz_t num, const mpz_t den)
-{
-    return mpz_sgn(num) >= 0 && mpz_cmp(num, den) <= 0;
-}
-
 /* Sets what depends on the directions alone; false if they never cross in one point. */
 static bool crossing_set(struct crossing *crossing, struct exact_pair *pair,
                          const struct exact_edge *e, const struct exact_edge *f)
@@ -332,7 +308,7 @@ static bool crossing_number(const struct crossing *crossing, const struct exact_
     mpz_set(out, value[EXACT_OFFSET]);
     add_vertex(pair, 1, 1, w, value, out);
     add_vertex(pair, -1, 0, v, value, out);
-    return in_unit(out, crossing->det);
+    return mpz_sgn(out) >= 0 && mpz_cmp(out, crossing->det) <= 0;
 }
 
 /* Where the direction number e starts in vertex v, the vertex where that edge ends; else -1. */
@@ -389,8 +365,8 @@ void points_walk(struct exact_pair *pair, point_visit visit, void *context)
     for (int f = 0; f < 2; f++) {
         for (int end = 0; end < search.ends; end++)
             visit_edges(&search, f, end);
-        if (pair->moving)
-            visit_paths(&search, f);
+        for (int v = 0; v < search.vertices[f] && pair->moving; v++)
+            visit_segment(&search, f, v, 0, v, 1);
     }
     if (pair->moving)
         visit_crossings(&search);
@@ -424,16 +400,17 @@ static void include_point(void *context, const struct exact_point *point)
 {
     struct boxing *boxing = context;
     for (int axis = 0; axis < 3; axis++) {
+        const mpz_t *at = &point->at[1 + axis];
         double *low = &boxing->box[0][axis], *high = &boxing->box[1][axis];
-        if (surely_inside(boxing, axis, point->at[axis], point->den))
+        if (surely_inside(boxing, axis, *at, point->den))
             continue;
-        const double down = integer_ratio_round(point->at[axis], point->den, boxing->unit,
-                                                ROUND_DOWN, boxing->scratch);
+        const double down =
+            integer_ratio_round(*at, point->den, boxing->unit, ROUND_DOWN, boxing->scratch);
         *low = down < *low ? down : *low;
         if (down < *high)
             continue;
-        const double up = integer_ratio_round(point->at[axis], point->den, boxing->unit, ROUND_UP,
-                                              boxing->scratch);
+        const double up =
+            integer_ratio_round(*at, point->den, boxing->unit, ROUND_UP, boxing->scratch);
         *high = up > *high ? up : *high;
     }
 }

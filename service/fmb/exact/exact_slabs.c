@@ -74,6 +74,25 @@ void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTOR
         add_component(frame, low, high, value[f * EXACT_OF_B + i]);
 }
 
+void exact_range_each(struct exact_range *range, void (*call)(mpz_ptr))
+{
+    call(range->low);
+    call(range->high);
+}
+
+void exact_ranges(const struct exact_pair *pair, mpz_t value[EXACT_VECTORS],
+                  struct exact_range frame[2], struct exact_range *all)
+{
+    mpz_ptr late = mpz_sgn(value[EXACT_DRIFT]) < 0 ? all->low : all->high;
+    for (int f = 0; f < 2; f++)
+        exact_extent(pair, f, value, frame[f].low, frame[f].high);
+    mpz_sub(all->low, frame[1].low, frame[0].high);
+    mpz_add(all->low, all->low, value[EXACT_OFFSET]);
+    mpz_sub(all->high, frame[1].high, frame[0].low);
+    mpz_add(all->high, all->high, value[EXACT_OFFSET]);
+    mpz_add(late, late, value[EXACT_DRIFT]);
+}
+
 /* Visits the slab whose values enumeration->slab holds. */
 static bool visit_slab(struct slab_enumeration *enumeration, bool pins)
 {

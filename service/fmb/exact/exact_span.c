@@ -1,22 +1,10 @@
 #include "exact.h"
 #include "integer.h"
 
-#include <assert.h>
-
-void ratio_init(struct ratio *r)
+void ratio_each(struct ratio *r, void (*call)(mpz_ptr))
 {
-    mpz_inits(r->num, r->den, NULL);
-}
-
-void ratio_clear(struct ratio *r)
-{
-    mpz_clears(r->num, r->den, NULL);
-}
-
-void ratio_copy(struct ratio *out, const struct ratio *r)
-{
-    mpz_set(out->num, r->num);
-    mpz_set(out->den, r->den);
+    call(r->num);
+    call(r->den);
 }
 
 int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2])
@@ -24,14 +12,39 @@ int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2]
     return integer_compare_products(x->num, y->den, y->num, x->den, scratch);
 }
 
-void clipped_segment_init(struct clipped_segment *span)
+void ratio_cross(struct ratio *out, const mpz_t f0, const mpz_t f1, const mpz_t bound)
+{
+    mpz_sub(out->num, bound, f0);
+    mpz_sub(out->den, f1, f0);
+    if (mpz_sgn(out->den) < 0) {
+        mpz_neg(out->num, out->num);
+        mpz_neg(out->den, out->den);
+    }
+}
+
+void ratio_tighten(struct ratio *end, bool bounded, int side, const struct ratio *at,
+                   mpz_t scratch[2])
+{
+    const int sign = bounded ? ratio_compare(at, end, scratch) : 0;
+    if (bounded && (side == 0 ? sign <= 0 : sign >= 0))
+        return;
+    mpz_set(end->num, at->num);
+    mpz_set(end->den, at->den);
+}
+
+static void clipped_segment_each(struct clipped_segment *span, void (*call)(mpz_ptr))
 {
     for (int i = 0; i < 2; i++) {
-        ratio_init(&span->window[i]);
-        ratio_init(&span->open[i]);
-        mpz_init(span->scratch[i]);
+        ratio_each(&span->window[i], call);
+        ratio_each(&span->open[i], call);
+        call(span->scratch[i]);
     }
-    ratio_init(&span->at);
+    ratio_each(&span->at, call);
+}
+
+void clipped_segment_init(struct clipped_segment *span)
+{
+    clipped_segment_each(span, mpz_init);
     for (int i = 0; i < 2; i++) {
         mpz_set_ui(span->window[i].num, (unsigned long) i);
         mpz_set_ui(span->window[i].den, 1);
@@ -42,42 +55,7 @@ void clipped_segment_init(struct clipped_segment *span)
 
 void clipped_segment_clear(struct clipped_segment *span)
 {
-    for (int i = 0; i < 2; i++) {
-        ratio_clear(&span->window[i]);
-        ratio_clear(&span->open[i]);
-        mpz_clear(span->scratch[i]);
-    }
-    ratio_clear(&span->at);
-}
-
-/* span->at := (bound - f0) / (f1 - f0), where the segment crosses the bound. */
-static void cross_bound(struct clipped_segment *span, const mpz_t f0, const mpz_t f1,
-                        const mpz_t bound)
-{
-    mpz_sub(span->at.num, bound, f0);
-    mpz_sub(span->at.den, f1, f0);
-    if (mpz_sgn(span->at.den) < 0) {
-        mpz_neg(span->at.num, span->at.num);
-        mpz_neg(span->at.den, span->at.den);
-    }
-}
-
-/* Raises (side 0) or lowers (side 1) an end to span->at if that is the tighter one. */
-static void tighten(struct clipped_segment *span, struct ratio *end, int side)
-{
-    int sign = ratio_compare(&span->at, end, span->scratch);
-    if (side == 0 ? sign > 0 : sign < 0)
-        ratio_copy(end, &span->at);
-}
-
-static void tighten_open(struct clipped_segment *span, int side)
-{
-    if (span->bounded[side]) {
-        tighten(span, &span->open[side], side);
-    } else {
-        ratio_copy(&span->open[side], &span->at);
-        span->bounded[side] = true;
-    }
+    clipped_segment_each(span, mpz_clear);
 }
 
 /* Method: along the segment, f = normal . w is affine in s. A segment that lies strictly
@@ -100,32 +78,21 @@ bool clipped_segment_apply(struct clipped_segment *span, const mpz_t f0, const m
             span->interior = false;
         return true;
     }
-    cross_bound(span, f0, f1, slope > 0 ? low : high);
-    if (pins)
-        tighten(span, &span->window[0], 0);
-    else
-        tighten_open(span, 0);
-    cross_bound(span, f0, f1, slope > 0 ? high : low);
-    if (pins)
-        tighten(span, &span->window[1], 1);
-    else
-        tighten_open(span, 1);
-    return ratio_compare(clipped_segment_lower(span), clipped_segment_upper(span), span->scratch) <=
-           0;
+    for (int side = 0; side < 2; side++) {
+        ratio_cross(&span->at, f0, f1, (slope > 0) == (side == 0) ? low : high);
+        ratio_tighten(pins ? &span->window[side] : &span->open[side], pins || span->bounded[side],
+                      side, &span->at, span->scratch);
+        span->bounded[side] = span->bounded[side] || !pins;
+    }
+    return ratio_compare(clipped_segment_end(span, 0), clipped_segment_end(span, 1),
+                         span->scratch) <= 0;
 }
 
-const struct ratio *clipped_segment_lower(struct clipped_segment *span)
+const struct ratio *clipped_segment_end(struct clipped_segment *span, int side)
 {
-    if (span->bounded[0] && ratio_compare(&span->open[0], &span->window[0], span->scratch) > 0)
-        return &span->open[0];
-    return &span->window[0];
-}
-
-const struct ratio *clipped_segment_upper(struct clipped_segment *span)
-{
-    if (span->bounded[1] && ratio_compare(&span->open[1], &span->window[1], span->scratch) < 0)
-        return &span->open[1];
-    return &span->window[1];
+    const struct ratio *open = &span->open[side], *window = &span->window[side];
+    const int sign = span->bounded[side] ? ratio_compare(open, window, span->scratch) : 0;
+    return (side == 0 ? sign > 0 : sign < 0) ? open : window;
 }
 
 /* The open interval (p, q) meets the closed interval [u, v], u <= v, if and only if p < q, p < v

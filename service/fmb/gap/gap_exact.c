@@ -35,7 +35,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LENGTH_BITS = 100, DIRECTION_BITS = 160, UNITS_ERROR = 20, CORNERS = 4, SCRATCH = 6 };
+enum { LENGTH_BITS = 100, DIRECTION_BITS = 160, UNITS_ERROR = 20, CORNERS = 4, SCRATCH = 4 };
 
 /* A vertex of P. */
 struct exact_corner {
@@ -54,8 +54,10 @@ struct solver {
     mpz_t normal[3];              /* a multiple of that point */
     bool zero;                    /* the point is the origin */
     mpz_t edge[3][3], other[3];
-    mpz_t best[3]; /* the normal with the greatest f */
-    mpz_t low, high, t[SCRATCH];
+    mpz_t best[3];                    /* the normal with the greatest f */
+    mpz_t value[EXACT_VECTORS];       /* a normal . each vector of the pair */
+    struct exact_range range[2], all; /* of it over the frames, and over P */
+    mpz_t t[SCRATCH];
 };
 
 static void solver_each(struct solver *solver, void (*call)(mpz_ptr))
@@ -73,9 +75,12 @@ static void solver_each(struct solver *solver, void (*call)(mpz_ptr))
     }
     for (int i = 0; i < SCRATCH; i++)
         call(solver->t[i]);
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        call(solver->value[k]);
+    for (int f = 0; f < 2; f++)
+        exact_range_each(&solver->range[f], call);
+    exact_range_each(&solver->all, call);
     call(solver->total);
-    call(solver->low);
-    call(solver->high);
 }
 
 /* ---- Rounding ---- */
@@ -125,17 +130,7 @@ static void round_pair(struct exact_pair *pair, mpz_t largest)
         pair->unit =
             -1200; /* all lengths are 0: so small a unit makes errors less than any double */
     mpz_set_ui(pair->scale, 1);
-    struct exact_frame *a = &pair->frame[0], *b = &pair->frame[1];
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_sub(pair->offset[axis], b->origin[axis], a->origin[axis]);
-        mpz_sub(pair->drift[axis], b->displacement[axis], a->displacement[axis]);
-        for (int f = 0; f < 2; f++) {
-            struct exact_frame *frame = &pair->frame[f];
-            for (int e = frame->count; e < frame->edges; e++)
-                mpz_sub(frame->edge[e].vector[axis], exact_vector(pair, frame->edge[e].plus)[axis],
-                        exact_vector(pair, frame->edge[e].minus)[axis]);
-        }
-    }
+    exact_pair_complete(pair);
 }
 
 /* ---- P along a direction ---- */
@@ -175,41 +170,13 @@ static void set_support(struct solver *solver, mpz_t n[3], struct exact_corner *
     }
 }
 
-/* [low, high] += the ends of x t, t in [0, 1]. */
-static void widen(mpz_t low, mpz_t high, const mpz_t x)
-{
-    mpz_ptr end = mpz_sgn(x) < 0 ? low : high;
-    mpz_add(end, end, x);
-}
-
-/* solver->low and high := the ends of n . p over P. */
+/* solver->all := the interval of n . p over P. */
 static void set_extent(struct solver *solver, mpz_t n[3])
 {
     struct exact_pair *pair = &solver->pair;
-    mpz_t *at = &solver->t[0], *least = &solver->t[1], *most = &solver->t[2];
-    mpz_t *scratch = &solver->t[3];
-    integer_dot(solver->low, n, pair->offset, *scratch);
-    mpz_set(solver->high, solver->low);
-    integer_dot(*at, n, pair->drift, *scratch);
-    widen(solver->low, solver->high, *at);
-    for (int f = 0; f < 2; f++) {
-        struct exact_frame *frame = &pair->frame[f];
-        mpz_set_ui(*least, 0);
-        mpz_set_ui(*most, 0);
-        for (int i = 0; i < frame->count; i++) {
-            integer_dot(*at, n, frame->component[i], *scratch);
-            if (f == 0)
-                mpz_neg(*at, *at);
-            if (!frame->simplex)
-                widen(*least, *most, *at);
-            else if (mpz_cmp(*at, *least) < 0)
-                mpz_set(*least, *at);
-            else if (mpz_cmp(*at, *most) > 0)
-                mpz_set(*most, *at);
-        }
-        mpz_add(solver->low, solver->low, *least);
-        mpz_add(solver->high, solver->high, *most);
-    }
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        integer_dot(solver->value[k], n, exact_vector(pair, k), solver->t[0]);
+    exact_ranges(pair, solver->value, solver->range, &solver->all);
 }
 
 /* ---- The point of a simplex next to the origin ---- */
@@ -374,9 +341,9 @@ static void add_normal(struct solver *solver, mpz_t n[3], double *greatest)
     if (integer_is_zero(n))
         return;
     set_extent(solver, n);
-    mpz_neg(solver->high, solver->high);
-    const bool above = mpz_cmp(solver->low, solver->high) >= 0;
-    const double f = over_length(solver, above ? solver->low : solver->high, n);
+    mpz_neg(solver->all.high, solver->all.high);
+    const bool above = mpz_cmp(solver->all.low, solver->all.high) >= 0;
+    const double f = over_length(solver, above ? solver->all.low : solver->all.high, n);
     if (f <= *greatest)
         return;
     *greatest = f;
@@ -475,7 +442,7 @@ static double value_of(struct solver *solver, const double direction[FMB_DIM_MAX
     for (int axis = 0; axis < 3; axis++)
         mpz_set_d(solver->normal[axis], ldexp(direction[axis], DIRECTION_BITS));
     set_extent(solver, solver->normal);
-    return ldexp(mpz_get_d(solver->low), -DIRECTION_BITS);
+    return ldexp(mpz_get_d(solver->all.low), -DIRECTION_BITS);
 }
 
 /* Coordinates, rounded, of a point of frame f: that of the simplex next to the origin. Returns a
@@ -543,8 +510,8 @@ static void answer(struct solver *solver, enum fmb_verdict verdict, double durat
     double greatest = 0;
     if (verdict == FMB_SEPARATED) {
         solve(solver);
-        integer_dot(solver->low, solver->normal, solver->corner[0]->at, solver->t[0]);
-        set_upper(solver, solver->zero ? 0 : over_length(solver, solver->low, solver->normal),
+        integer_dot(solver->all.low, solver->normal, solver->corner[0]->at, solver->t[0]);
+        set_upper(solver, solver->zero ? 0 : over_length(solver, solver->all.low, solver->normal),
                   duration, out);
         for (int axis = 0; axis < 3; axis++)
             mpz_set(solver->best[axis], solver->normal[axis]);
@@ -564,7 +531,7 @@ void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct f
 {
     struct solver solver = {.dim = pair->a.frame->dim};
     memset(out, 0, sizeof *out);
-    exact_pair_init(&solver.pair, pair);
+    exact_pair_init(&solver.pair, pair, true);
     solver_each(&solver, mpz_init);
     round_pair(&solver.pair, solver.t[0]);
     answer(&solver, verdict, pair->duration, out);
