@@ -166,11 +166,6 @@ static int run_cut(const struct log_cut_arguments *options)
     return output_flush() ? code : ARGS_USAGE;
 }
 
-static bool check_options(const struct args *args, const struct log_cut_arguments *options)
-{
-    return options->cut.output || args_error(args, "expected -o FILE");
-}
-
 int cmd_log_cut(int argc, char **argv)
 {
     struct log_cut_arguments options = {.cut = {.choice = log_choice_all()}};
@@ -188,7 +183,7 @@ int cmd_log_cut(int argc, char **argv)
     struct args args = {"log cut",           usage, own, .operand = "LOG", .operands_min = 1,
                         .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
-    if (code == ARGS_RUN && !check_options(&args, &options))
+    if (code == ARGS_RUN && !options.cut.output && !args_error(&args, "expected -o FILE"))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {
         options.cut.log = args.operands;

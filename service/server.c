@@ -138,7 +138,7 @@ static void publish_scene(struct server *server, int32_t first_pair,
     histogram_add(&server->compute_ns, result->compute_ns);
 }
 
-/* Notes a query that cannot be read. error: why not; NULL: it can be. Returns whether it cannot. */
+/* Notes a query that cannot be read. error: why it cannot; NULL: it can. */
 static bool is_malformed(struct server *server, enum server_kind kind, size_t size,
                          const char *error)
 {
@@ -209,26 +209,17 @@ static void process_definition(struct server *server, size_t size)
 
 /* ---- Scenes, and pairs of bodies of several frames ---- */
 
-static void finish_pair(struct server *server, struct job *job)
-{
-    struct pair_result *result = pair_job_end(job->pair, server->answerer);
-    result->compute_ns = job->used_ns;
-    publish_pair(server, result);
-}
-
-static void finish_scene(struct server *server, struct job *job)
-{
-    struct scene_result *result = scene_job_result(job->scene);
-    result->compute_ns = job->used_ns;
-    publish_scene(server, scene_job_query(job->scene)->first_pair, result);
-}
-
 static void finish_job(struct server *server, struct job *job)
 {
-    if (job->is_pair)
-        finish_pair(server, job);
-    else
-        finish_scene(server, job);
+    if (job->is_pair) {
+        struct pair_result *result = pair_job_end(job->pair, server->answerer);
+        result->compute_ns = job->used_ns;
+        publish_pair(server, result);
+    } else {
+        struct scene_result *result = scene_job_result(job->scene);
+        result->compute_ns = job->used_ns;
+        publish_scene(server, scene_job_query(job->scene)->first_pair, result);
+    }
     jobs_give_back(&server->jobs, job);
 }
 

@@ -26,11 +26,6 @@ struct query_search {
     enum log_kind kind;
 };
 
-static const char *last_log(const struct query_search *search)
-{
-    return search->options->log[search->options->log_count - 1];
-}
-
 static void fail(struct query_search *search, const char *what, int error)
 {
     if (search->outcome == LOG_QUERY_FOUND)
@@ -126,7 +121,7 @@ static void begin_line(const struct query_search *search)
 {
     const struct log_query_options *options = search->options;
     fputs("fmb: ", stderr);
-    complain_text(last_log(search));
+    complain_text(options->log[options->log_count - 1]);
     fputs(": ", stderr);
     if (options->by == LOG_QUERY_NUMBER)
         fprintf(stderr, "event %" PRId64, options->number);

@@ -221,17 +221,12 @@ static void add(struct list *list, size_t a, size_t b)
     scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
 }
 
-static void list_across(struct list *list, size_t split)
+/* Of all pairs, or across. */
+static void list_pairs(struct list *list, bool across, size_t split)
 {
-    for (size_t a = 0; a < split; a++)
-        for (size_t b = split; b < list->scene->body_count; b++)
-            add(list, a, b);
-}
-
-static void list_all(struct list *list)
-{
-    for (size_t a = 0; a < list->scene->body_count; a++)
-        for (size_t b = a + 1; b < list->scene->body_count; b++)
+    const size_t count = list->scene->body_count;
+    for (size_t a = 0; a < (across ? split : count); a++)
+        for (size_t b = across ? split : a + 1; b < count; b++)
             add(list, a, b);
 }
 
@@ -249,13 +244,11 @@ static void set_pairs(const struct scene_query *query, struct scene *scene)
     struct list list = {.scene = scene, .skip = query->first_pair};
     scene->all_pairs = query->which == QUERY_PAIRS_ALL && query->first_pair == 0;
     set_ignored(query, scene);
-    if (query->which == QUERY_PAIRS_ACROSS)
-        list_across(&list, (size_t) query->split);
-    else if (query->which == QUERY_PAIRS_LISTED)
+    if (query->which == QUERY_PAIRS_LISTED)
         for (int32_t k = 0; k < query->index_count / 2; k++)
             add(&list, query->pair[k][0], query->pair[k][1]);
     else if (!scene->all_pairs)
-        list_all(&list);
+        list_pairs(&list, query->which == QUERY_PAIRS_ACROSS, (size_t) query->split);
     scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
 }
 

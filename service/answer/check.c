@@ -102,12 +102,6 @@ static bool check_sizes(struct check_context *context, const struct placement *p
     return true;
 }
 
-static bool check_geometry(struct check_context *context, const struct placement *placement)
-{
-    return check_shapes(context, placement) && check_numbers(context, placement) &&
-           check_sizes(context, placement);
-}
-
 /* ---- Placements ---- */
 
 /* A placement has either a handle or frames. */
@@ -157,7 +151,9 @@ bool check_placement(struct check_context *context, const struct placement *plac
         return false;
     if (dim != 2 && dim != 3)
         return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "neither 2 nor 3");
-    return (placement_by_handle(placement) || check_geometry(context, placement)) &&
+    return (placement_by_handle(placement) ||
+            (check_shapes(context, placement) && check_numbers(context, placement) &&
+             check_sizes(context, placement))) &&
            check_finite(context, "position", placement->position, dim) &&
            check_orientation(context, placement) && check_velocity(context, placement);
 }

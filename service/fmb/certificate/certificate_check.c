@@ -36,7 +36,7 @@ enum {
     UNKNOWNS = 3,
     COLUMNS = UNKNOWNS + 1,
     EDGES_MAX = 6,
-    ROWS_MAX = 20 /* eliminate_unknowns() */
+    ROWS_MAX = 20 /* has_point() */
 };
 
 struct side {
@@ -574,15 +574,6 @@ static void eliminate(struct rows *rows, int k)
     rows->count = count;
 }
 
-/* At most 6 rows to begin with. Eliminating one unknown makes at most 3 x 3 = 9 of them, a second
- * one at most 4 x 5 = 20. A third one is left only if all components are 0; then the rows are
- * still the bounds, and get fewer each time. */
-static void eliminate_unknowns(struct rows *rows)
-{
-    for (int k = 0; k < UNKNOWNS; k++)
-        eliminate(rows, k);
-}
-
 static bool all_hold(const struct rows *rows)
 {
     for (int r = 0; r < rows->count; r++) {
@@ -593,7 +584,11 @@ static bool all_hold(const struct rows *rows)
     return true;
 }
 
-/* Whether the frame has the point at the time; if strict, its relative interior. */
+/* Whether the frame has the point at the time; if strict, its relative interior.
+ *
+ * There are at most 6 rows to begin with. Eliminating one unknown makes at most 3 x 3 = 9 of
+ * them, a second one at most 4 x 5 = 20. A third one is left only if all components are 0; then
+ * the rows are still the bounds, and get fewer each time. */
 static bool has_point(struct proof *proof, struct side *side, bool strict)
 {
     struct rows rows = {.strict = strict};
@@ -603,10 +598,9 @@ static bool has_point(struct proof *proof, struct side *side, bool strict)
     bool has = true;
     for (int axis = 0; has && axis < AXES; axis++)
         has = use_equation(&rows, axis);
-    if (has) {
-        eliminate_unknowns(&rows);
-        has = all_hold(&rows);
-    }
+    for (int k = 0; has && k < UNKNOWNS; k++)
+        eliminate(&rows, k);
+    has = has && all_hold(&rows);
     rows_each(&rows, mpq_clear);
     return has;
 }

@@ -89,11 +89,6 @@ static size_t whole_lines(size_t bytes)
     return (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
 }
 
-static size_t chunks_max(const struct fmb_scene_limits *limits)
-{
-    return limits->frames / SCENE_CHUNK + limits->placements;
-}
-
 static void *take(char *base, size_t *at, size_t count, size_t size)
 {
     void *out = base ? base + *at : NULL;
@@ -108,10 +103,11 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
     struct scene_frames *frames = &state->frames;
     struct scene_pairs *pairs = &state->pairs;
     const size_t placements = limits->placements;
+    const size_t chunks = limits->frames / SCENE_CHUNK + placements;
     size_t at = whole_lines(sizeof *state);
     frames->slot = take(base, &at, limits->slots, sizeof *frames->slot);
     frames->frame_box = take(base, &at, limits->slots, sizeof *frames->frame_box);
-    frames->chunk = take(base, &at, chunks_max(limits), sizeof *frames->chunk);
+    frames->chunk = take(base, &at, chunks, sizeof *frames->chunk);
     frames->first_chunk = take(base, &at, placements, sizeof *frames->first_chunk);
     frames->body_box = take(base, &at, placements, sizeof *frames->body_box);
     pairs->space = take(base, &at, placements, sizeof *pairs->space);

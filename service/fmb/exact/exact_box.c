@@ -245,12 +245,6 @@ static void visit_edges(struct point_search *search, int f, int end)
                 visit_segment(search, f, v, end, w, end);
 }
 
-static void visit_paths(struct point_search *search, int f)
-{
-    for (int v = 0; v < search->vertices[f]; v++)
-        visit_segment(search, f, v, 0, v, 1);
-}
-
 /* ---- Kind 3 ----
  *
  * The crossing of an edge p + s e of A with an edge q + u f + offset + tau drift of B, with
@@ -284,11 +278,6 @@ static void crossing_each(struct crossing *crossing, void (*call)(mpz_ptr))
     call(crossing->tau);
 }
 
-static bool in_unit(const mpz_t num, const mpz_t den)
-{
-    return mpz_sgn(num) >= 0 && mpz_cmp(num, den) <= 0;
-}
-
 /* Sets what depends on the directions alone; false if they never cross in one point. */
 static bool crossing_set(struct crossing *crossing, struct exact_pair *pair,
                          const struct exact_edge *e, const struct exact_edge *f)
@@ -319,7 +308,7 @@ static bool crossing_number(const struct crossing *crossing, const struct exact_
     mpz_set(out, value[EXACT_OFFSET]);
     add_vertex(pair, 1, 1, w, value, out);
     add_vertex(pair, -1, 0, v, value, out);
-    return in_unit(out, crossing->det);
+    return mpz_sgn(out) >= 0 && mpz_cmp(out, crossing->det) <= 0;
 }
 
 /* Where the direction number e starts in vertex v, the vertex where that edge ends; else -1. */
@@ -376,8 +365,8 @@ void points_walk(struct exact_pair *pair, point_visit visit, void *context)
     for (int f = 0; f < 2; f++) {
         for (int end = 0; end < search.ends; end++)
             visit_edges(&search, f, end);
-        if (pair->moving)
-            visit_paths(&search, f);
+        for (int v = 0; v < search.vertices[f] && pair->moving; v++)
+            visit_segment(&search, f, v, 0, v, 1);
     }
     if (pair->moving)
         visit_crossings(&search);

@@ -137,11 +137,6 @@ static void set_normal_of_plane_drift(struct limbs_pair *pair, struct normal *ou
     }
 }
 
-static bool is_zero_vector(int n, const struct limbs_vector *v)
-{
-    return is_zero(n, v->at[0]) && is_zero(n, v->at[1]) && is_zero(n, v->at[2]);
-}
-
 /* Computes the normal of a slab. Returns false if it is zero. */
 static bool set_normal(struct limbs_pair *pair, struct slab_normal edges, struct normal *out)
 {
@@ -158,7 +153,9 @@ static bool set_normal(struct limbs_pair *pair, struct slab_normal edges, struct
         set_normal_of_edges(pair, edges.u, edges.v, out);
     if (pair->common)
         out->factor[0] = out->factor[1] = pair->common;
-    return !is_zero_vector(pair->limbs, out->at[0]);
+    const limbs_number *at = out->at[0]->at;
+    return !is_zero(pair->limbs, at[0]) || !is_zero(pair->limbs, at[1]) ||
+           !is_zero(pair->limbs, at[2]);
 }
 
 /* ---- Slabs ---- */

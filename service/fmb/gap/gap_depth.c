@@ -84,24 +84,18 @@ static void set_edges(const struct gap_pair *pair, int f, struct gap_edge out[GA
 
 /* ---- Normals ---- */
 
-/* The ends of n . p over a simplex of vectors first to first + 2. */
-static void add_simplex(int first, const lanes at[GAP_LANES], double ends[2])
+/* Adds the ends of n . p over a simplex of vectors first to first + 2, and clears these. */
+static void take_simplex(int first, lanes at[GAP_LANES], double ends[2])
 {
     double low = 0, high = 0;
     for (int k = first; k < first + 3; k++) {
         const double x = at[k / 2][k % 2];
         low = x < low ? x : low;
         high = x > high ? x : high;
+        at[k / 2][k % 2] = 0;
     }
     ends[0] += low;
     ends[1] += high;
-}
-
-/* Clears vectors first to first + 2. */
-static void clear(int first, lanes at[GAP_LANES])
-{
-    for (int k = first; k < first + 3; k++)
-        at[k / 2][k % 2] = 0;
 }
 
 /* The ends of n . p over P less the offset. */
@@ -111,10 +105,8 @@ static void set_ends(const struct gap_pair *pair, const double n[3], double ends
     ends[0] = ends[1] = 0;
     gap_dots(pair, n, at);
     for (int f = 0; f < 2; f++)
-        if (pair->simplex[f]) {
-            add_simplex(f * GAP_OF_B, at, ends);
-            clear(f * GAP_OF_B, at);
-        }
+        if (pair->simplex[f])
+            take_simplex(f * GAP_OF_B, at, ends);
     lanes low = lanes_min(at[0], lanes_of(0)), high = lanes_max(at[0], lanes_of(0));
     UNROLL(3)
     for (int i = 1; i < GAP_LANES; i++) {

@@ -46,18 +46,13 @@ static size_t nodes_max(size_t frames)
     return 2 * (frames / TREE_LEAF + frames / (FEW / 4)) + 3;
 }
 
-static size_t bytes_without_nodes(size_t count)
-{
-    return CACHE_LINE + count * (sizeof(struct fmb_tree_box) + sizeof(unsigned));
-}
-
 size_t fmb_tree_bytes(size_t count)
 {
     /* A frame needs less than half a node. */
-    const size_t each = sizeof(struct fmb_tree_box) + sizeof(unsigned) + CACHE_LINE / 2;
-    if (count >= UINT_MAX || count > (SIZE_MAX - 4 * CACHE_LINE) / each)
+    const size_t each = sizeof(struct fmb_tree_box) + sizeof(unsigned);
+    if (count >= UINT_MAX || count > (SIZE_MAX - 4 * CACHE_LINE) / (each + CACHE_LINE / 2))
         return SIZE_MAX;
-    return bytes_without_nodes(count) + nodes_max(count) * sizeof(struct fmb_tree_node);
+    return CACHE_LINE + count * each + nodes_max(count) * sizeof(struct fmb_tree_node);
 }
 
 /* ---- Centres ---- */
@@ -519,13 +514,6 @@ void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2]
     }
 }
 
-/* Prefetches both cache lines of a frame. */
-static void prefetch(const struct fmb_prepared *frame)
-{
-    __builtin_prefetch(frame);
-    __builtin_prefetch((const char *) frame + CACHE_LINE);
-}
-
 enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared *frames,
                                double duration)
 {
@@ -535,8 +523,10 @@ enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared 
     tree->dim = dimension_of(frames);
     tree->duration = duration;
     for (size_t k = 0; k < tree->frame_count; k++) {
-        const size_t ahead = k + 8 < tree->frame_count ? k + 8 : k;
-        prefetch(&frames[tree->order[ahead]]);
+        const struct fmb_prepared *ahead =
+            &frames[tree->order[k + 8 < tree->frame_count ? k + 8 : k]];
+        __builtin_prefetch(ahead); /* both cache lines */
+        __builtin_prefetch((const char *) ahead + CACHE_LINE);
         tree->boxes[k].box = aabb_of(&frames[tree->order[k]], duration);
     }
     set_boxes(tree);
