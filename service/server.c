@@ -138,7 +138,7 @@ static void publish_scene(struct server *server, int32_t first_pair,
     histogram_add(&server->compute_ns, result->compute_ns);
 }
 
-/* Notes a query that cannot be read. error: why not; NULL: it can be. Returns whether it cannot. */
+/* Notes a query that cannot be read. error: why it cannot; NULL: it can. */
 static bool is_malformed(struct server *server, enum server_kind kind, size_t size,
                          const char *error)
 {

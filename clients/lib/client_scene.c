@@ -180,7 +180,7 @@ size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement)
     return bytes;
 }
 
-/* Encodes the frames as the geometry of a body (placement_t.lcm). Returns the number of bytes. */
+/* Encodes the frames as the geometry of a body (placement_t.lcm). Returns its bytes. */
 static size_t write_frames(const struct fmb_client_placement *of, unsigned char *out)
 {
     const size_t size = client_scene_geometry_bytes(of);

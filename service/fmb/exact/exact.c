@@ -371,7 +371,7 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
         add_triples(pair, 1, u->minus, v->minus, value);
 }
 
-/* The box needs only slabs of single frames, and mixed triples if the pair moves, for crossings. */
+/* The box needs only slabs of single frames; if the pair moves, mixed triples for crossings. */
 void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference)
 {
     pair_each(out, mpz_init);
@@ -411,7 +411,8 @@ void exact_pair_clear(struct exact_pair *pair)
  *
  * A product of limbs takes half a nanosecond. test_engine_work.c counts the products. */
 
-/* Returns tau, in windows, as seconds: an end of a contact (0: first, 1: last), rounded outward. */
+/* Returns tau, in windows, as seconds: an end of a contact (0: first, 1: last), rounded
+ * outward. */
 static double seconds(const struct ratio *tau, double duration, int end,
                       mpz_t scratch[EXACT_SCRATCH])
 {

@@ -65,8 +65,8 @@ struct exact_pair {
     mpz_t scratch[EXACT_SCRATCH];
 };
 
-/* Converts a checked pair. difference: the slabs of the difference are needed. exact_pair_clear()
- * frees what exact_pair_init() allocates. */
+/* Converts a checked pair. difference: the slabs of the difference are needed.
+ * exact_pair_clear() frees what exact_pair_init() allocates. */
 void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference);
 void exact_pair_clear(struct exact_pair *pair);
 
@@ -153,11 +153,11 @@ void ratio_each(struct ratio *r, void (*call)(mpz_ptr));
 /* Sign of x - y. */
 int ratio_compare(const struct ratio *x, const struct ratio *y, mpz_t scratch[2]);
 
-/* out := (bound - f0) / (f1 - f0), where a segment from f0 to f1, which differ, crosses the bound.
- */
+/* out := (bound - f0) / (f1 - f0), where a segment from f0 to f1, which differ, crosses the
+ * bound. */
 void ratio_cross(struct ratio *out, const mpz_t f0, const mpz_t f1, const mpz_t bound);
 
-/* Raises (side 0) or lowers (side 1) an end to at, if that is tighter, or if there was no bound. */
+/* Raises (side 0) or lowers (side 1) an end to at, if that is tighter or there was no bound. */
 void ratio_tighten(struct ratio *end, bool bounded, int side, const struct ratio *at,
                    mpz_t scratch[2]);
 
@@ -182,15 +182,15 @@ void clipped_segment_clear(struct clipped_segment *span);
 bool clipped_segment_apply(struct clipped_segment *span, const mpz_t f0, const mpz_t f1,
                            const mpz_t low, const mpz_t high, bool pins);
 
-/* Returns an end of the closed part, within all slabs and their bounds: the lower one (side 0) or
- * the upper one (side 1), which is not below it. The pointer is into the segment. */
+/* Returns an end of the closed part, within all slabs and their bounds: the lower one (side 0)
+ * or the upper one (side 1), which is not below it. The pointer is into the segment. */
 const struct ratio *clipped_segment_end(struct clipped_segment *span, int side);
 
 /* Returns whether some s of the window lies strictly within all slabs that do not pin. */
 bool clipped_segment_has_interior(struct clipped_segment *span);
 
-/* Coordinates of a point in space and time: [0] tau, in windows; [1] to [3] the place, in units of
- * 2^unit of the pair. */
+/* Coordinates of a point in space and time: [0] tau, in windows; [1] to [3] the place, in units
+ * of 2^unit of the pair. */
 enum { EXACT_COORDINATES = 4 };
 
 /* A point in the world and a time of the window, as fractions. */
