@@ -133,14 +133,29 @@
  * 8. Such a vertex may be left out if c surely grows along a line through it, the line of the
  *    other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
  *    -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are
- *    not certain. That of a wall with the determinant d changes c by at most 2 |d l|, and |d| is
- *    at most the value at hand and its error. On the line of the vertex itself these are added
- *    up (open_of_line()). Anywhere else |d| is at most 17 times its error, 17 (18 u + 4 t) of the
- *    product of its lengths; and lengths have a sum of at most 2 T, so that all bends change c by
- *    at most 68 (18 u + 4 t) T S |l|, bend_error. Where gap(N) is below minus twice that, what is
- *    left grows at both ends, and is least at a vertex that is certain, or at 0. Of two cuboids
- *    every d is the determinant of some vertex, since any two edges of a frame have a normal: the
- *    largest that a first pass meets takes the place of 17 (18 u + 4 t) in the second.
+ *    not certain: let the terms of all of these walls go on as they are at one point of the line.
+ *    The term of a wall with the determinant d changes by at most 2 |d l|, with l counted from
+ *    that point, and |d| is at most the value at hand and its error. If what is left grows at both
+ *    ends, it is least at a vertex that is certain, and the true end is no less than c there, less
+ *    these changes.
+ *
+ *    On the line of a normal the point is 0 or e_k, and the changes are added up
+ *    (open_of_line()). For vertices of other lines it is the point of the line that is nearest to
+ *    0: a vertex y is at most |y| / |N| from it, and |y| is at most |l| S. |d| is at most 17 times
+ *    its error, 12 u + 3.1 t times the scale of N and the length of the edge. The edges of a frame
+ *    that are across from N lie in one plane, and have lengths of at most twice the sum of its
+ *    components; all lengths have a sum of at most 2 T. So all bends change c by at most 68 (18 u +
+ *    4 t) T S |l|, bend_error, times the slant: the scale of N in lengths of N, the largest of
+ *    all lines that vertices are left out for. In 2D, where it is at most 1.07, it is left out.
+ *    Of two cuboids every d is the determinant of some vertex, since any two edges of a frame have
+ *    a normal: the largest that the first pass meets takes the place of 17 (18 u + 4 t) in the
+ *    second.
+ *    Where gap(N) is below minus twice bend_error, times the scale of N, what is left does grow.
+ *
+ *    The true l may be 1.07 times that at hand. The tenth of the limit that BOX_LIMIT leaves
+ *    covers this. It also covers a true vertex of a half line (THE METHOD, 4) with a b[k] that is
+ *    so small that it counts for the other end at hand: where c is least at it, c is at most 2 |d
+ *    l| = 2 |b[k]| less than at l = 0, and |b[k]| is at most 1.1 t |b|.
  * 9. A determinant that is exactly 0, each of its monomials having a factor 0, is no vertex at
  *    all. One vertex that is certain makes the normals span the space.
  * 10. If coordinate k is 0 for all edges of A whose walls a vertex is on, and for travel_A if it
@@ -236,8 +251,8 @@ struct box_bounds {
 
 /* What the first pass leaves out. */
 struct box_left_out {
-    lanes_mask open; /* a vertex whose line has vertices of other lines */
-    lanes bend;      /* the largest |d| of vertices that are not certain, for scale 1 */
+    lanes_mask open; /* as in struct box_search */
+    lanes bend, slant;
 };
 
 struct box_search {
@@ -262,9 +277,10 @@ struct box_search {
     bool in_contact;
     struct box_bounds bounds[2]; /* about the centre of each frame */
     lanes_mask spans, good;
-    lanes_mask open;             /* a vertex is left out whose line has vertices of other lines */
-    lanes_mask left_out;         /* where errors are to allow for that */
-    bool careful;                /* the second pass */
+    lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
+    lanes slant;     /* of the lines of such vertices, at least 1 */
+    lanes left_out;  /* where errors are to allow for that: bend_error times slant, else 0 */
+    bool careful;    /* the second pass */
     lanes_mask nonzero[2][6][3]; /* there: coordinates of edges that may not be 0 */
 };
 
@@ -881,8 +897,7 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
     const lanes error = value_error(traits, normal->weight, normal->magnitude, line.slope, search) +
                         normal->scale * pair->error;
     line.frame_error = normal->scale * search->frame_error;
-    line.width =
-        (error + error) + lanes_select(search->left_out, normal->scale * search->bend_error, bends);
+    line.width = (error + error) + lanes_max(normal->scale * search->left_out, bends);
     line.relative = (2.4 * search->rounding) * normal->scale * frame->own_sum_max;
     line.middle = normal->middle;
     line.own = error + reach_above(traits, which, own);
@@ -1044,6 +1059,19 @@ INLINE struct slab_extent extent_of_crossing(const struct kernel_traits traits, 
     return extent_sum(traits, of_a, extent_across(traits, 1, j, at));
 }
 
+/* The scale of u x v in lengths of u x v, or a little more; infinite where the offset is not surely
+ * inside its slab. Where it is, the length is far above its error, by is_inside(). No sum of three
+ * magnitudes is more than 1.74 times the length. */
+INLINE lanes slant_of(lanes_mask inside, const lanes u[3], const lanes v[3], lanes scale)
+{
+    lanes n[3];
+    cross(u, v, n);
+    magnitudes(n, n);
+    const lanes length =
+        lanes_max(lanes_max(n[0], n[1]), lanes_max(n[2], 0.57 * ((n[0] + n[1]) + n[2])));
+    return lanes_select(inside, scale / length, lanes_of(INFINITY));
+}
+
 /* The vertex on the walls of edge i of A, edge j of B and the drift. */
 INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_traits traits, int i,
                          int j, const struct face_products side[2],
@@ -1070,14 +1098,21 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
         cross_nonzero(nonzero_a, nonzero_b, nonzero);
         const lanes_mask open =
             vertex.uncertain & dot_nonzero(traits, nonzero, search->drift) & is_not(search->exact);
-        search->good &= is_not(open) | products->inside[0][i] | products->inside[1][j] |
-                        is_inside(traits, d, products->edges.middle[i][j],
-                                  products->edges.swing[i][j], scale, pair, search);
+        const lanes_mask inside = is_inside(traits, d, products->edges.middle[i][j],
+                                            products->edges.swing[i][j], scale, pair, search);
+        const lanes *drift = pair->half_drift, drift_size = pair->half_drift_size;
+        lanes slant = slant_of(inside, a->edge[i], b->edge[j], scale);
+        slant = lanes_min(
+            slant_of(products->inside[0][i], drift, a->edge[i], length_a * drift_size), slant);
+        slant = lanes_min(
+            slant_of(products->inside[1][j], drift, b->edge[j], length_b * drift_size), slant);
+        search->good &= is_not(open) | (slant < INFINITY);
+        search->slant = lanes_max(lanes_select(open, slant, lanes_of(1)), search->slant);
         search->open |= open;
     }
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_drift_size;
-    const lanes bends = lanes_select(search->left_out, search->bend_error, lanes_of(0));
+    const lanes bends = search->left_out;
     const lanes sum = breadth_of(traits, d) + offset_reach(traits, products->edges.middle[i][j],
                                                            products->edges.swing[i][j]);
     const lanes of_m = products->error[i] + drift_scale * pair->error;
@@ -1331,7 +1366,9 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     tolerance = lanes_select((search->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
     search->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
     search->tolerance = tolerance - search->shared;
-    search->spans = search->open = search->left_out = (lanes_mask){0};
+    search->slant = lanes_of(1);
+    search->left_out = lanes_of(0);
+    search->spans = search->open = (lanes_mask){0};
     search->careful = false;
     search->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
@@ -1358,8 +1395,10 @@ INLINE void begin_second_pass(const struct pair_lanes *pair, const struct kernel
                               const struct box_left_out *left_out, struct box_search *search)
 {
     search->careful = true;
-    search->left_out = left_out->open;
     search->bend_error = (2 * search->bend_count) * (left_out->bend * pair->reach);
+    search->left_out = lanes_select(left_out->slant < INFINITY,
+                                    search->bend_error * left_out->slant, lanes_of(INFINITY));
+    search->left_out = lanes_select(left_out->open, search->left_out, lanes_of(0));
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         for (int index = 0; index < edge_count(traits, which); index++) {
@@ -1462,7 +1501,7 @@ INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_
     const lanes_mask good = are_near(traits, &search);
     if (second)
         return good;
-    *left_out = (struct box_left_out){search.open, search.bend};
+    *left_out = (struct box_left_out){search.open, search.bend, search.slant};
     return good & is_not(search.open);
 }
 
