@@ -143,7 +143,8 @@
  *    that are across from N lie in one plane, and have lengths of at most twice the sum of its
  *    components; all lengths have a sum of at most 2 T. So all bends change c by at most 68 (18 u +
  *    4 t) T S |l|, bend_error, times the slant: the scale of N in lengths of N, the largest of
- *    all lines that vertices are left out for. In 2D, where it is at most 1.07, it is left out.
+ *    all lines that vertices are left out for. These are, in 2D, the lines of normals of B, whose
+ *    vertices on walls of A are listed on normals of A; in 3D, lines through crossings.
  *    Where gap(N) is below minus twice bend_error, times the scale of N, what is left does grow.
  *
  *    The true l may be 1.07 times that at hand. The tenth of the limit that BOX_LIMIT leaves
@@ -602,6 +603,20 @@ INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3
     return lanes_select(search->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
 }
 
+/* The scale of a vector N in lengths of N, or more: no sum of three magnitudes exceeds 1.75 times
+ * the length, no sum of two 1.43 times. Only where the offset is inside the slab of N: there the
+ * length is far above its error, by is_inside(). */
+INLINE lanes slant_of(const struct kernel_traits traits, const lanes vector[3], lanes scale)
+{
+    lanes longest = lanes_of(0), sum = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        longest = lanes_max(lanes_abs(vector[axis]), longest);
+        sum += lanes_abs(vector[axis]);
+    }
+    return scale / lanes_max((traits.dim == 2 ? 0.7 : 0.57) * sum, longest);
+}
+
 /* A line and what is the same for all of its vertices. */
 struct box_line {
     const struct box_normal *normal;
@@ -815,6 +830,11 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
         extent_difference(traits, which ? of_other : own, which ? own : of_other);
     if (traits.dim == 2)
         search->open |= open;
+    if (traits.dim == 2 && which && lanes_mask_bits(open))
+        search->slant =
+            lanes_max(lanes_select(open, slant_of(traits, search->frame[1].edge[k], normal->scale),
+                                   lanes_of(1)),
+                      search->slant);
     if (lanes_mask_bits(open))
         search->good &=
             is_not(open) | is_inside(traits, d, which ? -normal->middle : normal->middle,
@@ -986,17 +1006,13 @@ INLINE struct slab_extent extent_of_crossing(const struct kernel_traits traits, 
     return extent_sum(traits, of_a, extent_across(traits, 1, j, at));
 }
 
-/* The scale of u x v in lengths of u x v, or a little more; infinite where the offset is not surely
- * inside its slab. Where it is, the length is far above its error, by is_inside(). No sum of three
- * magnitudes is more than 1.74 times the length. */
-INLINE lanes slant_of(lanes_mask inside, const lanes u[3], const lanes v[3], lanes scale)
+/* The slant of u x v; infinite where the offset is not surely inside its slab. */
+INLINE lanes slant_across(const struct kernel_traits traits, lanes_mask inside, const lanes u[3],
+                          const lanes v[3], lanes scale)
 {
     lanes n[3];
     cross(u, v, n);
-    magnitudes(n, n);
-    const lanes length =
-        lanes_max(lanes_max(n[0], n[1]), lanes_max(n[2], 0.57 * ((n[0] + n[1]) + n[2])));
-    return lanes_select(inside, scale / length, lanes_of(INFINITY));
+    return lanes_select(inside, slant_of(traits, n, scale), lanes_of(INFINITY));
 }
 
 /* The vertex on the walls of edge i of A, edge j of B and the drift. */
@@ -1028,11 +1044,13 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
         const lanes_mask inside = is_inside(traits, d, products->edges.middle[i][j],
                                             products->edges.swing[i][j], scale, pair, search);
         const lanes *drift = pair->half_drift, drift_size = pair->half_drift_size;
-        lanes slant = slant_of(inside, a->edge[i], b->edge[j], scale);
+        lanes slant = slant_across(traits, inside, a->edge[i], b->edge[j], scale);
         slant = lanes_min(
-            slant_of(products->inside[0][i], drift, a->edge[i], length_a * drift_size), slant);
+            slant_across(traits, products->inside[0][i], drift, a->edge[i], length_a * drift_size),
+            slant);
         slant = lanes_min(
-            slant_of(products->inside[1][j], drift, b->edge[j], length_b * drift_size), slant);
+            slant_across(traits, products->inside[1][j], drift, b->edge[j], length_b * drift_size),
+            slant);
         search->good &= is_not(open) | (slant < INFINITY);
         search->slant = lanes_max(lanes_select(open, slant, lanes_of(1)), search->slant);
         search->open |= open;
