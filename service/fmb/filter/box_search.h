@@ -146,11 +146,12 @@
  *    that are across from N lie in one plane, and have lengths of at most twice the sum of its
  *    components; all lengths have a sum of at most 2 T. So all bends change c by at most 68 (18 u +
  *    4 t) T S |l|, bend_error, times the slant: the scale of N in lengths of N, the largest of
- *    all lines that vertices are left out for. In 2D, where it is at most 1.07, it is left out.
- *    Of two cuboids every d is the determinant of some vertex, since any two edges of a frame have
- *    a normal: the largest that the first pass meets takes the place of 17 (18 u + 4 t) in the
- *    second.
+ *    all lines that vertices are left out for. These are, in 2D, the lines of normals of B, whose
+ *    vertices on walls of A are listed on normals of A; in 3D, lines through crossings.
  *    Where gap(N) is below minus twice bend_error, times the scale of N, what is left does grow.
+ *    Of two cuboids every d is the determinant of some vertex, since any two edges of a frame have
+ *    a normal: among the changes, the largest that the first pass meets takes the place of 17 (18 u
+ *    + 4 t) in the second.
  *
  *    The true l may be 1.07 times that at hand. The tenth of the limit that BOX_LIMIT leaves
  *    covers this. It also covers a true vertex of a half line (THE METHOD, 4) with a b[k] that is
@@ -264,7 +265,7 @@ struct box_search {
     lanes frame_error;    /* 2.2 t times all lengths, and e / 10 */
     lanes bend;           /* the largest |d| of vertices that are not certain, for scale 1 */
     lanes bend_limit;     /* 17 (18 u + 4 t) */
-    lanes bend_error;     /* 4 T times bend_limit or bend, twice that where it counts twice */
+    lanes bend_error;     /* 4 T times bend_limit, twice that where it counts twice */
     lanes bend_count;     /* 2, or 4 there */
     lanes size[3],
         offset_sum[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
@@ -279,7 +280,7 @@ struct box_search {
     lanes_mask spans, good;
     lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
     lanes slant;     /* of the lines of such vertices, at least 1 */
-    lanes left_out;  /* where errors are to allow for that: bend_error times slant, else 0 */
+    lanes left_out;  /* where errors are to allow for that: 4 T times bend times slant, else 0 */
     bool careful;    /* the second pass */
     lanes_mask nonzero[2][6][3]; /* there: coordinates of edges that may not be 0 */
 };
@@ -652,6 +653,20 @@ INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3
     return lanes_select(search->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
 }
 
+/* The scale of a vector N in lengths of N, or more: no sum of three magnitudes exceeds 1.75 times
+ * the length, no sum of two 1.43 times. Only where the offset is inside the slab of N: there the
+ * length is far above its error, by is_inside(). */
+INLINE lanes slant_of(const struct kernel_traits traits, const lanes vector[3], lanes scale)
+{
+    lanes longest = lanes_of(0), sum = lanes_of(0);
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        longest = lanes_max(lanes_abs(vector[axis]), longest);
+        sum += lanes_abs(vector[axis]);
+    }
+    return scale / lanes_max((traits.dim == 2 ? 0.7 : 0.57) * sum, longest);
+}
+
 /* A line and what is the same for all of its vertices. */
 struct box_line {
     const struct box_normal *normal;
@@ -888,6 +903,11 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
         extent_difference(traits, which ? of_other : own, which ? own : of_other);
     if (traits.dim == 2)
         search->open |= open;
+    if (traits.dim == 2 && which && lanes_mask_bits(open))
+        search->slant =
+            lanes_max(lanes_select(open, slant_of(traits, search->frame[1].edge[k], normal->scale),
+                                   lanes_of(1)),
+                      search->slant);
     if (lanes_mask_bits(open))
         search->good &=
             is_not(open) | is_inside(traits, d, which ? -normal->middle : normal->middle,
@@ -1059,17 +1079,13 @@ INLINE struct slab_extent extent_of_crossing(const struct kernel_traits traits, 
     return extent_sum(traits, of_a, extent_across(traits, 1, j, at));
 }
 
-/* The scale of u x v in lengths of u x v, or a little more; infinite where the offset is not surely
- * inside its slab. Where it is, the length is far above its error, by is_inside(). No sum of three
- * magnitudes is more than 1.74 times the length. */
-INLINE lanes slant_of(lanes_mask inside, const lanes u[3], const lanes v[3], lanes scale)
+/* The slant of u x v; infinite where the offset is not surely inside its slab. */
+INLINE lanes slant_across(const struct kernel_traits traits, lanes_mask inside, const lanes u[3],
+                          const lanes v[3], lanes scale)
 {
     lanes n[3];
     cross(u, v, n);
-    magnitudes(n, n);
-    const lanes length =
-        lanes_max(lanes_max(n[0], n[1]), lanes_max(n[2], 0.57 * ((n[0] + n[1]) + n[2])));
-    return lanes_select(inside, scale / length, lanes_of(INFINITY));
+    return lanes_select(inside, slant_of(traits, n, scale), lanes_of(INFINITY));
 }
 
 /* The vertex on the walls of edge i of A, edge j of B and the drift. */
@@ -1101,11 +1117,13 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
         const lanes_mask inside = is_inside(traits, d, products->edges.middle[i][j],
                                             products->edges.swing[i][j], scale, pair, search);
         const lanes *drift = pair->half_drift, drift_size = pair->half_drift_size;
-        lanes slant = slant_of(inside, a->edge[i], b->edge[j], scale);
+        lanes slant = slant_across(traits, inside, a->edge[i], b->edge[j], scale);
         slant = lanes_min(
-            slant_of(products->inside[0][i], drift, a->edge[i], length_a * drift_size), slant);
+            slant_across(traits, products->inside[0][i], drift, a->edge[i], length_a * drift_size),
+            slant);
         slant = lanes_min(
-            slant_of(products->inside[1][j], drift, b->edge[j], length_b * drift_size), slant);
+            slant_across(traits, products->inside[1][j], drift, b->edge[j], length_b * drift_size),
+            slant);
         search->good &= is_not(open) | (slant < INFINITY);
         search->slant = lanes_max(lanes_select(open, slant, lanes_of(1)), search->slant);
         search->open |= open;
@@ -1395,9 +1413,9 @@ INLINE void begin_second_pass(const struct pair_lanes *pair, const struct kernel
                               const struct box_left_out *left_out, struct box_search *search)
 {
     search->careful = true;
-    search->bend_error = (2 * search->bend_count) * (left_out->bend * pair->reach);
-    search->left_out = lanes_select(left_out->slant < INFINITY,
-                                    search->bend_error * left_out->slant, lanes_of(INFINITY));
+    const lanes changes = (2 * search->bend_count) * (left_out->bend * pair->reach);
+    search->left_out =
+        lanes_select(left_out->slant < INFINITY, changes * left_out->slant, lanes_of(INFINITY));
     search->left_out = lanes_select(left_out->open, search->left_out, lanes_of(0));
     UNROLL(2)
     for (int which = 0; which < 2; which++)
