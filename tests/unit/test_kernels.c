@@ -1270,6 +1270,54 @@ static void boxes_of_bodies_that_rest_need_no_integers(void **state)
     }
 }
 
+/* A flat table whose horizontal edges are nearly parallel, and a body whose uppermost corner passes
+ * its top: one goes down, the other up, by less than the wall of the drift is certain. The box is
+ * highest halfway, where neither extent says so. */
+static void a_wall_that_is_not_certain_bends_along_the_vertical(void **state)
+{
+    (void) state;
+    static const double number[2][12] = {{-1, -0.0005, -1, 1, 0, 0, 1, 0x1p-10, 0, 0, 0, 1},
+                                         {1, 1, 1}};
+    static const double orientation[4] = {0.9, 0.3, 0.2, 0.1};
+    for (double climb = 1e-12; climb < 1e-9; climb *= 2) {
+        const double velocity[3] = {1, 0.00025, climb};
+        struct fmb_body body[2];
+        struct fmb_placement placement[2] = {{.body = &body[0]},
+                                             {.body = &body[1], .orientation_count = 4}};
+        struct fmb_answer answer, exact;
+        double top[3] = {0};
+        assert_int_equal(fmb_body_make(3, FMB_CUBOID, number[0], 12, &body[0]), FMB_OK);
+        assert_int_equal(fmb_body_make(3, FMB_BOX, number[1], 3, &body[1]), FMB_OK);
+        for (int corner = 0; corner < 8; corner++) {
+            const double half[3] = {corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
+                                    corner & 4 ? 0.5 : -0.5};
+            double at[3];
+            rotate(orientation, half, at);
+            if (at[2] > top[2])
+                memcpy(top, at, sizeof top);
+        }
+        memcpy(placement[1].orientation, orientation, sizeof orientation);
+        for (int axis = 0; axis < 3; axis++) {
+            placement[0].velocity[axis] = -velocity[axis];
+            placement[1].velocity[axis] = velocity[axis];
+            placement[0].position[axis] = 0.5 * velocity[axis];
+            placement[1].position[axis] = -top[axis] - 0.5 * velocity[axis];
+        }
+        assert_int_equal(fmb_decide(fmb_method_default(), &placement[0], &placement[1], 1,
+                                    FMB_WANT_BOX, &answer),
+                         FMB_OK);
+        assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &placement[0], &placement[1], 1,
+                                    FMB_WANT_BOX, &exact),
+                         FMB_OK);
+        for (int axis = 0; axis < 3; axis++) {
+            assert_true(answer.box[0][axis] <= exact.box[0][axis]);
+            assert_true(answer.box[0][axis] >= exact.box[0][axis] - 1e-12);
+            assert_true(answer.box[1][axis] >= exact.box[1][axis]);
+            assert_true(answer.box[1][axis] <= exact.box[1][axis] + 1e-12);
+        }
+    }
+}
+
 /* ---- What doubles can say nothing of ---- */
 
 /* At whatever place in the lanes, nothing wrong is said, and nothing is known of times and boxes
@@ -1382,6 +1430,7 @@ int main(void)
         cmocka_unit_test(boxes_do_not_depend_on_whether_contacts_are_wanted),
         cmocka_unit_test(the_second_pass_and_boxes_do_not_depend_on_the_order),
         cmocka_unit_test(boxes_of_bodies_that_rest_need_no_integers),
+        cmocka_unit_test(a_wall_that_is_not_certain_bends_along_the_vertical),
         cmocka_unit_test(ends_of_the_range),
         cmocka_unit_test(quick_decisions_need_no_wide_integers),
     };

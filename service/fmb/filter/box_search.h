@@ -130,39 +130,40 @@
  *
  * Vertices that are not certain:
  *
- * 8. Such a vertex may be left out if c surely grows along a line through it, the line of the
- *    other two walls: N = n, a x b, a x H or b x H. The slope of c at both ends of the line is
- *    -gap(N), the gap of the slab of N. Take away the bends of c by walls of this line that are
- *    not certain: let the terms of all of these walls go on as they are at one point of the line.
- *    The term of a wall with the determinant d changes by at most 2 |d l|, with l counted from
- *    that point, and |d| is at most the value at hand and its error. If what is left grows at both
- *    ends, it is least at a vertex that is certain, and the true end is no less than c there, less
- *    these changes.
+ * 8. Such a vertex v may be left out if c surely grows along a line through it, the line of the
+ *    other two walls: N = n, a x b, H x a or H x b. The slope of c at both ends of the line is
+ *    -gap(N), the gap of the slab of N. Take a point of the line as its base, and in place of the
+ *    term of each wall that is not certain there the linear function that it is at the base. The
+ *    result, c', is c at the base, and nowhere more. At the distance y from the base it is less by
+ *    at most 2 |d y| / |N|, with the determinant d of the wall. Where gap(N) is below minus twice
+ *    the sum of the |d|, c' grows at both ends, and is least at a vertex that is certain, or at 0.
+ *    So c(v) is at least the least c' of these.
  *
- *    On the line of a normal the point is 0 or e_k, and the changes are added up
- *    (open_of_line()). For vertices of other lines it is the point of the line that is nearest to
- *    0: a vertex y is at most |y| / |N| from it, and |y| is at most |l| S. |d| is at most 17 times
- *    its error, 12 u + 3.1 t times the scale of N and the length of the edge. The edges of a frame
- *    that are across from N lie in one plane, and have lengths of at most twice the sum of its
- *    components; all lengths have a sum of at most 2 T. So all bends change c by at most 68 (18 u +
- *    4 t) T S |l|, bend_error, times the slant: the scale of N in lengths of N, the largest of
- *    all lines that vertices are left out for. These are, in 2D, the lines of normals of B, whose
- *    vertices on walls of A are listed on normals of A; in 3D, lines through crossings.
- *    Where gap(N) is below minus twice bend_error, times the scale of N, what is left does grow.
+ *    On the line of a normal, in 3D, the base is 0 (or e_k, for one of B): y = l n, and the
+ *    changes 2 |d l| are added up, with d at most the value at hand and its error
+ *    (open_of_line()).
+ *
+ *    On other lines, and in 2D, the base is the point of the line that is nearest to 0. So the
+ *    distance is at most |y|, at most S |l| for what is seen from A, and S |l| + 1 from B, since
+ *    e_k - y is what is seen there. Now |d| is at most 17 times its error, 17 (18 u + 4 t) of the
+ *    product of its lengths, S of N one of them. The lengths of all walls that a line crosses have
+ *    a sum of at most 2 T; of two cuboids T / 2, since their components are half of what T has of
+ *    them. So all bends change c by at most 4 T 17 (18 u + 4 t) (S / |N|) (S |l| + 1): bend_error
+ *    (S |l| + 1). The line with the least S / |N| is the one that is looked at; the largest of
+ *    these counts (stretch). bend_error itself is taken from all ends, the extents among them, and
+ *    bend_error S |l| is part of the widths (bends in struct box_search).
+ *
  *    Of two cuboids every d is the determinant of some vertex, since any two edges of a frame have
- *    a normal: among the changes, the largest that the first pass meets takes the place of 17 (18 u
- *    + 4 t) in the second.
- *
- *    The true l may be 1.07 times that at hand. The tenth of the limit that BOX_LIMIT leaves
- *    covers this. It also covers a true vertex of a half line (THE METHOD, 4) with a b[k] that is
- *    so small that it counts for the other end at hand: where c is least at it, c is at most 2 |d
- *    l| = 2 |b[k]| less than at l = 0, and |b[k]| is at most 1.1 t |b|.
+ *    a normal: the largest that a first pass meets takes the place of 17 (18 u + 4 t) in the
+ *    second.
  * 9. A determinant that is exactly 0, each of its monomials having a factor 0, is no vertex at
  *    all. One vertex that is certain makes the normals span the space.
  * 10. If coordinate k is 0 for all edges of A whose walls a vertex is on, and for travel_A if it
  *    is on that of the drift, then the vertex is y = e_k: it is on these walls, and the only one.
  *    If that holds for B, it is y = 0. The extents have its c, so that it needs no inner end,
- *    whatever the error of its determinant. The second pass looks for such vertices.
+ *    whatever the error of its determinant. The second pass looks for such vertices. One thing
+ *    they do not have: what 8 takes from c on the line of a normal of A that is open, of which e_k
+ *    is a point other than the base; for B, 0. There such a vertex keeps its inner end.
  *
  * Widths, the sums of these errors, are bounded once for all axes. Within the tolerance they are
  * allowed for at the end; few vertices need them one by one. NAN bounds nothing, and stands for
@@ -252,8 +253,9 @@ struct box_bounds {
 
 /* What the first pass leaves out. */
 struct box_left_out {
-    lanes_mask open; /* as in struct box_search */
-    lanes bend, slant;
+    lanes_mask open; /* a vertex whose line has vertices of other lines */
+    lanes bend;      /* the largest |d| of vertices that are not certain, for scale 1 */
+    lanes stretch;   /* no less than S / |N| of the lines that are looked at for these, and 1 */
 };
 
 struct box_search {
@@ -265,8 +267,9 @@ struct box_search {
     lanes frame_error;    /* 2.2 t times all lengths, and e / 10 */
     lanes bend;           /* the largest |d| of vertices that are not certain, for scale 1 */
     lanes bend_limit;     /* 17 (18 u + 4 t) */
-    lanes bend_error;     /* 4 T times bend_limit, twice that where it counts twice */
-    lanes bend_count;     /* 2, or 4 there */
+    lanes stretch;        /* as in struct box_left_out */
+    lanes bend_error;     /* what bends change c by for |y| = 1, and for S |l| = 1 */
+    lanes bend_count;     /* 2, or 4 where they count twice */
     lanes size[3],
         offset_sum[3]; /* magnitudes: of all vectors at hand; of what the offset is made of */
     lanes slack[2][3]; /* of what is seen from the centre of each frame */
@@ -278,10 +281,10 @@ struct box_search {
     bool in_contact;
     struct box_bounds bounds[2]; /* about the centre of each frame */
     lanes_mask spans, good;
-    lanes_mask open; /* a vertex is left out whose line has vertices of other lines */
-    lanes slant;     /* of the lines of such vertices, at least 1 */
-    lanes left_out;  /* where errors are to allow for that: 4 T times bend times slant, else 0 */
-    bool careful;    /* the second pass */
+    lanes_mask open;             /* a vertex is left out whose line has vertices of other lines */
+    lanes_mask left_out;         /* where errors are to allow for that */
+    lanes bends;                 /* bend_error there, else 0 */
+    bool careful;                /* the second pass */
     lanes_mask nonzero[2][6][3]; /* there: coordinates of edges that may not be 0 */
 };
 
@@ -620,6 +623,15 @@ INLINE struct slab_extent extent_across(const struct kernel_traits traits, int w
                : extent_of_two(traits.simplex[which], first, at[across_second(e)]);
 }
 
+/* No less than S / |N|, for the scale S of N; of an edge in 2D. */
+INLINE lanes stretch_of(const struct kernel_traits traits, lanes scale, const lanes normal[3])
+{
+    lanes longest = lanes_max(lanes_abs(normal[0]), lanes_abs(normal[1]));
+    if (traits.dim == 3)
+        longest = lanes_max(lanes_abs(normal[2]), longest);
+    return 1.1 * (scale / longest);
+}
+
 /* Whether the offset surely is so far inside a slab that c grows at both ends of its line. */
 INLINE lanes_mask is_inside(const struct kernel_traits traits, struct slab_extent d, lanes middle,
                             lanes swing, lanes scale, const struct pair_lanes *pair,
@@ -653,20 +665,6 @@ INLINE lanes value_error(const struct kernel_traits traits, const lanes weight[3
     return lanes_select(search->exact, lanes_of(0), rounded) + (9 * BOX_UNIT) * sum;
 }
 
-/* The scale of a vector N in lengths of N, or more: no sum of three magnitudes exceeds 1.75 times
- * the length, no sum of two 1.43 times. Only where the offset is inside the slab of N: there the
- * length is far above its error, by is_inside(). */
-INLINE lanes slant_of(const struct kernel_traits traits, const lanes vector[3], lanes scale)
-{
-    lanes longest = lanes_of(0), sum = lanes_of(0);
-    UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++) {
-        longest = lanes_max(lanes_abs(vector[axis]), longest);
-        sum += lanes_abs(vector[axis]);
-    }
-    return scale / lanes_max((traits.dim == 2 ? 0.7 : 0.57) * sum, longest);
-}
-
 /* A line and what is the same for all of its vertices. */
 struct box_line {
     const struct box_normal *normal;
@@ -676,6 +674,7 @@ struct box_line {
     lanes width;  /* of what c gives, for l = 1, frame_error left out */
     lanes frame_error, slope; /* for l = 1; no less than the slope of c */
     lanes relative;           /* what the error of the determinant adds to the width, for l = 1 */
+    lanes_mask open;          /* a vertex of its own is left out */
 };
 
 /* Whether only one of n and -n is the normal of a face with points of its frame behind it: that of
@@ -779,7 +778,7 @@ INLINE void add_edge_vertex(const struct pair_lanes *pair, const struct kernel_t
         wide[axis] = width > search->tolerance;
         if (search->careful)
             wide[axis] &= search->nonzero[other][e][axis] &
-                          face_nonzero(traits, which, line->k, axis, search);
+                          (face_nonzero(traits, which, line->k, axis, search) | line->open);
     }
     add_inner(traits, &candidate, wide, other, search);
 }
@@ -817,7 +816,7 @@ INLINE void add_drift_vertex(const struct pair_lanes *pair, const struct kernel_
     for (int axis = 0; axis < traits.dim; axis++) {
         wide[axis] = width > search->tolerance;
         if (search->careful)
-            wide[axis] &= (face_nonzero(traits, which, line->k, axis, search) |
+            wide[axis] &= (face_nonzero(traits, which, line->k, axis, search) | line->open |
                            (search->frame[which].travel[axis] != 0)) &
                           (frame->travel[axis] != 0);
     }
@@ -901,23 +900,22 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
     const struct slab_extent of_other = extent_of_frame(traits, other, normal->at);
     const struct slab_extent d =
         extent_difference(traits, which ? of_other : own, which ? own : of_other);
-    if (traits.dim == 2)
+    if (traits.dim == 2) {
+        const lanes stretch = stretch_of(traits, normal->scale, search->frame[which].edge[k]);
+        search->stretch = lanes_max(lanes_select(open, stretch, lanes_of(1)), search->stretch);
         search->open |= open;
-    if (traits.dim == 2 && which && lanes_mask_bits(open))
-        search->slant =
-            lanes_max(lanes_select(open, slant_of(traits, search->frame[1].edge[k], normal->scale),
-                                   lanes_of(1)),
-                      search->slant);
+    }
     if (lanes_mask_bits(open))
         search->good &=
             is_not(open) | is_inside(traits, d, which ? -normal->middle : normal->middle,
                                      normal->swing, normal->scale, pair, search);
-    struct box_line line = {.normal = normal, .k = k};
+    struct box_line line = {.normal = normal, .k = k, .open = open};
     line.slope = breadth_of(traits, d) + offset_reach(traits, normal->middle, normal->swing);
     const lanes error = value_error(traits, normal->weight, normal->magnitude, line.slope, search) +
                         normal->scale * pair->error;
     line.frame_error = normal->scale * search->frame_error;
-    line.width = (error + error) + lanes_max(normal->scale * search->left_out, bends);
+    line.width =
+        (error + error) + lanes_select(search->left_out, normal->scale * search->bends, bends);
     line.relative = (2.4 * search->rounding) * normal->scale * frame->own_sum_max;
     line.middle = normal->middle;
     line.own = error + reach_above(traits, which, own);
@@ -1079,15 +1077,6 @@ INLINE struct slab_extent extent_of_crossing(const struct kernel_traits traits, 
     return extent_sum(traits, of_a, extent_across(traits, 1, j, at));
 }
 
-/* The slant of u x v; infinite where the offset is not surely inside its slab. */
-INLINE lanes slant_across(const struct kernel_traits traits, lanes_mask inside, const lanes u[3],
-                          const lanes v[3], lanes scale)
-{
-    lanes n[3];
-    cross(u, v, n);
-    return lanes_select(inside, slant_of(traits, n, scale), lanes_of(INFINITY));
-}
-
 /* The vertex on the walls of edge i of A, edge j of B and the drift. */
 INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_traits traits, int i,
                          int j, const struct face_products side[2],
@@ -1114,23 +1103,27 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
         cross_nonzero(nonzero_a, nonzero_b, nonzero);
         const lanes_mask open =
             vertex.uncertain & dot_nonzero(traits, nonzero, search->drift) & is_not(search->exact);
-        const lanes_mask inside = is_inside(traits, d, products->edges.middle[i][j],
-                                            products->edges.swing[i][j], scale, pair, search);
-        const lanes *drift = pair->half_drift, drift_size = pair->half_drift_size;
-        lanes slant = slant_across(traits, inside, a->edge[i], b->edge[j], scale);
-        slant = lanes_min(
-            slant_across(traits, products->inside[0][i], drift, a->edge[i], length_a * drift_size),
-            slant);
-        slant = lanes_min(
-            slant_across(traits, products->inside[1][j], drift, b->edge[j], length_b * drift_size),
-            slant);
-        search->good &= is_not(open) | (slant < INFINITY);
-        search->slant = lanes_max(lanes_select(open, slant, lanes_of(1)), search->slant);
+        lanes drift_a[3], drift_b[3];
+        cross(pair->half_drift, a->edge[i], drift_a);
+        cross(pair->half_drift, b->edge[j], drift_b);
+        const lanes stretch[3] = {stretch_of(traits, length_a * pair->half_drift_size, drift_a),
+                                  stretch_of(traits, length_b * pair->half_drift_size, drift_b),
+                                  stretch_of(traits, scale, normal)};
+        const lanes_mask inside[3] = {products->inside[0][i], products->inside[1][j],
+                                      is_inside(traits, d, products->edges.middle[i][j],
+                                                products->edges.swing[i][j], scale, pair, search)};
+        lanes least = lanes_of(0x1p30);
+        lanes_mask any = {0};
+        for (int line = 0; line < 3; line++)
+            least = lanes_min(stretch[line], least);
+        for (int line = 0; line < 3; line++)
+            any |= inside[line] & (stretch[line] <= least);
+        search->stretch = lanes_max(lanes_select(open, least, lanes_of(1)), search->stretch);
+        search->good &= is_not(open) | any;
         search->open |= open;
     }
     /* Errors for m = 1 and n = 1. */
     const lanes drift_scale = length_a * pair->half_drift_size;
-    const lanes bends = search->left_out;
     const lanes sum = breadth_of(traits, d) + offset_reach(traits, products->edges.middle[i][j],
                                                            products->edges.swing[i][j]);
     const lanes of_m = products->error[i] + drift_scale * pair->error;
@@ -1139,8 +1132,8 @@ INLINE void add_crossing(const struct pair_lanes *pair, const struct kernel_trai
     const lanes size = lanes_abs(vertex.inverse);
     const lanes edge_error =
         ((1.2 * search->relative_error) * length_b) * ((drift_scale * pair->reach) * size);
-    const lanes width_of_m = (of_m + of_m) + drift_scale * bends;
-    const lanes width_of_n = (of_n + of_n) + scale * bends;
+    const lanes width_of_m = (of_m + of_m) + drift_scale * search->bends;
+    const lanes width_of_n = (of_n + of_n) + scale * search->bends;
     struct box_candidate candidate;
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
@@ -1324,6 +1317,14 @@ INLINE lanes_mask are_multiples(const struct pair_lanes *pair, const struct kern
     return all;
 }
 
+/* Sets bend_error. bend: the largest |d| of walls that are not certain, for scale 1. */
+INLINE void set_bend_error(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           lanes bend, struct box_search *search)
+{
+    const double lengths = traits.simplex[0] || traits.simplex[1] ? 2 : 0.5;
+    search->bend_error = (lengths * search->bend_count) * ((bend * search->stretch) * pair->reach);
+}
+
 INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits traits,
                       const struct box_places *places, struct box_search *search)
 {
@@ -1352,7 +1353,8 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     search->bend_count = lanes_select(shares, lanes_of(4), lanes_of(2));
     search->bend = lanes_of(0);
     search->bend_limit = 17 * (slab_rounding(traits) + 4 * search->relative_error);
-    search->bend_error = (2 * search->bend_count) * (search->bend_limit * pair->reach);
+    search->stretch = lanes_of(1);
+    set_bend_error(pair, traits, search->bend_limit, search);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
         set_sizes(pair, traits, places, axis, search);
@@ -1384,9 +1386,8 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     tolerance = lanes_select((search->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
     search->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
     search->tolerance = tolerance - search->shared;
-    search->slant = lanes_of(1);
-    search->left_out = lanes_of(0);
-    search->spans = search->open = (lanes_mask){0};
+    search->spans = search->open = search->left_out = (lanes_mask){0};
+    search->bends = lanes_of(0);
     search->careful = false;
     search->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
@@ -1413,10 +1414,16 @@ INLINE void begin_second_pass(const struct pair_lanes *pair, const struct kernel
                               const struct box_left_out *left_out, struct box_search *search)
 {
     search->careful = true;
-    const lanes changes = (2 * search->bend_count) * (left_out->bend * pair->reach);
-    search->left_out =
-        lanes_select(left_out->slant < INFINITY, changes * left_out->slant, lanes_of(INFINITY));
-    search->left_out = lanes_select(left_out->open, search->left_out, lanes_of(0));
+    search->left_out = left_out->open;
+    search->stretch = left_out->stretch;
+    set_bend_error(pair, traits, left_out->bend, search);
+    search->bends = lanes_select(left_out->open, search->bend_error, lanes_of(0));
+    const lanes whole = (search->tolerance + search->shared) - search->bends;
+    const lanes rest = lanes_select(whole > 0, whole, lanes_of(0));
+    search->good &= is_not(left_out->open) | (whole > 0);
+    const lanes shared = lanes_select(search->shared != 0, 0.36 * rest, lanes_of(0));
+    search->shared = lanes_select(left_out->open, shared, search->shared);
+    search->tolerance = lanes_select(left_out->open, rest - shared, search->tolerance);
     UNROLL(2)
     for (int which = 0; which < 2; which++)
         for (int index = 0; index < edge_count(traits, which); index++) {
@@ -1457,8 +1464,8 @@ INLINE void ends_of(const struct box_search *search, int end, int axis, lanes *o
         const lanes at = centre + search->bounds[which].outer[end][axis];
         const lanes least = centre + search->bounds[which].inner[end][axis];
         *outer = lanes_min(at + slack, *outer);
-        *inner =
-            lanes_min(lanes_min(at - search->tolerance, least) - (slack + search->shared), *inner);
+        const lanes beyond = slack + (search->shared + search->bends);
+        *inner = lanes_min(lanes_min(at - search->tolerance, least) - beyond, *inner);
     }
 }
 
@@ -1519,7 +1526,7 @@ INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_
     const lanes_mask good = are_near(traits, &search);
     if (second)
         return good;
-    *left_out = (struct box_left_out){search.open, search.bend, search.slant};
+    *left_out = (struct box_left_out){search.open, search.bend, search.stretch};
     return good & is_not(search.open);
 }
 
