@@ -40,11 +40,14 @@ slow="$slow system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats c
 run_suite() {
     kind=$1 build=$2 what=$3
     export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
-    # Sanitizers look at paths, not at answers: fewer samples take them all.
+    # Samples that fit into the time of a run; a suite alone draws all of its own. Sanitizers and
+    # threads look at paths, not at answers: fewer samples take them all.
     case $build in
-    "$programs") export FMB_FAST=1 ;;
-    "$units") export FMB_FAST=1; [ "$what" = test_kernels ] || export FMB_SAMPLE=0.5 ;;
+    "$release") sample=0.7 ;;
+    "$programs" | "$threads") sample=1; export FMB_FAST=1 ;;
+    "$units") sample=0.3; export FMB_FAST=1; [ "$what" != test_kernels ] || sample=1 ;;
     esac
+    export FMB_SAMPLE="${FMB_SAMPLE-$sample}"
     case $kind in
     unit) timeout "$limit" "$build/tests/$what" ;;
     bats) timeout "$limit" bats --tap "tests/$what" ;;

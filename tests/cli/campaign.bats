@@ -6,7 +6,7 @@ setup() {
     BUILD=${FMB_BUILD:-build}
     JSON=$BATS_TEST_TMPDIR/report.json
     cd "$BATS_TEST_DIRNAME/../.." || return
-    pairs=8
+    pairs=6
     case ${FMB_FAST:-0} in 0) ;; *) pairs=4 ;; esac
 }
 

@@ -236,10 +236,10 @@ field() {
 }
 
 @test "more channels than are counted are summed" {
+    local zeros=
+    for i in $(seq 19); do zeros+='\0'; done
     for i in $(seq 4100); do
-        printf '\xed\xa1\xda\x01'
-        printf '\0%.0s' $(seq 19)
-        printf '\4\0\0\0\0%04d' "$i"
+        printf "\xed\xa1\xda\x01$zeros\4\0\0\0\0%04d" "$i"
     done > "$log"
     info --json "$log"
     ended 0

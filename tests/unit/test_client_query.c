@@ -752,6 +752,8 @@ static void test_two_clients_in_a_process(void **state)
     close_world(&world);
 }
 
+enum { THREAD_QUERIES = 8 };
+
 /* cmocka's asserts are for the thread that runs the tests. */
 struct thread {
     const struct fmb_client_scene *scene;
@@ -771,7 +773,7 @@ static void count_contacts(void *user, const struct fmb_client_answer *answer)
 static void *run(void *user)
 {
     struct thread *thread = user;
-    for (int i = 0; i < 20; i++)
+    for (int i = 0; i < THREAD_QUERIES; i++)
         thread->failed +=
             fmb_client_query(thread->client, thread->scene, count_contacts, thread) != FMB_OK;
     return NULL;
@@ -798,7 +800,7 @@ static void test_clients_in_threads(void **state)
     for (int i = 0; i < 2; i++) {
         pthread_join(id[i], NULL);
         assert_int_equal(thread[i].failed, 0);
-        assert_int_equal(thread[i].contacts, 20 * truth.count);
+        assert_int_equal(thread[i].contacts, THREAD_QUERIES * truth.count);
         fmb_client_close(thread[i].client);
         relay_close(thread[i].relay);
     }

@@ -55,17 +55,17 @@ static struct solid with_vectors_exchanged(const struct solid *solid)
 
 /* The set of points of a frame is the same in whatever order its components come (its
  * definition is symmetric in the terms x_i c_i), and the truth does not know the order of the
- * pair: so the oracle is asked once for the eight questions that the engine gets: both orders of
- * the vectors of A, of those of B, and of the pair. */
+ * pair: so the oracle is asked once for the questions that the engine gets: both orders of the
+ * vectors of A and of those of B, and with each of them one order of the pair. */
 static void assert_all_orders(const struct question *question, const struct oracle_answer *truth)
 {
-    for (int order = 0; order < 8; order++) {
+    for (int order = 0; order < 4; order++) {
         struct question other = *question;
         if (order & 1)
             other.a = with_vectors_exchanged(&other.a);
         if (order & 2)
             other.b = with_vectors_exchanged(&other.b);
-        if (order & 4)
+        if (order == 1 || order == 2)
             other = question_swapped(&other);
         referee_assert_truth(&other, truth);
     }
@@ -104,7 +104,7 @@ static void all_of_the_plane(void **state)
     long count[4] = {0};
     for (int pair = 0; pair < PLANE_BODIES * PLANE_BODIES; pair += step)
         assert_bodies_everywhere(pair / PLANE_BODIES, pair % PLANE_BODIES, count);
-    print_count("plane, static, each in 8 orders", count);
+    print_count("plane, static, each in 4 orders", count);
     assert_true(count[FMB_SEPARATED] && count[FMB_TOUCHING] && count[FMB_OVERLAPPING]);
 }
 

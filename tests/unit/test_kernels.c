@@ -958,7 +958,7 @@ static void boxes_hold_the_exact_ones(void **state)
         struct seen hard = {0}, random = {0};
         if (!kernel_boxes_wide[kind])
             continue;
-        for (long n = draw_sample(kind & KERNEL_FACE ? 160 : 40); n > 0; n--) {
+        for (long n = draw_sample(kind & KERNEL_FACE ? 120 : 32); n > 0; n--) {
             struct pool pool;
             struct left whole;
             const bool is_hard = n % 4;
