@@ -45,7 +45,7 @@ run_suite() {
     case $build in
     "$release") sample=0.7 ;;
     "$programs" | "$threads") sample=1; export FMB_FAST=1 ;;
-    "$units") sample=0.3; export FMB_FAST=1; [ "$what" != test_kernels ] || sample=1 ;;
+    "$units") sample=0.5; export FMB_FAST=1; [ "$what" != test_kernels ] || sample=1 ;;
     esac
     export FMB_SAMPLE="${FMB_SAMPLE-$sample}"
     case $kind in

@@ -199,6 +199,8 @@ static void write_scene_results(void)
     result.unknown_count = 2;
     result.unknown[1] = QUERY_PLACEMENTS_MAX - 1;
     write_scene_result("unknown", &result);
+    result.unknown[1]++;
+    write_scene_result("unknown-beyond", &result);
     result = (struct scene_result){.status = FMB_BUSY, .detail = "queue full"};
     write_scene_result("refused", &result);
     write_gaps();
@@ -259,6 +261,8 @@ static void write_definitions(void)
     }
     definition.body_count = 5;
     seeds_write("definition", "shapes", bytes, wire_write_definition(&definition, bytes));
+    definition.body[4].handle.bytes[HANDLE_BYTES - 1] ^= 1;
+    seeds_write("definition", "other-handle", bytes, wire_write_definition(&definition, bytes));
     definition = (struct definition){.status = FMB_BUSY, .detail = "queue full\n"};
     seeds_write("definition", "refused", bytes, wire_write_definition(&definition, bytes));
 }
