@@ -176,6 +176,10 @@ kernel_job = $(or $(if $(findstring exact_,$*),-DKERNEL_EXACT),$(if $(findstring
 $(many_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
 $(sort $(single_kernels) $(call single_kernels_of,plain)): \
 	$(O)/kernels/%.o: service/fmb/filter/single.c $(O)/settings
+# With -O1, kernels of boxes are as fast and compile in half the time.
+ifeq ($(MODE)$(filter gcc%,$(compiler)),releasegcc)
+$(O)/kernels/boxes_%.o: flags += -O1 -fschedule-insns2 -Wno-maybe-uninitialized
+endif
 # gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
 ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
 $(O)/kernels/%.o: flags += -fno-tree-dominator-opts
