@@ -43,7 +43,7 @@ run_suite() {
     # Samples that fit into the time of a run; a suite alone draws all of its own. Sanitizers and
     # threads look at paths, not at answers: fewer samples take them all.
     case $build in
-    "$release") sample=0.7 ;;
+    "$release") sample=${FMB_FAST:+1} sample=${sample:-0.7} ;;
     "$programs" | "$threads") sample=1; export FMB_FAST=1 ;;
     "$units") sample=0.5; export FMB_FAST=1; [ "$what" != test_kernels ] || sample=1 ;;
     esac

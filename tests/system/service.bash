@@ -34,7 +34,7 @@ teardown() {
     for pid in ${started-}; do kill -KILL "$pid" 2> /dev/null || true; done
 }
 
-# status_of FIELD: a number of the next heartbeat.
+# status_of FIELD[,.FIELD]...: numbers of the next heartbeat, one a line.
 status_of() {
     "$FMB" status --json | jq -r ".$1"
 }
