@@ -1,0 +1,253 @@
+# How the daemon starts, reports what it does, and ends.
+
+load service
+
+@test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
+    for signal in TERM INT; do
+        start_fmbd
+        grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, FMB_SCENE_QUERY on FMB_SCENE_RESULT, FMB_DEFINITION_QUERY on FMB_DEFINITION, heartbeat on FMB_STATUS' "$fmbd_log"
+        stop_fmbd "$signal"
+    done
+}
+
+@test "SIGTERM under load ends it well, and at once" {
+    start_fmbd
+    random_scene 3 900 > "$BATS_TEST_TMPDIR/scene.json"
+    for client in 1 2; do
+        "$FMB" query --box --json --timeout 0.2 --retries 0 "$BATS_TEST_TMPDIR/scene.json" > /dev/null 2>&1 3>&- &
+        started="$started $!"
+    done
+    sleep 0.5
+    [ "$(status_of pairs)" -gt 100 ]
+    kill -TERM "$fmbd"
+    begin=${EPOCHREALTIME/./}
+    wait "$fmbd"
+    [ $((${EPOCHREALTIME/./} - begin)) -lt 2000000 ]
+}
+
+@test "a client that asks before the service is there gets its answers" {
+    random_scene 2 20 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
+    client=$!
+    started="${started-} $client"
+    sleep 0.5
+    start_fmbd
+    wait $client
+    "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    stop_fmbd
+}
+
+@test "a service that dies and comes back costs no answer" {
+    random_scene 3 400 > "$BATS_TEST_TMPDIR/scene.json"
+    start_fmbd
+    "$FMB" query --json --box --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
+    client=$!
+    started="$started $client"
+    for _ in 1 2 3; do
+        sleep 0.1
+        kill -KILL "$fmbd"
+        start_fmbd
+    done
+    wait $client
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    stop_fmbd
+}
+
+@test "nobody there: exit code 1, and what to run" {
+    random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
+    run "$FMB" query --timeout 0.1 --retries 1 "$BATS_TEST_TMPDIR/scene.json"
+    [ "$status" = 1 ]
+    [[ "$output" == *fmbd* ]]
+    run "$FMB" status --timeout 0.1
+    [ "$status" = 1 ]
+    [[ "$output" == *fmbd* ]]
+}
+
+@test "capacity for one frame: every answer is right all the same" {
+    start_fmbd --frames 1
+    random_scene 3 20 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    # The first body stays while the scene uses it; there is no space for the others.
+    "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
+    [ "$(jq .server_id "$BATS_TEST_TMPDIR/status")" = "$("$FMB" status | sed 's/.*server \([0-9-]*\),.*/\1/;q')" ]
+    jq -e '.utime / 1000000 - now | fabs < 60' "$BATS_TEST_TMPDIR/status"
+    [ "$(jq -c '[.bodies, .misses, .evictions]' "$BATS_TEST_TMPDIR/status")" = '[1,20,0]' ]
+    "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    # All but the first and the last are the first of some pair that is queried alone.
+    [ "$(status_of evictions)" -ge 18 ]
+    stop_fmbd
+}
+
+@test "the heartbeat tells what was done" {
+    start_fmbd --frames 500
+    random_scene 2 5 > "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
+    [ "$(status_of received,.scenes,.pairs,.bodies | xargs)" = "2 2 20 5" ]
+    [ "$(status_of frame_capacity,.misses,.hits | xargs)" = "500 5 5" ]
+    "$FMB" query --certificate "$BATS_TEST_TMPDIR/scene.json"
+    "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
+    jq -e '.received == 12 and .scenes == 2 and .pairs == 30 and .malformed == 0 and
+        .received == .answered + .unsent and .answered == ([.results[]] | add)' "$BATS_TEST_TMPDIR/status"
+    run "$FMB" status
+    [ "$status" = 0 ]
+    stop_fmbd
+}
+
+@test "started as root, it becomes nobody, or the user that is named" {
+    [ "$(id -u)" = 0 ] && [ "$(wc -l < /proc/self/uid_map)" = 1 ] &&
+        [ "$(awk '{ print $3 }' /proc/self/uid_map)" -gt 65534 ] || skip "needs root and its ids"
+    for user in nobody daemon; do
+        if [ $user = nobody ]; then start_fmbd; else start_fmbd --user $user; fi
+        id=$(id -u $user)
+        [ "$(awk '/^Uid:/ { print $2, $3, $4 }' "/proc/$fmbd/status")" = "$id $id $id" ]
+        [ "$(awk '/^Groups:/ { print NF }' "/proc/$fmbd/status")" = 2 ]
+        [ "$(awk '/^NoNewPrivs:/ { print $2 }' "/proc/$fmbd/status")" = 1 ]
+        "$FMB" status > /dev/null
+        stop_fmbd
+    done
+    run "$FMBD" --user no-such-user
+    [ "$status" = 1 ]
+    [[ "$output" == *"--user"* ]]
+}
+
+@test "where an id does not exist, it warns once and goes on" {
+    [ "$FMB_NETNS" = own ] || skip "needs namespaces"
+    unshare -rn true || skip "needs user namespaces"
+    unshare -rn sh -c 'ip link set lo up; ip link set lo multicast on
+        ip route add 224.0.0.0/4 dev lo; exec timeout 1 "$@"' sh "$FMBD" \
+        2> "$BATS_TEST_TMPDIR/err" 3>&- || true
+    [ "$(grep -c warning "$BATS_TEST_TMPDIR/err")" = 1 ]
+    grep -q ready "$BATS_TEST_TMPDIR/err"
+}
+
+@test "a filter of system calls is in place" {
+    case $FMB_BUILD in *asan*) skip "sanitizers need other calls" ;; esac
+    start_fmbd
+    [ "$(awk '/^Seccomp:/ { print $2 }' "/proc/$fmbd/status")" = 2 ]
+    stop_fmbd
+}
+
+@test "a service manager is told when it is ready, alive and stopping" {
+    "$FMB_BUILD/poke" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    started="${started-} $!"
+    wait_until test -S "$BATS_TEST_TMPDIR/notify"
+    NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
+    alive() { [ "$(grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/heard")" -ge 3 ]; }
+    wait_until alive
+    stop_fmbd
+    [ "$(head -n 1 "$BATS_TEST_TMPDIR/heard")" = READY=1 ]
+    stopping() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/heard")" = STOPPING=1 ]; }
+    wait_until stopping
+}
+
+@test "heartbeats and signs of life come while there is always work" {
+    "$FMB_BUILD/poke" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    started="${started-} $!" clients=
+    wait_until test -S "$BATS_TEST_TMPDIR/notify"
+    NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
+    random_scene 3 150 > "$BATS_TEST_TMPDIR/scene.json"
+    touch "$BATS_TEST_TMPDIR/busy"
+    for _ in 1 2 3; do # of each a scene of tenths of a second, again and again
+        (while [ -e "$BATS_TEST_TMPDIR/busy" ]; do
+            "$FMB" query --json --method exact "$BATS_TEST_TMPDIR/scene.json" > /dev/null
+        done) 3>&- &
+        started="$started $!" clients="$clients $!"
+    done
+    sleep 0.5
+    signs() { grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/heard"; }
+    before=$(signs)
+    "$FMB" status > /dev/null
+    "$FMB" status > /dev/null
+    [ $(($(signs) - before)) -ge 3 ]
+    rm "$BATS_TEST_TMPDIR/busy"
+    wait $clients
+    stop_fmbd
+}
+
+@test "heartbeats come while queries arrive faster than they are answered" {
+    start_fmbd
+    "$FMB_BUILD/poke" flood scene_query 101 60 > /dev/null 3>&- &
+    flood=$!
+    started="$started $flood"
+    is_flooded() { [ "$(status_of received)" -gt 1000 ]; }
+    wait_until is_flooded
+    for _ in 1 2 3; do
+        "$FMB" status > /dev/null
+    done
+    kill $flood
+    stop_fmbd
+}
+
+@test "no route for multicast: two lines that say what to run" {
+    unshare -rn true || skip "needs a network without routes"
+    run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667
+    [ "$status" = 1 ]
+    [ "${#lines[@]}" = 2 ]
+    [[ "${lines[0]}" == "fmbd: no route to the multicast group 239.8.7.6"* ]]
+    [[ "${lines[1]}" == *"ip route add 224.0.0.0/4 dev lo"* ]]
+}
+
+@test "a bus that is none: exit code 1 and a line" {
+    for url in nonsense foo://bar tcpq://127.0.0.1:1; do
+        run timeout 10 "$FMBD" --lcm-url $url
+        [ "$status" = 1 ]
+        [[ "$output" == *"fmbd: "*"$url"* ]]
+    done
+}
+
+@test "a reader of stderr that went away, or does not read, does not stop it" {
+    mkfifo "$BATS_TEST_TMPDIR/pipe"
+    for reader in gone asleep; do
+        # The reader opens the pipe, so that the daemon can; then it leaves, or sleeps.
+        if [ $reader = gone ]; then
+            head -n 1 < "$BATS_TEST_TMPDIR/pipe" > /dev/null 3>&- &
+        else
+            sleep 60 < "$BATS_TEST_TMPDIR/pipe" 3>&- &
+            started="${started-} $!"
+        fi
+        "$FMBD" 2> "$BATS_TEST_TMPDIR/pipe" 3>&- &
+        fmbd=$!
+        started="$started $fmbd"
+        wait_until "$FMB" status --timeout 0.2
+        # Fill the pipe to the brim where nobody reads.
+        [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
+        "$FMB_BUILD/poke" FMB_PAIR_QUERY status
+        [ "$(status_of malformed)" -gt 100 ]
+        stop_fmbd
+    done
+}
+
+@test "a second service on the same channels is told of" {
+    start_fmbd
+    one=$fmbd one_log=$fmbd_log
+    start_fmbd
+    wait_until grep -q 'another service' "$one_log"
+    wait_until grep -q 'another service' "$fmbd_log"
+    stop_fmbd
+    fmbd=$one
+    stop_fmbd
+}
+
+@test "a bus without a port: refused at once" {
+    run timeout 5 "$FMBD" --lcm-url udpm://239.255.76.67
+    [ "$status" = 1 ]
+    [[ "$output" == *"udpm://239.255.76.67:7667"* ]]
+}
+
+@test "wrong options: exit code 2 and a hint; help and version: 0" {
+    for options in --nonsense --frames=0 --frames=-1 --frames=1x --frames=99999999999999999999 --bodies=5 --unfiltered \
+        '--prefix=a.*' extra; do
+        run "$FMBD" "$options"
+        [ "$status" = 2 ]
+        [[ "$output" == *"fmbd --help"* ]]
+    done
+    run "$FMBD" --help
+    [ "$status" = 0 ]
+    [[ "${lines[0]}" == "usage: fmbd"* ]]
+    run "$FMBD" --version
+    [ "$status" = 0 ]
+    [[ "$output" == "fmbd "[0-9]* ]]
+}
