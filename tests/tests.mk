@@ -86,7 +86,7 @@ slabs_planted := -DSLABS_ROUNDING=0x1p-54
 $(O)/slabs/fused.o $(O)/slabs/planted.o: $(O)/slabs/%.o: service/fmb/filter/slabs.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) $(slabs_$*) \
-		$(call renamed,$*,slabs_prepare slabs_list slabs_refine slab_inequalities)
+		$(call renamed,$*,slabs_prepare slabs_list slab_inequalities)
 $(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/slabs/%.o: \
 		tests/unit/slab_kernel.c $(O)/settings
 	@mkdir -p $(@D)

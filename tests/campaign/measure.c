@@ -25,7 +25,6 @@ const char *measure_path_name(int path)
 {
     static const char *const names[MEASURE_PATHS] = {[CERTIFIED_FILTER] = "filter",
                                                      [CERTIFIED_SECOND] = "second",
-                                                     [CERTIFIED_REFINED] = "refined",
                                                      [CERTIFIED_LIMBS] = "limbs",
                                                      [CERTIFIED_EXACT] = "exact"};
     return names[path];

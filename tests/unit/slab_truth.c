@@ -303,20 +303,6 @@ double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, int factor,
     return ratio_of(truth, exact, truth->dim * truth->unit + factor, value, bound);
 }
 
-/* Of both inequalities, in lengths times 2^factor. */
-static double worst_side(struct slab_truth *truth, int factor, const struct inequality side[2])
-{
-    double worst = 0;
-    for (int i = 0; i < 2; i++) {
-        const double of_c =
-            slab_truth_ratio(truth, truth->side[i], factor, side[i].c, side[i].c_error);
-        const double of_g =
-            slab_truth_ratio(truth, truth->rise[i], factor, side[i].g, side[i].g_error);
-        worst = fmax(worst, fmax(of_c, of_g));
-    }
-    return worst;
-}
-
 double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
 {
     const double bound = slab->error;
@@ -329,14 +315,11 @@ double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
     worst = fmax(worst, slab_truth_ratio(truth, truth->swing, factor, slab->swing, bound));
     worst = fmax(worst, slab_truth_ratio(truth, truth->gap, factor, slab_gap(slab), bound));
     slab_inequalities(slab, side);
-    return fmax(worst, worst_side(truth, factor, side));
-}
-
-double slab_truth_worst_refined(struct slab_truth *truth, struct slab_normal normal,
-                                const struct inequality side[2])
-{
-    slab_truth_ask(truth, normal);
-    return worst_side(truth, 0, side);
+    for (int i = 0; i < 2; i++) {
+        worst = fmax(worst, slab_truth_ratio(truth, truth->side[i], factor, side[i].c, bound));
+        worst = fmax(worst, slab_truth_ratio(truth, truth->rise[i], factor, side[i].g, bound));
+    }
+    return worst;
 }
 
 /* The gap along an axis: that of the slab across it. */

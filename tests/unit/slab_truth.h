@@ -54,8 +54,4 @@ double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
  * which the kernels do not tell. */
 double slab_truth_axes(struct slab_truth *truth, double surely, double bound);
 
-/* The same of both inequalities of a slab that slabs_refine() made. */
-double slab_truth_worst_refined(struct slab_truth *truth, struct slab_normal normal,
-                                const struct inequality side[2]);
-
 #endif

@@ -28,8 +28,6 @@
 
 /* slabs.c once more, with fused operations, and with a bound that is wrong (tests.mk). */
 int fused_slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
-void fused_slabs_refine(const struct slabs_pair *pair, struct slab_normal normal,
-                        struct inequality out[2]);
 int planted_slabs_list(const struct slabs_pair *pair, bool rounds,
                        struct slab_value out[SLABS_MAX]);
 
@@ -131,10 +129,7 @@ struct subject {
     int (*list)(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
     slab_kernel_function *kernel;
     slab_kernel_axes_function *axes; /* not NULL: their bound, in space */
-    /* NULL: the slabs of the list and their inequalities are attacked, else only these. */
-    void (*refine)(const struct slabs_pair *pair, struct slab_normal normal,
-                   struct inequality out[2]);
-    double ratio; /* that the search must find, to have found anything */
+    double ratio;                    /* that the search must find, to have found anything */
 };
 
 /* index also says whether a kernel looks for normals that are zero. */
@@ -175,13 +170,7 @@ static double ratio_of(const struct subject *subject, const struct question *que
         return slab_truth_axes(truth, surely, bound);
     }
     const int count = list_of(subject, &ready.pair, &pair, index, slab);
-    const struct slab_value *one = &slab[index / 2 % count];
-    if (subject->refine) {
-        struct inequality side[2];
-        subject->refine(&pair, one->normal, side);
-        return slab_truth_worst_refined(truth, one->normal, side);
-    }
-    return slab_truth_worst(truth, one);
+    return slab_truth_worst(truth, &slab[index / 2 % count]);
 }
 
 /* Whom the search is at. */
@@ -289,14 +278,6 @@ static void errors_of_slabs_stay_within_their_bounds(void **state)
     attack(&slabs);
 }
 
-static void errors_of_refined_slabs_stay_within_their_bounds(void **state)
-{
-    static const struct subject refined = {
-        .name = "refined slabs", .list = slabs_list, .refine = slabs_refine, .ratio = 0.01};
-    (void) state;
-    attack(&refined);
-}
-
 static void errors_of_kernels_stay_within_their_bounds(void **state)
 {
     static const struct subject kernel = {
@@ -337,17 +318,12 @@ static void bounds_hold_with_fused_operations(void **state)
 {
     static const struct subject fused = {
         .name = "fused slabs", .list = fused_slabs_list, .ratio = 0.01};
-    static const struct subject refined = {.name = "fused refined slabs",
-                                           .list = fused_slabs_list,
-                                           .refine = fused_slabs_refine,
-                                           .ratio = 0.01};
     static const struct subject kernel = {
         .name = "fused kernels", .kernel = fused_slab_kernel_list, .ratio = 0.01};
     (void) state;
     if (!has_fused_operations())
         skip();
     attack(&fused);
-    attack(&refined);
     attack(&kernel);
 }
 
@@ -434,7 +410,6 @@ static void bounds_hold_at_the_ends_of_the_range(void **state)
 {
     static const struct subject subjects[] = {
         {.name = "slabs", .list = slabs_list, .ratio = 0},
-        {.name = "refined slabs", .list = slabs_list, .refine = slabs_refine, .ratio = 0},
         {.name = "kernels", .kernel = slab_kernel_list, .ratio = 0}};
     (void) state;
     struct draw draw;
@@ -455,9 +430,9 @@ static void bounds_hold_at_the_ends_of_the_range(void **state)
         }
     }
     slab_truth_clear(&truth);
-    printf("# ends of the range: largest error %.4g of the bound, refined %.4g, of kernels %.4g\n",
-           largest[0], largest[1], largest[2]);
-    assert_true(said > 0 && largest[0] > 1e-3 && largest[1] > 1e-3 && largest[2] > 1e-3);
+    printf("# ends of the range: largest error %.4g of the bound, of kernels %.4g\n", largest[0],
+           largest[1]);
+    assert_true(said > 0 && largest[0] > 1e-3 && largest[1] > 1e-3);
 }
 
 /* ---- Extents ---- */
@@ -544,7 +519,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_of_slabs_stay_within_their_bounds),
-        cmocka_unit_test(errors_of_refined_slabs_stay_within_their_bounds),
         cmocka_unit_test(errors_of_kernels_stay_within_their_bounds),
         cmocka_unit_test(errors_along_axes_stay_within_their_bound),
         cmocka_unit_test(a_wrong_bound_is_found),

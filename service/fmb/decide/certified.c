@@ -8,8 +8,7 @@
  *
  *   1. verdict_of()           the filter in doubles (kernel.h)
  *   2. verdict_of_unsure()    its second pass (slabs_exact.h)
- *   3. verdict_of_slabs()     each open slab in doubles with an error bound of its own
- *                             (slabs_refine()), then in fixed-width integers (limbs.h)
+ *   3. verdict_of_slabs()     each open slab in fixed-width integers (limbs.h)
  *   4. verdict_exact()        the exact method (exact.h)
  *
  * Two faces that no slab separates go through verdict_of_planes(): if they stay in one plane, the
@@ -77,50 +76,6 @@ static void find_span(struct certified *certified)
     certified->rounds = !limbs_never_round(&certified->slabs, certified->span);
 }
 
-static enum fmb_verdict verdict_of_sign(int sign)
-{
-    return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
-}
-
-/* Lists the slabs that doubles leave open, and returns how many there are. refine: each is computed
- * again with an error bound of its own. *separated: a slab separates the pair, and those after it
- * were not examined. */
-static int open_slabs(const struct slabs_pair *pair, bool refine, struct slab_normal out[SLABS_MAX],
-                      bool *separated)
-{
-    struct slab_value slab[SLABS_MAX];
-    const int count = slabs_list(pair, true, slab);
-    int open = 0;
-    *separated = false;
-    for (int i = 0; i < count && !*separated; i++) {
-        struct inequality side[2];
-        if (slab[i].error == 0 && pair->inexact) { /* the exact edges might not be parallel */
-            out[open++] = slab[i].normal;
-            continue;
-        }
-        if (slab[i].error == 0 || slab_gap(&slab[i]) < -slab[i].error)
-            continue;
-        slab_inequalities(&slab[i], side);
-        if (refine)
-            slabs_refine(pair, slab[i].normal, side);
-        *separated = never_holds(&side[0]) || never_holds(&side[1]);
-        if (!surely_holds(&side[0]) || !surely_holds(&side[1]))
-            out[open++] = slab[i].normal;
-    }
-    return open;
-}
-
-static enum fmb_verdict verdict_in_fixed_width(struct limbs_pair *limbs,
-                                               const struct slab_normal *open, int count)
-{
-    int sign = -1;
-    for (int i = 0; i < count && sign <= 0; i++) {
-        const int one = limbs_gap_sign(limbs, open[i]);
-        sign = one > sign ? one : sign;
-    }
-    return verdict_of_sign(sign);
-}
-
 /* The verdict by the exact method; 0 if the decision is quick. */
 static enum fmb_verdict verdict_exact(struct certified *certified)
 {
@@ -132,25 +87,27 @@ static enum fmb_verdict verdict_exact(struct certified *certified)
     return answer.verdict;
 }
 
-/* In: good slabs. A slab in integers of a few limbs costs little more than one in doubles with an
- * error bound of its own, so that refinement is used only where the integers are wide. */
+/* In: good slabs. Each slab that doubles leave open is decided in integers; so are edges that are
+ * parallel as rounded, which need not be so as given. */
 static enum fmb_verdict verdict_of_slabs(struct certified *certified)
 {
-    find_span(certified);
-    struct slab_normal open[SLABS_MAX];
+    const struct slabs_pair *pair = &certified->slabs;
+    struct slab_value slab[SLABS_MAX];
     struct limbs_pair limbs;
-    bool separated;
-    const bool fits = limbs_prepare(certified->pair, certified->span, &limbs);
-    const int count = open_slabs(&certified->slabs, !fits || limbs.limbs > CERTIFIED_QUICK_LIMBS,
-                                 open, &separated);
-    certified->path = CERTIFIED_REFINED;
-    if (separated || count == 0)
-        return separated ? FMB_SEPARATED : FMB_OVERLAPPING;
-    if (fits && (!certified->quick || limbs.limbs <= CERTIFIED_QUICK_LIMBS)) {
-        certified->path = CERTIFIED_LIMBS;
-        return verdict_in_fixed_width(&limbs, open, count);
+    find_span(certified);
+    if (!limbs_prepare(certified->pair, certified->span, &limbs) ||
+        (certified->quick && limbs.limbs > CERTIFIED_QUICK_LIMBS))
+        return verdict_exact(certified);
+    certified->path = CERTIFIED_LIMBS;
+    const int count = slabs_list(pair, true, slab);
+    int sign = -1;
+    for (int i = 0; i < count && sign <= 0; i++) {
+        if (slab[i].error == 0 ? !pair->inexact : slab_gap(&slab[i]) < -slab[i].error)
+            continue;
+        const int one = limbs_gap_sign(&limbs, slab[i].normal);
+        sign = one > sign ? one : sign;
     }
-    return verdict_exact(certified);
+    return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }
 
 static enum fmb_verdict projection_verdict(struct certified *certified);

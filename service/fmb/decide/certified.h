@@ -34,15 +34,9 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);
 
-/* The step that decides the verdict of a pair: the filter; its second pass; the open slabs in
- * doubles with bounds of their own; integers of fixed width; GMP. For tests and reports. */
-enum certified_path {
-    CERTIFIED_FILTER,
-    CERTIFIED_SECOND,
-    CERTIFIED_REFINED,
-    CERTIFIED_LIMBS,
-    CERTIFIED_EXACT
-};
+/* The step that decides the verdict of a pair: the filter; its second pass; integers of fixed
+ * width; GMP. For tests and reports. */
+enum certified_path { CERTIFIED_FILTER, CERTIFIED_SECOND, CERTIFIED_LIMBS, CERTIFIED_EXACT };
 
 /* Returns the verdict of a checked pair, and in *path the step that decided it. */
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);

@@ -9,9 +9,9 @@
  *
  * If outer and inner are too far apart, the exact end is computed in fixed-width integers for each
  * slab whose inner end is beyond the outer end of all. The result is the tightest doubles,
- * whichever slab gives the end, since rounding preserves order. This does not hold for frames with
- * errors: a slab that is missing in the rounded list, because its edges are parallel there, might
- * give the end.
+ * whichever slab gives the end, since rounding preserves order. Edges of frames with errors that
+ * are parallel as rounded need not be so as given, and any end may be that of their slab: its exact
+ * end is always computed.
  *
  * The slabs do not give the times of two faces that stay in one plane: those along its normal are 0
  * at all times. If operations round, their errors are above 0, so that no inner value is good; then
@@ -33,10 +33,18 @@ struct times {
     struct clip outer, inner; /* of tau */
 };
 
-static void cut(struct times *times, const struct inequality side[2], bool rounds)
+static void cut(struct times *times, const struct slab_value *slab, bool rounds)
 {
-    clip_both(&times->outer, &times->inner, &side[0], rounds);
-    clip_both(&times->outer, &times->inner, &side[1], rounds);
+    struct inequality side[2];
+    slab_inequalities(slab, side);
+    for (int i = 0; i < 2; i++)
+        clip_both(&times->outer, &times->inner, &side[i], rounds);
+}
+
+static bool good_end(const struct times *times, int end)
+{
+    return end ? times->outer.high - times->inner.high <= limit
+               : times->inner.low - times->outer.low <= limit;
 }
 
 /* Whether a product is found to be no larger (side 0) or no smaller (side 1) than x y; its error
@@ -60,132 +68,103 @@ static double seconds(double tau, double duration, int side)
 
 /* ---- Exact ends ---- */
 
-struct exact_end {
+struct exact_slab {
     mpz_t low, high, start, slope, scratch[2];
 };
 
-static void exact_end_each(struct exact_end *end, void (*call)(mpz_ptr))
+static void exact_slab_each(struct exact_slab *slab, void (*call)(mpz_ptr))
 {
-    call(end->low);
-    call(end->high);
-    call(end->start);
-    call(end->slope);
-    call(end->scratch[0]);
-    call(end->scratch[1]);
+    call(slab->low);
+    call(slab->high);
+    call(slab->start);
+    call(slab->slope);
+    call(slab->scratch[0]);
+    call(slab->scratch[1]);
 }
 
-/* The time at which the offset enters the slab (side 0) or leaves it, in seconds, rounded outward;
- * 0 or the duration where it does so before or after the window, or never. */
-static double exact_time(struct exact_end *end, int side, double duration)
+/* Turns the normal of a slab so that the offset rises along it. */
+static void turn(struct exact_slab *slab)
 {
-    int slope = mpz_sgn(end->slope);
-    if (slope == 0)
-        return side ? duration : 0;
-    mpz_ptr bound = (slope > 0) == (side == 1) ? end->high : end->low;
-    mpz_sub(bound, bound, end->start);
-    if (slope < 0) {
-        mpz_neg(bound, bound);
-        mpz_neg(end->slope, end->slope);
-    }
+    mpz_neg(slab->slope, slab->slope);
+    mpz_neg(slab->start, slab->start);
+    mpz_neg(slab->low, slab->low);
+    mpz_neg(slab->high, slab->high);
+    mpz_swap(slab->low, slab->high);
+}
+
+/* The time at which the offset, which rises, enters the slab (end 0) or leaves it, in seconds,
+ * rounded outward; 0 or the duration where it does so before or after the window. Overwrites the
+ * bound. */
+static double exact_time(struct exact_slab *slab, int end, double duration)
+{
+    mpz_ptr bound = end ? slab->high : slab->low;
+    mpz_sub(bound, bound, slab->start);
     if (mpz_sgn(bound) < 0)
-        return side ? duration : 0; /* sides are chosen so that only 'before' comes here */
-    if (mpz_cmp(bound, end->slope) > 0)
+        return 0; /* only entered: the pair is in contact */
+    if (mpz_cmp(bound, slab->slope) > 0)
         return duration;
     const struct dyadic window = dyadic_of(duration);
     mpz_mul_si(bound, bound, window.mantissa);
-    return integer_ratio_round(bound, end->slope, window.exponent, side ? ROUND_UP : ROUND_DOWN,
-                               end->scratch);
+    return integer_ratio_round(bound, slab->slope, window.exponent, end ? ROUND_UP : ROUND_DOWN,
+                               slab->scratch);
 }
 
 /* Whether the end of a slab might be beyond the one that surely holds for all, by more than may be
- * neglected. */
-static bool contends(const struct inequality slab[2], const struct times *times, int end)
+ * neglected. inexact: as in struct slabs_pair. */
+static bool contends(const struct slab_value *slab, bool inexact, const struct times *times,
+                     int end)
 {
     struct times own = {{0, 1}, {0, 1}};
+    if (slab->error == 0 && inexact)
+        return true;
     cut(&own, slab, true);
     return end ? own.inner.high < times->outer.high - limit
                : own.inner.low > times->outer.low + limit;
 }
 
-/* The slabs of a pair. */
-struct slabs {
-    int count;
-    struct slab_normal normal[SLABS_MAX];
-    struct inequality side[SLABS_MAX][2];
-};
-
-static void set_slabs(const struct slabs_pair *pair, bool rounds, struct slabs *out)
+/* Moves the ends that are not good to the exact times of the slabs that might be beyond them. */
+static void settle(const struct slab_value *slabs, int count, bool inexact,
+                   struct limbs_pair *limbs, const struct times *times, double duration,
+                   double contact[2])
 {
-    struct slab_value slab[SLABS_MAX];
-    out->count = slabs_list(pair, rounds, slab);
-    for (int i = 0; i < out->count; i++) {
-        out->normal[i] = slab[i].normal;
-        slab_inequalities(&slab[i], out->side[i]);
-    }
-}
-
-static void cut_all(const struct slabs *slabs, bool rounds, struct times *times)
-{
-    *times = (struct times){{0, 1}, {0, 1}};
-    for (int i = 0; i < slabs->count; i++)
-        cut(times, slabs->side[i], rounds);
-}
-
-static bool good_end(const struct times *times, int side)
-{
-    return side ? times->outer.high - times->inner.high <= limit
-                : times->inner.low - times->outer.low <= limit;
-}
-
-/* Looks again, alone, at those slabs on which an end that is not good depends. */
-static void refine(const struct slabs_pair *pair, const struct times *times, struct slabs *slabs)
-{
-    const bool open[2] = {!good_end(times, 0), !good_end(times, 1)};
-    for (int i = 0; i < slabs->count; i++)
-        if ((open[0] && contends(slabs->side[i], times, 0)) ||
-            (open[1] && contends(slabs->side[i], times, 1)))
-            slabs_refine(pair, slabs->normal[i], slabs->side[i]);
-}
-
-/* Moves an end to the exact time of each slab that might be beyond it. */
-static void settle(const struct slabs *slabs, struct limbs_pair *limbs, const struct times *times,
-                   int end, double duration, double *time)
-{
-    struct exact_end exact;
-    exact_end_each(&exact, mpz_init);
-    for (int i = 0; i < slabs->count; i++) {
-        if (!contends(slabs->side[i], times, end))
+    struct exact_slab exact;
+    exact_slab_each(&exact, mpz_init);
+    for (int i = 0; i < count; i++) {
+        bool open[2];
+        for (int end = 0; end < 2; end++)
+            open[end] = !good_end(times, end) && contends(&slabs[i], inexact, times, end);
+        if (!open[0] && !open[1])
             continue;
-        limbs_slab(limbs, slabs->normal[i], exact.low, exact.high, exact.start, exact.slope);
-        const double of_slab = exact_time(&exact, end, duration);
-        if (end ? of_slab < *time : of_slab > *time)
-            *time = of_slab;
+        limbs_slab(limbs, slabs[i].normal, exact.low, exact.high, exact.start, exact.slope);
+        if (mpz_sgn(exact.slope) == 0)
+            continue;
+        if (mpz_sgn(exact.slope) < 0)
+            turn(&exact);
+        if (open[0])
+            contact[0] = fmax(contact[0], exact_time(&exact, 0, duration));
+        if (open[1])
+            contact[1] = fmin(contact[1], exact_time(&exact, 1, duration));
     }
-    exact_end_each(&exact, mpz_clear);
+    exact_slab_each(&exact, mpz_clear);
 }
 
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2])
 {
-    struct slabs slabs;
-    struct times times;
+    struct slab_value slabs[SLABS_MAX];
+    struct times times = {{0, 1}, {0, 1}};
     struct limbs_pair limbs;
     if (pair->duration < least_duration)
         return false;
-    set_slabs(slabs_pair, rounds, &slabs);
-    cut_all(&slabs, rounds, &times);
-    if (rounds && (!good_end(&times, 0) || !good_end(&times, 1))) {
-        refine(slabs_pair, &times, &slabs);
-        cut_all(&slabs, rounds, &times);
-    }
+    const int count = slabs_list(slabs_pair, rounds, slabs);
+    for (int i = 0; i < count; i++)
+        cut(&times, &slabs[i], rounds);
     contact[0] = seconds(times.outer.low, pair->duration, 0);
     contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))
         return true;
-    if (!exact || slabs_pair->inexact || !limbs_prepare(pair, span, &limbs))
+    if (!exact || !limbs_prepare(pair, span, &limbs))
         return false;
-    for (int end = 0; end < 2; end++)
-        if (!good_end(&times, end))
-            settle(&slabs, &limbs, &times, end, pair->duration, &contact[end]);
+    settle(slabs, count, slabs_pair->inexact, &limbs, &times, pair->duration, contact);
     return true;
 }

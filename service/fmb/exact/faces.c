@@ -2,19 +2,26 @@
 
 #include "limbs.h"
 #include "prepared.h"
-#include "running_error.h"
 
-/* Returns whether the planes certainly cross, in doubles: some component of b is certainly not
- * orthogonal to the normal of a. */
+#include <math.h>
+
+/* Returns whether the planes certainly cross, in doubles: some component w of b is certainly not
+ * orthogonal to the normal of a. A monomial of [u v w] is rounded at most 6 times, so that the
+ * product is off by at most 6.01 u times the sum of their magnitudes, u = 2^-53; 2^-48 = 32 u also
+ * covers the rounding of that sum. Underflow: each of less than 2^6 operations adds less than
+ * 2^-1074, and is multiplied by at most 2^200 afterwards. */
 static bool certainly_cross(const struct world_frame *a, const struct world_frame *b)
 {
-    const struct running_error u = running_error_of(a->component[0]),
-                               v = running_error_of(a->component[1]);
-    const struct running_error normal = running_error_cross(&u, &v);
+    const double *u = a->component[0], *v = a->component[1];
     for (int i = 0; i < 2; i++) {
-        const struct running_error w = running_error_of(b->component[i]);
-        if (fabs(running_error_dot(normal.at, w.at)) >
-            running_error_bound(running_error_dot(normal.weight, w.weight)))
+        const double *w = b->component[i];
+        double product = 0, magnitudes = 0;
+        for (int k = 0; k < 3; k++) {
+            const int p = (k + 1) % 3, q = (k + 2) % 3;
+            product += (u[p] * v[q] - u[q] * v[p]) * w[k];
+            magnitudes += (fabs(u[p] * v[q]) + fabs(u[q] * v[p])) * fabs(w[k]);
+        }
+        if (fabs(product) > 0x1p-48 * magnitudes + 0x1p-660)
             return true;
     }
     return false;
@@ -23,13 +30,17 @@ static bool certainly_cross(const struct world_frame *a, const struct world_fram
 /* Returns the axis along which the projection of a face is largest, up to rounding. */
 static int projection_axis_of(const struct world_frame *frame)
 {
-    const struct running_error u = running_error_of(frame->component[0]),
-                               v = running_error_of(frame->component[1]);
-    const struct running_error normal = running_error_cross(&u, &v);
+    const double *u = frame->component[0], *v = frame->component[1];
+    double largest = -1;
     int axis = 0;
-    for (int i = 1; i < 3; i++)
-        if (fabs(normal.at[i]) > fabs(normal.at[axis]))
+    for (int i = 0; i < 3; i++) {
+        const int p = (i + 1) % 3, q = (i + 2) % 3;
+        const double size = fabs(u[p] * v[q] - u[q] * v[p]);
+        if (size > largest) {
+            largest = size;
             axis = i;
+        }
+    }
     return axis;
 }
 

@@ -90,16 +90,14 @@
  * other drift. Its bounds differ from those of S by less than 2^-1072 along every unit vector, and
  * the list without the slab is complete for S'. So the proof of the filter (slabs.h) holds with an
  * error of the frames that is larger by 2^-1072: all other slabs hold the offset farther inside
- * than that, since the unused part of the bound is more than 2^-53 T > 2^-260 of a distance. It
- * also holds for slabs decided one by one: such a pair spans too many bits for integers
- * (limbs_prepare), and a slab with a bound of its own leaves 2^-660 of the gap
- * (running_error_bound), 2^-1064 of the distance. Along axes with known signs (slabs_exact.h) the
- * velocities are equal, and nothing underflows. */
+ * than that, since the unused part of the bound is more than 2^-53 T > 2^-260 of a distance. Such a
+ * pair spans too many bits for integers (limbs_prepare), so that its slabs are never decided one by
+ * one. Along axes with known signs (slabs_exact.h) the velocities are equal, and nothing
+ * underflows. */
 #include "slabs.h"
 
 #include "prepared.h"
 #include "slabs_evaluate.h"
-#include "running_error.h"
 
 #include <math.h>
 
@@ -228,120 +226,9 @@ int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out
     return (int) (evaluate_list(pair, rounds, out).next - out);
 }
 
-/* ---- A single slab ---- */
-
-/* An edge by number, with its running error. */
-static struct running_error edge_of(const struct slabs_pair *pair, int number)
-{
-    if (number == SLABS_DRIFT)
-        return running_error_of(pair->motion.drift);
-    const struct world_frame *frame = number < SLABS_EDGE_OF_B ? &pair->a : &pair->b;
-    const int e = number % SLABS_EDGES;
-    if (e < frame->dim)
-        return running_error_of(frame->component[e]);
-    const int p = frame->dim == 2 ? 0 : next(e % 3), q = frame->dim == 2 ? 1 : next(p);
-    const struct running_error from = running_error_of(frame->component[p]),
-                               to = running_error_of(frame->component[q]);
-    return running_error_sum(&to, -1, &from);
-}
-
-static double above_zero(double x)
-{
-    return x > 0 ? x : 0;
-}
-
-static double larger(double x, double y)
-{
-    return x > y ? x : y;
-}
-
-/* A number and a bound on its error. */
-struct bounded {
-    double value, error;
-};
-
-/* normal . w */
-static struct bounded bounded_dot(const struct running_error *normal, const double w[FMB_DIM_MAX])
-{
-    const struct running_error vector = running_error_of(w);
-    return (struct bounded){running_error_dot(normal->at, vector.at),
-                            running_error_bound(running_error_dot(normal->weight, vector.weight))};
-}
-
-/* The error of a value whose true one is in [low, high]. */
-static double middle_error(double low, double value, double high)
-{
-    return larger(value - low, high - value);
-}
-
-/* How far a frame extends in the direction sign * normal, from its components' products x with the
- * normal: the largest of 0 and of all sign * x (simplex), or the sum of those that are positive
- * (cuboid). A component that surely does not count brings no error. Subtractions and sums round by
- * less than the margin that running_error_bound() leaves for them. */
-static struct bounded support(const struct world_frame *frame, const struct bounded x[FMB_DIM_MAX],
-                              double sign)
-{
-    double value = 0, low = 0, high = 0;
-    for (int i = 0; i < frame->count; i++) {
-        const double at = sign * x[i].value;
-        const double below = above_zero(at - x[i].error), above = above_zero(at + x[i].error);
-        if (frame->shape == FMB_CUBOID) {
-            value += above_zero(at);
-            low += above > 0 ? below - above_zero(at) : 0;
-            high += above > 0 ? above - above_zero(at) : 0;
-        } else {
-            value = larger(value, at);
-            low = larger(low, below);
-            high = larger(high, above);
-        }
-    }
-    return (struct bounded){
-        value, frame->shape == FMB_CUBOID ? larger(-low, high) : middle_error(low, value, high)};
-}
-
 void slab_inequalities(const struct slab_value *slab, struct inequality out[2])
 {
     const double start = slab->middle - slab->swing, slope = 2 * slab->swing;
-    out[0] = (struct inequality){start - slab->low, slope, slab->error, slab->error};
-    out[1] = (struct inequality){slab->high - start, -slope, slab->error, slab->error};
-}
-
-/* An upper bound on the length of an edge. */
-static double size_of(const struct slabs_pair *pair, int number)
-{
-    if (number == SLABS_DRIFT)
-        return (fabs(pair->motion.drift[0]) + fabs(pair->motion.drift[1])) +
-               fabs(pair->motion.drift[2]);
-    const struct world_frame *frame = number < SLABS_EDGE_OF_B ? &pair->a : &pair->b;
-    const int e = number % SLABS_EDGES;
-    if (e < frame->dim)
-        return prepared_size(frame->summary, e);
-    const int p = frame->dim == 2 ? 0 : next(e % 3), q = frame->dim == 2 ? 1 : next(p);
-    return prepared_size(frame->summary, p) + prepared_size(frame->summary, q);
-}
-
-/* [0], below: start - low, where -low is how far A extends against the normal, plus how far B
- * extends along it. [1], above: the same with the opposite normal. */
-void slabs_refine(const struct slabs_pair *pair, struct slab_normal edges, struct inequality out[2])
-{
-    const bool plane = pair->a.dim == 2;
-    const struct running_error u = edge_of(pair, edges.u), v = edge_of(pair, edges.v);
-    const struct running_error normal =
-        plane ? running_error_perpendicular(&u) : running_error_cross(&u, &v);
-    const struct bounded start = bounded_dot(&normal, pair->motion.offset);
-    const struct bounded slope = bounded_dot(&normal, pair->motion.drift);
-    const double scale = size_of(pair, edges.u) * (plane ? 1 : size_of(pair, edges.v));
-    const double placing = pair->inexact ? scale * pair->placing : 0;
-    struct bounded a[FMB_DIM_MAX], b[FMB_DIM_MAX];
-    for (int i = 0; i < pair->a.count; i++)
-        a[i] = bounded_dot(&normal, pair->a.component[i]);
-    for (int i = 0; i < pair->b.count; i++)
-        b[i] = bounded_dot(&normal, pair->b.component[i]);
-    for (int side = 0; side < 2; side++) {
-        const double sign = side ? -1 : 1;
-        const struct bounded of_a = support(&pair->a, a, -sign), of_b = support(&pair->b, b, sign);
-        out[side] = (struct inequality){
-            sign * start.value + (of_a.value + of_b.value), sign * slope.value,
-            start.error + (of_a.error + of_b.error) + placing, slope.error + placing};
-    }
+    out[0] = (struct inequality){start - slab->low, slope, slab->error};
+    out[1] = (struct inequality){slab->high - start, -slope, slab->error};
 }

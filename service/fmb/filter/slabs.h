@@ -126,9 +126,4 @@ int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out
  * below its lower bound ([0]), and while it is not above its upper bound ([1]). */
 void slab_inequalities(const struct slab_value *slab, struct inequality out[2]);
 
-/* The same for a single slab, from its normal, with error bounds computed for each of its numbers.
- * These cost more, and are small where the numbers are small. */
-void slabs_refine(const struct slabs_pair *pair, struct slab_normal normal,
-                  struct inequality out[2]);
-
 #endif

@@ -1,12 +1,12 @@
 /* Clips the segment s in [0,1] by inequalities c + s g >= 0 whose coefficients have errors.
  *
- * Let the true c lie within e of the given one, and the true g within d of the given one. For every
- * s >= 0 the true inequality then holds if (c - e) + s (g - d) >= 0, and it holds only if
- * (c + e) + s (g + d) >= 0. Clipping with the larger coefficients gives an outer part, which
- * contains the true part of the segment; clipping with the smaller ones gives an inner part, which
- * the true part contains. Quotients round outward for the outer part and inward for the inner one.
+ * Let the true c and g lie within e of the given ones. For every s >= 0 the true inequality then
+ * holds if (c - e) + s (g - e) >= 0, and it holds only if (c + e) + s (g + e) >= 0. Clipping with
+ * the larger coefficients gives an outer part, which contains the true part of the segment;
+ * clipping with the smaller ones gives an inner part, which the true part contains. Quotients round
+ * outward for the outer part and inward for the inner one.
  *
- * The functions are inline because they are the inner loop of contacts and boxes. */
+ * The functions are inline because they are the inner loop of contacts. */
 #ifndef FMB_CLIP_H
 #define FMB_CLIP_H
 
@@ -58,32 +58,17 @@ static inline void clip_cut(struct clip *clip, double c, double g, bool outer, b
     }
 }
 
-/* The inequality c + s g >= 0. The true c lies within c_error of c, the true g within g_error of
- * g. */
+/* The inequality c + s g >= 0. The true c lies within error of c, the true g within error of g. */
 struct inequality {
-    double c, g, c_error, g_error;
+    double c, g, error;
 };
 
-/* Whether the true inequality certainly holds nowhere on [0,1]. Most inequalities are decided by
- * this or by always_holds(), without a division. */
-static inline bool never_holds(const struct inequality *x)
-{
-    const double c = x->c + x->c_error;
-    return c < 0 && c + (x->g + x->g_error) < 0;
-}
-
-/* Whether the true inequality certainly holds strictly at some s in [0,1]. */
-static inline bool surely_holds(const struct inequality *x)
-{
-    const double c = x->c - x->c_error;
-    return c > 0 || c + (x->g - x->g_error) > 0;
-}
-
-/* Whether the true inequality certainly holds everywhere on [0,1]. */
+/* Whether the true inequality certainly holds everywhere on [0,1]. Most inequalities are decided by
+ * this, without a division. */
 static inline bool always_holds(const struct inequality *x)
 {
-    const double c = x->c - x->c_error;
-    return c >= 0 && c + (x->g - x->g_error) >= 0;
+    const double c = x->c - x->error;
+    return c >= 0 && c + (x->g - x->error) >= 0;
 }
 
 /* Clips the outer and the inner part of a segment. rounds: false if c and g are exact. */
@@ -92,8 +77,8 @@ static inline void clip_both(struct clip *outer, struct clip *inner, const struc
 {
     if (always_holds(x))
         return;
-    clip_cut(outer, x->c + x->c_error, x->g + x->g_error, true, rounds);
-    clip_cut(inner, x->c - x->c_error, x->g - x->g_error, false, rounds);
+    clip_cut(outer, x->c + x->error, x->g + x->error, true, rounds);
+    clip_cut(inner, x->c - x->error, x->g - x->error, false, rounds);
 }
 
 #endif
