@@ -353,6 +353,27 @@ static void edges_may_be_parallel_in_doubles_only(void **state)
     }
 }
 
+/* Boxes that touch along an axis, whose true centres, position + centre, are not doubles. */
+static void boxes_touch_about_centres_that_round(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int axis = 0; axis < dim; axis++)
+            for (int nudge = -1; nudge <= 1; nudge++) {
+                struct question question = {.a = {.dim = dim, .shape = FMB_BOX}, .duration = 1};
+                for (int i = 0; i < dim; i++) {
+                    question.a.component[i][i] = i == axis ? 0x1p-6 : 1;
+                    question.a.local[i] = 0.2;
+                    question.a.origin[i] = 0.1;
+                }
+                question.b = question.a;
+                question.b.origin[axis] += 0x1p-6 + nudge * 0x1p-56; /* exactly */
+                assert_int_equal(referee_assert(&question), nudge < 0    ? FMB_OVERLAPPING
+                                                            : nudge == 0 ? FMB_TOUCHING
+                                                                         : FMB_SEPARATED);
+            }
+}
+
 /* ---- By every way to ask ---- */
 
 enum { PAIRS = 150 };
@@ -762,6 +783,7 @@ int main(void)
 {
     const struct CMUnitTest others[] = {
         cmocka_unit_test(edges_may_be_parallel_in_doubles_only),
+        cmocka_unit_test(boxes_touch_about_centres_that_round),
         cmocka_unit_test(every_way_to_ask_gives_the_same),
         cmocka_unit_test(scenes_may_turn_by_quarters),
         cmocka_unit_test(quaternions_may_have_any_length),

@@ -196,7 +196,8 @@ struct pool {
 
 /* What lanes beyond the pairs read. */
 static const struct fmb_placement at_rest;
-static const struct fmb_prepared idle = {.placement = &at_rest};
+static const struct fmb_frame nothing;
+static const struct fmb_prepared idle = {.frame = &nothing, .placement = &at_rest};
 
 static double draw_duration(struct draw *draw)
 {

@@ -65,8 +65,9 @@ struct batch_block {
 /* Substitutes for a frame whose index is out of range, and for one that is not prepared. Kernels
  * may read them in unused lanes. */
 static const struct fmb_placement nowhere;
-static const struct fmb_prepared missing = {.placement = &nowhere};
-static const struct fmb_prepared unprepared = {.placement = &nowhere};
+static const struct fmb_frame nothing;
+static const struct fmb_prepared missing = {.frame = &nothing, .placement = &nowhere};
+static const struct fmb_prepared unprepared = {.frame = &nothing, .placement = &nowhere};
 
 static inline const struct fmb_prepared *frame_at(const struct fmb_batch *batch, unsigned index)
 {

@@ -12,18 +12,59 @@ INLINE lanes_bits bits_of(uint64_t bits)
     return out + bits;
 }
 
+/* The flags of prepared frames from flag on: its bit is the lowest. */
+INLINE lanes_bits flags_from(const struct frame_lanes *frame, unsigned flag)
+{
+    return frame->summary / ((uint64_t) flag << 3 * PREPARED_SIZE_BITS);
+}
+
+/* The lanes with PREPARED_CENTRED. */
+INLINE lanes_mask is_centred(const struct frame_lanes *frame)
+{
+    return (flags_from(frame, PREPARED_CENTRED) & bits_of(1)) != 0;
+}
+
+/* The axes along which the extent of a frame is known exactly. */
+INLINE lanes_bits known_axes(const struct kernel_traits traits, const struct frame_lanes *frame)
+{
+    const lanes_bits all = bits_of(traits.dim == 2 ? 3 : 7);
+    const lanes_bits components = flags_from(frame, PREPARED_COMPONENTS_EXACT_X) & all;
+    return (flags_from(frame, PREPARED_EXACT_X) & all) |
+           (components & lanes_bits_where(is_centred(frame), all));
+}
+
+INLINE struct exact_extent extent_along(const struct kernel_traits traits, int which,
+                                        const struct frame_lanes *frame, bool any_centred, int axis)
+{
+    struct exact_extent out =
+        exact_extent_of(traits, which, frame->component, frame->origin[axis], axis);
+    if (traits.simplex[which] || !any_centred)
+        return out;
+    double at[2][LANES];
+    for (int lane = 0; lane < LANES; lane++) {
+        const struct fmb_prepared *prepared = frame->prepared[lane];
+        at[0][lane] = prepared->placement->position[axis];
+        at[1][lane] = prepared->frame->centre[axis];
+    }
+    lanes position, centre;
+    memcpy(&position, at[0], sizeof position);
+    memcpy(&centre, at[1], sizeof centre);
+    set_centred(is_centred(frame), position, centre, &out);
+    return out;
+}
+
 /* Sets pair->signed_axes; returns the largest gap along these axes. */
 INLINE lanes set_signs(const struct kernel_traits traits, const struct frame_lanes *a,
                        const struct frame_lanes *b, struct pair_lanes *pair)
 {
     lanes gap = lanes_of(-INFINITY);
-    lanes_bits axes =
-        (a->summary & b->summary) / ((uint64_t) PREPARED_EXACT_X << 3 * PREPARED_SIZE_BITS);
-    axes &= bits_of(traits.dim == 2 ? 3 : 7);
+    lanes_bits axes = known_axes(traits, a) & known_axes(traits, b);
+    const bool any = lanes_mask_bits(is_centred(a) | is_centred(b));
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        const struct exact_sum own =
-            axis_gap(traits, a->component, a->origin, b->component, b->origin, axis);
+        const struct exact_extent of_a = extent_along(traits, 0, a, any, axis);
+        const struct exact_extent of_b = extent_along(traits, 1, b, any, axis);
+        const struct exact_sum own = axis_gap(&of_a, &of_b, any);
         lanes_mask open = own.rounds != 0;
         if (traits.drifts)
             open |= a->velocity[axis] != b->velocity[axis];

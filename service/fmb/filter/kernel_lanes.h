@@ -156,6 +156,7 @@ struct frame_lanes {
     lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
     lanes error;
     lanes_bits summary;
+    const struct fmb_prepared *prepared[LANES]; /* of the second pass */
 };
 
 /* Splits the words of prepared frames (prepared.h) into fields. */
@@ -229,6 +230,8 @@ INLINE void gather(const struct kernel_traits traits, const double *const frame[
     if (in_fours < used)
         words[used - 1] = gather_one(frame, used - 1);
     set_frame_lanes(traits, words, out);
+    if (EXACT)
+        memcpy(out->prepared, frame, sizeof out->prepared);
     if (traits.drifts)
         gather_velocity(traits, frame, out);
 }

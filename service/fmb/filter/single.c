@@ -74,6 +74,8 @@ INLINE void gather_frame(const struct kernel_traits traits, const struct fmb_pre
     for (int w = 0; w < word_count(traits); w++)
         words[w] = in_all_lanes(((const double *) frame)[w]);
     set_frame_lanes(traits, words, out);
+    for (int lane = 0; lane < LANES; lane++)
+        out->prepared[lane] = frame;
     if (!traits.drifts)
         return;
     UNROLL(3)

@@ -17,28 +17,32 @@
  * enough. Then the gaps are exact, and so is the verdict.
  *
  * Axes. Let the coordinates of both frames along some axis be exact (PREPARED_EXACT_X), even if the
- * frames have errors (a box that is rotated about this axis), and let the pair not drift along it.
- * The gap along the axis is a sum of a few doubles. The rounding errors of sums are doubles
- * (Knuth), and so the sign of this gap is known exactly. Call these axes X, and let every slab of
- * the rounded S whose normal is not parallel to one of X hold the offset w farther inside than the
- * error e of the frames. Then the pair is
+ * frames have errors (a box that is rotated about this axis), or be sums of doubles that are known
+ * (PREPARED_CENTRED), and let the pair not drift along it. The gap along the axis is a sum of a few
+ * doubles. The rounding errors of sums are doubles (Knuth), and so the sign of this gap is known
+ * exactly. Call these axes X, and let every slab of the rounded S whose normal is not parallel to
+ * one of X hold the offset w farther inside than the error e of the frames. Then the pair is
  *
  *     SEPARATED    if a gap along X is > 0,
  *     OVERLAPPING  if all gaps along X are < 0,
  *     TOUCHING     otherwise.
  *
- * The first holds because a gap > 0 along any direction separates. Proof of the others. Let K be
- * the axes of X with gap 0, and F the part of the rounded S on all of their bounds: a face of S, in
- * the flat L = {x : x_k = w_k for k in K}, that contains w. Let z be any vector along L whose part
- * orthogonal to X has a length of at most e, and whose coordinates along X are at most d. For small
- * d > 0, w + z lies in F: the bounds of the slabs that are not parallel to X are farther than e
- * away; those of the others are farther than 0, or parallel to L. So the support function of F in
- * the direction n, a unit vector along L, is at least n . w + e |n'| + d |n''|, where n' is the
- * part of n orthogonal to X and n'' that along X. The true S has points near all vertices of F,
- * each moved by e at most, and not moved along X. So these are points of L too, and the support
- * function of their hull is at least n . w for every n: the hull contains w, and so does the true
- * S. If K is empty, L is the space, and the slabs that are not parallel to X leave more than e: w
- * is in the interior of the true S. Otherwise w lies on its boundary.
+ * The first holds because a gap > 0 along any direction separates. Proof of the others. For a unit
+ * vector n let n' be its part orthogonal to X, and n'' that along X. The origin of a box may be
+ * rounded along X (PREPARED_CENTRED), by r; let f be the error apart from that: |r|^2 + f^2 <= e^2.
+ * With origins that are not rounded along X, the distance of w from the bound of a slab with the
+ * normal n changes by at most |n''| |r|, so that more than e - |n''| |r| >= |n'| f of it is left.
+ * Let K be the axes of X with gap 0, and F the part of the S of these origins on all of their
+ * bounds: a face of S, in the flat L = {x : x_k = w_k for k in K}, that contains w. Let z be any
+ * vector along L whose part orthogonal to X has a length of at most f, and whose coordinates along
+ * X are at most d. For small d > 0, w + z lies in F: the bounds of the slabs that are not parallel
+ * to X are farther than |n'| f away; those of the others are farther than 0, or parallel to L. So
+ * the support function of F in the direction n, a unit vector along L, is at least n . w + f |n'| +
+ * d |n''|. The true S has points near all vertices of F, each moved by f at most, and not moved
+ * along X. So these are points of L too, and the support function of their hull is at least n . w
+ * for every n: the hull contains w, and so does the true S. If K is empty, L is the space, and the
+ * slabs that are not parallel to X leave more than |n'| f: w is in the interior of the true S.
+ * Otherwise w lies on its boundary.
  *
  * TOUCHING is only given if S has an interior: never for two faces. */
 #ifndef FMB_SLABS_EXACT_H
@@ -95,19 +99,19 @@ INLINE void add_exactly(struct exact_sum *sum, lanes x)
     sum->value = value;
 }
 
-/* From the origin of a frame to its ends along an axis; rounds: the lanes in which these are not
- * exact. */
+/* The extent of a frame along an axis: from origin + low to origin + high, origin being origin +
+ * remainder; rounds: the lanes in which these are not exact. */
 struct exact_extent {
-    lanes low, high;
+    lanes origin, remainder, low, high;
     lanes_mask rounds;
 };
 
 /* In most cuboids one component extends along the axis. Then no sum of components rounds. */
 INLINE struct exact_extent exact_extent_of(const struct kernel_traits traits, int which,
-                                           const lanes component[3][3], int axis)
+                                           const lanes component[3][3], lanes origin, int axis)
 {
     lanes_mask some = {0};
-    struct exact_extent out = {lanes_of(0), lanes_of(0), some};
+    struct exact_extent out = {origin, lanes_of(0), lanes_of(0), lanes_of(0), some};
     UNROLL(3)
     for (int i = 0; i < component_count(traits, which); i++) {
         const lanes c = component[i][axis];
@@ -126,21 +130,35 @@ INLINE struct exact_extent exact_extent_of(const struct kernel_traits traits, in
     return out;
 }
 
-/* The gap along an axis in value; rounds: the lanes in which its sign is not known. */
-INLINE struct exact_sum axis_gap(const struct kernel_traits traits, const lanes component_a[3][3],
-                                 const lanes origin_a[3], const lanes component_b[3][3],
-                                 const lanes origin_b[3], int axis)
+/* The lanes of boxes that are given by their centre: position + centre. */
+INLINE void set_centred(lanes_mask centred, lanes position, lanes centre, struct exact_extent *out)
 {
-    const struct exact_extent a = exact_extent_of(traits, 0, component_a, axis);
-    const struct exact_extent b = exact_extent_of(traits, 1, component_b, axis);
-    const lanes offset = origin_b[axis] - origin_a[axis];
-    const lanes error = error_of_sum(origin_b[axis], -origin_a[axis], offset);
-    struct exact_sum above = {offset, error, a.rounds | b.rounds};
+    const lanes sum = position + centre, half = 0.5 * (out->high - out->low);
+    out->origin = lanes_select(centred, sum, out->origin);
+    out->remainder = lanes_select(centred, error_of_sum(position, centre, sum), out->remainder);
+    out->low = lanes_select(centred, -half, out->low);
+    out->high = lanes_select(centred, half, out->high);
+}
+
+/* The gap along an axis in value; rounds: the lanes in which its sign is not known. any: some
+ * remainder is not 0. */
+INLINE struct exact_sum axis_gap(const struct exact_extent *a, const struct exact_extent *b,
+                                 bool any)
+{
+    const lanes offset = b->origin - a->origin;
+    const lanes error = error_of_sum(b->origin, -a->origin, offset);
+    struct exact_sum above = {offset, error, a->rounds | b->rounds};
     struct exact_sum below = {-offset, -error, above.rounds};
-    add_exactly(&above, b.low);
-    add_exactly(&above, -a.high);
-    add_exactly(&below, a.low);
-    add_exactly(&below, -b.high);
+    if (any) {
+        add_exactly(&above, b->remainder);
+        add_exactly(&above, -a->remainder);
+        add_exactly(&below, a->remainder);
+        add_exactly(&below, -b->remainder);
+    }
+    add_exactly(&above, b->low);
+    add_exactly(&above, -a->high);
+    add_exactly(&below, a->low);
+    add_exactly(&below, -b->high);
     above.value = lanes_max(above.value + above.remainder, below.value + below.remainder);
     above.rounds |= below.rounds; /* of either */
     return above;

@@ -152,6 +152,23 @@ static void rotate_and_trim(const struct rotation_matrix *rotation, const double
             out[axis] = 0;
 }
 
+/* Returns PREPARED_CENTRED or 0. exact: the axes along which the origin is exact, as set_numbers()
+ * returns them. An exact row of the rotation is plus or minus a unit vector. */
+static unsigned centred_of(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
+                           unsigned exact)
+{
+    double turned[FMB_DIM_MAX];
+    bool rounded = false, same = true;
+    rotation_apply(rotation, frame->centre, turned);
+    for (int axis = 0; axis < frame->dim; axis++) {
+        if (!rotation->axis_exact[axis])
+            continue;
+        rounded = rounded || !(exact & (unsigned) PREPARED_EXACT_X << axis);
+        same = same && turned[axis] == frame->centre[axis];
+    }
+    return rounded && same ? PREPARED_CENTRED : 0;
+}
+
 /* Sets the world coordinates of a frame and their error. Returns which of them are exact, as flags:
  * PREPARED_EXACT_X and so on. */
 INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
@@ -177,7 +194,7 @@ INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation
     if (!is_zero(frame->origin))
         set_origin(frame, rotation, position, out, &exact);
     out->error *= 1 + 0x1p-40; /* for its own rounding */
-    return exact;
+    return frame->shape == FMB_BOX ? exact | centred_of(frame, rotation, exact) : exact;
 }
 
 /* Returns the summary of a placed frame: that of the frame, updated for its placement. exact: as

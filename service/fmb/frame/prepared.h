@@ -34,7 +34,11 @@ enum {
      * three bits are set, and not all, the frame is rotated about that axis, and no coordinate was
      * trimmed. The other two coordinates of a component are then off by less than 18.3 u of the
      * length that the two have together (rotation.h, 4 and 5): if both are 0, they truly are. */
-    PREPARED_COMPONENTS_EXACT_X = 1 << 11
+    PREPARED_COMPONENTS_EXACT_X = 1 << 11,
+    /* A box whose origin is rounded along an axis of exact components. Along each axis of exact
+     * components it extends from position + centre, which are those of its placement and of its
+     * frame, by half of a component to either side. */
+    PREPARED_CENTRED = 1 << 14
 };
 
 /* Indices of the 8-byte words of struct fmb_prepared; the summary is word 0. In 2D the velocity
