@@ -30,9 +30,23 @@ struct job *jobs_take(struct jobs *jobs, int client)
         job++;
     job->client = client;
     job->used_ns = 0;
+    job->number = ++jobs->taken;
+    jobs->last = job;
     jobs->of_client[client] = job;
     jobs->free--;
     return job;
+}
+
+/* The job in progress that was taken last; NULL: there is none. */
+static const struct job *find_last(const struct jobs *jobs)
+{
+    const struct job *last = NULL;
+    for (int i = 0; i < JOBS; i++) {
+        const struct job *job = &jobs->job[i];
+        if (job->client >= 0 && (!last || job->number > last->number))
+            last = job;
+    }
+    return last;
 }
 
 void jobs_give_back(struct jobs *jobs, struct job *job)
@@ -40,11 +54,14 @@ void jobs_give_back(struct jobs *jobs, struct job *job)
     jobs->of_client[job->client] = NULL;
     job->client = -1;
     jobs->free++;
+    if (job == jobs->last)
+        jobs->last = find_last(jobs);
 }
 
-static bool can_stop(const struct job *job)
+static bool can_stop(const struct jobs *jobs, const struct job *job)
 {
-    return job->used_ns > JOBS_PATIENCE_NS || (!job->is_pair && scene_job_has_answers(job->scene));
+    const int64_t patience_ns = job == jobs->last ? JOBS_BRIEF_NS : JOBS_PATIENCE_NS;
+    return job->used_ns > patience_ns || (!job->is_pair && scene_job_has_answers(job->scene));
 }
 
 struct job *jobs_longest(struct jobs *jobs)
@@ -52,7 +69,8 @@ struct job *jobs_longest(struct jobs *jobs)
     struct job *longest = NULL;
     for (int i = 0; i < JOBS; i++) {
         struct job *job = &jobs->job[i];
-        if (job->client >= 0 && can_stop(job) && (!longest || job->used_ns > longest->used_ns))
+        if (job->client >= 0 && can_stop(jobs, job) &&
+            (!longest || job->used_ns > longest->used_ns))
             longest = job;
     }
     return longest;

@@ -17,11 +17,14 @@ struct job {
     bool is_pair;
     int client;      /* -1: the job is free */
     int64_t used_ns; /* time spent on it so far */
+    int64_t number;  /* jobs are numbered in the order in which they are taken, from 1 */
 };
 
 struct jobs {
     struct job job[JOBS];
     int free;                                     /* number of free jobs */
+    int64_t taken;                                /* number of jobs taken so far */
+    const struct job *last;                       /* in progress, taken last; NULL: none */
     struct job *of_client[SCHEDULER_CLIENTS + 1]; /* [client] NULL: none */
 };
 
@@ -40,8 +43,11 @@ struct job *jobs_take(struct jobs *jobs, int client);
 void jobs_give_back(struct jobs *jobs, struct job *job);
 
 /* The job that has used most time, among those that can be stopped: scenes with at least one pair
- * answered, and any job that has used more than JOBS_PATIENCE_NS. NULL: there is none. */
+ * answered, any job that has used more than JOBS_PATIENCE_NS, and of the jobs in progress the one
+ * taken last if it has used more than JOBS_BRIEF_NS. So long jobs cannot keep short ones from
+ * beginning: all but one of them go on, and the others take turns. NULL: there is none. */
 #define JOBS_PATIENCE_NS INT64_C(1000000000)
+#define JOBS_BRIEF_NS INT64_C(5000000)
 struct job *jobs_longest(struct jobs *jobs);
 
 #endif

@@ -159,10 +159,18 @@ static void repeat(struct requests *requests, struct request *request)
 /* ---- Results ---- */
 
 /* Any result shows that a service is there, also one of a query that is not under way any more. */
+static void note_service(struct requests *requests)
+{
+    requests->received_at = clock_ns();
+    requests->outage = false;
+}
+
+/* Only the result of a request under way shows that the service gets on with the others: of these
+ * there is a limited number, whereas other results may be forged without end. */
 static void note_received(struct requests *requests, enum fmb_client_kind kind)
 {
-    requests->received_at = requests->pace[kind].received_at = clock_ns();
-    requests->outage = false;
+    note_service(requests);
+    requests->pace[kind].received_at = requests->received_at;
 }
 
 /* The result of a repeated query is not measured: which of its sendings it answers is unknown. */
@@ -213,7 +221,7 @@ void requests_take(struct requests *requests, const struct request_result *resul
     struct request *request = find(requests, result);
     if (!request) {
         requests->counts.contradicting += recent_contradicts(&requests->recent, result);
-        note_received(requests, result->kind);
+        note_service(requests);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_received(requests, result->kind);
         pause_request(request);

@@ -64,7 +64,7 @@ struct request {
 struct request_pace {
     int64_t mean, deviation; /* 0: no result so far */
     int64_t retry;           /* first interval of the next query */
-    int64_t received_at;     /* time of the last result */
+    int64_t received_at;     /* time of the last result of a request under way */
     int64_t overtaken_at;    /* newest time of first sending among the requests that have results */
     int64_t oldest;          /* number of the oldest request under way */
 };

@@ -72,6 +72,7 @@ struct record_bodies {
     bool own; /* the last message is a request of this recorder, or the answer to one */
     struct definitions *young, *old; /* the known bodies: each up to half of the bytes */
     size_t used_again;               /* number of old bodies that are also in young */
+    bool made_space;                 /* for the last message */
     struct handle_entry *defined;    /* set: handles that the file defines */
     struct handle_entry *wanted;     /* set: handles to be requested, or under way */
     struct waiting waiting[WAITING_MAX];
@@ -125,17 +126,31 @@ void record_bodies_close(struct record_bodies *bodies)
 
 /* ---- Known bodies ---- */
 
-/* If young is full, drops the old bodies: they have not been used since young was empty. */
-static void make_space(struct record_bodies *bodies)
+static bool is_full(const struct record_bodies *bodies)
 {
-    if (definitions_bytes(bodies->young) < RECORD_BODIES_BYTES / 2)
-        return;
+    return definitions_bytes(bodies->young) >= RECORD_BODIES_BYTES / 2;
+}
+
+/* Drops the old bodies: they have not been used since young was empty. */
+static void drop_old(struct record_bodies *bodies)
+{
     bodies->counts.dropped +=
         (int64_t) definitions_count(bodies->old) - (int64_t) bodies->used_again;
     definitions_close(bodies->old);
     bodies->old = bodies->young;
     bodies->young = definitions_open();
     bodies->used_again = 0;
+}
+
+/* Makes space if young is full, but once for each message: the bodies that the message has named
+ * before are old then, and are still to be defined. Until the next message young may exceed its
+ * half, by the size of about two messages. */
+static void make_space(struct record_bodies *bodies)
+{
+    if (bodies->made_space || !is_full(bodies))
+        return;
+    drop_old(bodies);
+    bodies->made_space = true;
 }
 
 static void add_body(struct record_bodies *bodies, const struct geometry *geometry)
@@ -287,6 +302,9 @@ const char *record_bodies_take(struct record_bodies *bodies, enum log_kind kind,
     const char *error = read_message(bodies, kind, bytes, (uint32_t) size);
     bodies->named.count = bodies->unknown.count = 0;
     bodies->own = false;
+    bodies->made_space = false;
+    if (is_full(bodies))
+        drop_old(bodies);
     if (!error && size <= QUERY_BYTES_MAX)
         take_message(bodies, kind);
     return error;

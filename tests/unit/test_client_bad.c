@@ -211,6 +211,44 @@ static void test_a_service_that_stays_busy_is_given_up(void **state)
     assert_in_range(refusals, 100, 300);
 }
 
+/* Results under numbers that no query has come without end. */
+static bool receive_a_wrong_number(void *user)
+{
+    struct requests *requests = *(struct requests **) user;
+    const struct request_result wrong = {
+        .kind = FMB_CLIENT_DEFINITION, .status = FMB_OK, .detail = "", .number = 1000};
+    requests_take(requests, &wrong);
+    return true;
+}
+
+static void wait_a_millisecond(void *user, int other_fd, int timeout_ms)
+{
+    (void) user, (void) other_fd, (void) timeout_ms;
+    nanosleep(&(struct timespec){0, 1000000}, NULL);
+}
+
+static void test_results_without_a_query_do_not_prolong_others(void **state)
+{
+    (void) state;
+    enum { MS = 1000000, TIMEOUT = 20 * MS, TRIES = 3 };
+    static struct requests requests, *forged = &requests;
+    int status = FMB_OK;
+    requests.transport = (struct request_transport){&forged, publish_nothing, wait_a_millisecond,
+                                                    receive_a_wrong_number};
+    requests.timeout_ns = TIMEOUT;
+    requests.tries = TRIES;
+    requests_forget_pace(&requests);
+    struct request *request =
+        request_begin(&requests, FMB_CLIENT_DEFINITION, REQUEST_IDS_END, note_status, &status);
+    request->size = REQUEST_IDS_END;
+    request_send(&requests, request);
+    const int64_t begin = clock_ns();
+    while (requests.count > 0 && clock_ns() < begin + 100 * (int64_t) TIMEOUT)
+        requests_step(&requests, -1, INT64_MAX);
+    assert_int_equal(status, FMB_CLIENT_NO_ANSWER);
+    assert_true(requests.counts.repeated > 0);
+}
+
 /* ---- No service ---- */
 
 struct tally {
@@ -1327,6 +1365,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_results_of_another_kind_are_ignored),
         cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
         cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
+        cmocka_unit_test(test_results_without_a_query_do_not_prolong_others),
         cmocka_unit_test(test_a_service_that_comes_back_is_found),
         cmocka_unit_test(test_a_repeat_finds_the_service),
         cmocka_unit_test(test_no_service_costs_the_time_of_one_query),

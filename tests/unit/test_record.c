@@ -410,6 +410,104 @@ static void test_what_is_used_stays(void **state)
     assert_null(definitions_find(world->file, &once.handle));
 }
 
+/* A body of many boxes in 2D. */
+struct large_body {
+    struct geometry geometry;
+    struct handle handle;
+};
+
+static struct large_body make_large(struct world *world, int number, int frames)
+{
+    static struct geometry_frame frame[1800];
+    for (int i = 0; i < frames; i++)
+        frame[i] =
+            (struct geometry_frame){.shape = FMB_BOX, .origin = {number, i}, .components = {1, 1}};
+    const size_t size = geometry_size(2, frame, frames);
+    unsigned char *bytes = allocate(1, size);
+    geometry_write_frames(2, frame, frames, bytes);
+    return (struct large_body){{bytes, size}, hasher_handle(world->hasher, bytes, size)};
+}
+
+static void free_large(struct large_body *body, int count)
+{
+    for (int i = 0; i < count; i++)
+        free((void *) (uintptr_t) body[i].geometry.bytes);
+}
+
+static struct placement place_large(const struct large_body *body, bool whole)
+{
+    static unsigned char none[GEOMETRY_NONE_BYTES];
+    geometry_write_none(2, none);
+    struct placement placement = {.body_id = 1, .dim = 2, .geometry = body->geometry};
+    if (!whole) {
+        placement.handle = body->handle;
+        placement.geometry = (struct geometry){none, sizeof none};
+    }
+    return placement;
+}
+
+static void receive_scene(struct world *world, const struct placement *placement, int count)
+{
+    static struct scene_query query;
+    query = (struct scene_query){.client_id = CLIENT, .placement_count = count};
+    memcpy(query.placement, placement, (size_t) count * sizeof *placement);
+    receive(world, LOG_SCENE_QUERY, wire_write_scene_query(&query, world->bytes));
+}
+
+/* Bodies that queries give whole, until one more of so many frames would fill half of the memory.
+ * In: the half, of which `filled` are the bodies. Returns their number. */
+static int give_large(struct world *world, struct definitions *filled, int frames, int number,
+                      struct large_body *out)
+{
+    int count = 0;
+    for (;; count++) {
+        out[count] = make_large(world, number + count, frames);
+        if (definitions_bytes(filled) + out[count].geometry.size + 1000 >= RECORD_BODIES_BYTES / 2)
+            break;
+        const struct placement placement = place_large(&out[count], true);
+        definitions_add(filled, &out[count].geometry);
+        receive_scene(world, &placement, 1);
+    }
+    free_large(&out[count], 1);
+    return count;
+}
+
+/* One query names an old body, and then enough to fill half of the memory twice. */
+static void test_what_a_query_names_stays_until_it_is_defined(void **state)
+{
+    struct world *world = *state;
+    enum { MANY = 1800, SOME = 100, FEW = 30, BODIES_MAX = 700 };
+    static struct large_body body[BODIES_MAX];
+    static struct placement placement[BODIES_MAX];
+    struct definitions *filled = definitions_open();
+    begin(world);
+    body[0] = make_large(world, 0, SOME);
+    placement[0] = place_large(&body[0], true);
+    receive_scene(world, placement, 1);
+    definitions_add(filled, &body[0].geometry);
+    int count = give_large(world, filled, MANY, 1, body + 1);
+    free_large(body + 1, count);
+    struct large_body last = make_large(world, 1 + count, MANY);
+    placement[0] = place_large(&last, true);
+    receive_scene(world, placement, 1);
+    definitions_close(filled);
+
+    filled = definitions_open();
+    count = 1 + give_large(world, filled, MANY, 1000, body + 1);
+    count += give_large(world, filled, FEW, 2000, body + count);
+    struct large_body more = make_large(world, 3000, SOME);
+    for (int i = 0; i < count; i++)
+        placement[i] = place_large(&body[i], false);
+    placement[count] = place_large(&more, true);
+    receive_scene(world, placement, count + 1);
+    for (int i = 0; i < count; i++)
+        assert_non_null(definitions_find(world->file, &body[i].handle));
+    free_large(body, count);
+    free_large(&last, 1);
+    free_large(&more, 1);
+    definitions_close(filled);
+}
+
 static void test_what_cannot_be_read(void **state)
 {
     struct world *world = *state;
@@ -434,6 +532,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_wanted_handles_are_limited, setup, teardown),
         cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_what_a_query_names_stays_until_it_is_defined, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -299,6 +299,31 @@ static void test_the_longest_job_is_the_one_to_stop(void **state)
     jobs_release(&jobs);
 }
 
+/* It is the one taken last of those that are left. */
+static void test_the_last_job_stops_early(void **state)
+{
+    (void) state;
+    static struct jobs jobs;
+    struct job *job[JOBS];
+    assert_true(jobs_init(&jobs));
+    for (int client = 0; client < JOBS; client++) {
+        job[client] = jobs_take(&jobs, client);
+        job[client]->is_pair = true;
+        job[client]->used_ns = 2 * JOBS_BRIEF_NS;
+    }
+    assert_ptr_equal(jobs_longest(&jobs), job[JOBS - 1]);
+    jobs_give_back(&jobs, job[3]);
+    assert_ptr_equal(jobs_longest(&jobs), job[JOBS - 1]);
+    jobs_give_back(&jobs, job[JOBS - 1]);
+    assert_ptr_equal(jobs_longest(&jobs), job[JOBS - 2]);
+    job[3] = jobs_take(&jobs, 3);
+    assert_null(jobs_longest(&jobs));
+    job[3]->is_pair = true;
+    job[3]->used_ns = 2 * JOBS_BRIEF_NS;
+    assert_ptr_equal(jobs_longest(&jobs), job[3]);
+    jobs_release(&jobs);
+}
+
 /* More clients than jobs: the longest stops early, and each gets an answer. */
 static void test_more_scenes_than_jobs(void **state)
 {
@@ -413,6 +438,28 @@ static void test_scenes_of_many_frames_do_not_keep_all_jobs(void **state)
     expect_a_free_job(service_query_frames_scene, SERVER_SCENES);
 }
 
+/* Clients that query without end what takes long do not keep short scenes waiting. */
+static void test_long_jobs_do_not_keep_short_ones_waiting(void **state)
+{
+    (void) state;
+    enum { CLIENTS = JOBS + 4, SCENES = 20 };
+    for (int i = 0; i < CLIENTS; i++)
+        for (int number = 0; number < 2; number++)
+            service_query_frames(10 + i, number, 900);
+    service.tick_ns = 20 * US;
+    work_for(100 * MS);
+    for (int i = 0; i < SCENES; i++) {
+        const int64_t begin_ns = service.now_ns;
+        service_query_scene(CHEAP, i, 3);
+        while (answers_to(CHEAP) == i && service.now_ns < begin_ns + JOBS_PATIENCE_NS)
+            server_work(service.server);
+        assert_int_equal(answers_to(CHEAP), i + 1);
+        assert_int_equal(service.result[service.count - 1].status, FMB_OK);
+        /* The last job has 5 ms, in turns of half a millisecond. */
+        assert_in_range(service.now_ns - begin_ns, 0, 200 * MS);
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, service_open, service_close)
 
 int main(void)
@@ -432,12 +479,14 @@ int main(void)
         TEST(test_pairs_pass_long_scenes),
         TEST(test_long_scenes_stop_where_others_wait),
         TEST(test_the_longest_job_is_the_one_to_stop),
+        TEST(test_the_last_job_stops_early),
         TEST(test_more_scenes_than_jobs),
         TEST(test_a_full_queue_refuses_the_one_that_holds_most),
         TEST(test_new_ids_without_end),
         TEST(test_a_pair_of_many_frames),
         TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
         TEST(test_scenes_of_many_frames_do_not_keep_all_jobs),
+        TEST(test_long_jobs_do_not_keep_short_ones_waiting),
     };
     return cmocka_run_group_tests_name("server turns", tests, NULL, NULL);
 }
