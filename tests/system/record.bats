@@ -70,8 +70,9 @@ is() {
     kill "$witness"
     wait "$witness"
     is '.lost == 0 and .malformed == 0 and .received.others == 0'
-    is '.received.pair_queries == 66 and .received.pair_results == 66'
-    is '.received.scene_queries >= 2 and .received.scene_queries == .received.scene_results'
+    # Where the machine is slow, clients repeat queries.
+    is '.received.pair_queries >= .received.pair_results and .received.pair_results >= 66'
+    is '.received.scene_queries >= .received.scene_results and .received.scene_results >= 2'
     is '.received.heartbeats >= 2'
     is ".files == [\"$log\"] and .bytes == $(stat -c %s "$log") and .receive_buffer > 0"
     [ "$(events "$log" | wc -l)" = "$(jq .events "$report")" ]
