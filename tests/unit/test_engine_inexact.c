@@ -1,5 +1,5 @@
-/* The methods fmb and sat: right on ordinary pairs, honest about flat ones, harmless on any
- * input. */
+/* The methods fmb and sat: right on ordinary pairs, honest about flat ones and about overflow,
+ * harmless on any input. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,6 +13,7 @@
 #include <math.h>
 
 #include "draw.h"
+#include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
 
@@ -148,6 +149,42 @@ static void unit_cubes_that_share_a_face_touch(void **state)
         }
 }
 
+/* ---- Edges that are parallel but for rounding ---- */
+
+/* The normal of such a pair of edges is all rounding error: it is no axis to be separated on. */
+static void what_overlaps_deeply_overlaps(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "what_overlaps_deeply_overlaps");
+    for (long n = draw_sample(10000); n > 0; n--) {
+        const double size[3] = {draw_uniform(&draw, 1, 2), draw_uniform(&draw, 1, 2),
+                                draw_uniform(&draw, 1, 2)};
+        struct solid box = {3, FMB_BOX, .orientation_count = 4, .moving = false};
+        for (int i = 0; i < 3; i++)
+            box.component[i][i] = size[i];
+        for (int i = 0; i < 4; i++)
+            box.orientation[i] = draw_uniform(&draw, -1, 1);
+        struct question question = {box, box, 1};
+        for (int i = 0; i < 4; i++)
+            question.b.orientation[i] *= 1 + draw_int(&draw, -2, 2) * 0x1p-52;
+        for (int axis = 0; axis < 3; axis++)
+            question.b.origin[axis] = draw_uniform(&draw, -0.1, 0.1);
+        question.b.moving = draw_coin(&draw);
+        for (int axis = 0; axis < 3; axis++)
+            question.b.velocity[axis] = draw_uniform(&draw, -0.1, 0.1);
+        for (size_t i = 0; i < COUNT(inexact); i++) {
+            struct fmb_answer found;
+            struct ready ready;
+            referee_ready(&question, &ready);
+            if (ask(inexact[i], &ready.pair, &found) != FMB_OK)
+                referee_fail(&question, "refused");
+            if (found.verdict != FMB_OVERLAPPING)
+                referee_fail(&question, "another verdict");
+        }
+    }
+}
+
 /* ---- Flat frames ---- */
 
 static void say_so_of_flat_frames(void **state)
@@ -244,6 +281,57 @@ static void say_so_of_numbers_out_of_range(void **state)
             }
 }
 
+/* Rows of b's x are so small, and of its y so large, that their combinations are infinite; without
+ * these nothing separates the pair. */
+static void say_so_of_rows_that_overflow(void **state)
+{
+    (void) state;
+    const struct question question = {
+        {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {0}, false},
+        {2, FMB_CUBOID, {{1e-200, 0}, {1e200, 1e200}}, {-5e199, -4e199}, {0}, false},
+        1};
+    struct fmb_answer exact;
+    referee_ask(&question, &exact);
+    assert_int_equal(exact.verdict, FMB_SEPARATED);
+    for (size_t i = 0; i < COUNT(inexact); i++) {
+        struct ready ready;
+        struct fmb_answer answer;
+        referee_ready(&question, &ready);
+        assert_int_equal(pair_decide(fmb_method_by_name(inexact[i]), &ready.pair, 0, &answer),
+                         FMB_CANNOT_DECIDE);
+    }
+}
+
+/* Both go beyond the largest double, side by side: 0 times infinity is on the way to their box. */
+static void say_so_of_boxes_that_overflow(void **state)
+{
+    (void) state;
+    const struct solid square = {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {1.5e308, 0}, true};
+    const struct question question = {square, square, 2};
+    struct ready ready;
+    struct fmb_answer answer;
+    referee_ready(&question, &ready);
+    assert_int_equal(ask("fmb", &ready.pair, &answer), FMB_CANNOT_DECIDE);
+}
+
+/* In: a pair of frames that may be flat. Returns whether a method decided it. */
+static bool harmless(const struct question *question, const char *method)
+{
+    struct ready ready;
+    struct fmb_answer answer;
+    referee_ready(question, &ready);
+    const enum fmb_status status = ask(method, &ready.pair, &answer);
+    if (status == FMB_CANNOT_DECIDE) {
+        const struct fmb_answer nothing = {.has_box = false};
+        assert_memory_equal(&answer, &nothing, sizeof answer);
+        return false;
+    }
+    if (status != FMB_OK)
+        referee_fail(question, fmb_status_text(status));
+    assert_sane(question, &answer);
+    return true;
+}
+
 static void harmless_on_any_input(void **state)
 {
     (void) state;
@@ -254,23 +342,28 @@ static void harmless_on_any_input(void **state)
         const int dim = draw_int(&draw, 2, 3);
         const struct question question = {draw_any_solid(&draw, dim), draw_any_solid(&draw, dim),
                                           fabs(any_number(&draw))};
-        struct ready ready;
-        referee_ready(&question, &ready);
-        for (size_t i = 0; i < COUNT(inexact); i++) {
-            struct fmb_answer answer;
-            enum fmb_status status = ask(inexact[i], &ready.pair, &answer);
-            if (status == FMB_CANNOT_DECIDE) {
-                const struct fmb_answer nothing = {.has_box = false};
-                assert_memory_equal(&answer, &nothing, sizeof answer);
-                continue;
-            }
-            if (status != FMB_OK)
-                referee_fail(&question, fmb_status_text(status));
-            assert_sane(&question, &answer);
-            decided++;
-        }
+        for (size_t i = 0; i < COUNT(inexact); i++)
+            decided += harmless(&question, inexact[i]);
     }
     printf("# any input: %ld answers\n", decided);
+    assert_true(decided > 0);
+}
+
+/* Rounding may leave nothing between the bounds of what touches. */
+static void harmless_on_hard_pairs(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "harmless_on_hard_pairs");
+    long decided = 0;
+    for (long n = draw_sample(20000); n > 0; n--) {
+        const struct cell cell = pair_draw_cell(&draw);
+        struct question question;
+        pair_draw(&draw, &cell, &question);
+        for (size_t i = 0; i < COUNT(inexact); i++)
+            decided += harmless(&question, inexact[i]);
+    }
+    printf("# hard pairs: %ld answers\n", decided);
     assert_true(decided > 0);
 }
 
@@ -279,9 +372,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agree_on_ordinary_pairs),
         cmocka_unit_test(unit_cubes_that_share_a_face_touch),
+        cmocka_unit_test(what_overlaps_deeply_overlaps),
         cmocka_unit_test(say_so_of_flat_frames),
         cmocka_unit_test(say_so_of_numbers_out_of_range),
+        cmocka_unit_test(say_so_of_rows_that_overflow),
+        cmocka_unit_test(say_so_of_boxes_that_overflow),
         cmocka_unit_test(harmless_on_any_input),
+        cmocka_unit_test(harmless_on_hard_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
