@@ -110,7 +110,7 @@ $(B)/tests/test_kernels: $(wide_kernels) $(addprefix $(O)/kernels/,refine_boxes_
 # Kernels of boxes with bounds that are a sixteenth of theirs, and with none.
 box_kernels := $(call kernel_of,boxes_planted boxes_bare)
 box_unit_planted := 0x1p-57
-box_unit_bare := 0.0
+box_unit_bare := 0x1p-200
 box_refinements_of_tests := $(call kernel_of,refine_boxes_planted refine_boxes_bare)
 compile_box = $(compile_bare) -DLANES=1 -DKERNEL_BOXES -DKERNEL_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
 $(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/many.c $(O)/settings

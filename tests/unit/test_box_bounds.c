@@ -15,6 +15,8 @@
 
 #include <math.h>
 
+#include "cell.h"
+#include "certified.h"
 #include "draw.h"
 #include "exact.h"
 #include "question.h"
@@ -209,8 +211,161 @@ static void bounds_hold_and_smaller_ones_do_not(void **state)
     }
 }
 
+/* ---- Edges that all but depend on each other ---- */
+
+/* Directions that edges and drift are made of. */
+struct directions {
+    double vector[3][FMB_DIM_MAX];
+    int finest; /* exponent of the least perturbation */
+};
+
+static double perturbed(struct draw *draw, const struct directions *from, double x)
+{
+    const int kind = draw_int(draw, 0, 3);
+    if (kind == 0)
+        return x;
+    if (kind == 1)
+        return x * (1 + draw_int(draw, -3, 3) * 0x1p-52);
+    return x + ldexp(draw_uniform(draw, -1, 1), -draw_int(draw, 10, from->finest));
+}
+
+/* A sum of one or two of the directions, all but for little. */
+static void draw_near(struct draw *draw, const struct directions *from, int dim, double *out)
+{
+    const double *one = from->vector[draw_int(draw, 0, 2)];
+    const double *other = from->vector[draw_int(draw, 0, 2)];
+    const double times = draw_int(draw, 0, 2) ? 0 : draw_int(draw, -2, 2);
+    const double length =
+        ldexp(draw_coin(draw) ? 1 : draw_uniform(draw, 1, 2), -draw_int(draw, 0, 4));
+    for (int axis = 0; axis < dim; axis++)
+        out[axis] = perturbed(draw, from, length * (one[axis] + times * other[axis]));
+}
+
+/* A point of the solid, relative to its origin; often on its boundary. */
+static void draw_point(struct draw *draw, const struct solid *solid, double *out)
+{
+    double left = 1;
+    memset(out, 0, FMB_DIM_MAX * sizeof *out);
+    for (int i = 0; i < solid_count(solid); i++) {
+        const int kind = draw_int(draw, 0, 5);
+        double x = kind == 0 ? 0 : kind == 1 ? 1 : draw_uniform(draw, 0, 1);
+        if (solid->shape != FMB_CUBOID) {
+            x *= left;
+            left -= x;
+        }
+        for (int axis = 0; axis < solid->dim; axis++)
+            out[axis] += x * solid->component[i][axis];
+    }
+}
+
+static void draw_dependent(struct draw *draw, const struct cell *cell, struct question *out)
+{
+    struct directions directions = {.finest = draw_int(draw, 20, 60)};
+    double at[2][FMB_DIM_MAX];
+    *out = (struct question){{.dim = cell->dim, .shape = cell->shape[0]},
+                             {.dim = cell->dim, .shape = cell->shape[1]},
+                             1};
+    const bool posed = draw_int(draw, 0, 2) == 0;
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < cell->dim; axis++)
+            directions.vector[i][axis] =
+                draw_int(draw, 0, 3) ? draw_uniform(draw, -1, 1) : draw_int(draw, -1, 1);
+    double q[4];
+    for (int i = 0; i < 4; i++)
+        q[i] = draw_int(draw, 0, 2) ? draw_uniform(draw, -1, 1) : draw_int(draw, 0, 1);
+    struct solid *solids[2] = {&out->a, &out->b};
+    for (int f = 0; f < 2; f++) {
+        struct solid *solid = solids[f];
+        for (int i = 0; i < solid_count(solid); i++)
+            draw_near(draw, &directions, cell->dim, solid->component[i]);
+        solid->moving = cell->moving && (f || draw_coin(draw));
+        if (solid->moving)
+            draw_near(draw, &directions, cell->dim, solid->velocity);
+        draw_point(draw, solid, at[f]);
+        if (posed && q[0] != 0) {
+            solid->orientation_count = cell->dim == 2 ? 2 : 4;
+            for (int i = 0; i < 4; i++)
+                solid->orientation[i] = perturbed(draw, &directions, q[i]);
+        }
+    }
+    const double far = draw_int(draw, 0, 2) ? 0 : draw_uniform(draw, -1, 1);
+    for (int axis = 0; axis < cell->dim; axis++) {
+        solids[0]->origin[axis] = far - at[0][axis];
+        solids[1]->origin[axis] =
+            far - at[1][axis] -
+            draw_int(draw, 0, 1) * draw_uniform(draw, 0, 1) * solids[1]->velocity[axis];
+    }
+}
+
+static double largest_of(const struct fmb_prepared frame[2], double duration)
+{
+    double largest = 0;
+    for (int f = 0; f < 2; f++) {
+        struct world_frame world;
+        world_frame_of(&frame[f], &world);
+        const int count = frame[f].frame->count;
+        for (int corner = 0; corner < 1 << count; corner++) {
+            if (world.shape != FMB_CUBOID && (corner & (corner - 1)))
+                continue;
+            for (int axis = 0; axis < world.dim; axis++) {
+                double x = world.origin[axis];
+                for (int i = 0; i < count; i++)
+                    x += corner >> i & 1 ? world.component[i][axis] : 0;
+                largest = fmax(largest, fmax(fabs(x), fabs(x + duration * world.velocity[axis])));
+            }
+        }
+    }
+    return largest;
+}
+
+static void boxes_of_edges_that_all_but_depend(void **state)
+{
+    (void) state;
+    struct draw draw;
+    long met = 0, known[2] = {0};
+    double worst = 0;
+    draw_begin(&draw, "boxes_of_edges_that_all_but_depend");
+    for (long n = draw_sample(20000); n > 0; n--) {
+        struct cell cells[CELL_WITH_FACES];
+        const struct cell cell = cells[draw_int(&draw, 0, cell_list(true, cells) - 1)];
+        struct question question;
+        struct ready ready;
+        struct fmb_prepared frame[2];
+        box_ends box, exact;
+        enum certified_path path;
+        draw_dependent(&draw, &cell, &question);
+        referee_ready(&question, &ready);
+        const struct frame_pair frames = pair_frames(&ready.pair);
+        prepared_set(frames.a, &frame[0]);
+        prepared_set(frames.b, &frame[1]);
+        if (!(prepared_kind(&frame[0]) & prepared_kind(&frame[1]) & PREPARED_USABLE) ||
+            certified_verdict(&frames, &path) == FMB_SEPARATED)
+            continue;
+        met++;
+        const bool in_contact = path <= CERTIFIED_SECOND;
+        if (!certified_box(&frame[0], &frame[1], question.duration, in_contact, box))
+            continue;
+        known[in_contact]++;
+        exact_box(&frames, exact);
+        const double limit = 1e-12 * largest_of(frame, question.duration);
+        for (int axis = 0; axis < cell.dim; axis++) {
+            const double out[2] = {exact[0][axis] - box[0][axis], box[1][axis] - exact[1][axis]};
+            for (int end = 0; end < 2; end++) {
+                if (!(out[end] >= 0))
+                    referee_fail(&question, "a box that does not hold the exact one");
+                worst = fmax(worst, out[end] / limit);
+                if (!(out[end] <= limit))
+                    referee_fail(&question, "a box that is far from the exact one");
+            }
+        }
+    }
+    printf("# %ld meet, boxes known of %ld in contact, %ld unsure; at most %.3g of the limit out\n",
+           met, known[1], known[0], worst);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_hold_and_smaller_ones_do_not)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_hold_and_smaller_ones_do_not),
+                                       cmocka_unit_test(boxes_of_edges_that_all_but_depend)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,7 +17,7 @@
  * Then answer_contact(), answer_box() and gap_of() compute what else is wanted, and complete()
  * replaces what doubles do not give within the limits of fmb.h by the exact method. Each step
  * depends on the numbers of the pair only, so that every caller gets the same bits. The error
- * bounds are derived in slabs.c, slabs_lanes.h, box_search.h and contact.c. */
+ * bounds are derived in slabs.c, slabs_lanes.h, box_search.h, box_clip.h and contact.c. */
 #include "certified.h"
 
 #include "exact.h"

@@ -11,6 +11,8 @@ void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement)
                                          .face = {given.face[0], given.face[1]},
                                          .drifts = given.drifts,
                                          .box = true};
-    refinement->good = search_box(&refinement->pair, traits, &refinement->places, true,
+    struct box_search search;
+    begin_box(&refinement->pair, traits, &refinement->places, &search);
+    refinement->good = search_box(&refinement->pair, traits, &refinement->places, true, &search,
                                   &refinement->left_out, refinement->box);
 }

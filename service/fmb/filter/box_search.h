@@ -7,13 +7,15 @@
  * contains the exact box, and each end is within the limit of fmb.h.
  *
  * Steps (search_box()):
- *   1. begin_box(): frames about the middle of the window, tolerance and slack
+ *   1. begin_box(), which comes before: frames about the middle of the window, slack, how far apart
+ *      ends may be; begin_search(): errors, tolerance
  *   2. set_extents(): the vertices y = 0 and y = e_k, the extents of the frames
  *   3. add_plane_normals() in 2D, or add_space_normals() in 3D: vertices on the normals of the
  *      faces; each line in add_normal_line(), each vertex in add_edge_vertex() or
  *      add_drift_vertex()
  *   4. add_crossings(): vertices of an edge of A, one of B, and the drift
- *   5. put_box(): ends from the least bounds; cut_to_extent() cuts the box to both frames
+ *   5. find_ends(): ends from the least bounds; put_box(): cut_to_extent() cuts the box to both
+ *      frames
  *   6. are_near(): whether inner ends are as near as the limit
  *   7. all of it once more (box_refine.c) where they are not, or a vertex that is not certain was
  *      left out
@@ -276,10 +278,12 @@ struct box_search {
     lanes determinant; /* error of a determinant of scale 1 */
     lanes rounding;    /* the part of it that w has: in_contact without t */
     lanes largest;     /* coordinate, or a little less */
-    lanes tolerance;   /* for the width of a bound */
+    lanes whole;       /* what ends may be apart, without the slack on both sides */
+    lanes tolerance;   /* the part of it for the width of a bound */
     lanes shared;      /* the part of the tolerance for the errors of frames in contact */
     bool in_contact;
     struct box_bounds bounds[2]; /* about the centre of each frame */
+    lanes_mask usable;           /* a box can be found */
     lanes_mask spans, good;
     lanes_mask open;             /* a vertex is left out whose line has vertices of other lines */
     lanes_mask left_out;         /* where errors are to allow for that */
@@ -365,16 +369,32 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
         if (traits.drifts)
             out->own_sum[axis] += lanes_abs(out->travel[axis]);
         out->sum[axis] = lanes_abs(at) + 2 * out->own_sum[axis];
-        out->own_sum_max = axis ? lanes_max(out->own_sum[axis], out->own_sum_max) : out->own_sum[0];
-        const lanes way = lanes_abs(out->travel[axis]);
-        out->travel_max = axis ? lanes_max(way, out->travel_max) : way;
         UNROLL(6)
         for (int index = 0; index < edge_count(traits, which); index++) {
             const int e = edge_at(traits, which, index);
             const lanes from = e < traits.dim ? lanes_of(0) : c[edge_from(traits, e)][axis];
             const lanes to = e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis];
             out->edge[e][axis] = (e < traits.dim ? to : to - from) + 0.0;
-            out->length[e][axis] = lanes_abs(to) + lanes_abs(from);
+        }
+    }
+}
+
+INLINE void set_lengths(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
+                        struct box_frame *out)
+{
+    const lanes(*c)[3] = pair->component[which];
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        out->own_sum_max = axis ? lanes_max(out->own_sum[axis], out->own_sum_max) : out->own_sum[0];
+        const lanes way = lanes_abs(out->travel[axis]);
+        out->travel_max = axis ? lanes_max(way, out->travel_max) : way;
+        UNROLL(6)
+        for (int index = 0; index < edge_count(traits, which); index++) {
+            const int e = edge_at(traits, which, index);
+            out->length[e][axis] =
+                lanes_abs(e < traits.dim ? c[e][axis] : c[edge_to(traits, e)][axis]);
+            if (e >= traits.dim)
+                out->length[e][axis] += lanes_abs(c[edge_from(traits, e)][axis]);
         }
     }
 }
@@ -975,15 +995,13 @@ INLINE void add_far_face(const struct box_normal normals[3], struct box_normal *
     }
 }
 
-INLINE void add_space_normals(const struct pair_lanes *pair, const struct kernel_traits traits,
-                              int which, const struct face_products *side,
-                              struct box_search *search)
+/* Sets the normals of the faces of a frame: those of two components at their numbers, that of the
+ * face across from the origin at 3. */
+INLINE void set_normals(const struct pair_lanes *pair, const struct kernel_traits traits, int which,
+                        const struct face_products *side, struct box_normal normals[4])
 {
-    struct box_normal normals[4];
-    const int first = first_plane(traits, which);
-    const bool across = traits.simplex[which] && !traits.face[which];
     UNROLL(3)
-    for (int k = first; k < 3; k++) {
+    for (int k = first_plane(traits, which); k < 3; k++) {
         struct box_normal *normal = &normals[k];
         const int i = next(k), j = next(i);
         normal->scale = pair->size[which][i] * pair->size[which][j];
@@ -998,11 +1016,19 @@ INLINE void add_space_normals(const struct pair_lanes *pair, const struct kernel
         for (int e = 0; e < 6; e++)
             normal->at[e] = has_edge(traits, !which, e) ? side->other[k][e] : lanes_of(0);
     }
-    if (across)
+    if (traits.simplex[which] && !traits.face[which])
         add_far_face(normals, &normals[3]);
-    for (int k = first; k < 3; k++)
+}
+
+INLINE void add_space_normals(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              int which, const struct face_products *side,
+                              struct box_search *search)
+{
+    struct box_normal normals[4];
+    set_normals(pair, traits, which, side, normals);
+    for (int k = first_plane(traits, which); k < 3; k++)
         add_normal_line(pair, traits, which, k, false, &normals[k], search);
-    if (across)
+    if (traits.simplex[which] && !traits.face[which])
         add_normal_line(pair, traits, which, 3, true, &normals[3], search);
 }
 
@@ -1325,29 +1351,61 @@ INLINE void set_bend_error(const struct pair_lanes *pair, const struct kernel_tr
     search->bend_error = (lengths * search->bend_count) * ((bend * search->stretch) * pair->reach);
 }
 
+/* Sets what any way to find a box needs: frames, sizes, slack, and how far apart ends may be. */
 INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits traits,
                       const struct box_places *places, struct box_search *search)
 {
-    lanes largest = lanes_of(0);
-    const unsigned all_true = PREPARED_COMPONENTS_EXACT_X * (traits.dim == 2 ? 3u : 7u);
-    lanes_mask inexact = {0}, lost = {0};
+    lanes largest = lanes_of(0), slack = lanes_of(0);
+    lanes_mask lost = {0};
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         set_box_frame(pair, traits, which, places, &search->frame[which]);
         largest = lanes_max(largest_place(pair, traits, which, &search->frame[which]), largest);
-        inexact |= (places->summary[which] & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true) !=
-                   (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true;
     }
-    search->relative_error = lanes_select(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++) {
+        set_sizes(pair, traits, places, axis, search);
+        UNROLL(2)
+        for (int which = 0; which < 2; which++) {
+            search->slack[which][axis] =
+                (9 * BOX_UNIT) * search->frame[which].sum[axis] + 1.1 * pair->error;
+            slack = lanes_max(search->slack[which][axis], slack);
+        }
+        if (!traits.drifts)
+            continue;
+        search->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
+        lost |= search->drift[axis] & (pair->half_drift[axis] == 0);
+    }
+    search->exact = places->exact;
+    search->largest = largest;
+    const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
+    search->unit = lanes_select(are_multiples(pair, traits, places, search, 0x1p45 * power),
+                                0x1p-7 * power, lanes_of(0));
+    const lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
+    search->whole = lanes_select((search->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
+    search->usable = is_not(lost) & (largest <= BOX_FARTHEST);
+}
+
+/* Sets what vertices need besides, and divides the tolerance. */
+INLINE void begin_search(const struct pair_lanes *pair, const struct kernel_traits traits,
+                         const struct box_places *places, struct box_search *search)
+{
+    const unsigned all_true = PREPARED_COMPONENTS_EXACT_X * (traits.dim == 2 ? 3u : 7u);
+    lanes_mask inexact = {0};
     lanes lengths = pair->half_drift_size;
     UNROLL(2)
-    for (int which = 0; which < 2; which++)
+    for (int which = 0; which < 2; which++) {
+        set_lengths(pair, traits, which, &search->frame[which]);
+        inexact |= (places->summary[which] & (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true) !=
+                   (UINT64_C(1) << 3 * PREPARED_SIZE_BITS) * all_true;
         UNROLL(3)
-    for (int i = 0; i < component_count(traits, which); i++)
-        lengths += pair->size[which][i];
+        for (int i = 0; i < component_count(traits, which); i++)
+            lengths += pair->size[which][i];
+    }
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++)
         lengths += lanes_abs(pair->offset[axis]);
+    search->relative_error = lanes_select(inexact, lanes_of(ROTATION_ERROR), lanes_of(0));
     const lanes_mask shares = places->in_contact ? pair->error != 0 : (lanes_mask){0};
     search->frame_error = (2.2 * search->relative_error) * lengths + 0.1 * pair->error;
     search->bend_count = lanes_select(shares, lanes_of(4), lanes_of(2));
@@ -1355,41 +1413,18 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
     search->bend_limit = 17 * (slab_rounding(traits) + 4 * search->relative_error);
     search->stretch = lanes_of(1);
     set_bend_error(pair, traits, search->bend_limit, search);
-    UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++) {
-        set_sizes(pair, traits, places, axis, search);
-        UNROLL(2)
-        for (int which = 0; which < 2; which++)
-            search->slack[which][axis] =
-                (9 * BOX_UNIT) * search->frame[which].sum[axis] + 1.1 * pair->error;
-        if (!traits.drifts)
-            continue;
-        search->drift[axis] = places->velocity[0][axis] != places->velocity[1][axis];
-        lost |= search->drift[axis] & (pair->half_drift[axis] == 0);
-    }
-    search->exact = places->exact;
     search->rounding =
         lanes_select(search->exact, lanes_of(0), lanes_of(1.2 * determinant_rounding(traits)));
     search->determinant = search->rounding + 3.1 * search->relative_error;
     if (!places->in_contact)
         search->rounding = search->determinant;
     search->in_contact = places->in_contact;
-    search->largest = largest;
-    const lanes power = lanes_from_bits(lanes_as_bits(pair->reach) & UINT64_C(0x7ff0000000000000));
-    search->unit = lanes_select(are_multiples(pair, traits, places, search, 0x1p45 * power),
-                                0x1p-7 * power, lanes_of(0));
-    lanes slack = lanes_of(0);
-    UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++)
-        slack = lanes_max(lanes_max(search->slack[0][axis], search->slack[1][axis]), slack);
-    lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
-    tolerance = lanes_select((search->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
-    search->shared = lanes_select(shares, 0.36 * tolerance, lanes_of(0));
-    search->tolerance = tolerance - search->shared;
+    search->shared = lanes_select(shares, 0.36 * search->whole, lanes_of(0));
+    search->tolerance = search->whole - search->shared;
+    search->good = search->usable;
     search->spans = search->open = search->left_out = (lanes_mask){0};
     search->bends = lanes_of(0);
     search->careful = false;
-    search->good = is_not(lost) & (largest <= BOX_FARTHEST);
 }
 
 /* Ends that are small numbers, to the last bit. With the numbers of the pair multiples of a unit g,
@@ -1452,42 +1487,52 @@ INLINE void add_all(const struct pair_lanes *pair, const struct kernel_traits tr
         add_crossings(pair, traits, side, search);
 }
 
-/* How far the box reaches along an axis, below 0 (end 0) or above: outer at most, inner surely. */
-INLINE void ends_of(const struct box_search *search, int end, int axis, lanes *outer, lanes *inner)
-{
-    *outer = *inner = lanes_of(INFINITY);
-    UNROLL(2)
-    for (int which = 0; which < 2; which++) {
-        const lanes centre =
-            end ? search->frame[which].centre[axis] : -search->frame[which].centre[axis];
-        const lanes slack = search->slack[which][axis];
-        const lanes at = centre + search->bounds[which].outer[end][axis];
-        const lanes least = centre + search->bounds[which].inner[end][axis];
-        *outer = lanes_min(at + slack, *outer);
-        const lanes beyond = slack + (search->shared + search->bends);
-        *inner = lanes_min(lanes_min(at - search->tolerance, least) - beyond, *inner);
-    }
-}
+/* How far the box reaches, [below 0, above][axis]: outer at most, inner surely. */
+struct box_ends {
+    lanes outer[2][3], inner[2][3];
+};
 
-/* The lanes in which both ends along all axes are within the limit. */
-INLINE lanes_mask are_near(const struct kernel_traits traits, const struct box_search *search)
+INLINE void find_ends(const struct kernel_traits traits, const struct box_search *search,
+                      struct box_ends *out)
 {
-    lanes_mask good = search->good & search->spans;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++) {
-        lanes outer, inner;
-        ends_of(search, end, axis, &outer, &inner);
-        good &= outer - inner <= BOX_LIMIT * search->largest;
+        lanes outer = lanes_of(INFINITY), inner = lanes_of(INFINITY);
+        UNROLL(2)
+        for (int which = 0; which < 2; which++) {
+            const lanes centre =
+                end ? search->frame[which].centre[axis] : -search->frame[which].centre[axis];
+            const lanes slack = search->slack[which][axis];
+            const lanes at = centre + search->bounds[which].outer[end][axis];
+            const lanes least = centre + search->bounds[which].inner[end][axis];
+            outer = lanes_min(at + slack, outer);
+            const lanes beyond = slack + (search->shared + search->bends);
+            inner = lanes_min(lanes_min(at - search->tolerance, least) - beyond, inner);
+        }
+        out->outer[end][axis] = outer;
+        out->inner[end][axis] = inner;
     }
+}
+
+/* The lanes in which both ends along all axes are within the limit. */
+INLINE lanes_mask are_near(const struct kernel_traits traits, const struct box_search *search,
+                           const struct box_ends *ends)
+{
+    lanes_mask good = search->usable;
+    UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++)
+        UNROLL(2)
+    for (int end = 0; end < 2; end++)
+        good &= ends->outer[end][axis] - ends->inner[end][axis] <= BOX_LIMIT * search->largest;
     return good;
 }
 
 /* Puts the ends in the lengths of the world, cut to both frames. */
 INLINE void put_box(const struct pair_lanes *pair, const struct kernel_traits traits,
                     const struct box_places *places, const struct box_search *search,
-                    lanes box[2][3])
+                    const struct box_ends *found, lanes box[2][3])
 {
     const bool any_unit = lanes_mask_bits(search->unit != 0);
     UNROLL(3)
@@ -1495,13 +1540,11 @@ INLINE void put_box(const struct pair_lanes *pair, const struct kernel_traits tr
         lanes ends[2];
         UNROLL(2)
         for (int end = 0; end < 2; end++) {
-            lanes outer, inner;
-            ends_of(search, end, axis, &outer, &inner);
+            ends[end] = found->outer[end][axis];
             if (any_unit)
-                outer = snapped(outer, inner, search->unit);
+                ends[end] = snapped(ends[end], found->inner[end][axis], search->unit);
             if (is_doubled(traits))
-                outer *= 0.5;
-            ends[end] = outer;
+                ends[end] *= 0.5;
         }
         UNROLL(2)
         for (int which = 0; which < 2; which++)
@@ -1511,23 +1554,25 @@ INLINE void put_box(const struct pair_lanes *pair, const struct kernel_traits tr
     }
 }
 
-/* Boxes, and in which lanes they are good. second: the second pass, which gives all boxes of the
- * first, and more. left_out: written by the first. */
+/* Boxes, and in which lanes they are good. search: as begin_box() leaves it. second: the second
+ * pass, which gives all boxes of the first, and more. left_out: written by the first. */
 INLINE lanes_mask search_box(const struct pair_lanes *pair, const struct kernel_traits traits,
                              const struct box_places *places, bool second,
-                             struct box_left_out *left_out, lanes box[2][3])
+                             struct box_search *search, struct box_left_out *left_out,
+                             lanes box[2][3])
 {
-    struct box_search search;
-    begin_box(pair, traits, places, &search);
+    struct box_ends ends;
+    begin_search(pair, traits, places, search);
     if (second)
-        begin_second_pass(pair, traits, left_out, &search);
-    add_all(pair, traits, &search);
-    put_box(pair, traits, places, &search, box);
-    const lanes_mask good = are_near(traits, &search);
+        begin_second_pass(pair, traits, left_out, search);
+    add_all(pair, traits, search);
+    find_ends(traits, search, &ends);
+    put_box(pair, traits, places, search, &ends, box);
+    const lanes_mask good = are_near(traits, search, &ends) & search->good & search->spans;
     if (second)
         return good;
-    *left_out = (struct box_left_out){search.open, search.bend, search.stretch};
-    return good & is_not(search.open);
+    *left_out = (struct box_left_out){search->open, search->bend, search->stretch};
+    return good & is_not(search->open);
 }
 
 #endif

@@ -3,7 +3,7 @@
 #define FMB_KERNEL_BOX_H
 
 #include "kernel_exact.h"
-#include "box_search.h"
+#include "box_clip.h"
 
 /* A pair of the second pass, and its box. */
 struct box_refinement {
@@ -17,6 +17,56 @@ struct box_refinement {
 
 /* The second pass (box_refine.c). */
 void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement);
+
+/* Whether all boxes are good that can be. */
+INLINE bool is_known(lanes_mask good, const struct pair_lanes *pair)
+{
+    return lanes_mask_bits(good | is_not(pair->in_range)) == (1u << LANES) - 1;
+}
+
+/* Adds boxes found in another way. good: the lanes in which box[] is good already. Returns those in
+ * which it is then. */
+INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
+                             const lanes other[2][3], lanes_mask good, lanes box[2][3])
+{
+    UNROLL(2)
+    for (int end = 0; end < 2; end++)
+        UNROLL(3)
+    for (int axis = 0; axis < traits.dim; axis++)
+        box[end][axis] = lanes_select(good, box[end][axis], other[end][axis]);
+    return good | more;
+}
+
+/* Finds boxes in the ways that there are, until all are good: the first way for a lane is the
+ * cheapest one of its kind, and the next ones are the same whatever the other lanes hold. Returns
+ * the lanes in which boxes are good. */
+INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pair_lanes *pair,
+                             const struct box_places *places, lanes box[2][3])
+{
+    const bool clips = is_clipped(traits);
+    const bool clips_first = clips && (traits.simplex[0] || traits.simplex[1]);
+    struct box_refinement last;
+    struct box_search search;
+    lanes other[2][3];
+    lanes_mask more, good;
+    begin_box(pair, traits, places, &search);
+    good = clips_first ? clip_box(pair, traits, places, &search, box)
+                       : search_box(pair, traits, places, false, &search, &last.left_out, box);
+    if (is_known(good, pair))
+        return good;
+    if (clips) {
+        more = clips_first ? search_box(pair, traits, places, false, &search, &last.left_out, other)
+                           : clip_box(pair, traits, places, &search, other);
+        good = join_boxes(traits, more, other, good, box);
+    }
+    if (is_known(good, pair))
+        return good;
+    last.traits = traits;
+    last.pair = *pair;
+    last.places = *places;
+    KERNEL_PASTE(refine, KERNEL_NAME)(&last);
+    return join_boxes(traits, last.good, last.box, good, box);
+}
 
 /* NAN where doubles do not give it within its limit; 0 in axes that are not there. */
 INLINE void boxes_of(const struct kernel_traits traits, const struct pair_lanes *pair,
@@ -36,16 +86,7 @@ INLINE void boxes_of(const struct kernel_traits traits, const struct pair_lanes 
         if (traits.drifts)
             places.velocity[which][axis] = frame[which].velocity[axis];
     }
-    struct box_left_out left_out;
-    lanes_mask good = search_box(pair, traits, &places, false, &left_out, box);
-    if (lanes_mask_bits(good | is_not(pair->in_range)) != (1u << LANES) - 1) {
-        struct box_refinement again = {
-            .traits = traits, .pair = *pair, .places = places, .left_out = left_out};
-        KERNEL_PASTE(refine, KERNEL_NAME)(&again);
-        memcpy(box, again.box, sizeof again.box);
-        good = again.good;
-    }
-    good &= pair->in_range;
+    const lanes_mask good = find_boxes(traits, pair, &places, box) & pair->in_range;
     UNROLL(2)
     for (int end = 0; end < 2; end++)
         UNROLL(3)

@@ -20,11 +20,11 @@
  *
  * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
  * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this
- * file, kernel_exact.h, kernel_box.h. slabs_exact.h and box_search.h hold the mathematics of the
- * last two.
+ * file, kernel_exact.h, kernel_box.h. slabs_exact.h, and box_search.h and box_clip.h, hold the
+ * mathematics of the last two.
  *
  * Proofs: the bounds of slabs in slabs.c, of times in slabs_lanes.h, of frames in prepared.h, of
- * boxes in box_search.h. */
+ * boxes in box_search.h and box_clip.h. */
 #ifndef FMB_KERNEL_LANES_H
 #define FMB_KERNEL_LANES_H
 
