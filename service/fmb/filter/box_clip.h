@@ -309,12 +309,7 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
         vague |= has_vague(traits, which, search, &spans[which]);
     }
     join_ends(search, reach, 1, ends.outer);
-    UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
-        UNROLL(2)
-    for (int end = 0; end < 2; end++)
-        ends.inner[end][axis] = (ends.outer[end][axis] - search->whole) -
-                                2 * lanes_max(search->slack[0][axis], search->slack[1][axis]);
+    join_ends(search, reach, -1, ends.inner); /* of outer spans: within the limit, unless vague */
     if (lanes_mask_bits(vague)) {
         lanes inner[2][3];
         for (int which = 0; which < 2; which++)
