@@ -374,6 +374,29 @@ static void boxes_touch_about_centres_that_round(void **state)
             }
 }
 
+/* Boxes that travel together, by less than the last bit of an end, or less than any double. */
+static void boxes_hold_travels_that_underflow(void **state)
+{
+    static const double travels[][2] = {{0x1p-1000, 0x1p-100},
+                                        {0x1p-520, 0x1p-560},
+                                        {0x1p-960, 0x1p-10},
+                                        {0x1.8p-300, 0x1.8p-778},
+                                        {-0x1p-537, 0x1p-538}};
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (size_t i = 0; i < COUNT(travels); i++) {
+            struct question question = {.a = {.dim = dim, .shape = FMB_BOX, .moving = true},
+                                        .duration = travels[i][1]};
+            question.a.velocity[i % 2] = travels[i][0];
+            question.b = question.a;
+            for (int axis = 0; axis < dim; axis++) {
+                question.a.component[axis][axis] = 1;
+                question.b.component[axis][axis] = 8;
+            }
+            assert_int_equal(referee_assert(&question), FMB_OVERLAPPING);
+        }
+}
+
 /* ---- By every way to ask ---- */
 
 enum { PAIRS = 150 };
@@ -784,6 +807,7 @@ int main(void)
     const struct CMUnitTest others[] = {
         cmocka_unit_test(edges_may_be_parallel_in_doubles_only),
         cmocka_unit_test(boxes_touch_about_centres_that_round),
+        cmocka_unit_test(boxes_hold_travels_that_underflow),
         cmocka_unit_test(every_way_to_ask_gives_the_same),
         cmocka_unit_test(scenes_may_turn_by_quarters),
         cmocka_unit_test(quaternions_may_have_any_length),
