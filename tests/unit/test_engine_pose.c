@@ -374,6 +374,30 @@ static void boxes_touch_about_centres_that_round(void **state)
             }
 }
 
+/* Boxes that touch as doubles have them, apart or overlapping by what their places lose. */
+static void boxes_are_apart_by_what_rounding_loses(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int sign = -1; sign <= 1; sign++)
+            for (int turned = 0; turned < 2; turned++) {
+                struct question question = {.a = {.dim = dim, .shape = FMB_BOX}, .duration = 1};
+                for (int axis = 0; axis < dim; axis++)
+                    question.a.component[axis][axis] = 1;
+                if (turned) { /* by a quarter */
+                    question.a.orientation[0] = question.a.orientation[dim == 2 ? 1 : 3] = 1;
+                    question.a.orientation_count = dim == 2 ? 2 : 4;
+                }
+                question.b = question.a;
+                question.a.origin[0] = 1;
+                question.b.origin[0] = 2;
+                question.a.local[turned] = sign * (turned ? -0x1p-60 : 0x1p-60);
+                assert_int_equal(referee_assert(&question), sign < 0    ? FMB_SEPARATED
+                                                            : sign == 0 ? FMB_TOUCHING
+                                                                        : FMB_OVERLAPPING);
+            }
+}
+
 /* Boxes that travel together, by less than the last bit of an end, or less than any double. */
 static void boxes_hold_travels_that_underflow(void **state)
 {
@@ -807,6 +831,7 @@ int main(void)
     const struct CMUnitTest others[] = {
         cmocka_unit_test(edges_may_be_parallel_in_doubles_only),
         cmocka_unit_test(boxes_touch_about_centres_that_round),
+        cmocka_unit_test(boxes_are_apart_by_what_rounding_loses),
         cmocka_unit_test(boxes_hold_travels_that_underflow),
         cmocka_unit_test(every_way_to_ask_gives_the_same),
         cmocka_unit_test(scenes_may_turn_by_quarters),

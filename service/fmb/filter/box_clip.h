@@ -50,12 +50,12 @@
  *    quotients: u |t|, which is u |d| for s + t d, since |t| > 1 is cut off. Together at most 7 u
  *    times the sum of the magnitudes of D (or n . c_k), of n . (the offset), and of n . (the
  *    components).
- * 4. Frames with errors: points of both are off by at most e together. A true edge then is within
- *    its share of e of the computed one, point by point. And a point is in the true frame if the
- *    ball around it, with the radius of that frame's error, is in the frame as prepared: were it
- *    outside, in a direction m, h(m) of the true frame would be less than that of the ball's
- * centre, and h(m) of the frame as prepared at most |m| times its error more. So |n| e is enough
- * for both ends, and |n| is at most its scale.
+ * 4. Frames with errors: points of both are off by at most e together. A true edge is within its
+ *    share of e of the computed one, point by point. A point x is in the true frame if the frame as
+ *    prepared holds the ball around x whose radius is the frame's error: otherwise m . x > h(m) of
+ *    the true frame for some direction m, but h(m) of the frame as prepared is at most |m| times
+ * the error more, and the ball reaches that far beyond x. So |n| e is enough for both ends, and |n|
+ * is at most its scale.
  * 5. |d| < E' 2^-20 is replaced by that, with E' = 1 to 3 together: s + t d changes by less than
  *    2^-19 E'. E' is at least 2^-640 (else the lane is not good), so that what underflows, less
  * than 2^-662 (slabs.c), is less than 2^-20 E' too. E' has 8 u where 1 needs 7.1, and 3 does not
