@@ -1,6 +1,7 @@
 /* The box of the intersection of two solids in 3D, at rest and in contact, of LANES pairs at once,
- * from their edges. It gives nearly all boxes of pairs of which a frame is a tetrahedron faster
- * than box_search.h, and boxes of cuboids that lie nearly flat on each other.
+ * from their edges. This is faster than the search (box_search.h) where a frame is a tetrahedron,
+ * and gives boxes that the search leaves open, such as those of cuboids that rest on each other
+ * with a slight tilt.
  *
  * In: struct pair_lanes; struct box_search as begin_box() leaves it.
  *
@@ -38,31 +39,33 @@
  * the true other frame is lost from the outer span, and all of the inner span is in it. Both ends
  * are bounds by themselves, whether the frames as prepared are in contact or not. u = 2^-53.
  *
- * 1. Products. With the weight W of n as in box_search.h, coordinates of n are rounded twice, and a
- *    product n . w three times more: 5 u W . |w|. What is 0 for the true normal, n . c_i and
- *    n . c_j, is at most 2.01 u W . |c_i| for the computed one. The sum of three normals is rounded
- *    twice more; its weight is the sum of theirs. So all n . c_k agree with D to 7.1 u W . |c_k|,
- *    since they have the same monomials. Together at most 7.1 u W . (magnitudes of all vectors
- *    at hand).
- * 2. The offset is off by 5 u times the magnitudes of what it is made of, and |n| is at most W.
- * 3. Sums and quotients, in magnitudes of products with n. s: 2 roundings of sums, as a quotient 2
- *    more. r + E: 1, as a quotient 2 more. d: 1 where it is a difference. The sum of the two
- *    quotients: u |t|, which is u |d| for s + t d, since |t| > 1 is cut off. Together at most 7 u
- *    times the sum of the magnitudes of D (or n . c_k), of n . (the offset), and of n . (the
- *    components).
- * 4. Frames with errors: points of both are off by at most e together. A true edge is within its
- *    share of e of the computed one, point by point. A point x is in the true frame if the frame as
- *    prepared holds the ball around x whose radius is the frame's error: otherwise m . x > h(m) of
- *    the true frame for some direction m, but h(m) of the frame as prepared is at most |m| times
- * the error more, and the ball reaches that far beyond x. So |n| e is enough for both ends, and |n|
- * is at most its scale.
- * 5. |d| < E' 2^-20 is replaced by that, with E' = 1 to 3 together: s + t d changes by less than
- *    2^-19 E'. E' is at least 2^-640 (else the lane is not good), so that what underflows, less
- * than 2^-662 (slabs.c), is less than 2^-20 E' too. E' has 8 u where 1 needs 7.1, and 3 does not
- * need all of its 7 u. Quotients with s are at most 2^70, and never NAN; r / |d| may be infinite.
- * 6. With t from t_0 to t_1, p + t a is computed as p + (t_0 + t_1) (a / 2) +- (t_1 - t_0) |a / 2|:
- *    at most 6 roundings of |a|, 3 of |p|. With those of the centre that is less than 18 u of the
- *    components and 9 u of the centre, the slack (box_search.h), which holds e too.
+ * 1. Products. With the weight W of n as in box_search.h, coordinates of n are rounded twice,
+ *    and a product n . w three times more: 5 u W . |w|. What is 0 for the true normal, n . c_i
+ *    and n . c_j, is at most 2.01 u W . |c_i| for the computed one. The sum of three normals
+ *    is rounded twice more; its weight is the sum of theirs. So all n . c_k agree with D to
+ *    7.1 u W . |c_k|, since they have the same monomials. Together at most 7.1 u W .
+ *    (magnitudes of all vectors at hand).
+ * 2. The offset is off by 5 u times the magnitudes of what it is made of, and |n| is at most
+ *    W.
+ * 3. Sums and quotients, in magnitudes of products with n. s: 2 roundings of sums, as a
+ *    quotient 2 more. r + E: 1, as a quotient 2 more. d: 1 where it is a difference. The sum
+ *    of the two quotients: u |t|, which is u |d| for s + t d, since |t| > 1 is cut off.
+ *    Together at most 7 u times the sum of the magnitudes of D (or n . c_k), of n . (the
+ *    offset), and of n . (the components).
+ * 4. Frames with errors: points of both are off by at most e together. A true edge is within
+ *    its share of e of the computed one, point by point. A point x is in the true frame if the
+ *    frame as prepared holds the ball around x whose radius is the frame's error: otherwise m
+ *    . x > h(m) of the true frame for some direction m, but h(m) of the frame as prepared is
+ *    at most |m| times the error more, and the ball reaches that far beyond x. So |n| e is
+ *    enough for both ends, and |n| is at most its scale.
+ * 5. |d| < E' 2^-20 is replaced by that, with E' = 1 to 3 together: s + t d changes by less
+ *    than 2^-19 E'. E' is at least 2^-640 (else the lane is not good), so that what
+ *    underflows, less than 2^-662 (slabs.c), is less than 2^-20 E' too. E' has 8 u where 1
+ *    needs 7.1, and 3 does not need all of its 7 u. Quotients with s are at most 2^70, and
+ *    never NAN; r / |d| may be infinite.
+ * 6. With t from t_0 to t_1, p + t a is computed as p + (t_0 + t_1) (a / 2) +- (t_1 - t_0) |a
+ *    / 2|: at most 6 roundings of |a|, 3 of |p|. With those of the centre that is less than 18
+ *    u of the components and 9 u of the centre, the slack (box_search.h), which holds e too.
  *
  * Where nothing rounds (slabs_exact.h), frames often touch, and inner spans are empty: such pairs
  * are left to box_search.h, which has no errors there.
