@@ -1428,14 +1428,15 @@ INLINE void begin_search(const struct pair_lanes *pair, const struct kernel_trai
 }
 
 /* Ends that are small numbers, to the last bit. With the numbers of the pair multiples of a unit g,
- * and T < 2^8 g, a determinant is less than T^3 / 27 < 2^20 g^3, and an end a fraction of g with a
- * denominator below that. Two such fractions, or one and a multiple of 2^-20 g, are 2^-40 g apart
- * if they differ: where the end is known to 2^-44 g, and such a multiple may be it, it is. */
+ * and T < 2^8 g, a determinant is at most 4 T^3 / 81 < 2^20 g^3 (T^3 / 27 but for the normal of a
+ * far face, a sum of three), and an end a fraction of g with a denominator below that. Two such
+ * fractions, or one and a multiple of 2^-20 g, are 2^-40 g apart if they differ: where the end is
+ * within 2^-41 g of such a multiple, it is that. */
 INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
 {
     const lanes large = (0x1.8p52 * 0x1p-20) * unit, middle = 0.5 * (outer + inner);
     const lanes snap = (middle + large) - large;
-    const lanes near = 0x1p-44 * unit;
+    const lanes near = 0x1p-41 * unit;
     lanes_mask is_end = unit != 0;
     is_end &= lanes_abs(snap - outer) <= near;
     is_end &= lanes_abs(snap - inner) <= near;
