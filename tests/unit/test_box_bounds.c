@@ -194,6 +194,7 @@ static const struct kind kinds[] = {
     {3, FMB_CUBOID, FMB_FACE, false},
     {3, FMB_TETRAHEDRON, FMB_FACE, false},
     {3, FMB_CUBOID, FMB_CUBOID, true},
+    {3, FMB_CUBOID, FMB_TETRAHEDRON, true},
     {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
 };
 
@@ -284,6 +285,7 @@ static void draw_solid(struct draw *draw, const struct directions *directions, c
         out->orientation[i] = perturbed(draw, directions, q[i]);
 }
 
+/* Now and then the velocities are almost the same. */
 static void draw_dependent(struct draw *draw, const struct cell *cell, struct question *out)
 {
     struct directions directions = {.finest = draw_int(draw, 20, 60)};
@@ -303,6 +305,14 @@ static void draw_dependent(struct draw *draw, const struct cell *cell, struct qu
         solids[f]->moving = cell->moving && (f || draw_coin(draw));
         draw_solid(draw, &directions, q, solids[f]);
         draw_point(draw, solids[f], at[f]);
+    }
+    if (cell->moving && draw_int(draw, 0, 3) == 0) {
+        const double times = draw_coin(draw) ? 1 : 0x1p40;
+        out->a.moving = true;
+        for (int axis = 0; axis < cell->dim; axis++) {
+            out->a.velocity[axis] = times * draw_uniform(draw, -1, 1);
+            out->b.velocity[axis] = out->a.velocity[axis] * (1 + draw_int(draw, -1, 1) * 0x1p-51);
+        }
     }
     const double far = draw_int(draw, 0, 2) ? 0 : draw_uniform(draw, -1, 1);
     for (int axis = 0; axis < cell->dim; axis++) {

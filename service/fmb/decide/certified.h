@@ -6,8 +6,8 @@
  *               method. For two faces in one plane: the verdict of two triangles in 2D (faces.c)
  *     contact   the filter bounds the times in the same pass (slabs_lanes.h). If a bound is not
  *               tight enough, or nothing rounds: the slabs one by one (contact.c)
- *     box       from what is left of the edges (box_clip.h), or for each end the least of a list of
- *               bounds (box_search.h)
+ *     box       from what is left of the edges and where they cross (box_clip.h), or for each end
+ *               the least of a list of bounds (box_search.h)
  *     gap       given the verdict, in steps of its own (gap.h)
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,

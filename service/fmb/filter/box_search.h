@@ -1488,7 +1488,8 @@ INLINE void add_all(const struct pair_lanes *pair, const struct kernel_traits tr
         add_crossings(pair, traits, side, search);
 }
 
-/* How far the box reaches, [below 0, above][axis]: outer at most, inner surely. */
+/* How far the box reaches, [below 0, above][axis]: outer at most, inner surely, or with an error
+ * that is known to be within the limit (box_clip.h). */
 struct box_ends {
     lanes outer[2][3], inner[2][3];
 };

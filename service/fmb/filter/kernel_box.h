@@ -15,7 +15,7 @@ struct box_refinement {
     lanes box[2][3];
 };
 
-/* The second pass (box_refine.c). */
+/* The second pass, and what else there is (box_refine.c). */
 void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement);
 
 /* Whether all boxes are good that can be. */
@@ -37,14 +37,17 @@ INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
     return good | more;
 }
 
-/* Finds boxes in the ways that there are, until all are good: the first way for a lane is the
- * cheapest one of its kind, and the next ones are the same whatever the other lanes hold. Returns
- * the lanes in which boxes are good. */
+/* Finds boxes in the ways that there are, until all are good. In which order they are tried for a
+ * lane does not depend on what the other lanes hold. Returns the lanes in which boxes are good. Two
+ * cuboids are searched first, since they often rest on each other; moving cuboids are not clipped
+ * here, since their edges have too many crossings. */
 INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pair_lanes *pair,
                              const struct box_places *places, lanes box[2][3])
 {
-    const bool clips = is_clipped(traits);
-    const bool clips_first = clips && (traits.simplex[0] || traits.simplex[1]);
+    const bool any = traits.simplex[0] || traits.simplex[1];
+    const bool both = traits.simplex[0] && traits.simplex[1];
+    const bool clips = can_be_clipped(traits) && (!traits.drifts || both);
+    const bool clips_first = clips && any;
     struct box_refinement last;
     struct box_search search;
     lanes other[2][3];

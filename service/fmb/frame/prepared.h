@@ -1,8 +1,8 @@
 /* The contents of a prepared frame. No function here has shared state.
  *
  * Its numbers are the world coordinates of the frame, rounded. They describe a rounded frame near
- * the true one: no point of either frame is farther from the other frame than error (2-norm). If
- * error is 0, the two are the same. The bounds of the filter hold for the rounded frame, whose
+ * the true one: no vertex, and so no point, is farther than error from where it truly is (2-norm).
+ * If error is 0, the two are the same. The bounds of the filter hold for the rounded frame, whose
  * numbers are exact; slabs.h derives bounds for the true one.
  *
  * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
