@@ -85,12 +85,15 @@ load service
     random_scene 2 5 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
-    [ "$(status_of received,.scenes,.pairs,.bodies | xargs)" = "2 2 20 5" ]
-    [ "$(status_of frame_capacity,.misses,.hits | xargs)" = "500 5 5" ]
+    # Under load, clients repeat queries.
+    "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
+    jq -e '.scenes >= 2 and .received == .scenes and .pairs == 10 * .scenes and .bodies == 5 and
+        .frame_capacity == 500 and .misses == 5 and .hits == 5 * (.scenes - 1)' "$BATS_TEST_TMPDIR/status"
     "$FMB" query --certificate "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
-    jq -e '.received == 12 and .scenes == 2 and .pairs == 30 and .malformed == 0 and
-        .received == .answered + .unsent and .answered == ([.results[]] | add)' "$BATS_TEST_TMPDIR/status"
+    jq -e '(.pairs - 10 * .scenes) as $alone | $alone >= 10 and .received == .scenes + $alone and
+        .malformed == 0 and .received == .answered + .unsent and
+        .answered == ([.results[]] | add)' "$BATS_TEST_TMPDIR/status"
     run "$FMB" status
     [ "$status" = 0 ]
     stop_fmbd
