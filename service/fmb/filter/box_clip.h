@@ -1,30 +1,29 @@
-/* The box of the intersection of two solids in 3D in contact, at rest or moving, of LANES pairs at
- * once, from their edges.
+/* Boxes of intersections from edges: two solids in 3D in contact, at rest or moving, LANES pairs at
+ * once.
  *
- * In: struct pair_lanes; struct box_search as begin_box() leaves it.
+ * In: struct pair_lanes; struct box_search as begin_box() leaves it, or search_box() after that.
  *
  * Out: as search_box() (box_search.h).
  *
  * Steps (clip_box()):
- *   1. set_slabs()            the slabs whose intersection a frame is
- *   2. clip_segments()        what is left of each segment of the other frame: of slabs that are
- *                             surely wide enough (outer), and of slabs that are surely narrow
- *                             enough (inner)
- *   3. find_reach()           how far what is left reaches
- *   4. has_vague()            whether inner spans are as long as outer ones, within the limit
+ *   1. set_slabs()            the slabs whose intersection is a frame
+ *   2. clip_segments()        clips the segments of the other frame to these slabs: widened by the
+ *                             bound on their error (outer spans), and narrowed by it (inner spans)
+ *   3. find_reach()           how far the outer spans reach along each axis
+ *   4. uncertain_spans()      the lanes in which an inner span is too short for the limit
  *   5. set_crossings(), add_crossing_reach()
  *                             moving: how far crossings of edges reach
- *   6. 3 and 5 of the inner ends, where they are not within the limit of the outer ones anyway
+ *   6. 3 and 5 for the inner ends, in the lanes that 4 or 5 return
  *   7. put_box(), are_near()  (box_search.h)
  *
  * THE METHOD
  *
- * The box is that of the vertices of a polytope, the intersection in space and time. At rest, a
- * vertex lies in the planes of three faces. Two of them are of the same frame, so it is on an edge
- * of that frame, and in the other frame. The other way round, the part of an edge that is in the
- * other frame belongs to the intersection. So the box is that of all these parts.
+ * The intersection is a polytope in space and time, and its box is that of its vertices. At rest, a
+ * vertex lies in the planes of three faces. At least two of them belong to the same frame, so the
+ * vertex is on an edge of that frame, and in the other frame. Conversely, the part of an edge that
+ * is in the other frame belongs to the intersection. So the box is that of all these parts.
  *
- * Where the frames move, the window goes from -1 to 1, and a vertex is
+ * Where the frames move, time runs from -1 to 1 over the window, and a vertex is
  *
  *   - at the start or the end of the window, on an edge as at rest;
  *   - or in three faces of one frame: on the path of one of its vertices, and in the other frame;
@@ -32,56 +31,61 @@
  *
  * Segments are the edges at rest; or the edges at the start, those at the end, and the paths.
  *
- * A cuboid is the intersection of three slabs: |n . x| <= |n . c_k| from its centre, with n = c_i x
- * c_j. A tetrahedron is that of four: with n_k = c_i x c_j and D = n_k . c_k for any k, n_k . x / D
- * is the barycentric coordinate of c_k, from 0 to 1, as is the sum of all three. So |n . x - D / 2|
+ * A cuboid is the intersection of three slabs: |n . x| <= |n . c_k| with x seen from its centre and
+ * n = c_i x c_j. A tetrahedron is that of four: with n_k = c_i x c_j and D = n_k . c_k for any k,
+ * n_k . x / D is the barycentric coordinate of c_k, from 0 to 1, as is the sum of all three. So |n
+ * . x - D / 2|
  * <= |D| / 2, for each n_k and for their sum, whatever the sign of D.
  *
- * Along a segment p + t a (0 <= t <= 1 of an edge of a simplex; else -1 <= t <= 1, where a is half
- * an edge of a cuboid, or half the way) the distance from the middle of a slab is s + t d, with d =
- * n . a. With the radius r of the slab, t is within r / |d| of -s / d.
+ * Along a segment p + t a, the value of n . x, less that in the middle of a slab, is s + t d, with
+ * d = n . a. On an edge of a simplex 0 <= t <= 1. Else -1 <= t <= 1, and a is half an edge of a
+ * cuboid, or travel, half of the displacement in the window. With the radius r of the slab, t is
+ * within r / |d| of -s / d. Like s and d, r is a distance times |n|.
  *
  * OUTER AND INNER ENDS OF SPANS
  *
- * The radius of a slab is r + E for the outer spans and r - E for the inner ones, where E bounds
- * the error of s + t d and r together, for the t of the segment. So nothing of a true segment that
- * is in the true other frame is lost from the outer span, and all of the inner span is in it. Both
- * ends are bounds by themselves, whether the frames as prepared are in contact or not. u = 2^-53.
+ * The radius of a slab is r + E for the outer spans and r - E for the inner ones. E bounds the
+ * error of s + t d and that of r together, for every t of the segment. So the part of the true
+ * segment that is in the true other frame lies in the outer span, and contains the inner one. This
+ * holds whether or not the frames as prepared are in contact. u = 2^-53.
  *
- * 1. Products. With the weight W of n as in box_search.h, coordinates of n are rounded twice, and
- *    a product n . w three times more: 5 u W . |w|; once more where w is a difference. What is 0
- *    for the true normal, n . c_i and n . c_j, is at most 2.01 u W . |c_i| for the computed one.
- *    The sum of three products is rounded twice more; its weight is the sum of theirs. So all n .
- *    c_k agree with D to 7.1 u W . |c_k|, since they have the same monomials; and along an edge
- *    that is a difference, s + t d, with the same n . c_p in s and in d, is off by at most 8.1 u W
- *    . |c|. Together at most 8.1 u W . (magnitudes of all vectors at hand).
+ * 1. Products, beside those of the exact normal of the frame as prepared. With the weight W of n as
+ *    in box_search.h, coordinates of n are rounded twice, and a product n . w three times more: 5 u
+ *    W . |w|; once more where w is a difference; twice more in the sum of three products, whose
+ *    weight is the sum of theirs. D is computed once. Exactly, all n_k . c_k are equal and have the
+ *    same monomials, so the bound for D holds with any k. Along an edge c_q - c_p, s + t d has the
+ *    same n . c_p in s and in d, and is off by at most 8.1 u W . w, where w holds the larger
+ *    magnitudes of c_p and c_q. Together at most 8.1 u W . (magnitudes of all vectors at hand).
  * 2. The offset is rounded 4 times, half the drift twice: 5 u times the magnitudes of what they are
  *    made of, and |n| is at most W.
- * 3. Sums and quotients, in magnitudes of products with n. s: 3 roundings of sums, as a quotient 2
- *    more. r + E: 1, as a quotient 2 more. d: 1 where it is a difference. The sum of the two
- *    quotients: u |t|, which is u |d| for s + t d, since |t| > 1 is cut off. Together at most 7 u
- *    times the sum of the magnitudes of D (or n . c_k), of n . (the offset), n . (half the drift),
- *    and n . (the components).
- * 4. Frames with errors: points of both are off by at most e together. A true segment is within its
- *    share of e of the computed one, point by point. A point x is in the true frame if the frame as
- *    prepared holds the ball around x whose radius is the frame's error: otherwise m . x > h(m) of
- *    the true frame for some direction m, but h(m) of the frame as prepared is at most |m| times
- *    the error more, and the ball reaches that far beyond x. So |n| e is enough for both ends, and
- *    |n| is at most its scale.
- * 5. |d| < E' 2^-20 is replaced by that, with E' = 1 to 3 together: s + t d changes by less than
- *    2^-19 E'. E' is at least 2^-640 (else the lane is not good), so that what underflows, less
- *    than 2^-662 (slabs.c), is less than 2^-20 E' too. E' has 9 u where 1 needs 8.1, and 3 does
- *    not need all of its 7 u. Quotients with s are below 2^71, and never NAN; r / |d| may be
- *    infinite.
+ * 3. Sums and quotients: roundings of the products with n. s: 3 in sums, 2 more as a quotient. r +
+ *    E: 1, 2 more as a quotient. d: 1 where it is a difference. The sum of the two quotients is off
+ *    by u |t|, and so s + t d by u |d|, since |t| > 1 is cut off. Together at most 7 u times the
+ *    sum of the magnitudes of D (or n . c_k), of n . (the offset), n . (half the drift), and n .
+ *    (the components).
+ * 4. Frames with errors: let e be the sum of the errors of both. Each point of a true segment is
+ *    within the error of its frame of the same point of the computed one. A point x is in a true
+ *    frame if the frame as prepared contains the ball around x whose radius is the error of the
+ *    frame: otherwise m . x > h(m) for some direction m, with the support function h of the true
+ *    frame; that of the frame as prepared is at most |m| times the error more, and the ball reaches
+ *    that far beyond x. So |n| e is enough for both ends, and |n| is at most its scale. set_slab()
+ *    has 1.01 e, for rounding.
+ * 5. Where |d| < 2^-20 E', with E' = 1 to 3 together, 2^-20 E' takes the place of d, which changes
+ *    s + t d by less than 2^-19 E'. E' is at least 2^-640 (else the lane is not good). What
+ *    underflows is less than 100 * 2^-1074 * 2^405 < 2^-662 (slabs.c), and so less than 2^-20 E'
+ *    too. E' covers both: it has 9 u where 1 needs 8.1, and 3 does not need all of its 7 u.
+ *    Quotients with s are below 2^71, and never NAN; r / |d| may be infinite.
  * 6. With t from t_0 to t_1, p + t a is computed as p + (t_0 + t_1) (a / 2) +- (t_1 - t_0) |a / 2|.
  *    What p and a are made of is rounded at most 16 times in all, what the origin is made of 7
- *    times: less than the slack (box_search.h), which holds e too.
+ *    times: less than the slack (box_search.h), which includes e.
  *
  * CROSSINGS
  *
- * Let p + s a be an edge of A, q + r b one of B, both seen from their reference points, o the
- * offset and H half the drift. They cross at the time t where s a - r b - t H = g, with g = o + q -
- * p. With X = [a b H], the products of this equation with b x H, H x a and a x b are
+ * Let p + s a be an edge of A and q + r b one of B, each seen from the reference point of its
+ * frame; s and r are their parameters (no longer those of a slab). Let o be the offset, H =
+ * travel_B - travel_A half the drift, and t the time. The edges cross where s a - r b - t H = g,
+ * with g = o + q - p. With X = [a b H], the products of this equation with b x H, H x a and a x b
+ * are
  *
  *     s X = [o b H] + [q b H] - [p b H]
  *
@@ -91,53 +95,57 @@
  *
  * p x a and q x b are made of the normals of faces (moment_of_edge()).
  *
- * 7. Let N_s be the computed right side of the first equation. For a crossing of the true edges
- *    within the ranges of its parameters, |N_s - s X| <= E_s, and E_r and E_t likewise. Rounded
- *    are, with the weight W of b x H: products of components 7 times (H 2, cross product 2, dot
- *    product 3); the difference that b is, N_s, and its sums 4 times more. So [o b H] is rounded
- *    11 times, after 4 times of o itself; what q is made of 10 times. For a simplex A, let a = Q -
- *    P, p = P. The products with P and Q, 7 times rounded, stand in N_s - s X with factors 1 - s
- *    and s, together 7 times the larger one; P is rounded twice more in N_s; P and Q twice more in
- *    X: at most 13 times the larger one, the farthest coordinate. A cuboid A has 10 times the sum
- *    of all components. So E_s = W . (13.1 u (|o| + the farthest coordinates) + 4.1 u (what o is
- *    made of)). E_r is the same. In the third equation all of these, and H, are rounded at most 9
- *    times.
- * 8. Frames with errors: every vertex is off by at most the frame's error (prepared.h), so at the
- *    same s, r and t, points of the true edges are off by e together, and N_s - s X by e |b x H|.
- *    scale_error has 1.01 e, for what 9 and 11 add.
- * 9. So s is within E_s / |X| of N_s / X. What p + s a + t (half of A's way) is off by along axis
- *    k is at most (E_s |a_k| + E_t |way_k|) / |X|. A crossing is possible if all parameters may be
- *    in their ranges; so none that is a vertex is lost, and the outer end of each is no less than
- *    the vertex. Quotients are rounded twice, and the distance from a range twice: 4 u.
- * 10. It is certain if all parameters are in their ranges by more than these errors. Then the
- *    true edges cross. First, as prepared: the error of X is at most 9 u W . (|P| + |Q|) < 2 E_s of
- *    a simplex, 8 u W . |a| < E_s of a cuboid, and X is more than that, since its range has the
- *    length 1 or 2: so X is not 0, and there is a crossing. Beyond its range the bound of 7 grows
- *    by less than |X| for each 1 that the parameter is out, so the crossing is in its ranges. Now
- *    move all vertices evenly from where they are as prepared to where they truly are. On the way,
- *    by 7 and 8, a crossing that is in its ranges is inside them by a margin. Where X were 0, it
- *    would be on a line of crossings, which leaves the ranges somewhere, without a margin. So X
- *    stays other than 0, the crossing moves steadily, and never leaves its ranges. So the inner end
- *    of each is no more than a true point.
- * 11. |X| < 2^-20 of the least of the three errors is replaced by that, which changes s X by less
- *    than 2^-19 of each. scale_error has 2^-93 T in addition: with sizes above 2^-180 (else the
- *    lane is not good) the errors are more than 2^-640, above all that underflows (5), and nothing
- *    overflows: quotients are below 2^500. Where the frames do not drift apart, there are none.
- * 12. Positions: what the components are made of is rounded at most 16 times, the ways 17 times,
- *    the origin 7 times: less than the slack.
+ * 7. Let N_s be the computed right side of the first equation, X the computed factor on its left,
+ *    and W the weight of b x H. Where the true edges cross within the ranges of the parameters,
+ *    |N_s - s X| <= E_s. E_s is the sum of a bound for rounding, derived here, and one for the
+ *    errors of the frames (8). E_r and E_t likewise. A product of components is rounded 7 times (H
+ *    2, cross product 2, dot product 3), and at most 4 times more: in the difference that b may be,
+ *    in sums of products, and in N_s. So [o b H] is rounded 11 times, after 4 roundings of o
+ *    itself; what q is made of, 10 times. If A is a simplex, let p = P and a = Q - P. In N_s - s X
+ *    the products with P and Q, rounded 7 times, have the factors 1 - s and s: together 7 times the
+ *    larger one. P is rounded twice more in N_s, P and Q twice more in X: at most 13 times the
+ *    larger one, the farthest coordinate. If A is a cuboid, it is 10 times the sum of all
+ *    components. So the rounding part of E_s is W . (13.1 u (|o| + the farthest coordinates) + 4.1
+ *    u (what o is made of)); that of E_r is the same with the weight of a x H. In the third
+ *    equation all of these, and H, are rounded at most 9 times.
+ * 8. Frames with errors: every vertex is off by at most the frame's error (prepared.h). So at the
+ *    same s, r and t, points of the true edges are off by at most e together, and N_s - s X by at
+ *    most e |b x H|, the other part of E_s. scale_error has 1.01 e, for what 9 and 11 add.
+ * 9. So s is within E_s / |X| of N_s / X, and p + s a + t travel_A is off along axis k by at most
+ *    (E_s |a_k| + E_t |travel_A[k]|) / |X|. A crossing is possible if, within these errors, all
+ *    parameters are in their ranges. So no crossing that is a vertex is lost, and the outer end of
+ *    each is no less than the vertex. Quotients are rounded twice, and the distance from a range
+ *    twice: 4 u.
+ * 10. It is certain if each parameter is in its range by more than these errors. Then the true
+ *    edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1 for a
+ *    simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex. The error of X is less: at
+ *    most 8 u W . |a| < E_s for a cuboid, 9 u W . (|P| + |Q|) < 2 E_s for a simplex. So the exact X
+ *    is not 0, and there is a crossing. If a parameter were out of its range by x, the bound of 7
+ *    would grow by less than |X| x. So the crossing is within the ranges. Now move all vertices
+ *    linearly from where they are as prepared to where they truly are. On the way, by 7 and 8, a
+ *    crossing that is within the ranges is inside them by a margin. Were the exact X 0 somewhere on
+ *    the way, the crossing would be one of a line of crossings, and this line leaves the ranges at
+ *    a crossing without a margin. So X stays other than 0, and the crossing moves continuously and
+ *    never leaves the ranges. So the inner end of each is no more than a true point.
+ * 11. Where |X| is less than 2^-20 of the least of E_s, E_r and E_t, that takes its place, which
+ *    changes s X by less than 2^-19 of each. scale_error has 2^-93 T in addition (T: slabs.c). With
+ *    sizes of at least 2^-180 (else the lane is not good) all three are more than 2^-640, above all
+ *    that underflows (5), and nothing overflows: quotients are below 2^500. Where H is 0, there are
+ *    no crossings.
+ * 12. Positions: what the components are made of is rounded at most 16 times, travel 17 times, the
+ *    origin 7 times: less than the slack.
  *
- * Where nothing rounds (slabs_exact.h), frames often touch, and inner spans are empty: such pairs
- * are left to box_search.h, which has no errors there. */
+ * Where nothing rounds (slabs_exact.h), frames often touch, and inner spans are empty. Such lanes
+ * are left to box_search.h, where determinants and products with n are then exact. */
 #ifndef FMB_BOX_CLIP_H
 #define FMB_BOX_CLIP_H
 
 #include "box_search.h"
 
-enum { CLIP_OUTER, CLIP_INNER, CLIP_WAYS };
+enum { CLIP_OUTER, CLIP_INNER, CLIP_BOUNDS };
 enum { CLIP_SLABS_MAX = 4, CLIP_SEGMENTS_MAX = 32 };
 
-/* A linear function of the points of a frame: a coordinate, or the distance from the middle of a
- * slab. */
+/* A linear function of the points of a frame: a coordinate, or n . x from the middle of a slab. */
 struct clip_form {
     lanes at[6];  /* [edge]: what it grows by along the edge */
     lanes middle; /* its value at the reference point in the middle of the window */
@@ -147,18 +155,18 @@ struct clip_form {
 /* A slab of one frame, as it is seen from the other. */
 struct clip_slab {
     struct clip_form form;
-    lanes radius[CLIP_WAYS]; /* surely too wide, too narrow */
-    lanes least;             /* magnitude of what is divided by */
+    lanes radius[CLIP_BOUNDS]; /* [outer, inner]: surely not too small, surely not too large */
+    lanes least;               /* takes the place of a smaller |d| (5) */
 };
 
-/* A part of a segment, from one parameter to another; from > to: nothing. */
+/* The parameters of a segment that remain, [from, to]; from > to: none. */
 struct clip_span {
     lanes from, to;
 };
 
-/* What is left of the segments of a frame. */
+/* The spans of the segments of a frame. */
 struct clip_spans {
-    struct clip_span part[CLIP_WAYS][CLIP_SEGMENTS_MAX];
+    struct clip_span part[CLIP_BOUNDS][CLIP_SEGMENTS_MAX];
 };
 
 /* Whether the boxes of a kind of pairs can be found in this way. */
@@ -167,20 +175,35 @@ INLINE bool can_be_clipped(const struct kernel_traits traits)
     return traits.dim == 3 && !traits.face[0] && !traits.face[1];
 }
 
+INLINE lanes max_of_three(lanes x, lanes y, lanes z)
+{
+    return lanes_max(lanes_max(x, y), z);
+}
+
 /* ---- Segments ----
  *
  * They are numbered by their directions: those along edge e, at the start of the window and then at
- * its end; after all edges, the paths of the vertices. */
+ * its end; after all edges, the paths of the vertices. Of frames at rest, loops over the directions
+ * are unrolled. Moving frames have so many segments that code for each would not fit into the
+ * instruction cache. */
 
-INLINE int direction_count(const struct kernel_traits traits, int which)
-{
-    return edge_count(traits, which) + (traits.drifts ? 1 : 0);
-}
-
-INLINE bool is_path(const struct kernel_traits traits, int which, int direction)
-{
-    return direction == edge_count(traits, which);
-}
+/* Executes a statement with each direction of a frame. path: whether it is that of the paths, a
+ * constant in each copy of the statement, so that its loops have a constant number of turns. */
+#define EACH_DIRECTION(traits, which, direction, path, statement)                     \
+    if (traits.drifts) {                                                              \
+        for (int direction = 0; direction < edge_count(traits, which); direction++) { \
+            const bool path = false;                                                  \
+            statement;                                                                \
+        }                                                                             \
+        const int direction = edge_count(traits, which);                              \
+        const bool path = true;                                                       \
+        statement;                                                                    \
+    } else {                                                                          \
+        const bool path = false;                                                      \
+        UNROLL(6)                                                                     \
+        for (int direction = 0; direction < edge_count(traits, which); direction++)   \
+            statement;                                                                \
+    }
 
 /* How many edges of a frame have the same direction. */
 INLINE int parallel_count(const struct kernel_traits traits, int which)
@@ -193,21 +216,20 @@ INLINE int first_segment(const struct kernel_traits traits, int which, int direc
     return direction * parallel_count(traits, which) * (traits.drifts ? 2 : 1);
 }
 
-INLINE int segment_count(const struct kernel_traits traits, int which, int direction)
+INLINE int segment_count(const struct kernel_traits traits, int which, bool path)
 {
-    return is_path(traits, which, direction)
-               ? 4 * parallel_count(traits, which) / (traits.simplex[which] ? 1 : 2)
-               : parallel_count(traits, which) * (traits.drifts ? 2 : 1);
+    return path ? 4 * parallel_count(traits, which) / (traits.simplex[which] ? 1 : 2)
+                : parallel_count(traits, which) * (traits.drifts ? 2 : 1);
 }
 
-INLINE lanes along_direction(const struct kernel_traits traits, int which, int direction,
-                             const struct clip_form *form)
+INLINE lanes along_direction(int direction, bool path, const struct clip_form *form)
 {
-    return is_path(traits, which, direction) ? form->swing : form->at[direction];
+    return path ? form->swing : form->at[direction];
 }
 
-/* What a form makes of the base of edge n along e, seen from the reference point: of a simplex the
- * vertex where the edge begins, of a cuboid the middle of the edge. at: of the components. */
+/* The value of a form at the base of edge n along e, less that at the reference point. The base is
+ * the vertex at which an edge of a simplex begins, the midpoint of an edge of a cuboid. at:
+ * [component], what the form grows by along each. */
 INLINE lanes base_of_edge(const struct kernel_traits traits, int which, int e, int n,
                           const lanes at[3])
 {
@@ -217,36 +239,37 @@ INLINE lanes base_of_edge(const struct kernel_traits traits, int which, int e, i
     return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
 }
 
-/* What a form is at the parameter 0 of the segments of a direction. */
-INLINE void set_starts(const struct kernel_traits traits, int which, int direction,
-                       const struct clip_form *form, lanes start[8])
+/* The values of a form at parameter 0 of the segments of a direction: at the first vertex of an
+ * edge of a simplex, else in the middle of the segment. */
+INLINE void set_bases(const struct kernel_traits traits, int which, int direction, bool path,
+                      const struct clip_form *form, lanes base[8])
 {
     const lanes *at = form->at;
     const int parallel = parallel_count(traits, which);
-    if (is_path(traits, which, direction) && traits.simplex[which]) {
-        start[0] = form->middle;
+    if (path && traits.simplex[which]) {
+        base[0] = form->middle;
         UNROLL(3)
         for (int i = 0; i < 3; i++)
-            start[1 + i] = form->middle + at[i];
+            base[1 + i] = form->middle + at[i];
         return;
     }
-    if (is_path(traits, which, direction)) {
+    if (path) {
         UNROLL(4)
         for (int n = 0; n < 4; n++) {
-            const lanes base = form->middle + base_of_edge(traits, which, 0, n, at);
-            start[n] = base - at[0];
-            start[4 + n] = base + at[0];
+            const lanes middle = form->middle + base_of_edge(traits, which, 0, n, at);
+            base[n] = middle - at[0];
+            base[4 + n] = middle + at[0];
         }
         return;
     }
     UNROLL(4)
     for (int n = 0; n < parallel; n++) {
         const bool none = traits.simplex[which] && direction < 3;
-        const lanes base =
+        const lanes middle =
             none ? form->middle : form->middle + base_of_edge(traits, which, direction, n, at);
-        start[n] = traits.drifts ? base - form->swing : base;
+        base[n] = traits.drifts ? middle - form->swing : middle;
         if (traits.drifts)
-            start[parallel + n] = base + form->swing;
+            base[parallel + n] = middle + form->swing;
     }
 }
 
@@ -297,7 +320,7 @@ INLINE int set_slabs(const struct kernel_traits traits, const struct pair_lanes 
     return count;
 }
 
-/* What is left of a span between middle - half and middle + half. */
+/* The part of a span within [middle - half, middle + half]. */
 INLINE struct clip_span clipped(struct clip_span span, lanes middle, lanes half)
 {
     return (struct clip_span){lanes_max(middle - half, span.from),
@@ -305,36 +328,36 @@ INLINE struct clip_span clipped(struct clip_span span, lanes middle, lanes half)
 }
 
 /* Clips the segments of a direction to the slabs of the other frame. */
-INLINE void clip_segments(const struct kernel_traits traits, int which, int direction,
+INLINE void clip_segments(const struct kernel_traits traits, int which, int direction, bool path,
                           const struct clip_slab *slab, int slabs, struct clip_spans *out)
 {
-    const int count = segment_count(traits, which, direction);
+    const int count = segment_count(traits, which, path);
     const int first = first_segment(traits, which, direction);
-    const bool from_end = traits.simplex[which] && !is_path(traits, which, direction);
-    struct clip_span span[CLIP_WAYS][8];
+    const bool from_vertex = traits.simplex[which] && !path;
+    struct clip_span span[CLIP_BOUNDS][8];
     UNROLL(16)
     for (int n = 0; n < 16; n++)
-        span[n / 8][n % 8] = (struct clip_span){lanes_of(from_end ? 0 : -1), lanes_of(1)};
+        span[n / 8][n % 8] = (struct clip_span){lanes_of(from_vertex ? 0 : -1), lanes_of(1)};
     UNROLL(4)
     for (int k = 0; k < slabs; k++) {
-        lanes start[8];
-        const lanes d = along_direction(traits, which, direction, &slab[k].form);
+        lanes base[8];
+        const lanes d = along_direction(direction, path, &slab[k].form);
         const lanes negative = -1 / lanes_select(lanes_abs(d) >= slab[k].least, d, slab[k].least);
         const lanes outer = slab[k].radius[CLIP_OUTER] * lanes_abs(negative);
         const lanes inner = slab[k].radius[CLIP_INNER] * lanes_abs(negative);
-        set_starts(traits, which, direction, &slab[k].form, start);
+        set_bases(traits, which, direction, path, &slab[k].form, base);
         UNROLL(8)
         for (int n = 0; n < count; n++) {
-            const lanes middle = start[n] * negative;
+            const lanes middle = base[n] * negative;
             span[CLIP_OUTER][n] = clipped(span[CLIP_OUTER][n], middle, outer);
             span[CLIP_INNER][n] = clipped(span[CLIP_INNER][n], middle, inner);
         }
     }
     UNROLL(2)
-    for (int way = 0; way < CLIP_WAYS; way++)
+    for (int bound = 0; bound < CLIP_BOUNDS; bound++)
         UNROLL(8)
     for (int n = 0; n < count; n++)
-        out->part[way][first + n] = span[way][n];
+        out->part[bound][first + n] = span[bound][n];
 }
 
 /* ---- Reach ---- */
@@ -351,77 +374,84 @@ INLINE void set_coordinate(const struct kernel_traits traits, int which, int axi
         out->at[e] = frame->edge[e][axis];
 }
 
-/* How far what is left of the segments of a frame reaches from 0, [below, above][axis]. */
+/* Adds the spans of a direction to what reach holds of an axis, [below, above]. */
+INLINE void add_reach(const struct kernel_traits traits, int which, int direction, bool path,
+                      const struct clip_form *coordinate, const struct clip_spans *spans, int bound,
+                      lanes *below, lanes *above)
+{
+    lanes base[8];
+    const struct clip_span *part = &spans->part[bound][first_segment(traits, which, direction)];
+    const lanes half = 0.5 * along_direction(direction, path, coordinate);
+    set_bases(traits, which, direction, path, coordinate, base);
+    UNROLL(8)
+    for (int n = 0; n < segment_count(traits, which, path); n++) {
+        const lanes from = part[n].from, to = part[n].to;
+        const lanes sum = lanes_select(to >= from, to + from, lanes_of(NAN));
+        const lanes middle = base[n] + sum * half;
+        const lanes length = (to - from) * lanes_abs(half);
+        *below = lanes_max(length - middle, *below);
+        *above = lanes_max(length + middle, *above);
+    }
+}
+
+/* How far the spans of a frame reach from 0, [below, above][axis]; -INFINITY if all are empty. */
 INLINE void find_reach(const struct kernel_traits traits, int which,
-                       const struct box_search *search, const struct clip_spans *spans, int way,
+                       const struct box_search *search, const struct clip_spans *spans, int bound,
                        lanes reach[2][3])
 {
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++) {
         struct clip_form coordinate;
+        lanes *below = &reach[0][axis], *above = &reach[1][axis];
         set_coordinate(traits, which, axis, search, &coordinate);
-        reach[0][axis] = reach[1][axis] = lanes_of(-INFINITY);
-        UNROLL(7)
-        for (int direction = 0; direction < direction_count(traits, which); direction++) {
-            lanes start[8];
-            const struct clip_span *part =
-                &spans->part[way][first_segment(traits, which, direction)];
-            const lanes half = 0.5 * along_direction(traits, which, direction, &coordinate);
-            set_starts(traits, which, direction, &coordinate, start);
-            UNROLL(8)
-            for (int n = 0; n < segment_count(traits, which, direction); n++) {
-                const lanes from = part[n].from, to = part[n].to;
-                const lanes sum = lanes_select(to >= from, to + from, lanes_of(NAN));
-                const lanes middle = start[n] + sum * half;
-                const lanes length = (to - from) * lanes_abs(half);
-                reach[0][axis] = lanes_max(length - middle, reach[0][axis]);
-                reach[1][axis] = lanes_max(length + middle, reach[1][axis]);
-            }
-        }
+        *below = *above = lanes_of(-INFINITY);
+        EACH_DIRECTION(
+            traits, which, direction, path,
+            add_reach(traits, which, direction, path, &coordinate, spans, bound, below, above))
     }
 }
 
-/* The lanes in which an inner span, of a segment of which something is left, is shorter by more
- * than the ends of the box may be apart. */
-INLINE lanes_mask has_vague(const struct kernel_traits traits, int which,
-                            const struct box_search *search, const struct clip_spans *spans)
+INLINE lanes_mask uncertain_along(const struct kernel_traits traits, int which, int direction,
+                                  bool path, const struct box_search *search,
+                                  const struct clip_spans *spans)
 {
     lanes_mask out = {0};
-    UNROLL(7)
-    for (int direction = 0; direction < direction_count(traits, which); direction++) {
-        const lanes *a = is_path(traits, which, direction) ? search->frame[which].travel
-                                                           : search->frame[which].edge[direction];
-        const int first = first_segment(traits, which, direction);
-        const lanes longest =
-            lanes_max(lanes_max(lanes_abs(a[0]), lanes_abs(a[1])), lanes_abs(a[2]));
-        UNROLL(8)
-        for (int n = 0; n < segment_count(traits, which, direction); n++) {
-            const struct clip_span *outer = &spans->part[CLIP_OUTER][first + n];
-            const struct clip_span *inner = &spans->part[CLIP_INNER][first + n];
-            const lanes length = outer->to - outer->from, certain = inner->to - inner->from;
-            const lanes_mask near =
-                (certain >= 0) & ((length - certain) * longest <= search->whole);
-            out |= (length >= 0) & is_not(near);
-        }
+    const struct box_frame *frame = &search->frame[which];
+    const lanes *a = path ? frame->travel : frame->edge[direction];
+    const int first = first_segment(traits, which, direction);
+    const lanes longest = max_of_three(lanes_abs(a[0]), lanes_abs(a[1]), lanes_abs(a[2]));
+    UNROLL(8)
+    for (int n = 0; n < segment_count(traits, which, path); n++) {
+        const struct clip_span *outer = &spans->part[CLIP_OUTER][first + n];
+        const struct clip_span *inner = &spans->part[CLIP_INNER][first + n];
+        const lanes length = outer->to - outer->from, certain = inner->to - inner->from;
+        const lanes_mask near = (certain >= 0) & ((length - certain) * longest <= search->whole);
+        out |= (length >= 0) & is_not(near);
     }
+    return out;
+}
+
+/* The lanes in which, for some segment with an outer span that is not empty, the inner span is
+ * empty, or shorter by more than search->whole along some axis. */
+INLINE lanes_mask uncertain_spans(const struct kernel_traits traits, int which,
+                                  const struct box_search *search, const struct clip_spans *spans)
+{
+    lanes_mask out = {0};
+    EACH_DIRECTION(traits, which, direction, path,
+                   out |= uncertain_along(traits, which, direction, path, search, spans))
     return out;
 }
 
 /* ---- Crossings ---- */
 
-/* What the crossings of a pair are made of. */
+/* What all crossings of a pair have in common. */
 struct clip_crossings {
     struct edge_products edges;
     lanes drift_middle[2][6]; /* [frame][edge]: (half_drift x offset) . edge */
-    lanes error[2][6];        /* [frame][edge]: of products with the edge and the drift */
-    lanes edge_error[3];      /* of those with an edge of each, for a weight of 1 along each axis */
-    lanes scale_error;        /* for a scale of 1 */
+    lanes error[2][6];        /* [frame][edge]: E_r for an edge of A, E_s for an edge of B */
+    lanes edge_error[3]; /* [axis]: rounding part of E_t, for a weight of 1 of a x b along it */
+    lanes scale_error;   /* 1.01 e + 2^-93 T: the other part, for a scale of 1 */
 };
-
-INLINE lanes max_of_three(lanes x, lanes y, lanes z)
-{
-    return lanes_max(lanes_max(x, y), z);
-}
 
 /* The largest magnitude of a coordinate of the vertices of a frame, seen from its reference point.
  */
@@ -434,7 +464,8 @@ INLINE lanes farthest_along(const struct pair_lanes *pair, const struct kernel_t
                : magnitudes_along(pair, traits, which, axis);
 }
 
-/* Returns the lanes in which no error is so small that it may be lost (11). */
+/* Returns the lanes in which every edge, and a drift that is not 0, has a size of at least 2^-180
+ * (11). */
 INLINE lanes_mask set_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
                                 const struct box_search *search, struct clip_crossings *out)
 {
@@ -483,58 +514,83 @@ INLINE lanes excess_of(const struct kernel_traits traits, int which, lanes x)
     return traits.simplex[which] ? lanes_abs(x - 0.5) - 0.5 : lanes_abs(x) - 1;
 }
 
-/* A crossing: the parameters of both edges, and the time. */
-struct clip_crossing {
-    lanes s, r, t;
+/* The edges along one direction of A, [edge]: their bases, and their parts of r X, and of s X and t
+ * X of their crossings with edges along j of B. */
+struct clip_edges_of_a {
+    lanes base[4][3];
+    lanes r[4], s[4][6], t[4][6]; /* [edge], [edge][j] */
 };
 
-/* Of edge one along edge i of A, and edge other along edge j of B. inverse: 1 / X. */
-INLINE struct clip_crossing crossing_of(const struct kernel_traits traits,
-                                        const struct clip_crossings *all,
-                                        const struct face_products side[2], int i, int one, int j,
-                                        int other, lanes inverse)
+INLINE void set_edges_of_a(const struct kernel_traits traits, const struct clip_crossings *all,
+                           const struct face_products *side, const struct box_frame *a, int i,
+                           struct clip_edges_of_a *out)
 {
-    const lanes(*swing)[6] = all->edges.swing;
-    const lanes(*a)[6] = side[0].other, (*b)[6] = side[1].other;
-    const lanes *of_a = side[0].swing, *of_b = side[1].swing;
-    const lanes column[3] = {swing[0][j], swing[1][j], swing[2][j]};
-    const lanes s =
-        all->drift_middle[1][j] + moment_of_edge(traits, 1, j, other, of_b[0], of_b[1], of_b[2]);
-    const lanes r =
-        all->drift_middle[0][i] - moment_of_edge(traits, 0, i, one, of_a[0], of_a[1], of_a[2]);
-    const lanes t = moment_of_edge(traits, 1, j, other, b[0][i], b[1][i], b[2][i]) +
-                    moment_of_edge(traits, 0, i, one, a[0][j], a[1][j], a[2][j]);
-    return (struct clip_crossing){inverse * (s - base_of_edge(traits, 0, i, one, column)),
-                                  inverse * (r - base_of_edge(traits, 1, j, other, swing[i])),
-                                  inverse * (t - all->edges.middle[i][j])};
+    const lanes(*swing)[6] = all->edges.swing, (*other)[6] = side->other;
+    UNROLL(4)
+    for (int n = 0; n < parallel_count(traits, 0); n++) {
+        out->r[n] = all->drift_middle[0][i] -
+                    moment_of_edge(traits, 0, i, n, side->swing[0], side->swing[1], side->swing[2]);
+        UNROLL(3)
+        for (int axis = 0; axis < 3; axis++) {
+            const lanes at[3] = {a->edge[0][axis], a->edge[1][axis], a->edge[2][axis]};
+            out->base[n][axis] = a->centre[axis] + base_of_edge(traits, 0, i, n, at);
+        }
+        UNROLL(6)
+        for (int j = 0; j < edge_count(traits, 1); j++) {
+            const lanes at[3] = {swing[0][j], swing[1][j], swing[2][j]};
+            out->s[n][j] = base_of_edge(traits, 0, i, n, at);
+            out->t[n][j] = moment_of_edge(traits, 0, i, n, other[0][j], other[1][j], other[2][j]);
+        }
+    }
 }
 
-/* Adds how far the crossings of edges reach, as find_reach(): outer, all that are possible; inner,
- * those that are certain. Returns the lanes in which one is possible, but not certain, or not known
- * to what the ends of the box may be apart. */
+/* The edges along j of B, [edge]: their parts of r X, s X and t X of their crossings with edges
+ * along i of A. */
+struct clip_edges_of_b {
+    lanes r[4], s[4], t[4];
+};
+
+INLINE void set_edges_of_b(const struct kernel_traits traits, const struct clip_crossings *all,
+                           const struct face_products *side, int i, int j,
+                           struct clip_edges_of_b *out)
+{
+    const lanes *drift = side->swing, (*other)[6] = side->other;
+    UNROLL(4)
+    for (int n = 0; n < parallel_count(traits, 1); n++) {
+        out->r[n] = base_of_edge(traits, 1, j, n, all->edges.swing[i]);
+        out->s[n] =
+            all->drift_middle[1][j] + moment_of_edge(traits, 1, j, n, drift[0], drift[1], drift[2]);
+        out->t[n] = moment_of_edge(traits, 1, j, n, other[0][i], other[1][i], other[2][i]);
+    }
+}
+
+/* Adds the crossings of edges to the reach of A (find_reach()): for CLIP_OUTER those that are
+ * possible, for CLIP_INNER those that are certain. Returns the lanes in which one of these is not
+ * certain, or has a position that is not known to within search->whole. */
 INLINE lanes_mask add_crossing_reach(const struct pair_lanes *pair,
                                      const struct kernel_traits traits,
                                      const struct box_search *search,
                                      const struct face_products side[2],
-                                     const struct clip_crossings *all, int way, lanes reach[2][3])
+                                     const struct clip_crossings *all, int bound, lanes reach[2][3])
 {
     const struct box_frame *a = &search->frame[0], *b = &search->frame[1];
-    const int parallel = parallel_count(traits, 1);
-    const int crossings = parallel_count(traits, 0) * parallel;
+    const int parallel_a = parallel_count(traits, 0), parallel_b = parallel_count(traits, 1);
     const lanes_mask drifts = pair->half_drift_size != 0;
     const double rounded = 4 * BOX_UNIT;
-    lanes_mask vague = {0};
+    lanes_mask uncertain = {0};
     for (int i = 0; i < edge_count(traits, 0); i++) {
+        struct clip_edges_of_a of_a;
+        struct clip_edges_of_b of_b;
         const lanes error_r = all->error[0][i];
         const lanes scale_error = pair->size[0][i] * all->scale_error;
-        lanes error[3]; /* of products with edge i, for a weight of 1 of an edge of B */
+        lanes error[3]; /* [axis]: rounding part of E_t, for an edge of B of length 1 along it */
         UNROLL(3)
         for (int axis = 0; axis < 3; axis++) {
             const int u = next(axis), v = next(u);
             error[axis] =
                 all->edge_error[u] * a->length[i][v] + all->edge_error[v] * a->length[i][u];
         }
-        UNROLL(6)
+        set_edges_of_a(traits, all, &side[0], a, i, &of_a);
         for (int j = 0; j < edge_count(traits, 1); j++) {
             const lanes error_s = all->error[1][j];
             const lanes error_t = dot(error, b->length[j]) + pair->size[1][j] * scale_error;
@@ -542,34 +598,36 @@ INLINE lanes_mask add_crossing_reach(const struct pair_lanes *pair,
             const lanes det = all->edges.swing[i][j];
             const lanes inverse = 1 / lanes_select(lanes_abs(det) >= least, det, least);
             const lanes size = lanes_abs(inverse);
-            const lanes near_s = error_s * size, near_r = error_r * size, near_t = error_t * size;
-            lanes width[3];
+            const lanes radius_s = error_s * size, radius_r = error_r * size,
+                        radius_t = error_t * size;
+            lanes radius[3];
             UNROLL(3)
             for (int axis = 0; axis < 3; axis++)
-                width[axis] =
-                    near_s * lanes_abs(a->edge[i][axis]) + near_t * lanes_abs(a->travel[axis]);
+                radius[axis] =
+                    radius_s * lanes_abs(a->edge[i][axis]) + radius_t * lanes_abs(a->travel[axis]);
             const lanes_mask wide =
-                max_of_three(width[0], width[1], width[2]) > 0.5 * search->whole;
+                max_of_three(radius[0], radius[1], radius[2]) > 0.5 * search->whole;
+            set_edges_of_b(traits, all, &side[1], i, j, &of_b);
             UNROLL(16)
-            for (int n = 0; n < crossings; n++) {
-                const int one = n / parallel;
-                const struct clip_crossing x =
-                    crossing_of(traits, all, side, i, one, j, n % parallel, inverse);
-                const lanes over_s = excess_of(traits, 0, x.s), over_r = excess_of(traits, 1, x.r),
-                            over_t = lanes_abs(x.t) - 1;
-                const lanes_mask possible =
-                    max_of_three(over_s - near_s, over_r - near_r, over_t - near_t) <= rounded;
-                const lanes_mask certain =
-                    max_of_three(over_s + near_s, over_r + near_r, over_t + near_t) < -rounded;
-                const lanes_mask counts = drifts & (way == CLIP_OUTER ? possible : certain);
-                vague |= counts & (is_not(certain) | wide);
+            for (int index = 0; index < parallel_a * parallel_b; index++) {
+                const int m = index / parallel_b, n = index % parallel_b;
+                const lanes s = inverse * (of_b.s[n] - of_a.s[m][j]);
+                const lanes r = inverse * (of_a.r[m] - of_b.r[n]);
+                const lanes t = inverse * ((of_b.t[n] + of_a.t[m][j]) - all->edges.middle[i][j]);
+                const lanes over_s = excess_of(traits, 0, s), over_r = excess_of(traits, 1, r),
+                            over_t = lanes_abs(t) - 1;
+                const lanes_mask possible = max_of_three(over_s - radius_s, over_r - radius_r,
+                                                         over_t - radius_t) <= rounded;
+                const lanes_mask certain = max_of_three(over_s + radius_s, over_r + radius_r,
+                                                        over_t + radius_t) < -rounded;
+                const lanes_mask counts = drifts & (bound == CLIP_OUTER ? possible : certain);
+                uncertain |= counts & (is_not(certain) | wide);
                 UNROLL(3)
                 for (int axis = 0; axis < 3; axis++) {
-                    const lanes at[3] = {a->edge[0][axis], a->edge[1][axis], a->edge[2][axis]};
-                    const lanes base = a->centre[axis] + base_of_edge(traits, 0, i, one, at);
-                    const lanes middle = base + (x.s * a->edge[i][axis] + x.t * a->travel[axis]);
+                    const lanes middle =
+                        of_a.base[m][axis] + (s * a->edge[i][axis] + t * a->travel[axis]);
                     const lanes half =
-                        lanes_select(counts, way == CLIP_OUTER ? width[axis] : -width[axis],
+                        lanes_select(counts, bound == CLIP_OUTER ? radius[axis] : -radius[axis],
                                      lanes_of(-INFINITY));
                     reach[0][axis] = lanes_max(half - middle, reach[0][axis]);
                     reach[1][axis] = lanes_max(half + middle, reach[1][axis]);
@@ -577,21 +635,39 @@ INLINE lanes_mask add_crossing_reach(const struct pair_lanes *pair,
             }
         }
     }
-    return vague;
+    return uncertain;
 }
 
 /* ---- All of it ---- */
 
-/* The ends of the box, from the reaches of both frames; slack: 1 or -1 times it is added. */
-INLINE void join_ends(const struct box_search *search, const lanes reach[2][2][3], double slack,
+/* The ends of the box: for each, the farther reach of the two frames, with the slack added (sign =
+ * 1) or subtracted (sign = -1). */
+INLINE void join_ends(const struct box_search *search, const lanes reach[2][2][3], double sign,
                       lanes ends[2][3])
 {
     UNROLL(3)
     for (int axis = 0; axis < 3; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++)
-        ends[end][axis] = lanes_max(reach[0][end][axis] + slack * search->slack[0][axis],
-                                    reach[1][end][axis] + slack * search->slack[1][axis]);
+        ends[end][axis] = lanes_max(reach[0][end][axis] + sign * search->slack[0][axis],
+                                    reach[1][end][axis] + sign * search->slack[1][axis]);
+}
+
+/* Clips a frame to the other one. Out: other, the face products of that; spans; reach, of the outer
+ * spans. Returns the lanes of uncertain_spans(). */
+INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
+                             int which, const struct box_search *search,
+                             struct face_products *other, lanes_mask *good,
+                             struct clip_spans *spans, lanes reach[2][3])
+{
+    struct clip_slab slab[CLIP_SLABS_MAX];
+    lanes weight_error[3];
+    set_weight_errors(search, weight_error);
+    const int slabs = set_slabs(traits, pair, !which, weight_error, other, good, slab);
+    EACH_DIRECTION(traits, which, direction, path,
+                   clip_segments(traits, which, direction, path, slab, slabs, spans))
+    find_reach(traits, which, search, spans, CLIP_OUTER, reach);
+    return uncertain_spans(traits, which, search, spans);
 }
 
 /* Boxes, and in which lanes they are good. */
@@ -603,33 +679,26 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     struct clip_spans spans[2];
     struct clip_crossings crossings;
     struct box_ends ends;
-    lanes reach[2][2][3], weight_error[3];
-    lanes_mask good = is_not(search->exact), vague = {0};
+    lanes reach[2][2][3];
+    lanes_mask good = is_not(search->exact), uncertain;
     if (!lanes_mask_bits(good & pair->in_range))
         return (lanes_mask){0};
-    set_weight_errors(search, weight_error);
-    UNROLL(2)
-    for (int which = 0; which < 2; which++) {
-        struct clip_slab slab[CLIP_SLABS_MAX];
-        const int slabs = set_slabs(traits, pair, !which, weight_error, &side[!which], &good, slab);
-        UNROLL(7)
-        for (int direction = 0; direction < direction_count(traits, which); direction++)
-            clip_segments(traits, which, direction, slab, slabs, &spans[which]);
-        find_reach(traits, which, search, &spans[which], CLIP_OUTER, reach[which]);
-        vague |= has_vague(traits, which, search, &spans[which]);
-    }
+    uncertain = clip_frame(pair, traits, 0, search, &side[1], &good, &spans[0], reach[0]);
+    uncertain |= clip_frame(pair, traits, 1, search, &side[0], &good, &spans[1], reach[1]);
     if (traits.drifts) {
         set_lengths(pair, traits, 0, &search->frame[0]);
         set_lengths(pair, traits, 1, &search->frame[1]);
         good &= set_crossings(pair, traits, search, &crossings);
-        vague |= add_crossing_reach(pair, traits, search, side, &crossings, CLIP_OUTER, reach[0]);
+        uncertain |=
+            add_crossing_reach(pair, traits, search, side, &crossings, CLIP_OUTER, reach[0]);
     }
     join_ends(search, reach, 1, ends.outer);
-    join_ends(search, reach, -1, ends.inner); /* of outer spans: within the limit, unless vague */
-    if (lanes_mask_bits(vague)) {
+    /* Where not uncertain, these are within search->whole of the true ends. */
+    join_ends(search, reach, -1, ends.inner);
+    if (lanes_mask_bits(uncertain)) {
         lanes inner[2][3];
-        for (int which = 0; which < 2; which++)
-            find_reach(traits, which, search, &spans[which], CLIP_INNER, reach[which]);
+        find_reach(traits, 0, search, &spans[0], CLIP_INNER, reach[0]);
+        find_reach(traits, 1, search, &spans[1], CLIP_INNER, reach[1]);
         if (traits.drifts)
             add_crossing_reach(pair, traits, search, side, &crossings, CLIP_INNER, reach[0]);
         join_ends(search, reach, -1, inner);
@@ -637,7 +706,8 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
         for (int axis = 0; axis < 3; axis++)
             UNROLL(2)
         for (int end = 0; end < 2; end++)
-            ends.inner[end][axis] = lanes_select(vague, inner[end][axis], ends.inner[end][axis]);
+            ends.inner[end][axis] =
+                lanes_select(uncertain, inner[end][axis], ends.inner[end][axis]);
     }
     put_box(pair, traits, places, search, &ends, box);
     return are_near(traits, search, &ends) & good;

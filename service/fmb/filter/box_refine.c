@@ -1,6 +1,6 @@
-/* Boxes of groups of lanes in which kernel_box.h does not find all: the second pass of the search
- * (box_search.h), and for moving cuboids their edges (box_clip.h). One function for all kinds of
- * pairs, which is seldom called, and not worth what inlining takes. */
+/* The last ways to find boxes, of groups of lanes that kernel_box.h leaves open: the second pass of
+ * search_box(), then clip_box() for moving pairs with a cuboid. One function for all kinds of
+ * pairs: it is called seldom, and inlining it would not pay. */
 #include "kernel_box.h"
 
 void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement)
@@ -16,7 +16,7 @@ void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement)
     refinement->good = search_box(&refinement->pair, traits, &refinement->places, true, &search,
                                   &refinement->left_out, refinement->box);
     const bool clipped_before = !traits.drifts || (traits.simplex[0] && traits.simplex[1]);
-    if (is_known(refinement->good, &refinement->pair) || !can_be_clipped(traits) || clipped_before)
+    if (all_good(refinement->good, &refinement->pair) || !can_be_clipped(traits) || clipped_before)
         return;
     lanes box[2][3];
     const lanes_mask more = clip_box(&refinement->pair, traits, &refinement->places, &search, box);

@@ -5,7 +5,7 @@
 #include "kernel_exact.h"
 #include "box_clip.h"
 
-/* A pair of the second pass, and its box. */
+/* LANES pairs that are left open, and their boxes. */
 struct box_refinement {
     struct kernel_traits traits;
     struct pair_lanes pair;
@@ -15,17 +15,18 @@ struct box_refinement {
     lanes box[2][3];
 };
 
-/* The second pass, and what else there is (box_refine.c). */
+/* The second pass of search_box(), then clip_box() for moving pairs with a cuboid (box_refine.c).
+ */
 void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement);
 
-/* Whether all boxes are good that can be. */
-INLINE bool is_known(lanes_mask good, const struct pair_lanes *pair)
+/* Whether the boxes of all lanes in range are good. */
+INLINE bool all_good(lanes_mask good, const struct pair_lanes *pair)
 {
     return lanes_mask_bits(good | is_not(pair->in_range)) == (1u << LANES) - 1;
 }
 
-/* Adds boxes found in another way. good: the lanes in which box[] is good already. Returns those in
- * which it is then. */
+/* Fills box[] from other[] in the lanes in which it is not good yet. more: the lanes in which
+ * other[] is good. Returns the lanes in which box[] is good then. */
 INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
                              const lanes other[2][3], lanes_mask good, lanes box[2][3])
 {
@@ -37,10 +38,16 @@ INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
     return good | more;
 }
 
-/* Finds boxes in the ways that there are, until all are good. In which order they are tried for a
- * lane does not depend on what the other lanes hold. Returns the lanes in which boxes are good. Two
- * cuboids are searched first, since they often rest on each other; moving cuboids are not clipped
- * here, since their edges have too many crossings. */
+/* Finds boxes in up to three ways, until all that can be are good:
+ *
+ *     tetrahedra; mixed at rest   clip_box(), search_box(), its second pass
+ *     cuboids at rest             search_box(), clip_box(), second pass
+ *     moving, with a cuboid       search_box(), second pass, clip_box() (both in box_refine.c)
+ *     faces; 2D                   search_box(), second pass
+ *
+ * Two cuboids are searched first, since they often rest on each other; moving pairs with a cuboid,
+ * since their edges have 72 or 144 crossings. The order for a lane does not depend on the other
+ * lanes. Returns the lanes in which boxes are good. */
 INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pair_lanes *pair,
                              const struct box_places *places, lanes box[2][3])
 {
@@ -55,14 +62,14 @@ INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pai
     begin_box(pair, traits, places, &search);
     good = clips_first ? clip_box(pair, traits, places, &search, box)
                        : search_box(pair, traits, places, false, &search, &last.left_out, box);
-    if (is_known(good, pair))
+    if (all_good(good, pair))
         return good;
     if (clips) {
         more = clips_first ? search_box(pair, traits, places, false, &search, &last.left_out, other)
                            : clip_box(pair, traits, places, &search, other);
         good = join_boxes(traits, more, other, good, box);
     }
-    if (is_known(good, pair))
+    if (all_good(good, pair))
         return good;
     last.traits = traits;
     last.pair = *pair;
@@ -71,7 +78,8 @@ INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pai
     return join_boxes(traits, last.good, last.box, good, box);
 }
 
-/* NAN where doubles do not give it within its limit; 0 in axes that are not there. */
+/* The boxes, [lower, upper][axis]: NAN in lanes in which doubles do not prove the limit of fmb.h, 0
+ * along axes beyond dim. */
 INLINE void boxes_of(const struct kernel_traits traits, const struct pair_lanes *pair,
                      const struct frame_lanes frame[2], double duration, bool in_contact,
                      lanes box[2][3])
