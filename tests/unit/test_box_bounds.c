@@ -187,6 +187,7 @@ static const struct kind kinds[] = {
     {2, FMB_CUBOID, FMB_TETRAHEDRON, false},
     {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false},
     {2, FMB_CUBOID, FMB_CUBOID, true},
+    {2, FMB_CUBOID, FMB_TETRAHEDRON, true},
     {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
     {3, FMB_CUBOID, FMB_CUBOID, false},
     {3, FMB_CUBOID, FMB_TETRAHEDRON, false},

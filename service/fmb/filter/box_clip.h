@@ -1,5 +1,5 @@
-/* Boxes of intersections from edges: two solids in 3D in contact, at rest or moving, LANES pairs at
- * once.
+/* Boxes of intersections from edges: two solids in contact, in 2D or 3D, at rest or moving, LANES
+ * pairs at once.
  *
  * In: struct pair_lanes; struct box_search as begin_box() leaves it, or search_box() after that.
  *
@@ -12,7 +12,7 @@
  *   3. find_reach()           how far the outer spans reach along each axis
  *   4. uncertain_spans()      the lanes in which an inner span is too short for the limit
  *   5. set_crossings(), add_crossing_reach()
- *                             moving: how far crossings of edges reach
+ *                             moving in 3D: how far crossings of edges reach
  *   6. 3 and 5 for the inner ends, in the lanes that 4 or 5 return
  *   7. put_box(), are_near()  (box_search.h)
  *
@@ -29,13 +29,17 @@
  *   - or in three faces of one frame: on the path of one of its vertices, and in the other frame;
  *   - or in two faces of each: where an edge of A crosses an edge of B.
  *
+ * In 2D edges take the place of faces: a vertex at rest is on an edge of one frame, and in the
+ * other; else it is at the start or the end, or on two edges of one frame, so on the path of one of
+ * its vertices. There are no crossings.
+ *
  * Segments are the edges at rest; or the edges at the start, those at the end, and the paths.
  *
- * A cuboid is the intersection of three slabs: |n . x| <= |n . c_k| with x seen from its centre and
- * n = c_i x c_j. A tetrahedron is that of four: with n_k = c_i x c_j and D = n_k . c_k for any k,
- * n_k . x / D is the barycentric coordinate of c_k, from 0 to 1, as is the sum of all three. So |n
- * . x - D / 2|
- * <= |D| / 2, for each n_k and for their sum, whatever the sign of D.
+ * A cuboid is the intersection of three slabs: |n . x| <= |n . c_k| with x seen from its centre
+ * and n = c_i x c_j; in 2D of two, with the normals of its edges. A tetrahedron is that of four:
+ * with n_k = c_i x c_j and D = n_k . c_k for any k, n_k . x / D is the barycentric coordinate of
+ * c_k, from 0 to 1, as is the sum of all three. So |n . x - D / 2| <= |D| / 2, for each n_k and for
+ * their sum, whatever the sign of D. A triangle is that of three likewise.
  *
  * Along a segment p + t a, the value of n . x, less that in the middle of a slab, is s + t d, with
  * d = n . a. On an edge of a simplex 0 <= t <= 1. Else -1 <= t <= 1, and a is half an edge of a
@@ -47,7 +51,8 @@
  * The radius of a slab is r + E for the outer spans and r - E for the inner ones. E bounds the
  * error of s + t d and that of r together, for every t of the segment. So the part of the true
  * segment that is in the true other frame lies in the outer span, and contains the inner one. This
- * holds whether or not the frames as prepared are in contact. u = 2^-53.
+ * holds whether or not the frames as prepared are in contact. u = 2^-53. The roundings are counted
+ * in 3D; in 2D there are fewer.
  *
  * 1. Products, beside those of the exact normal of the frame as prepared. With the weight W of n as
  *    in box_search.h, coordinates of n are rounded twice, and a product n . w three times more: 5 u
@@ -172,7 +177,14 @@ struct clip_spans {
 /* Whether the boxes of a kind of pairs can be found in this way. */
 INLINE bool can_be_clipped(const struct kernel_traits traits)
 {
-    return traits.dim == 3 && !traits.face[0] && !traits.face[1];
+    return !traits.face[0] && !traits.face[1];
+}
+
+/* Whether the edges of moving frames have so many crossings, 72 or 144, that other ways come first.
+ */
+INLINE bool is_clipped_last(const struct kernel_traits traits)
+{
+    return traits.dim == 3 && traits.drifts && !(traits.simplex[0] && traits.simplex[1]);
 }
 
 INLINE lanes max_of_three(lanes x, lanes y, lanes z)
@@ -183,32 +195,37 @@ INLINE lanes max_of_three(lanes x, lanes y, lanes z)
 /* ---- Segments ----
  *
  * They are numbered by their directions: those along edge e, at the start of the window and then at
- * its end; after all edges, the paths of the vertices. Of frames at rest, loops over the directions
- * are unrolled. Moving frames have so many segments that code for each would not fit into the
- * instruction cache. */
+ * its end; after all edges, the paths of the vertices. Loops over the directions are unrolled, but
+ * for moving frames in 3D: code for each of their segments would not fit into the instruction
+ * cache.
+ */
 
 /* Executes a statement with each direction of a frame. path: whether it is that of the paths, a
  * constant in each copy of the statement, so that its loops have a constant number of turns. */
-#define EACH_DIRECTION(traits, which, direction, path, statement)                     \
-    if (traits.drifts) {                                                              \
-        for (int direction = 0; direction < edge_count(traits, which); direction++) { \
-            const bool path = false;                                                  \
-            statement;                                                                \
-        }                                                                             \
-        const int direction = edge_count(traits, which);                              \
-        const bool path = true;                                                       \
-        statement;                                                                    \
-    } else {                                                                          \
-        const bool path = false;                                                      \
-        UNROLL(6)                                                                     \
-        for (int direction = 0; direction < edge_count(traits, which); direction++)   \
-            statement;                                                                \
-    }
+#define EACH_DIRECTION(traits, which, direction, path, statement)                         \
+    do {                                                                                  \
+        if (traits.dim == 3 && traits.drifts) {                                           \
+            for (int direction = 0; direction < edge_count(traits, which); direction++) { \
+                const bool path = false;                                                  \
+                statement;                                                                \
+            }                                                                             \
+        } else {                                                                          \
+            const bool path = false;                                                      \
+            UNROLL(6)                                                                     \
+            for (int direction = 0; direction < edge_count(traits, which); direction++)   \
+                statement;                                                                \
+        }                                                                                 \
+        if (traits.drifts) {                                                              \
+            const int direction = edge_count(traits, which);                              \
+            const bool path = true;                                                       \
+            statement;                                                                    \
+        }                                                                                 \
+    } while (0)
 
 /* How many edges of a frame have the same direction. */
 INLINE int parallel_count(const struct kernel_traits traits, int which)
 {
-    return traits.simplex[which] ? 1 : 4;
+    return traits.simplex[which] ? 1 : traits.dim == 2 ? 2 : 4;
 }
 
 INLINE int first_segment(const struct kernel_traits traits, int which, int direction)
@@ -218,8 +235,10 @@ INLINE int first_segment(const struct kernel_traits traits, int which, int direc
 
 INLINE int segment_count(const struct kernel_traits traits, int which, bool path)
 {
-    return path ? 4 * parallel_count(traits, which) / (traits.simplex[which] ? 1 : 2)
-                : parallel_count(traits, which) * (traits.drifts ? 2 : 1);
+    const int parallel = parallel_count(traits, which);
+    if (path)
+        return traits.simplex[which] ? traits.dim + 1 : 2 * parallel;
+    return traits.drifts ? 2 * parallel : parallel;
 }
 
 INLINE lanes along_direction(int direction, bool path, const struct clip_form *form)
@@ -234,7 +253,9 @@ INLINE lanes base_of_edge(const struct kernel_traits traits, int which, int e, i
                           const lanes at[3])
 {
     if (traits.simplex[which])
-        return e < 3 ? lanes_of(0) : at[edge_from(traits, e)];
+        return e < traits.dim ? lanes_of(0) : at[edge_from(traits, e)];
+    if (traits.dim == 2)
+        return n == 0 ? -at[1 - e] : at[1 - e];
     const lanes u = at[next(e)], v = at[next(next(e))];
     return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
 }
@@ -249,22 +270,22 @@ INLINE void set_bases(const struct kernel_traits traits, int which, int directio
     if (path && traits.simplex[which]) {
         base[0] = form->middle;
         UNROLL(3)
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < traits.dim; i++)
             base[1 + i] = form->middle + at[i];
         return;
     }
     if (path) {
         UNROLL(4)
-        for (int n = 0; n < 4; n++) {
+        for (int n = 0; n < parallel; n++) {
             const lanes middle = form->middle + base_of_edge(traits, which, 0, n, at);
             base[n] = middle - at[0];
-            base[4 + n] = middle + at[0];
+            base[parallel + n] = middle + at[0];
         }
         return;
     }
     UNROLL(4)
     for (int n = 0; n < parallel; n++) {
-        const bool none = traits.simplex[which] && direction < 3;
+        const bool none = traits.simplex[which] && direction < traits.dim;
         const lanes middle =
             none ? form->middle : form->middle + base_of_edge(traits, which, direction, n, at);
         base[n] = traits.drifts ? middle - form->swing : middle;
@@ -276,10 +297,11 @@ INLINE void set_bases(const struct kernel_traits traits, int which, int directio
 /* ---- Slabs ---- */
 
 /* What 1 and 2 are for a weight of 1 along each axis. */
-INLINE void set_weight_errors(const struct box_search *search, lanes out[3])
+INLINE void set_weight_errors(const struct kernel_traits traits, const struct box_search *search,
+                              lanes out[3])
 {
     UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < traits.dim; axis++)
         out[axis] = (9 * BOX_UNIT) * search->size[axis] + (5 * BOX_UNIT) * search->offset_sum[axis];
 }
 
@@ -289,10 +311,11 @@ INLINE void set_slab(const struct kernel_traits traits, const struct pair_lanes 
 {
     const lanes own = lanes_abs(normal->own), radius = traits.simplex[which] ? 0.5 * own : own;
     lanes sum = ((own + lanes_abs(normal->middle)) + lanes_abs(normal->at[0])) +
-                (lanes_abs(normal->at[1]) + lanes_abs(normal->at[2]));
+                (traits.dim == 2 ? lanes_abs(normal->at[1])
+                                 : lanes_abs(normal->at[1]) + lanes_abs(normal->at[2]));
     if (traits.drifts)
         sum += lanes_abs(normal->swing);
-    const lanes rounded = dot(normal->weight, weight_error) + (7 * BOX_UNIT) * sum;
+    const lanes rounded = weight_of(traits, normal->weight, weight_error) + (7 * BOX_UNIT) * sum;
     const lanes error = rounded + 1.01 * normal->scale * pair->error;
     out->form.middle = traits.simplex[which] ? normal->middle - 0.5 * normal->own : normal->middle;
     out->form.swing = normal->swing;
@@ -301,19 +324,25 @@ INLINE void set_slab(const struct kernel_traits traits, const struct pair_lanes 
     out->least = 0x1p-20 * rounded;
     *good &= rounded >= 0x1p-640;
     UNROLL(6)
-    for (int e = 0; e < 6; e++)
+    for (int e = 0; e < edge_count(traits, !which); e++)
         out->form.at[e] = normal->at[e];
 }
 
-/* Sets the slabs of a frame, and its face products. Returns their number. */
+/* Sets the slabs of a frame, and in 3D its face products. Returns their number. */
 INLINE int set_slabs(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
-                     const lanes weight_error[3], struct face_products *side, lanes_mask *good,
+                     const struct box_search *search, struct face_products *side, lanes_mask *good,
                      struct clip_slab slab[CLIP_SLABS_MAX])
 {
     struct box_normal normals[4];
-    set_face_products(pair, traits, which, side);
-    set_normals(pair, traits, which, side, normals);
-    const int count = traits.simplex[which] ? 4 : 3;
+    lanes weight_error[3];
+    set_weight_errors(traits, search, weight_error);
+    if (traits.dim == 2) {
+        set_plane_normals(pair, traits, which, &search->frame[which], normals);
+    } else {
+        set_face_products(pair, traits, which, side);
+        set_normals(pair, traits, which, side, normals);
+    }
+    const int count = traits.simplex[which] ? traits.dim + 1 : traits.dim;
     UNROLL(4)
     for (int k = 0; k < count; k++)
         set_slab(traits, pair, which, &normals[k], weight_error, good, &slab[k]);
@@ -400,14 +429,14 @@ INLINE void find_reach(const struct kernel_traits traits, int which,
                        lanes reach[2][3])
 {
     UNROLL(3)
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < traits.dim; axis++) {
         struct clip_form coordinate;
         lanes *below = &reach[0][axis], *above = &reach[1][axis];
         set_coordinate(traits, which, axis, search, &coordinate);
         *below = *above = lanes_of(-INFINITY);
         EACH_DIRECTION(
             traits, which, direction, path,
-            add_reach(traits, which, direction, path, &coordinate, spans, bound, below, above))
+            add_reach(traits, which, direction, path, &coordinate, spans, bound, below, above));
     }
 }
 
@@ -419,7 +448,9 @@ INLINE lanes_mask uncertain_along(const struct kernel_traits traits, int which, 
     const struct box_frame *frame = &search->frame[which];
     const lanes *a = path ? frame->travel : frame->edge[direction];
     const int first = first_segment(traits, which, direction);
-    const lanes longest = max_of_three(lanes_abs(a[0]), lanes_abs(a[1]), lanes_abs(a[2]));
+    lanes longest = lanes_max(lanes_abs(a[0]), lanes_abs(a[1]));
+    if (traits.dim == 3)
+        longest = lanes_max(longest, lanes_abs(a[2]));
     UNROLL(8)
     for (int n = 0; n < segment_count(traits, which, path); n++) {
         const struct clip_span *outer = &spans->part[CLIP_OUTER][first + n];
@@ -438,7 +469,7 @@ INLINE lanes_mask uncertain_spans(const struct kernel_traits traits, int which,
 {
     lanes_mask out = {0};
     EACH_DIRECTION(traits, which, direction, path,
-                   out |= uncertain_along(traits, which, direction, path, search, spans))
+                   out |= uncertain_along(traits, which, direction, path, search, spans));
     return out;
 }
 
@@ -642,11 +673,11 @@ INLINE lanes_mask add_crossing_reach(const struct pair_lanes *pair,
 
 /* The ends of the box: for each, the farther reach of the two frames, with the slack added (sign =
  * 1) or subtracted (sign = -1). */
-INLINE void join_ends(const struct box_search *search, const lanes reach[2][2][3], double sign,
-                      lanes ends[2][3])
+INLINE void join_ends(const struct kernel_traits traits, const struct box_search *search,
+                      const lanes reach[2][2][3], double sign, lanes ends[2][3])
 {
     UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < traits.dim; axis++)
         UNROLL(2)
     for (int end = 0; end < 2; end++)
         ends[end][axis] = lanes_max(reach[0][end][axis] + sign * search->slack[0][axis],
@@ -661,11 +692,9 @@ INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_
                              struct clip_spans *spans, lanes reach[2][3])
 {
     struct clip_slab slab[CLIP_SLABS_MAX];
-    lanes weight_error[3];
-    set_weight_errors(search, weight_error);
-    const int slabs = set_slabs(traits, pair, !which, weight_error, other, good, slab);
+    const int slabs = set_slabs(traits, pair, !which, search, other, good, slab);
     EACH_DIRECTION(traits, which, direction, path,
-                   clip_segments(traits, which, direction, path, slab, slabs, spans))
+                   clip_segments(traits, which, direction, path, slab, slabs, spans));
     find_reach(traits, which, search, spans, CLIP_OUTER, reach);
     return uncertain_spans(traits, which, search, spans);
 }
@@ -683,27 +712,29 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     lanes_mask good = is_not(search->exact), uncertain;
     if (!lanes_mask_bits(good & pair->in_range))
         return (lanes_mask){0};
-    uncertain = clip_frame(pair, traits, 0, search, &side[1], &good, &spans[0], reach[0]);
-    uncertain |= clip_frame(pair, traits, 1, search, &side[0], &good, &spans[1], reach[1]);
-    if (traits.drifts) {
+    if (traits.dim == 2 || traits.drifts) {
         set_lengths(pair, traits, 0, &search->frame[0]);
         set_lengths(pair, traits, 1, &search->frame[1]);
+    }
+    uncertain = clip_frame(pair, traits, 0, search, &side[1], &good, &spans[0], reach[0]);
+    uncertain |= clip_frame(pair, traits, 1, search, &side[0], &good, &spans[1], reach[1]);
+    if (traits.dim == 3 && traits.drifts) {
         good &= set_crossings(pair, traits, search, &crossings);
         uncertain |=
             add_crossing_reach(pair, traits, search, side, &crossings, CLIP_OUTER, reach[0]);
     }
-    join_ends(search, reach, 1, ends.outer);
+    join_ends(traits, search, reach, 1, ends.outer);
     /* Where not uncertain, these are within search->whole of the true ends. */
-    join_ends(search, reach, -1, ends.inner);
+    join_ends(traits, search, reach, -1, ends.inner);
     if (lanes_mask_bits(uncertain)) {
         lanes inner[2][3];
         find_reach(traits, 0, search, &spans[0], CLIP_INNER, reach[0]);
         find_reach(traits, 1, search, &spans[1], CLIP_INNER, reach[1]);
-        if (traits.drifts)
+        if (traits.dim == 3 && traits.drifts)
             add_crossing_reach(pair, traits, search, side, &crossings, CLIP_INNER, reach[0]);
-        join_ends(search, reach, -1, inner);
+        join_ends(traits, search, reach, -1, inner);
         UNROLL(3)
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < traits.dim; axis++)
             UNROLL(2)
         for (int end = 0; end < 2; end++)
             ends.inner[end][axis] =

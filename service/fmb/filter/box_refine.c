@@ -15,8 +15,8 @@ void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement)
     begin_box(&refinement->pair, traits, &refinement->places, &search);
     refinement->good = search_box(&refinement->pair, traits, &refinement->places, true, &search,
                                   &refinement->left_out, refinement->box);
-    const bool clipped_before = !traits.drifts || (traits.simplex[0] && traits.simplex[1]);
-    if (all_good(refinement->good, &refinement->pair) || !can_be_clipped(traits) || clipped_before)
+    if (all_good(refinement->good, &refinement->pair) ||
+        !(can_be_clipped(traits) && is_clipped_last(traits)))
         return;
     lanes box[2][3];
     const lanes_mask more = clip_box(&refinement->pair, traits, &refinement->places, &search, box);

@@ -952,27 +952,37 @@ INLINE void add_normal_line(const struct pair_lanes *pair, const struct kernel_t
         add_edge_vertex(pair, traits, which, &line, index, &vertex[index], search);
 }
 
+/* Sets the normals of the edges of a frame in 2D, by number. Its lengths are set. */
+INLINE void set_plane_normals(const struct pair_lanes *pair, const struct kernel_traits traits,
+                              int which, const struct box_frame *frame, struct box_normal out[3])
+{
+    struct edge_products_2d edges;
+    const lanes area = product(pair->component[which][0], pair->component[which][1]);
+    set_edge_products_2d(pair, traits, which, &edges);
+    UNROLL(3)
+    for (int e = 0; e < edge_count(traits, which); e++) {
+        const lanes *length = frame->length[e];
+        out[e] = (struct box_normal){.scale = pair->size[which][e],
+                                     .magnitude = {length[1], length[0]},
+                                     .weight = {length[1], length[0]},
+                                     .own = e == 0 ? area : -area,
+                                     .at = {edges.other[e][0], edges.other[e][1]},
+                                     .middle = which ? -edges.middle[e] : edges.middle[e],
+                                     .swing = which ? -edges.swing[e] : edges.swing[e]};
+        out[e].at[2] = out[e].at[1] - out[e].at[0];
+    }
+}
+
 INLINE void add_plane_normals(const struct pair_lanes *pair, const struct kernel_traits traits,
                               struct box_search *search)
 {
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
-        struct edge_products_2d edges;
-        const lanes area = product(pair->component[which][0], pair->component[which][1]);
-        set_edge_products_2d(pair, traits, which, &edges);
+        struct box_normal normals[3];
+        set_plane_normals(pair, traits, which, &search->frame[which], normals);
         UNROLL(3)
-        for (int e = 0; e < edge_count(traits, which); e++) {
-            const lanes *length = search->frame[which].length[e];
-            struct box_normal normal = {.scale = pair->size[which][e],
-                                        .magnitude = {length[1], length[0]},
-                                        .weight = {length[1], length[0]},
-                                        .own = e == 0 ? area : -area,
-                                        .at = {edges.other[e][0], edges.other[e][1]},
-                                        .middle = which ? -edges.middle[e] : edges.middle[e],
-                                        .swing = which ? -edges.swing[e] : edges.swing[e]};
-            normal.at[2] = normal.at[1] - normal.at[0];
-            add_normal_line(pair, traits, which, e, e == 2, &normal, search);
-        }
+        for (int e = 0; e < edge_count(traits, which); e++)
+            add_normal_line(pair, traits, which, e, e == 2, &normals[e], search);
     }
 }
 

@@ -40,21 +40,18 @@ INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
 
 /* Finds boxes in up to three ways, until all that can be are good:
  *
- *     tetrahedra; mixed at rest   clip_box(), search_box(), its second pass
- *     cuboids at rest             search_box(), clip_box(), second pass
- *     moving, with a cuboid       search_box(), second pass, clip_box() (both in box_refine.c)
- *     faces; 2D                   search_box(), second pass
+ *     two cuboids in 2D, or at rest   search_box(), clip_box(), second pass of search_box()
+ *     with a cuboid in 3D, moving     search_box(), second pass, clip_box() (box_refine.c)
+ *     others without a face           clip_box(), search_box(), second pass
+ *     faces                           search_box(), second pass
  *
- * Two cuboids are searched first, since they often rest on each other; moving pairs with a cuboid,
- * since their edges have 72 or 144 crossings. The order for a lane does not depend on the other
- * lanes. Returns the lanes in which boxes are good. */
+ * Two cuboids are searched first, since they often rest on each other. The order for a lane does
+ * not depend on the other lanes. Returns the lanes in which boxes are good. */
 INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pair_lanes *pair,
                              const struct box_places *places, lanes box[2][3])
 {
-    const bool any = traits.simplex[0] || traits.simplex[1];
-    const bool both = traits.simplex[0] && traits.simplex[1];
-    const bool clips = can_be_clipped(traits) && (!traits.drifts || both);
-    const bool clips_first = clips && any;
+    const bool clips = can_be_clipped(traits) && !is_clipped_last(traits);
+    const bool clips_first = clips && (traits.simplex[0] || traits.simplex[1]);
     struct box_refinement last;
     struct box_search search;
     lanes other[2][3];
