@@ -183,20 +183,13 @@ static double search(struct draw *draw, struct kind kind, long climbs, double en
 }
 
 static const struct kind kinds[] = {
-    {2, FMB_CUBOID, FMB_CUBOID, false},
-    {2, FMB_CUBOID, FMB_TETRAHEDRON, false},
-    {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false},
-    {2, FMB_CUBOID, FMB_CUBOID, true},
-    {2, FMB_CUBOID, FMB_TETRAHEDRON, true},
-    {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
-    {3, FMB_CUBOID, FMB_CUBOID, false},
-    {3, FMB_CUBOID, FMB_TETRAHEDRON, false},
-    {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false},
-    {3, FMB_CUBOID, FMB_FACE, false},
-    {3, FMB_TETRAHEDRON, FMB_FACE, false},
-    {3, FMB_CUBOID, FMB_CUBOID, true},
-    {3, FMB_CUBOID, FMB_TETRAHEDRON, true},
-    {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
+    {2, FMB_CUBOID, FMB_CUBOID, false},           {2, FMB_CUBOID, FMB_TETRAHEDRON, false},
+    {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false}, {2, FMB_CUBOID, FMB_CUBOID, true},
+    {2, FMB_CUBOID, FMB_TETRAHEDRON, true},       {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
+    {3, FMB_CUBOID, FMB_CUBOID, false},           {3, FMB_CUBOID, FMB_TETRAHEDRON, false},
+    {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false}, {3, FMB_CUBOID, FMB_FACE, false},
+    {3, FMB_TETRAHEDRON, FMB_FACE, false},        {3, FMB_CUBOID, FMB_CUBOID, true},
+    {3, FMB_CUBOID, FMB_TETRAHEDRON, true},       {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
 };
 
 /* No end is beyond the real bound, and one of each kind is beyond the planted one. */
