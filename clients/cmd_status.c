@@ -19,6 +19,9 @@ static const char usage[] =
     "  --json               as one line of JSON\n"
     "  --timeout SECONDS    longest time to wait (3)\n" ARGS_COMMON_USAGE
     "\n"
+    "'own and foreign' (in JSON 'foreign') counts datagrams on channels that the\n"
+    "service does not receive, its own results and heartbeats included.\n"
+    "\n"
     "Exit codes: 0 printed, 1 no heartbeat came, 2 wrong usage.\n";
 
 struct status_options {
@@ -117,7 +120,7 @@ static void print_text(const struct fmb_client_heartbeat *status)
     puts("bus");
     number_print("receive buffer", status->receive_buffer);
     number_print("dropped", status->dropped);
-    number_print("foreign", status->foreign);
+    number_print("own and foreign", status->foreign);
 }
 
 static void advise(const struct status_options *options, const struct args_bus *bus,

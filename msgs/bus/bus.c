@@ -44,6 +44,7 @@ struct bus {
     struct bus_url url;
     lcm_t *lcm;
     int fd; /* -1 before bus_listen() */
+    bool trims; /* the filter of socket.h was attached */
     int listener_count;
     struct bus_listener listeners[BUS_LISTENERS_MAX];
     struct mmsghdr datagrams[BUS_BATCH];
@@ -152,17 +153,19 @@ static bool channel_ok(const char *channel)
 
 /* Truncates datagrams on channels without a listener; none, if a listener receives every channel.
  */
-static void trim_others(const struct bus *bus)
+static void trim_others(struct bus *bus)
 {
     const char *channels[BUS_LISTENERS_MAX];
+    const int unused = 0; /* without an argument the kernel detaches nothing */
     for (int i = 0; i < bus->listener_count; i++) {
         if (bus->listeners[i].every) {
-            setsockopt(bus->fd, SOL_SOCKET, SO_DETACH_FILTER, NULL, 0);
+            setsockopt(bus->fd, SOL_SOCKET, SO_DETACH_FILTER, &unused, sizeof unused);
             return;
         }
         channels[i] = bus->listeners[i].channel;
     }
     bus_socket_trim(bus->fd, channels, bus->listener_count);
+    bus->trims = true;
 }
 
 bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
@@ -225,12 +228,15 @@ static int find_listener(const struct bus *bus, const char *channel)
 static void handle_datagram(struct bus *bus, const struct mmsghdr *datagram,
                             struct bus_message *message, bus_handler *handler, void *user)
 {
+    const unsigned char *bytes = datagram->msg_hdr.msg_iov->iov_base;
+    const bool trimmed = bus->trims && datagram->msg_len == BUS_SOCKET_TRIMMED &&
+                         memcmp(bytes, short_magic, MAGIC_SIZE) == 0;
     if (datagram->msg_hdr.msg_flags & MSG_TRUNC ||
-        !parse_datagram(datagram->msg_hdr.msg_iov->iov_base, datagram->msg_len, message)) {
+        (!trimmed && !parse_datagram(bytes, datagram->msg_len, message))) {
         bus->counts.malformed++;
         return;
     }
-    message->listener = find_listener(bus, message->channel);
+    message->listener = trimmed ? -1 : find_listener(bus, message->channel);
     if (message->listener < 0) {
         bus->counts.foreign++;
         return;

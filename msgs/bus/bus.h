@@ -44,6 +44,7 @@ struct bus *bus_open(const char *url, char why[BUS_WHY_MAX]);
 void bus_close(struct bus *bus); /* may be NULL */
 
 /* Begins to receive a channel (NULL: every channel), including messages that this bus publishes.
+ * Messages that were sent before may be delivered, whole, or be counted as foreign.
  * The name is copied. At most BUS_LISTENERS_MAX calls; each gets the next listener number, from 0.
  * On output: true; or false, and why as for bus_open(): not a channel name, too many calls, or the
  * socket cannot be opened or bound. A call that fails adds no listener. */
@@ -85,7 +86,7 @@ bool bus_publish(struct bus *bus, const char *channel, const void *bytes, size_t
 
 struct bus_counts {
     uint64_t received;   /* messages given to the handler */
-    uint64_t foreign;    /* messages on other channels */
+    uint64_t foreign;    /* messages on other channels, those that this bus publishes included */
     uint64_t malformed;  /* datagrams that are not a whole message: fragments, bad magic, ... */
     uint64_t dropped;    /* datagrams that the kernel dropped because its buffer was full */
     long receive_buffer; /* bytes granted by the system, as SO_RCVBUF reports them */

@@ -88,9 +88,9 @@ uint32_t bus_socket_drops(int fd)
  */
 
 enum {
+    TRIMMED = 8 + BUS_SOCKET_TRIMMED, /* bytes kept, UDP header included */
     NAME_AT = 8 + 8, /* offset of the channel name, after UDP header and LCM header */
-    TRIMMED = NAME_AT + BUS_CHANNEL_MAX, /* bytes kept of datagrams on other channels */
-    WHOLE = 1 << 20,                     /* more bytes than any datagram has */
+    WHOLE = 1 << 20, /* more bytes than any datagram has */
     /* Instructions to compare a name: two for each word, two for each byte that remains, and a
      * return. */
     PER_CHANNEL_MAX = 2 * (BUS_CHANNEL_MAX / 4 + 3) + 1,

@@ -23,17 +23,24 @@ int bus_socket_open(const struct bus_url *url, long *granted, char why[BUS_WHY_M
 uint32_t bus_socket_drops(int fd);
 
 /* A socket filter that truncates large datagrams on other channels before the kernel copies them.
+ * It leaves only LCM's header, without the channel name.
  *
  * Every member of the group receives all results. Without the filter a client, and the service
  * itself, would copy up to 63 kB for each result of another client, and then drop it because of its
  * channel. A truncated datagram is still received and counted; one that a filter drops would count
- * as lost. */
+ * as lost.
+ *
+ * The filter decides when a datagram arrives. If its channel is added to the filter while it waits
+ * in the buffer, it stays truncated. No message is as short as a truncated datagram, so that it is
+ * never taken for one. */
 
-/* Datagrams of fewer bytes than this, UDP header included, are received whole. */
-enum { BUS_SOCKET_TRIM_FROM = 1024 };
+enum {
+    BUS_SOCKET_TRIM_FROM = 1024, /* smaller datagrams, UDP header included, are received whole */
+    BUS_SOCKET_TRIMMED = 8       /* bytes received of a truncated datagram: LCM's header */
+};
 
 /* Attaches the filter to a socket, in place of any other. Larger datagrams on channels other than
- * these are truncated after the longest possible channel name.
+ * these are truncated to BUS_SOCKET_TRIMMED bytes.
  * On input: count names, at most BUS_LISTENERS_MAX, of fewer than BUS_CHANNEL_MAX bytes each; they
  * are copied. Has no effect if the system refuses filters. */
 void bus_socket_trim(int fd, const char *const channels[], int count);

@@ -13,6 +13,7 @@ setup() {
 
 # start_record [OPTIONS] FILE: records until finish_record. The pid is in $record.
 start_record() {
+    : > "$messages" # those of an earlier one
     "$FMB" record --json "$@" > "$report" 2> "$messages" 3>&- 9>&- &
     record=$!
     started="${started-} $record"
@@ -462,6 +463,23 @@ resolves() {
         is ".events == $((others + 3)) and .lost == 0"
         [ "$(events "$log" | grep -c '^ONE ')" = "$([ "$options" ] && echo "$one" || echo 0)" ]
         [ "$(events "$log" | grep -c '^FMB_')" = 3 ]
+    done
+}
+
+@test "large messages on other channels are recorded whole" {
+    # An event log of one event: 40,000 bytes on channel OTHER.
+    {
+        printf '\xed\xa1\xda\x01'
+        head -c 16 /dev/zero
+        printf '\0\0\0\5\0\0\x9c\x40OTHER'
+        seq 100000 | head -c 40000
+    } > "$BATS_TEST_TMPDIR/large"
+    for options in '--channel OTH.*' '--all'; do
+        start_record --force $options "$log"
+        lcm-logplayer "$BATS_TEST_TMPDIR/large" 3>&-
+        finish_record
+        is '.received.others == 1 and .events == 1 and .lost == 0'
+        [ "$(events "$log")" = "$(events "$BATS_TEST_TMPDIR/large")" ]
     done
 }
 

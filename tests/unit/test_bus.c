@@ -91,15 +91,22 @@ static void receive_datagrams(struct bus *bus, int count)
     assert_int_equal(bus_receive(bus, on_message, &latest), 0);
 }
 
-static void expect_message(struct bus *bus, const char *channel, const void *bytes, size_t size)
+/* One of the next datagrams is this message, the others are none. */
+static void expect_message_among(struct bus *bus, int datagrams, const char *channel,
+                                 const void *bytes, size_t size)
 {
     latest = (struct latest){0};
-    receive_datagrams(bus, 1);
+    receive_datagrams(bus, datagrams);
     assert_int_equal(latest.count, 1);
     assert_string_equal(latest.channel, channel);
     assert_int_equal(latest.size, size);
     if (size)
         assert_memory_equal(latest.bytes, bytes, size);
+}
+
+static void expect_message(struct bus *bus, const char *channel, const void *bytes, size_t size)
+{
+    expect_message_among(bus, 1, channel, bytes, size);
 }
 
 static int open_sender(void)
@@ -411,6 +418,27 @@ static void test_foreign_channels_are_counted(void **state)
     assert_int_equal(counts.foreign, 4);
     assert_int_equal(counts.received + counts.malformed + counts.dropped, 0);
     bus_close(bus);
+}
+
+/* A large message that was truncated because its channel was not yet listened to is dropped. */
+static void test_a_channel_added_later_delivers_whole_messages_only(void **state)
+{
+    (void) state;
+    static const char *const added[] = {"B", NULL};
+    for (size_t i = 0; i < sizeof added / sizeof *added; i++) {
+        struct bus *bus = open_listening("A"), *other = open_bus("");
+        assert_true(bus_publish(other, "A", noise(), LARGEST));
+        assert_true(bus_publish(other, "B", noise(), LARGEST));
+        listen_to(bus, added[i]);
+        expect_message_among(bus, 2, "A", noise(), LARGEST);
+        assert_int_equal(bus_counts(bus).received, 1);
+        assert_int_equal(bus_counts(bus).foreign, 1);
+        assert_int_equal(bus_counts(bus).malformed, 0);
+        assert_true(bus_publish(other, "B", noise(), LARGEST));
+        expect_message(bus, "B", noise(), LARGEST);
+        bus_close(bus);
+        bus_close(other);
+    }
 }
 
 /* Everything that kills or deceives liblcm. What the buffer held before must not decide: it holds a
@@ -818,6 +846,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_a_batch_ends_at_its_size),
         cmocka_unit_test(test_buses_on_one_host_both_receive),
         cmocka_unit_test(test_foreign_channels_are_counted),
+        cmocka_unit_test(test_a_channel_added_later_delivers_whole_messages_only),
         cmocka_unit_test(test_malformed_datagrams_are_counted_and_harmless),
         cmocka_unit_test(test_unicast_does_not_arrive),
         cmocka_unit_test(test_ttl_is_that_of_the_url),
