@@ -292,19 +292,30 @@ static void append(struct cutter *cut, const struct log_event *event, const void
         fail_output(cut, errno);
 }
 
+/* An event that the reader does not keep as a whole. */
+struct large_event {
+    struct cutter *cut;
+    const struct log_event *event;
+};
+
+static bool read_large(void *user, size_t from, unsigned char *out, size_t count)
+{
+    const struct large_event *large = user;
+    struct cutter *cut = large->cut;
+    if (log_read_data(cut->input.reader[cut->input.log], large->event, from, out, count))
+        return true;
+    fail_input(cut, errno);
+    return false;
+}
+
 static void copy(struct cutter *cut, const struct log_event *event)
 {
-    if (event->kept == event->size) {
+    struct large_event large = {cut, event};
+    if (event->kept == event->size)
         append(cut, event, event->data, event->size);
-        return;
-    }
-    const void *data = log_map(cut->input.reader[cut->input.log], event);
-    if (!data) {
-        fail_input(cut, errno);
-        return;
-    }
-    append(cut, event, data, event->size);
-    log_unmap(data, event);
+    else if (!log_append_large(cut->output, event->utime, event->channel, event->channel_length,
+                               event->size, read_large, &large))
+        fail_output(cut, errno);
 }
 
 static bool write_definition(void *user, const void *bytes, size_t size)

@@ -27,7 +27,10 @@
  * so, the second ends a buffer after the beginning of the first. So the total number of bytes read
  * is a small multiple of the file size, for hostile files too.
  *
- * Holes of sparse files contain no sync word, and searches skip them. */
+ * Holes of sparse files contain no sync word, and searches skip them.
+ *
+ * Changes. Another program may change the file while it is read. So lengths are used as they were
+ * checked, and never read from the file again. */
 #define _GNU_SOURCE /* SEEK_DATA */
 #define _FILE_OFFSET_BITS 64
 #include "log_read.h"
@@ -39,7 +42,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -155,16 +157,13 @@ static inline bool is_sync(const unsigned char *bytes)
     return memcmp(bytes, sync_word, SYNC_BYTES) == 0;
 }
 
-/* In: the offset of a complete header in the buffer. Returns the end of its event; 0: not a
- * candidate. */
-static int64_t candidate_end(const struct log_reader *reader, int64_t offset)
+/* In: the offset of a complete header in the buffer. On output: *out, its lengths. */
+static bool is_candidate(const struct log_reader *reader, int64_t offset, struct lengths *out)
 {
     const unsigned char *header = buffered(reader, offset);
-    const struct lengths lengths = lengths_at(header);
-    if (!is_sync(header) || !lengths_are_valid(lengths) ||
-        whole_length(lengths) > reader->size - offset)
-        return 0;
-    return offset + whole_length(lengths);
+    *out = lengths_at(header);
+    return is_sync(header) && lengths_are_valid(*out) &&
+           whole_length(*out) <= reader->size - offset;
 }
 
 /* Whether the file ends at the offset, or a sync word, or the beginning of one, is there. */
@@ -205,6 +204,7 @@ static const unsigned char *find_sync(const unsigned char *bytes, const unsigned
 static int64_t find_candidate(struct log_reader *reader, int64_t offset)
 {
     const int64_t last = reader->size - LOG_HEADER_BYTES;
+    struct lengths lengths;
     while (offset <= last) {
         if (!is_buffered(reader, offset, LOG_HEADER_BYTES)) {
             offset = skip_hole(reader, offset, last);
@@ -215,7 +215,7 @@ static int64_t find_candidate(struct log_reader *reader, int64_t offset)
         const unsigned char *end = reader->bytes + reader->used - LOG_HEADER_BYTES + 1;
         const unsigned char *sync = find_sync(bytes, end);
         offset += sync - bytes;
-        if (sync < end && candidate_end(reader, offset) > 0)
+        if (sync < end && is_candidate(reader, offset, &lengths))
             return offset;
         offset += sync < end;
     }
@@ -233,22 +233,23 @@ static int64_t next_candidate(struct log_reader *reader, int64_t offset)
     return reader->none_end;
 }
 
-static bool is_accepted(struct log_reader *reader, int64_t offset)
+/* On output: true and *out, the lengths of the accepted candidate. */
+static bool is_accepted(struct log_reader *reader, int64_t offset, struct lengths *out)
 {
-    if (reader->size - offset < LOG_HEADER_BYTES || !buffer(reader, offset, LOG_HEADER_BYTES))
+    if (reader->size - offset < LOG_HEADER_BYTES || !buffer(reader, offset, LOG_HEADER_BYTES) ||
+        !is_candidate(reader, offset, out))
         return false;
-    const int64_t end = candidate_end(reader, offset);
-    if (end == 0)
-        return false;
+    const int64_t end = offset + whole_length(*out);
     return is_followed(reader, end) || (!reader->error && end <= next_candidate(reader, offset));
 }
 
 /* The first accepted candidate after the offset, or the size of the file. */
 static int64_t next_accepted(struct log_reader *reader, int64_t offset)
 {
+    struct lengths lengths;
     do
         offset = next_candidate(reader, offset);
-    while (offset < reader->size && !is_accepted(reader, offset) && !reader->error);
+    while (offset < reader->size && !is_accepted(reader, offset, &lengths) && !reader->error);
     return offset;
 }
 
@@ -336,10 +337,8 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
 static bool is_event(struct log_reader *reader, struct lengths *out)
 {
     const int64_t at = reader->at;
-    if (!is_accepted(reader, at) || reader->error || !buffer(reader, at, LOG_HEADER_BYTES))
-        return false;
-    *out = lengths_at(buffered(reader, at));
-    return buffer(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
+    return is_accepted(reader, at, out) && !reader->error &&
+           buffer(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
 }
 
 /* Fast path of is_event(): the whole event and a sync word after it are in the buffer. Gives the
@@ -389,33 +388,14 @@ void log_rewind(struct log_reader *reader)
 
 /* ---- All data of an event -------------------------------------------------------------------- */
 
-/* Offset of the event's data in its page. Files are mapped from the beginning of a page on. */
-static size_t offset_in_page(const struct log_event *event)
+bool log_read_data(struct log_reader *reader, const struct log_event *event, size_t from,
+                   unsigned char *out, size_t count)
 {
-    const int64_t page = sysconf(_SC_PAGESIZE);
-    return (size_t) ((event->offset + event->length - (int64_t) event->size) % page);
-}
-
-const void *log_map(const struct log_reader *reader, const struct log_event *event)
-{
-    struct stat about;
-    const size_t before = offset_in_page(event);
-    const int64_t begin = event->offset + event->length - (int64_t) event->size - (int64_t) before;
-    if (fstat(reader->fd, &about) != 0)
-        return NULL;
-    if (about.st_size < event->offset + event->length) {
-        errno = ENODATA;
-        return NULL;
-    }
-    const unsigned char *bytes =
-        mmap(NULL, before + event->size, PROT_READ, MAP_PRIVATE, reader->fd, (off_t) begin);
-    return bytes == MAP_FAILED ? NULL : bytes + before;
-}
-
-void log_unmap(const void *data, const struct log_event *event)
-{
-    const size_t before = offset_in_page(event);
-    munmap((unsigned char *) (uintptr_t) data - before, before + event->size);
+    const int64_t data = event->offset + event->length - (int64_t) event->size;
+    const bool good = read_at(reader, data + (int64_t) from, out, count);
+    if (!good)
+        failed(reader);
+    return good;
 }
 
 /* ---- Opening and closing --------------------------------------------------------------------- */

@@ -15,7 +15,8 @@
  * the end of the file. It is also accepted if no other event begins inside it: the bytes after it
  * are then the damage. Bytes between accepted events are damage, and reported with their offset. So
  * each byte of a file is in exactly one event or damage, and data inside an accepted event, even a
- * whole log, is not read as events.
+ * whole log, is not read as events. All this holds for a file that does not change. If another
+ * program changes it meanwhile, events may have any contents, but lengths within these limits.
  *
  * Uses one buffer of fixed size, whatever the size of the file and of its events, and time linear
  * in the size of the file. Does not decode messages. */
@@ -78,9 +79,9 @@ void log_seek(struct log_reader *reader, int64_t offset);
 /* Returns to the beginning: damage at the beginning of the file is reported again. */
 void log_rewind(struct log_reader *reader);
 
-/* Maps all data of an event, including those not kept, from the file; release with log_unmap().
- * Allocates nothing, whatever the size. NULL: errno (ENODATA: the file was truncated). */
-const void *log_map(const struct log_reader *reader, const struct log_event *event);
-void log_unmap(const void *data, const struct log_event *event);
+/* Reads `count` bytes of the data of an event, from byte `from` on, including those not kept.
+ * Returns false on error: errno. All later calls fail too, as those of log_next(). */
+bool log_read_data(struct log_reader *reader, const struct log_event *event, size_t from,
+                   unsigned char *out, size_t count);
 
 #endif

@@ -12,14 +12,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Events are collected in a buffer. An event larger than the buffer is written directly. */
+/* Events are collected in a buffer. */
 enum { BUFFER_BYTES = 256 << 10 };
+
+_Static_assert(BUFFER_BYTES >= LOG_HEADER_BYTES + LOG_CHANNEL_MAX + LOG_APPEND_MAX,
+               "the buffer holds an event");
 
 struct log_writer {
     int fd;
     int error;      /* the first error, errno; 0: none */
     int64_t number; /* of the next event */
-    int64_t whole;  /* size of the file, bytes: complete events only */
+    int64_t whole;  /* bytes written to the file: complete events only */
     size_t used;    /* bytes used of the buffer: complete events only */
     unsigned char buffer[BUFFER_BYTES];
 };
@@ -29,7 +32,8 @@ struct log_writer *log_create(const char *path, bool force)
     struct log_writer *writer = malloc(sizeof *writer);
     if (!writer)
         return NULL;
-    writer->fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC | (force ? O_TRUNC : O_EXCL), 0666);
+    const int flags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC;
+    writer->fd = open(path, flags | (force ? O_TRUNC : O_EXCL), 0666);
     writer->error = 0;
     writer->number = writer->whole = 0;
     writer->used = 0;
@@ -103,12 +107,16 @@ static size_t whole_events(const struct log_writer *writer, size_t done)
     }
 }
 
-/* Truncates the file to its last complete event; nothing is written after it. Files that are not
- * regular cannot be truncated, and stay as they are. */
-static bool cut_back(struct log_writer *writer, int error)
+/* Removes the `torn` bytes at the end of the file, which are no complete event; nothing is written
+ * after that. A file that another program truncated is not extended. Files that are not regular
+ * cannot be truncated, and stay as they are. */
+static bool cut_back(struct log_writer *writer, size_t torn, int error)
 {
-    const int truncated = ftruncate(writer->fd, (off_t) writer->whole);
-    (void) truncated;
+    struct stat file;
+    if (fstat(writer->fd, &file) == 0 && file.st_size >= (off_t) torn) {
+        const int truncated = ftruncate(writer->fd, file.st_size - (off_t) torn);
+        (void) truncated;
+    }
     return fail(writer, error);
 }
 
@@ -119,9 +127,10 @@ bool log_flush(struct log_writer *writer)
     const size_t done = write_all(writer->fd, writer->buffer, writer->used);
     const int error = errno;
     const bool complete = done == writer->used;
-    writer->whole += (int64_t) (complete ? done : whole_events(writer, done));
+    const size_t whole = complete ? done : whole_events(writer, done);
+    writer->whole += (int64_t) whole;
     writer->used = 0;
-    return complete || cut_back(writer, error);
+    return complete || cut_back(writer, done - whole, error);
 }
 
 static void put_header(struct log_writer *writer, int64_t utime, const char *channel,
@@ -137,35 +146,42 @@ static void put_header(struct log_writer *writer, int64_t utime, const char *cha
     writer->used += LOG_HEADER_BYTES + channel_length;
 }
 
-/* In: the buffer is empty. */
-static bool write_large(struct log_writer *writer, int64_t utime, const char *channel,
-                        size_t channel_length, const void *data, size_t size)
-{
-    put_header(writer, utime, channel, channel_length, size);
-    const size_t head = writer->used;
-    writer->used = 0;
-    if (write_all(writer->fd, writer->buffer, head) != head ||
-        write_all(writer->fd, data, size) != size)
-        return cut_back(writer, errno);
-    writer->whole += (int64_t) (head + size);
-    return true;
-}
-
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size)
 {
     const size_t bytes = (size_t) log_event_bytes(channel_length, size);
-    assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= INT32_MAX);
+    assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= LOG_APPEND_MAX);
     if (writer->error)
         return fail(writer, 0);
     if (bytes > BUFFER_BYTES - writer->used && !log_flush(writer))
         return false;
-    if (bytes > BUFFER_BYTES)
-        return write_large(writer, utime, channel, channel_length, data, size);
     put_header(writer, utime, channel, channel_length, size);
     if (size > 0)
         memcpy(writer->buffer + writer->used, data, size);
     writer->used += size;
+    return true;
+}
+
+bool log_append_large(struct log_writer *writer, int64_t utime, const char *channel,
+                      size_t channel_length, size_t size, log_source *source, void *user)
+{
+    size_t done = 0, written = 0; /* of the data; of the event */
+    if (!log_flush(writer))
+        return false;
+    put_header(writer, utime, channel, channel_length, size);
+    do {
+        const size_t space = BUFFER_BYTES - writer->used;
+        const size_t count = size - done < space ? size - done : space;
+        const bool good = source(user, done, writer->buffer + writer->used, count);
+        const size_t used = writer->used + count;
+        const size_t passed = good ? write_all(writer->fd, writer->buffer, used) : 0;
+        writer->used = 0;
+        written += passed;
+        done += count;
+        if (passed != used)
+            return cut_back(writer, written, errno);
+    } while (done < size);
+    writer->whole += (int64_t) written;
     return true;
 }
 

@@ -2,7 +2,8 @@
  * reports them.
  *
  * Appended events may stay in memory until log_flush() or log_finish(). After the first error
- * nothing more is written, and the file is truncated to its last complete event. */
+ * nothing more is written, and the file is truncated to its last complete event. All bytes are
+ * appended to the file: if another program truncates it, complete events follow, without a hole. */
 #ifndef LOG_WRITE_H
 #define LOG_WRITE_H
 
@@ -21,11 +22,22 @@ struct log_writer *log_create(const char *path, bool force);
 bool log_is_same_file(const char *path, const char *other);
 bool log_is_one_of(const char *path, char *const *other, int count);
 
+/* Most bytes of the data of an event that log_append() takes. */
+enum { LOG_APPEND_MAX = 128 << 10 };
+
 /* Appends an event. Events are numbered from 0. In: utime: time of receipt, microseconds since
- * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. Returns false on error:
- * errno. */
+ * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to LOG_APPEND_MAX. Returns false on
+ * error: errno. */
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size);
+
+/* Provides `count` bytes of the data, from byte `from` on. Returns false on error: errno. */
+typedef bool log_source(void *user, size_t from, unsigned char *out, size_t count);
+
+/* As log_append(), of up to INT32_MAX bytes, which the source provides piece by piece, in order. An
+ * error of the source is one of the log. */
+bool log_append_large(struct log_writer *writer, int64_t utime, const char *channel,
+                      size_t channel_length, size_t size, log_source *source, void *user);
 
 /* Passes all appended events to the system, so that they survive the end of this process. */
 bool log_flush(struct log_writer *writer);

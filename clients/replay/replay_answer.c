@@ -66,6 +66,13 @@ static void answer_here(struct replay *replay, struct match_item *query,
         pending_add(&replay->pending, &answered->undefined, query);
 }
 
+/* A query that could be decoded before. */
+static void fail_changed(struct replay *replay, const struct match_item *query)
+{
+    errno = EIO;
+    replay_fail_log(replay, query->place.log);
+}
+
 /* last: answers it even if handles are not defined. */
 static void answer_again_here(struct replay *replay, struct match_item *query,
                               const struct message *message, bool last)
@@ -73,8 +80,7 @@ static void answer_again_here(struct replay *replay, struct match_item *query,
     struct new_result answered;
     if (local_answer(replay->local, (enum log_kind) query->key.kind, message->bytes, message->size,
                      &answered)) {
-        errno = EIO; /* it could be decoded before */
-        replay_fail_log(replay, query->place.log);
+        fail_changed(replay, query);
         return;
     }
     if (last)
@@ -138,8 +144,11 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
                                 const struct message *message, bool last)
 {
     int32_t count;
-    logged_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes,
-                      message->size);
+    if (logged_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes,
+                          message->size)) {
+        fail_changed(replay, query);
+        return;
+    }
     struct placement *placement = logged_query_placements(&replay->query, &count);
     const int32_t missing = definitions_missing(replay->definitions, placement, count);
     if (missing >= 0 && !last) {

@@ -43,7 +43,7 @@ struct bus_listener {
 struct bus {
     struct bus_url url;
     lcm_t *lcm;
-    int fd; /* -1 before bus_listen() */
+    int fd;     /* -1 before bus_listen() */
     bool trims; /* the filter of socket.h was attached */
     int listener_count;
     struct bus_listener listeners[BUS_LISTENERS_MAX];

@@ -150,7 +150,7 @@ is() {
     grep -Eqx '  pair queries +1,501' "$report"
     grep -Eqx '  pair results +0' "$report"
     grep -Eqx '  lost +0' "$report"
-    ! grep -q malformed "$report"
+    run ! grep -q malformed "$report"
     [ "$(wc -l < "$messages")" = 1 ]
 }
 
@@ -322,6 +322,24 @@ END
     code=0
     finish_record || code=$?
     [ $code = 1 ]
+}
+
+@test "a log that is truncated under traffic ends the recording, and what follows replays" {
+    start_fmbd
+    start_record --duration 30 "$log"
+    poke_until_it_ends &
+    started="$started $!"
+    wait_until has_events FMB_PAIR_QUERY "$log" 1000
+    truncate -s 0 "$log"
+    code=0
+    wait "$record" || code=$?
+    [ $code = 1 ]
+    grep -qx "fmb: $log: deleted or truncated by another program" "$messages"
+    [ "$(wc -l < "$messages")" = 2 ]
+    "$FMB" log info "$log" | grep -qx '  no damage'
+    "$FMB" replay --json "$log" > "$BATS_TEST_TMPDIR/replay"
+    [ "$(count_events FMB_PAIR_QUERY "$log")" -ge 1 ]
+    stop_fmbd
 }
 
 # ---- Bodies ----------------------------------------------------------------------------------
@@ -518,7 +536,7 @@ resolves() {
     sleep 0.5
     finish_record
     [ "$(wc -l < "$messages")" = 1 ]
-    ! grep -q 'messages' "$messages"
+    run ! grep -q 'messages' "$messages"
 }
 
 # ---- Buses -----------------------------------------------------------------------------------

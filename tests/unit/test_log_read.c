@@ -23,7 +23,10 @@ static struct {
     size_t piece;         /* no more at once; 0: as much as there is */
     int error;            /* errno of all that follow; 0: none */
     bool interrupted;     /* every other call is, before it has read */
+    int64_t change_at;    /* before this call the file is changed; 0: never */
 } reads;
+
+static void change_file(void);
 
 ssize_t __real_pread64(int fd, void *out, size_t count, off_t offset);
 ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset);
@@ -31,6 +34,8 @@ ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset);
 ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
 {
     reads.calls++;
+    if (reads.calls == reads.change_at)
+        change_file();
     if (reads.error || (reads.interrupted && reads.calls % 2)) {
         errno = reads.error ? reads.error : EINTR;
         return -1;
@@ -714,23 +719,78 @@ static void test_a_file_that_becomes_shorter(void **state)
     }
 }
 
-/* Bytes beyond the end of a file are not mapped: to read them would end the process. */
-static void test_an_event_that_is_cut_off_is_not_mapped(void **state)
+/* Lengths that are impossible, in place of those of the first event. */
+static void change_file(void)
 {
-    (void) state;
+    static const unsigned char lengths[8] = {0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff};
+    assert_int_equal(pwrite(log_bytes_descriptor(), lengths, 8, LOG_HEADER_BYTES - 8), 8);
+}
+
+/* Reads to the end. Whatever the file has become, lengths are within their limits. */
+static void read_changed(struct log_reader *reader)
+{
     struct log_event event;
     struct log_damage damage;
+    enum log_outcome outcome;
+    int64_t at = 0;
+    while ((outcome = log_next(reader, &event, &damage)) < LOG_END) {
+        if (outcome == LOG_EVENT) {
+            assert_in_range(event.channel_length, 1, LOG_CHANNEL_MAX - 1);
+            assert_int_equal(event.channel[event.channel_length], 0);
+            assert_int_equal(event.length, LOG_HEADER_BYTES + event.channel_length + event.size);
+            assert_int_equal(event.kept, event.size < LOG_DATA_MAX ? event.size : LOG_DATA_MAX);
+        }
+        assert_int_equal(outcome == LOG_EVENT ? event.offset : damage.offset, at);
+        at += outcome == LOG_EVENT ? event.length : damage.length;
+    }
+    assert_int_equal(outcome, LOG_END);
+    assert_int_equal(at, whole.size);
+}
+
+/* The header of an event is in a buffer that is read again, since the bytes after it are damaged.
+ * It changes before each of these reads. */
+static void test_a_file_that_changes(void **state)
+{
+    (void) state;
+    static unsigned char image[4 * LOG_DATA_MAX];
     make_noise(5);
     whole.size = whole.count = 0;
-    log_bytes_event(&whole, 1, "CHANNEL", noise, LOG_DATA_MAX);
+    log_bytes_event(&whole, 1, "CAMERA", image, sizeof image);
+    log_bytes_add(&whole, "damage", 6);
+    log_bytes_event(&whole, 2, "CHANNEL", noise, 1000);
+    for (int64_t call = 0, last = 0; call <= last; call++) {
+        struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+        reads.calls = 0;
+        reads.change_at = call;
+        read_changed(reader);
+        if (call == 0) /* the file does not change */
+            last = reads.calls;
+        assert_true(last > 3);
+        log_close(reader);
+    }
+    reads.change_at = 0;
+}
+
+static void test_data_of_an_event_are_read_in_pieces(void **state)
+{
+    (void) state;
+    static unsigned char image[3 * LOG_DATA_MAX + 5], data[sizeof image];
+    struct log_event event;
+    struct log_damage damage;
+    for (size_t i = 0; i < sizeof image; i++)
+        image[i] = (unsigned char) (i * i >> 5);
+    whole.size = whole.count = 0;
+    log_bytes_event(&whole, 1, "CAMERA", image, sizeof image);
     struct log_reader *reader = open_bytes(whole.bytes, whole.size);
     assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
-    const void *data = log_map(reader, &event);
-    assert_non_null(data);
-    log_unmap(data, &event);
+    assert_true(log_read_data(reader, &event, 0, data, 7));
+    assert_true(log_read_data(reader, &event, 7, data + 7, sizeof data - 7));
+    assert_memory_equal(data, image, sizeof image);
     assert_int_equal(ftruncate(log_bytes_descriptor(), (off_t) whole.size - 1), 0);
-    assert_null(log_map(reader, &event));
+    errno = 0;
+    assert_false(log_read_data(reader, &event, 0, data, sizeof data));
     assert_int_equal(errno, ENODATA);
+    expect_failed(reader, ENODATA);
     log_close(reader);
 }
 
@@ -805,7 +865,8 @@ int main(void)
         cmocka_unit_test(test_seeking_in_a_log_of_many_buffers),
         cmocka_unit_test(test_what_is_written_later_is_not_read),
         cmocka_unit_test(test_a_file_that_becomes_shorter),
-        cmocka_unit_test(test_an_event_that_is_cut_off_is_not_mapped),
+        cmocka_unit_test(test_a_file_that_changes),
+        cmocka_unit_test(test_data_of_an_event_are_read_in_pieces),
         cmocka_unit_test(test_a_hole_that_becomes_shorter),
         cmocka_unit_test(test_a_file_that_cannot_be_read),
         cmocka_unit_test(test_what_is_no_file),

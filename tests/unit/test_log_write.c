@@ -141,20 +141,26 @@ static void assert_event(const lcm_eventlog_event_t *event, int number)
     assert_memory_equal(event->data, data, event->datalen);
 }
 
-/* Reads a log with LCM's reader: its events are those from a number on. Returns how many. */
-static int read_events(const char *name, int first)
+/* Reads a log with LCM's reader: its events are those from `first` on, and numbered from `number`
+ * on. Returns how many. */
+static int read_numbered(const char *name, int first, int number)
 {
     lcm_eventlog_t *log = lcm_eventlog_create(in_folder(name), "r");
     lcm_eventlog_event_t *event;
     assert_non_null(log);
     int count = 0;
     for (; (event = lcm_eventlog_read_next_event(log)); count++) {
-        assert_int_equal(event->eventnum, count);
+        assert_int_equal(event->eventnum, number + count);
         assert_event(event, first + count);
         lcm_eventlog_free_event(event);
     }
     lcm_eventlog_destroy(log);
     return count;
+}
+
+static int read_events(const char *name, int first)
+{
+    return read_numbered(name, first, 0);
 }
 
 /* ---- One file -------------------------------------------------------------------------------- */
@@ -306,6 +312,18 @@ static void test_a_full_disk_leaves_whole_events(void **state)
     }
 }
 
+static bool from_memory(void *user, size_t from, unsigned char *out, size_t count)
+{
+    memcpy(out, (const unsigned char *) user + from, count);
+    return true;
+}
+
+static bool fails_later(void *user, size_t from, unsigned char *out, size_t count)
+{
+    errno = ENODATA;
+    return from == 0 && from_memory(user, from, out, count);
+}
+
 /* Larger than the buffer. */
 static void test_large_events(void **state)
 {
@@ -315,7 +333,7 @@ static void test_large_events(void **state)
     for (size_t i = 0; i < sizeof data; i++)
         data[i] = (unsigned char) (i * i >> 7);
     assert_true(append_event(to_writer, writer, 1));
-    assert_true(log_append(writer, 5, "CAMERA", 6, data, sizeof data));
+    assert_true(log_append_large(writer, 5, "CAMERA", 6, sizeof data, from_memory, data));
     assert_true(append_event(to_writer, writer, 2));
     assert_int_equal(log_finish(writer), 0);
     lcm_eventlog_t *log = lcm_eventlog_create(in_folder("large"), "r");
@@ -333,9 +351,14 @@ static void test_large_events(void **state)
     writer = log_create(in_folder("large"), true);
     limit_files(1000000);
     assert_true(append_event(to_writer, writer, 1));
-    assert_false(log_append(writer, 5, "CAMERA", 6, data, sizeof data));
+    assert_false(log_append_large(writer, 5, "CAMERA", 6, sizeof data, from_memory, data));
     limit_files(RLIM_INFINITY);
     assert_int_equal(log_finish(writer), EFBIG);
+    assert_int_equal(size_of("large"), bytes_of_event(1));
+    writer = log_create(in_folder("large"), true);
+    assert_true(append_event(to_writer, writer, 1));
+    assert_false(log_append_large(writer, 5, "CAMERA", 6, sizeof data, fails_later, data));
+    assert_int_equal(log_finish(writer), ENODATA);
     assert_int_equal(size_of("large"), bytes_of_event(1));
 }
 
@@ -374,6 +397,37 @@ static void test_a_truncated_file_is_noticed(void **state)
     assert_int_equal(truncate(in_folder("truncated"), 100), 0);
     assert_false(log_check(writer));
     assert_int_equal(log_finish(writer), ESTALE);
+}
+
+/* All that is written after a truncation is a log of its own, whatever error ends it. */
+static void test_a_truncated_file_gets_no_hole(void **state)
+{
+    (void) state;
+    enum { BEFORE = 400, AFTER = 300 };
+    for (int full = 0; full < 2; full++) {
+        struct log_writer *writer = log_create(in_folder("copied"), true);
+        int64_t bytes = 0;
+        for (int i = 0; i < BEFORE; i++)
+            assert_true(append_event(to_writer, writer, i));
+        assert_true(log_flush(writer));
+        assert_int_equal(truncate(in_folder("copied"), 0), 0);
+        if (full)
+            limit_files(1000003);
+        for (int i = 0; i < AFTER && append_event(to_writer, writer, BEFORE + i); i++)
+            bytes += bytes_of_event(BEFORE + i);
+        if (!full)
+            assert_true(log_flush(writer));
+        limit_files(RLIM_INFINITY);
+        assert_false(log_check(writer));
+        assert_int_equal(errno, full ? EFBIG : ESTALE);
+        assert_int_equal(log_finish(writer), full ? EFBIG : ESTALE);
+        assert_true(full ? size_of("copied") > 700000 : size_of("copied") == bytes);
+        const int whole = read_numbered("copied", BEFORE, BEFORE);
+        bytes = 0;
+        for (int i = 0; i < whole; i++)
+            bytes += bytes_of_event(BEFORE + i);
+        assert_int_equal(size_of("copied"), bytes);
+    }
 }
 
 /* ---- Several files --------------------------------------------------------------------------- */
@@ -533,6 +587,7 @@ int main(void)
         cmocka_unit_test(test_large_events),
         cmocka_unit_test(test_a_deleted_file_is_noticed),
         cmocka_unit_test(test_a_truncated_file_is_noticed),
+        cmocka_unit_test(test_a_truncated_file_gets_no_hole),
         cmocka_unit_test(test_several_files_divide_no_event),
         cmocka_unit_test(test_the_newest_files_are_kept),
         cmocka_unit_test(test_a_file_that_is_gone_is_not_kept),
