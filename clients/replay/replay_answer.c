@@ -66,11 +66,19 @@ static void answer_here(struct replay *replay, struct match_item *query,
         pending_add(&replay->pending, &answered->undefined, query);
 }
 
+/* Excludes a query that cannot be read again: it gets no answer, and is not compared. */
+static void exclude(struct match_item *query)
+{
+    query->place.in_range = false;
+    match_drop(query);
+}
+
 /* A query that could be decoded before. */
-static void fail_changed(struct replay *replay, const struct match_item *query)
+static void fail_changed(struct replay *replay, struct match_item *query)
 {
     errno = EIO;
     replay_fail_log(replay, query->place.log);
+    exclude(query);
 }
 
 /* last: answers it even if handles are not defined. */
@@ -196,8 +204,8 @@ static void answer_again(struct replay *replay, struct match_item *query, bool l
 {
     struct message message;
     if (!replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message))
-        return;
-    if (replay->bus)
+        exclude(query);
+    else if (replay->bus)
         answer_again_on_bus(replay, query, &message, last);
     else
         answer_again_here(replay, query, &message, last);

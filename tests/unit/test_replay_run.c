@@ -321,6 +321,65 @@ static void test_a_verdict_is_compared_where_the_definition_comes_late(void **st
     replay_report_free(&report);
 }
 
+/* Overwrites bytes of the first event, a query, as soon as it was read. */
+static int64_t overwritten; /* offset */
+
+static void overwrite(void *user, int64_t bytes)
+{
+    (void) user;
+    if (bytes == (int64_t) recorded.size)
+        return;
+    assert_int_equal(pwrite(file, "\xff\xff\xff\xff", 4, overwritten), 4);
+}
+
+static void ignore_difference(void *user, const struct located_difference *difference)
+{
+    (void) user;
+    (void) difference;
+    fail_msg("a query that changed was compared");
+}
+
+static void ignore_unreadable(void *user, const struct match_place *place, const char *channel,
+                              const char *what)
+{
+    (void) user;
+    (void) place;
+    (void) channel;
+    (void) what;
+}
+
+static void ignore_damage(void *user, int log, const struct log_damage *damage)
+{
+    (void) user;
+    (void) log;
+    (void) damage;
+}
+
+/* Its sync word, its lengths, its fingerprint; its result precedes the definition, or follows. */
+static void test_a_query_that_changes_before_it_can_be_answered(void **state)
+{
+    (void) state;
+    static const int64_t offsets[] = {0, 20, 24, 28 + sizeof WIRE_PAIR_QUERY - 1};
+    const struct replay_sink sink = {ignore_difference, ignore_unreadable, ignore_damage, overwrite,
+                                     NULL};
+    for (size_t i = 0; i < 2 * sizeof offsets / sizeof *offsets; i++) {
+        const struct pair_query query = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
+        const struct pair_result result = result_of(&query);
+        struct tally tally = {.events = 0};
+        log_pair(0, &query);
+        if (i % 2)
+            log_pair_result(1, &result);
+        log_definition(2, (double[]){1, 2, 0});
+        log_pair_result(3, &result);
+        open_log();
+        overwritten = offsets[i / 2];
+        const struct replay_options changing = options();
+        assert_false(replay_run(&changing, &sink, &tally));
+        assert_int_equal(tally_outcome(&tally, REPLAY_SAME), 0);
+        close_log();
+    }
+}
+
 /* One id, two bodies: handles say which. */
 static void test_two_clients_use_the_same_ids_for_other_bodies(void **state)
 {
@@ -962,6 +1021,7 @@ int main(void)
         TEST(handles_are_defined_before_and_after),
         TEST(handles_are_defined_by_whole_bodies),
         TEST(a_verdict_is_compared_where_the_definition_comes_late),
+        TEST(a_query_that_changes_before_it_can_be_answered),
         TEST(two_clients_use_the_same_ids_for_other_bodies),
         TEST(a_cache_that_is_too_small),
         TEST(a_definition_that_lies),
