@@ -203,6 +203,21 @@ split_at() {
     scene 0 "$T/one.log" "$T/one.log" --event 3
 }
 
+@test "the margin of a query is in its scene" {
+    generate stack "$log"
+    margins=
+    for event in 0 1 2 4 6 8 9; do
+        scene 0 "$log" --event "$event"
+        margins="$margins $(jq '1e9 * (.margin // 0)' <<< "$output")"
+        # As 'fmb query' reads it: the gaps of pairs within the margin are in the answers.
+        answers > "$T/answers"
+        [ "$(jq '[.pairs[] | select(has("gap"))] | length > 0' "$T/answers")" = \
+            "$(jq 'has("margin")' <<< "$output")" ]
+    done
+    echo "$margins"
+    [ "$margins" = ' 31250000 31250000 0 0 0 1 1' ]
+}
+
 @test "what is no query is said" {
     generate foreign "$log"
     scene 1 "$log" --event 5000

@@ -402,6 +402,20 @@ resolves() {
     stop_fmbd
 }
 
+@test "files of bounded size have space for definitions in their middle" {
+    start_fmbd
+    random_scene 3 12 1 > "$BATS_TEST_TMPDIR/one.json"
+    random_scene 3 12 2 | sed 's/"id":/"id":1/g' > "$BATS_TEST_TMPDIR/two.json"
+    start_record --split-mb 0.008 "$log"
+    for _ in $(seq 60); do cat "$BATS_TEST_TMPDIR/one.json" "$BATS_TEST_TMPDIR/two.json"; done |
+        "$FMB" query - > /dev/null
+    finish_record
+    is '.lost == 0 and (.files | length) > 20 and .defined_bodies > 200'
+    for file in "$log".*; do [ "$(stat -c %s "$file")" -le 8388 ]; done
+    resolves "$log".*
+    stop_fmbd
+}
+
 @test "bodies that cannot be obtained are counted" {
     start_fmbd
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"
@@ -433,6 +447,19 @@ resolves() {
     grep -q '^fmb: .* datagrams were dropped since the receive buffer was full$' "$messages"
     grep -qx 'fmb: the receive buffer has only 40,000 bytes; to grant more, run:' "$messages"
     grep -qx 'fmb:   sudo sysctl net.core.rmem_max=4194304' "$messages"
+    # The report for people has the number too.
+    : > "$messages"
+    "$FMB" record --force --lcm-url "$url&recv_buf_size=20000" "$log" > "$report" 2> "$messages" 3>&- &
+    record=$!
+    started="$started $record"
+    wait_until grep -qs 'recording to' "$messages"
+    kill -STOP "$record"
+    "$FMB_BUILD/poke" numbers 5 $(seq 900)
+    kill -CONT "$record"
+    finish_record
+    recorded=$(awk '/pair queries/ { print $NF }' "$report")
+    grep -Eqx "  lost +$((900 - recorded))" "$report"
+    grep -qx "fmb: $((900 - recorded)) datagrams were dropped since the receive buffer was full" "$messages"
 }
 
 @test "what cannot be read is recorded and counted" {

@@ -5,6 +5,7 @@
 #include "bus.h"
 
 #include <arpa/inet.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <lcm/lcm.h>
@@ -441,6 +442,52 @@ static void test_a_channel_added_later_delivers_whole_messages_only(void **state
     }
 }
 
+/* Channel names of every length modulo 4, which the filter compares by words and bytes. */
+static void test_large_messages_are_whole_on_every_listened_channel(void **state)
+{
+    (void) state;
+    char names[BUS_LISTENERS_MAX][BUS_CHANNEL_MAX];
+    struct bus *bus = open_bus("");
+    for (int i = 0; i < BUS_LISTENERS_MAX; i++) {
+        const size_t length = i < 12 ? (size_t) i + 1 : BUS_CHANNEL_MAX - 16 + (size_t) i;
+        memset(names[i], 'a' + i, length);
+        names[i][length] = '\0';
+        listen_to(bus, names[i]);
+    }
+    for (int i = 0; i < BUS_LISTENERS_MAX; i++) {
+        assert_true(bus_publish(bus, names[i], noise(), 60000));
+        expect_message(bus, names[i], noise(), 60000);
+        assert_int_equal(latest.listener, i);
+    }
+    bus_close(bus);
+}
+
+static ssize_t receive_raw(const struct bus *bus)
+{
+    char byte;
+    return recv(bus_fileno(bus), &byte, 1, MSG_DONTWAIT | MSG_TRUNC);
+}
+
+/* Of a datagram on another channel from 1,016 bytes on (1,024 with the UDP header) only LCM's
+ * header is received. */
+static void test_large_datagrams_on_other_channels_are_truncated(void **state)
+{
+    (void) state;
+    static const char *const others[] = {"CHANNEL2", "CHANNE", "cHANNEL", "CHANNEl", "X"};
+    struct bus *bus = open_listening("CHANNEL");
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        const size_t before = 8 + strlen(others[i]) + 1;
+        assert_true(bus_publish(bus, others[i], noise(), 1015 - before));
+        assert_int_equal(receive_raw(bus), 1015);
+        assert_true(bus_publish(bus, others[i], noise(), 1016 - before));
+        assert_int_equal(receive_raw(bus), 8);
+    }
+    listen_to(bus, NULL);
+    assert_true(bus_publish(bus, "X", noise(), 60000));
+    assert_int_equal(receive_raw(bus), 60010);
+    bus_close(bus);
+}
+
 /* Everything that kills or deceives liblcm. What the buffer held before must not decide: it holds a
  * message when each arrives. */
 static void test_malformed_datagrams_are_counted_and_harmless(void **state)
@@ -812,6 +859,34 @@ static void test_many_descriptors_are_open(void **state)
         close(open_fds[i]);
 }
 
+static int count_descriptors(void)
+{
+    int count = 0;
+    DIR *dir = opendir("/proc/self/fd");
+    assert_non_null(dir);
+    while (readdir(dir))
+        count++;
+    closedir(dir);
+    return count;
+}
+
+static void test_a_closed_bus_leaves_no_descriptor(void **state)
+{
+    (void) state;
+    char why[BUS_WHY_MAX];
+    bus_close(open_listening("C")); /* liblcm opens some only once */
+    const int before = count_descriptors();
+    for (int i = 0; i < 3; i++) {
+        bus_close(open_bus(""));
+        struct bus *bus = open_listening("C");
+        assert_true(bus_publish(bus, "C", "x", 1));
+        expect_message(bus, "C", "x", 1);
+        bus_close(bus);
+        assert_null(bus_open("udpm://127.0.0.1:1", why));
+        assert_int_equal(count_descriptors(), before);
+    }
+}
+
 static void test_child_closes_and_the_parent_goes_on(void **state)
 {
     (void) state;
@@ -847,6 +922,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_buses_on_one_host_both_receive),
         cmocka_unit_test(test_foreign_channels_are_counted),
         cmocka_unit_test(test_a_channel_added_later_delivers_whole_messages_only),
+        cmocka_unit_test(test_large_messages_are_whole_on_every_listened_channel),
+        cmocka_unit_test(test_large_datagrams_on_other_channels_are_truncated),
         cmocka_unit_test(test_malformed_datagrams_are_counted_and_harmless),
         cmocka_unit_test(test_unicast_does_not_arrive),
         cmocka_unit_test(test_ttl_is_that_of_the_url),
@@ -861,6 +938,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_plain_lcm_understands_both_ways),
         cmocka_unit_test(test_liblcm_starts_no_thread),
         cmocka_unit_test(test_many_descriptors_are_open),
+        cmocka_unit_test(test_a_closed_bus_leaves_no_descriptor),
         cmocka_unit_test(test_child_closes_and_the_parent_goes_on),
     };
     (void) argc;

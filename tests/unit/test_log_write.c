@@ -442,6 +442,7 @@ static struct log_parts_options several(const char *name, int64_t part_bytes, bo
 static void write_parts(const struct log_parts_options *options, int count, struct log_parts *out)
 {
     int64_t bytes = 0;
+    synced = 0;
     assert_true(log_parts_open(options, out));
     for (int i = 0; i < count; i++) {
         assert_true(append_event(to_parts, out, i));
@@ -451,6 +452,7 @@ static void write_parts(const struct log_parts_options *options, int count, stru
     }
     assert_int_equal(log_parts_finish(out), 0);
     assert_int_equal(log_parts_written(out), bytes);
+    assert_int_equal(synced, out->number + 1);
 }
 
 static const char *part_name(const char *name, long number)

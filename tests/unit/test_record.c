@@ -4,6 +4,7 @@
 
 #include "allocate.h"
 #include "definitions.h"
+#include "log_write.h"
 #include "wire.h"
 
 #include <setjmp.h>
@@ -30,6 +31,7 @@ struct world {
     int requests;
     struct definition_query request; /* the last one */
     int definitions, defined;        /* messages and bodies that were written */
+    size_t written;                  /* bytes of their events, on the longest channel */
     struct definitions *file;        /* what they define */
     unsigned char bytes[QUERY_BYTES_MAX];
 };
@@ -43,6 +45,7 @@ static bool on_write(void *user, const void *bytes, size_t size)
     assert_int_equal(definition.server_id, 0);
     assert_null(definitions_add_message(world->file, bytes, (uint32_t) size));
     world->definitions++;
+    world->written += (size_t) log_event_bytes(BUS_CHANNEL_MAX - 1, size);
     world->defined += definition.body_count;
     return true;
 }
@@ -105,8 +108,10 @@ static void receive(struct world *world, enum log_kind kind, size_t size)
     assert_null(record_bodies_take(world->bodies, kind, world->bytes, size));
     const int before = world->definitions;
     const size_t needed = record_bodies_needed(world->bodies);
+    world->written = 0;
     assert_true(record_bodies_define(world->bodies, on_write, world));
     assert_int_equal(needed > 0, world->definitions > before);
+    assert_true(world->written <= needed);
     assert_int_equal(record_bodies_needed(world->bodies), 0);
 }
 
