@@ -544,6 +544,46 @@ static void test_malformed_datagrams_are_counted_and_harmless(void **state)
     close(sender);
 }
 
+/* The number of sockets that have joined the group. liblcm's is one of them. */
+static int count_joined(void)
+{
+    char line[128], group[16];
+    struct in_addr address;
+    int sockets = 0;
+    FILE *file = fopen("/proc/net/igmp", "r");
+    assert_non_null(file);
+    inet_pton(AF_INET, GROUP, &address);
+    snprintf(group, sizeof group, "%08X", (unsigned) address.s_addr);
+    while (fgets(line, sizeof line, file))
+        if (strstr(line, group))
+            sscanf(strstr(line, group) + strlen(group), "%d", &sockets);
+    fclose(file);
+    return sockets;
+}
+
+static void test_the_group_is_joined_until_the_bus_is_closed(void **state)
+{
+    (void) state;
+    struct bus *bus = open_bus("");
+    const int before = count_joined();
+    listen_to(bus, "C");
+    assert_int_equal(count_joined(), before + 1);
+    bus_close(bus);
+    assert_int_equal(count_joined(), 0);
+}
+
+static void test_a_socket_that_fails_is_reported(void **state)
+{
+    (void) state;
+    struct bus *bus = open_listening("C");
+    const int file = open("/dev/null", O_RDONLY);
+    assert_true(dup2(file, bus_fileno(bus)) >= 0);
+    assert_int_equal(bus_receive(bus, on_message, &latest), -1);
+    assert_int_equal(errno, ENOTSOCK);
+    close(file);
+    bus_close(bus);
+}
+
 static void test_unicast_does_not_arrive(void **state)
 {
     (void) state;
@@ -925,6 +965,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_large_messages_are_whole_on_every_listened_channel),
         cmocka_unit_test(test_large_datagrams_on_other_channels_are_truncated),
         cmocka_unit_test(test_malformed_datagrams_are_counted_and_harmless),
+        cmocka_unit_test(test_the_group_is_joined_until_the_bus_is_closed),
+        cmocka_unit_test(test_a_socket_that_fails_is_reported),
         cmocka_unit_test(test_unicast_does_not_arrive),
         cmocka_unit_test(test_ttl_is_that_of_the_url),
         cmocka_unit_test(test_datagrams_dropped_by_the_kernel_are_counted),

@@ -585,6 +585,8 @@ static void long_events_are_copied_in_full(void **state)
     for (size_t i = 0; i < world.count; i++) {
         assert_true(read_next(&reading));
         assert_int_equal(reading.event.size, world.event[i].size);
+        assert_int_equal(reading.event.utime, world.event[i].utime);
+        assert_string_equal(reading.event.channel, world.event[i].channel);
         assert_true(
             log_read_data(reading.input.reader[0], &reading.event, 0, data, reading.event.size));
         assert_memory_equal(data, world.event[i].bytes, world.event[i].size);

@@ -5,6 +5,7 @@
 #include "log_write.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <lcm/eventlog.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -441,7 +442,9 @@ static struct log_parts_options several(const char *name, int64_t part_bytes, bo
 
 static void write_parts(const struct log_parts_options *options, int count, struct log_parts *out)
 {
+    const int next = open("/dev/null", O_RDONLY | O_CLOEXEC); /* the next free descriptor */
     int64_t bytes = 0;
+    close(next);
     synced = 0;
     assert_true(log_parts_open(options, out));
     for (int i = 0; i < count; i++) {
@@ -453,6 +456,8 @@ static void write_parts(const struct log_parts_options *options, int count, stru
     assert_int_equal(log_parts_finish(out), 0);
     assert_int_equal(log_parts_written(out), bytes);
     assert_int_equal(synced, out->number + 1);
+    assert_int_equal(open("/dev/null", O_RDONLY | O_CLOEXEC), next);
+    close(next);
 }
 
 static const char *part_name(const char *name, long number)
