@@ -258,7 +258,7 @@ split_at() {
     ln -s whole.log "$T/link.log"
     cuts 2 "$T/good.log" "$log" -o "$T/link.log" --force
     cmp "$log" "$T/good.log"
-    [[ "$stderr" == *"link.log: is one of the logs that are cut" ]]
+    [[ "$stderr" == *"link.log: this command reads it: write to another file" ]]
 }
 
 @test "what cannot be read or written is said" {

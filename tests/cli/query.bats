@@ -700,8 +700,9 @@ Try 'fmb $1 --help'."
     name=$(printf '%s/\033[31mred\302\233' "$BATS_TEST_TMPDIR")
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$name.obj"
     printf x > "$name"
+    printf '%s' "$scene" > "$name.json"
     cp "$BATS_TEST_DIRNAME/../logs/stack.log" "$name.log"
-    for arguments in "query --local @" "query @/none" "query --local --svg @/none" "mesh --self @" \
+    for arguments in "query --local @" "query @/none" "query --local --svg @/none @.json" "mesh --self @" \
         "mesh @.obj @.obj" "mesh @.obj @.obj --ply @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
         "record @/none" "record --@" "watch @" "log @" "@" "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do

@@ -423,30 +423,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
-@test "results are not written over what is read" {
-    cp arm.log mine.log
-    for golden in mine.log ./mine.log "$PWD/mine.log"; do
-        run "$FMB" replay --write-golden "$golden" --force arm.log mine.log
-        ended 2
-        cmp mine.log arm.log
-    done
-    "$FMB" replay --write-golden arm.golden arm.log
-    cp arm.golden kept
-    run "$FMB" replay --golden arm.golden --write-golden arm.golden --force arm.log
-    ended 2
-    cmp arm.golden kept
-}
-
-@test "a report is not written over a log" {
-    cp arm.log mine.log
-    for option in --junit --html; do
-        run "$FMB" replay $option mine.log arm.log # as of fmb replay --junit *.log
-        ended 2
-        [[ $output == *'mine.log'*'event log'* ]]
-        cmp mine.log arm.log
-    done
-}
-
 # ---- What is broken ----------------------------------------------------------------------------
 
 @test "a log that is cut off" {
