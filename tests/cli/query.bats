@@ -43,6 +43,13 @@ query() {
     done
 }
 
+# Bodies that touch in the plane y = 0 overlap by -0.
+@test "the sign of zero is written" {
+    query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [-0,-0]}, {\"id\": 2, $square, \"origin\": [-0,-1]}]}" --gap
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "gap": [-0, -0], "direction": [0,-1]}]}'
+}
+
 @test "without --box there is no box" {
     query "$scene"
     ended 0
