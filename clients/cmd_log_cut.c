@@ -187,6 +187,8 @@ int cmd_log_cut(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code == ARGS_RUN && !options.cut.output.path && !args_error(&args, "expected -o FILE"))
         code = ARGS_USAGE;
+    if (code == ARGS_RUN && !args_check_span(&args, choice->from, choice->to))
+        code = ARGS_USAGE;
     if (code == ARGS_RUN) {
         options.cut.log = args.operands;
         options.cut.log_count = args.operand_count;

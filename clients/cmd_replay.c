@@ -75,7 +75,9 @@ static const char usage[] =
     "    --to '{= $_ += 60 =}' run.log ::: $(seq 0 60 3540) > parts\n"
     "  jq -s '{queries: map(.queries) | add, same: map(.same) | add,\n"
     "    different: map(.different) | add, differences: map(.differences[]),\n"
-    "    exit: (map(.exit) | if index(1) then 1 else max end)}' parts\n"
+    "    exit: (map(select(.events == 0 or .queries + .unreadable_queries +\n"
+    "      .unreadable_results > 0).exit) | if index(1) then 1 else max // 2 end)}' \\\n"
+    "    parts\n"
     "\n"
     "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
     "read, is damaged ('fmb log cut' copies what is intact) or was recorded by\n"
@@ -181,12 +183,13 @@ static bool write_page(const struct replay_arguments *options)
     return output_close(output, true);
 }
 
-/* Returns the reason why nothing was compared; NULL: something was, or nothing had to be. */
+/* Returns the reason why nothing was compared; NULL: something was, or results were written. */
 static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
     if (tally_queries(all) == 0)
-        return in_part ? NULL : "there are no queries of this service";
+        return in_part ? "there are no queries of this service from --from to --to"
+                       : "there are no queries of this service";
     if (tally_compared(all) > 0 || options->replay.write_golden.path)
         return NULL;
     return "there are no results to compare with";
@@ -389,7 +392,7 @@ int cmd_replay(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_bus(&args, &options))
+    if (!check_bus(&args, &options) || !args_check_span(&args, replay->from, replay->to))
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;

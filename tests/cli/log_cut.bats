@@ -295,7 +295,7 @@ split_at() {
 @test "wrong usage is said" {
     for arguments in '' 'LOG' '-o FILE' 'LOG -o FILE --from -1' 'LOG -o FILE --to x' \
         'LOG -o FILE --body 0' 'LOG -o FILE --body 9007199254740992' 'LOG -o FILE --channel (' \
-        'LOG -o FILE --what'; do
+        'LOG -o FILE --from 10 --to 5' 'LOG -o FILE --from 1 --to 1' 'LOG -o FILE --what'; do
         # shellcheck disable=SC2086
         run --separate-stderr "$FMB" log cut $arguments
         [ "$status" = 2 ]
