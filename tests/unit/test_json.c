@@ -322,6 +322,8 @@ static void numbers_are_written_short(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         assert_string_equal(number_exact(cases[i].value, text), cases[i].text);
     assert_string_equal(number_grouped(-1234567, text), "-1,234,567");
+    assert_string_equal(number_grouped(-123, text), "-123");
+    assert_string_equal(number_grouped(1000, text), "1,000");
     assert_string_equal(number_grouped(999, text), "999");
 }
 
@@ -639,6 +641,39 @@ static void numbers_are_those_of_json(void **state)
     assert_in_range(accepted, 700, 1100);
 }
 
+static void names_are_text(void **state)
+{
+    static const struct {
+        const char *name;
+        bool good;
+    } names[] = {{"a b", true},
+                 {"\x7f", false},
+                 {"\xc2\x80", false},
+                 {"\xc2\x9f", false},
+                 {"\xc2\xa0", true},
+                 {"\xe0\xa0\x80", true},
+                 {"\xe0\x9f\xbf", false},
+                 {"\xed\xa0\x80", false},
+                 {"\xef\xbf\xbd", true},
+                 {"\xf4\x8f\xbf\xbf", true},
+                 {"\xf4\x90\x80\x80", false},
+                 {"a\xc3", false},
+                 {"\xc0\x80", false},
+                 {"\x80", false}};
+    (void) state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text[256];
+        snprintf(
+            text, sizeof text,
+            "{\"dim\":2,\"bodies\":[{\"id\":1,\"name\":\"%s\",\"shape\":\"box\",\"size\":[1,1]}]}",
+            names[i].name);
+        if (names[i].good)
+            assert_int_equal(outcome_of(text, strlen(text)), JSON_SCENE);
+        else
+            expect_error(text, "bodies[0].name: expected UTF-8 without control characters");
+    }
+}
+
 /* In each position of a scene: white space may stand between tokens, other control characters
  * nowhere. */
 static void control_characters_are_refused(void **state)
@@ -768,6 +803,7 @@ int main(void)
         cmocka_unit_test(bad_scenes_are_refused),
         cmocka_unit_test(bad_texts_are_refused),
         cmocka_unit_test(numbers_are_those_of_json),
+        cmocka_unit_test(names_are_text),
         cmocka_unit_test(control_characters_are_refused),
         cmocka_unit_test(brackets_in_strings_are_not_counted),
         cmocka_unit_test(an_object_without_end_is_refused),
