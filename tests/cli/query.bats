@@ -283,6 +283,10 @@ gap() {
     run "$FMB" query --local <<< "$(spaced ', "margin": 2.25')"
     ended 0
     [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (2 near)' ]
+    # The gap is the margin.
+    run "$FMB" query --local <<< '{"dim": 2, "margin": 0.5, "bodies": [{"id": 1, "shape": "box", "size": [1,1]},
+        {"id": 2, "shape": "box", "size": [1,1], "position": [1.5,0]}]}'
+    [ "${lines[-1]}" = '0 overlapping, 0 touching, 1 separated (1 near)' ]
     run "$FMB" query --local <<< "$(spaced ', "margin": 0.4999')"
     [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (0 near)' ]
 }

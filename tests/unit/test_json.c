@@ -352,6 +352,9 @@ static void ends_that_differ_look_different(void **state)
 /* cJSON up to 1.7.15-1+deb12u2 refuses numbers of more than 63 characters. */
 static void assert_same_scenes(const struct scene *a, const struct scene *b)
 {
+    assert_int_equal(a->dim, b->dim);
+    assert_same_bits(&a->duration, &b->duration, 1);
+    assert_same_bits(&a->margin, &b->margin, 1);
     assert_int_equal(a->body_count, b->body_count);
     for (size_t i = 0; i < a->body_count; i++) {
         const struct scene_body *one = &a->body[i], *other = &b->body[i];
@@ -374,7 +377,7 @@ static void assert_same_scenes(const struct scene *a, const struct scene *b)
 static void the_sign_of_zero_is_kept(void **state)
 {
     static const char text[] =
-        "{\"dim\": 3, \"duration\": 1, \"bodies\": ["
+        "{\"dim\": 3, \"duration\": 0.25, \"margin\": 1e-9, \"bodies\": ["
         "{\"id\": 1, \"shape\": \"box\", \"size\": [0,0,0], \"position\": [-0,-0.0,-0e5],"
         " \"orientation\": [1,-0,-0,-0], \"velocity\": [-0,-0,-0]},"
         "{\"id\": 2, \"shape\": \"face\", \"origin\": [-0,-0,-0], \"components\": "
