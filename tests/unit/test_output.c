@@ -245,6 +245,7 @@ static void test_what_is_dropped_leaves_the_old_file(void **state)
 /* Runs end() in a process that is writing a file and has another one open. Returns its status. */
 static int status_of(void (*end)(struct output *output))
 {
+    fflush(NULL); /* else the child writes it once more */
     const pid_t child = fork();
     if (child == 0) {
         struct output *first = open_picture("file", false, NULL);
