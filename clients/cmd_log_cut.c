@@ -41,7 +41,7 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 everything chosen was copied; 1 damage was left out, or nothing\n"
     "was chosen; 2 wrong usage, or a file cannot be read or written: FILE is then\n"
-    "incomplete.\n";
+    "not written.\n";
 
 struct log_cut_arguments {
     struct log_cut_options cut;
@@ -145,7 +145,7 @@ static int code_of(const struct cut_run *run, const struct log_cut_counts *count
     if (run->complaints > COMPLAINTS_MAX)
         complain("and %" PRId64 " more damaged places", run->complaints - COMPLAINTS_MAX);
     if (counts->kept_events == 0)
-        complain("nothing was chosen: %s has no events", run->options->cut.output);
+        complain("nothing was chosen: %s has no events", run->options->cut.output.path);
     return counts->damages > 0 || counts->kept_events == 0 ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
@@ -168,11 +168,13 @@ static int run_cut(const struct log_cut_arguments *options)
 
 int cmd_log_cut(int argc, char **argv)
 {
-    struct log_cut_arguments options = {.cut = {.choice = log_choice_all()}};
+    struct output_rules rules = {.force = false};
+    struct log_cut_arguments options = {
+        .cut = {.choice = log_choice_all(), .output = {.kind = OUTPUT_LOG, .rules = &rules}}};
     struct log_choice *choice = &options.cut.choice;
     const struct args_option own[] = {
-        {"output", ARGS_TEXT, &options.cut.output, .letter = 'o'},
-        {"force", ARGS_FLAG, .out = &options.cut.force},
+        {"output", ARGS_TEXT, &options.cut.output.path, .letter = 'o'},
+        {"force", ARGS_FLAG, .out = &rules.force},
         {"from", ARGS_NUMBER, &choice->from, .high = 1e12},
         {"to", ARGS_NUMBER, &choice->to, .high = 1e12},
         {"channel", ARGS_OTHER, choice, .take = take_channel},
@@ -183,11 +185,15 @@ int cmd_log_cut(int argc, char **argv)
     struct args args = {"log cut",           usage, own, .operand = "LOG", .operands_min = 1,
                         .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
-    if (code == ARGS_RUN && !options.cut.output && !args_error(&args, "expected -o FILE"))
+    if (code == ARGS_RUN && !options.cut.output.path && !args_error(&args, "expected -o FILE"))
+        code = ARGS_USAGE;
+    if (code == ARGS_RUN && !args_check_span(&args, choice->from, choice->to))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {
         options.cut.log = args.operands;
         options.cut.log_count = args.operand_count;
+        rules.input = args.operands;
+        rules.input_count = args.operand_count;
         options.cut.prefix = args.bus.prefix;
         code = run_cut(&options);
     }

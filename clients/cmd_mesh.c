@@ -6,6 +6,7 @@
 #include "mesh_intersect.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
+#include "output.h"
 #include "progress.h"
 
 #include <float.h>
@@ -52,6 +53,7 @@ static const char usage[] =
     "                       (B) for the others\n"
     "  --html FILE          write a page that shows them, and the pairs: for any\n"
     "                       browser, with nothing to install or to fetch\n"
+    "  --force              FILE may exist already and be of another kind\n"
     "  -h, --help\n"
     "\n"
     "Two faces overlap if they have an inner point in common, and touch if they only\n"
@@ -78,7 +80,7 @@ struct mesh_options {
     bool self, json, list;
     enum mesh_as as;
     const struct fmb_method *method;
-    const char *ply, *html;
+    struct output_options ply, html;
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
@@ -244,14 +246,16 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 
 typedef void write_function(FILE *out, const struct mesh_report *report);
 
-/* Writes a file. name: NULL: none is wanted. */
-static bool write_file(const char *name, write_function *write, const struct mesh_report *report)
+/* Writes a file, if it is wanted. */
+static bool write_file(const struct output_options *options, write_function *write,
+                       const struct mesh_report *report)
 {
-    FILE *out = name ? output_open(name) : NULL;
-    if (!out)
-        return !name;
-    write(out, report);
-    return output_close(out, name);
+    struct output *output;
+    if (!output_open(options, &output))
+        return false;
+    if (output)
+        write(output->file, report);
+    return output_close(output, true);
 }
 
 static int print_answer(const struct mesh_options *options, const struct mesh_report *report)
@@ -260,8 +264,8 @@ static int print_answer(const struct mesh_options *options, const struct mesh_re
         mesh_report_json(stdout, report);
     else
         mesh_report_text(stdout, report, options->list);
-    bool good = write_file(options->ply, mesh_report_ply, report);
-    good = write_file(options->html, mesh_page_write, report) && good;
+    bool good = write_file(&options->ply, mesh_report_ply, report);
+    good = write_file(&options->html, mesh_page_write, report) && good;
     good = output_flush() && good;
     return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
@@ -300,7 +304,10 @@ static int intersect(const struct mesh_options *options, const struct mesh *a, c
 
 int cmd_mesh(int argc, char **argv)
 {
-    struct mesh_options options = {.duration = 1};
+    struct output_rules rules = {.force = false};
+    struct mesh_options options = {.duration = 1,
+                                   .ply = {.kind = OUTPUT_MESH, .rules = &rules},
+                                   .html = {.kind = OUTPUT_PAGE, .rules = &rules}};
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},
@@ -313,8 +320,9 @@ int cmd_mesh(int argc, char **argv)
         {"method", ARGS_OTHER, &options.method, .take = take_method},
         {"json", ARGS_FLAG, .out = &options.json},
         {"list", ARGS_FLAG, .out = &options.list},
-        {"ply", ARGS_TEXT, .out = &options.ply},
-        {"html", ARGS_TEXT, .out = &options.html},
+        {"ply", ARGS_TEXT, .out = &options.ply.path},
+        {"html", ARGS_TEXT, .out = &options.html.path},
+        {"force", ARGS_FLAG, .out = &rules.force},
         {.name = NULL},
     };
     struct args args = {.command = "mesh",
@@ -327,7 +335,9 @@ int cmd_mesh(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check(&args, &options))
+    rules.input = args.operands;
+    rules.input_count = args.operand_count;
+    if (!check(&args, &options) || !output_check(&options.ply) || !output_check(&options.html))
         return ARGS_USAGE;
     code = ARGS_USAGE;
     if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&

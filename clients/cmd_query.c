@@ -5,6 +5,7 @@
 #include "args.h"
 #include "complain.h"
 #include "json.h"
+#include "output.h"
 #include "progress.h"
 #include "report.h"
 #include "svg.h"
@@ -36,6 +37,7 @@ static const char usage[] =
     "                   counts as not decided. The service then decides each pair by\n"
     "                   a query of its own, which takes longer\n"
     "  --svg FILE       draw the scenes into FILE; implies --box\n"
+    "  --force          FILE of --svg may exist already and be no picture\n"
     "  --method NAME    how to decide: certified (the default: never wrong, and\n"
     "                   fast); exact (boxes and intervals to the last bit); or fmb or\n"
     "                   sat, which are inexact, for comparison\n"
@@ -67,7 +69,7 @@ static const char usage[] =
 struct query_options {
     bool local, json;
     struct answers_options wanted;
-    const char *svg; /* NULL: no picture */
+    struct output_options svg;
     double timeout;
     long retries;
 };
@@ -165,13 +167,14 @@ static int answer_scenes(struct query_run *run, int fd)
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-static bool write_picture(const struct svg *svg, const char *name)
+static bool write_picture(const struct query_options *options, const struct svg *svg)
 {
-    FILE *out = output_open(name);
-    if (!out)
+    struct output *output;
+    if (!output_open(&options->svg, &output))
         return false;
-    svg_write(svg, out);
-    return output_close(out, name);
+    if (output)
+        svg_write(svg, output->file);
+    return output_close(output, true);
 }
 
 /* file: NULL for standard input. */
@@ -180,7 +183,7 @@ static int run_query(const struct query_options *options, const struct args_bus 
 {
     struct report_json json = report_json(stdout);
     struct report_text text = report_text(stdout, options->wanted.box, options->wanted.gap);
-    struct svg *svg = options->svg ? svg_open() : NULL;
+    struct svg *svg = options->svg.path ? svg_open() : NULL;
     struct query_run run = {
         .options = options,
         .bus_options = bus,
@@ -189,7 +192,7 @@ static int run_query(const struct query_options *options, const struct args_bus 
     int code = answer_scenes(&run, fd);
     if (run.bus)
         answers_bus_close(run.bus);
-    bool good = !svg || write_picture(svg, options->svg);
+    bool good = code == ARGS_USAGE || write_picture(options, svg);
     svg_close(svg);
     good = output_flush() && good;
     return good || code != ARGS_ANSWERED ? code : ARGS_FAILED;
@@ -197,7 +200,9 @@ static int run_query(const struct query_options *options, const struct args_bus 
 
 int cmd_query(int argc, char **argv)
 {
-    struct query_options options = {.timeout = 0.5, .retries = 5};
+    struct output_rules rules = {.force = false};
+    struct query_options options = {
+        .svg = {.kind = OUTPUT_PICTURE, .rules = &rules}, .timeout = 0.5, .retries = 5};
     struct answers_options *wanted = &options.wanted;
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &options.local},
@@ -206,7 +211,8 @@ int cmd_query(int argc, char **argv)
         {"gap", ARGS_FLAG, .out = &wanted->gap},
         {"certificate", ARGS_FLAG, .out = &wanted->certificate},
         {"method", ARGS_OTHER, &wanted->method, .take = take_method},
-        {"svg", ARGS_TEXT, .out = &options.svg},
+        {"svg", ARGS_TEXT, .out = &options.svg.path},
+        {"force", ARGS_FLAG, .out = &rules.force},
         {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
         {"retries", ARGS_INTEGER, &options.retries, .high = 1000},
         {.name = NULL},
@@ -215,7 +221,7 @@ int cmd_query(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    wanted->box = wanted->box || options.svg;
+    wanted->box = wanted->box || options.svg.path;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;
@@ -223,7 +229,8 @@ int cmd_query(int argc, char **argv)
         complain("%s: %s", file, strerror(errno));
         return ARGS_USAGE;
     }
-    code = run_query(&options, &args.bus, file, fd);
+    rules.other_input = file ? file : "/dev/stdin";
+    code = output_check(&options.svg) ? run_query(&options, &args.bus, file, fd) : ARGS_USAGE;
     if (file)
         close(fd);
     return code;

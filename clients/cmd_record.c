@@ -265,7 +265,7 @@ static int end_of_recording(struct recording *recording, bool good)
     recorded->bus = fmb_client_raw_bus_counts(recording->client);
     record_line_end(&recording->line);
     if (recording->error)
-        log_write_complain(recording->parts.name, recording->error);
+        output_complain(recording->parts.name, recording->error);
     record_report_losses(recorded);
     (recording->options->json ? record_report_json : record_report_text)(recorded,
                                                                          &recording->parts);
@@ -295,7 +295,7 @@ static int record_from_bus(struct recording *recording)
     if (signals < 0) {
         perror("fmb: signals");
     } else if (!log_parts_open(&recording->options->parts, &recording->parts)) {
-        log_write_complain(
+        output_complain(
             recording->parts.name ? recording->parts.name : recording->options->parts.path, errno);
         code = ARGS_USAGE;
     } else {

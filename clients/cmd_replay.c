@@ -32,7 +32,8 @@ static const char usage[] =
     "  --golden FILE        compare with the results in FILE, not with the recorded\n"
     "                       ones\n"
     "  --write-golden FILE  write the results, as an event log, to compare with later\n"
-    "  --force              FILE may exist already\n"
+    "  --force              FILE may exist already; a page or a JUnit report may\n"
+    "                       replace its like without it\n"
     "  --tolerance T        for logs of other versions: ends of intervals may differ\n"
     "                       by T times the duration, ends of boxes and gaps by T\n"
     "                       times the largest coordinate; directions, nearest points\n"
@@ -74,7 +75,9 @@ static const char usage[] =
     "    --to '{= $_ += 60 =}' run.log ::: $(seq 0 60 3540) > parts\n"
     "  jq -s '{queries: map(.queries) | add, same: map(.same) | add,\n"
     "    different: map(.different) | add, differences: map(.differences[]),\n"
-    "    exit: (map(.exit) | if index(1) then 1 else max end)}' parts\n"
+    "    exit: (map(select(.events == 0 or .queries + .unreadable_queries +\n"
+    "      .unreadable_results > 0).exit) | if index(1) then 1 else max // 2 end)}' \\\n"
+    "    parts\n"
     "\n"
     "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
     "read, is damaged ('fmb log cut' copies what is intact) or was recorded by\n"
@@ -87,7 +90,7 @@ struct replay_arguments {
     struct args_bus where;
     long frames, limit, retries;
     bool json, live;
-    const char *junit, *html;
+    struct output_options junit, html;
 };
 
 /* ---- Callbacks ---- */
@@ -161,30 +164,33 @@ static void open_many(void)
 
 static bool write_junit(const struct replay_run *run, const struct tally *tally)
 {
-    const struct replay_arguments *options = run->options;
-    FILE *file = output_open(options->junit);
-    if (!file)
+    struct output *output;
+    if (!output_open(&run->options->junit, &output))
         return false;
-    replay_junit(file, &options->replay, run->differences, tally, run->first_utime);
-    return output_close(file, options->junit);
+    if (output)
+        replay_junit(output->file, &run->options->replay, run->differences, tally,
+                     run->first_utime);
+    return output_close(output, true);
 }
 
 static bool write_page(const struct replay_arguments *options)
 {
-    FILE *file = output_open(options->html);
-    if (!file)
+    struct output *output;
+    if (!output_open(&options->html, &output))
         return false;
-    page_write(options->replay.page, file);
-    return output_close(file, options->html);
+    if (output)
+        page_write(options->replay.page, output->file);
+    return output_close(output, true);
 }
 
-/* Returns the reason why nothing was compared; NULL: something was, or nothing had to be. */
+/* Returns the reason why nothing was compared; NULL: something was, or results were written. */
 static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
     if (tally_queries(all) == 0)
-        return in_part ? NULL : "there are no queries of this service";
-    if (tally_compared(all) > 0 || options->replay.write_golden)
+        return in_part ? "there are no queries of this service from --from to --to"
+                       : "there are no queries of this service";
+    if (tally_compared(all) > 0 || options->replay.write_golden.path)
         return NULL;
     return "there are no results to compare with";
 }
@@ -297,9 +303,7 @@ static int replay(struct replay_run *run, int64_t size, struct tally *tally)
         tally_add(&all, &tally[log]);
     report_end(&all.bus, &options->bus, options->replay.log);
     int code = good ? code_of(options, &all) : ARGS_USAGE;
-    if (options->junit && !write_junit(run, tally))
-        code = ARGS_USAGE;
-    if (options->html && !write_page(options))
+    if (!write_junit(run, tally) || !write_page(options))
         code = ARGS_USAGE;
     report_all(run, &all, code);
     return output_flush() ? code : ARGS_USAGE;
@@ -310,9 +314,10 @@ static int run_replay(struct replay_arguments *options)
     struct replay_run run = {.options = options};
     open_many();
     int64_t size;
-    if (!replay_extent(&options->replay, &size, &run.first_utime))
+    if (!output_check(&options->replay.write_golden) || !output_check(&options->junit) ||
+        !output_check(&options->html) || !replay_extent(&options->replay, &size, &run.first_utime))
         return ARGS_USAGE;
-    if (options->html)
+    if (options->html.path)
         options->replay.page = page_open(options->replay.log[0], run.first_utime);
     run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
@@ -321,20 +326,6 @@ static int run_replay(struct replay_arguments *options)
     page_close(options->replay.page);
     listing_close(run.differences);
     return code;
-}
-
-/* A report does not overwrite a log: 'fmb replay --junit *.log' would. */
-static bool check_report(const struct args *args, const char *option, const char *path)
-{
-    static const unsigned char begin[] = {0xed, 0xa1, 0xda, 0x01};
-    unsigned char found[sizeof begin];
-    FILE *file = path ? fopen(path, "rb") : NULL;
-    if (!file)
-        return true;
-    const bool is_log = fread(found, 1, sizeof found, file) == sizeof found &&
-                        memcmp(found, begin, sizeof begin) == 0;
-    fclose(file);
-    return !is_log || args_error(args, "--%s: %s is an event log", option, path);
 }
 
 /* Checks the options that apply only with --bus, or only without. */
@@ -366,22 +357,29 @@ static void complete(struct replay_arguments *options)
 
 int cmd_replay(int argc, char **argv)
 {
-    struct replay_arguments options = {.replay = {.from = -INFINITY, .to = INFINITY},
-                                       .bus = {.speed = -1},
-                                       .limit = 1000,
-                                       .retries = -1};
+    struct output_rules rules = {.force = false};
+    struct replay_arguments options = {
+        .replay = {.from = -INFINITY,
+                   .to = INFINITY,
+                   .write_golden = {.kind = OUTPUT_LOG, .rules = &rules}},
+        .junit = {.kind = OUTPUT_REPORT, .rules = &rules},
+        .html = {.kind = OUTPUT_PAGE, .rules = &rules},
+        .bus = {.speed = -1},
+        .limit = 1000,
+        .retries = -1,
+    };
     struct replay_options *replay = &options.replay;
     const struct args_option own[] = {
         {"golden", ARGS_TEXT, .out = &replay->golden},
-        {"write-golden", ARGS_TEXT, .out = &replay->write_golden},
-        {"force", ARGS_FLAG, .out = &replay->force},
+        {"write-golden", ARGS_TEXT, .out = &replay->write_golden.path},
+        {"force", ARGS_FLAG, .out = &rules.force},
         {"tolerance", ARGS_NUMBER, &replay->compare.tolerance, .high = 1},
         {"from", ARGS_NUMBER, &replay->from, .high = 1e12},
         {"to", ARGS_NUMBER, &replay->to, .high = 1e12},
         {"frames", ARGS_INTEGER, &options.frames, .low = 1, .high = CACHE_FRAMES_MAX},
         {"json", ARGS_FLAG, .out = &options.json},
-        {"junit", ARGS_TEXT, .out = &options.junit},
-        {"html", ARGS_TEXT, .out = &options.html},
+        {"junit", ARGS_TEXT, .out = &options.junit.path},
+        {"html", ARGS_TEXT, .out = &options.html.path},
         {"limit", ARGS_INTEGER, &options.limit, .high = INT32_MAX},
         {"bus", ARGS_FLAG, .out = &options.live},
         {"speed", ARGS_NUMBER, &options.bus.speed, .high = 1e9},
@@ -394,12 +392,14 @@ int cmd_replay(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_report(&args, "junit", options.junit) ||
-        !check_report(&args, "html", options.html) || !check_bus(&args, &options))
+    if (!check_bus(&args, &options) || !args_check_span(&args, replay->from, replay->to))
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;
     options.where = args.bus;
+    rules.input = args.operands;
+    rules.input_count = args.operand_count;
+    rules.other_input = replay->golden;
     complete(&options);
     return run_replay(&options);
 }

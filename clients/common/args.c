@@ -39,6 +39,11 @@ bool args_integer(const struct args *args, long low, long high, long *out)
                       low, high, optarg);
 }
 
+bool args_check_span(const struct args *args, double from, double to)
+{
+    return from < to || args_error(args, "--to: expected more than --from, %g, found %g", from, to);
+}
+
 /* ---- Options --------------------------------------------------------------------------------- */
 
 static bool take_prefix(const struct args *args, void *out)

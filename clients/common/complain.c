@@ -38,27 +38,10 @@ void complain_as(const char *command, const char *format, va_list list)
     print_line(command, text);
 }
 
-static bool failed(const char *name)
-{
-    complain("%s: %s", name, strerror(errno));
-    return false;
-}
-
-FILE *output_open(const char *path)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file)
-        failed(path);
-    return file;
-}
-
-bool output_close(FILE *file, const char *path)
-{
-    const bool good = !ferror(file);
-    return (fclose(file) == 0 && good) || failed(path);
-}
-
 bool output_flush(void)
 {
-    return (fflush(stdout) == 0 && !ferror(stdout)) || failed("standard output");
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return true;
+    complain("standard output: %s", strerror(errno));
+    return false;
 }

@@ -1,4 +1,4 @@
-/* Messages on stderr, and output whose errors are reported there. Messages may contain names and
+/* Messages on stderr. Messages may contain names and
  * texts from outside: control characters are written as \xNN. */
 #ifndef COMPLAIN_H
 #define COMPLAIN_H
@@ -16,11 +16,7 @@ void complain_as(const char *command, const char *format, va_list list);
 /* Prints a text within a line. */
 void complain_text(const char *text);
 
-/* Opens a file to overwrite it. Returns NULL after an error. */
-FILE *output_open(const char *path);
-
-/* Both return false if not all was written. */
-bool output_close(FILE *file, const char *path);
-bool output_flush(void); /* standard output */
+/* Writes what is left of standard output. Returns false after an error, which was reported. */
+bool output_flush(void);
 
 #endif

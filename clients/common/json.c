@@ -1,5 +1,5 @@
-/* text.c splits the input into objects. cJSON parses each into a tree, and decides what is JSON.
- * The tree is checked, copied into a scene, and freed.
+/* text.c splits the input into objects. cJSON parses each into a tree; what it accepts beyond JSON
+ * is refused here (tokens_end()). The tree is checked, copied into a scene, and freed.
  *
  * Properties of cJSON 1.7 that matter here: access to an array by index traverses its list, so each
  * list is traversed once. The look-up of a key takes the first match and ignores case, so keys are
@@ -641,12 +641,78 @@ static enum json_outcome fail(struct json_reader *reader, enum json_outcome outc
     return outcome;
 }
 
+/* ---- Tokens ----
+ *
+ * cJSON accepts numbers such as 01, 1. and -.5, control characters in strings and outside of them,
+ * and \u with other characters than hexadecimal digits; and it ends a string at \u0000. The
+ * functions below move *at over a token and return true, or to the byte that makes it invalid. They
+ * stop at the bracket that ends the object, which no string contains. */
+
+static bool skip_digits(const char **at)
+{
+    const size_t count = strspn(*at, "0123456789");
+    *at += count;
+    return count > 0;
+}
+
+static bool skip_number(const char **at)
+{
+    *at += **at == '-';
+    if (**at == '0')
+        ++*at;
+    else if (!skip_digits(at))
+        return false;
+    if (**at == '.' && (++*at, !skip_digits(at)))
+        return false;
+    if (**at != 'e' && **at != 'E')
+        return !strchr("+-.0123456789", **at); /* false for a byte 0 too */
+    ++*at;
+    *at += **at == '+' || **at == '-';
+    return skip_digits(at) && !strchr("+-.eE", **at);
+}
+
+static bool is_unicode_escape(const char *at)
+{
+    return strspn(at + 2, "0123456789abcdefABCDEF") >= 4 && strncmp(at + 2, "0000", 4) != 0;
+}
+
+static bool skip_string(const char **at)
+{
+    while (*++*at != '"') {
+        if ((unsigned char) **at < ' ' ||
+            ((*at)[0] == '\\' && (*at)[1] == 'u' && !is_unicode_escape(*at)))
+            return false;
+        *at += **at == '\\';
+    }
+    ++*at;
+    return true;
+}
+
+/* Returns the first byte that makes a string, a number or white space invalid; or the end. */
+static const char *tokens_end(const char *at, const char *end)
+{
+    bool good = true;
+    while (good && at < end) {
+        if (*at == '"')
+            good = skip_string(&at);
+        else if (*at == '-' || (*at >= '0' && *at <= '9'))
+            good = skip_number(&at);
+        else if ((unsigned char) *at >= ' ' || (*at && strchr("\t\n\r", *at)))
+            at++;
+        else
+            break;
+    }
+    return at;
+}
+
+/* ---- Objects of the input ---- */
+
 static enum json_outcome read_object_text(struct json_reader *reader, const char *object,
                                           size_t length, struct scene *out)
 {
-    const char *end = object;
+    const char *end = object, *bad = tokens_end(object, object + length);
     cJSON *root = cJSON_ParseWithLengthOpts(object, length, &end, false);
-    const bool parsed = root && end == object + length;
+    const bool parsed = root && end == object + length && bad == end;
     const bool good = parsed && read_scene(reader, root, out);
     cJSON_Delete(root);
     if (good) {
@@ -656,7 +722,9 @@ static enum json_outcome read_object_text(struct json_reader *reader, const char
     scene_clear(out);
     if (parsed)
         return JSON_BAD;
-    text_refuse(&reader->text, (size_t) (end - object), "invalid JSON");
+    bad = bad < end ? bad : end;
+    text_refuse(&reader->text, (size_t) (bad - object), "%s",
+                strncmp(bad, "\\u0000", 6) == 0 ? "a string contains \\u0000" : "invalid JSON");
     return fail(reader, JSON_BAD, reader->text.error);
 }
 

@@ -1,8 +1,8 @@
 /* Splits an input, which may still grow, into the texts of its JSON objects.
  *
  * An object ends where its first brace closes: brackets outside of strings are counted, nothing
- * else matters. A UTF-8 byte order mark at the start is skipped. Whether the text in between
- * is JSON is for cJSON to decide (json.c). */
+ * else matters. A UTF-8 byte order mark at the start is skipped. json.c decides whether the
+ * text in between is JSON. */
 #ifndef TEXT_H
 #define TEXT_H
 

@@ -14,7 +14,8 @@ bool fmb_client_raw_ready(const struct fmb_client *client, size_t bytes)
 static enum request_taken deliver_raw(void *user, struct request *request,
                                       const struct request_result *result)
 {
-    const struct fmb_client_raw_result out = {result->status, result->bytes, result->size};
+    const struct fmb_client_raw_result out = {result->status, result->bytes, result->size,
+                                              request->query, request->size};
     request->raw_sink(user, &out);
     return REQUEST_COMPLETE;
 }

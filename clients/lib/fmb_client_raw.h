@@ -22,8 +22,11 @@ struct fmb_client_raw_result {
     /* From 0 on: that of the result (enum fmb_status); BUSY after a minute of pauses, UNKNOWN_BODY
      * at once. Negative (enum fmb_client_status): there is no result, and bytes is NULL. */
     int status;
-    const unsigned char *bytes; /* the message, well-formed; valid during the callback */
+    const unsigned char
+        *bytes; /* the message, well-formed; valid during the callback, as query is */
     size_t size;
+    const unsigned char *query; /* as it was sent */
+    size_t query_size;
 };
 
 /* Called once for each query, from fmb_client_raw_step(), in the order in which they end. */

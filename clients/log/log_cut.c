@@ -18,7 +18,8 @@ struct cutter {
     struct log_cut_counts *counts;
     struct log_channels channels;
     struct input input;
-    struct log_writer *output; /* NULL: not opened */
+    struct output *file;       /* NULL: not opened */
+    struct log_writer *output; /* of the file */
     bool failed;
     int64_t event; /* number of the current event, over all logs */
 
@@ -44,7 +45,7 @@ struct cutter {
 static void fail_output(struct cutter *cut, int error)
 {
     if (!cut->failed)
-        log_write_complain(cut->options->output, error);
+        output_complain(cut->options->output.path, error);
     cut->failed = true;
 }
 
@@ -377,14 +378,9 @@ static bool open_cut(struct cutter *cut)
     const struct log_cut_options *options = cut->options;
     if (!input_open(&cut->input, options->log, options->log_count))
         return false;
-    if (log_is_one_of(options->output, options->log, options->log_count)) {
-        complain("%s: is one of the logs that are cut", options->output);
-        return false;
-    }
     cut->channels = log_channels(options->prefix);
-    cut->output = log_create(options->output, options->force);
-    if (!cut->output)
-        log_write_complain(options->output, errno);
+    if (output_open(&options->output, &cut->file))
+        cut->output = log_begin_output(cut->file);
     return cut->output != NULL;
 }
 
@@ -418,7 +414,7 @@ bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *s
     const int error = log_finish(cut->output);
     if (error)
         fail_output(cut, error);
-    const bool good = !cut->failed;
+    const bool good = output_close(cut->file, !cut->failed) && !cut->failed;
     free(cut);
     return good;
 }

@@ -17,13 +17,13 @@
 
 #include "log_choice.h"
 #include "log_kind.h"
+#include "output.h"
 
 struct log_cut_options {
     char *const *log; /* [log_count] paths, read as one log */
     int log_count;
     const char *prefix; /* of the service's channels; "": none */
-    const char *output; /* must not be one of the logs */
-    bool force;         /* output may exist already */
+    struct output_options output;
     struct log_choice choice;
 };
 
@@ -46,8 +46,8 @@ struct log_cut_sink {
     void *user;
 };
 
-/* False: a file cannot be opened, read or written, which was reported on stderr; the output may
- * then exist and be incomplete. */
+/* False: a file cannot be opened, read or written, which was reported on stderr; the output was
+ * then not written. */
 bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *sink,
              struct log_cut_counts *counts);
 

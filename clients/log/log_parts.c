@@ -31,26 +31,11 @@ static bool is_part(const char *name, const char *base)
     return count >= DIGITS && digits[count] == '\0';
 }
 
-/* The path of a file in the folder of path. The caller frees it. NULL: out of memory. */
-static char *in_folder_of(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    const size_t folder = slash ? (size_t) (slash - path) + 1 : 0;
-    char *out = malloc(folder + strlen(name) + 1);
-    if (!out)
-        return NULL;
-    memcpy(out, path, folder);
-    strcpy(out + folder, name);
-    return out;
-}
-
 /* Removes an existing part. Without force that is an error. */
 static bool clear(struct log_parts *parts, const char *name)
 {
     free(parts->name);
-    parts->name = in_folder_of(parts->options.path, name);
-    if (!parts->name)
-        return false;
+    parts->name = output_beside(parts->options.path, name);
     errno = EEXIST;
     return parts->options.force && unlink(parts->name) == 0;
 }
@@ -58,8 +43,8 @@ static bool clear(struct log_parts *parts, const char *name)
 static bool clear_all(struct log_parts *parts)
 {
     const char *path = parts->options.path, *slash = strrchr(path, '/');
-    char *folder = in_folder_of(path, ".");
-    DIR *dir = folder ? opendir(folder) : NULL;
+    char *folder = output_beside(path, ".");
+    DIR *dir = opendir(folder);
     bool ok = dir != NULL;
     free(folder);
     for (struct dirent *entry; ok && (entry = readdir(dir));)
@@ -85,7 +70,8 @@ static bool open_file(struct log_parts *parts)
     free(parts->name);
     parts->name = has_several(parts) ? log_parts_name(path, parts->number) : strdup(path);
     if (parts->name)
-        parts->writer = log_create(parts->name, parts->options.force && !has_several(parts));
+        parts->writer = log_begin(
+            output_open_in_place(parts->name, parts->options.force && !has_several(parts)));
     return parts->writer != NULL;
 }
 

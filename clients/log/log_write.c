@@ -1,12 +1,11 @@
 #include "log_write.h"
 
+#include "allocate.h"
 #include "big_endian.h"
-#include "complain.h"
 #include "log_read.h"
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -27,37 +26,24 @@ struct log_writer {
     unsigned char buffer[BUFFER_BYTES];
 };
 
-struct log_writer *log_create(const char *path, bool force)
+struct log_writer *log_begin(int fd)
 {
-    struct log_writer *writer = malloc(sizeof *writer);
+    struct log_writer *writer = fd >= 0 ? allocate_unset(sizeof *writer) : NULL;
     if (!writer)
         return NULL;
-    const int flags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC;
-    writer->fd = open(path, flags | (force ? O_TRUNC : O_EXCL), 0666);
+    writer->fd = fd;
     writer->error = 0;
     writer->number = writer->whole = 0;
     writer->used = 0;
-    if (writer->fd >= 0)
-        return writer;
-    const int error = errno;
-    free(writer);
-    errno = error;
-    return NULL;
+    return writer;
 }
 
-bool log_is_same_file(const char *path, const char *other)
+struct log_writer *log_begin_output(const struct output *output)
 {
-    struct stat a, b;
-    return stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
-bool log_is_one_of(const char *path, char *const *other, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (log_is_same_file(path, other[i]))
-            return true;
-    return false;
+    const int fd = output ? dup(fileno(output->file)) : -1;
+    if (output && fd < 0)
+        output_complain(output->path, errno);
+    return log_begin(fd);
 }
 
 int64_t log_event_bytes(size_t channel_length, size_t size)
@@ -234,31 +220,4 @@ int log_finish(struct log_writer *writer)
     int disk;
     const int error = log_finish_soon(writer, &disk), late = log_reach_disk(disk);
     return error ? error : late;
-}
-
-static const char *remedy(int error)
-{
-    switch (error) {
-    case EEXIST: return "; --force overwrites it";
-    case ENOSPC:
-    case EDQUOT: return "; free space there, or write elsewhere";
-    case EFBIG: return "; no larger file is allowed there: write several";
-    default: return "";
-    }
-}
-
-static bool is_folder(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-}
-
-void log_write_complain(const char *path, int error)
-{
-    if (error == EEXIST && is_folder(path))
-        error = EISDIR;
-    if (error == ESTALE)
-        complain("%s: deleted or truncated by another program", path);
-    else
-        complain("%s: %s%s", path, strerror(error), remedy(error));
 }

@@ -1,5 +1,5 @@
-/* Writes LCM event logs (format: log_read.h). Errors are values of errno; log_write_complain()
- * reports them.
+/* Writes LCM event logs (format: log_read.h). Errors are values of errno; output_complain() reports
+ * them.
  *
  * Appended events may stay in memory until log_flush() or log_finish(). After the first error
  * nothing more is written, and the file is truncated to its last complete event. All bytes are
@@ -7,20 +7,21 @@
 #ifndef LOG_WRITE_H
 #define LOG_WRITE_H
 
+#include "output.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 struct log_writer;
 
-/* Creates an empty log, which the caller closes with log_finish(). An existing file is overwritten
- * if force is true; otherwise it is an error (EEXIST). Returns NULL on error: errno. */
-struct log_writer *log_create(const char *path, bool force);
+/* Begins a log in an empty file that is open (output.h). The writer owns fd, and the caller closes
+ * it with log_finish(). fd < 0: returns NULL. */
+struct log_writer *log_begin(int fd);
 
-/* Whether path and another path exist and are one file. A log must not be written over one that is
- * read, which would be truncated before. */
-bool log_is_same_file(const char *path, const char *other);
-bool log_is_one_of(const char *path, char *const *other, int count);
+/* As log_begin(), for a file that the caller also closes with output_close(), after log_finish().
+ * Returns NULL after an error, which was reported; and for NULL. */
+struct log_writer *log_begin_output(const struct output *output);
 
 /* Most bytes of the data of an event that log_append() takes. */
 enum { LOG_APPEND_MAX = 128 << 10 };
@@ -60,8 +61,5 @@ int log_finish(struct log_writer *writer);
  * waits. */
 int log_finish_soon(struct log_writer *writer, int *disk);
 int log_reach_disk(int disk); /* disk may be -1: returns 0 at once */
-
-/* Reports on stderr why a log cannot be written, and what to do. */
-void log_write_complain(const char *path, int error);
 
 #endif

@@ -100,6 +100,44 @@ int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, un
     return first * n - first * (first + 1) / 2 + second - (first + 1);
 }
 
+/* ---- Pairs ---- */
+
+static void set_ignored(const struct scene_query *query, struct scene *scene)
+{
+    scene->ignored_count = (size_t) (query->ignored_count / 2);
+    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
+    for (size_t k = 0; k < scene->ignored_count; k++)
+        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
+    scene_sort_ignored(scene);
+}
+
+/* Whether the query has this pair of placements, in order. */
+static bool has_pair(const struct scene_query *query, const struct scene_pair *pair)
+{
+    return pair->a < pair->b && pair->b < (size_t) placement_count(query) &&
+           (query->which != QUERY_PAIRS_ACROSS ||
+            (pair->a < (size_t) query->split && pair->b >= (size_t) query->split));
+}
+
+int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
+{
+    struct scene scene = {.dim = 0};
+    int64_t pairs = (int64_t) end_pair - query->first_pair;
+    if (query->which == QUERY_PAIRS_LISTED || query->ignored_count < 2)
+        return pairs; /* no listed pair is ignored */
+    set_ignored(query, &scene);
+    for (size_t i = 0; i < scene.ignored_count; i++) {
+        const struct scene_pair *pair = &scene.ignored[i];
+        const int64_t number =
+            has_pair(query, pair)
+                ? logged_query_pair_number(query, (unsigned) pair->a, (unsigned) pair->b)
+                : -1;
+        pairs -= number >= query->first_pair && number < end_pair;
+    }
+    scene_clear(&scene);
+    return pairs;
+}
+
 /* ---- As a scene: bodies ---- */
 
 /* The caller frees what *out owns, even if this returns false. */
@@ -228,15 +266,6 @@ static void list_pairs(struct list *list, bool across, size_t split)
     for (size_t a = 0; a < (across ? split : count); a++)
         for (size_t b = across ? split : a + 1; b < count; b++)
             add(list, a, b);
-}
-
-static void set_ignored(const struct scene_query *query, struct scene *scene)
-{
-    scene->ignored_count = (size_t) (query->ignored_count / 2);
-    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
-    for (size_t k = 0; k < scene->ignored_count; k++)
-        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
-    scene_sort_ignored(scene);
 }
 
 static void set_pairs(const struct scene_query *query, struct scene *scene)

@@ -25,6 +25,9 @@ struct placement *logged_query_placements(struct logged_query *query, int32_t *c
 /* The number of pairs of a scene query, ignored ones included. */
 int64_t logged_query_pairs(const struct scene_query *query);
 
+/* The number of pairs from first_pair on and before end_pair, without ignored ones. */
+int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
+
 /* The number of the pair (a, b) of placements, in lexicographic order, from 0. In: a PAIRS_ALL or
  * PAIRS_ACROSS query, and one of its pairs. */
 int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b);

@@ -143,6 +143,14 @@ void replayed_count(const struct scene_query *query, const struct scene_result *
             count[result->verdict[i]]++;
     if (query->which == QUERY_PAIRS_LISTED)
         return;
-    const int64_t others = (int64_t) result->end_pair - query->first_pair - result->verdict_count;
+    const int64_t others =
+        logged_query_pairs_until(query, result->end_pair) - result->verdict_count;
     count[FMB_SEPARATED] += others > 0 ? others : 0;
+}
+
+int64_t replayed_decided(const struct scene_query *query, const struct scene_result *result)
+{
+    int64_t count[FMB_OVERLAPPING + 1];
+    replayed_count(query, result, count);
+    return count[FMB_SEPARATED] + count[FMB_TOUCHING] + count[FMB_OVERLAPPING];
 }

@@ -70,4 +70,7 @@ bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out
 void replayed_count(const struct scene_query *query, const struct scene_result *result,
                     int64_t count[FMB_OVERLAPPING + 1]);
 
+/* The number of pairs that the result decides. */
+int64_t replayed_decided(const struct scene_query *query, const struct scene_result *result);
+
 #endif

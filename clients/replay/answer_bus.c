@@ -31,6 +31,7 @@
 #include "complain.h"
 #include "fmb_client_raw.h"
 #include "process.h"
+#include "replayed.h"
 #include "wire.h"
 
 #include <math.h>
@@ -54,7 +55,6 @@ static const double delay_max_ns = 1e18;
 struct slot {
     struct answer_bus *bus;  /* NULL: the slot is free */
     struct match_item *item; /* NULL: a query of answer_bus_supply() */
-    int32_t first_pair;      /* of a scene query */
 };
 
 struct answer_bus {
@@ -68,7 +68,8 @@ struct answer_bus {
     int64_t begun_at, first_utime, server_id;
     unsigned polls;
     struct tally_bus counts;
-    struct logged_query query;
+    struct logged_query query;    /* to be sent */
+    struct logged_query answered; /* of the result */
     union {
         struct pair_result pair;
         struct scene_result scene;
@@ -118,10 +119,11 @@ static void count_service(struct answer_bus *bus)
     bus->server_id = server_id;
 }
 
-static void decode_result(struct answer_bus *bus, const struct slot *slot, struct new_result *out)
+static void decode_result(struct answer_bus *bus, enum log_kind kind,
+                          const struct fmb_client_raw_result *result, struct new_result *out)
 {
     const uint32_t size = (uint32_t) out->size;
-    if (slot->item->key.kind == LOG_PAIR_QUERY) {
+    if (kind == LOG_PAIR_QUERY) {
         wire_read_pair_result(bus->bytes, size,
                               &bus->result.pair); /* cannot fail: the library has decoded it */
         out->compute_ns = bus->result.pair.compute_ns;
@@ -129,7 +131,8 @@ static void decode_result(struct answer_bus *bus, const struct slot *slot, struc
     } else {
         wire_read_scene_result(bus->bytes, size, &bus->result.scene);
         out->compute_ns = bus->result.scene.compute_ns;
-        out->pairs = out->status == FMB_OK ? bus->result.scene.end_pair - slot->first_pair : 0;
+        logged_query_read(&bus->answered, kind, result->query, (uint32_t) result->query_size);
+        out->pairs = replayed_decided(&bus->answered.scene, &bus->result.scene);
     }
 }
 
@@ -146,7 +149,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     } else if (item) {
         memcpy(bus->bytes, result->bytes, result->size);
         count_service(bus);
-        decode_result(bus, slot, &answered);
+        decode_result(bus, (enum log_kind) item->key.kind, result, &answered);
     }
     slot->bus = NULL;
     if (!is_running(bus))
@@ -227,8 +230,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     struct slot *slot = bus->slot;
     while (slot->bus)
         slot++; /* there are as many slots as the engine has requests */
-    *slot = (struct slot){bus, item,
-                          bus->query.kind == LOG_SCENE_QUERY ? bus->query.scene.first_pair : 0};
+    *slot = (struct slot){bus, item};
     const int status = fmb_client_raw_send(
         bus->client, bus->query.kind == LOG_PAIR_QUERY ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE, bytes,
         size, largest, on_result, slot);

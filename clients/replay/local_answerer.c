@@ -1,5 +1,7 @@
 #include "local_answerer.h"
 
+#include "replayed.h"
+
 #include "allocate.h"
 #include "answer.h"
 #include "clock.h"
@@ -132,7 +134,7 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     struct scene_result *result = scene_job_result(local->job);
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
-    out->pairs = out->status == FMB_OK ? result->end_pair - query->first_pair : 0;
+    out->pairs = replayed_decided(query, result);
     out->placement = query->placement;
     out->placement_count = query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
                                                                          : QUERY_PLACEMENTS_MAX;

@@ -141,18 +141,9 @@ static bool open_goldens(struct replay *replay)
         complain("%s: %s", options->golden, why);
         return false;
     }
-    if (options->write_golden &&
-        (log_is_one_of(options->write_golden, options->log, options->log_count) ||
-         (options->golden && log_is_same_file(options->write_golden, options->golden)))) {
-        complain("%s: it is read: write elsewhere", options->write_golden);
-        return false;
-    }
-    if (options->write_golden &&
-        !(replay->new_golden = log_create(options->write_golden, options->force))) {
-        log_write_complain(options->write_golden, errno);
-        return false;
-    }
-    return true;
+    return output_open(&options->write_golden, &replay->golden_file) &&
+           (!replay->golden_file ||
+            (replay->new_golden = log_begin_output(replay->golden_file)) != NULL);
 }
 
 /* Opens the service or the local answerer. */
@@ -199,10 +190,10 @@ static void close_replay(struct replay *replay)
     log_close(replay->golden);
     input_close(&replay->input);
     const int error = log_finish(replay->new_golden);
-    if (!error)
-        return;
-    log_write_complain(replay->options->write_golden, error);
-    replay->failed = true;
+    if (error)
+        output_complain(replay->options->write_golden.path, error);
+    replay->failed = replay->failed || error;
+    replay->failed = !output_close(replay->golden_file, !replay->failed) || replay->failed;
 }
 
 /* ---- The run ---- */

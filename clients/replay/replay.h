@@ -5,6 +5,7 @@
 
 #include "answer_bus.h"
 #include "input.h"
+#include "output.h"
 #include "page.h"
 
 /* Callbacks for the progress and the findings of a replay. None may be NULL. */
@@ -25,8 +26,7 @@ struct replay_options {
     int log_count;
     const char *prefix; /* of the channels; "": none */
     const char *golden; /* path of a log with results to compare with; NULL: the recorded ones */
-    const char *write_golden; /* path to write the new results to; NULL: none */
-    bool force;               /* write_golden may exist already */
+    struct output_options write_golden; /* for the new results */
     struct compare_options compare;
     double from, to;   /* queries with from <= t < to, log time in seconds since the first event */
     size_t frames;     /* capacity of the cache in this process */

@@ -33,7 +33,7 @@ static void write_golden(struct replay *replay, const struct match_item *query,
     memcpy(bytes + answered->size - sizeof no_time, no_time, sizeof no_time);
     if (!log_append(replay->new_golden, query->place.utime, replay->channels.name[kind],
                     replay->channels.length[kind], bytes, answered->size))
-        replay_fail(replay, replay->options->write_golden);
+        replay_fail(replay, replay->options->write_golden.path);
 }
 
 static void take_answer(struct replay *replay, struct match_item *query,

@@ -22,6 +22,20 @@ setup() {
     jq -e 'all(.cells[]; .not_as_made == 0)' "$JSON"
     jq -e '[.families[] | select(.verdict == "touching") | .name] |
            contains(["touch-face-face", "pose-whole-255", "pose-yaw"])' "$JSON"
+    # tests/bench/README.md counts the same families and cells.
+    count() { jq "[.cells[] | select($1)] | length" "$JSON"; }
+    has() { grep -qF -- "$1" tests/bench/README.md || { echo "README.md has not: $1"; false; }; }
+    grouped() { sed -E ':a; s/^([0-9]+)([0-9]{3})/\1,\2/; ta' <<< "$1"; }
+    families=$(jq '.families | length' "$JSON")
+    posed=$(jq '[.families[] | select(.name | startswith("pose-"))] | length' "$JSON")
+    has "| $families families of hard pairs"
+    has "and $posed families posed by quaternions"
+    has "Of the $((families - posed)) families that are not turned"
+    has "certified: $((2 * 5000 * $(count '.family | startswith("pose-") | not'))) queries"
+    has "none of $(grouped $((2 * 120 * $(count '.family | startswith("pose-")')))) queries of posed bodies ($posed families)"
+    has "--pairs 40 --seed 7\`, $families families"
+    has "certified: $((40 * $(count true))) gaps"
+    has "exact: $((40 * $(count true))) gaps"
 }
 
 @test "accuracy: the counts do not depend on how many work at it" {

@@ -258,7 +258,7 @@ split_at() {
     ln -s whole.log "$T/link.log"
     cuts 2 "$T/good.log" "$log" -o "$T/link.log" --force
     cmp "$log" "$T/good.log"
-    [[ "$stderr" == *"link.log: is one of the logs that are cut" ]]
+    [[ "$stderr" == *"link.log: this command reads it: write to another file" ]]
 }
 
 @test "what cannot be read or written is said" {
@@ -295,7 +295,7 @@ split_at() {
 @test "wrong usage is said" {
     for arguments in '' 'LOG' '-o FILE' 'LOG -o FILE --from -1' 'LOG -o FILE --to x' \
         'LOG -o FILE --body 0' 'LOG -o FILE --body 9007199254740992' 'LOG -o FILE --channel (' \
-        'LOG -o FILE --what'; do
+        'LOG -o FILE --from 10 --to 5' 'LOG -o FILE --from 1 --to 1' 'LOG -o FILE --what'; do
         # shellcheck disable=SC2086
         run --separate-stderr "$FMB" log cut $arguments
         [ "$status" = 2 ]

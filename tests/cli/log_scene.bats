@@ -236,7 +236,7 @@ split_at() {
 @test "wrong usage is said" {
     for arguments in '' '--event 1' 'LOG' 'LOG --event x' 'LOG --event 1 --offset 1' \
         'LOG --client 1' 'LOG --sequence 1' 'LOG --event 1 --client 1 --sequence 1' \
-        'LOG --offset -1' 'LOG --what'; do
+        'LOG --event 9223372036854775808' 'LOG --offset -1' 'LOG --what'; do
         # shellcheck disable=SC2086
         run --separate-stderr "$FMB" log scene $arguments
         [ "$status" = 2 ]

@@ -362,7 +362,7 @@ and beside each other, with nothing else in common, are
     jq -e .overlapping <<< "$output"
     mesh a.obj b.obj --ply /dev/full
     ended 1
-    said 'fmb: /dev/full: No space left on device'
+    said 'fmb: /dev/full: No space left on device; free space there, or write elsewhere'
     run bash -c "'$FMB' mesh a.obj b.obj --json 2>&1 > /dev/full"
     ended 1
     is 'fmb: standard output: No space left on device'

@@ -43,6 +43,13 @@ query() {
     done
 }
 
+# Bodies that touch in the plane y = 0 overlap by -0.
+@test "the sign of zero is written" {
+    query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [-0,-0]}, {\"id\": 2, $square, \"origin\": [-0,-1]}]}" --gap
+    ended 0
+    is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "gap": [-0, -0], "direction": [0,-1]}]}'
+}
+
 @test "without --box there is no box" {
     query "$scene"
     ended 0
@@ -276,6 +283,10 @@ gap() {
     run "$FMB" query --local <<< "$(spaced ', "margin": 2.25')"
     ended 0
     [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (2 near)' ]
+    # The gap is the margin.
+    run "$FMB" query --local <<< '{"dim": 2, "margin": 0.5, "bodies": [{"id": 1, "shape": "box", "size": [1,1]},
+        {"id": 2, "shape": "box", "size": [1,1], "position": [1.5,0]}]}'
+    [ "${lines[-1]}" = '0 overlapping, 0 touching, 1 separated (1 near)' ]
     run "$FMB" query --local <<< "$(spaced ', "margin": 0.4999')"
     [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (0 near)' ]
 }
@@ -700,8 +711,9 @@ Try 'fmb $1 --help'."
     name=$(printf '%s/\033[31mred\302\233' "$BATS_TEST_TMPDIR")
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$name.obj"
     printf x > "$name"
+    printf '%s' "$scene" > "$name.json"
     cp "$BATS_TEST_DIRNAME/../logs/stack.log" "$name.log"
-    for arguments in "query --local @" "query @/none" "query --local --svg @/none" "mesh --self @" \
+    for arguments in "query --local @" "query @/none" "query --local --svg @/none @.json" "mesh --self @" \
         "mesh @.obj @.obj" "mesh @.obj @.obj --ply @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
         "record @/none" "record --@" "watch @" "log @" "@" "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do

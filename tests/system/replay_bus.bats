@@ -86,6 +86,24 @@ event() {
     stop_fmbd
 }
 
+@test "pairs that a scene ignores are not counted" {
+    start_fmbd
+    "$FMB" record scene.log > recorded 2> messages 3>&- &
+    record=$!
+    started="${started-} $record"
+    wait_until grep -qs 'recording to' messages
+    for ignored in '[1,2],[2,1],[3,1]' '[1,2],[1,3],[2,3],[4,1],[4,2]'; do
+        jq -n --argjson ignore "[$ignored]" '{dim: 2, $ignore, bodies: [range(1; 5) | {id: ., shape: "box", size: [1, 1]}]}'
+    done > scenes.json
+    "$FMB" query --json scenes.json > answers
+    kill -INT "$record"
+    wait "$record"
+    [ "$(jq '.pairs | length' answers | paste -sd ' ')" = '4 1' ]
+    as_in_process scene.log
+    holds '.channels | map(.pairs) == [0, 5]'
+    stop_fmbd
+}
+
 @test "parts of a log, several logs, and goldens of both" {
     start_fmbd
     generate arm arm.log

@@ -103,7 +103,7 @@ static bool from_memory(void *user, size_t from, unsigned char *out, size_t coun
 
 void world_write(const struct log_world *world, const char *path)
 {
-    struct log_writer *writer = log_create(path, true);
+    struct log_writer *writer = log_begin(output_open_in_place(path, true));
     assert_non_null(writer);
     for (size_t i = 0; i < world->count; i++) {
         const struct world_event *event = &world->event[i];

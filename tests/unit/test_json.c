@@ -7,10 +7,12 @@
 
 #include "json.h"
 #include "number.h"
+#include "scene_json.h"
 #include "text.h"
 #include "turned_box.h"
 
 #include <math.h>
+#include <regex.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,6 +79,17 @@ static uint64_t next_random(uint64_t *state)
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
     return z ^ z >> 31;
+}
+
+static void assert_same_bits(const double *a, const double *b, size_t count)
+{
+    assert_memory_equal(a, b, count * sizeof *a);
+}
+
+static void assert_minus_zero(const double *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        assert_true(numbers[i] == 0 && signbit(numbers[i]));
 }
 
 /* ---- What is understood ---------------------------------------------------------------------- */
@@ -309,6 +322,8 @@ static void numbers_are_written_short(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         assert_string_equal(number_exact(cases[i].value, text), cases[i].text);
     assert_string_equal(number_grouped(-1234567, text), "-1,234,567");
+    assert_string_equal(number_grouped(-123, text), "-123");
+    assert_string_equal(number_grouped(1000, text), "1,000");
     assert_string_equal(number_grouped(999, text), "999");
 }
 
@@ -335,6 +350,71 @@ static void ends_that_differ_look_different(void **state)
 }
 
 /* cJSON up to 1.7.15-1+deb12u2 refuses numbers of more than 63 characters. */
+static void assert_same_scenes(const struct scene *a, const struct scene *b)
+{
+    assert_int_equal(a->dim, b->dim);
+    assert_same_bits(&a->duration, &b->duration, 1);
+    assert_same_bits(&a->margin, &b->margin, 1);
+    assert_int_equal(a->body_count, b->body_count);
+    for (size_t i = 0; i < a->body_count; i++) {
+        const struct scene_body *one = &a->body[i], *other = &b->body[i];
+        assert_same_bits(one->position, other->position, 3);
+        assert_same_bits(one->velocity, other->velocity, 3);
+        assert_same_bits(one->orientation, other->orientation, 4);
+        assert_int_equal(one->body.frame_count, other->body.frame_count);
+        for (unsigned k = 0; k < one->body.frame_count; k++) {
+            const struct fmb_frame *frame = fmb_body_frame(&one->body, k),
+                                   *same = fmb_body_frame(&other->body, k);
+            assert_same_bits(frame->origin, same->origin, 3);
+            assert_same_bits(frame->centre, same->centre, 3);
+            for (int c = 0; c < frame->count; c++)
+                assert_same_bits(frame->component[c], same->component[c], 3);
+        }
+    }
+}
+
+/* Read and written again. A size of -0 is 0 in the engine. */
+static void the_sign_of_zero_is_kept(void **state)
+{
+    static const char text[] =
+        "{\"dim\": 3, \"duration\": 0.25, \"margin\": 1e-9, \"bodies\": ["
+        "{\"id\": 1, \"shape\": \"box\", \"size\": [0,0,0], \"position\": [-0,-0.0,-0e5],"
+        " \"orientation\": [1,-0,-0,-0], \"velocity\": [-0,-0,-0]},"
+        "{\"id\": 2, \"shape\": \"face\", \"origin\": [-0,-0,-0], \"components\": "
+        "[[-0,-0,1],[-0,1,-0]]},"
+        "{\"id\": 3, \"position\": [-0,-0,-0], \"velocity\": [-0,-0,-0], \"frames\": ["
+        "{\"shape\": \"box\", \"size\": [1,1,1], \"position\": [-0,-0,-0]},"
+        "{\"shape\": \"face\", \"origin\": [-0,-0,-0], \"components\": [[-0,-0,1],[-0,1,-0]]}]},"
+        "{\"id\": 4, \"shape\": \"face\", \"position\": [-0,1,1], \"origin\": [-0,-0,-0],"
+        " \"components\": [[-0,-0,1],[-0,1,-0]]}]}";
+    char *written;
+    size_t size;
+    struct scene scene = read_one(text);
+    (void) state;
+    const struct scene_body *body = scene.body;
+    const struct fmb_frame *box = fmb_body_frame(&body[2].body, 0),
+                           *face = fmb_body_frame(&body[2].body, 1);
+    assert_minus_zero(body[0].position, 3);
+    assert_minus_zero(body[0].orientation + 1, 3);
+    assert_minus_zero(body[0].velocity, 3);
+    assert_minus_zero(body[1].position, 3);
+    assert_minus_zero(fmb_body_frame(&body[1].body, 0)->component[0], 2);
+    assert_minus_zero(body[2].position, 3);
+    assert_minus_zero(box->centre, 3);
+    assert_minus_zero(face->origin, 3);
+    assert_minus_zero(face->component[1], 1);
+    assert_minus_zero(fmb_body_frame(&body[3].body, 0)->origin, 3);
+    FILE *out = open_memstream(&written, &size);
+    assert_non_null(out);
+    scene_json_write(out, &scene);
+    fclose(out);
+    struct scene again = read_one(written);
+    assert_same_scenes(&scene, &again);
+    scene_clear(&again);
+    scene_clear(&scene);
+    free(written);
+}
+
 static void long_numbers_are_read_in_full(void **state)
 {
     char text[512];
@@ -482,6 +562,31 @@ static const struct {
     {"{dim: 3}", "line 1, column 3: invalid JSON"},
     {"{\"dim\\x\": 3}", "line 1, column 6: invalid JSON"},
     {"{\"\\ud800\": 3}", "line 1, column 3: invalid JSON"},
+    {"{\"dim\\u0000x\": 3}", "line 1, column 6: a string contains \\u0000"},
+    {"{\"dim\": 3, \"bodies\":\n [{\"shape\": \"box\\u0000b\"}]}",
+     "line 2, column 17: a string contains \\u0000"},
+    {"{\"dim\": 3, \"name\": \"\\\\\\u0000\"}", "line 1, column 23: a string contains \\u0000"},
+    {"{\"dim\": 3, \"name\": \"\\u00g0\"}", "line 1, column 21: invalid JSON"},
+    {"{\"dim\": 3, \"name\": \"\\u00\"}", "line 1, column 21: invalid JSON"},
+    {"{\"dim\": 3, \"\x1f\": 1}", "line 1, column 13: invalid JSON"},
+    {"{\"dim\": 3, \"a\n\": 1}", "line 1, column 14: invalid JSON"},
+    {"{\"dim\": 3, \"a\t\": 1}", "line 1, column 14: invalid JSON"},
+    {"{\f\"dim\": 3}", "line 1, column 2: invalid JSON"},
+    {"{\v\"dim\": 3}", "line 1, column 2: invalid JSON"},
+    {"{\"dim\": 03}", "line 1, column 10: invalid JSON"},
+    {"{\"dim\": 00}", "line 1, column 10: invalid JSON"},
+    {"{\"dim\": -03}", "line 1, column 11: invalid JSON"},
+    {"{\"dim\": -.3}", "line 1, column 10: invalid JSON"},
+    {"{\"dim\": -}", "line 1, column 9: invalid JSON"},
+    {"{\"dim\": --3}", "line 1, column 9: invalid JSON"},
+    {"{\"dim\": 3.}", "line 1, column 11: invalid JSON"},
+    {"{\"dim\": 3.e1}", "line 1, column 11: invalid JSON"},
+    {"{\"dim\": 3e}", "line 1, column 10: invalid JSON"},
+    {"{\"dim\": 3e+}", "line 1, column 10: invalid JSON"},
+    {"{\"dim\": 3e1.5}", "line 1, column 12: invalid JSON"},
+    {"{\"dim\": 3.1.5}", "line 1, column 12: invalid JSON"},
+    {"{\"dim\": 3-1}", "line 1, column 10: invalid JSON"},
+    {"{\"dim\": 3,\n \"bodies\": [], \"pairs\": [[1, 02]]}", "line 2, column 31: invalid JSON"},
     {"{\"\\ud83d\\uDE00\": 3}", "unknown key \"????\""},
     {SCENE(BODY(1)) "\n]", "scene 2: line 2, column 1: expected an object, '{', found ']'"},
     {SCENE(BODY(1)) "," SCENE(BODY(1)),
@@ -495,6 +600,104 @@ static void bad_texts_are_refused(void **state)
     (void) state;
     for (size_t i = 0; i < sizeof bad_texts / sizeof *bad_texts; i++)
         expect_error(bad_texts[i].text, bad_texts[i].error);
+}
+
+static enum json_outcome outcome_of(const char *bytes, size_t size)
+{
+    struct input input = open_bytes(bytes, size);
+    struct scene scene;
+    const enum json_outcome outcome = json_next(input.reader, &scene);
+    if (outcome == JSON_SCENE)
+        scene_clear(&scene);
+    close_input(&input);
+    return outcome;
+}
+
+/* All texts of up to four of these characters, by the grammar of RFC 8259. */
+static void numbers_are_those_of_json(void **state)
+{
+    static const char characters[] = "-+.0179eE";
+    enum { COUNT = sizeof characters - 1, LONGEST = 4 };
+    regex_t number;
+    int accepted = 0;
+    (void) state;
+    assert_int_equal(regcomp(&number, "^-?(0|[1-9][0-9]*)(\\.[0-9]+)?([eE][+-]?[0-9]+)?$",
+                             REG_EXTENDED | REG_NOSUB),
+                     0);
+    for (int length = 1, texts = COUNT; length <= LONGEST; length++, texts *= COUNT)
+        for (int i = 0; i < texts; i++) {
+            char text[LONGEST + 1] = "", scene[256];
+            for (int k = 0, rest = i; k < length; k++, rest /= COUNT)
+                text[k] = characters[rest % COUNT];
+            snprintf(scene, sizeof scene,
+                     "{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"box\",\"size\":[1,1],"
+                     "\"velocity\":[0,%s]}]}",
+                     text);
+            const bool good = regexec(&number, text, 0, NULL, 0) == 0;
+            const bool read = outcome_of(scene, strlen(scene)) == JSON_SCENE;
+            if (good != read)
+                print_message("%s\n", text);
+            assert_int_equal(good, read);
+            accepted += good;
+        }
+    regfree(&number);
+    assert_in_range(accepted, 700, 1100);
+}
+
+static void names_are_text(void **state)
+{
+    static const struct {
+        const char *name;
+        bool good;
+    } names[] = {{"a b", true},
+                 {"\x7f", false},
+                 {"\xc2\x80", false},
+                 {"\xc2\x9f", false},
+                 {"\xc2\xa0", true},
+                 {"\xe0\xa0\x80", true},
+                 {"\xe0\x9f\xbf", false},
+                 {"\xed\xa0\x80", false},
+                 {"\xef\xbf\xbd", true},
+                 {"\xf4\x8f\xbf\xbf", true},
+                 {"\xf4\x90\x80\x80", false},
+                 {"a\xc3", false},
+                 {"\xc0\x80", false},
+                 {"\x80", false}};
+    (void) state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text[256];
+        snprintf(
+            text, sizeof text,
+            "{\"dim\":2,\"bodies\":[{\"id\":1,\"name\":\"%s\",\"shape\":\"box\",\"size\":[1,1]}]}",
+            names[i].name);
+        if (names[i].good)
+            assert_int_equal(outcome_of(text, strlen(text)), JSON_SCENE);
+        else
+            expect_error(text, "bodies[0].name: expected UTF-8 without control characters");
+    }
+}
+
+/* In each position of a scene: white space may stand between tokens, other control characters
+ * nowhere. */
+static void control_characters_are_refused(void **state)
+{
+    static const char scene[] = SCENE(BODY(1));
+    const size_t size = sizeof scene - 1;
+    (void) state;
+    for (unsigned char byte = 0; byte < ' '; byte++)
+        for (size_t at = 1; at < size; at++) {
+            char text[sizeof scene];
+            int quotes = 0;
+            memcpy(text, scene, at);
+            text[at] = (char) byte;
+            memcpy(text + at + 1, scene + at, size - at);
+            for (size_t i = 0; i < at; i++)
+                quotes += scene[i] == '"';
+            const bool space = byte == '\t' || byte == '\n' || byte == '\r';
+            assert_int_equal(outcome_of(text, size + 1),
+                             space && quotes % 2 == 0 ? JSON_SCENE : JSON_BAD);
+        }
+    expect_error_in_bytes("{\"dim\":\n \0 3}", 14, "line 2, column 2: invalid JSON");
 }
 
 static void brackets_in_strings_are_not_counted(void **state)
@@ -598,9 +801,13 @@ int main(void)
         cmocka_unit_test(doubles_come_back_bit_for_bit),
         cmocka_unit_test(numbers_are_written_short),
         cmocka_unit_test(ends_that_differ_look_different),
+        cmocka_unit_test(the_sign_of_zero_is_kept),
         cmocka_unit_test(long_numbers_are_read_in_full),
         cmocka_unit_test(bad_scenes_are_refused),
         cmocka_unit_test(bad_texts_are_refused),
+        cmocka_unit_test(numbers_are_those_of_json),
+        cmocka_unit_test(names_are_text),
+        cmocka_unit_test(control_characters_are_refused),
         cmocka_unit_test(brackets_in_strings_are_not_counted),
         cmocka_unit_test(an_object_without_end_is_refused),
         cmocka_unit_test(deep_nesting_is_refused_early),

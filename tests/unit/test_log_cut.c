@@ -269,11 +269,11 @@ static void on_cut_progress(void *user, int64_t bytes, int64_t of)
 static struct log_cut_counts cut_logs(char *const *log, int count, const char *output,
                                       const struct log_choice *choice)
 {
+    const struct output_rules rules = {.force = true, .input = log, .input_count = count};
     const struct log_cut_options options = {.log = log,
                                             .log_count = count,
                                             .prefix = "",
-                                            .output = output,
-                                            .force = true,
+                                            .output = {output, OUTPUT_LOG, &rules},
                                             .choice = *choice};
     const struct log_cut_sink sink = {on_cut_damage, on_cut_progress, NULL};
     struct log_cut_counts counts;

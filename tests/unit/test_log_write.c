@@ -180,7 +180,7 @@ int __wrap_fsync(int file)
 static void test_a_finished_log_is_on_the_disk(void **state)
 {
     (void) state;
-    struct log_writer *writer = log_create(in_folder("synced"), false);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder("synced"), false));
     assert_non_null(writer);
     assert_true(append_event(to_writer, writer, 0));
     synced = 0;
@@ -193,7 +193,7 @@ static void test_what_is_written_is_read(void **state)
     (void) state;
     enum { COUNT = 100 };
     int64_t bytes = 0;
-    struct log_writer *writer = log_create(in_folder("log"), false);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder("log"), false));
     assert_non_null(writer);
     for (int i = 0; i < COUNT; i++) {
         assert_true(append_event(to_writer, writer, i));
@@ -207,7 +207,7 @@ static void test_what_is_written_is_read(void **state)
 static void test_a_log_of_nothing(void **state)
 {
     (void) state;
-    assert_int_equal(log_finish(log_create(in_folder("empty"), false)), 0);
+    assert_int_equal(log_finish(log_begin(output_open_in_place(in_folder("empty"), false))), 0);
     assert_int_equal(size_of("empty"), 0);
     assert_int_equal(log_finish(NULL), 0);
 }
@@ -215,7 +215,7 @@ static void test_a_log_of_nothing(void **state)
 static void test_what_was_flushed_is_there(void **state)
 {
     (void) state;
-    struct log_writer *writer = log_create(in_folder("flushed"), false);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder("flushed"), false));
     for (int i = 0; i < 3; i++) {
         assert_true(append_event(to_writer, writer, i));
         assert_true(size_of("flushed") < log_written(writer));
@@ -230,10 +230,10 @@ static void test_nothing_is_overwritten_without_force(void **state)
 {
     (void) state;
     put_file("precious", "precious");
-    assert_null(log_create(in_folder("precious"), false));
+    assert_null(log_begin(output_open_in_place(in_folder("precious"), false)));
     assert_int_equal(errno, EEXIST);
     assert_int_equal(size_of("precious"), 8);
-    struct log_writer *writer = log_create(in_folder("precious"), true);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder("precious"), true));
     assert_non_null(writer);
     assert_true(append_event(to_writer, writer, 3));
     assert_int_equal(log_finish(writer), 0);
@@ -244,10 +244,10 @@ static void test_what_cannot_be_created(void **state)
 {
     (void) state;
     for (int force = 0; force < 2; force++) {
-        assert_null(log_create(in_folder("no/such/folder"), force));
+        assert_null(log_begin(output_open_in_place(in_folder("no/such/folder"), force)));
         assert_int_equal(errno, ENOENT);
     }
-    assert_null(log_create(folder, true));
+    assert_null(log_begin(output_open_in_place(folder, true)));
     assert_int_equal(errno, EISDIR);
 }
 
@@ -256,7 +256,7 @@ static void test_what_cannot_be_created(void **state)
 static void test_a_full_disk_is_said(void **state)
 {
     (void) state;
-    struct log_writer *writer = log_create("/dev/full", true);
+    struct log_writer *writer = log_begin(output_open_in_place("/dev/full", true));
     assert_non_null(writer);
     assert_true(append_event(to_writer, writer, 3));
     assert_false(log_flush(writer));
@@ -266,7 +266,7 @@ static void test_a_full_disk_is_said(void **state)
     assert_int_equal(errno, ENOSPC);
     assert_int_equal(log_finish(writer), ENOSPC);
 
-    writer = log_create("/dev/full", true);
+    writer = log_begin(output_open_in_place("/dev/full", true));
     assert_true(append_event(to_writer, writer, 3));
     assert_int_equal(log_finish(writer), ENOSPC);
 }
@@ -283,7 +283,7 @@ static void limit_files(rlim_t bytes)
  * No torn event is left, and nothing more is written, even where there is space again. */
 static void fill(const char *name, rlim_t limit, bool flush)
 {
-    struct log_writer *writer = log_create(in_folder(name), true);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder(name), true));
     int64_t bytes = 0;
     int count = 0;
     signal(SIGXFSZ, SIG_IGN);
@@ -330,7 +330,7 @@ static void test_large_events(void **state)
 {
     (void) state;
     static unsigned char data[3000000];
-    struct log_writer *writer = log_create(in_folder("large"), true);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder("large"), true));
     for (size_t i = 0; i < sizeof data; i++)
         data[i] = (unsigned char) (i * i >> 7);
     assert_true(append_event(to_writer, writer, 1));
@@ -349,14 +349,14 @@ static void test_large_events(void **state)
         lcm_eventlog_free_event(event);
     }
     lcm_eventlog_destroy(log);
-    writer = log_create(in_folder("large"), true);
+    writer = log_begin(output_open_in_place(in_folder("large"), true));
     limit_files(1000000);
     assert_true(append_event(to_writer, writer, 1));
     assert_false(log_append_large(writer, 5, "CAMERA", 6, sizeof data, from_memory, data));
     limit_files(RLIM_INFINITY);
     assert_int_equal(log_finish(writer), EFBIG);
     assert_int_equal(size_of("large"), bytes_of_event(1));
-    writer = log_create(in_folder("large"), true);
+    writer = log_begin(output_open_in_place(in_folder("large"), true));
     assert_true(append_event(to_writer, writer, 1));
     assert_false(log_append_large(writer, 5, "CAMERA", 6, sizeof data, fails_later, data));
     assert_int_equal(log_finish(writer), ENODATA);
@@ -367,7 +367,7 @@ static void test_large_events(void **state)
 
 static struct log_writer *begin_log(const char *name)
 {
-    struct log_writer *writer = log_create(in_folder(name), true);
+    struct log_writer *writer = log_begin(output_open_in_place(in_folder(name), true));
     assert_true(append_event(to_writer, writer, 2));
     assert_true(log_flush(writer) && log_check(writer));
     return writer;
@@ -406,7 +406,7 @@ static void test_a_truncated_file_gets_no_hole(void **state)
     (void) state;
     enum { BEFORE = 400, AFTER = 300 };
     for (int full = 0; full < 2; full++) {
-        struct log_writer *writer = log_create(in_folder("copied"), true);
+        struct log_writer *writer = log_begin(output_open_in_place(in_folder("copied"), true));
         int64_t bytes = 0;
         for (int i = 0; i < BEFORE; i++)
             assert_true(append_event(to_writer, writer, i));

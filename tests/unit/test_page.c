@@ -745,6 +745,51 @@ static void verdicts_of_a_scene_are_counted(void **state)
     assert_int_equal(logged_query_pairs(&scene), 0);
 }
 
+static void ignore(unsigned a, unsigned b)
+{
+    scene.ignored[scene.ignored_count / 2][0] = a;
+    scene.ignored[scene.ignored_count / 2][1] = b;
+    scene.ignored_count += 2;
+}
+
+static void ignored_pairs_are_not_counted(void **state)
+{
+    int64_t count[FMB_OVERLAPPING + 1];
+    (void) state;
+    make_scene(QUERY_PAIRS_ALL, 5); /* (0,1) to (0,4), (1,2) (1,3) (1,4), (2,3) ... */
+    scene.first_pair = 1;
+    result_then.names_pairs = true;
+    result_then.end_pair = 8;
+    add_verdict(&result_then, 0, 2, FMB_TOUCHING);
+    add_verdict(&result_then, 0, 3, 0); /* not decided */
+    assert_int_equal(replayed_decided(&scene, &result_then), 6);
+    ignore(0, 1); /* before the first pair */
+    ignore(4, 3); /* after the last one */
+    ignore(2, 4);
+    assert_int_equal(replayed_decided(&scene, &result_then), 6);
+    ignore(1, 4);
+    ignore(2, 1);
+    ignore(1, 2);
+    ignore(2, 3); /* the last one of the result */
+    assert_int_equal(replayed_decided(&scene, &result_then), 3);
+    replayed_count(&scene, &result_then, count);
+    assert_int_equal(count[FMB_SEPARATED], 2);
+    assert_int_equal(count[FMB_TOUCHING], 1);
+    result_then.status = FMB_BUSY;
+    assert_int_equal(replayed_decided(&scene, &result_then), 0);
+
+    make_scene(QUERY_PAIRS_ACROSS, 5); /* (0,2) (0,3) (0,4) (1,2) (1,3) (1,4) */
+    scene.split = 2;
+    result_then.names_pairs = true;
+    result_then.end_pair = 6;
+    ignore(0, 1); /* not across */
+    ignore(3, 4);
+    assert_int_equal(replayed_decided(&scene, &result_then), 6);
+    ignore(4, 1);
+    ignore(0, 2);
+    assert_int_equal(replayed_decided(&scene, &result_then), 4);
+}
+
 /* The last pair differs, the one before it touches. */
 static void differing_pairs_are_kept_first(void **state)
 {
@@ -819,6 +864,7 @@ int main(void)
         cmocka_unit_test(pairs_not_named_are_separated),
         cmocka_unit_test(pairs_across_are_counted_across),
         cmocka_unit_test(verdicts_of_a_scene_are_counted),
+        cmocka_unit_test(ignored_pairs_are_not_counted),
         cmocka_unit_test(differing_pairs_are_kept_first),
         cmocka_unit_test(results_that_do_not_match_the_query_are_harmless),
     };

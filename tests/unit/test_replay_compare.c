@@ -346,6 +346,21 @@ static void test_bounds_of_gaps(void **state)
         }
 }
 
+/* Of bodies that are small and near the origin. */
+static void test_a_tolerance_is_relative_to_the_largest_coordinate(void **state)
+{
+    const struct pair_query query = pair(3, 0.5, 0, 0);
+    struct pair_result then = answer(&query);
+    (void) state;
+    set_gap(&then, 0, 1e-3);
+    set_gap(&then, 1, 1e-3);
+    then.answer.gap.witness[1][2] = 1e-3;
+    struct pair_result now = then;
+    now.answer.gap.bounds[1] += 1e-8;
+    expect_same(2e-5, &query, &then, &now);
+    expect_kind(5e-6, &query, &then, &now, DIFFERENT_GAP);
+}
+
 /* Nearest points need not be the only ones. */
 static void test_with_a_tolerance_witness_points_may_differ(void **state)
 {
@@ -930,6 +945,7 @@ int main(void)
         TEST(ends_of_intervals),
         TEST(ends_of_boxes),
         TEST(bounds_of_gaps),
+        TEST(a_tolerance_is_relative_to_the_largest_coordinate),
         TEST(with_a_tolerance_witness_points_may_differ),
         TEST(with_a_tolerance_certificates_may_differ),
         TEST(boxes_of_another_dimension),

@@ -36,9 +36,11 @@ static char *paths[] = {path};
 
 static struct replay_options options(void)
 {
+    static const struct output_rules rules;
     return (struct replay_options){.log = paths,
                                    .log_count = 1,
                                    .prefix = "",
+                                   .write_golden = {.kind = OUTPUT_LOG, .rules = &rules},
                                    .from = -INFINITY,
                                    .to = INFINITY,
                                    .frames = 1000};
@@ -915,12 +917,12 @@ static void check_golden(void)
     struct replay_options with = options();
     assert_non_null(mkdtemp(folder));
     snprintf(golden, sizeof golden, "%s/golden", folder);
-    with.write_golden = golden;
+    with.write_golden.path = golden;
     struct replay_report report = replay_report_of(&with);
     assert_true(report.good);
     const int64_t queries = tally_queries(&report.tally);
     replay_report_free(&report);
-    with.write_golden = NULL;
+    with.write_golden.path = NULL;
     with.golden = golden;
     report = replay_report_of(&with);
     assert_true(report.good);

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "svg.h"
+#include "view.h"
 
 #include <float.h>
 #include <math.h>
@@ -275,10 +276,30 @@ static void steps_share_a_view(void **state)
     svg_close(svg);
 }
 
+/* By 90 degrees: x becomes y, in 3D about the z axis. */
+static void turned_bodies_are_drawn_turned(void **state)
+{
+    (void) state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scene_body body;
+        make_body(&body, 1, dim, FMB_CUBOID, 2, 10);
+        body.orientation_count = dim == 2 ? 2 : 4;
+        body.orientation[0] = body.orientation[body.orientation_count - 1] = 3;
+        body.velocity[1] = 4;
+        const struct outline outline = outline_make(&body, 0, 0.5);
+        const double end[2][2] = {{10, 14}, {8, 12}}; /* of x and y, 2 farther in y */
+        for (int component = 0; component < 2; component++)
+            for (int axis = 0; axis < 2; axis++)
+                assert_true(fabs(outline.corner[1 << component][axis] - end[component][axis]) <
+                            1e-12);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shows_frames_ids_motion_and_boxes),
+        cmocka_unit_test(turned_bodies_are_drawn_turned),
         cmocka_unit_test(any_numbers_can_be_drawn),
         cmocka_unit_test(infinite_boxes_and_sums_can_be_drawn),
         cmocka_unit_test(empty_scenes_and_no_scene_can_be_drawn),

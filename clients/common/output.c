@@ -1,0 +1,270 @@
+#include "output.h"
+
+#include "allocate.h"
+#include "complain.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Messages -------------------------------------------------------------------------------- */
+
+static const char *remedy(int error)
+{
+    switch (error) {
+    case EEXIST: return "; --force overwrites it";
+    case ENOSPC:
+    case EDQUOT: return "; free space there, or write elsewhere";
+    case EFBIG: return "; no larger file is allowed there: write several";
+    default: return "";
+    }
+}
+
+void output_complain(const char *path, int error)
+{
+    if (error == ESTALE)
+        complain("%s: deleted or truncated by another program", path);
+    else
+        complain("%s: %s%s", path, strerror(error), remedy(error));
+}
+
+/* ---- What exists ----------------------------------------------------------------------------- */
+
+enum { BEGIN_MAX = 64 };
+
+/* The first bytes of a kind that a file of this kind may replace. */
+static const struct {
+    const char *name, *begin;
+} kinds[] = {
+    [OUTPUT_PICTURE] = {"a picture (SVG)", "<svg "},
+    [OUTPUT_PAGE] = {"a page (HTML)", "<!DOCTYPE html>"},
+    [OUTPUT_REPORT] = {"a JUnit report",
+                       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites "},
+    [OUTPUT_MESH] = {"a mesh (PLY)", "ply\n"},
+};
+
+static bool is_same(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+/* Returns standard output or standard error if that is the file, otherwise -1. */
+static int standard_fd(const struct stat *file)
+{
+    struct stat standard;
+    for (int fd = STDOUT_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fstat(fd, &standard) == 0 && is_same(&standard, file))
+            return fd;
+    return -1;
+}
+
+static bool is_at(const char *path, const struct stat *file)
+{
+    struct stat found;
+    return path && stat(path, &found) == 0 && is_same(&found, file);
+}
+
+static bool is_input(const struct output_rules *rules, const struct stat *file)
+{
+    for (int i = 0; i < rules->input_count; i++)
+        if (is_at(rules->input[i], file))
+            return true;
+    return is_at(rules->other_input, file);
+}
+
+static bool is_of_kind(const char *path, const char *begin)
+{
+    char found[BEGIN_MAX];
+    const size_t size = strlen(begin);
+    FILE *file = fopen(path, "rb");
+    const bool same =
+        file && fread(found, 1, size, file) == size && memcmp(found, begin, size) == 0;
+    if (file)
+        fclose(file);
+    return same;
+}
+
+bool output_check(const struct output_options *options)
+{
+    struct stat old;
+    if (!options->path || stat(options->path, &old) != 0 || !S_ISREG(old.st_mode))
+        return true;
+    if (is_input(options->rules, &old)) {
+        complain("%s: this command reads it: write to another file", options->path);
+        return false;
+    }
+    if (options->rules->force || old.st_size == 0 || standard_fd(&old) >= 0)
+        return true;
+    if (options->kind == OUTPUT_LOG) {
+        output_complain(options->path, EEXIST);
+        return false;
+    }
+    if (is_of_kind(options->path, kinds[options->kind].begin))
+        return true;
+    complain("%s: exists and is not %s; --force overwrites it", options->path,
+             kinds[options->kind].name);
+    return false;
+}
+
+/* ---- Temporary files ------------------------------------------------------------------------- */
+
+/* Those that have no other name yet. */
+static struct output *volatile unfinished;
+
+static void remove_temporaries(void)
+{
+    for (const struct output *output = unfinished; output; output = output->next)
+        unlink(output->temporary);
+}
+
+static void on_signal(int number)
+{
+    remove_temporaries();
+    raise(number); /* now with its default action */
+}
+
+/* Removes the temporary files when the process ends. With SIGXFSZ ignored, a file that may not grow
+ * is an error. */
+static void prepare_for_end(void)
+{
+    static const int ends[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
+    static bool prepared;
+    struct sigaction action;
+    if (prepared)
+        return;
+    prepared = true;
+    atexit(remove_temporaries);
+    signal(SIGXFSZ, SIG_IGN);
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        if (sigaction(ends[i], NULL, &action) != 0 || action.sa_handler != SIG_DFL)
+            continue;
+        action.sa_handler = on_signal;
+        action.sa_flags = (int) SA_RESETHAND;
+        sigaction(ends[i], &action, NULL);
+    }
+}
+
+char *output_beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash && name[0] != '/' ? (size_t) (slash - path) + 1 : 0;
+    char *out = allocate(folder + strlen(name) + 1, 1);
+    memcpy(out, path, folder);
+    strcpy(out + folder, name);
+    return out;
+}
+
+/* The file that a path names after its symbolic links, which may not exist. The system has followed
+ * them before, so their number is finite. The caller frees it. */
+static char *follow_links(const char *path)
+{
+    char link[PATH_MAX], *at = output_beside("", path);
+    ssize_t size;
+    while ((size = readlink(at, link, sizeof link - 1)) >= 0) {
+        link[size] = '\0';
+        char *next = output_beside(at, link);
+        free(at);
+        at = next;
+    }
+    return at;
+}
+
+/* Registered before it exists, so that a signal finds it. */
+static int open_temporary(struct output *output, mode_t mode)
+{
+    prepare_for_end();
+    output->target = follow_links(output->path);
+    output->temporary = output_beside(output->target, ".fmb-XXXXXX");
+    output->next = unfinished;
+    unfinished = output;
+    const int fd = mkstemp(output->temporary);
+    if (fd >= 0)
+        fchmod(fd, mode);
+    return fd;
+}
+
+static mode_t mode_of_new_files(void)
+{
+    const mode_t mask = umask(0);
+    umask(mask);
+    return 0666 & ~mask;
+}
+
+static void free_output(struct output *output)
+{
+    struct output *volatile *at = &unfinished;
+    while (*at && *at != output)
+        at = &(*at)->next;
+    if (*at)
+        *at = output->next;
+    free(output->target);
+    free(output->temporary);
+    free(output);
+}
+
+/* ---- Writing --------------------------------------------------------------------------------- */
+
+static int open_fd(struct output *output)
+{
+    struct stat old;
+    if (stat(output->path, &old) != 0)
+        return open_temporary(output, mode_of_new_files());
+    const int standard = standard_fd(&old);
+    if (standard >= 0)
+        return dup(standard);
+    if (!S_ISREG(old.st_mode))
+        return open(output->path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    return access(output->path, W_OK) == 0 ? open_temporary(output, old.st_mode & 0777) : -1;
+}
+
+bool output_open(const struct output_options *options, struct output **out)
+{
+    *out = NULL;
+    if (!options->path || !output_check(options))
+        return !options->path;
+    fflush(stdout); /* the file may be standard output */
+    struct output *output = allocate(1, sizeof *output);
+    output->path = options->path;
+    const int fd = open_fd(output);
+    output->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    if (output->file) {
+        *out = output;
+        return true;
+    }
+    output_complain(options->path, errno);
+    free_output(output);
+    return false;
+}
+
+bool output_close(struct output *output, bool keep)
+{
+    if (!output)
+        return true;
+    const bool written = !ferror(output->file);
+    const bool kept = fclose(output->file) == 0 && written && keep &&
+                      (!output->temporary || rename(output->temporary, output->target) == 0);
+    if (keep && !kept)
+        output_complain(output->path, errno);
+    if (output->temporary && !kept)
+        unlink(output->temporary);
+    free_output(output);
+    return kept || !keep;
+}
+
+int output_open_in_place(const char *path, bool force)
+{
+    struct stat old;
+    const int fd = open(path, O_WRONLY | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST)
+        return fd;
+    if (!force && stat(path, &old) == 0 && S_ISREG(old.st_mode) && old.st_size > 0) {
+        errno = EEXIST;
+        return -1;
+    }
+    return open(path, O_WRONLY | O_APPEND | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
+}

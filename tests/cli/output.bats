@@ -1,0 +1,135 @@
+# The files that commands write: no input is overwritten, no file of another kind and no log without
+# --force, and nothing is left of what failed. The rules themselves: tests/unit/test_output.c.
+
+load ran
+
+setup() {
+    local build
+    build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
+    FMB=$build/fmb
+    cd "$BATS_TEST_TMPDIR" || return
+    cp "$BATS_TEST_DIRNAME/../logs/arm.log" a.log
+    cp a.log b.log
+    printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 3' > a.obj
+    cp a.obj b.obj
+    cat > scene.json <<< '{"dim": 2, "bodies": [{"id": 1, "shape": "box", "size": [1,1]}, {"id": 2, "shape": "box", "size": [2,2]}]}'
+    mkdir kept
+    cp -- *.* kept
+}
+
+# Each option that writes a file, in a command that reads these files.
+commands=('query --local scene.json --svg' 'mesh a.obj b.obj --ply' 'mesh a.obj b.obj --html' 'replay a.log b.log --html'
+    'replay a.log b.log --junit' 'replay a.log b.log --write-golden' 'log cut a.log b.log -o')
+
+# unchanged: the files are those of the beginning.
+unchanged() {
+    diff -r --exclude kept --exclude 'separate-stderr-*' . kept
+}
+
+@test "no option overwrites a file that the command reads, not by force" {
+    for command in "${commands[@]}"; do
+        for file in $(grep -oE '[a-z]+\.(json|obj|log)' <<< "$command"); do
+            ln -s "$file" link
+            ln "$file" hard
+            for path in "$file" "./$file" "$PWD/$file" link hard; do
+                for force in '' --force; do
+                    # shellcheck disable=SC2086
+                    run --separate-stderr "$FMB" $command "$path" $force
+                    ended 2
+                    is ''
+                    said "fmb: $path: this command reads it: write to another file"
+                done
+            done
+            rm link hard
+            unchanged
+        done
+    done
+    run --separate-stderr "$FMB" query --local --svg scene.json --force < scene.json
+    ended 2
+    said 'fmb: scene.json: this command reads it: write to another file'
+    "$FMB" replay --write-golden golden a.log > text
+    cp golden before
+    for option in --write-golden --html --junit; do
+        run --separate-stderr "$FMB" replay --golden golden a.log $option golden --force
+        ended 2
+        cmp golden before
+    done
+}
+
+@test "a file of another kind, or a log, is overwritten by force alone" {
+    for command in "${commands[@]}"; do
+        for old in kept/b.log kept/scene.json; do
+            cp "$old" out
+            # shellcheck disable=SC2086
+            run --separate-stderr "$FMB" $command out
+            ended 2
+            is ''
+            [[ $stderr == 'fmb: out: '*xists*'; --force overwrites it' ]]
+            cmp out "$old"
+            # shellcheck disable=SC2086
+            "$FMB" $command out --force > text || { echo "$command"; false; }
+            ! cmp -s out "$old"
+            rm out text
+            unchanged
+        done
+    done
+}
+
+@test "a page, a picture, a report and a mesh replace their like; an empty file is replaced" {
+    for command in "${commands[@]}"; do
+        : > out
+        for time in 1 2; do
+            if [[ $time == 2 && $command =~ golden|cut ]]; then break; fi
+            # shellcheck disable=SC2086
+            "$FMB" $command out > text || { echo "$command"; false; }
+            [ -s out ]
+        done
+        rm out text
+        unchanged
+    done
+}
+
+@test "golden results are written again by force" {
+    "$FMB" replay --write-golden golden a.log > text
+    cp golden before
+    "$FMB" replay --write-golden golden --force a.log > text
+    cmp golden before
+}
+
+@test "what fails leaves the old file as it was, and no other" {
+    mkdir there
+    cp a.log there/cut.log
+    dd if=a.log of=short.log bs=1000 count=60 status=none
+    # More than the 1 KiB that a file may have.
+    run bash -c 'ulimit -f 1; "$0" log cut b.log -o there/cut.log --force' "$FMB"
+    ended 2
+    [[ $output == 'fmb: there/cut.log: File too large'* ]]
+    run bash -c 'ulimit -f 1; "$0" replay b.log --write-golden there/cut.log --force' "$FMB"
+    ended 2
+    run bash -c 'ulimit -f 1; "$0" mesh a.obj b.obj --html there/cut.log --force' "$FMB"
+    ended 1
+    cmp there/cut.log a.log
+    [ "$(ls -A there)" = cut.log ]
+    # Input that is no scene leaves the picture.
+    "$FMB" query --local scene.json --svg there/cut.log --force > text
+    cp there/cut.log picture
+    run "$FMB" query --local --svg there/cut.log <<< '{"dim": 4}'
+    ended 2
+    cmp there/cut.log picture
+    [ "$(ls -A there)" = cut.log ]
+}
+
+@test "standard output and pipes are written directly, after the answers" {
+    "$FMB" query --local scene.json --json --svg /dev/stdout > text
+    head -n 1 text | jq -e .pairs > pairs
+    sed -n 2p text | grep -q '^<svg '
+    "$FMB" query --local scene.json --json --svg /dev/stdout | cat | cmp - text
+    "$FMB" replay --write-golden golden a.log > said
+    mkfifo fifo
+    "$FMB" replay --write-golden fifo a.log > said &
+    cmp fifo golden
+    wait $!
+    [ -p fifo ]
+    "$FMB" log cut a.log -o /dev/null > said
+    [ -c /dev/null ]
+}

@@ -1,0 +1,333 @@
+/* Files that commands write: what stays, what is replaced, and what is left when a command ends
+ * early. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "output.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/test_output.XXXXXX";
+
+static int setup(void **state)
+{
+    (void) state;
+    strcpy(folder + strlen(folder) - 6, "XXXXXX");
+    return !mkdtemp(folder) || chdir(folder) != 0;
+}
+
+static int teardown(void **state)
+{
+    (void) state;
+    DIR *dir = opendir(folder);
+    for (struct dirent *entry; (entry = readdir(dir));)
+        remove(entry->d_name);
+    closedir(dir);
+    return chdir("/") != 0 || rmdir(folder) != 0;
+}
+
+static int count_files(void)
+{
+    int count = -2; /* . and .. */
+    DIR *dir = opendir(folder);
+    while (readdir(dir))
+        count++;
+    closedir(dir);
+    return count;
+}
+
+static void put_file(const char *name, const char *text)
+{
+    FILE *file = fopen(name, "wb");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void assert_file(const char *name, const char *text)
+{
+    char found[64] = "";
+    FILE *file = fopen(name, "rb");
+    assert_non_null(file);
+    found[fread(found, 1, sizeof found - 1, file)] = '\0';
+    fclose(file);
+    assert_string_equal(found, text);
+}
+
+/* A picture at this path, with these inputs. */
+static struct output *open_picture(const char *path, bool force, const char *input)
+{
+    const struct output_rules rules = {.force = force, .other_input = input};
+    struct output *output;
+    const bool opened =
+        output_open(&(struct output_options){path, OUTPUT_PICTURE, &rules}, &output);
+    assert_int_equal(opened, output != NULL);
+    return output;
+}
+
+static void write_picture(const char *path, bool force)
+{
+    struct output *output = open_picture(path, force, NULL);
+    assert_non_null(output);
+    fputs("<svg new", output->file);
+    assert_true(output_close(output, true));
+    assert_file(path, "<svg new");
+}
+
+static mode_t mode_of(const char *path)
+{
+    struct stat file;
+    assert_int_equal(stat(path, &file), 0);
+    return file.st_mode & 0777;
+}
+
+/* ---- What exists ---- */
+
+static void test_no_file_is_wanted(void **state)
+{
+    struct output *output;
+    (void) state;
+    assert_true(output_open(&(struct output_options){.kind = OUTPUT_PAGE}, &output));
+    assert_null(output);
+    assert_true(output_close(output, true));
+}
+
+static void test_a_picture_replaces_nothing_an_empty_file_and_a_picture(void **state)
+{
+    (void) state;
+    write_picture("new", false);
+    put_file("empty", "");
+    write_picture("empty", false);
+    put_file("picture", "<svg old");
+    write_picture("picture", false);
+    assert_int_equal(count_files(), 3);
+}
+
+static void test_another_kind_is_replaced_by_force(void **state)
+{
+    static const char *const others[] = {"{\"dim\": 3}", "<sv", "<svgx", " <svg ", "x"};
+    (void) state;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        put_file("other", others[i]);
+        assert_null(open_picture("other", false, NULL));
+        assert_file("other", others[i]);
+        write_picture("other", true);
+    }
+    assert_int_equal(count_files(), 1);
+}
+
+static void test_each_kind_replaces_its_like(void **state)
+{
+    static const char *const text[] = {
+        [OUTPUT_PICTURE] = "<svg x",
+        [OUTPUT_PAGE] = "<!DOCTYPE html>\n<html>",
+        [OUTPUT_REPORT] = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites n",
+        [OUTPUT_MESH] = "ply\nformat",
+        [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
+    const struct output_rules rules = {.force = false}, force = {.force = true};
+    (void) state;
+    for (int kind = OUTPUT_PICTURE; kind <= OUTPUT_LOG; kind++)
+        for (int old = OUTPUT_PICTURE; old <= OUTPUT_LOG; old++) {
+            put_file("file", text[old]);
+            assert_int_equal(
+                output_check(&(struct output_options){"file", (enum output_kind) kind, &rules}),
+                kind == old && kind != OUTPUT_LOG);
+            assert_true(
+                output_check(&(struct output_options){"file", (enum output_kind) kind, &force}));
+        }
+}
+
+static void test_an_input_is_never_replaced(void **state)
+{
+    (void) state;
+    for (int force = 0; force < 2; force++) {
+        put_file("input", "<svg input");
+        assert_int_equal(symlink("input", "symbolic"), 0);
+        assert_int_equal(link("input", "hard"), 0);
+        const char *const path[] = {"input", "./input", "symbolic", "hard"};
+        for (size_t i = 0; i < 4; i++)
+            for (size_t k = 0; k < 4; k++)
+                assert_null(open_picture(path[i], force, path[k]));
+        assert_file("input", "<svg input");
+        assert_int_equal(unlink("symbolic") + unlink("hard"), 0);
+    }
+    /* One of several. */
+    char missing[] = "missing", found[] = "input", *const input[] = {missing, found};
+    const struct output_rules rules = {.force = true, .input = input, .input_count = 2};
+    assert_false(output_check(&(struct output_options){"input", OUTPUT_LOG, &rules}));
+}
+
+/* ---- Links, modes, and what is no regular file ---- */
+
+static void test_symbolic_links_stay(void **state)
+{
+    char target[64];
+    (void) state;
+    assert_int_equal(mkdir("folder", 0777), 0);
+    put_file("folder/there", "<svg old");
+    assert_int_equal(symlink("there", "folder/link"), 0);
+    assert_int_equal(symlink("folder/link", "link"), 0);
+    assert_int_equal(symlink("folder/absent", "dangling"), 0);
+    write_picture("link", false);
+    write_picture("dangling", false);
+    assert_file("folder/there", "<svg new");
+    assert_file("folder/absent", "<svg new");
+    assert_int_equal(readlink("link", target, sizeof target), 11);
+    assert_int_equal(readlink("folder/link", target, sizeof target), 5);
+    assert_int_equal(count_files(), 3);
+    assert_int_equal(unlink("folder/there") + unlink("folder/absent") + unlink("folder/link"), 0);
+}
+
+static void test_modes(void **state)
+{
+    const mode_t mask = umask(027);
+    (void) state;
+    write_picture("new", false);
+    assert_int_equal(mode_of("new"), 0640);
+    assert_int_equal(umask(mask), 027);
+    put_file("old", "<svg old");
+    assert_int_equal(chmod("old", 0604), 0);
+    write_picture("old", false);
+    assert_int_equal(mode_of("old"), 0604);
+}
+
+static void test_what_cannot_be_opened(void **state)
+{
+    (void) state;
+    assert_null(open_picture("no/such/folder", true, NULL));
+    assert_null(open_picture(".", true, NULL));
+    struct output *output = open_picture("", true, NULL);
+    assert_false(output_close(output, true));
+    assert_int_equal(count_files(), 0);
+}
+
+static void test_a_device_is_written_directly(void **state)
+{
+    struct stat device;
+    (void) state;
+    struct output *output = open_picture("/dev/full", false, NULL);
+    assert_non_null(output);
+    fputs("<svg ", output->file);
+    assert_false(output_close(output, true));
+    assert_int_equal(stat("/dev/full", &device), 0);
+    assert_true(S_ISCHR(device.st_mode));
+}
+
+/* ---- The end ---- */
+
+static void test_what_is_dropped_leaves_the_old_file(void **state)
+{
+    (void) state;
+    for (int old = 0; old < 2; old++) {
+        if (old)
+            put_file("file", "<svg old");
+        struct output *output = open_picture("file", false, NULL);
+        fputs("<svg new", output->file);
+        assert_int_equal(count_files(), 1 + old);
+        assert_true(output_close(output, false));
+        assert_int_equal(count_files(), old);
+    }
+    assert_file("file", "<svg old");
+}
+
+/* Runs end() in a process that is writing a file and has another one open. Returns its status. */
+static int status_of(void (*end)(struct output *output))
+{
+    fflush(NULL); /* else the child writes it once more */
+    const pid_t child = fork();
+    if (child == 0) {
+        struct output *first = open_picture("file", false, NULL);
+        struct output *second = open_picture("second", false, NULL);
+        fputs("<svg new", first->file);
+        fflush(first->file);
+        end(second);
+        _exit(99);
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+static int ended_by;
+
+static void end_by_signal(struct output *output)
+{
+    (void) output;
+    raise(ended_by);
+}
+
+static void end_by_exit(struct output *output)
+{
+    output_close(output, true);
+    exit(1); /* as allocate() */
+}
+
+static void end_by_limit(struct output *output)
+{
+    const struct rlimit limit = {10, 10};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    fputs("more than ten bytes", output->file);
+    exit(output_close(output, true) ? 0 : 1);
+}
+
+static void test_nothing_is_left_when_a_process_ends(void **state)
+{
+    static const int signals[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
+    (void) state;
+    put_file("file", "<svg old");
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        ended_by = signals[i];
+        const int status = status_of(end_by_signal);
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == ended_by);
+        assert_int_equal(count_files(), 1);
+    }
+    const int limited = status_of(end_by_limit);
+    assert_true(WIFEXITED(limited) && WEXITSTATUS(limited) == 1);
+    assert_int_equal(count_files(), 1);
+    const int ended = status_of(end_by_exit);
+    assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 1);
+    assert_int_equal(count_files(), 2); /* the second was closed */
+    assert_file("file", "<svg old");
+}
+
+static void test_ignored_signals_stay_ignored(void **state)
+{
+    (void) state;
+    signal(SIGHUP, SIG_IGN); /* as nohup does */
+    ended_by = SIGHUP;
+    const int status = status_of(end_by_signal);
+    signal(SIGHUP, SIG_DFL);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 99);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_no_file_is_wanted, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_a_picture_replaces_nothing_an_empty_file_and_a_picture,
+                                        setup, teardown),
+        cmocka_unit_test_setup_teardown(test_another_kind_is_replaced_by_force, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_each_kind_replaces_its_like, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_an_input_is_never_replaced, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_symbolic_links_stay, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_modes, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_what_cannot_be_opened, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_a_device_is_written_directly, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_nothing_is_left_when_a_process_ends, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_ignored_signals_stay_ignored, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_what_is_dropped_leaves_the_old_file, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
