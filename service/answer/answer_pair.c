@@ -229,6 +229,7 @@ static void begin_scene(struct pair_job *job)
     const struct fmb_scene scene = {.placements = job->placement,
                                     .placement_count = 2,
                                     .duration = query->duration,
+                                    .instant = query->duration == 0,
                                     .method = method,
                                     .contacts = true,
                                     .boxes = query->want & QUERY_WANT_BOX && method->boxes,

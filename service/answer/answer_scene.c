@@ -213,15 +213,19 @@ static bool check_counts(struct check_context *context, const struct scene_query
     return true;
 }
 
-/* The engine's scene, without its placements. On input: a query whose counts and method were
+/* The engine's scene, without its placements. On input: a query whose counts, method and which were
  * checked. Ignored pairs of a listed scene are left out, since no listed pair may be ignored. */
 static struct fmb_scene scene_of(const struct scene_query *query)
 {
+    static const enum fmb_pairs which[] = {[QUERY_PAIRS_LISTED] = FMB_PAIRS_LISTED,
+                                           [QUERY_PAIRS_ALL] = FMB_PAIRS_ALL,
+                                           [QUERY_PAIRS_ACROSS] = FMB_PAIRS_ACROSS};
     const bool listed = query->which == QUERY_PAIRS_LISTED;
     return (struct fmb_scene){.placement_count = (size_t) query->placement_count,
                               .duration = query->duration,
+                              .instant = query->duration == 0,
                               .method = fmb_method_by_number(query->method),
-                              .which = (enum fmb_pairs) query->which,
+                              .which = which[query->which],
                               .split = (size_t) query->split,
                               .pairs = query->pair,
                               .pair_count = (size_t) query->index_count / 2,
