@@ -533,8 +533,10 @@ static void test_bodies_of_several_frames(void **state)
     (void) state;
     const double distance[] = {-100, 0, 1.75, 2, 1000};
     for (int i = 0; i < 5; i++)
-        for (int method = 0; method <= 4; method++) {
+        for (int k = 0; k < 10; k++) {
             struct pair_query query = gratings(7, 2, distance[i]);
+            const int method = k / 2;
+            query.duration = k % 2;
             query.method = method;
             if (fmb_method_by_number(method)->certain)
                 query.want |= QUERY_WANT_GAP;
