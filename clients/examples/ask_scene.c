@@ -32,7 +32,6 @@ int main(void)
     }
     const struct fmb_client_scene scene = {.placements = placement,
                                            .placement_count = 4,
-                                           .which = FMB_CLIENT_ALL,
                                            .duration = 1,
                                            .want = FMB_CLIENT_WANT_TIMES};
     char why[FMB_CLIENT_WHY_MAX];

@@ -51,7 +51,6 @@ int main(void)
         neighbours[i][0] = i, neighbours[i][1] = i + 1;
     const struct fmb_client_scene scene = {.placements = placement,
                                            .placement_count = BODIES,
-                                           .which = FMB_CLIENT_ALL,
                                            .ignored = (const unsigned(*)[2]) neighbours,
                                            .ignored_count = LINKS - 1};
     struct fmb_client *client = fmb_client_open(NULL, why, sizeof why);

@@ -60,6 +60,7 @@ int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_pla
                                            .pairs = both,
                                            .pair_count = 1,
                                            .duration = duration,
+                                           .instant = duration == 0,
                                            .want = want};
     *out = (struct fmb_client_answer){.b = 1, .text = ""};
     out->status = query(client, &scene, true, keep_answer, client);

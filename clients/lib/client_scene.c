@@ -117,14 +117,26 @@ static bool check_placement(struct scene_error *error, const struct fmb_client_s
            check_numbers(error, i, "velocity", placement->velocity, placement->dim);
 }
 
-static bool check_placements(struct scene_error *error, const struct fmb_client_scene *scene)
+static bool is_zero(const double *numbers, int count)
 {
-    if (scene->placement_count > INT_MAX)
-        return refuse(error, FMB_OVER_LIMIT, "placement_count");
-    for (size_t i = 0; i < scene->placement_count; i++)
-        if (!check_placement(error, scene, i))
+    for (int i = 0; i < count; i++)
+        if (numbers[i] != 0)
             return false;
     return true;
+}
+
+static bool check_placements(struct scene_error *error, const struct fmb_client_scene *scene)
+{
+    bool moving = false;
+    if (scene->placement_count > INT_MAX)
+        return refuse(error, FMB_OVER_LIMIT, "placement_count");
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        if (!check_placement(error, scene, i))
+            return false;
+        moving = moving || !is_zero(scene->placements[i].velocity, scene->placements[i].dim);
+    }
+    return (scene->duration == 0 ? scene->instant || !moving : !scene->instant) ||
+           refuse(error, FMB_BAD_DURATION, "duration");
 }
 
 static bool check_list(struct scene_error *error, const struct fmb_client_scene *scene,
@@ -140,15 +152,15 @@ static bool check_list(struct scene_error *error, const struct fmb_client_scene 
 static bool check_pairs(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     const int which = (int) scene->which;
-    if (which < FMB_CLIENT_LISTED || which > FMB_CLIENT_ACROSS)
+    if (which < FMB_CLIENT_ALL || which > FMB_CLIENT_ACROSS)
         return refuse(error, FMB_UNKNOWN_WANT, "which");
-    if (which == FMB_CLIENT_ACROSS && scene->split > scene->placement_count)
+    if (scene->split > (which == FMB_CLIENT_ACROSS ? scene->placement_count : 0))
         return refuse(error, FMB_BAD_PAIR, "split");
-    if (which == FMB_CLIENT_LISTED && scene->ignored_count > 0)
-        return refuse(error, FMB_BAD_PAIR, "ignored_count");
+    if (which == FMB_CLIENT_LISTED ? scene->ignored_count > 0 : scene->pair_count > 0)
+        return refuse(error, FMB_WRONG_COUNT,
+                      which == FMB_CLIENT_LISTED ? "ignored_count" : "pair_count");
     return check_list(error, scene, "ignored", scene->ignored, scene->ignored_count) &&
-           (which != FMB_CLIENT_LISTED ||
-            check_list(error, scene, "pairs", scene->pairs, scene->pair_count));
+           check_list(error, scene, "pairs", scene->pairs, scene->pair_count);
 }
 
 static bool check_settings(struct scene_error *error, const struct fmb_client_scene *scene)
@@ -199,14 +211,6 @@ static size_t write_frames(const struct fmb_client_placement *of, unsigned char 
             writer_double(&writer, k < dim ? frame->origin[k] : frame->components[k - dim]);
     }
     return size;
-}
-
-static bool is_zero(const double *numbers, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (numbers[i] != 0)
-            return false;
-    return true;
 }
 
 void client_scene_placement(const struct fmb_client_placement *of, unsigned char *geometry,

@@ -7,7 +7,7 @@
  *         {.body_id = 2, .dim = 3, .frames = &cube, .frame_count = 1, .position = {0.5, 0, 0},
  *          .orientation_count = 4, .orientation = {1, 0, 0, 1}}};
  *     struct fmb_client_scene scene = {
- *         .placements = placement, .placement_count = 2, .which = FMB_CLIENT_ALL, .duration = 1};
+ *         .placements = placement, .placement_count = 2, .duration = 1};
  *     char why[FMB_CLIENT_WHY_MAX];
  *     struct fmb_client *client = fmb_client_open(NULL, why, sizeof why);
  *     fmb_client_query(client, &scene, sink, NULL);
@@ -103,7 +103,7 @@ struct fmb_client_frame {
     int shape;                             /* enum fmb_shape */
     double origin[FMB_DIM_MAX];            /* of a box: its centre */
     double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box: [axis], its full
-                                              size */
+                                              size. All 0: the frame is a point */
 };
 
 /* A rigid body, its pose and its velocity. */
@@ -123,8 +123,8 @@ struct fmb_client_placement {
 enum { FMB_CLIENT_BODY_BYTES_MAX = 63500 };
 
 enum fmb_client_which {
-    FMB_CLIENT_LISTED = 0, /* the pairs listed */
-    FMB_CLIENT_ALL = 1,    /* each placement with each later one */
+    FMB_CLIENT_ALL = 0,    /* each placement with each later one */
+    FMB_CLIENT_LISTED = 1, /* the pairs listed */
     FMB_CLIENT_ACROSS = 2, /* each of the first split placements with each of the others */
 };
 
@@ -137,19 +137,22 @@ enum {
     FMB_CLIENT_WANT_GAP = 8,   /* not with the methods fmb and sat */
 };
 
-/* A scene to query. The library keeps no pointer to it after the call. */
+/* A scene to query. The library keeps no pointer to it after the call. If all fields but the
+ * placements are 0, they are at rest, and the verdicts of all pairs are wanted. */
 struct fmb_client_scene {
     const struct fmb_client_placement *placements; /* [placement_count], all of one dimension */
     size_t placement_count;                        /* less than 2^31 */
     enum fmb_client_which which;
-    const unsigned (*pairs)[2]; /* LISTED: [pair_count][a, b], different indices of placements */
+    /* LISTED: [pair_count][a, b], different indices of placements; otherwise none. */
+    const unsigned (*pairs)[2];
     size_t pair_count;
-    size_t split; /* ACROSS: 0 to placement_count */
+    size_t split; /* ACROSS: at most placement_count; 0: no pairs. Otherwise 0 */
     /* ALL and ACROSS: [ignored_count][a, b], pairs that are left out, in any order; repeats are
      * allowed. LISTED: none. */
     const unsigned (*ignored)[2];
     size_t ignored_count;
-    double duration; /* seconds, finite, not negative */
+    double duration; /* seconds, finite; 0 only if all placements are at rest, or if instant */
+    bool instant;    /* the window is [0, 0] even if placements move; the duration is 0 */
     /* Finite, not negative. Not 0: contacts and near pairs have their gaps, whether wanted or not.
      * A pair is near if it is separated and its lower bound is at most the margin. */
     double margin;

@@ -147,6 +147,7 @@ static void decide_block(struct mesh_search *search)
                                     .pairs = (const unsigned(*)[2]) search->pair,
                                     .pair_count = search->count,
                                     .duration = search->query->duration,
+                                    .instant = search->query->duration == 0,
                                     .verdicts = search->verdict,
                                     .contacts = moving ? search->contact : NULL};
     const enum fmb_status status = fmb_decide_batch(&batch);

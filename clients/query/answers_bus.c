@@ -216,6 +216,7 @@ static void query(struct answers_bus *answers, struct bus_scene *run)
         .ignored = (const unsigned(*)[2]) pair,
         .ignored_count = listed ? 0 : count,
         .duration = scene->duration,
+        .instant = scene->duration == 0,
         .margin = scene->margin,
         .want = want_of(options),
         .method = options->method ? options->method->number : 0,

@@ -64,15 +64,16 @@ struct pair_job;
 struct pair_job *pair_job_create(void);
 void pair_job_destroy(struct pair_job *job);
 
-/* Begins to answer a message of size bytes, which is copied: checks it, and finds its bodies or
- * adds them. On input: a job that is not in progress. Returns NULL, and the job is in progress
- * until pair_job_end(), even if the query was refused; or a static text of what is wrong with the
- * bytes (wire_read_pair_query()). */
+/* Begins to answer a message of size bytes, which is copied: checks it, and finds the bodies that
+ * it gives by handle. On input: a job that is not in progress. Returns NULL, and the job is in
+ * progress until pair_job_end(), even if the query was refused; or a static text of what is wrong
+ * with the bytes (wire_read_pair_query()). */
 const char *pair_job_begin(struct pair_job *job, struct answerer *answerer,
                            const unsigned char *bytes, size_t size);
 
-/* Decides one block of pairs of frames in doubles, or one pair of frames in exact arithmetic.
- * Returns whether the result is complete. On input: a job in progress. */
+/* Makes a few frames of its bodies; or decides one block of pairs of frames in doubles, or one pair
+ * of frames in exact arithmetic. Returns whether the result is complete. On input: a job in
+ * progress. */
 bool pair_job_step(struct pair_job *job);
 
 /* Ends the job and releases its bodies. Returns its result, as of answer_pair() but without a
@@ -97,10 +98,10 @@ void scene_job_destroy(struct scene_job *job);
  * job is idle. */
 const char *scene_job_begin(struct scene_job *job, const unsigned char *bytes, size_t size);
 
-/* Checks the query; or finds or adds a few bodies; or decides one block of pairs in doubles, or one
- * pair of frames in exact arithmetic. Usually takes microseconds, a millisecond for the worst
- * block. On input: a job that was begun; the same answerer in each step of a query, which must
- * exist until the query is complete or abandoned. Returns whether the result is complete. */
+/* Checks the query; or finds a few bodies; or makes a few frames; or decides one block of pairs in
+ * doubles, or one pair of frames in exact arithmetic. Usually takes microseconds, a millisecond for
+ * the worst block. On input: a job that was begun; the same answerer in each step of a query, which
+ * must exist until the query is complete or abandoned. Returns whether the result is complete. */
 bool scene_job_step(struct scene_job *job, struct answerer *answerer);
 
 /* Whether at least one pair has been answered. */

@@ -55,12 +55,10 @@ static bool check_certificate(struct check_context *context, const struct pair_q
     return true;
 }
 
-/* Finds the bodies given by handle, then adds those that have frames, so that a query that is
- * refused adds nothing to the cache. On output: out, and handle of the bodies with an id that have
- * frames. */
+/* Finds the bodies given by handle. This ends before any body is added, so that a query that is
+ * refused adds nothing to the cache. */
 static bool find_bodies(struct answerer *answerer, struct check_context *context,
-                        const struct pair_query *query, struct query_bodies *own,
-                        struct used_body out[2], struct handle handle[2])
+                        const struct pair_query *query, struct used_body out[2])
 {
     for (int f = 0; f < 2; f++) {
         set_side(context, f);
@@ -68,12 +66,21 @@ static bool find_bodies(struct answerer *answerer, struct check_context *context
             !find_body(answerer->cache, context, &query->placement[f], &out[f]))
             return false;
     }
-    if (!check_certificate(context, query, out))
-        return false;
-    own->used = 0;
-    for (int f = 0; f < 2; f++)
-        if (!placement_by_handle(&query->placement[f]))
-            out[f] = answerer_intern(answerer, &query->placement[f], own, &handle[f]);
+    return check_certificate(context, query, out);
+}
+
+/* Adds the bodies that have frames, a portion of them. On output: used, and handle of the bodies
+ * with an id that have frames. Returns whether no body is left. */
+static bool add_bodies(struct answerer *answerer, const struct pair_query *query,
+                       struct query_bodies *own, struct used_body used[2], struct handle handle[2])
+{
+    int32_t frames = BODY_PORTION;
+    for (int f = 0; f < 2; f++) {
+        if (!used[f].body)
+            used[f] = answerer_intern(answerer, &query->placement[f], own, &frames, &handle[f]);
+        if (!used[f].body)
+            return false;
+    }
     return true;
 }
 
@@ -165,7 +172,9 @@ bool answer_pair(struct answerer *answerer, const struct pair_query *query,
         return true;
     if (has_several_frames(answerer, query))
         return false;
-    if (find_bodies(answerer, &context, query, &answerer->bodies, used, result->handle))
+    query_bodies_clear(&answerer->bodies);
+    if (find_bodies(answerer, &context, query, used) &&
+        add_bodies(answerer, query, &answerer->bodies, used, result->handle))
         decide(answerer, result, query, used);
     release_bodies(answerer, used);
     return true;
@@ -183,12 +192,13 @@ void answer_pair_refused(const struct answerer *answerer, const struct pair_quer
 
 struct pair_job {
     bool complete;
+    struct answerer *answerer; /* of the query in progress */
     struct pair_query query;
     struct pair_result result;
     struct used_body used[2];
     struct fmb_placement placement[2];
-    void *memory; /* owned; contains the scene */
-    struct fmb_scene_state *scene;
+    void *memory;                  /* owned; contains the scene */
+    struct fmb_scene_state *scene; /* NULL: not begun */
     struct query_bodies bodies;
     unsigned char bytes[QUERY_BYTES_MAX]; /* the message; the geometries point into it */
 };
@@ -229,6 +239,7 @@ static void begin_scene(struct pair_job *job)
     const struct fmb_scene scene = {.placements = job->placement,
                                     .placement_count = 2,
                                     .duration = query->duration,
+                                    .instant = query->duration == 0,
                                     .method = method,
                                     .contacts = true,
                                     .boxes = query->want & QUERY_WANT_BOX && method->boxes,
@@ -253,11 +264,11 @@ const char *pair_job_begin(struct pair_job *job, struct answerer *answerer,
     memset(job->used, 0, sizeof job->used);
     begin_result(answerer, &job->query, &job->result);
     struct check_context context = {.status = &job->result.status, .detail = job->result.detail};
-    job->complete =
-        !check_pair(&context, &job->query) ||
-        !find_bodies(answerer, &context, &job->query, &job->bodies, job->used, job->result.handle);
-    if (!job->complete)
-        begin_scene(job);
+    job->complete = !check_pair(&context, &job->query) ||
+                    !find_bodies(answerer, &context, &job->query, job->used);
+    job->answerer = answerer;
+    job->scene = NULL;
+    query_bodies_clear(&job->bodies);
     return NULL;
 }
 
@@ -289,6 +300,11 @@ bool pair_job_step(struct pair_job *job)
     struct fmb_scene_answers answers;
     if (job->complete)
         return true;
+    if (!job->scene) {
+        if (add_bodies(job->answerer, &job->query, &job->bodies, job->used, job->result.handle))
+            begin_scene(job);
+        return false;
+    }
     job->complete = fmb_scene_step(job->scene, &answers);
     if (answers.count > 0)
         take_answer(job, &answers);

@@ -12,11 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Limits of the work in one step. */
-enum {
-    STEP_PLACEMENTS = 32, /* most bodies found or added: tens of microseconds */
-    STEP_FRAMES = 64      /* no further body is added after so many frames */
-};
+/* The largest number of bodies found in one step: tens of microseconds. A step makes at most
+ * BODY_PORTION frames. */
+enum { STEP_PLACEMENTS = 32 };
 
 enum answer_stage { IDLE, CHECKING, FINDING, ADDING, PREPARED, DECIDING, COMPLETE };
 
@@ -213,15 +211,19 @@ static bool check_counts(struct check_context *context, const struct scene_query
     return true;
 }
 
-/* The engine's scene, without its placements. On input: a query whose counts and method were
+/* The engine's scene, without its placements. On input: a query whose counts, method and which were
  * checked. Ignored pairs of a listed scene are left out, since no listed pair may be ignored. */
 static struct fmb_scene scene_of(const struct scene_query *query)
 {
+    static const enum fmb_pairs which[] = {[QUERY_PAIRS_LISTED] = FMB_PAIRS_LISTED,
+                                           [QUERY_PAIRS_ALL] = FMB_PAIRS_ALL,
+                                           [QUERY_PAIRS_ACROSS] = FMB_PAIRS_ACROSS};
     const bool listed = query->which == QUERY_PAIRS_LISTED;
     return (struct fmb_scene){.placement_count = (size_t) query->placement_count,
                               .duration = query->duration,
+                              .instant = query->duration == 0,
                               .method = fmb_method_by_number(query->method),
-                              .which = (enum fmb_pairs) query->which,
+                              .which = which[query->which],
                               .split = (size_t) query->split,
                               .pairs = query->pair,
                               .pair_count = (size_t) query->index_count / 2,
@@ -286,7 +288,7 @@ static enum answer_stage check(struct scene_job *job)
         return COMPLETE;
     }
     memset(job->used, 0, (size_t) query->placement_count * sizeof *job->used);
-    job->bodies.used = 0;
+    query_bodies_clear(&job->bodies);
     job->next = 0;
     job->frames = 0;
     return FINDING;
@@ -363,14 +365,15 @@ static enum answer_stage add(struct scene_job *job)
 {
     const int32_t end = prefetch_placements(job);
     struct scene_result *result = &job->result;
-    for (int32_t frames = 0; job->next < end && frames < STEP_FRAMES; job->next++) {
+    for (int32_t frames = BODY_PORTION; job->next < end && frames > 0; job->next++) {
         const int32_t i = job->next;
         const struct placement *placement = &job->query.placement[i];
         if (!placement_by_handle(placement)) {
-            job->used[i] = answerer_intern(job->answerer, placement, &job->bodies,
+            job->used[i] = answerer_intern(job->answerer, placement, &job->bodies, &frames,
                                            &result->handle[result->handle_count]);
+            if (!job->used[i].body)
+                break;
             result->handle_count += placement->body_id != 0;
-            frames += placement->frame_count;
         }
         job->placement[i] = answerer_place(placement, job->used[i].body);
     }

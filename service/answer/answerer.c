@@ -40,15 +40,26 @@ struct fmb_placement answerer_place(const struct placement *placement, const str
 }
 
 struct used_body answerer_intern(struct answerer *answerer, const struct placement *placement,
-                                 struct query_bodies *own, struct handle *handle)
+                                 struct query_bodies *own, int32_t *frames, struct handle *handle)
 {
+    struct cache *cache = answerer->cache;
     const struct geometry *geometry = &placement->geometry;
-    const struct cached *cached =
-        placement->body_id ? cache_intern(answerer->cache, placement->body_id, geometry, handle)
-                           : NULL;
-    if (cached)
-        return (struct used_body){&cached->body, cached};
-    return (struct used_body){.body = query_bodies_add(own, geometry)};
+    const int64_t id = placement->body_id;
+    const struct cached *cached = NULL;
+    if (!own->maker.memory) {
+        cached = id ? cache_lookup(cache, id, geometry, handle) : NULL;
+        if (cached)
+            return (struct used_body){&cached->body, cached};
+        body_begin(&own->maker, geometry, own->memory + own->used);
+    }
+    const struct fmb_body *body = body_continue(&own->maker, frames);
+    if (!body)
+        return (struct used_body){.body = NULL};
+    own->used += BODY_BYTES(body->frame_count);
+    own->maker.memory = NULL;
+    if (id)
+        cached = cache_add(cache, id, handle, geometry, body);
+    return (struct used_body){cached ? &cached->body : body, cached};
 }
 
 void answerer_release(struct answerer *answerer, const struct used_body *used)

@@ -20,32 +20,54 @@ static void make_frame(int dim, const struct geometry_frame *frame, struct fmb_f
     (void) status;
 }
 
-const struct fmb_body *body_make(const struct geometry *geometry, void *memory)
+static struct fmb_frame *frames_of(void *memory)
 {
-    struct geometry_reader reader = geometry_begin(geometry);
-    struct fmb_body *out = memory, body;
-    struct fmb_frame *frames = (void *) ((char *) memory + offsetof(struct fmb_body, one));
-    const size_t count = (size_t) reader.frames_left;
-    struct geometry_frame frame;
-    for (size_t i = 0; i < count; i++) {
-        const bool readable = geometry_next(&reader, &frame);
-        assert(readable);
-        (void) readable;
-        make_frame(reader.dim, &frame, &frames[i]);
-    }
-    const enum fmb_status status = fmb_body_make_frames(frames, count, &body);
-    assert(status == FMB_OK);
-    (void) status;
-    memcpy(out, &body, offsetof(struct fmb_body, one)); /* the first frame is there already */
-    return out;
+    return (void *) ((char *) memory + offsetof(struct fmb_body, one));
 }
 
-const struct fmb_body *query_bodies_add(struct query_bodies *bodies,
-                                        const struct geometry *geometry)
+void body_begin(struct body_maker *maker, const struct geometry *geometry, void *memory)
 {
-    const size_t size = BODY_BYTES((size_t) body_frame_count(geometry));
-    void *memory = bodies->memory + bodies->used;
-    assert(size <= sizeof bodies->memory - bodies->used);
-    bodies->used += size;
-    return body_make(geometry, memory);
+    *maker = (struct body_maker){.reader = geometry_begin(geometry), .memory = memory};
+}
+
+const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames)
+{
+    struct geometry_frame frame;
+    for (; maker->reader.frames_left > 0 && *frames > 0; --*frames) {
+        const bool readable = geometry_next(&maker->reader, &frame);
+        assert(readable);
+        (void) readable;
+        make_frame(maker->reader.dim, &frame, &frames_of(maker->memory)[maker->made++]);
+    }
+    if (maker->reader.frames_left > 0)
+        return NULL;
+    struct fmb_body body;
+    const enum fmb_status status =
+        fmb_body_make_frames(frames_of(maker->memory), maker->made, &body);
+    assert(status == FMB_OK);
+    (void) status;
+    memcpy(maker->memory, &body, offsetof(struct fmb_body, one)); /* the frames are there */
+    return maker->memory;
+}
+
+const struct fmb_body *body_make(const struct geometry *geometry, void *memory)
+{
+    struct body_maker maker;
+    int32_t frames = INT32_MAX;
+    body_begin(&maker, geometry, memory);
+    return body_continue(&maker, &frames);
+}
+
+void body_copy(const struct fmb_body *body, void *memory)
+{
+    struct fmb_body *out = memory;
+    memcpy(memory, body, BODY_BYTES(body->frame_count));
+    if (out->frames)
+        out->frames = frames_of(memory);
+}
+
+void query_bodies_clear(struct query_bodies *bodies)
+{
+    bodies->used = 0;
+    bodies->maker.memory = NULL;
 }

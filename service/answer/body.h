@@ -5,6 +5,7 @@
 #include "query.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 /* Bytes of a body of so many frames, 1 or more. The first frame is at body.one. */
 #define BODY_BYTES(frames) (offsetof(struct fmb_body, one) + (frames) * sizeof(struct fmb_frame))
@@ -12,22 +13,42 @@
 /* Frames of a geometry. */
 int32_t body_frame_count(const struct geometry *geometry);
 
-/* Makes a body. On input: a geometry whose frames fmb_frame_make() accepts; memory of BODY_BYTES()
- * of its frames, aligned as a struct fmb_body. Returns the body, which is at `memory` and must not
- * be copied. The geometry is not used afterwards. */
+/* A body that is being made in portions. */
+struct body_maker {
+    struct geometry_reader reader; /* at the next frame */
+    void *memory;                  /* of the body */
+    size_t made;                   /* frames */
+};
+
+/* Frames of a portion. A frame takes 0.1 microseconds, but up to 11 if it is nearly flat, which
+ * requires an exact inverse: a portion takes at most 0.2 ms. */
+enum { BODY_PORTION = 16 };
+
+/* Begins to make a body. On input: a geometry whose frames fmb_frame_make() accepts; memory of
+ * BODY_BYTES() of its frames, aligned as a struct fmb_body. Both must outlive the maker. */
+void body_begin(struct body_maker *maker, const struct geometry *geometry, void *memory);
+
+/* Makes the next frames, at most *frames, and subtracts their number. Returns the body, which is at
+ * `memory` and may be copied with body_copy() only; NULL: it is not finished. */
+const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames);
+
+/* Makes a body in one piece. On input, returns: as the two functions above. */
 const struct fmb_body *body_make(const struct geometry *geometry, void *memory);
 
-/* Memory for the bodies of one query that are not in the cache. It suffices for all bodies that one
- * message can define: a placement with n frames takes at least 60 + 33 n bytes of the message, and
+/* Copies a body with its frames. On input: memory of BODY_BYTES() of them, aligned as a struct
+ * fmb_body. */
+void body_copy(const struct fmb_body *body, void *memory);
+
+/* The bodies of one query that it defines. The memory suffices for all bodies that one message can
+ * define: a placement with n frames takes at least 60 + 33 n bytes of the message, and
  * BODY_BYTES(n) is less than (60 + 33 n) / 33 times the size of a frame. */
 struct query_bodies {
-    size_t used; /* bytes of memory; 0: no bodies */
+    size_t used;             /* bytes of memory that finished bodies take */
+    struct body_maker maker; /* of the next body; memory is NULL unless that is unfinished */
     _Alignas(64) unsigned char memory[(QUERY_FRAMES_MAX + 1) * sizeof(struct fmb_frame)];
 };
 
-/* Adds a body. On input: a checked geometry of the query. The body is valid until used is set to 0.
- */
-const struct fmb_body *query_bodies_add(struct query_bodies *bodies,
-                                        const struct geometry *geometry);
+/* Removes all bodies. */
+void query_bodies_clear(struct query_bodies *bodies);
 
 #endif

@@ -380,12 +380,16 @@ static int32_t take_entry(struct cache *cache, int32_t frames)
     return slot + 1;
 }
 
+/* body: NULL: it is made here. */
 static void fill_record(struct cache_record *record, const struct handle *handle,
-                        const struct geometry *geometry)
+                        const struct geometry *geometry, const struct fmb_body *body)
 {
     const size_t frames = (size_t) body_frame_count(geometry);
     unsigned char *bytes = (unsigned char *) &record->cached.body + BODY_BYTES(frames);
-    body_make(geometry, &record->cached.body);
+    if (body)
+        body_copy(body, &record->cached.body);
+    else
+        body_make(geometry, &record->cached.body);
     memcpy(bytes, geometry->bytes, geometry->size);
     record->cached.handle = *handle;
     record->cached.geometry = (struct geometry){bytes, geometry->size};
@@ -395,13 +399,13 @@ static void fill_record(struct cache_record *record, const struct handle *handle
 /* Adds a body that is not held. Returns its entry, which is linked everywhere; NONE: there are not
  * enough slots. */
 static int32_t insert(struct cache *cache, const struct handle *handle,
-                      const struct geometry *geometry)
+                      const struct geometry *geometry, const struct fmb_body *body)
 {
     const int32_t frames = body_frame_count(geometry), e = take_entry(cache, frames);
     if (e == NONE)
         return NONE;
     int32_t *bucket = bucket_of(cache, handle);
-    fill_record(record_of(cache, e), handle, geometry);
+    fill_record(record_of(cache, e), handle, geometry, body);
     cache->entry[e].handle = *handle;
     cache->entry[e].next = *bucket;
     *bucket = e;
@@ -412,7 +416,7 @@ static int32_t insert(struct cache *cache, const struct handle *handle,
     return e;
 }
 
-const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
+const struct cached *cache_lookup(struct cache *cache, int64_t id, const struct geometry *geometry,
                                   struct handle *handle)
 {
     int32_t e = id ? find_latest(cache, id, geometry) : NONE;
@@ -423,17 +427,34 @@ const struct cached *cache_intern(struct cache *cache, int64_t id, const struct 
     }
     *handle = hasher_handle(cache->hasher, geometry->bytes, geometry->size);
     e = find(cache, handle);
-    if (e != NONE) {
-        cache->counts.hits++;
-    } else {
+    if (e == NONE) {
         cache->counts.misses++;
-        e = insert(cache, handle, geometry);
+        return NULL;
     }
+    cache->counts.hits++;
+    if (id)
+        set_latest(cache, id, e);
+    return pin(cache, e);
+}
+
+const struct cached *cache_add(struct cache *cache, int64_t id, const struct handle *handle,
+                               const struct geometry *geometry, const struct fmb_body *body)
+{
+    int32_t e = find(cache, handle);
+    if (e == NONE)
+        e = insert(cache, handle, geometry, body);
     if (e == NONE)
         return NULL;
     if (id)
         set_latest(cache, id, e);
     return pin(cache, e);
+}
+
+const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
+                                  struct handle *handle)
+{
+    const struct cached *cached = cache_lookup(cache, id, geometry, handle);
+    return cached ? cached : cache_add(cache, id, handle, geometry, NULL);
 }
 
 const struct cached *cache_find(struct cache *cache, const struct handle *handle)

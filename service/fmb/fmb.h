@@ -74,7 +74,7 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(WRONG_COUNT, 6, "wrong count of numbers")                                           \
     X(NOT_FINITE, 7, "not a finite number")                                               \
     X(DIMENSIONS_DIFFER, 8, "a 2D body against a 3D one")                                 \
-    X(BAD_DURATION, 9, "the duration is negative or not finite")                          \
+    X(BAD_DURATION, 9, "the duration is negative, not finite, or missing")                \
     X(BAD_ID, 10, "id out of range")                                                      \
     X(UNKNOWN_METHOD, 11, "unknown method")                                               \
     X(UNKNOWN_WANT, 12, "wants what this version does not give")                          \
@@ -415,7 +415,8 @@ struct fmb_batch {
     size_t frame_count;
     const unsigned (*pairs)[2]; /* [pair_count][a, b], indices of frames */
     size_t pair_count;
-    double duration; /* T of all pairs, seconds */
+    double duration; /* T of all pairs, seconds; 0 only if all frames are at rest, or if instant */
+    bool instant;    /* the window is [0, 0] even if frames move; the duration is 0 */
     /* [pair_count]: enum fmb_verdict, FMB_REFUSED or FMB_LEFT_OPEN. */
     unsigned char *verdicts;
     /* [pair_count][first, last], seconds, or NULL; as fmb_answer.contact. NAN for pairs that are
@@ -453,8 +454,9 @@ struct fmb_batch {
  *   status of a pair   the status of the first pair that was refused: FMB_DIMENSIONS_DIFFER,
  *                      FMB_NOT_FINITE (a frame that is not prepared), FMB_OVER_LIMIT (an index of
  *                      frame_count or more). All other pairs were decided or left open.
- *   status of a batch  FMB_BAD_DURATION, or FMB_NOT_SUPPORTED for instructions or threads that are
- *                      not available. Nothing was written.
+ *   status of a batch  FMB_BAD_DURATION (negative, not finite, 0 although a frame moves and
+ *                      instant is not set, or not 0 although it is), or FMB_NOT_SUPPORTED for
+ *                      instructions or threads that are not available. Nothing was written.
  * Thread safety: calls may run at the same time if they write to different arrays. */
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
 
@@ -588,8 +590,7 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
  * A scene is a set of placed bodies of one or more frames. It is decided in short steps:
  *
  *     struct fmb_scene scene = {.placements = placements, .placement_count = n,
- *                               .duration = 1, .which = FMB_PAIRS_ALL,
- *                               .ignored = neighbours, .ignored_count = m};
+ *                               .duration = 1, .ignored = neighbours, .ignored_count = m};
  *     const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
  *     void *memory = malloc(fmb_scene_bytes(&limits));
  *     struct fmb_scene_state *state;
@@ -609,16 +610,19 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
 /* Which pairs are decided. Pairs are numbered from 0. Listed pairs have their positions in the
  * list; the others are numbered in the order of (a, b), a < b, ignored pairs included. */
 enum fmb_pairs {
-    FMB_PAIRS_LISTED = 0,
-    FMB_PAIRS_ALL = 1,   /* each placement with each later one */
+    FMB_PAIRS_ALL = 0, /* each placement with each later one */
+    FMB_PAIRS_LISTED = 1,
     FMB_PAIRS_ACROSS = 2 /* each of the first split placements with each of the others */
 };
 
-/* A query. The caller owns all arrays, which must stay valid and unchanged until the last step. */
+/* A query. The caller owns all arrays, which must stay valid and unchanged until the last step. If
+ * all fields but the placements are 0, they are at rest, and the verdicts of all pairs are wanted.
+ */
 struct fmb_scene {
     const struct fmb_placement *placements; /* [placement_count], of one dimension */
     size_t placement_count;
-    double duration; /* T, seconds */
+    double duration; /* T, seconds; 0 only if all placements are at rest, or if instant */
+    bool instant;    /* the window is [0, 0] even if placements move; the duration is 0 */
     /* NULL: the default. A method that is not certain requires FMB_PAIRS_LISTED. */
     const struct fmb_method *method;
     bool contacts, boxes; /* wanted, of pairs that meet */
@@ -628,7 +632,7 @@ struct fmb_scene {
      * no pair is near. */
     double margin;
     enum fmb_pairs which;
-    size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; otherwise 0 */
+    size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; 0: no pairs. Otherwise 0 */
     /* FMB_PAIRS_LISTED: [pair_count][a, b], indices of two different placements; otherwise none. */
     const unsigned (*pairs)[2];
     size_t pair_count;
@@ -682,7 +686,9 @@ struct fmb_scene_state;
  * Returns one of:
  *   FMB_OK
  *   FMB_OVER_LIMIT         the scene is not within limits, or limits->slots is below the minimum
- *   FMB_BAD_DURATION, FMB_BAD_MARGIN
+ *   FMB_BAD_DURATION       negative, not finite, 0 although a placement moves and instant is not
+ *                          set, or not 0 although it is
+ *   FMB_BAD_MARGIN
  *   a status of fmb_placement_check()
  *   FMB_DIMENSIONS_DIFFER  placements of different dimensions
  *   FMB_BAD_PAIR           which is unknown; a pair has an index out of range or the same index

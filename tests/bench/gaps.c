@@ -52,6 +52,7 @@ static void batch(struct gaps *gaps, size_t first, size_t count)
                                     .frame_count = gaps->pairs.scene.count,
                                     .pairs = (const unsigned(*)[2]) gaps->pairs.pair + first,
                                     .pair_count = count,
+                                    .instant = true,
                                     .verdicts = gaps->verdict + first,
                                     .gaps = gaps->gap + first,
                                     .instructions = gaps->instructions};

@@ -179,7 +179,7 @@ xpath() {
     replay spoiled.log
     ended 1
     counts '.different_in.status == 2 and .differences[1].then.error == "unknown status"'
-    counts '.differences[0] | .then == {"error": "the duration is negative or not finite"} and .now.verdict'
+    counts '.differences[0] | .then == {"error": "the duration is negative, not finite, or missing"} and .now.verdict'
     run "$FMB" replay spoiled.log
     [[ $output == *' status: unknown status, now '* ]]
 }

@@ -68,6 +68,7 @@ static void test_small_scenes_of_every_kind(void **state)
                 for (scene.split = 0; scene.split <= count; scene.split += 1 + count / 3)
                     relay_query(client, &scene);
                 scene.which = FMB_CLIENT_LISTED;
+                scene.split = 0;
                 scene.pair_count = count < 2 ? 0 : 2 * count;
                 unsigned(*pair)[2] = list_of(scene.pair_count, count);
                 scene.pairs = (const unsigned(*)[2]) pair;
@@ -378,7 +379,7 @@ static void test_wrong_scenes_are_refused(void **state)
     scene.pairs = beyond, scene.pair_count = 1;
     wrong(client, &scene, FMB_BAD_PAIR, "pairs[0]: ");
     scene.ignored = same, scene.ignored_count = 1, scene.pair_count = 0;
-    wrong(client, &scene, FMB_BAD_PAIR, "ignored_count: ");
+    wrong(client, &scene, FMB_WRONG_COUNT, "ignored_count: ");
     scene.which = FMB_CLIENT_ALL, scene.ignored_count = 2;
     wrong(client, &scene, FMB_BAD_PAIR, "ignored[1]: ");
     scene.ignored_count = 0;
@@ -397,6 +398,70 @@ static void test_wrong_scenes_are_refused(void **state)
         wrong(client, &scene, FMB_BAD_MARGIN, "margin: ");
     }
     assert_int_equal(relay->queries, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+/* ---- Fields left zero ---- */
+
+static void count_meeting(void *user, const struct fmb_client_answer *answer)
+{
+    assert_int_equal(answer->status, FMB_OK);
+    *(int *) user += answer->answer.verdict >= FMB_TOUCHING;
+}
+
+static void test_a_scene_left_zero_is_of_all_pairs(void **state)
+{
+    (void) state;
+    static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
+    static const unsigned pair[1][2] = {{0, 1}};
+    struct fmb_client_placement placement[2] = {{.dim = 3, .frames = &cube, .frame_count = 1}};
+    struct fmb_client_scene scene = {.placements = placement, .placement_count = 2};
+    struct relay *relay = relay_new();
+    int contacts = 0;
+    placement[1] = placement[0];
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    assert_int_equal(fmb_client_query(client, &scene, count_meeting, &contacts), FMB_OK);
+    assert_int_equal(contacts, 1);
+    assert_int_equal(relay->queries, 1);
+    scene.pairs = pair, scene.pair_count = 1;
+    wrong(client, &scene, FMB_WRONG_COUNT, "pair_count: ");
+    scene.pair_count = 0, scene.split = 1;
+    wrong(client, &scene, FMB_BAD_PAIR, "split: ");
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+static void test_bodies_that_move_need_a_window(void **state)
+{
+    (void) state;
+    static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
+    struct fmb_client_placement placement[2] = {{.dim = 3, .frames = &cube, .frame_count = 1}};
+    struct relay *relay = relay_new();
+    relay_open(relay, 10);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    for (int moving = 0; moving < 2; moving++)
+        for (int duration = 0; duration < 2; duration++)
+            for (int instant = 0; instant < 2; instant++) {
+                const struct fmb_client_scene scene = {.placements = placement,
+                                                       .placement_count = 2,
+                                                       .duration = duration,
+                                                       .instant = instant};
+                int contacts = 0;
+                placement[1] = placement[0];
+                placement[1].velocity[2] = moving;
+                if (duration ? instant : !instant && moving) {
+                    wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
+                    continue;
+                }
+                assert_int_equal(fmb_client_query(client, &scene, count_meeting, &contacts),
+                                 FMB_OK);
+                assert_int_equal(contacts, 1);
+            }
+    struct fmb_client_answer answer; /* here the duration is an argument */
+    assert_int_equal(fmb_client_query_pair(client, placement, 0, 0, &answer), FMB_OK);
+    assert_int_equal(answer.answer.verdict, FMB_OVERLAPPING);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -623,7 +688,7 @@ static void test_ignored_pairs_are_left_out(void **state)
     world.scene.which = FMB_CLIENT_ACROSS;
     for (world.scene.split = 0; world.scene.split <= 100; world.scene.split += 25)
         query_world(&world);
-    world.scene.which = FMB_CLIENT_ALL; /* more than fit into one datagram */
+    world.scene.which = FMB_CLIENT_ALL, world.scene.split = 0; /* more than fit into one datagram */
     free(pair);
     unsigned(*all)[2] = malloc(100 * 100 * sizeof *all);
     size_t count = 0;
@@ -819,6 +884,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_certificates_of_all_pairs),
         cmocka_unit_test(test_one_pair),
         cmocka_unit_test(test_wrong_scenes_are_refused),
+        cmocka_unit_test(test_a_scene_left_zero_is_of_all_pairs),
+        cmocka_unit_test(test_bodies_that_move_need_a_window),
         cmocka_unit_test(test_refusals_of_the_service_are_given),
         cmocka_unit_test(test_methods_without_gaps),
         cmocka_unit_test(test_bodies_go_by_handle_the_second_time),

@@ -251,6 +251,7 @@ static void ask(const struct world *world, const struct fmb_prepared *frames, co
                            .pairs = world->pair,
                            .pair_count = n,
                            .duration = world->duration,
+                           .instant = world->duration == 0,
                            .verdicts = guarded_new(&out->verdicts, n),
                            .contacts = guarded_new(&out->contacts, n * sizeof *out->batch.contacts),
                            .boxes = guarded_new(&out->boxes, n * sizeof *out->batch.boxes),
@@ -933,6 +934,35 @@ static void durations_that_are_none_are_refused(void **state)
     free(world);
 }
 
+static void frames_that_move_need_a_window(void **state)
+{
+    (void) state;
+    static const double size[3] = {1, 1, 1};
+    static const unsigned pair[1][2] = {{0, 1}};
+    struct fmb_body cube;
+    assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &cube), FMB_OK);
+    for (int moving = 0; moving < 2; moving++)
+        for (int duration = 0; duration < 2; duration++)
+            for (int instant = 0; instant < 2; instant++) {
+                const struct fmb_placement placement[2] = {
+                    {.body = &cube}, {.body = &cube, .velocity = {0, 0, moving}}};
+                const bool given = duration ? !instant : instant || !moving;
+                struct fmb_prepared frame[2];
+                unsigned char verdict = 77;
+                for (int f = 0; f < 2; f++)
+                    assert_int_equal(fmb_prepare(&placement[f], 0, 1, &frame[f]), FMB_OK);
+                const struct fmb_batch batch = {.frames = frame,
+                                                .frame_count = 2,
+                                                .pairs = pair,
+                                                .pair_count = 1,
+                                                .duration = duration,
+                                                .instant = instant,
+                                                .verdicts = &verdict};
+                assert_int_equal(fmb_decide_batch(&batch), given ? FMB_OK : FMB_BAD_DURATION);
+                assert_int_equal(verdict, given ? FMB_OVERLAPPING : 77);
+            }
+}
+
 static void instructions_that_are_not_there_are_refused(void **state)
 {
     (void) state;
@@ -1017,6 +1047,7 @@ static void crowd_ask(const struct world *world, const unsigned (*pairs)[2], int
         .pairs = pairs,
         .pair_count = CROWD,
         .duration = world->duration,
+        .instant = world->duration == 0,
         .verdicts = guarded_new(&out->verdicts, CROWD),
         .contacts = guarded_new(&out->contacts, CROWD * sizeof *out->batch.contacts),
         .boxes = guarded_new(&out->boxes, CROWD * sizeof *out->batch.boxes),
@@ -1102,6 +1133,7 @@ int main(void)
         cmocka_unit_test(refused_pairs_stop_no_other),
         cmocka_unit_test(what_is_not_finite_is_not_prepared),
         cmocka_unit_test(durations_that_are_none_are_refused),
+        cmocka_unit_test(frames_that_move_need_a_window),
         cmocka_unit_test(instructions_that_are_not_there_are_refused),
         cmocka_unit_test(instructions_have_names),
         cmocka_unit_test(threads_are_there_or_refused),

@@ -480,6 +480,7 @@ static void batches_give_the_same(void **state)
                                   .duration = draw_int(&draw, 0, 2),
                                   .verdicts = verdicts,
                                   .gaps = gaps};
+        batch.instant = batch.duration == 0;
         batch.contacts = draw_coin(&draw) ? contacts : NULL;
         batch.boxes = draw_coin(&draw) ? boxes : NULL;
         if (draw_coin(&draw)) {

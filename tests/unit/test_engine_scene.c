@@ -125,6 +125,7 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
         for (size_t i = 0; i < scene->ignored_count; i++)
             draw_two(draw, count, out->ignored[i]);
     }
+    scene->instant = scene->duration == 0;
     if (below(draw, 2))
         scene->first_pair = draw_bits(draw) % (fmb_scene_pair_count(scene) + 1);
 }
@@ -464,6 +465,49 @@ static void bad_scenes(void **state)
     assert_int_equal(begin(scene), FMB_NO_FRAMES);
 }
 
+/* Two cubes that overlap at time 0 and move apart, or are at rest. */
+static struct fmb_scene two_cubes(double velocity)
+{
+    static const double size[3] = {1, 1, 1};
+    static struct fmb_body cube;
+    static struct fmb_placement placement[2];
+    assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &cube), FMB_OK);
+    placement[0] = (struct fmb_placement){.body = &cube};
+    placement[1] = (struct fmb_placement){
+        .body = &cube, .position = {0.5, 0, 0}, .velocity = {0, 0, velocity}};
+    return (struct fmb_scene){.placements = placement, .placement_count = 2};
+}
+
+static void all_pairs_unless_others_are_given(void **state)
+{
+    static const unsigned pair[1][2] = {{0, 1}};
+    struct fmb_scene scene = two_cubes(0);
+    (void) state;
+    assert_int_equal(check_scene(&scene, 0), 1);
+    scene.pairs = pair;
+    scene.pair_count = 1;
+    assert_int_equal(begin(&scene), FMB_WRONG_COUNT);
+    scene = two_cubes(0);
+    scene.split = 1;
+    assert_int_equal(begin(&scene), FMB_BAD_PAIR);
+}
+
+static void bodies_that_move_need_a_window(void **state)
+{
+    (void) state;
+    for (int moving = 0; moving < 2; moving++)
+        for (int duration = 0; duration < 2; duration++)
+            for (int instant = 0; instant < 2; instant++) {
+                struct fmb_scene scene = two_cubes(moving);
+                const bool given = duration ? !instant : instant || !moving;
+                scene.duration = duration;
+                scene.instant = instant;
+                assert_int_equal(begin(&scene), given ? FMB_OK : FMB_BAD_DURATION);
+                if (given)
+                    assert_int_equal(check_scene(&scene, 0), 1);
+            }
+}
+
 static void limits_hold(void **state)
 {
     struct fmb_scene_state *out;
@@ -486,10 +530,15 @@ static void limits_hold(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes),  cmocka_unit_test(heaps_and_rows),
-        cmocka_unit_test(any_first_pair), cmocka_unit_test(every_method),
-        cmocka_unit_test(extremes),       cmocka_unit_test(bad_scenes),
+        cmocka_unit_test(random_scenes),
+        cmocka_unit_test(heaps_and_rows),
+        cmocka_unit_test(any_first_pair),
+        cmocka_unit_test(every_method),
+        cmocka_unit_test(extremes),
+        cmocka_unit_test(bad_scenes),
         cmocka_unit_test(limits_hold),
+        cmocka_unit_test(all_pairs_unless_others_are_given),
+        cmocka_unit_test(bodies_that_move_need_a_window),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,7 @@
 /* Which client is served when: the server with clocks that the test moves. */
 #include "anticipation.h"
+#include "geometry_write.h"
+#include "gmp_allocations.h"
 #include "jobs.h"
 #include "service.h"
 
@@ -460,6 +462,121 @@ static void test_long_jobs_do_not_keep_short_ones_waiting(void **state)
     }
 }
 
+/* ---- Making bodies ---- */
+
+/* Cuboids so flat that each inverse takes exact arithmetic. */
+enum { FLAT_MOST = 640 };
+static const struct geometry_frame *flat_cuboids(void)
+{
+    static struct geometry_frame frame[FLAT_MOST];
+    for (int i = 0; i < FLAT_MOST; i++)
+        frame[i] = (struct geometry_frame){
+            .shape = FMB_CUBOID,
+            .origin = {3.0 * i},
+            .components = {1, 0.3, 0.2, 0.1, 1, 0.7, 1.1, 1.3, 0.9 + 1e-15 * (1 + i % 3)}};
+    return frame;
+}
+
+/* Bodies of so many of them each; id: of the first, 0: anonymous. */
+static void place_flat_bodies(int count, int frames, int64_t id, struct placement *out)
+{
+    static unsigned char geometry[FLAT_MOST * (GEOMETRY_NONE_BYTES + GEOMETRY_FRAME_BYTES_MAX)];
+    unsigned char *at = geometry;
+    for (int i = 0; i < count; i++) {
+        const size_t size =
+            geometry_write_frames(3, flat_cuboids() + i % (FLAT_MOST / frames), frames, at);
+        out[i] = (struct placement){.body_id = id ? id + i : 0,
+                                    .dim = 3,
+                                    .frame_count = frames,
+                                    .number_count = 12 * frames,
+                                    .geometry = {at, size}};
+        at += size;
+    }
+}
+
+/* Scenes without pairs. */
+static void send_flat_scene(int64_t client, int64_t number, int bodies, int frames, int64_t id)
+{
+    static struct scene_query query;
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    query = (struct scene_query){.client_id = client,
+                                 .sequence_number = number,
+                                 .which = QUERY_PAIRS_LISTED,
+                                 .placement_count = bodies};
+    place_flat_bodies(bodies, frames, id, query.placement);
+    service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&query, bytes));
+}
+
+static void send_flat_pair(int64_t client, int64_t number, int frames, int64_t id)
+{
+    struct pair_query query = {.client_id = client, .sequence_number = number};
+    place_flat_bodies(2, frames, id, query.placement);
+    query.placement[1].position[1] = 100;
+    service_send_pair(&query);
+}
+
+/* A clock driven by GMP. An inverse takes 6 us, in 21 allocations. */
+static void *allocate_slowly(size_t size)
+{
+    service.now_ns += 290;
+    return gmp_count_allocate(size);
+}
+
+static void expect_short_spans(int count)
+{
+    int64_t longest_ns = 0, begin_ns = service.now_ns;
+    const int64_t all_ns = begin_ns;
+    while (service.count < count) {
+        begin_ns = service.now_ns;
+        server_work(service.server);
+        const int64_t used_ns = service.now_ns - begin_ns;
+        longest_ns = used_ns > longest_ns ? used_ns : longest_ns;
+        service.now_ns += US; /* else nothing ends an anticipation */
+        server_resume(service.server);
+    }
+    assert_true(service.now_ns - all_ns > MS); /* the clock runs */
+    if (longest_ns > MS / 2)
+        fail_msg("%d us without a look at the bus", (int) (longest_ns / US));
+    expect_all_ok(count);
+}
+
+static void test_making_bodies_is_done_in_short_spans(void **state)
+{
+    (void) state;
+    mp_set_memory_functions(allocate_slowly, gmp_count_reallocate, gmp_release);
+    for (int64_t id = 0; id < 2; id++) {
+        service_close(NULL);
+        service_open(NULL);
+        send_flat_scene(CHEAP, 1, 1, FLAT_MOST, id);
+        expect_short_spans(1);
+        send_flat_scene(CHEAP, 2, 300, 1, id ? 1000 : 0);
+        expect_short_spans(2);
+        send_flat_pair(CHEAP, 3, FLAT_MOST / 2, id ? 2000 : 0);
+        expect_short_spans(3);
+        assert_int_equal(service_status()->bodies, id ? 1 + 300 + 2 : 0);
+        assert_int_equal(service.status.misses, service.status.bodies);
+    }
+    mp_set_memory_functions(NULL, NULL, NULL);
+}
+
+/* Each of them makes the body, since neither finds it; the cache has it once. */
+static void test_two_clients_make_one_body_at_once(void **state)
+{
+    (void) state;
+    service.tick_ns = 20 * US; /* turns end before bodies do */
+    send_flat_scene(CHEAP, 1, 1, FLAT_MOST, 7);
+    send_flat_scene(COSTLY, 1, 1, FLAT_MOST, 8);
+    service_settle();
+    expect_all_ok(2);
+    assert_int_equal(service_status()->misses, 2);
+    assert_int_equal(service.status.bodies, 1);
+    assert_int_equal(service.status.frames, FLAT_MOST);
+    assert_int_equal(service.status.ids, 2);
+    send_flat_scene(OTHER, 1, 1, FLAT_MOST, 8);
+    service_settle();
+    assert_int_equal(service_status()->hits, 1);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, service_open, service_close)
 
 int main(void)
@@ -487,6 +604,8 @@ int main(void)
         TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
         TEST(test_scenes_of_many_frames_do_not_keep_all_jobs),
         TEST(test_long_jobs_do_not_keep_short_ones_waiting),
+        TEST(test_making_bodies_is_done_in_short_spans),
+        TEST(test_two_clients_make_one_body_at_once),
     };
     return cmocka_run_group_tests_name("server turns", tests, NULL, NULL);
 }

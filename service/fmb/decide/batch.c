@@ -660,8 +660,18 @@ static void list_open(const struct fmb_batch *batch)
     *batch->open_count = count;
 }
 
+static bool any_moves(const struct fmb_batch *batch)
+{
+    for (size_t i = 0; i < batch->frame_count; i++)
+        if (prepared_kind(&batch->frames[i]) & PREPARED_MOVING)
+            return true;
+    return false;
+}
+
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
 {
+    if (batch->instant ? batch->duration != 0 : batch->duration == 0 && any_moves(batch))
+        return FMB_BAD_DURATION;
     return batch_decide(batch, INFINITY);
 }
 

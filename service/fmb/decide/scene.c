@@ -166,6 +166,15 @@ static enum fmb_status check_placements(const struct fmb_scene *scene)
     return FMB_OK;
 }
 
+/* In: placements that have been checked. */
+static bool any_moves(const struct fmb_scene *scene)
+{
+    for (size_t i = 0; i < scene->placement_count; i++)
+        if (placement_moves(&scene->placements[i], scene->placements[i].body->dim))
+            return true;
+    return false;
+}
+
 /* Has no branches, so that compilers vectorize it. */
 static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t placements)
 {
@@ -211,6 +220,8 @@ static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_sce
     const enum fmb_status status = check_placements(scene);
     if (status != FMB_OK)
         return status;
+    if (scene->instant ? scene->duration != 0 : scene->duration == 0 && any_moves(scene))
+        return FMB_BAD_DURATION;
     return frames_of(scene) > limits->frames ? FMB_OVER_LIMIT : check_pairs(scene);
 }
 
