@@ -16,6 +16,11 @@ enum {
     MARGIN_MS = 8,
     FIRST_RETRY_MS = 10,
     FIRST_SCENE_RETRY_MS = 40,
+    /* Time that a result may come after those of later queries: after the first repeat that was
+     * needless, at most, and the part by which it decays with each result. */
+    REORDERING_FIRST_US = 100,
+    REORDERING_MOST_US = 1000 * MARGIN_MS,
+    REORDERING_DECAY = 64,
     /* A default receive buffer has 212,992 bytes, and also holds datagrams of other senders. A
      * datagram takes at most twice its bytes there, plus a constant; the largest take 70,000. */
     CHARGE_MAX = 150000,
@@ -26,15 +31,17 @@ enum {
     NUMBER_AT = 24
 };
 
-static const int64_t ns_per_ms = 1000000, ns_per_s = 1000000000;
+static const int64_t ns_per_us = 1000, ns_per_ms = 1000000, ns_per_s = 1000000000;
 
-/* A repeat is free if the losses before it had at least this chance: the first 21 at heavy_loss, 5
+/* A repeat is free if the losses before it had at least this chance: the first 21 at heavy_loss, 4
  * if one query in fifty is lost, and the first one where none was. */
 static const double least_chance = 1.0 / (1 << 20);
 /* Largest share of lost queries that is believed. If more are repeated, the service is slow. */
 static const double heavy_loss = 0.5;
-/* Weight of a result in the share of lost queries. */
-static const double lost_weight = 1.0 / 32;
+/* Weight of a result in the shares of lost queries and of needless repeats. */
+static const double share_weight = 1.0 / 32;
+/* Repeats are useful if the share of needless ones is by so much less than half of all. */
+static const double needless_margin = 0.1;
 
 const char *fmb_client_status_text(int status)
 {
@@ -115,7 +122,7 @@ static void publish(struct requests *requests, struct request *request)
     if (!transport->publish(transport->user, request->kind, request->query, request->size))
         requests->counts.unsent++;
     requests->counts.bytes += request->size;
-    request->pausing = false;
+    request->pausing = request->overtaken = false;
     request->sent_at = clock_ns();
     request->deadline = request->sent_at + request->interval;
 }
@@ -151,9 +158,16 @@ static bool is_free(const struct request *request)
     return request->chance >= least_chance;
 }
 
-/* lost: whether its last sending is known to have been lost, or refused. */
-static void repeat(struct requests *requests, struct request *request, bool lost)
+/* Whether most repeats are useful. Where most are needless, because results come in another order,
+ * a result may answer any sending of a query. */
+static bool are_useful(const struct request_pace *pace)
 {
+    return pace->needless + needless_margin < pace->lost / 2;
+}
+
+static void repeat(struct requests *requests, struct request *request)
+{
+    const bool lost = request->overtaken || request->pausing;
     const double share = requests->pace[request->kind].lost;
     if (request->pausing) {
         request->give_up_at = clock_ns() + total_timeout(requests);
@@ -165,7 +179,7 @@ static void repeat(struct requests *requests, struct request *request, bool lost
     request->repeated = true;
     requests->counts.repeated++;
     publish(requests, request);
-    if (lost)
+    if (lost && are_useful(&requests->pace[request->kind]))
         request->pending_at = request->sent_at;
 }
 
@@ -203,16 +217,24 @@ static void note_repeated(struct request_pace *pace, const struct request *reque
         pace->retry *= 2;
 }
 
+/* With the decay, about one repeat in a hundred results stays needless. */
+static void note_needless(struct request_pace *pace)
+{
+    const int64_t more = 2 * pace->reordering + REORDERING_FIRST_US * ns_per_us;
+    pace->reordering = clock_earlier(more, REORDERING_MOST_US * ns_per_us);
+    pace->needless += share_weight * (1 - pace->needless);
+}
+
 /* Which of the sendings of a repeated query a result answers is unknown. */
 static void measure(struct request_pace *pace, const struct request *request)
 {
     const int64_t now = clock_ns();
-    const int64_t begin =
-        request->sent_at > pace->received_at ? request->sent_at : pace->received_at;
-    const int64_t time = now - begin;
+    const int64_t time = now - request->sent_at;
     if (request->pending_at > pace->overtaken_at)
         pace->overtaken_at = request->pending_at;
-    pace->lost += lost_weight * (request->repeated - pace->lost);
+    pace->lost += share_weight * ((request->chance < 1) - pace->lost);
+    pace->needless -= share_weight * pace->needless;
+    pace->reordering -= pace->reordering / REORDERING_DECAY;
     if (request->repeated) {
         note_repeated(pace, request);
         return;
@@ -258,6 +280,8 @@ void requests_take(struct requests *requests, const struct request_result *resul
     if (!request) {
         requests->counts.contradicting += recent_contradicts(&requests->recent, result);
         note_service(requests);
+        if (recent_was_repeated(&requests->recent, result))
+            note_needless(&requests->pace[result->kind]);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_received(requests, result->kind);
         pause_request(request);
@@ -271,9 +295,9 @@ void requests_take(struct requests *requests, const struct request_result *resul
         measure(&requests->pace[request->kind], request);
         note_received(requests, request->kind);
         requests->counts.answered++;
-        recent_note(&requests->recent, result, result->number);
+        recent_note(&requests->recent, result, result->number, request->repeated);
         if (number != result->number)
-            recent_note(&requests->recent, result, number);
+            recent_note(&requests->recent, result, number, request->repeated);
         request->earlier = taken == REQUEST_WHOLE ? number : -1;
         if (taken == REQUEST_COMPLETE)
             request_end(requests, request);
@@ -303,10 +327,14 @@ static void give_up(struct requests *requests, struct request *request)
     requests_give_up(requests, FMB_CLIENT_NO_SERVICE);
 }
 
-/* Whether a request that was sent later has its result. */
-static bool is_overtaken(const struct request_pace *pace, const struct request *request)
+/* Notes that a request that was sent later has its result. */
+static void note_overtaken(const struct request_pace *pace, struct request *request, int64_t time)
 {
-    return !request->pausing && request->sent_at < pace->overtaken_at;
+    if (request->pausing || request->overtaken || request->sent_at >= pace->overtaken_at)
+        return;
+    request->overtaken = true;
+    if (is_free(request))
+        request->deadline = time + pace->reordering;
 }
 
 /* Whether the service may still have the request in its queue: results of other requests come in,
@@ -333,16 +361,18 @@ static void check_deadline(struct requests *requests, struct request *request, i
 {
     const struct request_pace *pace = &requests->pace[request->kind];
     const int64_t received_at = pace->received_at;
-    const bool overtaken = is_overtaken(pace, request);
-    if (!request->under_way || (time < request->deadline && !(overtaken && is_free(request))))
+    if (!request->under_way)
+        return;
+    note_overtaken(pace, request, time);
+    if (time < request->deadline)
         return;
     if (is_overdue(requests, request, time))
         give_up(requests, request);
-    else if (!overtaken && is_queued(pace, request, time))
+    else if (!request->overtaken && is_queued(pace, request, time))
         request->deadline =
             request->interval + (received_at + request->interval > time ? received_at : time);
     else
-        repeat(requests, request, overtaken || request->pausing);
+        repeat(requests, request);
     if (!request->pausing && request->deadline > request->give_up_at)
         request->deadline = request->give_up_at;
 }

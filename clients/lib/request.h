@@ -5,10 +5,11 @@
  * is ignored, but compared with the first (recent.h).
  *
  * A service answers the queries of a client in their order, with few exceptions. So a query is
- * presumed lost, and is repeated at once, when one that was sent later has its result. The query
- * that was sent last has none after it: it is repeated when no result has come for an interval,
- * which is some milliseconds more than the usual response time (struct request_pace). Its result
- * then shows which of the others were lost.
+ * presumed lost, and is repeated, when one that was sent later has its result: at once, or, if such
+ * repeats have proved to be needless (both results came), after a while as in RACK (RFC 8985). The
+ * query that was sent last has none after it: it is repeated when no result has come for an
+ * interval, which is some milliseconds more than the usual response time (struct request_pace). Its
+ * result then shows which of the others were lost.
  *
  * Each query backs off by itself. Repeats that the share of lost queries makes likely are free.
  * Beyond them the service is presumed slow: the interval doubles with each repeat, up to the
@@ -63,24 +64,25 @@ struct request {
     int refusals;       /* times that the service was busy */
     bool repeated;      /* sent more than once */
     bool pausing;       /* the deadline ends a pause after a refusal */
+    bool overtaken;     /* the deadline ends the time that a result may come late */
     size_t charge;      /* bytes that it takes of a receive buffer */
     size_t size;
     unsigned char query[QUERY_BYTES_MAX];
 };
 
-/* Response time of one kind of query, estimated like the round-trip time of RFC 6298. It is
- * measured from sending, or from the previous result if that came later, since a service answers
- * the queries of a client one after the other; and only of queries that were not repeated (Karn's
- * algorithm). If all queries are repeated before their results, retry grows until one is not.
- * Nanoseconds; times are those of clock_ns(). */
+/* Response time of one kind of query, estimated like the round-trip time of RFC 6298, and only from
+ * queries that were not repeated (Karn's algorithm). If all queries are repeated before their
+ * results, retry grows until one is not. Nanoseconds; times are those of clock_ns(). */
 struct request_pace {
     int64_t mean, deviation; /* 0: none measured so far */
     int64_t retry;           /* first interval of the next query: from 8 ms to the timeout */
     double lost;             /* share of results that came after a repeat; a moving average */
+    double needless;         /* share of results that came twice, after a repeat; likewise */
     int unmeasured;          /* number of results in a row for which retry was too short */
     int64_t measured_at;     /* time of the last measurement */
     int64_t received_at;     /* time of the last result of a request under way */
     int64_t overtaken_at;    /* newest pending_at of the requests that have results */
+    int64_t reordering;      /* time that a result may come after those of later queries */
     int64_t newest_at;       /* newest sent_at of the requests under way */
 };
 

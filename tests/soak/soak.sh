@@ -95,7 +95,7 @@ lose_in_kernel() {
 }
 
 lose_in_relay() {
-    start "$build/soak-relay" 7667 7668 1
+    start "$build/soak-relay" 7667 7668 1 1
     LCM_DEFAULT_URL='udpm://239.255.76.67:7668?ttl=0'
     export LCM_DEFAULT_URL
 }

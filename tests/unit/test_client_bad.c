@@ -1164,7 +1164,7 @@ static void test_old_results_contradict_nothing(void **state)
                                             .bytes = bytes[i],
                                             .size = wire_write_pair_result(&pair, bytes[i])};
     }
-    recent_note(&recent, &result[0], 0);
+    recent_note(&recent, &result[0], 0, false);
     assert_true(recent_contradicts(&recent, &result[1]));
     result[1].number = RECENT_MAX;
     assert_false(recent_contradicts(&recent, &result[1]));

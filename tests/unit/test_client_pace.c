@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-static const int64_t us = 1000, ms = 1000000, s = 1000000000;
+static const int64_t us = 1000, ms = 1000000, s = 1000000000; /* nanoseconds */
 
 /* ---- The clock, in place of the product's ---- */
 
@@ -45,10 +45,10 @@ enum { RESULTS_MAX = 1 << 16, QUERY_SIZE = 400, SEND_NS = 2000 };
 
 /* A service that answers one query after the other, in the order of their arrival. */
 static struct network {
-    double loss;            /* share of datagrams, each way */
-    int64_t delay, service; /* each way; of each query */
-    int64_t free_at;        /* the service is, after the last query */
-    int status;             /* of its results */
+    double loss, late;           /* shares of datagrams, each way, and of results */
+    int64_t delay, service, lag; /* each way; of each query; of late results besides */
+    int64_t free_at;             /* when the service is, after the last query */
+    int status;                  /* of its results */
     uint64_t random;
     uint64_t sent, waits; /* datagrams from the client; calls of wait() */
     size_t first, count;  /* results on their way, in the order of their arrival */
@@ -58,12 +58,21 @@ static struct network {
     struct requests requests;
 } net;
 
-static bool is_lost(void)
+static bool draw(double share)
 {
     net.random ^= net.random << 13;
     net.random ^= net.random >> 7;
     net.random ^= net.random << 17;
-    return (double) (net.random >> 11) * 0x1p-53 < net.loss;
+    return (double) (net.random >> 11) * 0x1p-53 < share;
+}
+
+static void add_result(struct arrival arrival)
+{
+    assert_true(net.count < RESULTS_MAX);
+    size_t i = net.first + net.count++;
+    for (; i > net.first && net.result[(i - 1) % RESULTS_MAX].time > arrival.time; i--)
+        net.result[i % RESULTS_MAX] = net.result[(i - 1) % RESULTS_MAX];
+    net.result[i % RESULTS_MAX] = arrival;
 }
 
 static bool publish(void *user, enum fmb_client_kind kind, const unsigned char *query, size_t size)
@@ -71,18 +80,17 @@ static bool publish(void *user, enum fmb_client_kind kind, const unsigned char *
     (void) user, (void) kind, (void) size;
     now += SEND_NS;
     net.sent++;
-    if (is_lost())
+    if (draw(net.loss))
         return true;
     const int64_t arrival = now + net.delay;
     net.free_at = (arrival > net.free_at ? arrival : net.free_at) + net.service;
-    if (is_lost())
+    if (draw(net.loss))
         return true;
     int64_t number = 0;
     for (int i = 0; i < 8; i++)
         number = number << 8 | query[REQUEST_IDS_END - 8 + i];
-    assert_true(net.count < RESULTS_MAX);
-    net.result[(net.first + net.count++) % RESULTS_MAX] =
-        (struct arrival){net.free_at + net.delay, number};
+    const int64_t lag = draw(net.late) ? net.lag : 0;
+    add_result((struct arrival){net.free_at + net.delay + lag, number});
     return true;
 }
 
@@ -217,13 +225,46 @@ static void test_single_queries_are_repeated_soon(void **state)
     (void) state;
     open_network(heavy_loss, 0, 100 * us);
     query_for(60 * s, 1);
-    print_message("%d answers, median %.1f ms, %.2f each, %d given up\n", (int) load.answers,
-                  1e-6 * (double) median(), (double) net.sent / (double) load.answers,
-                  (int) load.given_up);
     assert_true(median() < 20 * ms);
     assert_true(load.answers > 60 * s / (30 * ms));
     assert_true((double) net.sent < 3 * (double) load.answers);
     assert_int_equal(load.given_up, 0);
+}
+
+/* A wait ends with a deadline, not before it: the client does not spin. */
+static void test_a_wait_lasts_until_something_is_due(void **state)
+{
+    (void) state;
+    open_network(heavy_loss, 0, 100 * us);
+    query_for(10 * s, 1);
+    assert_true(net.waits < 4 * net.sent);
+}
+
+/* ---- Order ---- */
+
+/* One result in five comes after those of some later queries: fewer queries are repeated. */
+static void test_reordered_results_cause_few_repeats(void **state)
+{
+    (void) state;
+    open_network(0, 0, 100 * us);
+    net.late = 0.2;
+    net.lag = ms / 2;
+    query_for(20 * s, FMB_CLIENT_RAW_WINDOW);
+    assert_true((double) net.sent < 1.2 * (double) load.answers);
+}
+
+/* A few queries take long, as pairs of bodies of many frames do, for which the others do not wait.
+ * They are repeated as if there were no others: once at once, and then at intervals that double. */
+static void test_slow_queries_that_are_overtaken_back_off(void **state)
+{
+    (void) state;
+    open_network(0, 0, 100 * us);
+    net.late = 0.002;
+    net.lag = 200 * ms;
+    query_for(60 * s, FMB_CLIENT_RAW_WINDOW);
+    const double slow = net.late * (double) net.sent;
+    assert_true(load.answers > 10000);
+    assert_true((double) net.requests.counts.repeated < 8 * slow);
 }
 
 /* ---- Delay ---- */
@@ -242,8 +283,6 @@ static void test_a_longer_delay_is_learned(void **state)
         query_for(20 * s, 1);
         const uint64_t before = net.requests.counts.repeated;
         query_for(60 * s, 1);
-        print_message("%d repeats at first, then %d of %d\n", (int) before,
-                      (int) (net.requests.counts.repeated - before), (int) load.queries);
         if (lossy)
             assert_true(load.answers > 100);
         else
@@ -257,6 +296,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_windows_keep_a_share_of_their_rate),
         cmocka_unit_test(test_single_queries_are_repeated_soon),
+        cmocka_unit_test(test_a_wait_lasts_until_something_is_due),
+        cmocka_unit_test(test_reordered_results_cause_few_repeats),
+        cmocka_unit_test(test_slow_queries_that_are_overtaken_back_off),
         cmocka_unit_test(test_a_longer_delay_is_learned),
     };
     return cmocka_run_group_tests_name("client_pace", tests, NULL, NULL);
