@@ -190,6 +190,30 @@ static void test_larger_queries_of_a_request_are_charged(void **state)
     assert_false(requests_ready(&requests, REQUEST_IDS_END));
 }
 
+/* What a request takes of the window is given back when it ends. */
+static void test_the_window_is_free_when_all_requests_have_ended(void **state)
+{
+    (void) state;
+    static struct requests requests = {
+        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
+    int status;
+    requests_forget_pace(&requests);
+    for (int i = 0; i < 10; i++) {
+        assert_true(requests_ready(&requests, QUERY_BYTES_MAX));
+        struct request *request =
+            request_begin(&requests, FMB_CLIENT_SCENE, QUERY_BYTES_MAX, note_status, &status);
+        request->size = REQUEST_IDS_END;
+        request_send(&requests, request);
+        assert_true(requests_ready(&requests, QUERY_BYTES_MAX));
+        if (i % 2)
+            request_end(&requests, request);
+        else
+            requests_give_up(&requests, FMB_CLIENT_LATE);
+    }
+    assert_int_equal(requests.count, 0);
+    assert_int_equal(requests.charge, 0);
+}
+
 /* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
 static void test_a_service_that_stays_busy_is_given_up(void **state)
 {
@@ -968,6 +992,32 @@ static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
     relay_close(relay);
 }
 
+/* One more body in each result, while not all are sent whole. */
+static void another_unknown_body(struct scene_result *result, int turn)
+{
+    if (result->handle_count == 100)
+        return;
+    unknown_although_whole(result, turn);
+    result->unknown[0] = (unsigned) turn % 100;
+}
+
+static void test_unknown_bodies_one_by_one_are_sent_whole(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_scene scene = listed();
+    scene.pair_count = 100;
+    relay_query(client, &scene);
+    relay->lie = another_unknown_body;
+    const uint64_t before = fmb_client_get_counts(client).queries;
+    relay_query(client, &scene);
+    assert_int_equal(fmb_client_get_counts(client).queries, before + 3);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
 /* Of two services on a bus, the one that holds no body answers first. */
 static void test_an_answer_counts_more_than_an_unknown_body(void **state)
 {
@@ -1166,6 +1216,17 @@ static void test_old_results_contradict_nothing(void **state)
     }
     recent_note(&recent, &result[0], 0, false);
     assert_true(recent_contradicts(&recent, &result[1]));
+    /* Refusals that depend on the state of the service contradict nothing, first or second. */
+    static const int refusals[] = {FMB_BUSY, FMB_UNKNOWN_BODY};
+    for (int i = 0; i < 2; i++) {
+        struct request_result refusal = result[1];
+        refusal.status = refusals[i];
+        assert_false(recent_contradicts(&recent, &refusal));
+        refusal.number = 1;
+        recent_note(&recent, &refusal, 1, false);
+        refusal.status = FMB_OK;
+        assert_false(recent_contradicts(&recent, &refusal));
+    }
     result[1].number = RECENT_MAX;
     assert_false(recent_contradicts(&recent, &result[1]));
 }
@@ -1364,6 +1425,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
         cmocka_unit_test(test_results_of_another_kind_are_ignored),
         cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
+        cmocka_unit_test(test_the_window_is_free_when_all_requests_have_ended),
         cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
         cmocka_unit_test(test_results_without_a_query_do_not_prolong_others),
         cmocka_unit_test(test_a_service_that_comes_back_is_found),
@@ -1383,6 +1445,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_steps_of_one_pair_end),
         cmocka_unit_test(test_slow_services_get_fewer_pairs_a_query),
         cmocka_unit_test(test_unknown_bodies_for_ever_are_sent_whole),
+        cmocka_unit_test(test_unknown_bodies_one_by_one_are_sent_whole),
         cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
         cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),

@@ -3,6 +3,7 @@
 #include "clock.h"
 #include "query.h"
 #include "request.h"
+#include "scene_run.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -291,6 +292,45 @@ static void test_a_longer_delay_is_learned(void **state)
     }
 }
 
+/* ---- The end of a scene ---- */
+
+static void count_statuses(void *user, const struct fmb_client_answer *answer)
+{
+    int *count = user; /* [-status] */
+    assert_in_range(-answer->status, 0, 7);
+    count[-answer->status]++;
+}
+
+/* The requests are given up, and the time for the scene ends, in the same step: that there is no
+ * service says more than that it is late. */
+static void test_no_service_is_reported_although_it_is_late(void **state)
+{
+    (void) state;
+    enum { PAIRS = 3000 };
+    static struct scene_run run;
+    static struct held held;
+    static unsigned pair[PAIRS][2];
+    const struct fmb_client_frame frame = {.shape = FMB_BOX, .components = {1, 1, 1}};
+    const struct fmb_client_placement placement[2] = {
+        {.dim = 3, .frames = &frame, .frame_count = 1},
+        {.dim = 3, .frames = &frame, .frame_count = 1}};
+    for (int i = 0; i < PAIRS; i++)
+        pair[i][1] = 1;
+    struct fmb_client_scene scene = {.placements = placement,
+                                     .placement_count = 2,
+                                     .which = FMB_CLIENT_LISTED,
+                                     .pairs = (const unsigned(*)[2]) pair,
+                                     .pair_count = PAIRS};
+    for (int late = 0; late < 2; late++) {
+        int count[8] = {0};
+        open_network(1, 0, 0);
+        scene.within = late ? 2 : 3;
+        run = (struct scene_run){.requests = &net.requests, .held = &held};
+        assert_int_equal(scene_run(&run, &scene, true, count_statuses, count), FMB_OK);
+        assert_int_equal(count[late ? -FMB_CLIENT_LATE : -FMB_CLIENT_NO_SERVICE], PAIRS);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -300,6 +340,7 @@ int main(void)
         cmocka_unit_test(test_reordered_results_cause_few_repeats),
         cmocka_unit_test(test_slow_queries_that_are_overtaken_back_off),
         cmocka_unit_test(test_a_longer_delay_is_learned),
+        cmocka_unit_test(test_no_service_is_reported_although_it_is_late),
     };
     return cmocka_run_group_tests_name("client_pace", tests, NULL, NULL);
 }
