@@ -907,7 +907,8 @@ static void test_the_right_result_after_forged_ones_is_taken(void **state)
     relay_close(relay);
 }
 
-/* The smallest steps that are steps: every one is a query, and it ends. */
+/* The smallest steps that are steps: every one is a query, and it ends. A second result of one is
+ * not a result of the next. */
 static void step_by_step(struct scene_result *result, int turn)
 {
     (void) turn;
@@ -921,13 +922,15 @@ static void test_steps_of_one_pair_end(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
-    relay->lie = step_by_step;
+    relay->lie = relay->second_lie = step_by_step;
+    relay->double_result = 1;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_scene scene = listed();
     scene.pair_count = 300;
     relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).queries, 300);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }

@@ -292,6 +292,21 @@ static void test_a_longer_delay_is_learned(void **state)
     }
 }
 
+/* ---- A busy service ---- */
+
+/* However short the timeouts, it is queried for a minute, more and more rarely. */
+static void test_a_busy_service_is_queried_for_a_minute(void **state)
+{
+    (void) state;
+    open_network(0, 0, 100 * us);
+    net.status = FMB_BUSY;
+    query_for(70 * s, 1);
+    assert_int_equal(load.answers, 1);
+    assert_int_equal(load.given_up, 0);
+    assert_true(load.time[0] > 60 * s);
+    assert_true(net.sent < 300);
+}
+
 /* ---- The end of a scene ---- */
 
 static void count_statuses(void *user, const struct fmb_client_answer *answer)
@@ -340,6 +355,7 @@ int main(void)
         cmocka_unit_test(test_reordered_results_cause_few_repeats),
         cmocka_unit_test(test_slow_queries_that_are_overtaken_back_off),
         cmocka_unit_test(test_a_longer_delay_is_learned),
+        cmocka_unit_test(test_a_busy_service_is_queried_for_a_minute),
         cmocka_unit_test(test_no_service_is_reported_although_it_is_late),
     };
     return cmocka_run_group_tests_name("client_pace", tests, NULL, NULL);
