@@ -4,6 +4,7 @@
 #include "hostile.h"
 #include "fmb_client_raw.h"
 #include "relay.h"
+#include "held.h"
 #include "request.h"
 #include "scene_part.h"
 #include "wire.h"
@@ -145,6 +146,44 @@ static void test_results_of_another_kind_are_ignored(void **state)
     deceived = client;
     relay->before = publish_pair_results;
     relay_query(client, &scene);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+/* Before a pair is answered, results for another client come under the numbers of its queries. */
+static void publish_results_of_another(struct relay *relay)
+{
+    for (int number = 0; number < 20; number++) {
+        struct pair_result result = {.client_id = fmb_client_raw_id(deceived) + 1,
+                                     .sequence_number = number,
+                                     .answer = {.verdict = FMB_SEPARATED}};
+        unsigned char bytes[QUERY_BYTES_MAX];
+        relay_publish(relay, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
+    }
+}
+
+static void count_pairs(void *user, const struct fmb_client_pair_result *result)
+{
+    (void) result;
+    ++*(int *) user;
+}
+
+static void test_results_of_another_client_are_watched_only(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    struct fmb_client_answer answer;
+    int watched = 0;
+    const struct fmb_client_watcher watcher = {.pair = count_pairs, .user = &watched};
+    relay_draw(placement, 2, 3, 1, 1, 5);
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
+    deceived = client;
+    relay->before = publish_results_of_another;
+    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    assert_true(watched > 20);
     assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
@@ -373,10 +412,13 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
     relay->deaf = true;
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 0.05, 2);
-    const struct fmb_client_scene scene = all_pairs();
+    static const unsigned ignored[2][2] = {{0, 1}, {PLACEMENTS - 1, 3}};
+    struct fmb_client_scene scene = all_pairs();
+    scene.ignored = ignored;
+    scene.ignored_count = 2;
     const int64_t start = clock_ns();
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE],
-                     PLACEMENTS * (PLACEMENTS - 1) / 2);
+                     PLACEMENTS * (PLACEMENTS - 1) / 2 - 2);
     assert_true(seconds_since(start) >= 2 * 0.05);
     assert_int_equal(fmb_client_get_counts(client).queries, 2); /* the window's */
     fmb_client_close(client);
@@ -1116,6 +1158,27 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
     }
 }
 
+/* Another body that takes the slot of one that is held is not held. */
+static void test_a_new_body_in_a_slot_is_not_held(void **state)
+{
+    (void) state;
+    static struct held held;
+    uint64_t number = 0;
+    const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
+    held.hasher = hasher_create();
+    struct held_body *first = held_find(&held, &geometry), *other = NULL;
+    first->held = true;
+    assert_ptr_equal(held_find(&held, &geometry), first);
+    assert_true(first->held);
+    while (other != first) {
+        number++;
+        other = held_find(&held, &geometry);
+    }
+    assert_false(first->held);
+    held_clear(&held);
+    hasher_destroy(held.hasher);
+}
+
 /* ---- Second results ---- */
 
 static void other_verdict(struct scene_result *result, int turn)
@@ -1427,6 +1490,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
         cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
         cmocka_unit_test(test_results_of_another_kind_are_ignored),
+        cmocka_unit_test(test_results_of_another_client_are_watched_only),
         cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
         cmocka_unit_test(test_the_window_is_free_when_all_requests_have_ended),
         cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
@@ -1452,6 +1516,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
         cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
+        cmocka_unit_test(test_a_new_body_in_a_slot_is_not_held),
         cmocka_unit_test(test_contradicting_second_results_are_counted),
         cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
         cmocka_unit_test(test_old_results_contradict_nothing),
