@@ -2,6 +2,8 @@
 
 load service
 
+bats_require_minimum_version 1.5.0
+
 @test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
     for signal in TERM INT; do
         start_fmbd

@@ -1225,7 +1225,11 @@ static void test_contradicting_second_results_are_counted(void **state)
     static const struct {
         relay_lie *lie;
         bool contradicts;
-    } second[] = {{NULL, false}, {other_verdict, true}, {other_service, false}, {busy, false}};
+    } second[] = {{NULL, false},
+                  {other_verdict, true},
+                  {other_service, false},
+                  {busy, false},
+                  {step_by_step, false}};
     for (size_t i = 0; i < sizeof second / sizeof *second; i++) {
         struct relay *relay = relay_new();
         relay->double_result = 1;
