@@ -125,10 +125,12 @@ static void take_outcome(void *user, const struct scene *scene, const struct out
     progress_to(&run->progress, run->progress.done + 1, run->progress.total);
 }
 
-/* The bus is opened for the first scene: an invalid one is reported without a bus. */
-static void answer_scene(struct query_run *run, const struct scene *scene)
+/* The bus is opened for the first scene: an invalid one is reported without a bus. Returns false if
+ * later scenes need not be queried. */
+static bool answer_scene(struct query_run *run, const struct scene *scene)
 {
     const struct query_options *options = run->options;
+    bool more = true;
     for (int i = 0; i < 2; i++)
         if (run->report[i])
             run->report[i]->begin(run->report[i], scene);
@@ -141,11 +143,12 @@ static void answer_scene(struct query_run *run, const struct scene *scene)
     if (options->local)
         answers_local(&options->wanted, scene, take_outcome, run);
     else
-        answers_bus_scene(run->bus, scene, take_outcome, run);
+        more = answers_bus_scene(run->bus, scene, take_outcome, run);
     progress_end(&run->progress);
     for (int i = 0; i < 2; i++)
         if (run->report[i])
             run->report[i]->end(run->report[i], scene);
+    return more;
 }
 
 static int answer_scenes(struct query_run *run, int fd)
@@ -153,16 +156,18 @@ static int answer_scenes(struct query_run *run, int fd)
     struct json_reader *reader = json_open(fd);
     struct scene scene;
     enum json_outcome outcome;
-    while ((outcome = json_next(reader, &scene)) == JSON_SCENE) {
-        answer_scene(run, &scene);
+    bool more = true;
+    while (more && (outcome = json_next(reader, &scene)) == JSON_SCENE) {
+        more = answer_scene(run, &scene);
         scene_clear(&scene);
     }
-    if (outcome != JSON_END)
+    const bool wrong = more && outcome != JSON_END;
+    if (wrong)
         complain("%s: %s", run->input_name, json_error(reader));
     json_close(reader);
-    if (outcome != JSON_END)
+    if (wrong)
         return ARGS_USAGE;
-    return run->undecided ? ARGS_FAILED : ARGS_ANSWERED;
+    return !more || run->undecided ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
 /* ---- Files ----------------------------------------------------------------------------------- */

@@ -75,7 +75,8 @@ struct fmb_client_options {
     const char *url;
     const char *prefix; /* of the service's channels; NULL: none */
     /* Longest time before a query is sent again, seconds; 0: 0.5. The first repeat comes after
-     * milliseconds, each later one after twice the time, up to this. */
+     * milliseconds; later ones after as long while many queries are lost, else each after twice the
+     * time, up to this. */
     double timeout;
     int tries; /* a query is given up after this many timeouts; 0: 6 */
 };

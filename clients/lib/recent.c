@@ -41,23 +41,40 @@ static int32_t end_pair_of(const struct request_result *result)
     return result->kind == FMB_CLIENT_SCENE ? result->scene->end_pair : 0;
 }
 
-void recent_note(struct recent *recent, const struct request_result *result, int64_t number)
+void recent_note(struct recent *recent, const struct request_result *result, int64_t number,
+                 bool repeated)
 {
     struct recent_result *out = &recent->result[number % RECENT_MAX];
-    out->used = is_comparable(result);
-    if (!out->used)
+    *out = (struct recent_result){.used = true,
+                                  .comparable = is_comparable(result),
+                                  .repeated = repeated,
+                                  .kind = (int) result->kind,
+                                  .number = number};
+    if (!out->comparable)
         return;
-    out->kind = result->kind;
-    out->number = number;
     out->end_pair = end_pair_of(result);
     out->digest = digest_of(result);
 }
 
+/* Returns the recorded result of the same query; NULL: there is none. */
+static const struct recent_result *find(const struct recent *recent,
+                                        const struct request_result *result)
+{
+    const struct recent_result *first = &recent->result[(uint64_t) result->number % RECENT_MAX];
+    const bool found =
+        first->used && first->number == result->number && first->kind == (int) result->kind;
+    return found ? first : NULL;
+}
+
+bool recent_was_repeated(const struct recent *recent, const struct request_result *result)
+{
+    const struct recent_result *first = find(recent, result);
+    return first && first->repeated;
+}
+
 bool recent_contradicts(const struct recent *recent, const struct request_result *result)
 {
-    if (result->number < 0 || !is_comparable(result))
-        return false;
-    const struct recent_result *first = &recent->result[result->number % RECENT_MAX];
-    return first->used && first->number == result->number && first->kind == (int) result->kind &&
+    const struct recent_result *first = find(recent, result);
+    return first && first->comparable && is_comparable(result) &&
            first->end_pair == end_pair_of(result) && first->digest != digest_of(result);
 }

@@ -28,6 +28,8 @@ struct request_result {
 struct recent {
     struct recent_result {
         bool used;
+        bool comparable; /* end_pair and digest are set */
+        bool repeated;   /* the query was */
         int kind;
         int64_t number;
         int32_t end_pair; /* of a scene */
@@ -35,8 +37,13 @@ struct recent {
     } result[RECENT_MAX]; /* [number % RECENT_MAX] */
 };
 
-/* Records the result of the query with this number. */
-void recent_note(struct recent *recent, const struct request_result *result, int64_t number);
+/* Records the result of the query with this number. repeated: the query was sent more than once. */
+void recent_note(struct recent *recent, const struct request_result *result, int64_t number,
+                 bool repeated);
+
+/* Whether a result is the second one of a query that was repeated: without need, if there is one
+ * service. */
+bool recent_was_repeated(const struct recent *recent, const struct request_result *result);
 
 /* Whether a result contradicts the recorded one of the same query. Service, handles and compute
  * time are not compared. Refusals that depend on the state of the service (BUSY, UNKNOWN_BODY),

@@ -16,6 +16,11 @@ enum {
     MARGIN_MS = 8,
     FIRST_RETRY_MS = 10,
     FIRST_SCENE_RETRY_MS = 40,
+    /* Time that a result may come after those of later queries: after the first repeat that was
+     * needless, at most, and the part by which it decays with each result. */
+    REORDERING_FIRST_US = 100,
+    REORDERING_MOST_US = 1000 * MARGIN_MS,
+    REORDERING_DECAY = 64,
     /* A default receive buffer has 212,992 bytes, and also holds datagrams of other senders. A
      * datagram takes at most twice its bytes there, plus a constant; the largest take 70,000. */
     CHARGE_MAX = 150000,
@@ -26,7 +31,17 @@ enum {
     NUMBER_AT = 24
 };
 
-static const int64_t ns_per_ms = 1000000, ns_per_s = 1000000000;
+static const int64_t ns_per_us = 1000, ns_per_ms = 1000000, ns_per_s = 1000000000;
+
+/* A repeat is free if the losses before it had at least this chance: the first 21 at heavy_loss, 4
+ * if one query in fifty is lost, and the first one where none was. */
+static const double least_chance = 1.0 / (1 << 20);
+/* Largest share of lost queries that is believed. If more are repeated, the service is slow. */
+static const double heavy_loss = 0.5;
+/* Weight of a result in the shares of lost queries and of needless repeats. */
+static const double share_weight = 1.0 / 32;
+/* Repeats are useful if the share of needless ones is by so much less than half of all. */
+static const double needless_margin = 0.1;
 
 const char *fmb_client_status_text(int status)
 {
@@ -107,7 +122,7 @@ static void publish(struct requests *requests, struct request *request)
     if (!transport->publish(transport->user, request->kind, request->query, request->size))
         requests->counts.unsent++;
     requests->counts.bytes += request->size;
-    request->pausing = false;
+    request->pausing = request->overtaken = false;
     request->sent_at = clock_ns();
     request->deadline = request->sent_at + request->interval;
 }
@@ -131,29 +146,41 @@ void request_send(struct requests *requests, struct request *request)
     big_endian_put_64(request->query + NUMBER_AT, (uint64_t) request->number);
     request->interval = retry < requests->timeout_ns ? retry : requests->timeout_ns;
     request->repeated = false;
+    request->chance = 1;
     requests->counts.queries++;
     publish(requests, request);
-    request->first_at = request->sent_at;
+    request->first_at = request->pending_at = request->sent_at;
     request->give_up_at = request->sent_at + total_timeout(requests);
 }
 
-/* Until a query gets its result without being repeated, the next ones begin with the interval that
- * this one has reached. */
+static bool is_free(const struct request *request)
+{
+    return request->chance >= least_chance;
+}
+
+/* Whether most repeats are useful. Where most are needless, because results come in another order,
+ * a result may answer any sending of a query. */
+static bool are_useful(const struct request_pace *pace)
+{
+    return pace->needless + needless_margin < pace->lost / 2;
+}
+
 static void repeat(struct requests *requests, struct request *request)
 {
-    struct request_pace *pace = &requests->pace[request->kind];
-    if (!request->pausing) {
-        request->interval *= 2;
-        if (request->interval > requests->timeout_ns)
-            request->interval = requests->timeout_ns;
-        if (request->interval > pace->retry)
-            pace->retry = request->interval;
-    } else {
+    const bool lost = request->overtaken || request->pausing;
+    const double share = requests->pace[request->kind].lost;
+    if (request->pausing) {
         request->give_up_at = clock_ns() + total_timeout(requests);
+    } else {
+        if (!is_free(request))
+            request->interval = clock_earlier(2 * request->interval, requests->timeout_ns);
+        request->chance *= share < heavy_loss ? share : heavy_loss;
     }
     request->repeated = true;
     requests->counts.repeated++;
     publish(requests, request);
+    if (lost && are_useful(&requests->pace[request->kind]))
+        request->pending_at = request->sent_at;
 }
 
 /* ---- Results ---- */
@@ -173,16 +200,47 @@ static void note_received(struct requests *requests, enum fmb_client_kind kind)
     requests->pace[kind].received_at = requests->received_at;
 }
 
-/* The result of a repeated query is not measured: which of its sendings it answers is unknown. */
+/* A repeated query says nothing about the response time, unless none was measured since it was sent
+ * first: then either it was lost, or retry is too short. At first retry is what the service needed;
+ * later it doubles after this many in a row, since of lost queries so many seldom come in a row. */
+enum { UNMEASURED_MAX = 4 };
+
+static void note_repeated(struct request_pace *pace, const struct request *request)
+{
+    if (request->first_at < pace->measured_at)
+        return;
+    pace->unmeasured++;
+    if (pace->mean == 0 && pace->retry < 2 * request->interval)
+        pace->retry = 2 * request->interval;
+    else if (pace->mean > 0 && pace->unmeasured % UNMEASURED_MAX == 0 &&
+             pace->retry < request->interval * 2)
+        pace->retry *= 2;
+}
+
+/* With the decay, about one repeat in a hundred results stays needless. */
+static void note_needless(struct request_pace *pace)
+{
+    const int64_t more = 2 * pace->reordering + REORDERING_FIRST_US * ns_per_us;
+    pace->reordering = clock_earlier(more, REORDERING_MOST_US * ns_per_us);
+    pace->needless += share_weight * (1 - pace->needless);
+}
+
+/* Which of the sendings of a repeated query a result answers is unknown. */
 static void measure(struct request_pace *pace, const struct request *request)
 {
-    const int64_t begin =
-        request->sent_at > pace->received_at ? request->sent_at : pace->received_at;
-    const int64_t time = clock_ns() - begin;
-    if (request->first_at > pace->overtaken_at)
-        pace->overtaken_at = request->first_at;
-    if (request->repeated)
+    const int64_t now = clock_ns();
+    const int64_t time = now - request->sent_at;
+    if (request->pending_at > pace->overtaken_at)
+        pace->overtaken_at = request->pending_at;
+    pace->lost += share_weight * ((request->chance < 1) - pace->lost);
+    pace->needless -= share_weight * pace->needless;
+    pace->reordering -= pace->reordering / REORDERING_DECAY;
+    if (request->repeated) {
+        note_repeated(pace, request);
         return;
+    }
+    pace->measured_at = now;
+    pace->unmeasured = 0;
     if (pace->mean == 0) {
         pace->mean = time;
         pace->deviation = time / 2;
@@ -222,6 +280,8 @@ void requests_take(struct requests *requests, const struct request_result *resul
     if (!request) {
         requests->counts.contradicting += recent_contradicts(&requests->recent, result);
         note_service(requests);
+        if (recent_was_repeated(&requests->recent, result))
+            note_needless(&requests->pace[result->kind]);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_received(requests, result->kind);
         pause_request(request);
@@ -235,9 +295,9 @@ void requests_take(struct requests *requests, const struct request_result *resul
         measure(&requests->pace[request->kind], request);
         note_received(requests, request->kind);
         requests->counts.answered++;
-        recent_note(&requests->recent, result, result->number);
+        recent_note(&requests->recent, result, result->number, request->repeated);
         if (number != result->number)
-            recent_note(&requests->recent, result, number);
+            recent_note(&requests->recent, result, number, request->repeated);
         request->earlier = taken == REQUEST_WHOLE ? number : -1;
         if (taken == REQUEST_COMPLETE)
             request_end(requests, request);
@@ -267,13 +327,22 @@ static void give_up(struct requests *requests, struct request *request)
     requests_give_up(requests, FMB_CLIENT_NO_SERVICE);
 }
 
+/* Notes that a request that was sent later has its result. */
+static void note_overtaken(const struct request_pace *pace, struct request *request, int64_t time)
+{
+    if (request->pausing || request->overtaken || request->sent_at >= pace->overtaken_at)
+        return;
+    request->overtaken = true;
+    if (is_free(request))
+        request->deadline = time + pace->reordering;
+}
+
 /* Whether the service may still have the request in its queue: results of other requests come in,
- * or an older request is repeated first; and no request that was sent later has its result. */
+ * or one that was sent later is repeated first. */
 static bool is_queued(const struct request_pace *pace, const struct request *request, int64_t time)
 {
-    const bool expected =
-        time < pace->received_at + request->interval || request->number > pace->oldest;
-    return expected && request->sent_at >= pace->overtaken_at;
+    return !request->pausing &&
+           (time < pace->received_at + request->interval || request->sent_at < pace->newest_at);
 }
 
 /* Whether to give a request up. A caller that was away for long has not repeated the query: the
@@ -292,11 +361,14 @@ static void check_deadline(struct requests *requests, struct request *request, i
 {
     const struct request_pace *pace = &requests->pace[request->kind];
     const int64_t received_at = pace->received_at;
-    if (!request->under_way || time < request->deadline)
+    if (!request->under_way)
+        return;
+    note_overtaken(pace, request, time);
+    if (time < request->deadline)
         return;
     if (is_overdue(requests, request, time))
         give_up(requests, request);
-    else if (!request->pausing && is_queued(pace, request, time))
+    else if (!request->overtaken && is_queued(pace, request, time))
         request->deadline =
             request->interval + (received_at + request->interval > time ? received_at : time);
     else
@@ -305,15 +377,15 @@ static void check_deadline(struct requests *requests, struct request *request, i
         request->deadline = request->give_up_at;
 }
 
-static void note_oldest(struct requests *requests)
+static void note_newest(struct requests *requests)
 {
     for (int kind = 0; kind < FMB_CLIENT_KINDS; kind++)
-        requests->pace[kind].oldest = INT64_MAX;
+        requests->pace[kind].newest_at = 0;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
         const struct request *request = &requests->request[i];
         struct request_pace *pace = &requests->pace[request->kind];
-        if (request->under_way && !request->pausing && request->number < pace->oldest)
-            pace->oldest = request->number;
+        if (request->under_way && !request->pausing && request->sent_at > pace->newest_at)
+            pace->newest_at = request->sent_at;
     }
 }
 
@@ -341,7 +413,7 @@ void requests_step(struct requests *requests, int other_fd, int64_t until)
     if (requests->count == 0)
         return;
     const int64_t time = clock_ns();
-    note_oldest(requests);
+    note_newest(requests);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         check_deadline(requests, &requests->request[i], time);
 }

@@ -1,10 +1,19 @@
 /* Requests: queries under way, each of which is sent until its result comes.
  *
  * LCM loses datagrams without notice. A query without a result is therefore sent again, with the
- * same sequence number: first some milliseconds after the usual response time (struct
- * request_pace), then at intervals that double, up to the client's timeout. A busy service is
- * queried again after a pause. A second result of a query is ignored, but compared with the first
- * (recent.h).
+ * same sequence number. A busy service is queried again after a pause. A second result of a query
+ * is ignored, but compared with the first (recent.h).
+ *
+ * A service answers the queries of a client in their order, with few exceptions. So a query is
+ * presumed lost, and is repeated, when one that was sent later has its result: at once, or, if such
+ * repeats have proved to be needless (both results came), after a while as in RACK (RFC 8985). The
+ * query that was sent last has none after it: it is repeated when no result has come for an
+ * interval, which is some milliseconds more than the usual response time (struct request_pace). Its
+ * result then shows which of the others were lost.
+ *
+ * Each query backs off by itself. Repeats that the share of lost queries makes likely are free.
+ * Beyond them the service is presumed slow: the interval doubles with each repeat, up to the
+ * client's timeout, and no query is repeated sooner.
  *
  * The number and the bytes of queries under way are limited, so that the receive buffers of both
  * ends can hold them.
@@ -47,26 +56,34 @@ struct request {
     int64_t earlier;    /* number of the query that this one repeats with frames; -1: none */
     int64_t first_at;   /* time of first sending; times are those of clock_ns() */
     int64_t sent_at;    /* time of last sending */
+    int64_t pending_at; /* time of the first sending that is not known to be lost or refused */
     int64_t deadline;   /* time to send it again, or to give it up */
     int64_t give_up_at; /* time to give it up at the latest */
     int64_t interval;   /* from sent_at to deadline */
+    double chance;      /* of as many losses in a row as it had repeats */
     int refusals;       /* times that the service was busy */
     bool repeated;      /* sent more than once */
     bool pausing;       /* the deadline ends a pause after a refusal */
+    bool overtaken;     /* the deadline ends the time that a result may come late */
     size_t charge;      /* bytes that it takes of a receive buffer */
     size_t size;
     unsigned char query[QUERY_BYTES_MAX];
 };
 
-/* Response time of one kind of query, estimated like the round-trip time of RFC 6298. It is
- * measured from sending, or from the previous result if that came later, since a service answers
- * the queries of a client one after the other. Nanoseconds; times are those of clock_ns(). */
+/* Response time of one kind of query, estimated like the round-trip time of RFC 6298, and only from
+ * queries that were not repeated (Karn's algorithm). If all queries are repeated before their
+ * results, retry grows until one is not. Nanoseconds; times are those of clock_ns(). */
 struct request_pace {
-    int64_t mean, deviation; /* 0: no result so far */
-    int64_t retry;           /* first interval of the next query */
+    int64_t mean, deviation; /* 0: none measured so far */
+    int64_t retry;           /* first interval of the next query: from 8 ms to the timeout */
+    double lost;             /* share of results that came after a repeat; a moving average */
+    double needless;         /* share of results that came twice, after a repeat; likewise */
+    int unmeasured;          /* number of results in a row for which retry was too short */
+    int64_t measured_at;     /* time of the last measurement */
     int64_t received_at;     /* time of the last result of a request under way */
-    int64_t overtaken_at;    /* newest time of first sending among the requests that have results */
-    int64_t oldest;          /* number of the oldest request under way */
+    int64_t overtaken_at;    /* newest pending_at of the requests that have results */
+    int64_t reordering;      /* time that a result may come after those of later queries */
+    int64_t newest_at;       /* newest sent_at of the requests under way */
 };
 
 /* The functions by which requests reach the bus, from the owner of the requests. */

@@ -22,13 +22,15 @@ struct answers_bus;
 
 /* Opens the bus. timeout: seconds before a query is sent again; retries: how often. Never returns
  * NULL: if the bus cannot be opened (reported on stderr), or no service answers (reported once for
- * each outage, with advice), each pair gets an error. */
+ * each outage, with advice), each pair of a scene gets an error. */
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      const struct answers_options *options, double timeout,
                                      int retries);
 void answers_bus_close(struct answers_bus *answers);
 
-void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
+/* Returns false if later scenes need not be queried: there is no bus; or no service answered, and
+ * none has sent as much as a heartbeat since the bus was opened. */
+bool answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user);
 
 enum { VERIFY_TEXT_MAX = 256 };

@@ -1,11 +1,15 @@
 #include "answers.h"
 
 #include "allocate.h"
+#include "clock.h"
 #include "complain.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* A service sends a heartbeat each second. */
+static const double heartbeat_s = 1.5;
 
 struct answers_bus {
     struct args_bus bus;
@@ -13,6 +17,8 @@ struct answers_bus {
     struct fmb_client *client; /* NULL: could not be opened */
     double patience;           /* seconds until a query is given up */
     uint64_t advised;          /* outages that have been reported */
+    int64_t heartbeat_by;      /* time by which a service has sent a heartbeat; clock_ns() */
+    bool heartbeat;            /* a service has sent one */
 };
 
 /* A scene, and the state of its answers. */
@@ -24,6 +30,13 @@ struct bus_scene {
     void *user;
 };
 
+static void note_heartbeat(void *user, const struct fmb_client_heartbeat *heartbeat)
+{
+    struct answers_bus *answers = user;
+    (void) heartbeat;
+    answers->heartbeat = true;
+}
+
 struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      const struct answers_options *options, double timeout,
                                      int retries)
@@ -34,7 +47,11 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
     answers->patience = timeout * (retries + 1);
     answers->client = args_open_client(
         bus, (struct fmb_client_options){.timeout = timeout, .tries = retries + 1});
-    if (!answers->client)
+    answers->heartbeat_by = clock_ns() + (int64_t) (1e9 * heartbeat_s);
+    const struct fmb_client_watcher watcher = {.heartbeat = note_heartbeat, .user = answers};
+    if (answers->client)
+        fmb_client_watch(answers->client, &watcher);
+    else
         complain("to decide without a bus: fmb query --local");
     return answers;
 }
@@ -179,27 +196,41 @@ static void deliver_remaining(struct bus_scene *run, const char *error)
             deliver_separated(run, outcome.pair);
 }
 
-/* Reports each outage once. */
-static void advise(struct answers_bus *answers)
+/* Whether anything has come from a service since the bus was opened. Waits for its heartbeat. */
+static bool service_seen(struct answers_bus *answers)
+{
+    int64_t left_ns;
+    while (!answers->heartbeat && fmb_client_get_counts(answers->client).answered == 0 &&
+           (left_ns = answers->heartbeat_by - clock_ns()) > 0)
+        if (fmb_client_handle(answers->client, 1e-9 * (double) left_ns) < 0)
+            return false;
+    return answers->heartbeat || fmb_client_get_counts(answers->client).answered > 0;
+}
+
+/* Reports each outage once. Returns false if no service has ever been seen. */
+static bool advise(struct answers_bus *answers)
 {
     const char *prefix = answers->bus.prefix;
     const struct fmb_client_counts counts = fmb_client_get_counts(answers->client);
     if (answers->advised == counts.outages)
-        return;
+        return true;
     answers->advised = counts.outages;
-    complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s", prefix,
+    const bool seen = service_seen(answers);
+    complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s%s", prefix,
              answers->options.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
-             answers->patience);
+             answers->patience,
+             seen ? "" : ", and none sends a heartbeat: later scenes are not answered");
     if (counts.malformed > 0)
         complain("%" PRIu64 " results could not be read: another version of fmbd?",
                  counts.malformed);
     complain("start one with 'fmbd%s%s &', or decide without it: fmb query --local",
              *prefix ? " --prefix " : "", prefix);
+    return seen;
 }
 
 /* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
  * gap. */
-static void query(struct answers_bus *answers, struct bus_scene *run)
+static bool query(struct answers_bus *answers, struct bus_scene *run)
 {
     const struct answers_options *options = &answers->options;
     const struct scene *scene = run->scene;
@@ -226,16 +257,16 @@ static void query(struct answers_bus *answers, struct bus_scene *run)
     free(bodies.placement);
     free(bodies.frame);
     free(pair);
-    advise(answers);
+    return advise(answers);
 }
 
-void answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
+bool answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user)
 {
     struct bus_scene run = {
         .scene = scene, .certificate = answers->options.certificate, .sink = sink, .user = user};
     if (answers->client)
-        query(answers, &run);
-    else
-        deliver_remaining(&run, "no bus");
+        return query(answers, &run);
+    deliver_remaining(&run, "no bus");
+    return false;
 }

@@ -14,10 +14,13 @@ bool bus_socket_route(const struct sockaddr_in *group, char why[BUS_WHY_MAX])
 {
     char address[INET_ADDRSTRLEN];
     const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const bool ok = fd >= 0 && connect(fd, (const struct sockaddr *) group, sizeof *group) == 0;
+    if (fd < 0) {
+        snprintf(why, BUS_WHY_MAX, "cannot open a socket (%s)", strerror(errno));
+        return false;
+    }
+    const bool ok = connect(fd, (const struct sockaddr *) group, sizeof *group) == 0;
     const int error = errno;
-    if (fd >= 0)
-        close(fd);
+    close(fd);
     if (ok)
         return true;
     inet_ntop(AF_INET, &group->sin_addr, address, sizeof address);

@@ -1,12 +1,13 @@
 /* Clients that ask without end, and know the answers: is none lost, and none wrong? The bus is that
  * of LCM_DEFAULT_URL.
  *
- * soak-asker [--clients N] [--seconds S] [--rate R] [--pairs P]
+ * soak-asker [--clients N] [--seconds S] [--rate R] [--pairs P] [--single 1]
  *
  * N clients (1), a thread each, ask for S seconds (10), R queries a second all together (0: as many
- * as they can). Of P pairs each (1): one by a pair query, more by a scene; about half of the pairs
- * are in contact, some just touch, half of the frames move. Prints a line of JSON. Exit code 0:
- * each query got its answers, and each answer was that of libfmb, bit for bit. */
+ * as they can). Of P pairs each (1): one by a pair query, more by a scene; with --single 1 by a
+ * pair query each, as many under way as the library keeps. About half of the pairs are in contact,
+ * some just touch, half of the frames move. Prints a line of JSON. Exit code 0: each query got its
+ * answers, and each answer was that of libfmb, bit for bit. */
 #include "clock.h"
 #include "fmb_client.h"
 #include "same_answer.h"
@@ -26,7 +27,7 @@ static const int tries = 300;
 static const double timeout = 0.1;
 
 struct plan {
-    long clients, rate, pairs;
+    long clients, rate, pairs, single;
     double seconds;
 };
 
@@ -128,7 +129,8 @@ static void ask(struct asker *asker)
         .pairs = (const unsigned(*)[2]) asker->pair,
         .pair_count = (size_t) asker->plan->pairs,
         .duration = 1,
-        .want = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES,
+        .want = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES |
+                (asker->plan->single ? FMB_CLIENT_WANT_CERTIFICATE : 0),
     };
     const int64_t begin = clock_ns();
     asker->seen = 0;
@@ -208,14 +210,15 @@ static int report(const struct asker *asker, const struct plan *plan, double sec
         sum.repeated += counts.repeated;
         sum.malformed += counts.malformed;
         sum.outages += counts.outages;
+        sum.bytes += counts.bytes;
     }
     printf("{\"clients\": %ld, \"seconds\": %.1f, \"queries\": %" PRId64 ", \"pairs\": %" PRId64
            ", \"queries_a_second\": %.0f, \"pairs_a_second\": %.0f, \"unanswered\": %" PRId64
            ", \"wrong\": %" PRId64 ", \"asked_again\": %" PRIu64 ", \"malformed\": %" PRIu64
-           ", \"outages\": %" PRIu64 ", \"longest_ms\": %.1f}\n",
+           ", \"outages\": %" PRIu64 ", \"bytes_a_pair\": %.1f, \"longest_ms\": %.1f}\n",
            plan->clients, seconds, queries, pairs, (double) queries / seconds,
            (double) pairs / seconds, unanswered, wrong, sum.repeated, sum.malformed, sum.outages,
-           1e-6 * (double) longest_ns);
+           (double) sum.bytes / (double) (pairs ? pairs : 1), 1e-6 * (double) longest_ns);
     return queries > 0 && unanswered == 0 && wrong == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
@@ -233,6 +236,8 @@ static bool parse(int argc, char **argv, struct plan *out)
             out->rate = (long) value;
         else if (strcmp(argv[i], "--pairs") == 0)
             out->pairs = (long) value;
+        else if (strcmp(argv[i], "--single") == 0)
+            out->single = (long) value;
         else if (strcmp(argv[i], "--seconds") == 0)
             out->seconds = value;
         else
@@ -247,7 +252,8 @@ int main(int argc, char **argv)
     static struct asker asker[CLIENTS_MAX];
     struct plan plan;
     if (!parse(argc, argv, &plan)) {
-        fputs("usage: soak-asker [--clients N] [--seconds S] [--rate R] [--pairs P]\n", stderr);
+        fputs("usage: soak-asker [--clients N] [--seconds S] [--rate R] [--pairs P] [--single 1]\n",
+              stderr);
         return 2;
     }
     const int64_t begin = clock_ns();

@@ -1,9 +1,9 @@
 /* A bad network between two buses of LCM on this host: carries datagrams over, but for those that
  * it loses, and overtakes some. For systems whose kernel has no netem.
  *
- * soak-relay PORT PORT PERCENT: between the multicast groups 239.255.76.67 at both ports, loses
- * PERCENT of the datagrams, and holds back as many until the next one has passed. Until it is
- * ended.
+ * soak-relay PORT PORT LOST HELD: between the multicast groups 239.255.76.67 at both ports, loses
+ * LOST percent of the datagrams, and holds back HELD percent until the next one has passed. Until
+ * it is ended.
  */
 #define _DEFAULT_SOURCE /* struct ip_mreq */
 
@@ -62,16 +62,16 @@ static bool falls(int percent)
 }
 
 /* What came on one side goes out on the other; what this relay sent there itself does not. */
-static void carry(struct side *from, struct side *to, int percent)
+static void carry(struct side *from, struct side *to, int lost, int held)
 {
     unsigned char bytes[DATAGRAM_MAX];
     struct sockaddr_in sender = {0};
     socklen_t size = sizeof sender;
     const ssize_t count =
         recvfrom(from->in, bytes, sizeof bytes, 0, (struct sockaddr *) &sender, &size);
-    if (count <= 0 || sender.sin_port == from->own_port || falls(percent))
+    if (count <= 0 || sender.sin_port == from->own_port || falls(lost))
         return;
-    if (to->held == 0 && falls(percent)) {
+    if (to->held == 0 && falls(held)) {
         to->held = (size_t) count;
         memcpy(to->datagram, bytes, to->held);
         return;
@@ -85,8 +85,8 @@ static void carry(struct side *from, struct side *to, int percent)
 int main(int argc, char **argv)
 {
     static struct side side[2];
-    if (argc != 4) {
-        fputs("usage: soak-relay PORT PORT PERCENT\n", stderr);
+    if (argc != 5) {
+        fputs("usage: soak-relay PORT PORT LOST HELD\n", stderr);
         return 2;
     }
     if (!open_side(&side[0], argv[1]) || !open_side(&side[1], argv[2])) {
@@ -98,7 +98,7 @@ int main(int argc, char **argv)
     while (poll(source, 2, -1) > 0 || errno == EINTR)
         for (int i = 0; i < 2; i++)
             if (source[i].revents & POLLIN)
-                carry(&side[i], &side[1 - i], atoi(argv[3]));
+                carry(&side[i], &side[1 - i], atoi(argv[3]), atoi(argv[4]));
     perror("soak-relay: poll");
     return EXIT_FAILURE;
 }

@@ -14,7 +14,7 @@ rate=${FMB_SOAK_RATE:-25000}
 ids=${FMB_SOAK_IDS:-10000000}
 channels=${FMB_SOAK_CHANNELS:-300000}
 
-trials='rate pairs scenes crowd killed poisoned hostile lossy ids channels fair'
+trials='rate pairs scenes crowd killed poisoned hostile lossy halved ids channels fair'
 
 mkdir -p "$out" || exit 1
 log=$out/$trial.log
@@ -94,8 +94,9 @@ lose_in_kernel() {
     tc qdisc add dev lo root netem delay 200us reorder 99% loss 1% 2> /dev/null
 }
 
+# lose_in_relay LOST OVERTAKEN: percent.
 lose_in_relay() {
-    start "$build/soak-relay" 7667 7668 1
+    start "$build/soak-relay" 7667 7668 "$1" "$2"
     LCM_DEFAULT_URL='udpm://239.255.76.67:7668?ttl=0'
     export LCM_DEFAULT_URL
 }
@@ -110,7 +111,8 @@ run_trial() {
     killed) start every 1 restart; ask --clients 4 --pairs 40 ;;
     poisoned) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
     hostile) damage >> "$log" 2>&1; start every 0 damage; ask --clients 4 --pairs 40 ;;
-    lossy) lose_in_kernel || lose_in_relay; ask --clients 4 --pairs 40 ;;
+    lossy) lose_in_kernel || lose_in_relay 1 1; ask --clients 4 --pairs 40 ;;
+    halved) lose_in_relay 30 0; ask --clients 3 --pairs 500 --single 1 ;;
     ids) "$build/soak-memory" ids "$fmbd" "$ids" ;;
     channels) "$build/soak-memory" channels "$fmbd" "$channels" ;;
     fair) fair ;;

@@ -2,6 +2,8 @@
 
 load service
 
+bats_require_minimum_version 1.5.0
+
 @test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
     for signal in TERM INT; do
         start_fmbd
@@ -61,6 +63,45 @@ load service
     run "$FMB" status --timeout 0.1
     [ "$status" = 1 ]
     [[ "$output" == *fmbd* ]]
+}
+
+# many_scenes COUNT: scenes of three bodies, one a line.
+many_scenes() {
+    for seed in $(seq "$1"); do random_scene 2 3 "$seed" | tr -d '\n'; echo; done
+}
+
+@test "nobody there: only the first of many scenes is waited for" {
+    many_scenes 200 > "$BATS_TEST_TMPDIR/scenes.json"
+    run --separate-stderr timeout 60 "$FMB" query --json --timeout 0.5 --retries 1 "$BATS_TEST_TMPDIR/scenes.json"
+    [ "$status" = 1 ]
+    [ "${#lines[@]}" = 1 ]
+    jq -e '.pairs | length == 3 and all(.error == "no fmbd answered")' <<< "$output"
+    grep -q 'no fmbd answered .* within 1 s, and none sends a heartbeat: later scenes are not answered$' <<< "$stderr"
+}
+
+@test "a service that is started with the query, and one that is restarted in mid-stream" {
+    many_scenes 40 > "$BATS_TEST_TMPDIR/scenes.json"
+    "$FMB" query --json --local "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local"
+    "$FMBD" 2> "$BATS_TEST_TMPDIR/log" 3>&- &
+    fmbd=$!
+    started="${started-} $fmbd"
+    "$FMB" query --json "$BATS_TEST_TMPDIR/scenes.json" | cmp - "$BATS_TEST_TMPDIR/local"
+    mkfifo "$BATS_TEST_TMPDIR/fifo"
+    "$FMB" query --json --timeout 0.2 --retries 0 < "$BATS_TEST_TMPDIR/fifo" > "$BATS_TEST_TMPDIR/bus" 2> /dev/null 3>&- &
+    client=$!
+    exec 5> "$BATS_TEST_TMPDIR/fifo"
+    head -n 10 "$BATS_TEST_TMPDIR/scenes.json" >&5
+    wait_until test -s "$BATS_TEST_TMPDIR/bus"
+    stop_fmbd
+    sed -n 11,14p "$BATS_TEST_TMPDIR/scenes.json" >&5
+    wait_until grep -q 'no fmbd answered' "$BATS_TEST_TMPDIR/bus"
+    start_fmbd 5>&-
+    tail -n +15 "$BATS_TEST_TMPDIR/scenes.json" >&5
+    exec 5>&-
+    wait $client || [ $? = 1 ]
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/bus")" = 40 ]
+    tail -n 1 "$BATS_TEST_TMPDIR/bus" | cmp - <(tail -n 1 "$BATS_TEST_TMPDIR/local")
+    stop_fmbd
 }
 
 @test "capacity for one frame: every answer is right all the same" {

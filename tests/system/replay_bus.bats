@@ -264,7 +264,7 @@ event() {
     generate refused refused.log
     generate --blast pairs 300 --by-handle handles.log
     start_fmbd
-    "$FMB_BUILD/soak-relay" 7667 7668 10 3>&- &
+    "$FMB_BUILD/soak-relay" 7667 7668 10 10 3>&- &
     started="$started $!"
     through=(--lcm-url 'udpm://239.255.76.67:7668?ttl=0' --timeout 0.05)
     for log in clients refused handles; do

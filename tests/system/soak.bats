@@ -48,6 +48,12 @@ status_was() {
     jq -e '.asked_again > 0' <<< "$report"
 }
 
+@test "no answer is lost or wrong where half of the queries or their results are lost" {
+    [ "$FMB_NETNS" = own ] || skip "needs a network namespace"
+    trial halved
+    jq -e '.asked_again > .pairs / 2 and .asked_again < 2 * .pairs' <<< "$report"
+}
+
 # resident_kb: at the start, then after each tenth. Sanitizers keep what was freed.
 @test "new bodies without end take no memory" {
     case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac

@@ -291,6 +291,23 @@ static void test_missing_route_is_explained_and_liblcm_prints_nothing(void **sta
     assert_int_equal(WEXITSTATUS(status), 0);
 }
 
+static void test_no_free_descriptor_is_not_a_missing_route(void **state)
+{
+    (void) state;
+    char why[BUS_WHY_MAX] = "";
+    struct rlimit limit;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
+    const int next = dup(STDERR_FILENO); /* the lowest that is free */
+    close(next);
+    const struct rlimit none = {(rlim_t) next, limit.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    struct bus *bus = bus_open("udpm://" GROUP ":7667?ttl=0", why);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
+    assert_null(bus);
+    assert_non_null(strstr(why, strerror(EMFILE)));
+    assert_null(strstr(why, "route"));
+}
+
 /* ---- Names ---- */
 
 static void test_prefixes_and_channels(void **state)
@@ -954,6 +971,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_long_urls_fit_the_reason),
         cmocka_unit_test(test_environment_names_the_bus),
         cmocka_unit_test(test_missing_route_is_explained_and_liblcm_prints_nothing),
+        cmocka_unit_test(test_no_free_descriptor_is_not_a_missing_route),
         cmocka_unit_test(test_prefixes_and_channels),
         cmocka_unit_test(test_listeners_are_checked_and_numbered),
         cmocka_unit_test(test_messages_of_every_size_arrive),

@@ -4,6 +4,7 @@
 #include "hostile.h"
 #include "fmb_client_raw.h"
 #include "relay.h"
+#include "held.h"
 #include "request.h"
 #include "scene_part.h"
 #include "wire.h"
@@ -150,6 +151,44 @@ static void test_results_of_another_kind_are_ignored(void **state)
     relay_close(relay);
 }
 
+/* Before a pair is answered, results for another client come under the numbers of its queries. */
+static void publish_results_of_another(struct relay *relay)
+{
+    for (int number = 0; number < 20; number++) {
+        struct pair_result result = {.client_id = fmb_client_raw_id(deceived) + 1,
+                                     .sequence_number = number,
+                                     .answer = {.verdict = FMB_SEPARATED}};
+        unsigned char bytes[QUERY_BYTES_MAX];
+        relay_publish(relay, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
+    }
+}
+
+static void count_pairs(void *user, const struct fmb_client_pair_result *result)
+{
+    (void) result;
+    ++*(int *) user;
+}
+
+static void test_results_of_another_client_are_watched_only(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    struct fmb_client_answer answer;
+    int watched = 0;
+    const struct fmb_client_watcher watcher = {.pair = count_pairs, .user = &watched};
+    relay_draw(placement, 2, 3, 1, 1, 5);
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
+    deceived = client;
+    relay->before = publish_results_of_another;
+    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    assert_true(watched > 20);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
 static bool publish_nothing(void *user, enum fmb_client_kind kind, const unsigned char *query,
                             size_t size)
 {
@@ -188,6 +227,30 @@ static void test_larger_queries_of_a_request_are_charged(void **state)
         assert_int_equal(requests_ready(&requests, QUERY_BYTES_MAX), i == 0);
     }
     assert_false(requests_ready(&requests, REQUEST_IDS_END));
+}
+
+/* What a request takes of the window is given back when it ends. */
+static void test_the_window_is_free_when_all_requests_have_ended(void **state)
+{
+    (void) state;
+    static struct requests requests = {
+        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
+    int status;
+    requests_forget_pace(&requests);
+    for (int i = 0; i < 10; i++) {
+        assert_true(requests_ready(&requests, QUERY_BYTES_MAX));
+        struct request *request =
+            request_begin(&requests, FMB_CLIENT_SCENE, QUERY_BYTES_MAX, note_status, &status);
+        request->size = REQUEST_IDS_END;
+        request_send(&requests, request);
+        assert_true(requests_ready(&requests, QUERY_BYTES_MAX));
+        if (i % 2)
+            request_end(&requests, request);
+        else
+            requests_give_up(&requests, FMB_CLIENT_LATE);
+    }
+    assert_int_equal(requests.count, 0);
+    assert_int_equal(requests.charge, 0);
 }
 
 /* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
@@ -349,10 +412,13 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
     relay->deaf = true;
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 0.05, 2);
-    const struct fmb_client_scene scene = all_pairs();
+    static const unsigned ignored[2][2] = {{0, 1}, {PLACEMENTS - 1, 3}};
+    struct fmb_client_scene scene = all_pairs();
+    scene.ignored = ignored;
+    scene.ignored_count = 2;
     const int64_t start = clock_ns();
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE],
-                     PLACEMENTS * (PLACEMENTS - 1) / 2);
+                     PLACEMENTS * (PLACEMENTS - 1) / 2 - 2);
     assert_true(seconds_since(start) >= 2 * 0.05);
     assert_int_equal(fmb_client_get_counts(client).queries, 2); /* the window's */
     fmb_client_close(client);
@@ -883,7 +949,8 @@ static void test_the_right_result_after_forged_ones_is_taken(void **state)
     relay_close(relay);
 }
 
-/* The smallest steps that are steps: every one is a query, and it ends. */
+/* The smallest steps that are steps: every one is a query, and it ends. A second result of one is
+ * not a result of the next. */
 static void step_by_step(struct scene_result *result, int turn)
 {
     (void) turn;
@@ -897,13 +964,15 @@ static void test_steps_of_one_pair_end(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
-    relay->lie = step_by_step;
+    relay->lie = relay->second_lie = step_by_step;
+    relay->double_result = 1;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_scene scene = listed();
     scene.pair_count = 300;
     relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).queries, 300);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -964,6 +1033,32 @@ static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
     relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).queries, before + 2); /* by handle, then whole */
     assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+/* One more body in each result, while not all are sent whole. */
+static void another_unknown_body(struct scene_result *result, int turn)
+{
+    if (result->handle_count == 100)
+        return;
+    unknown_although_whole(result, turn);
+    result->unknown[0] = (unsigned) turn % 100;
+}
+
+static void test_unknown_bodies_one_by_one_are_sent_whole(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_scene scene = listed();
+    scene.pair_count = 100;
+    relay_query(client, &scene);
+    relay->lie = another_unknown_body;
+    const uint64_t before = fmb_client_get_counts(client).queries;
+    relay_query(client, &scene);
+    assert_int_equal(fmb_client_get_counts(client).queries, before + 3);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -1063,6 +1158,27 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
     }
 }
 
+/* Another body that takes the slot of one that is held is not held. */
+static void test_a_new_body_in_a_slot_is_not_held(void **state)
+{
+    (void) state;
+    static struct held held;
+    uint64_t number = 0;
+    const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
+    held.hasher = hasher_create();
+    struct held_body *first = held_find(&held, &geometry), *other = NULL;
+    first->held = true;
+    assert_ptr_equal(held_find(&held, &geometry), first);
+    assert_true(first->held);
+    while (other != first) {
+        number++;
+        other = held_find(&held, &geometry);
+    }
+    assert_false(first->held);
+    held_clear(&held);
+    hasher_destroy(held.hasher);
+}
+
 /* ---- Second results ---- */
 
 static void other_verdict(struct scene_result *result, int turn)
@@ -1109,7 +1225,11 @@ static void test_contradicting_second_results_are_counted(void **state)
     static const struct {
         relay_lie *lie;
         bool contradicts;
-    } second[] = {{NULL, false}, {other_verdict, true}, {other_service, false}, {busy, false}};
+    } second[] = {{NULL, false},
+                  {other_verdict, true},
+                  {other_service, false},
+                  {busy, false},
+                  {step_by_step, false}};
     for (size_t i = 0; i < sizeof second / sizeof *second; i++) {
         struct relay *relay = relay_new();
         relay->double_result = 1;
@@ -1164,8 +1284,19 @@ static void test_old_results_contradict_nothing(void **state)
                                             .bytes = bytes[i],
                                             .size = wire_write_pair_result(&pair, bytes[i])};
     }
-    recent_note(&recent, &result[0], 0);
+    recent_note(&recent, &result[0], 0, false);
     assert_true(recent_contradicts(&recent, &result[1]));
+    /* Refusals that depend on the state of the service contradict nothing, first or second. */
+    static const int refusals[] = {FMB_BUSY, FMB_UNKNOWN_BODY};
+    for (int i = 0; i < 2; i++) {
+        struct request_result refusal = result[1];
+        refusal.status = refusals[i];
+        assert_false(recent_contradicts(&recent, &refusal));
+        refusal.number = 1;
+        recent_note(&recent, &refusal, 1, false);
+        refusal.status = FMB_OK;
+        assert_false(recent_contradicts(&recent, &refusal));
+    }
     result[1].number = RECENT_MAX;
     assert_false(recent_contradicts(&recent, &result[1]));
 }
@@ -1363,7 +1494,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
         cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
         cmocka_unit_test(test_results_of_another_kind_are_ignored),
+        cmocka_unit_test(test_results_of_another_client_are_watched_only),
         cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
+        cmocka_unit_test(test_the_window_is_free_when_all_requests_have_ended),
         cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
         cmocka_unit_test(test_results_without_a_query_do_not_prolong_others),
         cmocka_unit_test(test_a_service_that_comes_back_is_found),
@@ -1383,9 +1516,11 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_steps_of_one_pair_end),
         cmocka_unit_test(test_slow_services_get_fewer_pairs_a_query),
         cmocka_unit_test(test_unknown_bodies_for_ever_are_sent_whole),
+        cmocka_unit_test(test_unknown_bodies_one_by_one_are_sent_whole),
         cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
         cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
+        cmocka_unit_test(test_a_new_body_in_a_slot_is_not_held),
         cmocka_unit_test(test_contradicting_second_results_are_counted),
         cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
         cmocka_unit_test(test_old_results_contradict_nothing),

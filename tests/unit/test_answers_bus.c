@@ -1,0 +1,61 @@
+/* fmb query on the bus, where no service answers. */
+#include "answers.h"
+#include "relay.h"
+#include "wire.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static void send_heartbeat(struct relay *relay)
+{
+    const struct wire_status status = {.server_id = 1};
+    unsigned char bytes[WIRE_STATUS_BYTES_MAX];
+    relay_publish(relay, WIRE_STATUS, bytes, wire_write_status(&status, bytes));
+}
+
+static void count(void *user, const struct scene *scene, const struct outcome *outcome)
+{
+    (void) scene;
+    assert_non_null(outcome->error);
+    ++*(int *) user;
+}
+
+/* A service that is alive, be it too slow to answer in time, is queried for later scenes too. */
+static void test_a_heartbeat_is_enough_to_go_on(void **state)
+{
+    (void) state;
+    for (int alive = 0; alive < 2; alive++) {
+        int pairs = 0;
+        struct fmb_body cube;
+        const double sides[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        assert_int_equal(fmb_body_make(3, FMB_CUBOID, sides, 9, &cube), FMB_OK);
+        struct scene_body body[2] = {{.id = 1, .body = cube}, {.id = 2, .body = cube}};
+        const struct scene scene = {
+            .dim = 3, .duration = 1, .body = body, .body_count = 2, .all_pairs = true};
+        const struct answers_options options = {.method = NULL};
+        struct relay *relay = relay_new();
+        relay->deaf = true;
+        relay->before = alive ? send_heartbeat : NULL;
+        relay_open(relay, 10);
+        const struct args_bus bus = {.url = relay->url, .prefix = ""};
+        struct answers_bus *answers = answers_bus_open(&bus, &options, 0.1, 0);
+        assert_int_equal(answers_bus_scene(answers, &scene, count, &pairs), alive);
+        assert_int_equal(pairs, 1);
+        answers_bus_close(answers);
+        relay_close(relay);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_heartbeat_is_enough_to_go_on),
+    };
+    (void) argc;
+    relay_enter(argv);
+    return cmocka_run_group_tests_name("answers_bus", tests, NULL, NULL);
+}

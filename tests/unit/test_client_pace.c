@@ -1,0 +1,362 @@
+/* The request engine over a simulated network, with a clock of its own: what it does where
+ * datagrams are lost or delayed. Every run is the same, on any machine. */
+#include "clock.h"
+#include "query.h"
+#include "request.h"
+#include "scene_run.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const int64_t us = 1000, ms = 1000000, s = 1000000000; /* nanoseconds */
+
+/* ---- The clock, in place of the product's ---- */
+
+static int64_t now;
+
+int64_t clock_ns(void)
+{
+    return now += 20; /* as long as reading it takes */
+}
+
+int64_t clock_utime(void)
+{
+    return clock_ns() / 1000;
+}
+
+int64_t clock_thread_ns(void)
+{
+    return clock_ns();
+}
+
+int clock_left_ms(int64_t until_ns)
+{
+    return until_ns > now ? (int) ((until_ns - now + 999999) / 1000000) : 0;
+}
+
+/* ---- The network ---- */
+
+enum { RESULTS_MAX = 1 << 16, QUERY_SIZE = 400, SEND_NS = 2000 };
+
+/* A service that answers one query after the other, in the order of their arrival. */
+static struct network {
+    double loss, late;           /* shares of datagrams, each way, and of results */
+    int64_t delay, service, lag; /* each way; of each query; of late results besides */
+    int64_t free_at;             /* when the service is, after the last query */
+    int status;                  /* of its results */
+    uint64_t random;
+    uint64_t sent, waits; /* datagrams from the client; calls of wait() */
+    size_t first, count;  /* results on their way, in the order of their arrival */
+    struct arrival {
+        int64_t time, number;
+    } result[RESULTS_MAX];
+    struct requests requests;
+} net;
+
+static bool draw(double share)
+{
+    net.random ^= net.random << 13;
+    net.random ^= net.random >> 7;
+    net.random ^= net.random << 17;
+    return (double) (net.random >> 11) * 0x1p-53 < share;
+}
+
+static void add_result(struct arrival arrival)
+{
+    assert_true(net.count < RESULTS_MAX);
+    size_t i = net.first + net.count++;
+    for (; i > net.first && net.result[(i - 1) % RESULTS_MAX].time > arrival.time; i--)
+        net.result[i % RESULTS_MAX] = net.result[(i - 1) % RESULTS_MAX];
+    net.result[i % RESULTS_MAX] = arrival;
+}
+
+static bool publish(void *user, enum fmb_client_kind kind, const unsigned char *query, size_t size)
+{
+    (void) user, (void) kind, (void) size;
+    now += SEND_NS;
+    net.sent++;
+    if (draw(net.loss))
+        return true;
+    const int64_t arrival = now + net.delay;
+    net.free_at = (arrival > net.free_at ? arrival : net.free_at) + net.service;
+    if (draw(net.loss))
+        return true;
+    int64_t number = 0;
+    for (int i = 0; i < 8; i++)
+        number = number << 8 | query[REQUEST_IDS_END - 8 + i];
+    const int64_t lag = draw(net.late) ? net.lag : 0;
+    add_result((struct arrival){net.free_at + net.delay + lag, number});
+    return true;
+}
+
+static void wait_for_result(void *user, int other_fd, int timeout_ms)
+{
+    (void) user, (void) other_fd;
+    const int64_t until = now + timeout_ms * ms;
+    const int64_t next = net.count > 0 ? net.result[net.first].time : INT64_MAX;
+    net.waits++;
+    if (next > now)
+        now = next < until ? next : until;
+}
+
+static bool receive(void *user)
+{
+    (void) user;
+    while (net.count > 0 && net.result[net.first].time <= now) {
+        const struct request_result result = {.kind = FMB_CLIENT_DEFINITION,
+                                              .status = net.status,
+                                              .detail = "",
+                                              .bytes = (const unsigned char *) "",
+                                              .number = net.result[net.first].number};
+        net.first = (net.first + 1) % RESULTS_MAX;
+        net.count--;
+        requests_take(&net.requests, &result);
+    }
+    return true;
+}
+
+static void open_network(double loss, int64_t delay, int64_t service)
+{
+    memset(&net, 0, sizeof net);
+    net.loss = loss;
+    net.delay = delay;
+    net.service = service;
+    net.random = 88172645463325252;
+    net.requests.transport = (struct request_transport){NULL, publish, wait_for_result, receive};
+    net.requests.timeout_ns = s / 2; /* the defaults */
+    net.requests.tries = 6;
+    requests_forget_pace(&net.requests);
+}
+
+/* ---- A client ---- */
+
+enum { TIMES_MAX = 1 << 20 };
+
+static struct load {
+    int64_t queries, answers, given_up;
+    bool ended[FMB_CLIENT_RAW_WINDOW];
+    int64_t sent_at[FMB_CLIENT_RAW_WINDOW]; /* [query % FMB_CLIENT_RAW_WINDOW] */
+    int64_t time[TIMES_MAX];                /* of the answers, from the first sending */
+} load;
+
+static enum request_taken take(void *user, struct request *request,
+                               const struct request_result *result)
+{
+    const size_t slot = (size_t) ((int64_t *) user - load.sent_at);
+    (void) request;
+    load.ended[slot] = true;
+    if (result->status < 0)
+        load.given_up++;
+    else
+        load.time[load.answers++ % TIMES_MAX] = now - load.sent_at[slot];
+    return REQUEST_COMPLETE;
+}
+
+/* For so long, so many queries are under way: no more than these after the oldest without result,
+ * as the parts of a scene are. */
+static void query_for(int64_t duration, int window)
+{
+    const int64_t end = now + duration;
+    int64_t oldest = 0;
+    memset(&load, 0, sizeof load);
+    while (now < end) {
+        while (oldest < load.queries && load.ended[oldest % FMB_CLIENT_RAW_WINDOW])
+            oldest++;
+        for (; load.queries - oldest < window; load.queries++) {
+            const int64_t slot = load.queries % FMB_CLIENT_RAW_WINDOW;
+            struct request *request = request_begin(&net.requests, FMB_CLIENT_DEFINITION,
+                                                    QUERY_SIZE, take, &load.sent_at[slot]);
+            request->size = QUERY_SIZE;
+            load.ended[slot] = false;
+            load.sent_at[slot] = now;
+            request_send(&net.requests, request);
+        }
+        requests_step(&net.requests, -1, INT64_MAX);
+    }
+}
+
+static int compare(const void *a, const void *b)
+{
+    const int64_t p = *(const int64_t *) a, q = *(const int64_t *) b;
+    return (p > q) - (p < q);
+}
+
+static int64_t median(void)
+{
+    const int64_t count = load.answers < TIMES_MAX ? load.answers : TIMES_MAX;
+    qsort(load.time, (size_t) count, sizeof *load.time, compare);
+    return load.time[count / 2];
+}
+
+/* ---- Loss ---- */
+
+static const double heavy_loss = 0.3;
+
+/* Half of the queries, or their results, are lost: 2.04 datagrams an answer are needed. With delay
+ * each loss costs a round trip, and the window waits for its oldest query. */
+static void test_full_windows_keep_a_share_of_their_rate(void **state)
+{
+    (void) state;
+    static const struct {
+        int64_t delay_ms;
+        int tries;
+        double share;
+    } network[] = {{0, 6, 0.3}, {20, 60, 0.1}, {100, 60, 0.1}};
+    for (size_t i = 0; i < sizeof network / sizeof *network; i++) {
+        open_network(0, network[i].delay_ms * ms, 100 * us);
+        query_for(60 * s, FMB_CLIENT_RAW_WINDOW);
+        const int64_t without = load.answers;
+        open_network(heavy_loss, network[i].delay_ms * ms, 100 * us);
+        net.requests.tries = network[i].tries;
+        query_for(60 * s, FMB_CLIENT_RAW_WINDOW);
+        assert_true((double) load.answers > network[i].share * (double) without);
+        assert_true((double) net.sent < 3 * (double) load.answers);
+        assert_int_equal(load.given_up, 0);
+    }
+}
+
+static void test_single_queries_are_repeated_soon(void **state)
+{
+    (void) state;
+    open_network(heavy_loss, 0, 100 * us);
+    query_for(60 * s, 1);
+    assert_true(median() < 20 * ms);
+    assert_true(load.answers > 60 * s / (30 * ms));
+    assert_true((double) net.sent < 3 * (double) load.answers);
+    assert_int_equal(load.given_up, 0);
+}
+
+/* A wait ends with a deadline, not before it: the client does not spin. */
+static void test_a_wait_lasts_until_something_is_due(void **state)
+{
+    (void) state;
+    open_network(heavy_loss, 0, 100 * us);
+    query_for(10 * s, 1);
+    assert_true(net.waits < 4 * net.sent);
+}
+
+/* ---- Order ---- */
+
+/* One result in five comes after those of some later queries: fewer queries are repeated. */
+static void test_reordered_results_cause_few_repeats(void **state)
+{
+    (void) state;
+    open_network(0, 0, 100 * us);
+    net.late = 0.2;
+    net.lag = ms / 2;
+    query_for(20 * s, FMB_CLIENT_RAW_WINDOW);
+    assert_true((double) net.sent < 1.2 * (double) load.answers);
+}
+
+/* A few queries take long, as pairs of bodies of many frames do, for which the others do not wait.
+ * They are repeated as if there were no others: once at once, and then at intervals that double. */
+static void test_slow_queries_that_are_overtaken_back_off(void **state)
+{
+    (void) state;
+    open_network(0, 0, 100 * us);
+    net.late = 0.002;
+    net.lag = 200 * ms;
+    query_for(60 * s, FMB_CLIENT_RAW_WINDOW);
+    const double slow = net.late * (double) net.sent;
+    assert_true(load.answers > 10000);
+    assert_true((double) net.requests.counts.repeated < 8 * slow);
+}
+
+/* ---- Delay ---- */
+
+/* The network becomes slow: at first every query is repeated before its result comes. */
+static void test_a_longer_delay_is_learned(void **state)
+{
+    (void) state;
+    for (int lossy = 0; lossy < 2; lossy++) {
+        open_network(0, 0, 100 * us);
+        query_for(s, 1);
+        assert_int_equal(net.requests.counts.repeated, 0);
+        net.loss = lossy ? heavy_loss : 0;
+        net.delay = 100 * ms;
+        net.requests.tries = 60;
+        query_for(20 * s, 1);
+        const uint64_t before = net.requests.counts.repeated;
+        query_for(60 * s, 1);
+        if (lossy)
+            assert_true(load.answers > 100);
+        else
+            assert_int_equal(net.requests.counts.repeated, before);
+        assert_int_equal(load.given_up, 0);
+    }
+}
+
+/* ---- A busy service ---- */
+
+/* However short the timeouts, it is queried for a minute, more and more rarely. */
+static void test_a_busy_service_is_queried_for_a_minute(void **state)
+{
+    (void) state;
+    open_network(0, 0, 100 * us);
+    net.status = FMB_BUSY;
+    query_for(70 * s, 1);
+    assert_int_equal(load.answers, 1);
+    assert_int_equal(load.given_up, 0);
+    assert_true(load.time[0] > 60 * s);
+    assert_true(net.sent < 300);
+}
+
+/* ---- The end of a scene ---- */
+
+static void count_statuses(void *user, const struct fmb_client_answer *answer)
+{
+    int *count = user; /* [-status] */
+    assert_in_range(-answer->status, 0, 7);
+    count[-answer->status]++;
+}
+
+/* The requests are given up, and the time for the scene ends, in the same step: that there is no
+ * service says more than that it is late. */
+static void test_no_service_is_reported_although_it_is_late(void **state)
+{
+    (void) state;
+    enum { PAIRS = 3000 };
+    static struct scene_run run;
+    static struct held held;
+    static unsigned pair[PAIRS][2];
+    const struct fmb_client_frame frame = {.shape = FMB_BOX, .components = {1, 1, 1}};
+    const struct fmb_client_placement placement[2] = {
+        {.dim = 3, .frames = &frame, .frame_count = 1},
+        {.dim = 3, .frames = &frame, .frame_count = 1}};
+    for (int i = 0; i < PAIRS; i++)
+        pair[i][1] = 1;
+    struct fmb_client_scene scene = {.placements = placement,
+                                     .placement_count = 2,
+                                     .which = FMB_CLIENT_LISTED,
+                                     .pairs = (const unsigned(*)[2]) pair,
+                                     .pair_count = PAIRS};
+    for (int late = 0; late < 2; late++) {
+        int count[8] = {0};
+        open_network(1, 0, 0);
+        scene.within = late ? 2 : 3;
+        run = (struct scene_run){.requests = &net.requests, .held = &held};
+        assert_int_equal(scene_run(&run, &scene, true, count_statuses, count), FMB_OK);
+        assert_int_equal(count[late ? -FMB_CLIENT_LATE : -FMB_CLIENT_NO_SERVICE], PAIRS);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_full_windows_keep_a_share_of_their_rate),
+        cmocka_unit_test(test_single_queries_are_repeated_soon),
+        cmocka_unit_test(test_a_wait_lasts_until_something_is_due),
+        cmocka_unit_test(test_reordered_results_cause_few_repeats),
+        cmocka_unit_test(test_slow_queries_that_are_overtaken_back_off),
+        cmocka_unit_test(test_a_longer_delay_is_learned),
+        cmocka_unit_test(test_a_busy_service_is_queried_for_a_minute),
+        cmocka_unit_test(test_no_service_is_reported_although_it_is_late),
+    };
+    return cmocka_run_group_tests_name("client_pace", tests, NULL, NULL);
+}
