@@ -117,25 +117,14 @@ static void publish_definition(struct server *server, const struct definition *r
                    result->status);
 }
 
-/* Number of pairs decided. Pairs that the broad phase separated count, though they have no verdict
- * in the result; pairs that the method cannot decide (verdict 0) do not. */
-static int64_t decided(const struct scene_result *result, int32_t first_pair)
-{
-    int64_t pairs = result->end_pair - first_pair;
-    for (int32_t i = 0; i < result->verdict_count; i++)
-        pairs -= result->verdict[i] == 0;
-    return pairs;
-}
-
-static void publish_scene(struct server *server, int32_t first_pair,
-                          const struct scene_result *result)
+/* On input: pairs: number of pairs decided. */
+static void publish_scene(struct server *server, int32_t pairs, const struct scene_result *result)
 {
     publish_result(server, SERVER_SCENES, wire_write_scene_result(result, server->out),
                    result->status);
-    if (result->status != FMB_OK)
-        return;
-    server->status.pairs += decided(result, first_pair);
-    histogram_add(&server->compute_ns, result->compute_ns);
+    server->status.pairs += pairs;
+    if (result->status == FMB_OK)
+        histogram_add(&server->compute_ns, result->compute_ns);
 }
 
 /* Notes a query that cannot be read. error: why it cannot; NULL: it can. */
@@ -218,7 +207,7 @@ static void finish_job(struct server *server, struct job *job)
     } else {
         struct scene_result *result = scene_job_result(job->scene);
         result->compute_ns = job->used_ns;
-        publish_scene(server, scene_job_query(job->scene)->first_pair, result);
+        publish_scene(server, scene_job_decided(job->scene), result);
     }
     jobs_give_back(&server->jobs, job);
 }

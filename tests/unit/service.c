@@ -1,5 +1,6 @@
 #include "service.h"
 
+#include "clock.h"
 #include "geometry_write.h"
 
 #include <setjmp.h>
@@ -93,6 +94,7 @@ int service_open(void **state)
     (void) state;
     memset(&service, 0, sizeof service);
     service.now_ns = 1;
+    service.opened_ns = clock_ns();
     service.server = server_create(&options);
     return service.server ? 0 : -1;
 }
@@ -107,6 +109,7 @@ int service_close(void **state)
 void service_receive(enum server_kind kind, const unsigned char *bytes, size_t size)
 {
     server_receive(service.server, kind, bytes, size);
+    service.now_ns += service.batch_ns;
     server_end_batch(service.server, 1);
 }
 

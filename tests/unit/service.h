@@ -26,7 +26,9 @@ extern struct service {
     /* The clocks: they stand still but for tick_ns at each reading, and cost_ns[client_id] while a
      * result is published. */
     int64_t now_ns, tick_ns, cost_ns[SERVICE_CLIENTS];
-    bool refuses; /* the bus does */
+    int64_t batch_ns;  /* what it takes to read a batch */
+    int64_t opened_ns; /* clock_ns() before the server was created */
+    bool refuses;      /* the bus does */
 } service;
 
 int service_open(void **state);

@@ -368,6 +368,27 @@ static void test_a_full_queue_refuses_the_one_that_holds_most(void **state)
     assert_int_equal(service.status.results[FMB_BUSY], refused + MODEST);
 }
 
+/* Clients that fill the queue with one scene each. A further client takes the place of one of them,
+ * which then has no work: no turn is given to it, and the service does not wait for it. */
+static void test_a_client_whose_only_query_is_evicted_is_idle(void **state)
+{
+    (void) state;
+    enum { CROWD = 512, BODIES = 580 };
+    for (int64_t client = 1; client <= CROWD; client++) {
+        service.batch_ns = client < CROWD ? 2 * MS : 0; /* the last one has used least */
+        service_query_scene(client, 1, BODIES);
+    }
+    assert_int_equal(service.count, 0);
+    service.batch_ns = 2 * MS;
+    service_query_pair(CROWD + 1, 1);
+    assert_int_equal(service.count, 1);
+    assert_int_equal(service.result[0].client_id, CROWD);
+    assert_int_equal(service.result[0].status, FMB_BUSY);
+    service.tick_ns = 100 * US;
+    assert_int_equal(server_work(service.server), SERVER_WORKING);
+    assert_int_equal(service_status()->malformed, 0);
+}
+
 static void test_new_ids_without_end(void **state)
 {
     (void) state;
@@ -482,6 +503,7 @@ int main(void)
         TEST(test_the_last_job_stops_early),
         TEST(test_more_scenes_than_jobs),
         TEST(test_a_full_queue_refuses_the_one_that_holds_most),
+        TEST(test_a_client_whose_only_query_is_evicted_is_idle),
         TEST(test_new_ids_without_end),
         TEST(test_a_pair_of_many_frames),
         TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
