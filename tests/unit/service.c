@@ -20,7 +20,8 @@ static void add(struct service_result result)
     service.result[service.count++] = result;
     if (result.client_id >= SERVICE_CLIENTS)
         return;
-    service.now_ns += service.cost_ns[result.client_id];
+    service.now_ns +=
+        result.status == FMB_BUSY ? service.refusal_ns : service.cost_ns[result.client_id];
     service.answers[result.client_id]++;
     service.answered_ns[result.client_id] = service.now_ns;
 }
@@ -40,6 +41,7 @@ static void take_scene(const unsigned char *bytes, uint32_t size)
 {
     static struct scene_result result;
     assert_null(wire_read_scene_result(bytes, size, &result));
+    service.scene_compute_ns = result.compute_ns;
     add((struct service_result){SERVER_SCENES, result.client_id, result.sequence_number,
                                 result.status, result.end_pair});
 }
